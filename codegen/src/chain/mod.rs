@@ -1,0 +1,278 @@
+//! A sound crane: bodies on an open chain, with every reference resolved and every number checked.
+//!
+//! // AFTER THIS POINT: nobody knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
+
+mod profile;
+mod value;
+
+pub use profile::{Profile, Ramp, Segment};
+pub use value::{ParameterId, Value};
+
+/// Index of a coordinate in [`Chain::coordinates`], the order of `q`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct CoordinateId(pub usize);
+
+/// Index of a body in [`Chain::bodies`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct BodyId(pub usize);
+
+/// An open chain of bodies, the compiler's view of a crane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// Name of the crane, a valid Rust identifier.
+    pub name: String,
+    /// One line for people.
+    pub title: String,
+    /// Hash of the YAML text (FNV-1a, 64 bit, hexadecimal), so that results can be traced to their input.
+    pub spec_hash: String,
+    /// Acceleration of gravity in the world frame, m/s².
+    pub gravity: [Value; 3],
+    /// Values that stay live at run time.
+    pub parameters: Vec<Parameter>,
+    /// Generalized coordinates `q`, Eq. (1).
+    pub coordinates: Vec<Coordinate>,
+    /// Bodies from the base to the tip; body `p` hangs on body `p − 1`, the first on the world.
+    pub bodies: Vec<Body>,
+    /// The base's coordinates in the order x, y, z, ψ, θ, φ, as far as it has them.
+    pub base: [Option<CoordinateId>; 6],
+    /// Supports of the base, Eqs. (16)–(18).
+    pub supports: Vec<Support>,
+    /// Springs and dampers between the rigid elements of flexible links, Eqs. (14)–(15).
+    pub elements: Vec<ElementSpring>,
+    /// Flexible drives, Eqs. (19)–(21).
+    pub drives: Vec<Drive>,
+    /// Viscous damping of passive joints.
+    pub hinges: Vec<Hinge>,
+    /// Points whose motion is of interest.
+    pub points: Vec<Point>,
+    /// Where the static solution starts; one number a coordinate, m or rad.
+    pub guess: Vec<f64>,
+    /// Settings of a run.
+    pub run: Run,
+    /// What the user wants to compute; the rest is left out.
+    pub analyses: Analyses,
+}
+
+/// A live parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name, a valid Rust identifier.
+    pub name: String,
+    /// Unit as written by the user, for tables.
+    pub unit: String,
+    /// What it is.
+    pub about: String,
+    /// Value unless set at run time.
+    pub default: f64,
+}
+
+/// A generalized coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coordinate {
+    /// Unique name, a valid Rust identifier, such as `boom_psi` or `boom_2_theta`.
+    pub name: String,
+    /// Translation (m) or rotation (rad).
+    pub kind: CoordinateKind,
+    /// Which axis of its frame it moves along or turns about.
+    pub axis: Axis,
+    /// The body it moves first.
+    pub body: BodyId,
+}
+
+/// Kind of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoordinateKind {
+    /// Along the axis, m.
+    Translation,
+    /// About the axis, rad.
+    Rotation,
+}
+
+/// Axis of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Axis {
+    /// First axis.
+    X,
+    /// Second axis.
+    Y,
+    /// Third axis.
+    Z,
+}
+
+impl Axis {
+    /// 0, 1, 2.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// A body: a rigid link, a rigid finite element, or a massless frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Unique name, a valid Rust identifier: the link's, or `boom_0`, `boom_1` … for elements.
+    pub name: String,
+    /// Name of the link it belongs to.
+    pub link: String,
+    /// The way from the previous body's frame to this one's, T̃, as elementary steps in order.
+    pub path: Vec<Step>,
+    /// Mass properties about the origin of the body's frame; `None` for a massless frame.
+    pub inertia: Option<Inertia>,
+    /// The named parts lumped into it, for tables.
+    pub parts: Vec<Part>,
+    /// Length along x for a rigid element, 0 otherwise, m; for pictures and moments along the beam.
+    pub length: Value,
+}
+
+/// One factor of a homogeneous transformation T̃, Eq. (3).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// Constant translation, m.
+    Translate([Value; 3]),
+    /// Constant rotation about an axis, by its sine and cosine.
+    Rotate {
+        /// Axis of rotation.
+        axis: Axis,
+        /// Sine of the angle.
+        sin: Value,
+        /// Cosine of the angle.
+        cos: Value,
+    },
+    /// Translation by a coordinate along its axis, or rotation by it about its axis.
+    Move(CoordinateId),
+}
+
+/// Pseudo-inertia `H = ∫ r rᵀ dm`, `r = [x y z 1]ᵀ`, about the origin of the body's frame, Eq. (4).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inertia {
+    /// Mass, kg.
+    pub mass: Value,
+    /// Static moments `∫ r dm`, kg m.
+    pub first: [Value; 3],
+    /// `∫ x² dm, ∫ y² dm, ∫ z² dm, ∫ xy dm, ∫ xz dm, ∫ yz dm`, kg m².
+    pub second: [Value; 6],
+}
+
+/// A named part of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Name as written by the user.
+    pub name: String,
+    /// Mass, kg.
+    pub mass: Value,
+    /// Centre of mass in the body's frame, m.
+    pub com: [Value; 3],
+}
+
+/// A support of the base: three springs and dampers along the world's axes, Eqs. (16)–(18).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Support {
+    /// Name.
+    pub name: String,
+    /// Attachment point in the frame of the first body, m.
+    pub position: [Value; 3],
+    /// Stiffness along x, y, z, N/m.
+    pub stiffness: [Value; 3],
+    /// Damping along x, y, z, N s/m.
+    pub damping: [Value; 3],
+    /// Free play δ along x, y, z, m.
+    pub free_play: [Value; 3],
+    /// How its elongation follows from the base's coordinates.
+    pub kinematics: SupportKinematics,
+}
+
+/// How the elongation of a support follows from the base's coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SupportKinematics {
+    /// `e = U q̃(1) − δ`, Eq. (16): small rotations.
+    Linear,
+    /// `e = T(1) r_E − r_E0 − δ`, `r_E0` its place at q̃(1) = 0: any rotation.
+    Exact,
+}
+
+/// Spring and damper of a rigid element on one coordinate, Eqs. (14)–(15).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementSpring {
+    /// The coordinate.
+    pub coordinate: CoordinateId,
+    /// Stiffness, N m/rad.
+    pub stiffness: Value,
+    /// Damping, N m s/rad.
+    pub damping: Value,
+}
+
+/// A flexible drive, Eqs. (19)–(21).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// The coordinate it drives.
+    pub coordinate: CoordinateId,
+    /// Stiffness, N m/rad or N/m.
+    pub stiffness: Value,
+    /// Damping, N m s/rad or N s/m.
+    pub damping: Value,
+    /// Prescribed motion of the spring's far end.
+    pub profile: Profile,
+}
+
+/// Viscous damping of a coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hinge {
+    /// The coordinate.
+    pub coordinate: CoordinateId,
+    /// Damping, N m s/rad or N s/m.
+    pub damping: Value,
+}
+
+/// A point of interest fixed to a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Unique name, a valid Rust identifier.
+    pub name: String,
+    /// The body that carries it.
+    pub body: BodyId,
+    /// Position in the body's frame, m.
+    pub position: [Value; 3],
+}
+
+/// Settings of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run {
+    /// Simulated time, s.
+    pub duration: f64,
+    /// Step of the integrator, s.
+    pub step: f64,
+    /// Interval of the recorded results, s.
+    pub output: f64,
+}
+
+/// What is to be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Analyses {
+    /// Static residual and tangent stiffness.
+    pub statics: bool,
+    /// Mass matrix, bias, kinetic energy and power.
+    pub dynamics: bool,
+    /// Linearisation: A, K and D at a pose.
+    pub modes: bool,
+    /// ∂T/∂q and ∂²T/∂q∂q of every body.
+    pub derivatives: bool,
+}
+
+impl Analyses {
+    /// Everything there is, for checks.
+    pub const ALL: Analyses = Analyses { statics: true, dynamics: true, modes: true, derivatives: true };
+}
+
+impl Chain {
+    /// Number of coordinates of the chain up to and including a body: `n_dof(p)`, Eq. (2).
+    #[must_use]
+    pub fn degrees_of_freedom(&self, body: BodyId) -> usize {
+        self.bodies[..=body.0].iter().flat_map(|b| &b.path).filter(|s| matches!(s, Step::Move(_))).count()
+    }
+
+    /// Parameter values unless set at run time.
+    #[must_use]
+    pub fn parameter_defaults(&self) -> Vec<f64> {
+        self.parameters.iter().map(|p| p.default).collect()
+    }
+}

@@ -1,0 +1,144 @@
+//! The seam between generated cranes and everything that is computed with them.
+//!
+//! Generated code implements these traits, statics, integrators and reports are generic over them. What a crane does not
+//! have (supports, flexible links, drives, damping) keeps the default: zero, at no cost.
+//!
+//! Throughout: `N` coordinates, `q` in m and rad, `v = q̇` in m/s and rad/s, `t` in s, world frame with z up.
+
+use nalgebra::{Matrix4, SMatrix, SVector, Vector3};
+
+use crate::Description;
+
+/// Poses, forces and potential energy of a crane.
+pub trait CraneModel<const N: usize> {
+    /// Names, units and settings.
+    fn description(&self) -> &'static Description;
+
+    /// Value of a live parameter, by its place in [`Description::parameters`].
+    fn parameter(&self, index: usize) -> f64;
+
+    /// Sets a live parameter. An index out of range changes nothing.
+    fn set_parameter(&mut self, index: usize, value: f64);
+
+    /// Transforms T of all bodies into the world frame, Eq. (3). `out`: one a body.
+    fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]);
+
+    /// Positions of the points of interest in the world frame, m. `out`: one a point.
+    fn points(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
+
+    /// Velocities of the points of interest in the world frame, m/s. `out`: one a point.
+    fn point_velocities(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
+
+    /// Generalized forces of everything but inertia and gravity: supports, elements, drives, hinges. N and N m.
+    fn forces(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N>;
+
+    /// Generalized forces of the supports, Eq. (18).
+    fn support_forces(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
+    /// Generalized forces of the springs and dampers between rigid elements, Eq. (15).
+    fn element_forces(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
+    /// Generalized forces of the drives, Eq. (21).
+    fn drive_forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
+    /// Generalized forces of viscous damping in passive joints.
+    fn hinge_forces(&self, _v: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
+    /// Forces of the supports on the crane, world frame, N. `out`: one a support.
+    fn support_reactions(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
+
+    /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair a drive.
+    fn drive_motions(&self, _t: f64, _out: &mut [[f64; 2]]) {}
+
+    /// Potential energy of gravity, zero at the world's origin, Eq. (6). J.
+    fn gravity_energy(&self, q: &SVector<f64, N>) -> f64;
+
+    /// Energy of the supports' springs, Eq. (17). J.
+    fn support_energy(&self, _q: &SVector<f64, N>) -> f64 {
+        0.0
+    }
+
+    /// Energy of the elements' springs, Eq. (14). J.
+    fn element_energy(&self, _q: &SVector<f64, N>) -> f64 {
+        0.0
+    }
+
+    /// Energy of the drives' springs, Eq. (19). J.
+    fn drive_energy(&self, _t: f64, _q: &SVector<f64, N>) -> f64 {
+        0.0
+    }
+
+    /// Power that the drives' prescribed motions put in, `Σ t_dr q̇_dr`. W.
+    fn drive_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
+        0.0
+    }
+
+    /// Power that all dampers take out, 2R ≥ 0. W.
+    fn dissipation(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
+        0.0
+    }
+
+    /// Potential energy of everything. J.
+    fn potential_energy(&self, t: f64, q: &SVector<f64, N>) -> f64 {
+        self.gravity_energy(q) + self.support_energy(q) + self.element_energy(q) + self.drive_energy(t, q)
+    }
+}
+
+/// Equations of motion `A(q) q̈ = e(q, q̇) + f(t, q, q̇)`, Eq. (23).
+pub trait Dynamics<const N: usize>: CraneModel<N> {
+    /// Mass matrix A(q), Eq. (5), symmetric positive definite.
+    fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N>;
+
+    /// Bias `e = −(h + g)`, Eq. (9): velocity and gravity forces.
+    fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N>;
+
+    /// Kinetic energy, Eq. (4). J.
+    fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64;
+}
+
+/// Static equilibrium at t = 0.
+pub trait Statics<const N: usize>: CraneModel<N> {
+    /// `∂E_p/∂q` at t = 0; zero in equilibrium. N and N m.
+    fn static_residual(&self, q: &SVector<f64, N>) -> SVector<f64, N>;
+
+    /// `∂²E_p/∂q²`, symmetric; positive definite where the equilibrium is stable.
+    fn tangent_stiffness(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N>;
+}
+
+/// Small motions about a pose at rest: `A δq̈ + D δq̇ + K δq = 0`.
+pub trait Linearise<const N: usize>: CraneModel<N> {
+    /// A, D and K at a pose.
+    fn linearise(&self, q: &SVector<f64, N>) -> Linearisation<N>;
+}
+
+/// Derivatives of the transforms.
+pub trait TransformDerivatives<const N: usize>: CraneModel<N> {
+    /// Calls `each(body, i, ∂T/∂q_i)` for every body and every coordinate `i` before it in the chain; all others are zero.
+    fn transform_derivatives(&self, q: &SVector<f64, N>, each: &mut dyn FnMut(usize, usize, &Matrix4<f64>));
+
+    /// Calls `each(body, m, n, ∂²T/∂q_m∂q_n)` for every body and every pair `m ≤ n` before it in the chain.
+    fn transform_second_derivatives(
+        &self,
+        q: &SVector<f64, N>,
+        each: &mut dyn FnMut(usize, usize, usize, &Matrix4<f64>),
+    );
+}
+
+/// Coefficients of small motions about a pose at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linearisation<const N: usize> {
+    /// Mass matrix A.
+    pub mass: SMatrix<f64, N, N>,
+    /// Tangent stiffness K.
+    pub stiffness: SMatrix<f64, N, N>,
+    /// Damping matrix D.
+    pub damping: SMatrix<f64, N, N>,
+}
