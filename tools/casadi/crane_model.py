@@ -1,0 +1,265 @@
+"""A crane as CasADi expressions: links become bodies with T(p) = T(p-1) T̃(p) [Urbaś 2016, Eq. (3)]."""
+
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+from beams import DIRECTIONS, read_beam
+from crane_spec import CraneSpec
+from inertias import read_pseudo_inertia
+from profiles import read_profile
+from transforms import classic_dh, modified_dh, place, rotate, translate, translate_along
+
+ROTATIONS = {"psi": "z", "theta": "y", "phi": "x"}
+TRANSLATIONS = {"x": "x", "y": "y", "z": "z"}
+ROTATION_NAMES = {axis: name for name, axis in ROTATIONS.items()}
+FREE = ["x", "y", "z", "psi", "theta", "phi"]
+
+
+@dataclass
+class Coordinate:
+    """A generalized coordinate: its symbol, what it is named, and whose it is."""
+
+    name: str
+    q: ca.SX
+    v: ca.SX
+    is_rotation: bool
+    is_element: bool
+    is_base: bool
+
+
+@dataclass
+class Body:
+    """A body: its pose in the world, how many coordinates move it, its pseudo-inertia (zero for a massless frame)."""
+
+    name: str
+    transform: ca.SX
+    degrees_of_freedom: int
+    pseudo_inertia: ca.SX
+
+
+@dataclass
+class Spring:
+    """Spring and damper on one coordinate: an element's, or with a motion a drive's."""
+
+    coordinate: Coordinate
+    stiffness: object
+    damping: object
+    motion: object = 0
+    moves_within: tuple = (0.0, 0.0)
+
+
+@dataclass
+class Support:
+    """Springs and dampers along the world's axes; `elongation` and its columns for x, y, z."""
+
+    name: str
+    elongation: ca.SX
+    stiffness: ca.SX
+    damping: ca.SX
+
+
+@dataclass
+class Span:
+    """A link as bodies in a row: where each begins along the undeformed link, and the pose of the tip."""
+
+    bodies: list
+    starts: list
+
+
+@dataclass
+class Crane:
+    """Everything a spec says, as expressions over t, q, v and the parameters."""
+
+    spec: CraneSpec
+    name: str
+    time: ca.SX
+    gravity: ca.SX
+    coordinates: list = field(default_factory=list)
+    bodies: list = field(default_factory=list)
+    supports: list = field(default_factory=list)
+    elements: list = field(default_factory=list)
+    drives: list = field(default_factory=list)
+    hinges: list = field(default_factory=list)
+    points: dict = field(default_factory=dict)
+    guess: list = field(default_factory=list)
+
+    @property
+    def q(self):
+        """Positions, m and rad."""
+        return ca.vertcat(*[coordinate.q for coordinate in self.coordinates])
+
+    @property
+    def v(self):
+        """Velocities, m/s and rad/s."""
+        return ca.vertcat(*[coordinate.v for coordinate in self.coordinates])
+
+    @property
+    def parameters(self):
+        """Live parameters in the order of the spec."""
+        return ca.vertcat(*self.spec.parameters.values())
+
+    def coordinate(self, name):
+        """The coordinate of that name."""
+        return next(coordinate for coordinate in self.coordinates if coordinate.name == name)
+
+    def move(self, link, symbol, is_element=False, is_base=False):
+        """Adds the coordinate `<link>_<symbol>` and returns its elementary motion."""
+        name = f"{link}_{symbol}"
+        is_rotation = symbol in ROTATIONS
+        coordinate = Coordinate(name, ca.SX.sym(name), ca.SX.sym(f"{name}_rate"), is_rotation, is_element, is_base)
+        self.coordinates.append(coordinate)
+        if is_rotation:
+            return rotate(ROTATIONS[symbol], coordinate.q)
+        return translate_along(TRANSLATIONS[symbol], coordinate.q)
+
+    def add_body(self, name, transform, pseudo_inertia):
+        """Adds a body that all coordinates so far move."""
+        self.bodies.append(Body(name, transform, len(self.coordinates), pseudo_inertia))
+        return self.bodies[-1]
+
+
+def read_crane(path):
+    """The crane of a YAML file."""
+    spec = CraneSpec(path)
+    time = ca.SX.sym("t")
+    crane = Crane(spec, spec.keys["name"], time, spec.vector(spec.get("gravity", [0, 0, -9.81])))
+    spans = read_links(crane)
+    base = crane.bodies[0]
+    for written in spec.get("supports", []):
+        crane.supports.append(read_support(crane, written, base))
+    for written in spec.get("drives", []):
+        crane.drives.append(read_drive(crane, written))
+    for name, damping in spec.get("damping", {}).items():
+        crane.hinges.append(Spring(crane.coordinate(name), 0, spec.number(damping)))
+    for written in spec.get("points", []):
+        crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
+    crane.guess = read_guess(crane)
+    return crane
+
+
+def read_links(crane):
+    """Adds the bodies of all links and returns the span of each."""
+    spans = {}
+    tip = ca.SX.eye(4)
+    for index, link in enumerate(crane.spec.keys["links"]):
+        name = link["name"]
+        transform = tip @ read_joint(crane, link, is_base=index == 0)
+        if "beam" in link:
+            spans[name], tip = read_beam_bodies(crane, name, transform, link["beam"])
+        else:
+            body = crane.add_body(name, transform, read_link_inertia(crane.spec, link))
+            spans[name], tip = Span([body], [0.0]), transform
+    return spans
+
+
+def read_link_inertia(spec, link):
+    """H of a rigid link: of its only body, of all its bodies together, or nothing."""
+    written = link.get("bodies") or ([link] if "mass" in link else [])
+    return sum((read_pseudo_inertia(spec, body) for body in written), ca.SX(4, 4))
+
+
+def read_beam_bodies(crane, name, transform, written):
+    """Adds the elements of a beam; returns its span and the pose of its tip."""
+    beam = read_beam(crane.spec, written)
+    span, start = Span([], []), 0.0
+    for index, (length, pseudo_inertia) in enumerate(zip(beam.lengths, beam.pseudo_inertias)):
+        element = f"{name}_{index}"
+        if index > 0:
+            for symbol in DIRECTIONS:
+                transform = transform @ crane.move(element, symbol, is_element=True)
+                stiffness, damping = beam.stiffness[index - 1][symbol], beam.damping[index - 1][symbol]
+                crane.elements.append(Spring(crane.coordinates[-1], stiffness, damping))
+        body_name = name if written.get("sections") == "rigid" else element
+        span.bodies.append(crane.add_body(body_name, transform, pseudo_inertia))
+        span.starts.append(start)
+        transform = transform @ translate(x=length)
+        start = start + length
+    return span, transform
+
+
+def read_joint(crane, link, is_base):
+    """T̃ of a link: its placement and its joint's motions."""
+    joint = link.get("joint", "fixed")
+    kind, written = next(iter(joint.items())) if isinstance(joint, dict) else (joint, None)
+    placement = link.get("placement") or {"transform": {}}
+    ((convention, row),) = placement.items()
+
+    if kind in ("fixed", "free"):
+        constant = read_placement(crane.spec, convention, row or {})
+        written = FREE if written is None else written
+        for symbol in [symbol for symbol in FREE if kind == "free" and symbol in written]:
+            constant = constant @ crane.move(link["name"], symbol, is_base=is_base)
+        return constant
+
+    axis = (written or {}).get("axis", "z")
+    symbol = {"revolute": ROTATION_NAMES[axis], "prismatic": axis}[kind]
+    motion = crane.move(link["name"], symbol, is_base=is_base)
+    if convention == "transform":
+        return read_placement(crane.spec, convention, row or {}) @ motion
+    offset = {"revolute": "theta", "prismatic": "d"}[kind]
+    return read_placement(crane.spec, convention, row or {}, {offset: crane.coordinates[-1].q})
+
+
+def read_placement(spec, convention, row, variable=None):
+    """A constant placement, or a D-H row with its variable added to the entry it belongs to."""
+    if convention == "transform":
+        transform = translate(*[spec.number(length) for length in row.get("translation", [0, 0, 0])])
+        rotation = row.get("rotation", [])
+        for step in rotation if isinstance(rotation, list) else [rotation]:
+            ((axis, angle),) = step.items()
+            transform = transform @ rotate(axis, spec.angle(angle))
+        return transform
+    entry = {key: spec.number(row.get(key, 0)) for key in ("a", "d")}
+    entry |= {key: spec.angle(row.get(key, 0)) for key in ("alpha", "theta")}
+    for key, coordinate in (variable or {}).items():
+        entry[key] = entry[key] + coordinate
+    return {"modified_dh": modified_dh, "classic_dh": classic_dh}[convention](**entry)
+
+
+def read_support(crane, written, base):
+    """A support: how far its point is from where it is at q̃(1) = 0, less the free play [Urbaś 2016, Eq. (16)].
+
+    The linear support is the first-order expansion of the exact one in the base's coordinates; U is not written down.
+    """
+    spec = crane.spec
+    coordinates = ca.vertcat(*[coordinate.q for coordinate in crane.coordinates if coordinate.is_base])
+    at_rest = ca.DM.zeros(coordinates.shape)
+    position = place(base.transform, spec.vector(written["at"]))
+    displacement = position - ca.substitute(position, coordinates, at_rest)
+    kinematics = written.get("kinematics", "linear")
+    if kinematics == "linear":
+        displacement = ca.substitute(ca.jacobian(position, coordinates), coordinates, at_rest) @ coordinates
+    elif kinematics != "exact":
+        raise ValueError(f"support kinematics {kinematics!r}: expected linear or exact")
+    stiffness, damping, free_play = (
+        spec.vector(written.get(key, [0, 0, 0])) for key in ("stiffness", "damping", "free_play")
+    )
+    return Support(written["name"], displacement - free_play, stiffness, damping)
+
+
+def read_drive(crane, written):
+    """A drive: spring and damper from a prescribed motion to its coordinate [Urbaś 2016, Eqs. (19)-(21)]."""
+    spec = crane.spec
+    coordinate = crane.coordinate(written["coordinate"])
+    motion, interval = read_profile(spec, written["motion"], coordinate.is_rotation, crane.time)
+    damping = spec.number(written.get("damping", 0))
+    return Spring(coordinate, spec.number(written["stiffness"]), damping, motion, interval)
+
+
+def read_point(spec, written, span):
+    """Where a point of a link is in the world; on a beam, the element that holds its x carries it."""
+    at = spec.vector(written["at"])
+    x = spec.default(at[0])
+    index = max((i for i, start in enumerate(span.starts) if spec.default(start) <= x), default=0)
+    return place(span.bodies[index].transform, at - ca.vertcat(span.starts[index], 0, 0))
+
+
+def read_guess(crane):
+    """Where the static solution starts: as written, else at the drive's position at t = 0, else 0."""
+    spec, written = crane.spec, crane.spec.get("guess", {})
+    driven = {drive.coordinate.name: ca.substitute(drive.motion, crane.time, 0) for drive in crane.drives}
+    return [
+        spec.position(written[c.name], c.is_rotation) if c.name in written else spec.default(driven.get(c.name, 0))
+        for c in crane.coordinates
+    ]

@@ -1,0 +1,88 @@
+"""Prescribed motions of drives, `q_dr(t)`: constant before they begin and after they end."""
+
+import math
+
+import casadi as ca
+import numpy as np
+
+
+def clamp(time, begin, duration):
+    """The share of a motion that has passed, 0…1."""
+    return ca.fmin(ca.fmax((time - begin) / duration, 0), 1)
+
+
+def quintic(tau):
+    """At rest with zero acceleration at both ends."""
+    return 10 * tau**3 - 15 * tau**4 + 6 * tau**5
+
+
+def cubic(tau):
+    """At rest at both ends."""
+    return 3 * tau**2 - 2 * tau**3
+
+
+def cycloid(tau):
+    """Sinusoidal acceleration."""
+    return tau - ca.sin(2 * math.pi * tau) / (2 * math.pi)
+
+
+def trapezoid(tau, blend):
+    """Velocity rises over the first `blend` of the time, stays, and falls over the last: the integral of it.
+
+    The area of a trapezoid of height v is `v (1 - blend) = 1`.
+    """
+    speed = 1 / (1 - blend)
+    rising = speed * tau**2 / (2 * blend)
+    steady = speed * (tau - blend / 2)
+    falling = 1 - speed * (1 - tau) ** 2 / (2 * blend)
+    return ca.if_else(tau < blend, rising, ca.if_else(tau < 1 - blend, steady, falling))
+
+
+def spline(time, times, values):
+    """Cubic spline through the values with zero slope at both ends, continuous to the second derivative.
+
+    Solved for the slopes m at the knots: `m₀ = mₙ = 0`, and between them equal second derivatives of the Hermite
+    pieces on both sides, `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (Δ₋/h₋² + Δ₊/h₊²)`.
+    """
+    times, values = np.asarray(times), np.asarray(values)
+    h, delta = np.diff(times), np.diff(values)
+    system, right = np.eye(len(times)), np.zeros(len(times))
+    for k in range(1, len(times) - 1):
+        system[k, k - 1 : k + 2] = 1 / h[k - 1], 2 / h[k - 1] + 2 / h[k], 1 / h[k]
+        right[k] = 3 * (delta[k - 1] / h[k - 1] ** 2 + delta[k] / h[k] ** 2)
+    slopes = np.linalg.solve(system, right)
+
+    position = ca.SX(values[-1])
+    for k in reversed(range(len(h))):
+        u = (time - times[k]) / h[k]
+        piece = (
+            (1 + 2 * u) * (1 - u) ** 2 * values[k]
+            + u * (1 - u) ** 2 * h[k] * slopes[k]
+            + u**2 * (3 - 2 * u) * values[k + 1]
+            + u**2 * (u - 1) * h[k] * slopes[k + 1]
+        )
+        position = ca.if_else(time < times[k + 1], piece, position)
+    return ca.if_else(time < times[0], values[0], position)
+
+
+def read_profile(spec, motion, is_rotation, time):
+    """`q_dr(t)` and the interval in which it moves, from a drive's `motion:`."""
+    ((kind, written),) = motion.items()
+    if kind == "hold":
+        return ca.SX(spec.position(written, is_rotation)), (0.0, 0.0)
+    if kind == "table":
+        times = [float(t) for t in written["times"]]
+        values = [spec.position(value, is_rotation) for value in written["values"]]
+        return spline(time, times, values), (times[0], times[-1])
+
+    start, end = (spec.position(written[key], is_rotation) for key in ("from", "to"))
+    begin, duration = spec.number(written.get("begin", 0)), spec.number(written["duration"])
+    tau = clamp(time, begin, duration)
+    shapes = {
+        "quintic": quintic,
+        "cubic": cubic,
+        "cycloid": cycloid,
+        "trapezoid": lambda tau: trapezoid(tau, float(written.get("blend", 0.25))),
+    }
+    share = shapes[kind](tau)
+    return start + (end - start) * share, (spec.default(begin), spec.default(begin + duration))

@@ -1,0 +1,32 @@
+"""Errors put in on purpose, to see that the check can fail."""
+
+import numpy as np
+
+from comparison import compare, negligible_entry
+
+# A hundred tolerances: what a wrong digit in the eighth place of one entry would be.
+PERTURBATION = 1e-8
+
+
+def perturb(quantity, values, rng):
+    """The values with one entry, picked at random, wrong by the perturbation in the state where it is largest.
+
+    Where all is zero, an entry is no longer so.
+    """
+    size = np.abs(values).max(axis=0)
+    entry = rng.choice(np.flatnonzero(size >= negligible_entry(quantity) * size.max()))
+    state = np.argmax(np.abs(values[:, entry]))
+    wrong = values.copy()
+    wrong[state, entry] += PERTURBATION * (values[state, entry] or 1.0)
+    return wrong
+
+
+def unnoticed(derived, groups, trials=10, seed=1):
+    """The quantities in which a perturbed entry passes."""
+    rng = np.random.default_rng(seed)
+    return [
+        quantity
+        for quantity, values in derived.items()
+        if values.size > 0
+        and any(compare(quantity, values, perturb(quantity, values, rng), groups).passed for _ in range(trials))
+    ]
