@@ -3,7 +3,7 @@
     python check.py --evaluate target/release/evaluate [--crane NAME]... [--states 100] [--seed 1] [--json FILE]
     python check.py --self-test [SPEC.yaml]...
 
-Exit code 0 if every quantity of every crane agrees, 1 if one does not.
+Exit code 0 if every quantity of every crane agrees, 1 if one does not, 2 if the command makes no sense.
 """
 
 import argparse
@@ -48,7 +48,12 @@ def main():
 
 def check(options):
     """Checks all cranes, a table each."""
-    names = options.crane or Evaluate(options.evaluate).names()
+    evaluate = Evaluate(options.evaluate)
+    names = options.crane or evaluate.names()
+    quantities = [quantity["name"] for name in names[:1] for quantity in evaluate.layout(name)["quantities"]]
+    if options.sabotage and options.sabotage not in quantities:
+        print(f"no quantity {options.sabotage!r}; there are: {', '.join(quantities)}", file=sys.stderr)
+        return 2
     reports = []
     with ProcessPoolExecutor(options.processes) as pool:
         for report in pool.map(check_crane, names, [options] * len(names)):

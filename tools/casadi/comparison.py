@@ -43,8 +43,9 @@ class Comparison:
         return f"  {self.quantity:30} {self.entries:6} {errors}  {verdict}"
 
     def summary(self):
-        """For the JSON file."""
-        return asdict(self) | {"tolerance": TOLERANCE, "passed": self.passed}
+        """For the JSON file, which has no infinity and no NaN: null."""
+        errors = {key: value if np.isfinite(value) else None for key, value in asdict(self).items() if key[:3] == "by_"}
+        return asdict(self) | errors | {"tolerance": TOLERANCE, "passed": self.passed}
 
 
 HEADER = f"  {'quantity':30} {'size':>6} {'by state':>10} {'by entry':>10} {'tolerance':>10}  verdict"
