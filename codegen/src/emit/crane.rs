@@ -1,0 +1,193 @@
+//! The type that implements the runtime's traits by calling the generated functions.
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::{Item, parse_quote};
+
+use crate::chain::Chain;
+use crate::lower::{Block, Blocks};
+use crate::symbolic::{Argument, Shape};
+
+/// Traits of the runtime, and the functions that each needs.
+const TRAITS: [(&str, &[&str]); 5] = [
+    (
+        "CraneModel",
+        &[
+            "transforms",
+            "points",
+            "point_velocities",
+            "forces",
+            "support_forces",
+            "element_forces",
+            "drive_forces",
+            "hinge_forces",
+            "support_reactions",
+            "drive_motions",
+            "gravity_energy",
+            "support_energy",
+            "element_energy",
+            "drive_energy",
+            "drive_power",
+            "dissipation",
+        ],
+    ),
+    ("Dynamics", &["mass_matrix", "bias", "kinetic_energy"]),
+    ("Statics", &["static_residual", "tangent_stiffness"]),
+    ("Linearise", &["linearise"]),
+    ("TransformDerivatives", &["transform_derivatives", "transform_second_derivatives"]),
+];
+
+/// `Crane` and its traits.
+pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
+    let live = !chain.parameters.is_empty();
+    let title = format!(" {}: the generated functions behind the traits of the runtime.", chain.title);
+    let fields = if live { quote!({ params: Params, constants: Constants }) } else { quote!(;) };
+    let mut items: Vec<Item> = vec![parse_quote! {
+        #[doc = #title]
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Crane #fields
+    }];
+    if live {
+        items.push(parse_quote! {
+            impl Crane {
+                #[doc = " The crane with these values of its live parameters."]
+                pub fn new(params: Params) -> Self {
+                    Crane { params, constants: Constants::from(&params) }
+                }
+
+                #[doc = " Values of the live parameters."]
+                pub fn params(&self) -> &Params {
+                    &self.params
+                }
+            }
+        });
+    }
+    let default = if live { quote!(Crane::new(Params::default())) } else { quote!(Crane) };
+    items.push(parse_quote! {
+        impl Default for Crane {
+            fn default() -> Self {
+                #default
+            }
+        }
+    });
+    for (name, functions) in TRAITS {
+        let methods: Vec<_> = functions
+            .iter()
+            .filter_map(|function| blocks.functions.iter().find(|b| b.function.name == *function))
+            .map(method)
+            .collect();
+        if methods.is_empty() {
+            continue;
+        }
+        let common = if name == "CraneModel" { common_methods(chain) } else { quote!() };
+        let name = format_ident!("{name}");
+        items.push(parse_quote! {
+            impl #name<N> for Crane {
+                #common
+                #(#methods)*
+            }
+        });
+    }
+    items
+}
+
+/// Description and parameters.
+fn common_methods(chain: &Chain) -> TokenStream {
+    let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
+    let indices: Vec<usize> = (0..names.len()).collect();
+    let (get, set) = if names.is_empty() {
+        (
+            quote!(
+                fn parameter(&self, _index: usize) -> f64 {
+                    f64::NAN
+                }
+            ),
+            quote!(
+                fn set_parameter(&mut self, _index: usize, _value: f64) {}
+            ),
+        )
+    } else {
+        (
+            quote!(
+                fn parameter(&self, index: usize) -> f64 {
+                    match index {
+                        #(#indices => self.params.#names,)*
+                        _ => f64::NAN,
+                    }
+                }
+            ),
+            quote!(
+                fn set_parameter(&mut self, index: usize, value: f64) {
+                    let mut params = self.params;
+                    match index {
+                        #(#indices => params.#names = value,)*
+                        _ => {}
+                    }
+                    *self = Crane::new(params);
+                }
+            ),
+        )
+    };
+    quote! {
+        fn description(&self) -> &'static Description {
+            &DESCRIPTION
+        }
+        #get
+        #set
+    }
+}
+
+/// A method that calls the function of the same name.
+fn method(block: &Block) -> TokenStream {
+    let function = block.function;
+    let name = format_ident!("{}", function.name);
+    let of = |argument: &Argument| match argument {
+        Argument::Time => (format_ident!("t"), quote!(f64)),
+        Argument::Position => (format_ident!("q"), quote!(&SVector<f64, N>)),
+        Argument::Velocity => (format_ident!("v"), quote!(&SVector<f64, N>)),
+        Argument::Parameters => (format_ident!("c"), quote!(&Constants)),
+    };
+    let (names, types): (Vec<_>, Vec<_>) = function.arguments.iter().map(of).unzip();
+    let constants = block.reads_parameters.then(|| quote!(&self.constants));
+    let arguments: Vec<_> = names.iter().map(|name| quote!(#name)).chain(constants).collect();
+    match &function.shape {
+        Shape::Vectors(_) | Shape::Pairs(_) | Shape::Transforms { corner: 1, .. } => {
+            let element = match function.shape {
+                Shape::Vectors(_) => quote!(Vector3<f64>),
+                Shape::Pairs(_) => quote!([f64; 2]),
+                _ => quote!(Matrix4<f64>),
+            };
+            quote! {
+                fn #name(&self, #(#names: #types,)* out: &mut [#element]) {
+                    fill(out, &#name(#(#arguments),*));
+                }
+            }
+        }
+        Shape::Transforms { counts, .. } => {
+            let total: usize = counts.iter().sum();
+            quote! {
+                fn #name(&self, #(#names: #types,)* out: &mut [Matrix4<f64>]) {
+                    if let Some(out) = out.first_chunk_mut::<#total>() {
+                        #name(#(#arguments,)* out);
+                    }
+                }
+            }
+        }
+        shape => {
+            let result = match shape {
+                Shape::Vector(_) => quote!(SVector<f64, N>),
+                Shape::Symmetric(_) => quote!(SMatrix<f64, N, N>),
+                Shape::Record(record, _) => {
+                    let record = format_ident!("{record}");
+                    quote!(#record<N>)
+                }
+                _ => quote!(f64),
+            };
+            quote! {
+                fn #name(&self, #(#names: #types),*) -> #result {
+                    #name(#(#arguments),*)
+                }
+            }
+        }
+    }
+}

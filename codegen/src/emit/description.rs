@@ -1,0 +1,92 @@
+//! Constants that describe the crane.
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::{Item, parse_quote};
+
+use super::arithmetic::number;
+use super::print::constant;
+use crate::chain::{BodyId, Chain, CoordinateKind, Value};
+
+/// Sizes and the `DESCRIPTION`.
+pub fn description(chain: &Chain) -> Vec<Item> {
+    let n = chain.coordinates.len();
+    let mut items = vec![constant("Number of generalized coordinates.", "N", quote!(usize), quote!(#n))];
+    let bodies = chain.bodies.len();
+    items.push(constant("Number of bodies.", "BODIES", quote!(usize), quote!(#bodies)));
+    items.push(description_constant(chain));
+    items
+}
+
+fn description_constant(chain: &Chain) -> Item {
+    let defaults = chain.parameter_defaults();
+    let at_defaults = |value: &Value| number(value.at(&defaults));
+    let parameters = chain.parameters.iter().map(|p| {
+        let (name, unit, about, default) = (&p.name, &p.unit, &p.about, number(p.default));
+        quote!(ParameterInfo { name: #name, unit: #unit, about: #about, default: #default })
+    });
+    let coordinates = chain.coordinates.iter().enumerate().map(|(i, c)| {
+        let (name, kind, role) = (&c.name, kind(c.kind), role(chain, i));
+        quote!(CoordinateInfo { name: #name, kind: CoordinateKind::#kind, role: CoordinateRole::#role })
+    });
+    let bodies = chain.bodies.iter().enumerate().map(|(p, body)| {
+        let (name, link) = (&body.name, &body.link);
+        let mass = number(body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&defaults)));
+        let length = at_defaults(&body.length);
+        let degrees = chain.degrees_of_freedom(BodyId(p));
+        quote!(BodyInfo { name: #name, link: #link, mass: #mass, length: #length, degrees_of_freedom: #degrees })
+    });
+    let supports = chain.supports.iter().map(|support| {
+        let name = &support.name;
+        let position = support.position.iter().map(at_defaults);
+        quote!(SupportInfo { name: #name, position: [#(#position),*] })
+    });
+    let drives = chain.drives.iter().map(|drive| {
+        let coordinate = drive.coordinate.0;
+        quote!(DriveInfo { coordinate: #coordinate })
+    });
+    let points = chain.points.iter().map(|point| &point.name);
+    let guess = chain.guess.iter().map(|&x| number(x));
+    let (name, title, hash) = (&chain.name, &chain.title, &chain.spec_hash);
+    let (duration, step, output) = (number(chain.run.duration), number(chain.run.step), number(chain.run.output));
+    parse_quote! {
+        #[doc = " Names, units and settings."]
+        pub const DESCRIPTION: Description = Description {
+            name: #name,
+            title: #title,
+            spec_hash: #hash,
+            parameters: &[#(#parameters),*],
+            coordinates: &[#(#coordinates),*],
+            bodies: &[#(#bodies),*],
+            supports: &[#(#supports),*],
+            drives: &[#(#drives),*],
+            points: &[#(#points),*],
+            guess: &[#(#guess),*],
+            duration: #duration,
+            step: #step,
+            output: #output,
+        };
+    }
+}
+
+fn kind(kind: CoordinateKind) -> TokenStream {
+    let variant = match kind {
+        CoordinateKind::Translation => format_ident!("Translation"),
+        CoordinateKind::Rotation => format_ident!("Rotation"),
+    };
+    quote!(#variant)
+}
+
+fn role(chain: &Chain, coordinate: usize) -> TokenStream {
+    let role = if chain.base.iter().flatten().any(|id| id.0 == coordinate) {
+        "Base"
+    } else if chain.drives.iter().any(|d| d.coordinate.0 == coordinate) {
+        "Driven"
+    } else if chain.elements.iter().any(|e| e.coordinate.0 == coordinate) {
+        "Element"
+    } else {
+        "Passive"
+    };
+    let role = format_ident!("{role}");
+    quote!(#role)
+}

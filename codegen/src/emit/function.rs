@@ -1,0 +1,389 @@
+//! A block as a Rust function.
+
+use proc_macro2::{Span, TokenStream};
+use quote::{format_ident, quote};
+use syn::{Expr, Ident, Stmt, parse_quote};
+
+use super::arithmetic::{
+    borrow_mut, call, difference, element, field, method, negative, number, product, quotient, sum, variable,
+};
+use super::labels::Labels;
+use super::names::Names;
+use super::print::comment;
+use super::shape::{Handover, Result};
+use crate::lower::{Block, Blocks, Statement};
+use crate::symbolic::{Argument, ExprId, Op};
+
+/// The items of one function: itself, and its pieces if it is long.
+pub fn function(blocks: &Blocks, block: &Block, labels: &Labels) -> Vec<syn::Item> {
+    let writer = Writer { blocks, block, result: Result::of(block.function), labels };
+    if block.pieces.len() == 1 { vec![writer.whole()] } else { writer.in_pieces() }
+}
+
+struct Writer<'a> {
+    blocks: &'a Blocks<'a>,
+    block: &'a Block<'a>,
+    result: Result<'a>,
+    labels: &'a Labels<'a>,
+}
+
+impl Writer<'_> {
+    fn whole(&self) -> syn::Item {
+        let mut item = self.shell();
+        let (mut body, used) = self.piece(&self.block.pieces[0]);
+        let mut statements = self.unpack(&used);
+        match self.result.handover() {
+            // A single number needs no storage.
+            Handover::Return if self.is_scalar() => {}
+            Handover::Return => {
+                let (storage, blank) = (self.result.storage_type(), self.result.blank());
+                // Every slot may be zero.
+                let mutable = (!body.is_empty()).then(|| quote!(mut));
+                statements.push(parse_quote!(let #mutable out: #storage = #blank;));
+            }
+            Handover::OutArgument => statements.push(parse_quote!(out.fill(Matrix4::zeros());)),
+        }
+        statements.append(&mut body);
+        if !self.is_scalar() {
+            statements.extend(self.finish());
+        }
+        item.block.stmts = statements;
+        syn::Item::Fn(item)
+    }
+
+    fn is_scalar(&self) -> bool {
+        matches!(self.block.function.shape, crate::symbolic::Shape::Scalar)
+    }
+
+    fn finish(&self) -> Vec<Stmt> {
+        match self.result.handover() {
+            Handover::Return => {
+                let finish = self.result.finish();
+                let block: syn::Block = parse_quote!({ #finish });
+                block.stmts
+            }
+            Handover::OutArgument => vec![],
+        }
+    }
+
+    fn in_pieces(&self) -> Vec<syn::Item> {
+        let mut item = self.shell();
+        let storage = self.result.storage_type();
+        let carried = self.block.carried;
+        let mut statements: Vec<Stmt> = Vec::new();
+        if matches!(self.result.handover(), Handover::Return) {
+            let blank = self.result.blank();
+            statements.push(parse_quote!(let mut out: #storage = #blank;));
+        } else {
+            statements.push(parse_quote!(out.fill(Matrix4::zeros());));
+        }
+        if carried > 0 {
+            statements.push(parse_quote!(let mut kept = [0.0; #carried];));
+        }
+        let mut items = Vec::new();
+        let total = self.block.pieces.len();
+        for (index, piece) in self.block.pieces.iter().enumerate() {
+            let name = format_ident!("{}_{}", self.block.function.name, index + 1);
+            let (body, used) = self.piece(piece);
+            let unpack = self.unpack(&used);
+            let keeps = piece.iter().any(|s| matches!(s, Statement::Keep { .. } | Statement::Fetch { .. }));
+            let outputs = piece.iter().any(|s| matches!(s, Statement::Output { .. }));
+            let mut parameters: Vec<TokenStream> = self.inputs(&used);
+            let mut arguments: Vec<Expr> = self.input_names(&used).iter().map(|n| variable(n)).collect();
+            if keeps {
+                parameters.push(quote!(kept: &mut [f64; #carried]));
+                arguments.push(borrow_mut(variable("kept")));
+            }
+            if outputs {
+                parameters.push(quote!(out: &mut #storage));
+                arguments.push(match self.result.handover() {
+                    Handover::Return => borrow_mut(variable("out")),
+                    Handover::OutArgument => variable("out"),
+                });
+            }
+            let called = call(&name.to_string(), arguments);
+            statements.push(parse_quote!(#called;));
+            let doc = format!(" Part {} of {total} of [`{}`].", index + 1, self.block.function.name);
+            let mut part: syn::ItemFn = parse_quote! {
+                #[doc = #doc]
+                #[inline(never)]
+                fn #name(#(#parameters),*) {}
+            };
+            part.block.stmts = unpack.into_iter().chain(body).collect();
+            items.push(syn::Item::Fn(part));
+        }
+        statements.extend(self.finish());
+        item.block.stmts = statements;
+        items.insert(0, syn::Item::Fn(item));
+        items
+    }
+
+    /// Signature and documentation.
+    fn shell(&self) -> syn::ItemFn {
+        let function = self.block.function;
+        let name = format_ident!("{}", function.name);
+        let docs = [
+            format!(" {}", function.doc),
+            String::new(),
+            format!(" `{}`", function.equation.split(" [").next().unwrap_or_default()),
+            function.equation.find(" [").map(|at| function.equation[at..].to_owned()).unwrap_or_default(),
+            String::new(),
+            format!(" {} operations: {}.", self.block.count.total(), self.block.count),
+        ];
+        let docs = docs.iter().enumerate().filter(|(i, line)| *i != 3 || !line.is_empty()).map(|(_, line)| line);
+        let mut parameters = self.all_inputs();
+        let output = self.result.public_type();
+        let signature = match self.result.handover() {
+            Handover::Return => quote!(pub fn #name(#(#parameters),*) -> #output),
+            Handover::OutArgument => {
+                parameters.push(quote!(out: &mut #output));
+                quote!(pub fn #name(#(#parameters),*))
+            }
+        };
+        parse_quote! {
+            #(#[doc = #docs])*
+            #signature {}
+        }
+    }
+
+    /// Arguments of the function itself: always the same for a function, used or not.
+    fn all_inputs(&self) -> Vec<TokenStream> {
+        let used = Used::by_all(self);
+        let mut inputs: Vec<TokenStream> = Vec::new();
+        for argument in self.block.function.arguments {
+            let (name, of) = argument_name(*argument);
+            let name = if used.has(*argument) { format_ident!("{name}") } else { format_ident!("_{name}") };
+            inputs.push(quote!(#name: #of));
+        }
+        if self.block.reads_parameters {
+            inputs.push(quote!(c: &Constants));
+        }
+        inputs
+    }
+
+    /// Arguments of a piece: what it uses.
+    fn inputs(&self, used: &Used) -> Vec<TokenStream> {
+        let mut inputs: Vec<TokenStream> = Vec::new();
+        for argument in self.block.function.arguments.iter().filter(|a| used.has(**a)) {
+            let (name, of) = argument_name(*argument);
+            let name = format_ident!("{name}");
+            inputs.push(quote!(#name: #of));
+        }
+        if used.parameters {
+            inputs.push(quote!(c: &Constants));
+        }
+        inputs
+    }
+
+    fn input_names(&self, used: &Used) -> Vec<&'static str> {
+        let arguments = self.block.function.arguments.iter().filter(|a| used.has(**a));
+        arguments.map(|a| argument_name(*a).0).chain(used.parameters.then_some("c")).collect()
+    }
+
+    /// Plain arrays behind the vectors: a constant index into an array is checked when it is compiled.
+    fn unpack(&self, used: &Used) -> Vec<Stmt> {
+        let mut statements: Vec<Stmt> = Vec::new();
+        if used.position {
+            statements.push(parse_quote!(let q = &q.data.0[0];));
+        }
+        if used.velocity {
+            statements.push(parse_quote!(let v = &v.data.0[0];));
+        }
+        statements
+    }
+
+    /// Statements of a piece, and what they use.
+    fn piece(&self, piece: &[Statement]) -> (Vec<Stmt>, Used) {
+        let mut names = Names::new(self.blocks.program);
+        let mut used = Used::default();
+        let mut statements = Vec::new();
+        let mut group = None;
+        let mut pending: Vec<Stmt> = Vec::new();
+        let mut section = "";
+        for statement in piece {
+            match *statement {
+                Statement::Input(id) => {
+                    let source = self.input(id, &mut used);
+                    let name = names.of(id);
+                    if !matches!(&source, Expr::Path(path) if path.path.is_ident(&name)) {
+                        pending.push(local(&name, source));
+                    }
+                }
+                Statement::SinCos { angle, sin, cos } => {
+                    if section.is_empty() {
+                        section = "angles";
+                        statements.push(comment("Sines and cosines"));
+                    }
+                    let angle = self.expression(angle, &mut names, &mut used);
+                    pending.push(sin_cos(angle, sin.map(|id| names.of(id)), cos.map(|id| names.of(id))));
+                }
+                Statement::Let(id) => {
+                    let value = self.operation(id, &mut names, &mut used);
+                    pending.push(local(&names.of(id), value));
+                }
+                Statement::Output { slot, value } => {
+                    if group != Some(self.result.group(slot)) {
+                        group = Some(self.result.group(slot));
+                        if let Some(label) = self.labels.of(self.block.function, slot) {
+                            statements.push(comment(&label));
+                        }
+                    }
+                    let value = self.expression(value, &mut names, &mut used);
+                    let alone = self.is_scalar() && self.block.pieces.len() == 1;
+                    if alone {
+                        pending.push(Stmt::Expr(value, None));
+                    } else {
+                        let mut place = self.result.place(slot);
+                        if self.is_scalar() {
+                            place = parse_quote!(*out);
+                        }
+                        pending.push(parse_quote!(#place = #value;));
+                    }
+                    statements.append(&mut pending);
+                }
+                Statement::Keep { place, value } => {
+                    let (place, value) = (element(variable("kept"), place), variable(&names.of(value)));
+                    pending.push(parse_quote!(#place = #value;));
+                }
+                Statement::Fetch { place, value } => {
+                    pending.push(local(&names.of(value), element(variable("kept"), place)));
+                }
+            }
+            if matches!(statement, Statement::SinCos { .. }) {
+                statements.append(&mut pending);
+            }
+        }
+        statements.append(&mut pending);
+        if self.is_scalar() && self.block.pieces.len() == 1 && !piece.iter().any(|s| matches!(s, Statement::Output { .. }))
+        {
+            statements.push(Stmt::Expr(number(0.0), None));
+        }
+        (statements, used)
+    }
+
+    /// An argument of a statement: a variable, a number, a constant, or an inlined operation.
+    fn expression(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
+        let program = self.blocks.program;
+        if self.blocks.constants.is_stored(id) {
+            used.parameters = true;
+            return field(variable("c"), &self.labels.constant(id));
+        }
+        match program.op(id) {
+            Op::Constant(c) => number(c.value()),
+            Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Parameters => {
+                used.parameters = true;
+                field(variable("c"), &program.symbol(symbol).name)
+            }
+            _ if self.block.inlined[id.index()] => self.operation(id, names, used),
+            _ => variable(&names.of(id)),
+        }
+    }
+
+    /// An operation on its arguments. Recursion ends within the bound of one statement.
+    fn operation(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
+        operation(self.blocks.program.op(id), &mut |operand| self.expression(operand, names, used))
+    }
+
+    fn input(&self, id: ExprId, used: &mut Used) -> Expr {
+        let Op::Symbol(symbol) = self.blocks.program.op(id) else { unreachable!("inputs are symbols") };
+        let symbol = self.blocks.program.symbol(symbol);
+        used.note(symbol.argument);
+        match symbol.argument {
+            Argument::Time => variable("t"),
+            Argument::Position => element(variable("q"), symbol.index),
+            Argument::Velocity => element(variable("v"), symbol.index),
+            Argument::Parameters => field(variable("c"), &symbol.name),
+        }
+    }
+}
+
+/// An operation as Rust.
+pub fn operation(op: Op, of: &mut dyn FnMut(ExprId) -> Expr) -> Expr {
+    match op {
+        Op::Neg(a) => negative(of(a)),
+        Op::Add(a, b) => sum(of(a), of(b)),
+        Op::Sub(a, b) => difference(of(a), of(b)),
+        Op::Mul(a, b) => product(of(a), of(b)),
+        Op::Div(a, b) => quotient(of(a), of(b)),
+        Op::Min(a, b) => method(of(a), "min", of(b)),
+        Op::Max(a, b) => method(of(a), "max", of(b)),
+        Op::Sin(a) => field_of_pair(of(a), 0),
+        Op::Cos(a) => field_of_pair(of(a), 1),
+        Op::Constant(c) => number(c.value()),
+        Op::Symbol(_) => unreachable!("inputs are read, not computed"),
+    }
+}
+
+/// `sin_cos(angle).0`
+fn field_of_pair(angle: Expr, index: u32) -> Expr {
+    let pair = call("sin_cos", [angle]);
+    let index = syn::Index { index, span: Span::call_site() };
+    parse_quote!(#pair.#index)
+}
+
+/// `let name = value;`
+pub fn local(name: &str, value: Expr) -> Stmt {
+    let name = Ident::new(name, Span::call_site());
+    parse_quote!(let #name = #value;)
+}
+
+/// `let (sin, cos) = sin_cos(angle);`
+fn sin_cos(angle: Expr, sin: Option<String>, cos: Option<String>) -> Stmt {
+    let pattern = |name: Option<String>| match name {
+        Some(name) => {
+            let name = Ident::new(&name, Span::call_site());
+            quote!(#name)
+        }
+        None => quote!(_),
+    };
+    let (sin, cos, call) = (pattern(sin), pattern(cos), call("sin_cos", [angle]));
+    parse_quote!(let (#sin, #cos) = #call;)
+}
+
+fn argument_name(argument: Argument) -> (&'static str, TokenStream) {
+    match argument {
+        Argument::Time => ("t", quote!(f64)),
+        Argument::Position => ("q", quote!(&SVector<f64, N>)),
+        Argument::Velocity => ("v", quote!(&SVector<f64, N>)),
+        Argument::Parameters => ("c", quote!(&Constants)),
+    }
+}
+
+/// Which inputs a piece reads.
+#[derive(Default)]
+struct Used {
+    time: bool,
+    position: bool,
+    velocity: bool,
+    parameters: bool,
+}
+
+impl Used {
+    fn by_all(writer: &Writer) -> Self {
+        let mut used = Used { parameters: writer.block.reads_parameters, ..Used::default() };
+        for statement in writer.block.pieces.iter().flatten() {
+            if let Statement::Input(id) = statement {
+                writer.input(*id, &mut used);
+            }
+        }
+        used
+    }
+
+    fn note(&mut self, argument: Argument) {
+        match argument {
+            Argument::Time => self.time = true,
+            Argument::Position => self.position = true,
+            Argument::Velocity => self.velocity = true,
+            Argument::Parameters => self.parameters = true,
+        }
+    }
+
+    fn has(&self, argument: Argument) -> bool {
+        match argument {
+            Argument::Time => self.time,
+            Argument::Position => self.position,
+            Argument::Velocity => self.velocity,
+            Argument::Parameters => self.parameters,
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What the slots of results and the stored constants are called, for comments and fields.
+
+use std::collections::HashMap;
+
+use crate::chain::{BodyId, Chain};
+use crate::lower::Blocks;
+use crate::symbolic::{ExprId, Function, Shape};
+
+use super::shape::row_of_triangle;
+
+/// Names that come from the chain.
+pub struct Labels<'a> {
+    chain: &'a Chain,
+    constants: HashMap<ExprId, String>,
+}
+
+impl<'a> Labels<'a> {
+    pub fn new(chain: &'a Chain, blocks: &Blocks) -> Self {
+        let mut constants: HashMap<ExprId, String> = HashMap::new();
+        for (index, &id) in blocks.constants.stored.iter().enumerate() {
+            constants.insert(id, format!("c{:03}", index + 1));
+        }
+        Labels { chain, constants }
+    }
+
+    /// Field of a stored constant.
+    pub fn constant(&self, id: ExprId) -> String {
+        self.constants[&id].clone()
+    }
+
+    /// What the group of results that starts at a slot is.
+    pub fn of(&self, function: &Function, slot: usize) -> Option<String> {
+        let chain = self.chain;
+        let coordinate = |i: usize| chain.coordinates[i].name.as_str();
+        match &function.shape {
+            Shape::Scalar => None,
+            Shape::Vector(_) => Some(coordinate(slot).to_owned()),
+            Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
+            Shape::Vectors(_) if function.name == "support_reactions" => {
+                Some(chain.supports[slot / 3].name.clone())
+            }
+            Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
+            Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
+            Shape::Transforms { counts, .. } => Some(self.transform(function.name, counts, slot / 12)),
+            Shape::Record(_, fields) => {
+                let mut rest = slot;
+                let (name, shape) = fields.iter().find(|(_, shape)| {
+                    let here = rest < shape.len();
+                    if !here {
+                        rest -= shape.len();
+                    }
+                    here
+                })?;
+                let Shape::Symmetric(n) = shape else { return Some((*name).to_owned()) };
+                let row = coordinate(row_of_triangle(*n, rest).0);
+                Some(format!("{}, row of {row}", capitalised(name)))
+            }
+        }
+    }
+
+    fn transform(&self, function: &str, counts: &[usize], mut matrix: usize) -> String {
+        let mut body = 0;
+        while matrix >= counts[body] {
+            matrix -= counts[body];
+            body += 1;
+        }
+        let name = &self.chain.bodies[body].name;
+        let coordinate = |i: usize| &self.chain.coordinates[i].name;
+        match function {
+            "transform_derivatives" => format!("∂T({name})/∂{}", coordinate(matrix)),
+            "transform_second_derivatives" => {
+                let (m, n) = row_of_triangle(self.chain.degrees_of_freedom(BodyId(body)), matrix);
+                format!("∂²T({name})/∂{}∂{}", coordinate(m), coordinate(n))
+            }
+            _ => format!("T({name})"),
+        }
+    }
+}
+
+fn capitalised(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}

@@ -1,0 +1,63 @@
+//! Names of variables in one function: the model's where it has one, else numbered.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::symbolic::{ExprId, Op, Program};
+
+/// Words that generated functions use themselves.
+const TAKEN: [&str; 12] = ["t", "q", "v", "c", "out", "kept", "sin_cos", "symmetric", "max", "min", "Constants", "N"];
+
+/// Gives every value of a function one valid, unique name.
+pub struct Names<'p> {
+    program: &'p Program,
+    given: HashMap<ExprId, String>,
+    taken: HashSet<String>,
+    next: usize,
+}
+
+impl<'p> Names<'p> {
+    pub fn new(program: &'p Program) -> Self {
+        Names {
+            program,
+            given: HashMap::new(),
+            taken: TAKEN.iter().map(ToString::to_string).collect(),
+            next: 0,
+        }
+    }
+
+    /// The name of a value.
+    pub fn of(&mut self, id: ExprId) -> String {
+        if let Some(name) = self.given.get(&id) {
+            return name.clone();
+        }
+        let name = match self.program.op(id) {
+            Op::Symbol(symbol) => self.unique(&self.program.symbol(symbol).name),
+            _ => match self.program.names.get(&id) {
+                Some(name) => self.unique(name),
+                None => self.numbered(),
+            },
+        };
+        self.given.insert(id, name.clone());
+        name
+    }
+
+    /// The next `t017` that nobody has.
+    fn numbered(&mut self) -> String {
+        loop {
+            self.next += 1;
+            let name = format!("t{:03}", self.next);
+            if self.taken.insert(name.clone()) {
+                return name;
+            }
+        }
+    }
+
+    fn unique(&mut self, wanted: &str) -> String {
+        let mut candidates = std::iter::once(wanted.to_owned()).chain((2..).map(|k| format!("{wanted}_{k}")));
+        // A keyword such as `type` cannot be a variable; `type_2` can.
+        let free = |name: &String| syn::parse_str::<syn::Ident>(name).is_ok() && !self.taken.contains(name);
+        let name = candidates.find(free).unwrap_or_default();
+        self.taken.insert(name.clone());
+        name
+    }
+}

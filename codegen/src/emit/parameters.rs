@@ -1,0 +1,83 @@
+//! Live parameters and the constants made of them.
+
+use quote::{format_ident, quote};
+use syn::{Item, Stmt, parse_quote};
+
+use super::function::{local, operation};
+use super::arithmetic::{number, variable};
+use super::labels::Labels;
+use crate::chain::Chain;
+use crate::lower::Blocks;
+use crate::symbolic::{Argument, ExprId, Op};
+
+/// `Params` with defaults and units, and `Constants`, what functions read; nothing if all numbers are baked in.
+pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
+    if chain.parameters.is_empty() {
+        return vec![];
+    }
+    let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
+    let docs: Vec<String> = chain
+        .parameters
+        .iter()
+        .map(|p| if p.about.is_empty() { format!(" {}.", p.unit) } else { format!(" {}, {}.", p.about, p.unit) })
+        .collect();
+    let defaults = chain.parameters.iter().map(|p| number(p.default));
+    let stored: Vec<_> = blocks.constants.stored.iter().map(|id| format_ident!("{}", labels.constant(*id))).collect();
+    let body = constants_body(blocks, labels);
+    let private = if stored.is_empty() { quote!() } else { quote!(#(#stored: f64,)*) };
+    vec![
+        parse_quote! {
+            #[doc = " Values that stay live at run time."]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct Params {
+                #(#[doc = #docs] pub #names: f64,)*
+            }
+        },
+        parse_quote! {
+            impl Default for Params {
+                fn default() -> Self {
+                    Params { #(#names: #defaults),* }
+                }
+            }
+        },
+        parse_quote! {
+            #[doc = " Live parameters, and what depends on them alone, computed once."]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct Constants {
+                #(#names: f64,)*
+                #private
+            }
+        },
+        parse_quote! {
+            impl From<&Params> for Constants {
+                fn from(params: &Params) -> Self {
+                    #(let #names = params.#names;)*
+                    #(#body)*
+                    Constants { #(#names,)* #(#stored),* }
+                }
+            }
+        },
+    ]
+}
+
+/// One `let` for each value on the way to the stored constants.
+fn constants_body(blocks: &Blocks, labels: &Labels) -> Vec<Stmt> {
+    let program = blocks.program;
+    let needed = program.needed(blocks.constants.stored.iter().copied());
+    let name = |id: ExprId| {
+        if blocks.constants.is_stored(id) { labels.constant(id) } else { format!("t{:03}", id.index()) }
+    };
+    let argument = |id: ExprId| match program.op(id) {
+        Op::Constant(c) => number(c.value()),
+        Op::Symbol(symbol) => {
+            debug_assert_eq!(program.symbol(symbol).argument, Argument::Parameters);
+            variable(&program.symbol(symbol).name)
+        }
+        _ => variable(&name(id)),
+    };
+    program
+        .ids()
+        .filter(|id| needed[id.index()] && !program.op(*id).is_leaf())
+        .map(|id| local(&name(id), operation(program.op(id), &mut |operand| argument(operand))))
+        .collect()
+}

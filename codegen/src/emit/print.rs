@@ -1,0 +1,58 @@
+//! Syntax to text: formatted by prettyplease, with comments.
+
+use syn::{Stmt, parse_quote};
+
+/// A comment line among statements. The formatter drops comments, so it travels as a macro call and is turned into a
+/// comment afterwards.
+pub fn comment(text: &str) -> Stmt {
+    parse_quote!(comment!(#text);)
+}
+
+/// The text of a file.
+pub fn file(items: Vec<syn::Item>) -> String {
+    let text = prettyplease::unparse(&syn::File { shebang: None, attrs: vec![], items, frontmatter: None });
+    let mut out = String::with_capacity(text.len());
+    let mut in_function = false;
+    for line in text.lines() {
+        match comment_of(line) {
+            Some((indent, comment)) => {
+                out.push_str(indent);
+                out.push_str("// ");
+                out.push_str(&comment);
+            }
+            None => {
+                // The formatter puts no blank line between items.
+                let starts_item = !line.starts_with([' ', '}', ')', ']']) && !line.is_empty();
+                if starts_item && !in_function && !out.is_empty() && !out.ends_with("\n\n") {
+                    out.push('\n');
+                }
+                in_function = starts_item && !ends_item(line);
+                out.push_str(line);
+            }
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// Whether nothing of the item follows this line.
+fn ends_item(line: &str) -> bool {
+    line.ends_with([';', '}'])
+}
+
+fn comment_of(line: &str) -> Option<(&str, String)> {
+    let start = line.find("comment!(")?;
+    let (indent, call) = line.split_at(start);
+    if !indent.trim().is_empty() {
+        return None;
+    }
+    let literal = call.strip_prefix("comment!(")?.strip_suffix(");")?;
+    Some((indent, syn::parse_str::<syn::LitStr>(literal).ok()?.value()))
+}
+
+/// A constant of the module.
+pub fn constant(doc: &str, name: &str, of: proc_macro2::TokenStream, value: proc_macro2::TokenStream) -> syn::Item {
+    let name = quote::format_ident!("{name}");
+    let doc = format!(" {doc}");
+    syn::Item::Const(parse_quote!(#[doc = #doc] pub const #name: #of = #value;))
+}

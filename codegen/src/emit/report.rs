@@ -1,0 +1,44 @@
+//! What a crane's functions cost, and what its scene does not need.
+
+use crate::lower::Blocks;
+use crate::symbolic::{OperationCount, Program};
+
+/// Costs and omissions of a generated module.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// One row a function, in the order of the file.
+    pub costs: Vec<FunctionCost>,
+    /// What is left out, and why.
+    pub left_out: Vec<(&'static str, &'static str)>,
+}
+
+/// Operations of one function.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FunctionCost {
+    /// Name of the function.
+    pub function: String,
+    /// What it executes.
+    pub operations: OperationCount,
+    /// What it would execute without simplification.
+    pub verbatim: OperationCount,
+}
+
+impl Report {
+    /// Counts the operations of every function, as lowered and without simplification.
+    #[must_use]
+    pub fn new(blocks: &Blocks, verbatim: &Program, left_out: Vec<(&'static str, &'static str)>) -> Self {
+        let costs = blocks
+            .functions
+            .iter()
+            .map(|block| FunctionCost {
+                function: block.function.name.to_owned(),
+                operations: block.count,
+                verbatim: verbatim
+                    .function(block.function.name)
+                    .map(|f| verbatim.count(&f.outputs, |_| false))
+                    .unwrap_or_default(),
+            })
+            .collect();
+        Report { costs, left_out }
+    }
+}

@@ -1,0 +1,165 @@
+//! How results are stored while they are computed, and what is returned.
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::Expr;
+
+use super::arithmetic::{element, field, variable};
+use crate::symbolic::{Function, Shape};
+
+/// How a function hands over its result.
+pub enum Handover {
+    /// Returned by value.
+    Return,
+    /// Written to the caller's array, because it may be larger than a stack.
+    OutArgument,
+}
+
+/// Type, storage and slots of a result.
+pub struct Result<'f> {
+    shape: &'f Shape,
+}
+
+impl<'f> Result<'f> {
+    pub fn of(function: &'f Function) -> Self {
+        Result { shape: &function.shape }
+    }
+
+    pub fn handover(&self) -> Handover {
+        match self.shape {
+            Shape::Transforms { corner: 0, .. } => Handover::OutArgument,
+            _ => Handover::Return,
+        }
+    }
+
+    /// Type that the function returns, or whose reference it takes.
+    pub fn public_type(&self) -> TokenStream {
+        match self.shape {
+            Shape::Scalar => quote!(f64),
+            Shape::Vector(_) => quote!(SVector<f64, N>),
+            Shape::Symmetric(_) => quote!(SMatrix<f64, N, N>),
+            Shape::Vectors(n) => quote!([Vector3<f64>; #n]),
+            Shape::Pairs(n) => quote!([[f64; 2]; #n]),
+            Shape::Transforms { counts, .. } => {
+                let n: usize = counts.iter().sum();
+                quote!([Matrix4<f64>; #n])
+            }
+            Shape::Record(name, _) => {
+                let name = format_ident!("{name}");
+                quote!(#name<N>)
+            }
+        }
+    }
+
+    /// Type of the variable `out` in which the result grows.
+    pub fn storage_type(&self) -> TokenStream {
+        match self.shape {
+            Shape::Vector(_) => quote!([f64; N]),
+            Shape::Symmetric(_) => quote!([[f64; N]; N]),
+            Shape::Record(_, fields) => {
+                let n = fields.len();
+                quote!([[[f64; N]; N]; #n])
+            }
+            _ => self.public_type(),
+        }
+    }
+
+    /// A storage in which every slot that no statement writes has its value.
+    pub fn blank(&self) -> TokenStream {
+        match self.shape {
+            Shape::Scalar => quote!(0.0),
+            Shape::Vector(_) => quote!([0.0; N]),
+            Shape::Symmetric(_) => quote!([[0.0; N]; N]),
+            Shape::Vectors(n) => quote!([Vector3::zeros(); #n]),
+            Shape::Pairs(n) => quote!([[0.0; 2]; #n]),
+            Shape::Transforms { counts, corner } => {
+                let n: usize = counts.iter().sum();
+                if *corner == 1 { quote!([BLANK; #n]) } else { quote!([Matrix4::zeros(); #n]) }
+            }
+            Shape::Record(_, fields) => {
+                let n = fields.len();
+                quote!([[[0.0; N]; N]; #n])
+            }
+        }
+    }
+
+    /// The result from its storage.
+    pub fn finish(&self) -> TokenStream {
+        match self.shape {
+            Shape::Vector(_) => quote!(SVector::from(out)),
+            Shape::Symmetric(_) => quote!(symmetric(out)),
+            Shape::Record(name, fields) => {
+                let name = format_ident!("{name}");
+                let names: Vec<_> = fields.iter().map(|(field, _)| format_ident!("{field}")).collect();
+                quote! {
+                    let [#(#names),*] = out.map(symmetric);
+                    #name { #(#names),* }
+                }
+            }
+            _ => quote!(out),
+        }
+    }
+
+    /// The place of a slot in the storage.
+    pub fn place(&self, slot: usize) -> Expr {
+        slot_of(self.shape, slot, variable("out"))
+    }
+
+    /// The group of slots that a slot belongs to, for a comment before it.
+    pub fn group(&self, slot: usize) -> usize {
+        match self.shape {
+            Shape::Scalar => 0,
+            Shape::Vector(_) => slot,
+            Shape::Symmetric(n) => row_of_triangle(*n, slot).0,
+            Shape::Vectors(_) => slot / 3,
+            Shape::Pairs(_) => slot / 2,
+            Shape::Transforms { .. } => slot / 12,
+            Shape::Record(_, fields) => {
+                let (index, rest) = field_of(fields, slot);
+                let Shape::Symmetric(n) = fields[index].1 else { return index };
+                index * n + row_of_triangle(n, rest).0
+            }
+        }
+    }
+}
+
+fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
+    match shape {
+        Shape::Scalar => out,
+        Shape::Vector(_) => element(out, slot),
+        Shape::Symmetric(n) => {
+            let (row, column) = row_of_triangle(*n, slot);
+            element(element(out, column), row)
+        }
+        Shape::Vectors(_) => field(element(out, slot / 3), ["x", "y", "z"][slot % 3]),
+        Shape::Pairs(_) => element(element(out, slot / 2), slot % 2),
+        Shape::Transforms { .. } => {
+            let (row, column) = (slot % 12 / 4 + 1, slot % 4 + 1);
+            field(element(out, slot / 12), &format!("m{row}{column}"))
+        }
+        Shape::Record(_, fields) => {
+            let (index, rest) = field_of(fields, slot);
+            slot_of(&fields[index].1, rest, element(out, index))
+        }
+    }
+}
+
+/// Row and column of a slot of an upper triangle stored row by row.
+pub fn row_of_triangle(n: usize, mut slot: usize) -> (usize, usize) {
+    let mut row = 0;
+    while slot >= n - row {
+        slot -= n - row;
+        row += 1;
+    }
+    (row, row + slot)
+}
+
+/// The field of a record that a slot is in, and the slot in it.
+fn field_of(fields: &[(&'static str, Shape)], mut slot: usize) -> (usize, usize) {
+    let mut index = 0;
+    while slot >= fields[index].1.len() {
+        slot -= fields[index].1.len();
+        index += 1;
+    }
+    (index, slot)
+}

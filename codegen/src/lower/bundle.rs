@@ -1,0 +1,57 @@
+//! Values that are used once and have no name of their own stand inside the expression that uses them.
+
+use super::Constants;
+use crate::symbolic::{ExprId, Op, Program};
+
+/// Operations in one statement at most: about one line of text.
+const LARGEST_EXPRESSION: usize = 7;
+
+/// For every node, whether it stands inside the one expression that uses it.
+pub(super) fn bundle(program: &Program, constants: &Constants, roots: &[ExprId]) -> Vec<bool> {
+    let needed = program.needed(roots.iter().copied());
+    let mut uses = vec![0usize; program.operations.len()];
+    for root in roots {
+        uses[root.index()] += 1;
+    }
+    for id in program.ids().filter(|id| needed[id.index()] && !constants.is_stored(*id)) {
+        for operand in program.op(id).operands() {
+            uses[operand.index()] += 1;
+        }
+    }
+    let is_root = {
+        let mut marks = vec![false; program.operations.len()];
+        roots.iter().for_each(|root| marks[root.index()] = true);
+        marks
+    };
+    let mut inlined = vec![false; program.operations.len()];
+    let mut size = vec![0usize; program.operations.len()];
+    for id in program.ids().filter(|id| needed[id.index()] && !constants.is_free(program, *id)) {
+        let op = program.op(id);
+        if op.is_leaf() {
+            continue;
+        }
+        let mut candidates: Vec<ExprId> = op
+            .operands()
+            .filter(|operand| {
+                let i = operand.index();
+                uses[i] == 1
+                    && !is_root[i]
+                    && !program.names.contains_key(operand)
+                    && !program.op(*operand).is_leaf()
+                    && !matches!(program.op(*operand), Op::Sin(_) | Op::Cos(_))
+                    && !constants.is_stored(*operand)
+            })
+            .collect();
+        // Smaller operands first: the larger one gets a variable if both do not fit.
+        candidates.sort_by_key(|operand| size[operand.index()]);
+        let mut total = 1;
+        for operand in candidates {
+            if total + size[operand.index()] <= LARGEST_EXPRESSION {
+                total += size[operand.index()];
+                inlined[operand.index()] = true;
+            }
+        }
+        size[id.index()] = total;
+    }
+    inlined
+}

@@ -1,0 +1,77 @@
+//! Values that depend on live parameters alone: computed once when a parameter is set, read like inputs.
+
+use crate::symbolic::{Argument, ExprId, Op, Program};
+
+/// The constants of a program's live parameters.
+#[derive(Debug)]
+pub struct Constants {
+    /// The values that functions read, in order of construction.
+    pub stored: Vec<ExprId>,
+    is_stored: Vec<bool>,
+    /// Whether a node depends on at least one parameter, and on parameters alone.
+    is_constant: Vec<bool>,
+}
+
+impl Constants {
+    pub(super) fn of(program: &Program) -> Self {
+        let is_constant = parameters_alone(program);
+        let mut is_stored = vec![false; program.operations.len()];
+        let needed = program.needed(program.functions.iter().flat_map(|f| f.outputs.iter().copied()));
+        let mut store = |id: ExprId| {
+            is_stored[id.index()] |= is_constant[id.index()] && !program.op(id).is_leaf();
+        };
+        for (index, op) in program.operations.iter().enumerate() {
+            if needed[index] && !is_constant[index] {
+                op.operands().for_each(&mut store);
+            }
+        }
+        program.functions.iter().flat_map(|f| f.outputs.iter().copied()).for_each(store);
+        let stored = program.ids().filter(|id| is_stored[id.index()]).collect();
+        Constants { stored, is_stored, is_constant }
+    }
+
+    /// Whether functions read this value instead of computing it.
+    #[must_use]
+    pub fn is_stored(&self, id: ExprId) -> bool {
+        self.is_stored[id.index()]
+    }
+
+    /// Whether the value needs no variable: a number, a live parameter or a stored constant.
+    #[must_use]
+    pub fn is_free(&self, program: &Program, id: ExprId) -> bool {
+        self.is_stored(id)
+            || match program.op(id) {
+                Op::Constant(_) => true,
+                Op::Symbol(symbol) => program.symbol(symbol).argument == Argument::Parameters,
+                _ => false,
+            }
+    }
+
+    /// Whether any of `roots` reads parameters or stored constants.
+    pub(super) fn read_by(&self, program: &Program, roots: &[ExprId]) -> bool {
+        let needed = program.needed(roots.iter().copied());
+        program.ids().any(|id| needed[id.index()] && self.is_constant[id.index()])
+    }
+}
+
+/// For every node, whether it depends on parameters and on nothing else but numbers.
+fn parameters_alone(program: &Program) -> Vec<bool> {
+    // Numbers alone fit with everything; they are constants of no parameter.
+    #[derive(Clone, Copy, PartialEq, PartialOrd)]
+    enum Depends {
+        Number,
+        Parameter,
+        State,
+    }
+    let mut depends: Vec<Depends> = Vec::with_capacity(program.operations.len());
+    for op in &program.operations {
+        let own = match op {
+            Op::Symbol(id) if program.symbol(*id).argument == Argument::Parameters => Depends::Parameter,
+            Op::Symbol(_) => Depends::State,
+            _ => Depends::Number,
+        };
+        let all = op.operands().map(|id| depends[id.index()]).fold(own, |a, b| if b > a { b } else { a });
+        depends.push(all);
+    }
+    depends.iter().map(|d| *d == Depends::Parameter).collect()
+}

@@ -1,0 +1,140 @@
+//! Cutting a long line into pieces that rustc compiles fast.
+
+use std::collections::BTreeMap;
+
+use super::{Constants, Statement, variables_of};
+use crate::symbolic::{ExprId, Op, Program};
+
+/// A piece has at least this many statements before it is cut …
+const SHORTEST_PIECE: usize = 1000;
+/// … and at most this many; in between the cut that carries the fewest values is taken.
+const LONGEST_PIECE: usize = 2000;
+
+/// The pieces, and how many values are carried between them.
+pub(super) fn split(
+    program: &Program,
+    constants: &Constants,
+    inlined: &[bool],
+    line: Vec<Statement>,
+) -> (Vec<Vec<Statement>>, usize) {
+    if line.len() <= LONGEST_PIECE {
+        return (vec![line], 0);
+    }
+    let lives = Lives::of(program, constants, inlined, &line);
+    let mut cuts = vec![0];
+    while line.len() - cuts.last().unwrap_or(&0) > LONGEST_PIECE {
+        let start = *cuts.last().unwrap_or(&0);
+        let best = (start + SHORTEST_PIECE..=start + LONGEST_PIECE).min_by_key(|&at| lives.alive[at]);
+        cuts.push(best.unwrap_or(start + LONGEST_PIECE));
+    }
+    cuts.push(line.len());
+    lives.pieces(program, &line, &cuts)
+}
+
+/// From where to where the variables of a line live.
+struct Lives {
+    /// Statement that defines a value.
+    defined: BTreeMap<ExprId, usize>,
+    /// Values that a statement reads.
+    reads: Vec<Vec<ExprId>>,
+    /// How many computed values live across the cut before a statement.
+    alive: Vec<usize>,
+}
+
+impl Lives {
+    fn of(program: &Program, constants: &Constants, inlined: &[bool], line: &[Statement]) -> Self {
+        let mut defined = BTreeMap::new();
+        let mut last_read = BTreeMap::new();
+        let mut reads = Vec::with_capacity(line.len());
+        for (at, statement) in line.iter().enumerate() {
+            let read = match *statement {
+                Statement::SinCos { angle, .. } => operands(program, constants, inlined, angle),
+                Statement::Let(id) => variables_of(program, constants, inlined, id),
+                Statement::Output { value, .. } => operands(program, constants, inlined, value),
+                Statement::Input(_) | Statement::Keep { .. } | Statement::Fetch { .. } => vec![],
+            };
+            for id in &read {
+                last_read.insert(*id, at);
+            }
+            reads.push(read);
+            for id in defines(*statement) {
+                defined.insert(id, at);
+            }
+        }
+        // Inputs are read again in each piece, so they cost nothing to cut.
+        let mut change = vec![0isize; line.len() + 1];
+        for (id, last) in last_read {
+            if !matches!(program.op(id), Op::Symbol(_)) {
+                change[defined[&id] + 1] += 1;
+                change[last + 1] -= 1;
+            }
+        }
+        let mut sum = 0;
+        let alive = change
+            .iter()
+            .map(|step| {
+                sum += step;
+                sum.unsigned_abs()
+            })
+            .collect();
+        Lives { defined, reads, alive }
+    }
+
+    fn pieces(&self, program: &Program, line: &[Statement], cuts: &[usize]) -> (Vec<Vec<Statement>>, usize) {
+        let mut places: BTreeMap<ExprId, usize> = BTreeMap::new();
+        let mut heads = Vec::new();
+        for window in cuts.windows(2) {
+            let mut head = Vec::new();
+            let mut here = std::collections::BTreeSet::new();
+            for id in self.reads[window[0]..window[1]].iter().flatten() {
+                if self.defined[id] >= window[0] || !here.insert(*id) {
+                    continue;
+                }
+                if matches!(program.op(*id), Op::Symbol(_)) {
+                    head.push(Statement::Input(*id));
+                } else {
+                    let next = places.len();
+                    head.push(Statement::Fetch { place: *places.entry(*id).or_insert(next), value: *id });
+                }
+            }
+            heads.push(head);
+        }
+        let pieces = cuts
+            .windows(2)
+            .zip(heads)
+            .map(|(window, mut piece)| {
+                for statement in &line[window[0]..window[1]] {
+                    piece.push(*statement);
+                    for id in defines(*statement) {
+                        if let Some(&place) = places.get(&id) {
+                            piece.push(Statement::Keep { place, value: id });
+                        }
+                    }
+                }
+                piece
+            })
+            .collect();
+        (pieces, places.len())
+    }
+}
+
+/// Variables behind an argument, which itself may be inlined or a number.
+fn operands(program: &Program, constants: &Constants, inlined: &[bool], id: ExprId) -> Vec<ExprId> {
+    if constants.is_free(program, id) {
+        vec![]
+    } else if inlined[id.index()] {
+        variables_of(program, constants, inlined, id)
+    } else {
+        vec![id]
+    }
+}
+
+/// Values that a statement defines.
+fn defines(statement: Statement) -> impl Iterator<Item = ExprId> {
+    let [first, second] = match statement {
+        Statement::Input(id) | Statement::Let(id) | Statement::Fetch { value: id, .. } => [Some(id), None],
+        Statement::SinCos { sin, cos, .. } => [sin, cos],
+        Statement::Output { .. } | Statement::Keep { .. } => [None, None],
+    };
+    [first, second].into_iter().flatten()
+}

@@ -1,0 +1,365 @@
+//! Which functions a crane gets: signatures, documentation, and what is left out.
+
+use crate::chain::{Analyses, BodyId, Chain};
+use crate::symbolic::Argument::{self, Position, Time, Velocity};
+use crate::symbolic::{Expr, Function, Graph, Program, Shape};
+
+use super::inertia::Inertias;
+use super::kinematics::Kinematics;
+use super::model::Model;
+use super::twist::{Twist, twists};
+use super::vector::SymmetricMatrix;
+use super::{drives, dynamics, gravity, points, springs, supports, transforms};
+
+/// Derives all functions over one graph.
+pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
+    let functions = Derivation::new(&graph, chain).functions(analyses);
+    graph.into_program(Model::symbols(chain), functions)
+}
+
+/// A model with everything that several functions share.
+struct Derivation<'g> {
+    model: Model<'g>,
+    kinematics: Kinematics<'g>,
+    inertias: Inertias<'g>,
+    twists: Vec<Twist<'g>>,
+}
+
+impl<'g> Derivation<'g> {
+    fn new(graph: &'g Graph, chain: &'g Chain) -> Self {
+        let model = Model::new(graph, chain);
+        let kinematics = Kinematics::new(&model);
+        let inertias = Inertias::new(&model, &kinematics);
+        let twists = twists(&model, &kinematics);
+        Derivation { model, kinematics, inertias, twists }
+    }
+
+    fn functions(&self, analyses: Analyses) -> Vec<Function> {
+        let mut functions = self.poses();
+        functions.extend(self.forces());
+        functions.extend(self.energies());
+        if analyses.dynamics {
+            functions.extend(self.dynamics());
+        }
+        if analyses.statics {
+            functions.extend(self.statics());
+        }
+        if analyses.modes {
+            functions.push(self.linearise());
+        }
+        if analyses.derivatives {
+            functions.extend(self.transform_derivatives());
+        }
+        functions
+    }
+
+    fn poses(&self) -> Vec<Function> {
+        let chain = self.model.chain;
+        let mut functions = vec![function(
+            "transforms",
+            "Transforms T of all bodies into the world frame; translations in m.",
+            "T(p) = T(p−1) T̃(p) [Urbaś 2016, Eq. (3)]",
+            &[Position],
+            Shape::Transforms { counts: vec![1; chain.bodies.len()], corner: 1 },
+            transforms::transforms(&self.kinematics),
+        )];
+        if !chain.points.is_empty() {
+            let shape = || Shape::Vectors(chain.points.len());
+            functions.push(function(
+                "points",
+                "Positions of the points of interest in the world frame, m.",
+                "T(p) r",
+                &[Position],
+                shape(),
+                points::positions(&self.model, &self.kinematics),
+            ));
+            functions.push(function(
+                "point_velocities",
+                "Velocities of the points of interest in the world frame, m/s.",
+                "Ṫ(p) r = ω × x + υ",
+                &[Position, Velocity],
+                shape(),
+                points::velocities(&self.model, &self.kinematics, &self.twists),
+            ));
+        }
+        functions
+    }
+
+    fn forces(&self) -> Vec<Function> {
+        let (model, chain) = (&self.model, self.model.chain);
+        let vector = || Shape::Vector(model.size());
+        let mut functions = Vec::new();
+        let mut parts = vec![model.zeros()];
+        if !chain.supports.is_empty() {
+            let forces = supports::forces(model, &self.kinematics, &model.v);
+            parts.push(forces.clone());
+            functions.push(function(
+                "support_forces",
+                "Generalized forces of the supports, N and N m.",
+                "−Jᵀ (s e + d ė) [Urbaś 2016, Eq. (18)]",
+                &[Position, Velocity],
+                vector(),
+                forces,
+            ));
+            functions.push(function(
+                "support_reactions",
+                "Forces of the supports on the crane in the world frame, N.",
+                "−s e − d ė [Urbaś 2016, Eq. (16)]",
+                &[Position, Velocity],
+                Shape::Vectors(chain.supports.len()),
+                supports::reactions(model, &self.kinematics),
+            ));
+        }
+        if !chain.elements.is_empty() {
+            let forces = springs::element_forces(model, &model.q, &model.v);
+            parts.push(forces.clone());
+            functions.push(function(
+                "element_forces",
+                "Generalized forces of the springs and dampers between rigid elements, N m.",
+                "−S q̃ − D q̃̇ [Urbaś 2016, Eq. (15)]",
+                &[Position, Velocity],
+                vector(),
+                forces,
+            ));
+        }
+        if !chain.drives.is_empty() {
+            let forces = drives::forces(model, model.t, &model.v);
+            parts.push(forces.clone());
+            functions.push(function(
+                "drive_forces",
+                "Generalized forces of the drives, N and N m.",
+                "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]",
+                &[Time, Position, Velocity],
+                vector(),
+                forces,
+            ));
+            functions.push(function(
+                "drive_motions",
+                "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
+                "q_dr(t), q̇_dr(t)",
+                &[Time],
+                Shape::Pairs(chain.drives.len()),
+                drives::motions(model),
+            ));
+        }
+        if !chain.hinges.is_empty() {
+            let forces = springs::hinge_forces(model, &model.v);
+            parts.push(forces.clone());
+            functions.push(function(
+                "hinge_forces",
+                "Generalized forces of viscous damping in passive joints, N and N m.",
+                "−d q̇",
+                &[Velocity],
+                vector(),
+                forces,
+            ));
+        }
+        functions.push(function(
+            "forces",
+            "Generalized forces of all but inertia and gravity, N and N m.",
+            "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
+            &[Time, Position, Velocity],
+            vector(),
+            sum(&parts),
+        ));
+        functions
+    }
+
+    fn energies(&self) -> Vec<Function> {
+        let (model, chain) = (&self.model, self.model.chain);
+        let scalar = |name, doc, equation, arguments, expr| {
+            function(name, doc, equation, arguments, Shape::Scalar, vec![expr])
+        };
+        let mut functions = vec![scalar(
+            "gravity_energy",
+            "Potential energy of gravity, zero at the world's origin, J.",
+            "E_g = −Σ γ · ∫ x dm [Urbaś 2016, Eq. (6)]",
+            &[Position],
+            gravity::energy(model, &self.inertias),
+        )];
+        if !chain.supports.is_empty() {
+            functions.push(scalar(
+                "support_energy",
+                "Energy of the supports' springs, J.",
+                "½ Σ s e² [Urbaś 2016, Eqs. (16)–(17)]",
+                &[Position],
+                supports::energy(model, &self.kinematics),
+            ));
+        }
+        if !chain.elements.is_empty() {
+            functions.push(scalar(
+                "element_energy",
+                "Energy of the springs between rigid elements, J.",
+                "½ q̃ᵀ S q̃ [Urbaś 2016, Eq. (14)]",
+                &[Position],
+                springs::element_energy(model),
+            ));
+        }
+        if !chain.drives.is_empty() {
+            functions.push(scalar(
+                "drive_energy",
+                "Energy of the drives' springs, J.",
+                "½ Σ s (q_dr − q)² [Urbaś 2016, Eq. (19)]",
+                &[Time, Position],
+                drives::energy(model),
+            ));
+            functions.push(scalar(
+                "drive_power",
+                "Power that the prescribed motions put in, W.",
+                "Σ t_dr q̇_dr",
+                &[Time, Position, Velocity],
+                drives::power(model),
+            ));
+        }
+        let dissipation = supports::dissipation(model, &self.kinematics)
+            + springs::dissipation(model)
+            + drives::dissipation(model);
+        if !dissipation.is_zero() {
+            functions.push(scalar(
+                "dissipation",
+                "Power that all dampers take out, W.",
+                "2R [Urbaś 2016, Eqs. (14), (17), (19)]",
+                &[Time, Position, Velocity],
+                dissipation,
+            ));
+        }
+        functions
+    }
+
+    fn dynamics(&self) -> Vec<Function> {
+        let model = &self.model;
+        let matrix = dynamics::mass_matrix(model, &self.kinematics, &self.inertias);
+        vec![
+            function(
+                "mass_matrix",
+                "Mass matrix A; kg, kg m and kg m².",
+                "a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ) [Urbaś 2016, Eq. (5)]",
+                &[Position],
+                Shape::Symmetric(model.size()),
+                matrix.into_upper(),
+            ),
+            function(
+                "bias",
+                "Bias e: velocity and gravity forces, N and N m.",
+                "e = −(h + g), h_i + g_i = tr(Ω_i Σ T H B̄ᵀ) [Urbaś 2016, Eqs. (5), (7), (9)]",
+                &[Position, Velocity],
+                Shape::Vector(model.size()),
+                dynamics::bias(model, &self.kinematics, &self.inertias, &self.twists),
+            ),
+            function(
+                "kinetic_energy",
+                "Kinetic energy, J.",
+                "E_k = ½ Σ tr(Ṫ H Ṫᵀ) [Urbaś 2016, Eq. (4)]",
+                &[Position, Velocity],
+                Shape::Scalar,
+                vec![dynamics::kinetic_energy(model, &self.inertias, &self.twists)],
+            ),
+        ]
+    }
+
+    fn statics(&self) -> Vec<Function> {
+        vec![
+            function(
+                "static_residual",
+                "Gradient of the potential energy at t = 0, zero in equilibrium; N and N m.",
+                "∂E_p/∂q [Urbaś 2016, Eqs. (7), (15), (18), (20)]",
+                &[Position],
+                Shape::Vector(self.model.size()),
+                self.static_residual(),
+            ),
+            function(
+                "tangent_stiffness",
+                "Tangent stiffness K: second derivatives of the potential energy; N/m, N and N m.",
+                "∂²E_p/∂q∂q",
+                &[Position],
+                Shape::Symmetric(self.model.size()),
+                self.stiffness().into_upper(),
+            ),
+        ]
+    }
+
+    /// `∂E_p/∂q`: gravity less all forces at rest and t = 0.
+    fn static_residual(&self) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let (start, rest) = (model.zero(), model.zeros());
+        let gravity = gravity::gradient(model, &self.kinematics, &self.inertias);
+        let forces = sum(&[
+            supports::forces(model, &self.kinematics, &rest),
+            springs::element_forces(model, &model.q, &rest),
+            drives::forces(model, start, &rest),
+        ]);
+        gravity.into_iter().zip(forces).map(|(g, f)| g - f).collect()
+    }
+
+    fn stiffness(&self) -> SymmetricMatrix<'g> {
+        let model = &self.model;
+        let mut matrix = SymmetricMatrix::zero(model.graph, model.size());
+        gravity::stiffness(model, &self.kinematics, &self.inertias, &mut matrix);
+        supports::stiffness(model, &self.kinematics, &mut matrix);
+        springs::stiffness(model, &mut matrix);
+        matrix
+    }
+
+    fn linearise(&self) -> Function {
+        let model = &self.model;
+        let mut damping = SymmetricMatrix::zero(model.graph, model.size());
+        supports::damping(model, &self.kinematics, &mut damping);
+        springs::damping(model, &mut damping);
+        let mut outputs =
+            dynamics::mass_matrix(model, &self.kinematics, &self.inertias).into_upper();
+        outputs.extend(self.stiffness().into_upper().iter().chain(&damping.into_upper()));
+        let matrix = || Shape::Symmetric(model.size());
+        let shape =
+            Shape::Record("Linearisation", vec![("mass", matrix()), ("stiffness", matrix()), ("damping", matrix())]);
+        function(
+            "linearise",
+            "Mass matrix A, tangent stiffness K and damping matrix D of small motions about a pose at rest.",
+            "A δq̈ + D δq̇ + K δq = 0",
+            &[Position],
+            shape,
+            outputs,
+        )
+    }
+
+    fn transform_derivatives(&self) -> Vec<Function> {
+        let (model, kinematics) = (&self.model, &self.kinematics);
+        let counts = |of: fn(usize) -> usize| {
+            (0..model.chain.bodies.len()).map(|p| of(model.chain.degrees_of_freedom(BodyId(p)))).collect()
+        };
+        vec![
+            function(
+                "transform_derivatives",
+                "Derivatives ∂T/∂q_j of every body, j running over the coordinates that move it; 1, m, 1/m.",
+                "∂T/∂q_j = Ω_j T",
+                &[Position],
+                Shape::Transforms { counts: counts(|n| n), corner: 0 },
+                transforms::derivatives(model, kinematics),
+            ),
+            function(
+                "transform_second_derivatives",
+                "Second derivatives ∂²T/∂q_m∂q_n of every body, m ≤ n running over the coordinates that move it.",
+                "∂²T/∂q_m∂q_n = Ω_m Ω_n T",
+                &[Position],
+                Shape::Transforms { counts: counts(|n| n * (n + 1) / 2), corner: 0 },
+                transforms::second_derivatives(model, kinematics),
+            ),
+        ]
+    }
+}
+
+fn sum<'g>(parts: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+    let (first, rest) = parts.split_first().expect("at least the zero forces");
+    rest.iter().fold(first.clone(), |total, part| total.iter().zip(part).map(|(&a, &b)| a + b).collect())
+}
+
+fn function(
+    name: &'static str,
+    doc: &'static str,
+    equation: &'static str,
+    arguments: &'static [Argument],
+    shape: Shape,
+    outputs: Vec<Expr<'_>>,
+) -> Function {
+    debug_assert_eq!(shape.len(), outputs.len(), "{name}");
+    Function { name, doc, equation, arguments, shape, outputs: outputs.iter().map(|e| e.id()).collect() }
+}

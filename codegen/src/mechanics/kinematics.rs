@@ -1,0 +1,123 @@
+//! Poses of bodies and axes of motion, by one walk along the chain.
+//!
+//! Notation
+//! : `T(p)` pose of body p in the world; `R`, `r` its rotation and origin. For coordinate j the generator in the world
+//!   is `Ω_j = P G_j P⁻¹`, P the pose just before its elementary motion. Ω_j moves the point at x with the velocity
+//!   `ω_j × x + υ_j`: a rotation has its axis ω_j through `o_j`, so `υ_j = o_j × ω_j`; a translation has ω_j = 0.
+//!
+//! Input
+//! : paths of the bodies, q.
+//!
+//! Output
+//! : `T(p) = T(p−1) T̃(p)` [Urbaś 2016, Eq. (3)], and Ω_j, with which `∂T/∂q_j = Ω_j T`.
+
+use crate::chain::{CoordinateId, CoordinateKind, Step};
+
+use super::model::Model;
+use super::vector::{Rotation, Vec3};
+
+/// A frame in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose<'g> {
+    pub rotation: Rotation<'g>,
+    pub origin: Vec3<'g>,
+}
+
+/// The generator Ω_j of a coordinate in the world frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Generator<'g> {
+    pub kind: CoordinateKind,
+    /// ω_j: axis of rotation; zero for a translation.
+    pub omega: Vec3<'g>,
+    /// υ_j: velocity of the point at the world's origin.
+    pub upsilon: Vec3<'g>,
+    /// o_j: a point on the axis.
+    pub point: Vec3<'g>,
+    /// Index of the first body that it moves.
+    pub body: usize,
+}
+
+impl<'g> Generator<'g> {
+    /// `Ω_j x` for a point x: its velocity at unit rate.
+    pub fn velocity(&self, x: Vec3<'g>) -> Vec3<'g> {
+        match self.kind {
+            CoordinateKind::Rotation => self.omega.cross(x - self.point),
+            CoordinateKind::Translation => self.upsilon,
+        }
+    }
+
+    /// `Ω_j u` for a direction u: its rate at unit rate.
+    pub fn turn(&self, u: Vec3<'g>) -> Vec3<'g> {
+        self.omega.cross(u)
+    }
+}
+
+/// Poses and generators of a chain.
+pub struct Kinematics<'g> {
+    /// T(p), one a body.
+    pub poses: Vec<Pose<'g>>,
+    /// Ω_j, one a coordinate.
+    pub generators: Vec<Generator<'g>>,
+}
+
+impl<'g> Kinematics<'g> {
+    pub fn new(model: &Model<'g>) -> Self {
+        let mut pose =
+            Pose { rotation: Rotation::identity(model.graph), origin: Vec3::zero(model.graph) };
+        let (mut poses, mut generators) = (Vec::new(), Vec::new());
+        for (index, body) in model.chain.bodies.iter().enumerate() {
+            for step in &body.path {
+                match step {
+                    Step::Translate(by) => pose.origin = pose.origin + pose.rotation.apply(model.vector(by)),
+                    Step::Rotate { axis, sin, cos } => {
+                        pose.rotation = pose.rotation.turned(*axis, model.number(sin), model.number(cos));
+                    }
+                    Step::Move(id) => {
+                        generators.push(generator(model, pose, *id, index));
+                        pose = moved(model, pose, *id);
+                    }
+                }
+            }
+            for (column, axis) in pose.rotation.0.iter().zip(["x", "y", "z"]) {
+                column.named(&format!("{}_axis_{axis}", body.name));
+            }
+            pose.origin.named(&format!("{}_origin", body.name));
+            poses.push(pose);
+        }
+        Kinematics { poses, generators }
+    }
+}
+
+/// Ω_j, its motion starting from `pose`.
+fn generator<'g>(model: &Model<'g>, pose: Pose<'g>, id: CoordinateId, body: usize) -> Generator<'g> {
+    let coordinate = &model.chain.coordinates[id.0];
+    let axis = pose.rotation.axis(coordinate.axis);
+    let (omega, upsilon) = match coordinate.kind {
+        CoordinateKind::Rotation => (
+            axis.named(&format!("omega_{}", coordinate.name)),
+            pose.origin.cross(axis).named(&format!("upsilon_{}", coordinate.name)),
+        ),
+        CoordinateKind::Translation => {
+            (Vec3::zero(model.graph), axis.named(&format!("upsilon_{}", coordinate.name)))
+        }
+    };
+    Generator { kind: coordinate.kind, omega, upsilon, point: pose.origin, body }
+}
+
+/// The pose after the elementary motion of a coordinate.
+fn moved<'g>(model: &Model<'g>, pose: Pose<'g>, id: CoordinateId) -> Pose<'g> {
+    let coordinate = &model.chain.coordinates[id.0];
+    let q = model.q[id.0];
+    match coordinate.kind {
+        CoordinateKind::Rotation => {
+            let (sin, cos) = (q.sin(), q.cos());
+            model.graph.name(sin, format!("sin_{}", coordinate.name));
+            model.graph.name(cos, format!("cos_{}", coordinate.name));
+            Pose { rotation: pose.rotation.turned(coordinate.axis, sin, cos), ..pose }
+        }
+        CoordinateKind::Translation => {
+            let along: Vec3<'g> = q * pose.rotation.axis(coordinate.axis);
+            Pose { origin: pose.origin + along, ..pose }
+        }
+    }
+}

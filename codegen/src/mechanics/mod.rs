@@ -1,0 +1,40 @@
+//! The model: from a chain to a program, one equation a function.
+//!
+//! The only module that knows both the chain and the graph. Equation numbers are those of A. Urbaś, *Computational
+//! implementation of the rigid finite element method in the statics and dynamics analysis of forest cranes*, Applied
+//! Mathematical Modelling, 2016; where we depart from the print, `docs/EQUATIONS.md` says why.
+
+mod drives;
+mod dynamics;
+mod functions;
+mod gravity;
+mod inertia;
+mod kinematics;
+mod model;
+mod omissions;
+mod points;
+mod profile;
+mod springs;
+mod supports;
+mod transforms;
+mod twist;
+#[cfg(test)]
+mod tests;
+mod vector;
+
+pub use omissions::left_out;
+
+use crate::chain::{Analyses, Chain};
+use crate::symbolic::{Graph, Program};
+
+/// The functions of a crane that `analyses` ask for and that its scene needs, over one simplified graph.
+#[must_use]
+pub fn derive(chain: &Chain, analyses: Analyses) -> Program {
+    functions::program(Graph::simplifying(), chain, analyses)
+}
+
+/// The same without simplification, to tell what simplification is worth.
+#[must_use]
+pub fn derive_verbatim(chain: &Chain, analyses: Analyses) -> Program {
+    functions::program(Graph::verbatim(), chain, analyses)
+}

@@ -1,0 +1,43 @@
+//! What a crane's scene does not need, and is therefore not derived.
+
+use super::kinematics::Kinematics;
+use super::model::Model;
+use crate::chain::{Analyses, Chain, CoordinateKind};
+use crate::symbolic::{Expr, Graph};
+
+/// What the scene does not need, and why.
+#[must_use]
+pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'static str)> {
+    let mut rows = Vec::new();
+    let mut out = |condition: bool, what: &'static str, why: &'static str| {
+        if condition {
+            rows.push((what, why));
+        }
+    };
+    out(chain.base.iter().all(Option::is_none), "coordinates of the base", "the base is fixed");
+    let absent = chain.base.iter().filter(|c| c.is_none()).count();
+    out((1..6).contains(&absent), "some coordinates of the base", "the base moves only as the spec says");
+    out(chain.supports.is_empty(), "supports", "the spec has none");
+    out(chain.elements.is_empty(), "springs and dampers of rigid elements", "no link is flexible");
+    out(chain.drives.is_empty(), "drives", "the spec has none");
+    out(chain.hinges.is_empty(), "viscous damping of joints", "the spec has none");
+    out(chain.points.is_empty(), "points of interest", "the spec has none");
+    out(chain.parameters.is_empty(), "live parameters", "the spec has none: all numbers are baked in");
+    out(planar(chain), "everything out of the crane's plane", "all joints turn about one direction");
+    out(!analyses.statics, "static residual and tangent stiffness", "`analyses` does not ask for statics");
+    out(!analyses.dynamics, "mass matrix, bias and kinetic energy", "`analyses` does not ask for dynamics");
+    out(!analyses.modes, "linearisation", "`analyses` does not ask for modes");
+    out(!analyses.derivatives, "∂T/∂q and ∂²T/∂q∂q", "`analyses` does not ask for derivatives");
+    rows
+}
+
+/// Whether all rotations keep one direction of the world: the chain moves in a plane.
+fn planar(chain: &Chain) -> bool {
+    let graph = Graph::simplifying();
+    let kinematics = Kinematics::new(&Model::new(&graph, chain));
+    let rotations = kinematics.generators.iter().filter(|g| g.kind == CoordinateKind::Rotation);
+    let mut axes = rotations.map(|g| g.omega.0.map(Expr::as_constant));
+    let Some(first) = axes.next() else { return false };
+    let opposite = first.map(|x| x.map(|x| -x));
+    first.iter().all(Option::is_some) && axes.all(|axis| axis == first || axis == opposite)
+}

@@ -1,0 +1,62 @@
+//! Springs and dampers that sit on single coordinates: rigid elements and passive joints.
+
+use super::model::Model;
+use super::vector::SymmetricMatrix;
+use crate::symbolic::Expr;
+
+/// `f = −S q̃ − D q̃̇` of the elements [Urbaś 2016, Eq. (15); one spring for each of the elements 1 … n].
+pub fn element_forces<'g>(model: &Model<'g>, q: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let mut forces = model.zeros();
+    for spring in &model.chain.elements {
+        let j = spring.coordinate.0;
+        let (stiffness, damping) = (model.number(&spring.stiffness), model.number(&spring.damping));
+        forces[j] = forces[j] - (stiffness * q[j] + damping * v[j]);
+    }
+    forces
+}
+
+/// `E_l = ½ q̃ᵀ S q̃` [Urbaś 2016, Eq. (14)].
+pub fn element_energy<'g>(model: &Model<'g>) -> Expr<'g> {
+    let twice = model.chain.elements.iter().fold(model.zero(), |sum, spring| {
+        sum + model.number(&spring.stiffness) * model.q[spring.coordinate.0].squared()
+    });
+    0.5 * twice
+}
+
+/// `f = −d q̇` of viscous joints.
+pub fn hinge_forces<'g>(model: &Model<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let mut forces = model.zeros();
+    for hinge in &model.chain.hinges {
+        let j = hinge.coordinate.0;
+        forces[j] = forces[j] - model.number(&hinge.damping) * v[j];
+    }
+    forces
+}
+
+/// Stiffness of elements and drives, on the diagonal.
+pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    let elements = model.chain.elements.iter().map(|s| (s.coordinate.0, &s.stiffness));
+    let drives = model.chain.drives.iter().map(|d| (d.coordinate.0, &d.stiffness));
+    for (j, stiffness) in elements.chain(drives) {
+        matrix.add(j, j, model.number(stiffness));
+    }
+}
+
+/// Damping of elements, drives and joints, on the diagonal.
+pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    let elements = model.chain.elements.iter().map(|s| (s.coordinate.0, &s.damping));
+    let drives = model.chain.drives.iter().map(|d| (d.coordinate.0, &d.damping));
+    let hinges = model.chain.hinges.iter().map(|h| (h.coordinate.0, &h.damping));
+    for (j, damping) in elements.chain(drives).chain(hinges) {
+        matrix.add(j, j, model.number(damping));
+    }
+}
+
+/// Power that elements' and joints' dampers take out, `Σ d q̇²` (2R of [Urbaś 2016, Eq. (14)]).
+pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
+    let elements = model.chain.elements.iter().map(|s| (s.coordinate.0, &s.damping));
+    let hinges = model.chain.hinges.iter().map(|h| (h.coordinate.0, &h.damping));
+    elements
+        .chain(hinges)
+        .fold(model.zero(), |sum, (j, damping)| sum + model.number(damping) * model.v[j].squared())
+}

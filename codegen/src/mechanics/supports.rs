@@ -1,0 +1,207 @@
+//! Flexible supports of the base.
+//!
+//! Notation
+//! : support at r_E of the first body; stretch `e`, stiffness `s`, damping `d` along the world's x, y, z; J its Jacobian.
+//!   Linear kinematics: `e = U q̃ − δ`, J = U constant. Exact: `e = T r_E − r_E0 − δ`, column j of J is `Ω_j T r_E`.
+//!
+//! Everything is written once in J and e: `f = −Jᵀ (s e + d ė)`, `E = ½ eᵀ s e`. Linear supports are summed into one
+//! 6×6 stiffness and damping of the base before they meet the state, because their J is constant.
+
+use crate::chain::{CoordinateId, Step, Support, SupportKinematics};
+use crate::symbolic::Expr;
+
+use super::kinematics::Kinematics;
+use super::model::Model;
+use super::vector::{Rotation, SymmetricMatrix, Vec3};
+
+/// The base's coordinates that the crane has: place in `x y z ψ θ φ`, and place in q.
+fn base_coordinates<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
+    model.chain.base.iter().enumerate().filter_map(|(place, id)| id.map(|CoordinateId(j)| (place, j)))
+}
+
+/// Column of U for a place in `x y z ψ θ φ` [Urbaś 2016, Eq. (16), with the columns in that order]: the displacement of
+/// the point at r by a small motion of that coordinate.
+fn linear_column<'g>(model: &Model<'g>, r: Vec3<'g>, place: usize) -> Vec3<'g> {
+    let (zero, one) = (model.zero(), model.graph.constant(1.0));
+    Vec3(match place {
+        0 => [one, zero, zero],
+        1 => [zero, one, zero],
+        2 => [zero, zero, one],
+        3 => [-r[1], r[0], zero],
+        4 => [r[2], zero, -r[0]],
+        _ => [zero, -r[2], r[1]],
+    })
+}
+
+/// A support at the present state.
+struct Stretched<'g> {
+    /// e, m.
+    stretch: Vec3<'g>,
+    /// ė, m/s.
+    rate: Vec3<'g>,
+    /// Columns of J for the base's coordinates.
+    jacobian: Vec<(usize, Vec3<'g>)>,
+    stiffness: Vec3<'g>,
+    damping: Vec3<'g>,
+}
+
+impl<'g> Stretched<'g> {
+    fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, support: &Support, v: &[Expr<'g>]) -> Self {
+        let r = model.vector(&support.position);
+        let free_play = model.vector(&support.free_play);
+        let zero = Vec3::zero(model.graph);
+        let (attachment, jacobian): (_, Vec<_>) = match support.kinematics {
+            SupportKinematics::Linear => {
+                (None, base_coordinates(model).map(|(place, j)| (j, linear_column(model, r, place))).collect())
+            }
+            SupportKinematics::Exact => {
+                let base = &kinematics.poses[0];
+                let at = base.origin + base.rotation.apply(r);
+                let column = |(_, j): (usize, usize)| (j, kinematics.generators[j].velocity(at));
+                (Some(at), base_coordinates(model).map(column).collect())
+            }
+        };
+        let displacement = match attachment {
+            Some(at) => at - at_rest(model, r),
+            None => jacobian.iter().fold(zero, |sum, &(j, column)| sum + model.q[j] * column),
+        };
+        Stretched {
+            stretch: displacement - free_play,
+            rate: jacobian.iter().fold(zero, |sum, &(j, column)| sum + v[j] * column),
+            jacobian,
+            stiffness: model.vector(&support.stiffness),
+            damping: model.vector(&support.damping),
+        }
+    }
+
+    /// Force on the crane, `−s e − d ė`, N.
+    fn reaction(&self) -> Vec3<'g> {
+        Vec3([0, 1, 2].map(|a| -(self.stiffness[a] * self.stretch[a] + self.damping[a] * self.rate[a])))
+    }
+}
+
+/// Where a point of the first body is at q̃ = 0: its constant placement alone.
+fn at_rest<'g>(model: &Model<'g>, r: Vec3<'g>) -> Vec3<'g> {
+    model.chain.bodies[0].path.iter().rev().fold(r, |point, step| match step {
+        Step::Translate(by) => point + model.vector(by),
+        Step::Rotate { axis, sin, cos } => {
+            let (sin, cos) = (model.number(sin), model.number(cos));
+            Rotation::identity(model.graph).turned(*axis, sin, cos).apply(point)
+        }
+        Step::Move(_) => point,
+    })
+}
+
+fn exact<'a>(model: &'a Model<'_>) -> impl Iterator<Item = &'a Support> {
+    model.chain.supports.iter().filter(|s| s.kinematics == SupportKinematics::Exact)
+}
+
+fn linear<'a>(model: &'a Model<'_>) -> impl Iterator<Item = &'a Support> {
+    model.chain.supports.iter().filter(|s| s.kinematics == SupportKinematics::Linear)
+}
+
+/// `Σ Uᵀ diag(c) U` over the linear supports, c their stiffness or damping [Urbaś 2016, Eq. (18), row by row].
+fn linear_matrix<'g>(model: &Model<'g>, of: impl Fn(&Support) -> Vec3<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    for ((a, i), (b, j)) in pairs(base_coordinates(model)) {
+        matrix.add(i, j, linear_entry(model, &of, a, b));
+    }
+}
+
+/// One entry of [`linear_matrix`], for the places a and b in `x y z ψ θ φ`.
+fn linear_entry<'g>(model: &Model<'g>, of: impl Fn(&Support) -> Vec3<'g>, a: usize, b: usize) -> Expr<'g> {
+    linear(model).fold(model.zero(), |sum, support| {
+        let (r, c) = (model.vector(&support.position), of(support));
+        let (u, w) = (linear_column(model, r, a), linear_column(model, r, b));
+        sum + Vec3([0, 1, 2].map(|axis| c[axis] * u[axis])).dot(w)
+    })
+}
+
+/// All pairs of items, the first not after the second.
+fn pairs<T: Copy>(items: impl Iterator<Item = T> + Clone) -> impl Iterator<Item = (T, T)> {
+    items.clone().enumerate().flat_map(move |(k, first)| items.clone().skip(k).map(move |second| (first, second)))
+}
+
+/// `f = −Jᵀ (s e + d ė)` of all supports [Urbaś 2016, Eq. (18), row by row and without the absolute value].
+pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let mut forces = model.zeros();
+    for (a, i) in base_coordinates(model) {
+        let preload = linear_preload(model, a);
+        forces[i] = base_coordinates(model).fold(preload, |sum, (b, j)| {
+            let stiffness = linear_entry(model, |s| model.vector(&s.stiffness), a, b);
+            let damping = linear_entry(model, |s| model.vector(&s.damping), a, b);
+            sum - (stiffness * model.q[j] + damping * v[j])
+        });
+    }
+    for support in exact(model) {
+        let stretched = Stretched::new(model, kinematics, support, v);
+        let reaction = stretched.reaction();
+        for (j, column) in &stretched.jacobian {
+            forces[*j] = forces[*j] + column.dot(reaction);
+        }
+    }
+    forces
+}
+
+/// `Σ uᵀ s δ`: what free play of the linear supports pushes at q̃ = 0.
+fn linear_preload<'g>(model: &Model<'g>, place: usize) -> Expr<'g> {
+    linear(model).fold(model.zero(), |sum, support| {
+        let (s, free_play) = (model.vector(&support.stiffness), model.vector(&support.free_play));
+        let column = linear_column(model, model.vector(&support.position), place);
+        sum + Vec3([0, 1, 2].map(|axis| s[axis] * free_play[axis])).dot(column)
+    })
+}
+
+/// Force of each support on the crane, world frame, N.
+pub fn reactions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let reaction = |s| Stretched::new(model, kinematics, s, &model.v).reaction().0;
+    model.chain.supports.iter().flat_map(reaction).collect()
+}
+
+/// `E_s = ½ Σ s e²` [Urbaś 2016, Eqs. (16)–(17)].
+pub fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
+    0.5 * quadratic(model, kinematics, |s| (s.stretch, s.stiffness))
+}
+
+/// Power that the supports' dampers take out, `Σ d ė²` (2R of [Urbaś 2016, Eq. (17)]).
+pub fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
+    quadratic(model, kinematics, |s| (s.rate, s.damping))
+}
+
+/// `Σ c x²` over supports and axes.
+fn quadratic<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    of: impl Fn(&Stretched<'g>) -> (Vec3<'g>, Vec3<'g>),
+) -> Expr<'g> {
+    model.chain.supports.iter().fold(model.zero(), |sum, support| {
+        let (x, c) = of(&Stretched::new(model, kinematics, support, &model.v));
+        (0..3).fold(sum, |sum, axis| sum + c[axis] * x[axis].squared())
+    })
+}
+
+/// `∂²E_s/∂q_i∂q_j = J_iᵀ s J_j + (s e) · Ω_i Ω_j T r_E`; linear supports have no second term.
+pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    linear_matrix(model, |s| model.vector(&s.stiffness), matrix);
+    for support in exact(model) {
+        let stretched = Stretched::new(model, kinematics, support, &model.zeros());
+        let s = stretched.stiffness;
+        let pull = Vec3([0, 1, 2].map(|a| s[a] * stretched.stretch[a]));
+        for (&(i, u), &(j, w)) in pairs(stretched.jacobian.iter()) {
+            let first_order = Vec3([0, 1, 2].map(|a| s[a] * u[a])).dot(w);
+            // J_j is Ω_j T r_E, a direction that Ω_i turns.
+            matrix.add(i, j, first_order + pull.dot(kinematics.generators[i].turn(w)));
+        }
+    }
+}
+
+/// `Jᵀ d J`.
+pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    linear_matrix(model, |s| model.vector(&s.damping), matrix);
+    for support in exact(model) {
+        let stretched = Stretched::new(model, kinematics, support, &model.zeros());
+        let d = stretched.damping;
+        for (&(i, u), &(j, w)) in pairs(stretched.jacobian.iter()) {
+            matrix.add(i, j, Vec3([0, 1, 2].map(|a| d[a] * u[a])).dot(w));
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! T, ∂T/∂q and ∂²T/∂q∂q of every body, as the upper three rows of each matrix.
+
+use super::kinematics::{Kinematics, Pose};
+use super::model::Model;
+use super::vector::Vec3;
+use crate::chain::BodyId;
+use crate::symbolic::Expr;
+
+/// The columns of a 4×4 matrix without its last row, row by row.
+fn rows<'g>(columns: [Vec3<'g>; 4]) -> impl Iterator<Item = Expr<'g>> {
+    (0..3).flat_map(move |row| columns.map(|column| column[row]))
+}
+
+/// T(p) [Urbaś 2016, Eq. (3)].
+pub fn transforms<'g>(kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    kinematics.poses.iter().flat_map(|pose| rows(columns(pose))).collect()
+}
+
+fn columns<'g>(pose: &Pose<'g>) -> [Vec3<'g>; 4] {
+    let [x, y, z] = pose.rotation.0;
+    [x, y, z, pose.origin]
+}
+
+/// `∂T/∂q_j = Ω_j T`.
+fn derivative<'g>(kinematics: &Kinematics<'g>, body: usize, j: usize) -> [Vec3<'g>; 4] {
+    let generator = &kinematics.generators[j];
+    let [x, y, z, origin] = columns(&kinematics.poses[body]);
+    [generator.turn(x), generator.turn(y), generator.turn(z), generator.velocity(origin)]
+}
+
+/// `∂T(p)/∂q_j` for every body and every coordinate before it.
+pub fn derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let mut outputs = Vec::new();
+    for (body, count) in degrees_of_freedom(model) {
+        for j in 0..count {
+            outputs.extend(rows(derivative(kinematics, body, j)));
+        }
+    }
+    outputs
+}
+
+/// `∂²T(p)/∂q_m∂q_n = Ω_m Ω_n T(p)`, m ≤ n, for every body and every pair of coordinates before it.
+pub fn second_derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let mut outputs = Vec::new();
+    for (body, count) in degrees_of_freedom(model) {
+        let first: Vec<_> = (0..count).map(|j| derivative(kinematics, body, j)).collect();
+        for m in 0..count {
+            for n in m..count {
+                // The columns of Ω_n T are directions, so Ω_m only turns them.
+                outputs.extend(rows(first[n].map(|column| kinematics.generators[m].turn(column))));
+            }
+        }
+    }
+    outputs
+}
+
+/// Every body with the number of coordinates that move it.
+fn degrees_of_freedom<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, usize)> + 'a {
+    (0..model.chain.bodies.len()).map(|body| (body, model.chain.degrees_of_freedom(BodyId(body))))
+}

@@ -1,0 +1,80 @@
+//! Operation counts: what a function costs, exactly.
+
+use std::fmt;
+use std::ops::AddAssign;
+
+use super::op::{ExprId, Op};
+use super::program::Program;
+
+/// Floating-point operations by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OperationCount {
+    /// Additions, subtractions and negations.
+    pub additions: usize,
+    /// Multiplications.
+    pub multiplications: usize,
+    /// Divisions.
+    pub divisions: usize,
+    /// Angles whose sine, cosine or both are taken.
+    pub angles: usize,
+    /// Minima and maxima.
+    pub comparisons: usize,
+}
+
+impl OperationCount {
+    /// All operations; an angle counts as one.
+    #[must_use]
+    pub fn total(&self) -> usize {
+        self.additions + self.multiplications + self.divisions + self.angles + self.comparisons
+    }
+}
+
+impl AddAssign for OperationCount {
+    fn add_assign(&mut self, other: Self) {
+        self.additions += other.additions;
+        self.multiplications += other.multiplications;
+        self.divisions += other.divisions;
+        self.angles += other.angles;
+        self.comparisons += other.comparisons;
+    }
+}
+
+impl fmt::Display for OperationCount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} add, {} mul, {} div, {} sin_cos", self.additions, self.multiplications, self.divisions, self.angles)?;
+        if self.comparisons > 0 {
+            write!(f, ", {} min/max", self.comparisons)?;
+        }
+        Ok(())
+    }
+}
+
+impl Program {
+    /// Operations that `roots` need, each distinct one once, without what `free` says is there already.
+    pub fn count(&self, roots: &[ExprId], free: impl Fn(ExprId) -> bool) -> OperationCount {
+        let mut seen = vec![false; self.operations.len()];
+        let mut angles = vec![false; self.operations.len()];
+        let mut stack: Vec<ExprId> = roots.to_vec();
+        let mut count = OperationCount::default();
+        while let Some(id) = stack.pop() {
+            if std::mem::replace(&mut seen[id.index()], true) || free(id) {
+                continue;
+            }
+            let op = self.op(id);
+            match op {
+                Op::Constant(_) | Op::Symbol(_) => {}
+                Op::Neg(_) | Op::Add(..) | Op::Sub(..) => count.additions += 1,
+                Op::Mul(..) => count.multiplications += 1,
+                Op::Div(..) => count.divisions += 1,
+                Op::Sin(a) | Op::Cos(a) => {
+                    if !std::mem::replace(&mut angles[a.index()], true) {
+                        count.angles += 1;
+                    }
+                }
+                Op::Min(..) | Op::Max(..) => count.comparisons += 1,
+            }
+            stack.extend(op.operands());
+        }
+        count
+    }
+}

@@ -1,0 +1,115 @@
+//! Expressions as values, so that equations read as they are printed.
+
+use std::fmt;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::op::{Constant, ExprId, Op};
+use super::Graph;
+
+/// An expression of a [`Graph`].
+#[derive(Clone, Copy)]
+pub struct Expr<'g> {
+    graph: &'g Graph,
+    id: ExprId,
+}
+
+impl<'g> Expr<'g> {
+    pub(super) fn new(graph: &'g Graph, id: ExprId) -> Self {
+        Expr { graph, id }
+    }
+
+    /// Its node.
+    #[must_use]
+    pub fn id(self) -> ExprId {
+        self.id
+    }
+
+    /// The graph it belongs to.
+    #[must_use]
+    pub fn graph(self) -> &'g Graph {
+        self.graph
+    }
+
+    /// The number, if it is one.
+    #[must_use]
+    pub fn as_constant(self) -> Option<f64> {
+        match self.graph.op(self.id) {
+            Op::Constant(c) => Some(c.value()),
+            _ => None,
+        }
+    }
+
+    /// Whether it is the number zero.
+    #[must_use]
+    pub fn is_zero(self) -> bool {
+        self.graph.op(self.id) == Op::Constant(Constant::new(0.0))
+    }
+
+    /// sin x
+    #[must_use]
+    pub fn sin(self) -> Self {
+        self.graph.build(Op::Sin(self.id))
+    }
+
+    /// cos x
+    #[must_use]
+    pub fn cos(self) -> Self {
+        self.graph.build(Op::Cos(self.id))
+    }
+
+    /// The nearest number to x in [low, high].
+    #[must_use]
+    pub fn clamp(self, low: Self, high: Self) -> Self {
+        let at_least = self.graph.build(Op::Max(self.id, low.id));
+        self.graph.build(Op::Min(at_least.id, high.id))
+    }
+
+    /// x²
+    #[must_use]
+    pub fn squared(self) -> Self {
+        self * self
+    }
+}
+
+impl fmt::Debug for Expr<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.graph.op(self.id))
+    }
+}
+
+macro_rules! binary {
+    ($trait:ident, $method:ident) => {
+        impl<'g> $trait for Expr<'g> {
+            type Output = Expr<'g>;
+            fn $method(self, other: Expr<'g>) -> Expr<'g> {
+                self.graph.build(Op::$trait(self.id, other.id))
+            }
+        }
+
+        impl<'g> $trait<f64> for Expr<'g> {
+            type Output = Expr<'g>;
+            fn $method(self, other: f64) -> Expr<'g> {
+                self.$method(self.graph.constant(other))
+            }
+        }
+
+        impl<'g> $trait<Expr<'g>> for f64 {
+            type Output = Expr<'g>;
+            fn $method(self, other: Expr<'g>) -> Expr<'g> {
+                other.graph.constant(self).$method(other)
+            }
+        }
+    };
+}
+
+binary!(Add, add);
+binary!(Sub, sub);
+binary!(Mul, mul);
+binary!(Div, div);
+
+impl<'g> Neg for Expr<'g> {
+    type Output = Expr<'g>;
+    fn neg(self) -> Expr<'g> {
+        self.graph.build(Op::Neg(self.id))
+    }
+}

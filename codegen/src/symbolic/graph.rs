@@ -1,0 +1,95 @@
+//! Hash-consed expression graph: every distinct expression exists once.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use super::op::{Constant, ExprId, Op, SymbolId};
+use super::program::{Function, Program, Symbol};
+use super::{Expr, rules};
+
+/// A growing graph of expressions. Equal expressions are the same node.
+///
+/// The map is looked up, never iterated: the order of nodes is the order of their first construction, so the same
+/// input gives the same graph on any machine.
+#[derive(Debug)]
+pub struct Graph {
+    nodes: RefCell<Nodes>,
+    simplify: bool,
+}
+
+#[derive(Debug, Default)]
+struct Nodes {
+    operations: Vec<Op>,
+    index: HashMap<Op, ExprId>,
+    names: HashMap<ExprId, String>,
+}
+
+impl Graph {
+    /// A graph that simplifies by local rules: 0, 1, constants, signs, order of commutative operands, `x + x`.
+    #[must_use]
+    pub fn simplifying() -> Self {
+        Graph { nodes: RefCell::default(), simplify: true }
+    }
+
+    /// A graph that keeps every operation as written; it tells what simplification is worth.
+    #[must_use]
+    pub fn verbatim() -> Self {
+        Graph { nodes: RefCell::default(), simplify: false }
+    }
+
+    /// The number `value`.
+    pub fn constant(&self, value: f64) -> Expr<'_> {
+        self.wrap(self.intern(Op::Constant(Constant::new(value))))
+    }
+
+    /// An input.
+    pub fn symbol(&self, symbol: SymbolId) -> Expr<'_> {
+        self.wrap(self.intern(Op::Symbol(symbol)))
+    }
+
+    /// The expression of an operation, simplified if the graph simplifies.
+    pub(super) fn build(&self, op: Op) -> Expr<'_> {
+        let id = if self.simplify { rules::simplify(self, op) } else { self.intern(op) };
+        self.wrap(id)
+    }
+
+    /// The node of exactly this operation, new or known.
+    pub(super) fn intern(&self, op: Op) -> ExprId {
+        let mut nodes = self.nodes.borrow_mut();
+        if let Some(&known) = nodes.index.get(&op) {
+            return known;
+        }
+        let id = ExprId(u32::try_from(nodes.operations.len()).expect("fewer than 2^32 expressions"));
+        nodes.operations.push(op);
+        nodes.index.insert(op, id);
+        id
+    }
+
+    /// The node of exactly this operation, if it exists.
+    pub(super) fn known(&self, op: Op) -> Option<ExprId> {
+        self.nodes.borrow().index.get(&op).copied()
+    }
+
+    /// The operation of a node.
+    pub(super) fn op(&self, id: ExprId) -> Op {
+        self.nodes.borrow().operations[id.index()]
+    }
+
+    /// Gives a node the name that the model has for it; the first name stays. Leaves keep their own.
+    pub fn name(&self, expr: Expr<'_>, name: impl Into<String>) {
+        if !self.op(expr.id()).is_leaf() {
+            self.nodes.borrow_mut().names.entry(expr.id()).or_insert_with(|| name.into());
+        }
+    }
+
+    /// The program of `functions` over this graph, once it has all its expressions.
+    #[must_use]
+    pub fn into_program(self, symbols: Vec<Symbol>, functions: Vec<Function>) -> Program {
+        let Nodes { operations, index, names } = self.nodes.into_inner();
+        Program { operations, index, names, symbols, functions }
+    }
+
+    fn wrap(&self, id: ExprId) -> Expr<'_> {
+        Expr::new(self, id)
+    }
+}

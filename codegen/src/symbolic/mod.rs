@@ -1,0 +1,18 @@
+//! Expressions, programs and their meaning. Knows no crane and no Rust.
+
+mod count;
+mod expr;
+mod graph;
+mod interpret;
+mod op;
+mod program;
+mod rules;
+#[cfg(test)]
+mod tests;
+
+pub use count::OperationCount;
+pub use expr::Expr;
+pub use graph::Graph;
+pub use interpret::{Inputs, Scalar};
+pub use op::{Constant, ExprId, Op, SymbolId};
+pub use program::{Argument, Function, Program, Shape, Symbol};

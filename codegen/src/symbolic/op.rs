@@ -1,0 +1,85 @@
+//! Operations of the expression graph.
+
+/// Index of an expression in its [`Graph`](super::Graph). Operands always have smaller indices than their users.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ExprId(pub(super) u32);
+
+impl ExprId {
+    /// Position in [`Graph::operations`](super::Graph::operations).
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Index of an input of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct SymbolId(pub u32);
+
+/// A constant, compared by its bits so that it can be hashed. −0 is stored as 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Constant(u64);
+
+impl Constant {
+    /// The constant for a number.
+    #[must_use]
+    pub fn new(number: f64) -> Self {
+        Constant((number + 0.0).to_bits())
+    }
+
+    /// The number.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        f64::from_bits(self.0)
+    }
+}
+
+/// One bounded operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Op {
+    /// A number.
+    Constant(Constant),
+    /// An input.
+    Symbol(SymbolId),
+    /// −a
+    Neg(ExprId),
+    /// a + b
+    Add(ExprId, ExprId),
+    /// a − b
+    Sub(ExprId, ExprId),
+    /// a · b
+    Mul(ExprId, ExprId),
+    /// a / b
+    Div(ExprId, ExprId),
+    /// sin a
+    Sin(ExprId),
+    /// cos a
+    Cos(ExprId),
+    /// Smaller of a and b
+    Min(ExprId, ExprId),
+    /// Larger of a and b
+    Max(ExprId, ExprId),
+}
+
+impl Op {
+    /// The number zero.
+    pub const ZERO: Op = Op::Constant(Constant(0));
+
+    /// Operands, in order.
+    pub fn operands(self) -> impl DoubleEndedIterator<Item = ExprId> {
+        let [first, second] = match self {
+            Op::Constant(_) | Op::Symbol(_) => [None, None],
+            Op::Neg(a) | Op::Sin(a) | Op::Cos(a) => [Some(a), None],
+            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Min(a, b) | Op::Max(a, b) => {
+                [Some(a), Some(b)]
+            }
+        };
+        [first, second].into_iter().flatten()
+    }
+
+    /// Whether it is an input or a number, at no cost.
+    #[must_use]
+    pub fn is_leaf(self) -> bool {
+        matches!(self, Op::Constant(_) | Op::Symbol(_))
+    }
+}

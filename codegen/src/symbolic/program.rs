@@ -1,0 +1,157 @@
+//! Named functions over one graph.
+
+use std::collections::HashMap;
+
+use super::op::{ExprId, Op, SymbolId};
+
+/// Functions that share one graph of expressions.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// All operations, operands before their users.
+    pub operations: Vec<Op>,
+    /// Where each operation stands.
+    pub index: HashMap<Op, ExprId>,
+    /// What the model calls some of them.
+    pub names: HashMap<ExprId, String>,
+    /// Inputs; [`SymbolId`] is the place in this list.
+    pub symbols: Vec<Symbol>,
+    /// The functions, in the order in which they are printed.
+    pub functions: Vec<Function>,
+}
+
+/// An input of the program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Symbol {
+    /// Name of the quantity, an identifier.
+    pub name: String,
+    /// The argument that carries it.
+    pub argument: Argument,
+    /// Its place in that argument.
+    pub index: usize,
+}
+
+/// An argument of a function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Argument {
+    /// One number, `t`.
+    Time,
+    /// A vector, `q`.
+    Position,
+    /// A vector, `v`.
+    Velocity,
+    /// Live parameters.
+    Parameters,
+}
+
+/// A function: what it is, what it takes, what it returns.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Name, an identifier.
+    pub name: &'static str,
+    /// First line of its documentation: what it returns, with units.
+    pub doc: &'static str,
+    /// Equations it implements, and where they are from.
+    pub equation: &'static str,
+    /// Arguments besides the live parameters, in order.
+    pub arguments: &'static [Argument],
+    /// Shape of the result.
+    pub shape: Shape,
+    /// Expressions of the result's slots, as many as [`Shape::len`], in its order.
+    pub outputs: Vec<ExprId>,
+}
+
+/// Shape of a result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// One number.
+    Scalar,
+    /// A column of numbers.
+    Vector(usize),
+    /// Symmetric matrix; slots are the upper triangle, row by row.
+    Symmetric(usize),
+    /// Several 3-vectors.
+    Vectors(usize),
+    /// Several pairs.
+    Pairs(usize),
+    /// Homogeneous transformations or their derivatives, grouped by body; slots are the upper three rows of each, row
+    /// by row. `last_row` is the corner of the constant fourth row: 1 for a transformation, 0 for a derivative.
+    Transforms {
+        /// How many matrices each body has.
+        counts: Vec<usize>,
+        /// Lower right corner.
+        corner: u8,
+    },
+    /// Named results.
+    Record(&'static str, Vec<(&'static str, Shape)>),
+}
+
+impl Shape {
+    /// Number of slots.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Shape::Scalar => 1,
+            Shape::Vector(n) => *n,
+            Shape::Symmetric(n) => n * (n + 1) / 2,
+            Shape::Vectors(n) => 3 * n,
+            Shape::Pairs(n) => 2 * n,
+            Shape::Transforms { counts, .. } => 12 * counts.iter().sum::<usize>(),
+            Shape::Record(_, fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
+        }
+    }
+
+    /// Whether it has no slots.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+impl Program {
+    /// The function of this name.
+    #[must_use]
+    pub fn function(&self, name: &str) -> Option<&Function> {
+        self.functions.iter().find(|f| f.name == name)
+    }
+
+    /// The operation of an expression.
+    #[must_use]
+    pub fn op(&self, id: ExprId) -> Op {
+        self.operations[id.index()]
+    }
+
+    /// All expressions, operands before their users.
+    pub fn ids(&self) -> impl Iterator<Item = ExprId> + use<> {
+        (0..u32::try_from(self.operations.len()).expect("fewer than 2^32 expressions")).map(ExprId)
+    }
+
+    /// The expression of an operation, if the program has it.
+    #[must_use]
+    pub fn find(&self, op: Op) -> Option<ExprId> {
+        self.index.get(&op).copied()
+    }
+
+    /// The input behind a symbol.
+    #[must_use]
+    pub fn symbol(&self, id: SymbolId) -> &Symbol {
+        &self.symbols[id.0 as usize]
+    }
+
+    /// For every node of the graph, whether `roots` need it.
+    #[must_use]
+    pub fn needed(&self, roots: impl IntoIterator<Item = ExprId>) -> Vec<bool> {
+        let mut needed = vec![false; self.operations.len()];
+        for root in roots {
+            needed[root.index()] = true;
+        }
+        // Users come after their operands, so one sweep from the end reaches everything.
+        for index in (0..self.operations.len()).rev() {
+            if needed[index] {
+                for operand in self.operations[index].operands() {
+                    needed[operand.index()] = true;
+                }
+            }
+        }
+        needed
+    }
+}

@@ -1,0 +1,171 @@
+//! Local simplification: each rule looks at one operation and its operands.
+//!
+//! There is no distributing and no flattening of sums: on recursive dynamics it more than doubles the operations,
+//! because it breaks up the intermediate results that the recursion shares.
+
+use super::Graph;
+use super::op::{Constant, ExprId, Op};
+use Op::{Add, Cos, Div, Max, Min, Mul, Neg, Sin, Sub};
+
+/// The node that stands for `op` after all rules that apply.
+pub(super) fn simplify(graph: &Graph, op: Op) -> ExprId {
+    match op {
+        Op::Constant(_) | Op::Symbol(_) => graph.intern(op),
+        Neg(a) => negate(graph, a),
+        Add(a, b) => add(graph, a, b),
+        Sub(a, b) => subtract(graph, a, b),
+        Mul(a, b) => multiply(graph, a, b),
+        Div(a, b) => divide(graph, a, b),
+        Sin(a) => sine(graph, a),
+        Cos(a) => cosine(graph, a),
+        Min(a, b) => extremum(graph, op, a, b, f64::min),
+        Max(a, b) => extremum(graph, op, a, b, f64::max),
+    }
+}
+
+fn constant(graph: &Graph, value: f64) -> ExprId {
+    graph.intern(Op::Constant(Constant::new(value)))
+}
+
+fn number(graph: &Graph, id: ExprId) -> Option<f64> {
+    match graph.op(id) {
+        Op::Constant(c) => Some(c.value()),
+        _ => None,
+    }
+}
+
+/// `−a`, pushed to where it costs nothing.
+fn negate(graph: &Graph, a: ExprId) -> ExprId {
+    match graph.op(a) {
+        Op::Constant(c) => constant(graph, -c.value()),
+        Neg(inner) => inner,
+        Sub(x, y) => graph.intern(Sub(y, x)),
+        Mul(x, y) => match number(graph, x) {
+            Some(c) => multiply_by(graph, -c, y),
+            None => graph.intern(Neg(a)),
+        },
+        _ => graph.intern(Neg(a)),
+    }
+}
+
+fn add(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
+    match (number(graph, a), number(graph, b)) {
+        (Some(x), Some(y)) => return constant(graph, x + y),
+        (Some(0.0), None) => return b,
+        (None, Some(0.0)) => return a,
+        _ => {}
+    }
+    match (graph.op(a), graph.op(b)) {
+        (Neg(x), Neg(y)) => {
+            let sum = add(graph, x, y);
+            negate(graph, sum)
+        }
+        (_, Neg(y)) => subtract(graph, a, y),
+        (Neg(x), _) => subtract(graph, b, x),
+        _ if a == b => multiply_by(graph, 2.0, a),
+        _ => graph.intern(Add(a.min(b), a.max(b))),
+    }
+}
+
+fn subtract(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
+    match (number(graph, a), number(graph, b)) {
+        (Some(x), Some(y)) => return constant(graph, x - y),
+        (Some(0.0), None) => return negate(graph, b),
+        (None, Some(0.0)) => return a,
+        _ => {}
+    }
+    match (graph.op(a), graph.op(b)) {
+        _ if a == b => constant(graph, 0.0),
+        (Neg(x), Neg(y)) => subtract(graph, y, x),
+        (_, Neg(y)) => add(graph, a, y),
+        (Neg(x), _) => {
+            let sum = add(graph, x, b);
+            negate(graph, sum)
+        }
+        // The other order is known already: share it.
+        _ => match graph.known(Sub(b, a)) {
+            Some(flipped) => graph.intern(Neg(flipped)),
+            None => graph.intern(Sub(a, b)),
+        },
+    }
+}
+
+fn multiply(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
+    match (number(graph, a), number(graph, b)) {
+        (Some(x), Some(y)) => return constant(graph, x * y),
+        (Some(x), None) => return multiply_by(graph, x, b),
+        (None, Some(y)) => return multiply_by(graph, y, a),
+        (None, None) => {}
+    }
+    match (graph.op(a), graph.op(b)) {
+        (Neg(x), Neg(y)) => multiply(graph, x, y),
+        (Neg(x), _) => {
+            let product = multiply(graph, x, b);
+            negate(graph, product)
+        }
+        (_, Neg(y)) => {
+            let product = multiply(graph, a, y);
+            negate(graph, product)
+        }
+        _ => graph.intern(Mul(a.min(b), a.max(b))),
+    }
+}
+
+/// `factor · a`; a constant factor always stands first.
+fn multiply_by(graph: &Graph, factor: f64, a: ExprId) -> ExprId {
+    if factor == 0.0 {
+        return constant(graph, 0.0);
+    }
+    if factor == 1.0 {
+        return a;
+    }
+    match graph.op(a) {
+        Op::Constant(c) => constant(graph, factor * c.value()),
+        Neg(x) => multiply_by(graph, -factor, x),
+        Mul(x, y) if number(graph, x).is_some() => {
+            let inner = number(graph, x).unwrap_or(1.0);
+            multiply_by(graph, factor * inner, y)
+        }
+        _ if factor == -1.0 => negate(graph, a),
+        _ => {
+            let factor = constant(graph, factor);
+            graph.intern(Mul(factor, a))
+        }
+    }
+}
+
+fn divide(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
+    match (number(graph, a), number(graph, b)) {
+        (Some(x), Some(y)) => constant(graph, x / y),
+        (Some(0.0), None) => a,
+        (None, Some(y)) => multiply_by(graph, y.recip(), a),
+        _ => graph.intern(Div(a, b)),
+    }
+}
+
+fn sine(graph: &Graph, a: ExprId) -> ExprId {
+    match graph.op(a) {
+        Op::Constant(c) => constant(graph, c.value().sin()),
+        Neg(x) => {
+            let sin = graph.intern(Sin(x));
+            negate(graph, sin)
+        }
+        _ => graph.intern(Sin(a)),
+    }
+}
+
+fn cosine(graph: &Graph, a: ExprId) -> ExprId {
+    match graph.op(a) {
+        Op::Constant(c) => constant(graph, c.value().cos()),
+        Neg(x) => graph.intern(Cos(x)),
+        _ => graph.intern(Cos(a)),
+    }
+}
+
+fn extremum(graph: &Graph, op: Op, a: ExprId, b: ExprId, pick: fn(f64, f64) -> f64) -> ExprId {
+    match (number(graph, a), number(graph, b)) {
+        (Some(x), Some(y)) => constant(graph, pick(x, y)),
+        _ if a == b => a,
+        _ => graph.intern(op),
+    }
+}
