@@ -1,7 +1,38 @@
-//! Runtime of cranes compiled by `crane-codegen`.
+//! Runtime of cranes compiled by `crane-codegen`: statics, motion and small vibrations of whatever implements the traits
+//! of a generated crane.
+//!
+//! | what | where | needs |
+//! |---|---|---|
+//! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Statics`], [`Linearise`], [`TransformDerivatives`] | nothing |
+//! | one step in time | [`dynamics::rk4`] | nothing |
+//! | equilibrium | [`statics`] | `std` |
+//! | a run with recorded results | [`dynamics::simulate`] | `std` |
+//! | frequencies, damping | [`modes`] | `std` |
+//! | any crane through one pointer | [`rig::Rig`] | `std` |
+//! | the shipped cranes | [`cranes`] | `cranes` |
+//!
+//! With `default-features = false` the crate is `no_std` and needs no heap.
+
+#![cfg_attr(not(feature = "std"), no_std)]
+
+// Generated code names the runtime by its crate name, here as in a user's crate.
+extern crate self as crane_model;
 
 mod description;
 mod model;
+
+#[cfg(feature = "cranes")]
+pub mod cranes;
+pub mod dynamics;
+#[cfg(feature = "std")]
+pub mod modes;
+#[cfg(feature = "std")]
+pub mod results;
+#[cfg(feature = "std")]
+pub mod rig;
+#[cfg(feature = "std")]
+pub mod statics;
+pub mod support;
 
 pub use description::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, SupportInfo,

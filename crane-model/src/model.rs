@@ -119,17 +119,14 @@ pub trait Linearise<const N: usize>: CraneModel<N> {
     fn linearise(&self, q: &SVector<f64, N>) -> Linearisation<N>;
 }
 
-/// Derivatives of the transforms.
+/// Derivatives of the transforms. Each body has derivatives by the coordinates that move it, the first
+/// [`degrees_of_freedom`](crate::BodyInfo::degrees_of_freedom) of `q`; all others are zero and not stored.
 pub trait TransformDerivatives<const N: usize>: CraneModel<N> {
-    /// Calls `each(body, i, ∂T/∂q_i)` for every body and every coordinate `i` before it in the chain; all others are zero.
-    fn transform_derivatives(&self, q: &SVector<f64, N>, each: &mut dyn FnMut(usize, usize, &Matrix4<f64>));
+    /// `∂T/∂q_j`, body by body, j = 0 …: in all `Σ n_dof(p)` matrices.
+    fn transform_derivatives(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]);
 
-    /// Calls `each(body, m, n, ∂²T/∂q_m∂q_n)` for every body and every pair `m ≤ n` before it in the chain.
-    fn transform_second_derivatives(
-        &self,
-        q: &SVector<f64, N>,
-        each: &mut dyn FnMut(usize, usize, usize, &Matrix4<f64>),
-    );
+    /// `∂²T/∂q_m∂q_n`, body by body, m = 0 …, n = m …: in all `Σ n_dof(p) (n_dof(p) + 1)/2` matrices.
+    fn transform_second_derivatives(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]);
 }
 
 /// Coefficients of small motions about a pose at rest.

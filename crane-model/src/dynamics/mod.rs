@@ -1,0 +1,12 @@
+//! Motion by the classical Runge–Kutta method.
+
+pub mod rk4;
+#[cfg(feature = "std")]
+mod simulation;
+#[cfg(feature = "std")]
+mod stopped;
+
+#[cfg(feature = "std")]
+pub use simulation::{Run, Sample, Settings, simulate};
+#[cfg(feature = "std")]
+pub use stopped::{Cause, Stopped};

@@ -1,0 +1,64 @@
+//! Coefficients of small motions, of any number of coordinates.
+
+use nalgebra::{Complex, ComplexField, DMatrix, DVector};
+
+use super::NoModes;
+use crate::Linearisation;
+
+/// A coordinate belongs to a mode from this part of the greatest share of energy.
+const SHARE: f64 = 0.2;
+
+/// Coefficients of `A δq̈ + D δq̇ + K δq = 0`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SmallMotions {
+    /// Mass matrix A.
+    pub mass: DMatrix<f64>,
+    /// Tangent stiffness K.
+    pub stiffness: DMatrix<f64>,
+    /// Damping matrix D.
+    pub damping: DMatrix<f64>,
+}
+
+impl<const N: usize> From<&Linearisation<N>> for SmallMotions {
+    fn from(linearisation: &Linearisation<N>) -> Self {
+        let Linearisation { mass, stiffness, damping } = linearisation;
+        let dynamic = |matrix: &nalgebra::SMatrix<f64, N, N>| DMatrix::from_column_slice(N, N, matrix.as_slice());
+        Self { mass: dynamic(mass), stiffness: dynamic(stiffness), damping: dynamic(damping) }
+    }
+}
+
+impl SmallMotions {
+    /// State matrix `[[0, I], [−A⁻¹K, −A⁻¹D]]` of `d/dt [δq; δq̇]`, 2N × 2N.
+    ///
+    /// # Errors
+    /// The mass matrix is not positive definite.
+    pub fn state_matrix(&self) -> Result<DMatrix<f64>, NoModes> {
+        let n = self.mass.nrows();
+        let mass = self.mass.clone().cholesky().ok_or(NoModes::MassMatrix)?;
+        let mut state = DMatrix::zeros(2 * n, 2 * n);
+        state.view_mut((0, n), (n, n)).fill_with_identity();
+        state.view_mut((n, 0), (n, n)).copy_from(&-mass.solve(&self.stiffness));
+        state.view_mut((n, n), (n, n)).copy_from(&-mass.solve(&self.damping));
+        Ok(state)
+    }
+
+    /// Shares of the coordinates in the energy of a mode, `|x̄ᵢ (A x)ᵢ|`, and the names of those that dominate it.
+    ///
+    /// In an undamped mode `K x = ω² A x`: the same shares for kinetic and strain energy, whatever the units.
+    pub(super) fn dominating<T: ComplexField<RealField = f64>>(&self, shape: &DVector<T>) -> Vec<usize> {
+        let momentum = self.mass.map(T::from_real) * shape;
+        let share: Vec<f64> =
+            shape.iter().zip(&momentum).map(|(x, p)| (x.clone().conjugate() * p.clone()).modulus()).collect();
+        let least = SHARE * share.iter().copied().fold(0.0, f64::max);
+        let mut dominating: Vec<usize> = (0..share.len()).filter(|&i| share[i] >= least).collect();
+        dominating.sort_by(|&i, &j| share[j].total_cmp(&share[i]));
+        dominating
+    }
+
+    /// `λ²A + λD + K`, singular where λ is an eigenvalue.
+    pub(super) fn dynamic_stiffness(&self, lambda: Complex<f64>) -> DMatrix<Complex<f64>> {
+        DMatrix::from_fn(self.mass.nrows(), self.mass.ncols(), |i, j| {
+            lambda * (lambda * self.mass[(i, j)] + self.damping[(i, j)]) + self.stiffness[(i, j)]
+        })
+    }
+}

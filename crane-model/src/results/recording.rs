@@ -1,0 +1,101 @@
+//! Everything of a run that is worth a column.
+
+use crate::{CoordinateKind, Description, dynamics::Sample, results::Table, rig::Rig};
+
+/// Records the samples of a run of a crane.
+///
+/// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; of a drive `<coordinate>_prescribed` and
+/// `<coordinate>_drive_torque` or `_drive_force`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
+/// `<support>_reaction_x`, `_y`, `_z`; energies. `energy_balance` is `E(t) − E(0) − drive_work + dissipated_energy`, the
+/// error of the run if it is audited.
+pub struct Recording<'a> {
+    rig: &'a dyn Rig,
+    table: Table,
+    energy_at_start: f64,
+}
+
+impl<'a> Recording<'a> {
+    /// No samples yet.
+    pub fn new(rig: &'a dyn Rig) -> Self {
+        Self {
+            rig,
+            table: Table { columns: columns(rig.description()).columns, rows: Vec::new() },
+            energy_at_start: 0.0,
+        }
+    }
+
+    /// Adds a sample.
+    pub fn push(&mut self, sample: &Sample<'_>) {
+        let &Sample { t, q, v, work, dissipated } = sample;
+        let rig = self.rig;
+        let energies = rig.energies(t, q, v);
+        if self.table.rows.is_empty() {
+            self.energy_at_start = energies.total();
+        }
+        let mut row = Vec::with_capacity(self.table.columns.len());
+        row.push(t);
+        row.extend_from_slice(q);
+        row.extend_from_slice(v);
+        for ([position, _], effort) in rig.drive_motions(t).into_iter().zip(rig.drive_efforts(t, q, v)) {
+            row.extend([position, effort]);
+        }
+        for (position, velocity) in rig.points(q).iter().zip(rig.point_velocities(q, v)) {
+            row.extend(position.iter().chain(&velocity));
+        }
+        for reaction in rig.support_reactions(q, v) {
+            row.extend(&reaction);
+        }
+        row.extend([energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives]);
+        row.extend([work, dissipated, energies.total() - self.energy_at_start - work + dissipated]);
+        self.table.rows.push(row);
+    }
+
+    /// The samples so far.
+    pub fn into_table(self) -> Table {
+        self.table
+    }
+}
+
+fn columns(description: &Description) -> Table {
+    let mut table = Table::default();
+    table.add("t", "s");
+    for coordinate in description.coordinates {
+        table.add(coordinate.name, coordinate.kind.unit());
+    }
+    for coordinate in description.coordinates {
+        table.add(format!("{}_rate", coordinate.name), format!("{}/s", coordinate.kind.unit()));
+    }
+    for drive in description.drives {
+        let coordinate = &description.coordinates[drive.coordinate];
+        table.add(format!("{}_prescribed", coordinate.name), coordinate.kind.unit());
+        table.add(drive_effort(coordinate.name, coordinate.kind), coordinate.kind.force_unit());
+    }
+    for point in description.points {
+        for axis in ["x", "y", "z"] {
+            table.add(format!("{point}_{axis}"), "m");
+        }
+        for axis in ["x", "y", "z"] {
+            table.add(format!("{point}_v{axis}"), "m/s");
+        }
+    }
+    for support in description.supports {
+        for axis in ["x", "y", "z"] {
+            table.add(format!("{}_reaction_{axis}", support.name), "N");
+        }
+    }
+    for energy in ["kinetic", "gravity", "support", "element", "drive"] {
+        table.add(format!("{energy}_energy"), "J");
+    }
+    for energy in ["drive_work", "dissipated_energy", "energy_balance"] {
+        table.add(energy, "J");
+    }
+    table
+}
+
+/// Name of the column with the torque or force of a drive.
+pub fn drive_effort(coordinate: &str, kind: CoordinateKind) -> String {
+    match kind {
+        CoordinateKind::Translation => format!("{coordinate}_drive_force"),
+        CoordinateKind::Rotation => format!("{coordinate}_drive_torque"),
+    }
+}

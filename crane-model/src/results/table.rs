@@ -1,0 +1,41 @@
+//! Columns with names and units.
+
+use std::fmt;
+
+/// Name and unit of a column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+}
+
+impl fmt::Display for Column {
+    /// `name [unit]`, as in the header of a CSV file.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} [{}]", self.name, self.unit)
+    }
+}
+
+/// Numbers in rows, one column a quantity.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Names and units.
+    pub columns: Vec<Column>,
+    /// Rows as long as `columns`.
+    pub rows: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// Adds a column; for a table without rows.
+    pub fn add(&mut self, name: impl Into<String>, unit: impl Into<String>) {
+        self.columns.push(Column { name: name.into(), unit: unit.into() });
+    }
+
+    /// The values of a column by its name.
+    pub fn values(&self, name: &str) -> Option<impl Iterator<Item = f64>> {
+        let column = self.columns.iter().position(|column| column.name == name)?;
+        Some(self.rows.iter().map(move |row| row[column]))
+    }
+}

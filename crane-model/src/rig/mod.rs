@@ -1,0 +1,107 @@
+//! Any generated crane through one pointer, on slices.
+//!
+//! The command, and whoever picks a crane at run time, handles all cranes with one code path; only what is behind
+//! [`Rig`] is compiled for each.
+
+mod instance;
+
+use std::ops::ControlFlow;
+
+use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
+
+pub use instance::{Crane, Instance, boxed};
+
+use crate::{
+    Description, dynamics,
+    dynamics::{Run, Sample, Stopped},
+    modes::SmallMotions,
+    statics,
+    statics::Equilibrium,
+};
+
+/// Energies of a crane, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// Kinetic energy, Eq. (4).
+    pub kinetic: f64,
+    /// Potential energy of gravity, Eq. (6).
+    pub gravity: f64,
+    /// Springs of the supports, Eq. (17).
+    pub supports: f64,
+    /// Springs between rigid elements, Eq. (14).
+    pub elements: f64,
+    /// Springs of the drives, Eq. (19).
+    pub drives: f64,
+}
+
+impl Energies {
+    /// Kinetic and potential energy together.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.gravity + self.supports + self.elements + self.drives
+    }
+}
+
+/// A crane of any number of coordinates: the traits of a generated crane, on slices.
+///
+/// # Panics
+/// Every method that takes `q` or `v` panics where its length is not the number of coordinates.
+pub trait Rig: Send + Sync {
+    /// Names, units and settings.
+    fn description(&self) -> &'static Description;
+
+    /// Value of a live parameter, by its place in the description.
+    fn parameter(&self, index: usize) -> f64;
+
+    /// Sets a live parameter.
+    fn set_parameter(&mut self, index: usize, value: f64);
+
+    /// Transforms of all bodies into the world frame.
+    fn transforms(&self, q: &[f64]) -> Vec<Matrix4<f64>>;
+
+    /// `∂T/∂q_j`, body by body, for the coordinates j that move it.
+    fn transform_derivatives(&self, q: &[f64]) -> Vec<Matrix4<f64>>;
+
+    /// `∂²T/∂q_m∂q_n`, body by body, for the pairs m ≤ n of the coordinates that move it.
+    fn transform_second_derivatives(&self, q: &[f64]) -> Vec<Matrix4<f64>>;
+
+    /// Positions of the points of interest, m.
+    fn points(&self, q: &[f64]) -> Vec<Vector3<f64>>;
+
+    /// Velocities of the points of interest, m/s.
+    fn point_velocities(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>>;
+
+    /// Mass matrix A.
+    fn mass_matrix(&self, q: &[f64]) -> DMatrix<f64>;
+
+    /// Velocity and gravity forces e.
+    fn bias(&self, q: &[f64], v: &[f64]) -> DVector<f64>;
+
+    /// Torques and forces of the drives, in their order: N m and N.
+    fn drive_efforts(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64>;
+
+    /// Prescribed positions and rates of the drives.
+    fn drive_motions(&self, t: f64) -> Vec<[f64; 2]>;
+
+    /// Forces of the supports on the crane, N.
+    fn support_reactions(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>>;
+
+    /// Energies by part.
+    fn energies(&self, t: f64, q: &[f64], v: &[f64]) -> Energies;
+
+    /// Static equilibrium from the guess: [`statics::solve`].
+    fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium;
+
+    /// Coefficients of small motions about a pose at rest.
+    fn small_motions(&self, q: &[f64]) -> SmallMotions;
+
+    /// A run from pose `q` at rest: [`dynamics::simulate`].
+    ///
+    /// # Errors
+    /// The run grew without bound.
+    fn simulate(
+        &self,
+        q: &[f64],
+        settings: &dynamics::Settings,
+        observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
+    ) -> Result<Run, Stopped>;
+}

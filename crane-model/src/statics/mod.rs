@@ -1,0 +1,9 @@
+//! Static equilibrium by damped Newton–Raphson with the analytic tangent stiffness.
+
+mod balance;
+mod newton;
+mod status;
+mod tangent;
+
+pub use newton::{Equilibrium, Iteration, Settings, solve};
+pub use status::Status;

@@ -1,0 +1,37 @@
+//! How a static solution ended.
+
+use std::fmt;
+
+/// How a static solution ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// A stable equilibrium: residual below the tolerance, tangent stiffness positive definite.
+    Converged,
+    /// An equilibrium that the crane leaves at the slightest touch: the tangent stiffness has a negative direction.
+    Unstable {
+        /// Coordinates that lead the motion away from it.
+        coordinates: Vec<&'static str>,
+    },
+    /// Nothing holds the crane in one direction: the tangent stiffness is singular.
+    Singular {
+        /// Coordinates that move in that direction.
+        coordinates: Vec<&'static str>,
+    },
+    /// No equilibrium found within the allowed iterations, or no step made the residual smaller.
+    NotConverged,
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Status::Converged => f.write_str("converged to a stable equilibrium"),
+            Status::Unstable { coordinates } => {
+                write!(f, "unstable equilibrium: it falls away in {}", coordinates.join(", "))
+            }
+            Status::Singular { coordinates } => {
+                write!(f, "singular: nothing holds {}", coordinates.join(", "))
+            }
+            Status::NotConverged => f.write_str("not converged: no equilibrium found from this guess"),
+        }
+    }
+}

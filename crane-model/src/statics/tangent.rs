@@ -1,0 +1,91 @@
+//! Tangent stiffness in its principal directions.
+
+use nalgebra::{DMatrix, DVector, SMatrix, SVector, SymmetricEigen};
+
+use crate::{CoordinateKind, Description};
+
+/// A diagonal entry below this part of the greatest of its kind (N/m or N m/rad) counts as no stiffness of its own. Real
+/// cranes span about 1e9 (a chassis against a hinge), rounding leaves about 1e-16.
+const LEAST_STIFFNESS: f64 = 1e-9;
+/// A direction is free below this part of the greatest scaled stiffness. Scaling brings joints and springs to about 1.
+const FREE: f64 = 1e-7;
+/// A coordinate belongs to a direction from this part of its greatest component.
+const SHARE: f64 = 0.3;
+
+/// `K = S⁻¹ U Λ Uᵀ S⁻¹`, with `S = diag(1/√|K_ii|)`: m and rad become comparable, and relative coordinates nearly decouple.
+///
+/// One factorisation says all: the Newton step, whether the equilibrium is stable, and which coordinates are to blame.
+pub(super) struct Tangent<const N: usize> {
+    scale: SVector<f64, N>,
+    values: DVector<f64>,
+    vectors: DMatrix<f64>,
+    free: f64,
+}
+
+impl<const N: usize> Tangent<N> {
+    /// Factorises `K`; `None` unless all its elements are finite.
+    pub(super) fn new(stiffness: &SMatrix<f64, N, N>, description: &Description) -> Option<Self> {
+        if !stiffness.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let kind = |i: usize| description.coordinates[i].kind;
+        let greatest = |of: CoordinateKind| {
+            (0..N).filter(|&i| kind(i) == of).map(|i| stiffness[(i, i)].abs()).fold(f64::MIN_POSITIVE, f64::max)
+        };
+        let (translation, rotation) = (greatest(CoordinateKind::Translation), greatest(CoordinateKind::Rotation));
+        let scale = SVector::from_fn(|i, _| {
+            let least = LEAST_STIFFNESS
+                * match kind(i) {
+                    CoordinateKind::Translation => translation,
+                    CoordinateKind::Rotation => rotation,
+                };
+            stiffness[(i, i)].abs().max(least).sqrt().recip()
+        });
+        let scaled = DMatrix::from_fn(N, N, |i, j| stiffness[(i, j)] * scale[i] * scale[j]);
+        let SymmetricEigen { eigenvalues: values, eigenvectors: vectors } = scaled.symmetric_eigen();
+        let free = FREE * values.amax().max(f64::MIN_POSITIVE);
+        Some(Self { scale, values, vectors, free })
+    }
+
+    /// Newton step `−K⁻¹ r`; nearly free directions are given the least stiffness that is not free.
+    pub(super) fn step(&self, residual: &SVector<f64, N>) -> SVector<f64, N> {
+        let scaled = DVector::from_fn(N, |i, _| residual[i] * self.scale[i]);
+        let mut along = self.vectors.tr_mul(&scaled);
+        for (component, &value) in along.iter_mut().zip(&self.values) {
+            *component /= if value.abs() < self.free { self.free.copysign(value) } else { value };
+        }
+        let step = &self.vectors * along;
+        SVector::from_fn(|i, _| -step[i] * self.scale[i])
+    }
+
+    /// Coordinates of the directions that nothing holds, if there are such: those of them that are not `pushed`.
+    pub(super) fn free_directions(
+        &self,
+        names: &Description,
+        pushed: impl Fn(&SVector<f64, N>) -> bool,
+    ) -> Option<Vec<&'static str>> {
+        let mut free = Vec::new();
+        for k in (0..N).filter(|&k| self.values[k].abs() < self.free) {
+            if !pushed(&SVector::from_fn(|i, _| self.vectors[(i, k)] * self.scale[i])) {
+                free.extend(self.names_of(k, names));
+            }
+        }
+        free.sort_unstable();
+        free.dedup();
+        (!free.is_empty()).then_some(free)
+    }
+
+    /// Coordinates of the direction of the most negative stiffness, if there is one.
+    pub(super) fn negative_direction(&self, names: &Description) -> Option<Vec<&'static str>> {
+        let k = self.values.imin();
+        (self.values[k] < -self.free).then(|| self.names_of(k, names))
+    }
+
+    fn names_of(&self, k: usize, names: &Description) -> Vec<&'static str> {
+        let direction = self.vectors.column(k);
+        let least = SHARE * direction.amax();
+        let mut share: Vec<usize> = (0..N).filter(|&i| direction[i].abs() >= least).collect();
+        share.sort_by(|&i, &j| direction[j].abs().total_cmp(&direction[i].abs()));
+        share.into_iter().map(|i| names.coordinates[i].name).collect()
+    }
+}

@@ -1,0 +1,133 @@
+//! A mass on a driven spring and damper: `m z̈ = s (z_dr − z) + d (ż_dr − ż) − m g`, `z_dr = a sin Ωt`. Linear, so that its
+//! motion is known in closed form.
+
+use crane_model::{
+    CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Driven, CraneModel, Description, DriveInfo, Dynamics,
+    Linearisation, Linearise, Statics,
+};
+use nalgebra::{Complex, Matrix1, Matrix4, Vector1};
+
+use super::{GRAVITY, coordinate, description};
+
+const COORDINATES: &[CoordinateInfo] = &[coordinate("lift_z", Translation, Driven)];
+static DESCRIPTION: Description =
+    Description { drives: &[DriveInfo { coordinate: 0 }], ..description("lift", COORDINATES, &[0.0]) };
+
+/// Mass, spring, damper, moved support.
+#[derive(Clone, Copy)]
+pub struct Lift {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Spring, N/m.
+    pub stiffness: f64,
+    /// Damper, N s/m.
+    pub damping: f64,
+    /// Amplitude of the support, m.
+    pub amplitude: f64,
+    /// Circular frequency of the support, rad/s.
+    pub frequency: f64,
+}
+
+impl Default for Lift {
+    fn default() -> Self {
+        Self { mass: 10.0, stiffness: 4000.0, damping: 40.0, amplitude: 0.1, frequency: 7.0 }
+    }
+}
+
+impl Lift {
+    /// Position at rest, m.
+    pub fn sag(&self) -> f64 {
+        -self.mass * GRAVITY / self.stiffness
+    }
+
+    /// Position at `t` after a start at rest from the equilibrium: forced plus free vibration.
+    pub fn exact(&self, t: f64) -> f64 {
+        let i = Complex::i();
+        let Self { mass: m, stiffness: s, damping: d, amplitude, frequency } = *self;
+        let forced = amplitude * (s + i * d * frequency) / (s - m * frequency.powi(2) + i * d * frequency);
+        let lambda = Complex::new(-d / (2.0 * m), (s / m - (d / (2.0 * m)).powi(2)).sqrt());
+        // Im(forced) + Re(c) = 0 and Re(forced) Ω + Re(λ c) = 0.
+        let re = -forced.im;
+        let im = (forced.re * frequency + lambda.re * re) / lambda.im;
+        self.sag() + (forced * (i * frequency * t).exp()).im + (Complex::new(re, im) * (lambda * t).exp()).re
+    }
+
+    fn support(&self, t: f64) -> [f64; 2] {
+        let (sin, cos) = (self.frequency * t).sin_cos();
+        [self.amplitude * sin, self.amplitude * self.frequency * cos]
+    }
+}
+
+impl CraneModel<1> for Lift {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn parameter(&self, _: usize) -> f64 {
+        f64::NAN
+    }
+
+    fn set_parameter(&mut self, _: usize, _: f64) {}
+
+    fn transforms(&self, _: &Vector1<f64>, _: &mut [Matrix4<f64>]) {}
+
+    fn forces(&self, t: f64, q: &Vector1<f64>, v: &Vector1<f64>) -> Vector1<f64> {
+        self.drive_forces(t, q, v)
+    }
+
+    fn drive_forces(&self, t: f64, q: &Vector1<f64>, v: &Vector1<f64>) -> Vector1<f64> {
+        let [z, rate] = self.support(t);
+        Vector1::new(self.stiffness * (z - q.x) + self.damping * (rate - v.x))
+    }
+
+    fn gravity_energy(&self, q: &Vector1<f64>) -> f64 {
+        self.mass * GRAVITY * q.x
+    }
+
+    fn drive_energy(&self, t: f64, q: &Vector1<f64>) -> f64 {
+        0.5 * self.stiffness * (self.support(t)[0] - q.x).powi(2)
+    }
+
+    fn drive_power(&self, t: f64, q: &Vector1<f64>, v: &Vector1<f64>) -> f64 {
+        self.drive_forces(t, q, v).x * self.support(t)[1]
+    }
+
+    fn dissipation(&self, t: f64, _: &Vector1<f64>, v: &Vector1<f64>) -> f64 {
+        self.damping * (self.support(t)[1] - v.x).powi(2)
+    }
+}
+
+impl Dynamics<1> for Lift {
+    fn mass_matrix(&self, _: &Vector1<f64>) -> Matrix1<f64> {
+        Matrix1::new(self.mass)
+    }
+
+    fn bias(&self, _: &Vector1<f64>, _: &Vector1<f64>) -> Vector1<f64> {
+        Vector1::new(-self.mass * GRAVITY)
+    }
+
+    fn kinetic_energy(&self, _: &Vector1<f64>, v: &Vector1<f64>) -> f64 {
+        0.5 * self.mass * v.x * v.x
+    }
+}
+
+impl Statics<1> for Lift {
+    fn static_residual(&self, q: &Vector1<f64>) -> Vector1<f64> {
+        -self.bias(q, &Vector1::zeros()) - self.forces(0.0, q, &Vector1::zeros())
+            + Vector1::new(self.damping * self.support(0.0)[1])
+    }
+
+    fn tangent_stiffness(&self, _: &Vector1<f64>) -> Matrix1<f64> {
+        Matrix1::new(self.stiffness)
+    }
+}
+
+impl Linearise<1> for Lift {
+    fn linearise(&self, q: &Vector1<f64>) -> Linearisation<1> {
+        Linearisation {
+            mass: self.mass_matrix(q),
+            stiffness: self.tangent_stiffness(q),
+            damping: Matrix1::new(self.damping),
+        }
+    }
+}

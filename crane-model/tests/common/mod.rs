@@ -1,0 +1,41 @@
+//! Cranes written by hand from textbook formulas: they share nothing with the compiler.
+#![allow(dead_code, reason = "every test file uses its own part")]
+
+mod lift;
+mod pendulum;
+
+pub use lift::Lift;
+pub use pendulum::DoublePendulum;
+
+use crane_model::{CoordinateInfo, CoordinateKind, CoordinateRole, Description};
+
+/// Gravity, m/s².
+pub const GRAVITY: f64 = 9.81;
+
+/// A description with nothing but coordinates.
+pub const fn description(
+    name: &'static str,
+    coordinates: &'static [CoordinateInfo],
+    guess: &'static [f64],
+) -> Description {
+    Description {
+        name,
+        title: name,
+        spec_hash: "by hand",
+        parameters: &[],
+        coordinates,
+        bodies: &[],
+        supports: &[],
+        drives: &[],
+        points: &[],
+        guess,
+        duration: 10.0,
+        step: 1e-3,
+        output: 0.01,
+    }
+}
+
+/// A coordinate.
+pub const fn coordinate(name: &'static str, kind: CoordinateKind, role: CoordinateRole) -> CoordinateInfo {
+    CoordinateInfo { name, kind, role }
+}

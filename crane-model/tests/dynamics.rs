@@ -1,0 +1,138 @@
+//! Motion of cranes written by hand.
+
+mod common;
+
+use std::ops::ControlFlow;
+
+use common::{DoublePendulum, Lift};
+use crane_model::{
+    Dynamics,
+    dynamics::{Cause, Settings, rk4, simulate},
+};
+use nalgebra::{SVector, Vector1, Vector2};
+
+/// First coordinate every 0.1 s for 1 s, in steps of `step`, s.
+fn motion<const N: usize, C: Dynamics<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> Vec<(f64, f64)> {
+    let mut motion = Vec::new();
+    let settings = Settings { duration: 1.0, step, output: 0.1, ..Settings::of(crane.description()) };
+    simulate(crane, rk4::State::at_rest(start), &settings, |sample| {
+        motion.push((sample.t, sample.q[0]));
+        ControlFlow::Continue(())
+    })
+    .expect("a stable run");
+    motion
+}
+
+#[test]
+fn order_of_rk4_on_a_known_motion() {
+    let lift = Lift::default();
+    // The greatest error over the run: at a single time, errors of two orders may cancel.
+    let error = |step: f64| {
+        let motion = motion(&lift, Vector1::new(lift.sag()), step);
+        motion.iter().map(|&(t, z)| (z - lift.exact(t)).abs()).fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (error(1e-3), error(5e-4));
+    let order = (coarse / fine).log2();
+    assert!((order - 4.0).abs() < 0.1, "order {order}, errors {coarse:e}, {fine:e}");
+}
+
+#[test]
+fn order_of_rk4_on_a_double_pendulum() {
+    // Without a known motion: differences between three step sizes fall as 2⁴.
+    let pendulum = DoublePendulum::hanging();
+    let [coarse, middle, fine] = [2e-3, 1e-3, 5e-4].map(|step| motion(&pendulum, Vector2::new(1.2, -0.5), step));
+    let difference =
+        |a: &[(f64, f64)], b: &[(f64, f64)]| a.iter().zip(b).map(|(a, b)| (a.1 - b.1).abs()).fold(0.0, f64::max);
+    let order = (difference(&coarse, &middle) / difference(&middle, &fine)).log2();
+    assert!((order - 4.0).abs() < 0.1, "order {order}");
+}
+
+/// Greatest size of `E(t) − E(0) − W + D` over a run, J.
+fn energy_error<const N: usize, C: Dynamics<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> f64 {
+    let settings = Settings { duration: 4.0, step, output: 0.1, audit: true, ..Settings::of(crane.description()) };
+    let mut first = None;
+    let mut worst = 0.0_f64;
+    simulate(crane, rk4::State::at_rest(start), &settings, |sample| {
+        let (q, v) = (SVector::from_column_slice(sample.q), SVector::from_column_slice(sample.v));
+        let energy = crane.kinetic_energy(&q, &v) + crane.potential_energy(sample.t, &q);
+        let start = *first.get_or_insert(energy);
+        worst = worst.max((energy - start - sample.work + sample.dissipated).abs());
+        ControlFlow::Continue(())
+    })
+    .expect("a stable run");
+    worst
+}
+
+#[test]
+fn energy_of_an_undamped_motion_drifts_as_h4_at_least() {
+    let pendulum = DoublePendulum::hanging();
+    let [coarse, fine] = [4e-3, 2e-3].map(|step| energy_error(&pendulum, Vector2::new(1.2, -0.5), step));
+    let order = (coarse / fine).log2();
+    assert!(order > 3.8, "order {order}, {coarse:e} J, {fine:e} J");
+}
+
+#[test]
+fn work_of_the_drive_is_energy_and_dissipation() {
+    let lift = Lift::default();
+    let [coarse, fine] = [4e-3, 2e-3].map(|step| energy_error(&lift, Vector1::new(lift.sag()), step));
+    let order = (coarse / fine).log2();
+    assert!(order > 3.8, "order {order}, {coarse:e} J, {fine:e} J");
+}
+
+#[test]
+fn results_come_at_their_own_interval() {
+    // 0.03 s is no multiple of 7 ms and 0.1 s none of 0.03 s: steps shrink to fit, the end is met.
+    let lift = Lift::default();
+    let settings =
+        Settings { duration: 0.1, step: 7e-3, output: 0.03, ..Settings::of(&common::description("", &[], &[])) };
+    let mut times = Vec::new();
+    let run = simulate(&lift, rk4::State::at_rest(Vector1::zeros()), &settings, |sample| {
+        times.push(sample.t);
+        ControlFlow::Continue(())
+    })
+    .expect("a stable run");
+    let expected = [0.0, 0.03, 0.06, 0.09, 0.1];
+    assert_eq!(times.len(), expected.len());
+    assert!(times.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{times:?}");
+    // 30 ms in 5 steps of 6 ms, three times, and 10 ms in 2.
+    assert_eq!(run.steps, 17);
+    assert!((run.step - 6e-3).abs() < 1e-15);
+}
+
+#[test]
+fn an_observer_breaks_off_a_run() {
+    let lift = Lift::default();
+    let settings = Settings::of(&common::description("", &[], &[]));
+    let run = simulate(&lift, rk4::State::at_rest(Vector1::zeros()), &settings, |sample| {
+        if sample.t < 0.5 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    })
+    .expect("a stable run");
+    assert!((run.time - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn a_step_beyond_the_limit_stops_with_time_coordinate_and_advice() {
+    // ω = 20 rad/s undamped: stable below 2.83/20 = 0.1414 s.
+    let lift = Lift { damping: 0.0, ..Lift::default() };
+    let run = |step| {
+        let settings =
+            Settings { duration: 400.0, step, output: step, ..Settings::of(&common::description("", &[], &[])) };
+        simulate(&lift, rk4::State::at_rest(Vector1::new(lift.sag())), &settings, |_| ControlFlow::Continue(()))
+    };
+    assert!(run(0.141).is_ok());
+    let stopped = run(0.143).expect_err("a run beyond the stability limit");
+    assert_eq!((stopped.cause, stopped.coordinate, stopped.unit), (Cause::Growth, "lift_z", "m"));
+    assert!(stopped.value.abs() > 1e3 && stopped.time > 0.0 && stopped.time < 400.0, "{stopped:?}");
+    let message = stopped.to_string();
+    assert!(message.contains("grew without bound") && message.contains("lift_z"), "{message}");
+    assert!(stopped.advice().contains("smaller step than 1.43e-1 s"), "{}", stopped.advice());
+}
+
+#[test]
+fn a_massless_crane_is_refused() {
+    let lift = Lift { mass: 0.0, ..Lift::default() };
+    let settings = Settings::of(&common::description("", &[], &[]));
+    let stopped = simulate(&lift, rk4::State::at_rest(Vector1::zeros()), &settings, |_| ControlFlow::Continue(()))
+        .expect_err("no mass, no motion");
+    assert_eq!(stopped.cause, Cause::MassMatrix);
+}

@@ -1,0 +1,68 @@
+//! Static equilibrium of cranes written by hand.
+
+mod common;
+
+use common::{DoublePendulum, Lift};
+use crane_model::statics::{Settings, Status, solve};
+
+#[test]
+fn a_linear_crane_takes_one_step() {
+    let lift = Lift::default();
+    let equilibrium = solve(&lift, &Settings::default());
+    assert_eq!(equilibrium.status, Status::Converged);
+    assert_eq!(equilibrium.steps(), 1);
+    // One division and one subtraction of rounding.
+    assert!((equilibrium.q[0] - lift.sag()).abs() < 1e-15, "{:?}", equilibrium.q);
+}
+
+#[test]
+fn newton_converges_quadratically() {
+    // A spring at rest at 1 rad against gravity: the second derivative of the residual does not vanish.
+    let pendulum = DoublePendulum { stiffness: 40.0, rest: 1.0, ..DoublePendulum::hanging() };
+    let equilibrium = solve(&pendulum, &Settings { tolerance: 1e-15, iterations: 50 });
+    let residuals: Vec<f64> = equilibrium.history.iter().map(|i| i.residual).collect();
+    assert!(equilibrium.history[1..].iter().all(|i| (i.fraction - 1.0).abs() < f64::EPSILON), "{residuals:?}");
+    // log r_{k+1} / log r_k tends to 2 while r is between the first steps' range and rounding.
+    let order = residuals
+        .windows(2)
+        .filter(|pair| pair[0] < 1e-2 && pair[1] > 1e-14)
+        .map(|pair| pair[1].ln() / pair[0].ln())
+        .last()
+        .expect("two residuals within the range of quadratic convergence");
+    assert!(order > 1.8, "{order}: {residuals:?}");
+}
+
+#[test]
+fn a_mass_above_its_joint_is_unstable() {
+    let equilibrium = solve(&DoublePendulum::upside_down(), &Settings::default());
+    assert_eq!(equilibrium.status, Status::Unstable { coordinates: vec!["lower"] });
+    assert!((equilibrium.q[1] - std::f64::consts::PI).abs() < 1e-9);
+    assert_eq!(equilibrium.status.to_string(), "unstable equilibrium: it falls away in lower");
+}
+
+#[test]
+fn a_joint_that_nothing_holds_is_singular() {
+    let pendulum = DoublePendulum { gravity: 0.0, stiffness: 40.0, ..DoublePendulum::hanging() };
+    let equilibrium = solve(&pendulum, &Settings::default());
+    assert_eq!(equilibrium.status, Status::Singular { coordinates: vec!["lower"] });
+}
+
+#[test]
+fn a_guess_with_vanishing_stiffness_is_left_behind() {
+    // Horizontal rods: K = 0, yet gravity pushes. Both equilibria of a rod are within reach; any will do.
+    let equilibrium = solve(&DoublePendulum::horizontal(), &Settings::default());
+    assert!(
+        matches!(equilibrium.status, Status::Converged | Status::Unstable { .. }),
+        "{}: {:?}",
+        equilibrium.status,
+        equilibrium.history
+    );
+}
+
+#[test]
+fn too_few_steps_do_not_converge() {
+    let equilibrium = solve(&DoublePendulum::hanging(), &Settings { tolerance: 1e-10, iterations: 1 });
+    assert_eq!(equilibrium.status, Status::NotConverged);
+    assert_eq!(equilibrium.steps(), 1);
+    assert!(equilibrium.history[1].residual < equilibrium.history[0].residual);
+}
