@@ -1,11 +1,37 @@
 //! The pipeline, one stage a line.
 
+use std::path::Path;
+
 use crate::chain::{Analyses, Chain};
+use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::emit::{GeneratedCode, Report, emit};
 use crate::lower::lower;
 use crate::mechanics::{derive, derive_verbatim, left_out};
+use crate::read::read;
+use crate::validate::validate;
 
-/// Compiles a chain to Rust. `analyses` is what to compute, usually the chain's own.
+/// Compiles a spec to Rust: what its `analyses` ask for, or `analyses` in their place.
+///
+/// # Errors
+/// All mistakes of the spec at once.
+pub fn compile(source: &SourceFile, analyses: Option<Analyses>) -> Result<GeneratedCode, Diagnostics> {
+    let chain = load(source)?;
+    let analyses = analyses.unwrap_or(chain.analyses);
+    // A path would differ from machine to machine.
+    let file = Path::new(&source.name).file_name().unwrap_or_default().to_string_lossy();
+    Ok(generate(&chain, analyses, &file))
+}
+
+/// A spec as a sound chain.
+///
+/// # Errors
+/// All mistakes of the spec at once.
+pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
+    let spec = read(source)?;
+    validate(&spec, source)
+}
+
+/// Compiles a chain to Rust. `spec_file` is the name of the YAML file, for the header.
 #[must_use]
 pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> GeneratedCode {
     let program = derive(chain, analyses);

@@ -1,8 +1,30 @@
-//! Compiler from a crane described in YAML to specialised Rust.
+//! Compiler from a crane described in YAML to specialised, unrolled Rust for its statics and dynamics.
+//!
+//! ```text
+//! SourceFile ─read→ CraneSpec ─validate→ Chain ─derive→ Program ─lower→ Blocks ─emit→ GeneratedCode
+//! text              as written           proven sound   named functions  straight line,  Rust text and
+//!                                                       over one graph   split, ordered  operation counts
+//! ```
+//!
+//! Three ways in: [`build::compile_spec`] from a build script, the command `crane-codegen`, and [`compile::compile`].
+//! [`symbolic::Program::evaluate`] runs a program without rustc.
 
+pub mod build;
 pub mod chain;
 pub mod compile;
+pub mod diagnostic;
 pub mod emit;
+mod expand;
+pub mod explain;
 pub mod lower;
 pub mod mechanics;
+mod read;
+pub mod spec;
 pub mod symbolic;
+mod validate;
+
+pub use diagnostic::{Diagnostics, SourceFile};
+pub use emit::GeneratedCode;
+pub use read::read;
+pub use spec::{CraneSpec, json_schema};
+pub use validate::validate;

@@ -1,1 +1,137 @@
-fn main() {}
+//! The compiler as a command.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use crane_codegen::chain::{Analyses, Chain};
+use crane_codegen::{GeneratedCode, build, compile, explain, json_schema};
+
+/// Compiles a crane described in YAML to specialised Rust.
+#[derive(Parser)]
+#[command(
+    version,
+    after_help = "Examples:
+  crane-codegen check specs/eight_link_flexible.yaml
+  crane-codegen explain specs/cantilever.yaml
+  crane-codegen generate specs/double_pendulum.yaml -o double_pendulum.rs
+
+Exit codes: 0 done, 1 the spec has mistakes, 2 wrong arguments."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Write the crane's module
+    Generate {
+        /// The crane's YAML file
+        spec: PathBuf,
+        /// Where to write; standard output if left out
+        #[arg(short, long)]
+        output: Option<PathBuf>,
+        /// Generate everything there is, also what the spec's `analyses` do not ask for
+        #[arg(long)]
+        all: bool,
+    },
+    /// Say whether a spec is sound, or draw every mistake in it
+    Check {
+        /// The crane's YAML file
+        spec: PathBuf,
+    },
+    /// Print the chain, its coordinates, what is left out and why, and what each function costs
+    Explain {
+        /// The crane's YAML file
+        spec: PathBuf,
+        /// Count everything there is, also what the spec's `analyses` do not ask for
+        #[arg(long)]
+        all: bool,
+    },
+    /// Print a Markdown table of operations: one row a function, one column a spec
+    Operations {
+        /// The cranes' YAML files
+        #[arg(required = true)]
+        specs: Vec<PathBuf>,
+    },
+    /// Print the JSON Schema of the spec language, for editors
+    Schema,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse().command) {
+        Ok(text) => {
+            // A reader that has seen enough may close the pipe.
+            let _ = std::io::stdout().write_all(text.as_bytes());
+            ExitCode::SUCCESS
+        }
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: &Command) -> Result<String, String> {
+    match command {
+        Command::Generate { spec, output, all } => {
+            let code = compiled(spec, *all)?;
+            let Some(target) = output else { return Ok(code.text) };
+            build::write(target, &code.text).map_err(|error| format!("{}: {error}", target.display()))?;
+            let functions = code.report.costs.len();
+            Ok(format!("{}: {functions} functions, {} lines\n", target.display(), code.text.lines().count()))
+        }
+        Command::Check { spec } => {
+            let chain = loaded(spec)?;
+            let (bodies, coordinates) = (chain.bodies.len(), chain.coordinates.len());
+            Ok(format!("{}: sound; {bodies} bodies, {coordinates} coordinates\n", spec.display()))
+        }
+        Command::Explain { spec, all } => {
+            let chain = loaded(spec)?;
+            let analyses = if *all { Analyses::ALL } else { chain.analyses };
+            let code = compile::generate(&chain, analyses, "");
+            Ok(explain::explain(&chain, &code.report))
+        }
+        Command::Operations { specs } => {
+            let codes: Result<Vec<_>, _> = specs.iter().map(|spec| compiled(spec, true)).collect();
+            Ok(operations_table(&codes?))
+        }
+        Command::Schema => Ok(json_schema()),
+    }
+}
+
+fn loaded(spec: &Path) -> Result<Chain, String> {
+    let source = build::open(spec).map_err(|error| error.to_string())?;
+    compile::load(&source).map_err(|mistakes| mistakes.to_string())
+}
+
+fn compiled(spec: &Path, all: bool) -> Result<GeneratedCode, String> {
+    let source = build::open(spec).map_err(|error| error.to_string())?;
+    compile::compile(&source, all.then_some(Analyses::ALL)).map_err(|mistakes| mistakes.to_string())
+}
+
+/// Operations per function; an empty cell where the scene does not need the function.
+fn operations_table(codes: &[GeneratedCode]) -> String {
+    let mut functions: Vec<&str> = Vec::new();
+    for cost in codes.iter().flat_map(|code| &code.report.costs) {
+        if !functions.contains(&cost.function.as_str()) {
+            functions.push(&cost.function);
+        }
+    }
+    let names: Vec<String> = codes.iter().map(|code| format!("`{}`", code.name)).collect();
+    let mut text = format!("| function | {} |\n|---|{}\n", names.join(" | "), "---:|".repeat(codes.len()));
+    for function in functions {
+        let cells: Vec<String> = codes
+            .iter()
+            .map(|code| {
+                let cost = code.report.costs.iter().find(|cost| cost.function == function);
+                cost.map(|cost| cost.operations.total().to_string()).unwrap_or_default()
+            })
+            .collect();
+        let _ = writeln!(text, "| `{function}` | {} |", cells.join(" | "));
+    }
+    text
+}

@@ -38,3 +38,5 @@ pub use description::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, SupportInfo,
 };
 pub use model::{CraneModel, Dynamics, Linearisation, Linearise, Statics, TransformDerivatives};
+/// The linear algebra of every signature, so that generated code needs this crate alone.
+pub use nalgebra;

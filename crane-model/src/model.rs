@@ -30,7 +30,9 @@ pub trait CraneModel<const N: usize> {
     fn point_velocities(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
     /// Generalized forces of everything but inertia and gravity: supports, elements, drives, hinges. N and N m.
-    fn forces(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N>;
+    fn forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
 
     /// Generalized forces of the supports, Eq. (18).
     fn support_forces(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {

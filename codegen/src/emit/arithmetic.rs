@@ -26,8 +26,14 @@ pub fn integer(value: usize) -> Expr {
     Expr::Lit(syn::ExprLit { attrs: vec![], lit: Lit::Int(literal) })
 }
 
-/// −a
+/// −a; `−(2 · b)` becomes `−2 · b`, the same number at one operation less.
 pub fn negative(a: Expr) -> Expr {
+    let a = match a {
+        Expr::Binary(ExprBinary { left, op: op @ BinOp::Mul(_), right, .. }) if matches!(*left, Expr::Lit(_)) => {
+            return binary(negative(*left), op, *right);
+        }
+        other => other,
+    };
     let operand = if precedence(&a) < Precedence::Unary { parenthesised(a) } else { a };
     Expr::Unary(ExprUnary { attrs: vec![], op: UnOp::Neg(Token![-](Span::call_site())), expr: Box::new(operand) })
 }
@@ -157,6 +163,7 @@ mod tests {
         assert_eq!(text(&difference(a(), difference(b(), c()))), "a-(b-c)");
         assert_eq!(text(&negative(sum(a(), b()))), "-(a+b)");
         assert_eq!(text(&negative(product(a(), b()))), "-(a*b)");
+        assert_eq!(text(&negative(product(number(2.0), b()))), "-2.0*b");
         assert_eq!(text(&quotient(a(), product(b(), c()))), "a/(b*c)");
         assert_eq!(text(&product(negative(a()), b())), "-a*b");
         assert_eq!(text(&method(sum(a(), b()), "min", c())), "(a+b).min(c)");

@@ -4,6 +4,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{Item, parse_quote};
 
+use super::arithmetic::integer;
 use crate::chain::Chain;
 use crate::lower::{Block, Blocks};
 use crate::symbolic::{Argument, Shape};
@@ -94,7 +95,7 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
 /// Description and parameters.
 fn common_methods(chain: &Chain) -> TokenStream {
     let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
-    let indices: Vec<usize> = (0..names.len()).collect();
+    let indices: Vec<_> = (0..names.len()).map(integer).collect();
     let (get, set) = if names.is_empty() {
         (
             quote!(
@@ -164,7 +165,7 @@ fn method(block: &Block) -> TokenStream {
             }
         }
         Shape::Transforms { counts, .. } => {
-            let total: usize = counts.iter().sum();
+            let total = integer(counts.iter().sum());
             quote! {
                 fn #name(&self, #(#names: #types,)* out: &mut [Matrix4<f64>]) {
                     if let Some(out) = out.first_chunk_mut::<#total>() {

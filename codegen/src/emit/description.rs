@@ -4,15 +4,15 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{Item, parse_quote};
 
-use super::arithmetic::number;
+use super::arithmetic::{integer, number};
 use super::print::constant;
 use crate::chain::{BodyId, Chain, CoordinateKind, Value};
 
 /// Sizes and the `DESCRIPTION`.
 pub fn description(chain: &Chain) -> Vec<Item> {
-    let n = chain.coordinates.len();
+    let n = integer(chain.coordinates.len());
     let mut items = vec![constant("Number of generalized coordinates.", "N", quote!(usize), quote!(#n))];
-    let bodies = chain.bodies.len();
+    let bodies = integer(chain.bodies.len());
     items.push(constant("Number of bodies.", "BODIES", quote!(usize), quote!(#bodies)));
     items.push(description_constant(chain));
     items
@@ -33,7 +33,7 @@ fn description_constant(chain: &Chain) -> Item {
         let (name, link) = (&body.name, &body.link);
         let mass = number(body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&defaults)));
         let length = at_defaults(&body.length);
-        let degrees = chain.degrees_of_freedom(BodyId(p));
+        let degrees = integer(chain.degrees_of_freedom(BodyId(p)));
         quote!(BodyInfo { name: #name, link: #link, mass: #mass, length: #length, degrees_of_freedom: #degrees })
     });
     let supports = chain.supports.iter().map(|support| {
@@ -42,7 +42,7 @@ fn description_constant(chain: &Chain) -> Item {
         quote!(SupportInfo { name: #name, position: [#(#position),*] })
     });
     let drives = chain.drives.iter().map(|drive| {
-        let coordinate = drive.coordinate.0;
+        let coordinate = integer(drive.coordinate.0);
         quote!(DriveInfo { coordinate: #coordinate })
     });
     let points = chain.points.iter().map(|point| &point.name);

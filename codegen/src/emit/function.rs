@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 use syn::{Expr, Ident, Stmt, parse_quote};
 
 use super::arithmetic::{
-    borrow_mut, call, difference, element, field, method, negative, number, product, quotient, sum, variable,
+    borrow_mut, call, difference, element, field, integer, method, negative, number, product, quotient, sum, variable,
 };
 use super::labels::Labels;
 use super::names::Names;
@@ -69,7 +69,7 @@ impl Writer<'_> {
     fn in_pieces(&self) -> Vec<syn::Item> {
         let mut item = self.shell();
         let storage = self.result.storage_type();
-        let carried = self.block.carried;
+        let carried = integer(self.block.carried);
         let mut statements: Vec<Stmt> = Vec::new();
         if matches!(self.result.handover(), Handover::Return) {
             let blank = self.result.blank();
@@ -77,7 +77,7 @@ impl Writer<'_> {
         } else {
             statements.push(parse_quote!(out.fill(Matrix4::zeros());));
         }
-        if carried > 0 {
+        if self.block.carried > 0 {
             statements.push(parse_quote!(let mut kept = [0.0; #carried];));
         }
         let mut items = Vec::new();
@@ -254,7 +254,9 @@ impl Writer<'_> {
             }
         }
         statements.append(&mut pending);
-        if self.is_scalar() && self.block.pieces.len() == 1 && !piece.iter().any(|s| matches!(s, Statement::Output { .. }))
+        if self.is_scalar()
+            && self.block.pieces.len() == 1
+            && !piece.iter().any(|s| matches!(s, Statement::Output { .. }))
         {
             statements.push(Stmt::Expr(number(0.0), None));
         }

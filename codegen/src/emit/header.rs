@@ -31,9 +31,12 @@ pub fn header(chain: &Chain, report: &Report, spec_file: &str) -> String {
     }
     lines.push(String::new());
     lines.push("Operations of each function, and before simplification:".into());
-    lines.extend(report.costs.iter().map(|cost| {
-        format!("  {:<30} {:>7} {:>9}", cost.function, cost.operations.total(), cost.verbatim.total())
-    }));
+    lines.extend(
+        report
+            .costs
+            .iter()
+            .map(|cost| format!("  {:<30} {:>7} {:>9}", cost.function, cost.operations.total(), cost.verbatim.total())),
+    );
     let mut text = String::new();
     for line in lines {
         let _ = writeln!(text, "{}", format!("// {line}").trim_end());

@@ -36,9 +36,7 @@ impl<'a> Labels<'a> {
             Shape::Scalar => None,
             Shape::Vector(_) => Some(coordinate(slot).to_owned()),
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
-            Shape::Vectors(_) if function.name == "support_reactions" => {
-                Some(chain.supports[slot / 3].name.clone())
-            }
+            Shape::Vectors(_) if function.name == "support_reactions" => Some(chain.supports[slot / 3].name.clone()),
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
             Shape::Transforms { counts, .. } => Some(self.transform(function.name, counts, slot / 12)),

@@ -12,7 +12,9 @@ mod print;
 mod report;
 mod shape;
 
-use syn::{Item, parse_quote};
+use std::fmt::Write;
+
+use syn::parse_quote;
 
 use crate::chain::Chain;
 use crate::lower::Blocks;
@@ -35,41 +37,54 @@ pub struct GeneratedCode {
 #[must_use]
 pub fn emit(chain: &Chain, blocks: &Blocks, report: Report, spec_file: &str) -> GeneratedCode {
     let labels = Labels::new(chain, blocks);
-    let mut items = imports(blocks);
+    let mut items = Vec::new();
     items.extend(description::description(chain));
     items.extend(parameters::parameters(chain, blocks, &labels));
     items.push(parse_quote!(
-        const BLANK: Matrix4<f64> = Matrix4::new(
-            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0
-        );
+        const BLANK: Matrix4<f64> =
+            Matrix4::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     ));
     for block in &blocks.functions {
         items.extend(function::function(blocks, block, &labels));
     }
     items.extend(crane::crane(chain, blocks));
-    let text = format!("{}\n{}", header::header(chain, &report, spec_file), print::file(items));
+    let body = print::file(items);
+    let text = format!("{}\n{}\n{body}", header::header(chain, &report, spec_file), imports(&body));
     GeneratedCode { name: chain.name.clone(), text, report }
 }
 
-/// Imports: nalgebra through the runtime, so that a user's crate depends on the runtime alone.
-fn imports(blocks: &Blocks) -> Vec<Item> {
-    let has = |name: &str| blocks.functions.iter().any(|b| b.function.name == name);
-    let mut items: Vec<Item> = vec![
-        parse_quote!(use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};),
-        parse_quote!(use ::crane_model::support::{fill, sin_cos, symmetric};),
-        parse_quote!(use ::crane_model::{BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description, DriveInfo, ParameterInfo, SupportInfo};),
+/// What the body uses, and nothing else; nalgebra comes through the runtime, so that a user's crate depends on the
+/// runtime alone.
+fn imports(body: &str) -> String {
+    const SOURCES: [(&str, &[&str]); 3] = [
+        ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),
+        ("::crane_model::support", &["fill", "sin_cos", "symmetric"]),
+        (
+            "::crane_model",
+            &[
+                "BodyInfo",
+                "CoordinateInfo",
+                "CoordinateKind",
+                "CoordinateRole",
+                "CraneModel",
+                "Description",
+                "DriveInfo",
+                "Dynamics",
+                "Linearisation",
+                "Linearise",
+                "ParameterInfo",
+                "Statics",
+                "SupportInfo",
+                "TransformDerivatives",
+            ],
+        ),
     ];
-    if has("mass_matrix") {
-        items.push(parse_quote!(use ::crane_model::Dynamics;));
+    let words: std::collections::HashSet<&str> =
+        body.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty()).collect();
+    let mut text = String::new();
+    for (source, names) in SOURCES {
+        let used: Vec<&str> = names.iter().copied().filter(|name| words.contains(name)).collect();
+        let _ = writeln!(text, "use {source}::{{{}}};", used.join(", "));
     }
-    if has("static_residual") {
-        items.push(parse_quote!(use ::crane_model::Statics;));
-    }
-    if has("linearise") {
-        items.push(parse_quote!(use ::crane_model::{Linearisation, Linearise};));
-    }
-    if has("transform_derivatives") {
-        items.push(parse_quote!(use ::crane_model::TransformDerivatives;));
-    }
-    items
+    syn::parse_file(&text).map(|file| prettyplease::unparse(&file)).unwrap_or(text)
 }

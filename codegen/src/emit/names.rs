@@ -17,12 +17,7 @@ pub struct Names<'p> {
 
 impl<'p> Names<'p> {
     pub fn new(program: &'p Program) -> Self {
-        Names {
-            program,
-            given: HashMap::new(),
-            taken: TAKEN.iter().map(ToString::to_string).collect(),
-            next: 0,
-        }
+        Names { program, given: HashMap::new(), taken: TAKEN.iter().map(ToString::to_string).collect(), next: 0 }
     }
 
     /// The name of a value.

@@ -3,8 +3,8 @@
 use quote::{format_ident, quote};
 use syn::{Item, Stmt, parse_quote};
 
-use super::function::{local, operation};
 use super::arithmetic::{number, variable};
+use super::function::{local, operation};
 use super::labels::Labels;
 use crate::chain::Chain;
 use crate::lower::Blocks;

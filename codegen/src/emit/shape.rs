@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::Expr;
 
-use super::arithmetic::{element, field, variable};
+use super::arithmetic::{element, field, integer, variable};
 use crate::symbolic::{Function, Shape};
 
 /// How a function hands over its result.
@@ -38,12 +38,9 @@ impl<'f> Result<'f> {
             Shape::Scalar => quote!(f64),
             Shape::Vector(_) => quote!(SVector<f64, N>),
             Shape::Symmetric(_) => quote!(SMatrix<f64, N, N>),
-            Shape::Vectors(n) => quote!([Vector3<f64>; #n]),
-            Shape::Pairs(n) => quote!([[f64; 2]; #n]),
-            Shape::Transforms { counts, .. } => {
-                let n: usize = counts.iter().sum();
-                quote!([Matrix4<f64>; #n])
-            }
+            Shape::Vectors(n) => array(quote!(Vector3<f64>), *n),
+            Shape::Pairs(n) => array(quote!([f64; 2]), *n),
+            Shape::Transforms { counts, .. } => array(quote!(Matrix4<f64>), counts.iter().sum()),
             Shape::Record(name, _) => {
                 let name = format_ident!("{name}");
                 quote!(#name<N>)
@@ -56,10 +53,7 @@ impl<'f> Result<'f> {
         match self.shape {
             Shape::Vector(_) => quote!([f64; N]),
             Shape::Symmetric(_) => quote!([[f64; N]; N]),
-            Shape::Record(_, fields) => {
-                let n = fields.len();
-                quote!([[[f64; N]; N]; #n])
-            }
+            Shape::Record(_, fields) => array(quote!([[f64; N]; N]), fields.len()),
             _ => self.public_type(),
         }
     }
@@ -70,16 +64,13 @@ impl<'f> Result<'f> {
             Shape::Scalar => quote!(0.0),
             Shape::Vector(_) => quote!([0.0; N]),
             Shape::Symmetric(_) => quote!([[0.0; N]; N]),
-            Shape::Vectors(n) => quote!([Vector3::zeros(); #n]),
-            Shape::Pairs(n) => quote!([[0.0; 2]; #n]),
+            Shape::Vectors(n) => array(quote!(Vector3::zeros()), *n),
+            Shape::Pairs(n) => array(quote!([0.0; 2]), *n),
             Shape::Transforms { counts, corner } => {
-                let n: usize = counts.iter().sum();
-                if *corner == 1 { quote!([BLANK; #n]) } else { quote!([Matrix4::zeros(); #n]) }
+                let blank = if *corner == 1 { quote!(BLANK) } else { quote!(Matrix4::zeros()) };
+                array(blank, counts.iter().sum())
             }
-            Shape::Record(_, fields) => {
-                let n = fields.len();
-                quote!([[[0.0; N]; N]; #n])
-            }
+            Shape::Record(_, fields) => array(quote!([[0.0; N]; N]), fields.len()),
         }
     }
 
@@ -121,6 +112,12 @@ impl<'f> Result<'f> {
             }
         }
     }
+}
+
+/// `[item; n]`, a type or a value.
+fn array(item: TokenStream, n: usize) -> TokenStream {
+    let n = integer(n);
+    quote!([#item; #n])
 }
 
 fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {

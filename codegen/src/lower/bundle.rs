@@ -18,11 +18,6 @@ pub(super) fn bundle(program: &Program, constants: &Constants, roots: &[ExprId])
             uses[operand.index()] += 1;
         }
     }
-    let is_root = {
-        let mut marks = vec![false; program.operations.len()];
-        roots.iter().for_each(|root| marks[root.index()] = true);
-        marks
-    };
     let mut inlined = vec![false; program.operations.len()];
     let mut size = vec![0usize; program.operations.len()];
     for id in program.ids().filter(|id| needed[id.index()] && !constants.is_free(program, *id)) {
@@ -32,15 +27,7 @@ pub(super) fn bundle(program: &Program, constants: &Constants, roots: &[ExprId])
         }
         let mut candidates: Vec<ExprId> = op
             .operands()
-            .filter(|operand| {
-                let i = operand.index();
-                uses[i] == 1
-                    && !is_root[i]
-                    && !program.names.contains_key(operand)
-                    && !program.op(*operand).is_leaf()
-                    && !matches!(program.op(*operand), Op::Sin(_) | Op::Cos(_))
-                    && !constants.is_stored(*operand)
-            })
+            .filter(|operand| may_be_inlined(program, constants, *operand, uses[operand.index()]))
             .collect();
         // Smaller operands first: the larger one gets a variable if both do not fit.
         candidates.sort_by_key(|operand| size[operand.index()]);
@@ -53,5 +40,18 @@ pub(super) fn bundle(program: &Program, constants: &Constants, roots: &[ExprId])
         }
         size[id.index()] = total;
     }
+    // A result that nothing else reads is written where it is stored.
+    for root in roots {
+        inlined[root.index()] |= may_be_inlined(program, constants, *root, uses[root.index()]);
+    }
     inlined
+}
+
+fn may_be_inlined(program: &Program, constants: &Constants, id: ExprId, uses: usize) -> bool {
+    let op = program.op(id);
+    uses == 1
+        && !op.is_leaf()
+        && !matches!(op, Op::Sin(_) | Op::Cos(_))
+        && !program.names.contains_key(&id)
+        && !constants.is_stored(id)
 }

@@ -5,7 +5,8 @@ use crate::symbolic::{ExprId, Function, Op, Program};
 
 /// One straight line for a function.
 pub(super) fn order(program: &Program, constants: &Constants, inlined: &[bool], function: &Function) -> Vec<Statement> {
-    let mut line = Line { program, constants, inlined, done: vec![false; program.operations.len()], statements: vec![] };
+    let mut line =
+        Line { program, constants, inlined, done: vec![false; program.operations.len()], statements: vec![] };
     let needed = needed_here(program, constants, &function.outputs);
     for id in program.ids().filter(|id| needed[id.index()]) {
         if let Op::Sin(angle) | Op::Cos(angle) = program.op(id) {
@@ -14,7 +15,7 @@ pub(super) fn order(program: &Program, constants: &Constants, inlined: &[bool], 
     }
     for (slot, &value) in function.outputs.iter().enumerate() {
         if program.op(value) != Op::ZERO {
-            line.compute(value);
+            line.compute_variables(value);
             line.statements.push(Statement::Output { slot, value });
         }
     }

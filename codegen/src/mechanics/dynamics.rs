@@ -10,11 +10,7 @@ use crate::symbolic::Expr;
 /// `a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ) = ω_i · L_j + υ_i · P_j`, i ≤ j [Urbaś 2016, Eq. (5), by composites].
 ///
 /// P_j and L_j are the momenta of all that coordinate j moves, at unit rate.
-pub fn mass_matrix<'g>(
-    model: &Model<'g>,
-    kinematics: &Kinematics<'g>,
-    inertias: &Inertias<'g>,
-) -> SymmetricMatrix<'g> {
+pub fn mass_matrix<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, inertias: &Inertias<'g>) -> SymmetricMatrix<'g> {
     let mut matrix = SymmetricMatrix::zero(model.graph, model.size());
     for (j, moving) in kinematics.generators.iter().enumerate() {
         let composite = &inertias.composites[moving.body];

@@ -154,22 +154,23 @@ impl<'g> Derivation<'g> {
                 forces,
             ));
         }
-        functions.push(function(
-            "forces",
-            "Generalized forces of all but inertia and gravity, N and N m.",
-            "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
-            &[Time, Position, Velocity],
-            vector(),
-            sum(&parts),
-        ));
+        if parts.len() > 1 {
+            functions.push(function(
+                "forces",
+                "Generalized forces of all but inertia and gravity, N and N m.",
+                "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
+                &[Time, Position, Velocity],
+                vector(),
+                sum(&parts),
+            ));
+        }
         functions
     }
 
     fn energies(&self) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
-        let scalar = |name, doc, equation, arguments, expr| {
-            function(name, doc, equation, arguments, Shape::Scalar, vec![expr])
-        };
+        let scalar =
+            |name, doc, equation, arguments, expr| function(name, doc, equation, arguments, Shape::Scalar, vec![expr]);
         let mut functions = vec![scalar(
             "gravity_energy",
             "Potential energy of gravity, zero at the world's origin, J.",
@@ -211,9 +212,8 @@ impl<'g> Derivation<'g> {
                 drives::power(model),
             ));
         }
-        let dissipation = supports::dissipation(model, &self.kinematics)
-            + springs::dissipation(model)
-            + drives::dissipation(model);
+        let dissipation =
+            supports::dissipation(model, &self.kinematics) + springs::dissipation(model) + drives::dissipation(model);
         if !dissipation.is_zero() {
             functions.push(scalar(
                 "dissipation",
@@ -305,8 +305,7 @@ impl<'g> Derivation<'g> {
         let mut damping = SymmetricMatrix::zero(model.graph, model.size());
         supports::damping(model, &self.kinematics, &mut damping);
         springs::damping(model, &mut damping);
-        let mut outputs =
-            dynamics::mass_matrix(model, &self.kinematics, &self.inertias).into_upper();
+        let mut outputs = dynamics::mass_matrix(model, &self.kinematics, &self.inertias).into_upper();
         outputs.extend(self.stiffness().into_upper().iter().chain(&damping.into_upper()));
         let matrix = || Shape::Symmetric(model.size());
         let shape =

@@ -57,8 +57,7 @@ impl<'g> Inertias<'g> {
             .map(|(body, pose)| Some(world_inertia(model, body.inertia.as_ref()?, pose, &body.name)))
             .collect();
         let zero = model.zero();
-        let mut sum =
-            WorldInertia { mass: zero, first: Vec3([zero; 3]), tensor: Symmetric3([zero; 6]) };
+        let mut sum = WorldInertia { mass: zero, first: Vec3([zero; 3]), tensor: Symmetric3([zero; 6]) };
         let mut composites = Vec::new();
         for (inertia, body) in bodies.iter().zip(&model.chain.bodies).rev() {
             if let Some(inertia) = inertia {

@@ -62,8 +62,7 @@ pub struct Kinematics<'g> {
 
 impl<'g> Kinematics<'g> {
     pub fn new(model: &Model<'g>) -> Self {
-        let mut pose =
-            Pose { rotation: Rotation::identity(model.graph), origin: Vec3::zero(model.graph) };
+        let mut pose = Pose { rotation: Rotation::identity(model.graph), origin: Vec3::zero(model.graph) };
         let (mut poses, mut generators) = (Vec::new(), Vec::new());
         for (index, body) in model.chain.bodies.iter().enumerate() {
             for step in &body.path {
@@ -97,9 +96,7 @@ fn generator<'g>(model: &Model<'g>, pose: Pose<'g>, id: CoordinateId, body: usiz
             axis.named(&format!("omega_{}", coordinate.name)),
             pose.origin.cross(axis).named(&format!("upsilon_{}", coordinate.name)),
         ),
-        CoordinateKind::Translation => {
-            (Vec3::zero(model.graph), axis.named(&format!("upsilon_{}", coordinate.name)))
-        }
+        CoordinateKind::Translation => (Vec3::zero(model.graph), axis.named(&format!("upsilon_{}", coordinate.name))),
     };
     Generator { kind: coordinate.kind, omega, upsilon, point: pose.origin, body }
 }

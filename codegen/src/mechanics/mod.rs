@@ -16,10 +16,10 @@ mod points;
 mod profile;
 mod springs;
 mod supports;
-mod transforms;
-mod twist;
 #[cfg(test)]
 mod tests;
+mod transforms;
+mod twist;
 mod vector;
 
 pub use omissions::left_out;

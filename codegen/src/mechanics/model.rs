@@ -37,15 +37,13 @@ impl<'g> Model<'g> {
     pub fn symbols(chain: &Chain) -> Vec<Symbol> {
         let symbol = |name: String, argument, index| Symbol { name, argument, index };
         let mut symbols = vec![symbol("t".into(), Argument::Time, 0)];
-        symbols.extend(
-            chain.coordinates.iter().enumerate().map(|(i, c)| symbol(c.name.clone(), Argument::Position, i)),
-        );
+        symbols
+            .extend(chain.coordinates.iter().enumerate().map(|(i, c)| symbol(c.name.clone(), Argument::Position, i)));
         symbols.extend(
             chain.coordinates.iter().enumerate().map(|(i, c)| symbol(format!("{}_dot", c.name), Argument::Velocity, i)),
         );
-        symbols.extend(
-            chain.parameters.iter().enumerate().map(|(i, p)| symbol(p.name.clone(), Argument::Parameters, i)),
-        );
+        symbols
+            .extend(chain.parameters.iter().enumerate().map(|(i, p)| symbol(p.name.clone(), Argument::Parameters, i)));
         symbols
     }
 

@@ -34,13 +34,11 @@ pub fn position<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'
             let curved = (up.squared() - down.squared()) / (2.0 * share);
             blend(ramp, (curved + level + down) / (1.0 - share))
         }
-        Profile::Table { from, segments } => {
-            segments.iter().fold(model.graph.constant(*from), |sum, segment| {
-                let u = local_time(model, segment, t);
-                let [c1, c2, c3] = segment.coefficients;
-                sum + u * (u * (u * c3 + c2) + c1)
-            })
-        }
+        Profile::Table { from, segments } => segments.iter().fold(model.graph.constant(*from), |sum, segment| {
+            let u = local_time(model, segment, t);
+            let [c1, c2, c3] = segment.coefficients;
+            sum + u * (u * (u * c3 + c2) + c1)
+        }),
     }
 }
 
@@ -88,9 +86,7 @@ fn tau<'g>(model: &Model<'g>, ramp: &Ramp, t: Expr<'g>) -> Expr<'g> {
 /// Share of τ spent speeding up, at constant rate, and slowing down, each from 0 to its length.
 fn phases<'g>(model: &Model<'g>, ramp: &Ramp, blend: f64, t: Expr<'g>) -> [Expr<'g>; 3] {
     let tau = tau(model, ramp, t);
-    let within = |low: f64, high: f64| {
-        (tau - low).clamp(model.zero(), model.graph.constant(high - low))
-    };
+    let within = |low: f64, high: f64| (tau - low).clamp(model.zero(), model.graph.constant(high - low));
     [within(0.0, blend), within(blend, 1.0 - blend), within(1.0 - blend, 1.0)]
 }
 

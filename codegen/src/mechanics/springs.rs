@@ -56,7 +56,5 @@ pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
 pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     let elements = model.chain.elements.iter().map(|s| (s.coordinate.0, &s.damping));
     let hinges = model.chain.hinges.iter().map(|h| (h.coordinate.0, &h.damping));
-    elements
-        .chain(hinges)
-        .fold(model.zero(), |sum, (j, damping)| sum + model.number(damping) * model.v[j].squared())
+    elements.chain(hinges).fold(model.zero(), |sum, (j, damping)| sum + model.number(damping) * model.v[j].squared())
 }

@@ -75,7 +75,7 @@ fn assert_close(actual: &[f64], expected: &[f64]) {
 fn double_pendulum_is_the_textbooks() {
     let program = derive(&double_pendulum(), Analyses::ALL);
     let ([m1, m2], [l1, l2]) = (MASS, LENGTH);
-    for (q, v) in [([0.3, -0.9], [0.7, 1.3]), ([-2.0, 0.4], [0.0, -0.6])] {
+    for (q, v) in [([0.3_f64, -0.9], [0.7, 1.3]), ([-2.0, 0.4], [0.0, -0.6])] {
         let (a, b) = (q[0], q[1]);
         let couple = m2 * l1 * l2 * b.cos();
         let a22 = m2 * l2 * l2 / 3.0;
@@ -108,4 +108,10 @@ fn a_planar_crane_stays_planar() {
     let tip = &program.function("points").unwrap().outputs;
     assert_eq!(program.op(tip[1]), crate::symbolic::Op::ZERO);
     assert!(super::left_out(&double_pendulum(), Analyses::ALL).iter().any(|(what, _)| what.contains("plane")));
+}
+
+#[test]
+fn zz_print() {
+    let code = crate::compile::generate(&double_pendulum(), Analyses::ALL, "double_pendulum.yaml");
+    std::fs::write("/tmp/dp.rs", code.text).unwrap();
 }

@@ -109,11 +109,7 @@ impl<'g> Symmetric3<'g> {
     /// `S x`
     pub fn apply(self, x: Vec3<'g>) -> Vec3<'g> {
         let [xx, yy, zz, xy, xz, yz] = self.0;
-        Vec3([
-            xx * x[0] + xy * x[1] + xz * x[2],
-            xy * x[0] + yy * x[1] + yz * x[2],
-            xz * x[0] + yz * x[1] + zz * x[2],
-        ])
+        Vec3([xx * x[0] + xy * x[1] + xz * x[2], xy * x[0] + yy * x[1] + yz * x[2], xz * x[0] + yz * x[1] + zz * x[2]])
     }
 
     /// `R S Rᵀ`

@@ -41,7 +41,11 @@ impl AddAssign for OperationCount {
 
 impl fmt::Display for OperationCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} add, {} mul, {} div, {} sin_cos", self.additions, self.multiplications, self.divisions, self.angles)?;
+        write!(
+            f,
+            "{} add, {} mul, {} div, {} sin_cos",
+            self.additions, self.multiplications, self.divisions, self.angles
+        )?;
         if self.comparisons > 0 {
             write!(f, ", {} min/max", self.comparisons)?;
         }

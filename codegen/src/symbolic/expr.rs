@@ -3,8 +3,8 @@
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::op::{Constant, ExprId, Op};
 use super::Graph;
+use super::op::{Constant, ExprId, Op};
 
 /// An expression of a [`Graph`].
 #[derive(Clone, Copy)]

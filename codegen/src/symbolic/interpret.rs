@@ -7,12 +7,7 @@ use super::program::{Argument, Function, Program};
 
 /// What the interpreter needs from a number: f64, a dual number, a number of higher precision.
 pub trait Scalar:
-    Clone
-    + Neg<Output = Self>
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
+    Clone + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The number of a constant.
     fn from_f64(value: f64) -> Self;

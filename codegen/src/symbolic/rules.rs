@@ -40,10 +40,6 @@ fn negate(graph: &Graph, a: ExprId) -> ExprId {
         Op::Constant(c) => constant(graph, -c.value()),
         Neg(inner) => inner,
         Sub(x, y) => graph.intern(Sub(y, x)),
-        Mul(x, y) => match number(graph, x) {
-            Some(c) => multiply_by(graph, -c, y),
-            None => graph.intern(Neg(a)),
-        },
         _ => graph.intern(Neg(a)),
     }
 }
@@ -111,13 +107,17 @@ fn multiply(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
     }
 }
 
-/// `factor · a`; a constant factor always stands first.
+/// `factor · a`; a constant factor always stands first and is positive, so that `2x` and `−2x` share a product.
 fn multiply_by(graph: &Graph, factor: f64, a: ExprId) -> ExprId {
     if factor == 0.0 {
         return constant(graph, 0.0);
     }
     if factor == 1.0 {
         return a;
+    }
+    if factor < 0.0 {
+        let positive = multiply_by(graph, -factor, a);
+        return negate(graph, positive);
     }
     match graph.op(a) {
         Op::Constant(c) => constant(graph, factor * c.value()),
@@ -126,7 +126,6 @@ fn multiply_by(graph: &Graph, factor: f64, a: ExprId) -> ExprId {
             let inner = number(graph, x).unwrap_or(1.0);
             multiply_by(graph, factor * inner, y)
         }
-        _ if factor == -1.0 => negate(graph, a),
         _ => {
             let factor = constant(graph, factor);
             graph.intern(Mul(factor, a))

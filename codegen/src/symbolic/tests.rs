@@ -9,8 +9,7 @@ fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>
     };
     let symbol = |name: &str, index| Symbol { name: name.into(), argument: Argument::Position, index };
     let shape = Shape::Vector(outputs.len());
-    let function =
-        Function { name: "f", doc: "", equation: "", arguments: &[Argument::Position], shape, outputs };
+    let function = Function { name: "f", doc: "", equation: "", arguments: &[Argument::Position], shape, outputs };
     graph.into_program(vec![symbol("x", 0), symbol("y", 1)], vec![function])
 }
 

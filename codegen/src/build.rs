@@ -1,0 +1,106 @@
+//! For build scripts: compiles a spec while a user's crate is built.
+//!
+//! The only module that reads the environment, touches files and ends the process.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::{env, fmt, fs, io, process};
+
+use crate::chain::Analyses;
+use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile};
+use crate::{GeneratedCode, compile};
+
+/// Compiles `spec` into `$OUT_DIR/<name of the crane>.rs`, to be included into a module:
+///
+/// ```ignore
+/// // build.rs
+/// fn main() {
+///     crane_codegen::build::compile_spec("my_crane.yaml");
+/// }
+///
+/// // src/main.rs
+/// mod my_crane {
+///     include!(concat!(env!("OUT_DIR"), "/my_crane.rs"));
+/// }
+/// ```
+///
+/// Cargo runs the build script again when the spec changes. A spec with mistakes ends the build, with every mistake drawn.
+pub fn compile_spec(spec: impl AsRef<Path>) -> GeneratedCode {
+    compile_spec_for(spec, None)
+}
+
+/// As [`compile_spec`], with other analyses than the spec's.
+pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> GeneratedCode {
+    let spec = spec.as_ref();
+    println!("cargo::rerun-if-changed={}", spec.display());
+    let code = open(spec)
+        .and_then(|source| compile::compile(&source, analyses).map_err(OpenError::Mistakes))
+        .unwrap_or_else(|error| error.fail());
+    let target = out_dir().join(format!("{}.rs", code.name));
+    write(&target, &code.text).unwrap_or_else(|error| fail(&format!("{}: {error}", target.display()), ""));
+    code
+}
+
+/// Reads a spec; a file that is too large is not read to its end.
+///
+/// # Errors
+/// Those of the file system, a file that is too large or not text.
+pub fn open(spec: &Path) -> Result<SourceFile, OpenError> {
+    let name = spec.display().to_string();
+    let failed = |error: io::Error| OpenError::File(format!("{name}: {error}"));
+    let mut bytes = Vec::new();
+    let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX).saturating_add(1);
+    fs::File::open(spec).map_err(failed)?.take(limit).read_to_end(&mut bytes).map_err(failed)?;
+    SourceFile::from_bytes(name.clone(), &bytes).map_err(OpenError::Mistakes)
+}
+
+/// Why a spec could not be opened or compiled.
+#[derive(Debug)]
+pub enum OpenError {
+    /// The file system said no.
+    File(String),
+    /// The spec has mistakes.
+    Mistakes(Diagnostics),
+}
+
+impl fmt::Display for OpenError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            OpenError::File(message) => f.write_str(message),
+            OpenError::Mistakes(mistakes) => mistakes.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for OpenError {}
+
+impl OpenError {
+    fn fail(&self) -> ! {
+        match self {
+            OpenError::File(message) => fail(message, ""),
+            OpenError::Mistakes(mistakes) => fail(&mistakes.headline(), &mistakes.to_string()),
+        }
+    }
+}
+
+/// The build script's output directory.
+pub fn out_dir() -> PathBuf {
+    env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_else(|| fail("OUT_DIR is set by cargo in build scripts only", ""))
+}
+
+/// Writes a file whole or not at all.
+///
+/// # Errors
+/// Those of the file system.
+pub fn write(target: &Path, text: &str) -> io::Result<()> {
+    let unfinished = target.with_extension("unfinished");
+    fs::write(&unfinished, text)?;
+    fs::rename(&unfinished, target)
+}
+
+/// Cargo shows one line of an error, so the headline goes there and the drawing to standard error.
+fn fail(headline: &str, drawn: &str) -> ! {
+    eprintln!("{drawn}");
+    println!("cargo::error={headline}");
+    process::exit(1)
+}

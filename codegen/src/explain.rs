@@ -1,0 +1,93 @@
+//! A chain in words: bodies, coordinates, what is left out and why, what each function costs.
+
+use std::fmt::Write;
+
+use crate::chain::{Axis, BodyId, Chain, CoordinateKind, Step};
+use crate::emit::Report;
+
+/// Everything about a chain and its functions, as text for a terminal.
+#[must_use]
+pub fn explain(chain: &Chain, report: &Report) -> String {
+    let mut text = format!("{}: {}\nspec hash {}\n", chain.name, chain.title, chain.spec_hash);
+    for section in [bodies(chain), coordinates(chain), left_out(report), costs(report)] {
+        text.push('\n');
+        text.push_str(&section);
+    }
+    text
+}
+
+fn bodies(chain: &Chain) -> String {
+    let defaults = chain.parameter_defaults();
+    let mut text = format!("{:<20} {:>12} {:>6}  {}\n", "body", "mass [kg]", "n_dof", "path from the body before it");
+    for (p, body) in chain.bodies.iter().enumerate() {
+        let mass = body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&defaults));
+        let path: Vec<String> = body.path.iter().map(|step| describe(chain, step, &defaults)).collect();
+        let degrees = chain.degrees_of_freedom(BodyId(p));
+        let _ = writeln!(text, "{:<20} {mass:>12.3} {degrees:>6}  {}", body.name, path.join(" "));
+    }
+    text
+}
+
+fn describe(chain: &Chain, step: &Step, parameters: &[f64]) -> String {
+    match step {
+        Step::Translate(by) => {
+            let [x, y, z] = [0, 1, 2].map(|i| by[i].at(parameters));
+            format!("T({x:.4}, {y:.4}, {z:.4})")
+        }
+        Step::Rotate { axis, sin, cos } => {
+            let angle = sin.at(parameters).atan2(cos.at(parameters)).to_degrees();
+            format!("R{}({angle:.2}°)", letter(*axis))
+        }
+        Step::Move(id) => {
+            let coordinate = &chain.coordinates[id.0];
+            let motion = if coordinate.kind == CoordinateKind::Rotation { "R" } else { "T" };
+            format!("{motion}{}({})", letter(coordinate.axis), coordinate.name)
+        }
+    }
+}
+
+fn letter(axis: Axis) -> &'static str {
+    ["x", "y", "z"][axis.index()]
+}
+
+fn coordinates(chain: &Chain) -> String {
+    let mut text = format!("{:>4}  {:<24} {:<6} {:>12}\n", "q", "coordinate", "unit", "start");
+    for (i, coordinate) in chain.coordinates.iter().enumerate() {
+        let unit = if coordinate.kind == CoordinateKind::Rotation { "rad" } else { "m" };
+        let _ = writeln!(text, "{i:>4}  {:<24} {unit:<6} {:>12.6}", coordinate.name, chain.guess[i]);
+    }
+    text
+}
+
+fn left_out(report: &Report) -> String {
+    let mut text = String::from("left out\n");
+    if report.left_out.is_empty() {
+        text.push_str("  nothing: the scene needs everything\n");
+    }
+    for (what, why) in &report.left_out {
+        let _ = writeln!(text, "  {what}: {why}");
+    }
+    text
+}
+
+fn costs(report: &Report) -> String {
+    let mut text = format!(
+        "{:<30} {:>8} {:>8} {:>8} {:>6} {:>8} {:>14}\n",
+        "function", "total", "add", "mul", "div", "sin_cos", "unsimplified"
+    );
+    for cost in &report.costs {
+        let c = &cost.operations;
+        let _ = writeln!(
+            text,
+            "{:<30} {:>8} {:>8} {:>8} {:>6} {:>8} {:>14}",
+            cost.function,
+            c.total(),
+            c.additions,
+            c.multiplications,
+            c.divisions,
+            c.angles,
+            cost.verbatim.total()
+        );
+    }
+    text
+}
