@@ -1,0 +1,199 @@
+//! The rules of the spec language: each has a code, a title, a label and a remedy.
+
+use std::fmt::Display;
+
+use super::{Mistake, Span};
+
+/// A rule, for documentation and for the test that each has an example.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rule {
+    /// Code, such as `E031`.
+    pub code: &'static str,
+    /// What the rule asks for.
+    pub about: &'static str,
+}
+
+/// Turns the table below into one constructor a rule and into [`CATALOGUE`].
+macro_rules! catalogue {
+    ($($(#[doc = $about:literal])+ $code:ident $name:ident($($word:ident),*) $title:literal, $label:literal, $help:literal;)+) => {
+        /// Every rule, by code.
+        pub const CATALOGUE: &[Rule] =
+            &[$(Rule { code: stringify!($code), about: concat!($($about),+) }),+];
+
+        /// One function a rule, that says how it was broken.
+        pub(crate) mod rule {
+            use super::{Display, Mistake, Span};
+            $(
+                $(#[doc = $about])+
+                pub(crate) fn $name(span: Span, $($word: impl Display),*) -> Mistake {
+                    Mistake {
+                        code: stringify!($code),
+                        span,
+                        title: format!($title),
+                        label: format!($label),
+                        help: format!($help),
+                    }
+                }
+            )+
+        }
+    };
+}
+
+catalogue! {
+    // The file.
+    /// A file holds at most 4 MiB.
+    E001 too_large(size, limit) "the file is too large for a crane: {size} bytes", "a spec is at most {limit} bytes",
+        "check that this is the right file; a crane takes some thousand bytes";
+    /// A file is UTF-8 text.
+    E002 not_utf8(at) "the file is not text", "byte {at} is not UTF-8", "save the file as UTF-8 text";
+    /// A file is not empty.
+    E003 empty() "the file is empty", "no crane here",
+        "start with `format: 1`, `name:` and `links:`; specs/double_pendulum.yaml is a short example";
+    /// A file is one YAML document.
+    E004 not_yaml(problem) "the file is not YAML: {problem}", "the reader stopped here",
+        "check indentation, brackets and quotes of this line and the one before";
+    /// The top level is a mapping of keys to values.
+    E005 not_a_mapping(found) "the file describes no crane: its top level is {found}", "expected keys here",
+        "write `key: value` lines, beginning with `format: 1`";
+    /// `format` names a version of the language that this compiler reads.
+    E006 wrong_format(given) "format {given} is not known", "this compiler reads format 1", "write `format: 1`";
+
+    // Keys and shapes.
+    /// Every key is one of the language.
+    E010 unknown_key(key, help) "unknown key `{key}`", "not a key here", "{help}";
+    /// A key stands once in its mapping.
+    E011 duplicate_key(key) "key `{key}` is given twice", "given before", "keep one of the two";
+    /// Keys without a default are given.
+    E012 missing_key(key, place) "{place} lacks `{key}`", "`{key}` is missing here", "add `{key}:`";
+    /// A value has the shape that its key asks for.
+    E013 wrong_value(place, expected, found) "{place} cannot be {found}", "expected {expected}", "write {expected}";
+    /// A choice is one of those offered.
+    E014 unknown_choice(place, given, help) "{place} cannot be `{given}`", "not one of the choices", "{help}";
+    /// Of several ways to say it, one is used.
+    E015 not_one_choice(place, count, choices) "{place} needs exactly one choice, here are {count}", "one of {choices}",
+        "keep exactly one of {choices}";
+    /// A list has as many items as its key asks for.
+    E016 wrong_length(place, expected, found) "{place} has {found} items instead of {expected}",
+        "{expected} items belong here", "write {expected} items";
+
+    // Names.
+    /// Names are snake_case identifiers: they become names in Rust.
+    E020 not_an_identifier(name) "`{name}` cannot be a name", "not an identifier",
+        "use lower-case letters, digits and `_`, beginning with a letter, such as `outer_boom`";
+    /// Names are not keywords of Rust.
+    E021 keyword(name) "`{name}` cannot be a name", "a keyword of Rust", "choose another word, such as `{name}_1`";
+    /// Names are unique among their kind, rigid elements and coordinates included.
+    E022 duplicate_name(kinds, name, other) "two {kinds} are called `{name}`", "taken by {other}", "rename one of the two";
+    /// A parameter that is referred to exists.
+    E023 unknown_parameter(name, help) "there is no parameter `{name}`", "neither a number nor a parameter", "{help}";
+    /// A material that is referred to exists.
+    E024 unknown_material(name, help) "there is no material `{name}`", "not under `materials:`", "{help}";
+    /// A link that is referred to exists.
+    E025 unknown_link(name, help) "there is no link `{name}`", "not under `links:`", "{help}";
+    /// A coordinate that is referred to exists.
+    E026 unknown_coordinate(name, help) "there is no coordinate `{name}`", "no joint moves it", "{help}";
+    /// A parameter is used somewhere.
+    E027 unused_parameter(name) "parameter `{name}` is never used", "no number refers to it",
+        "write `{name}` where a number stands, or remove it";
+
+    // Numbers.
+    /// Numbers are finite.
+    E030 not_finite(place, given) "{place} is {given}", "not a finite number", "write a finite number, in SI units";
+    /// Masses, lengths, sections, moduli and durations are above zero.
+    E031 not_positive(place, given, unit) "{place} must be above zero, not {given}", "{given} {unit}",
+        "write a number above 0, in {unit}";
+    /// Stiffness, damping and what else may vanish are not below zero.
+    E032 negative(place, given, unit) "{place} must not be below zero, and is {given}", "{given} {unit}",
+        "write 0 or a number above, in {unit}";
+    /// Numbers are of a size that occurs: 0, or between 1e-30 and 1e18.
+    E033 out_of_range(place, given) "{place} is {given}, which no crane has", "0, or from 1e-30 to 1e18",
+        "check the exponent; every number is in SI units";
+    /// An angle is written only where an angle belongs.
+    E034 misplaced_angle(place) "{place} is not an angle", "`deg` and `pi` belong to angles", "write a number, in SI units";
+
+    // Links.
+    /// A crane has at least one link.
+    E040 no_links() "the crane has no links", "empty", "add a link: `- {{name: boom, joint: revolute, ...}}`";
+    /// Only the base is free.
+    E041 free_inside(link) "link `{link}` is free, but hangs on another link", "only the first link may be free",
+        "use `fixed`, `revolute` or `prismatic`";
+    /// A free base has at least one coordinate, each once.
+    E042 base_coordinates(link, problem) "the coordinates of base `{link}` are {problem}", "{problem}",
+        "list some of x, y, z, psi, theta, phi, each once; or write `free` for all six, `fixed` for none";
+    /// The joint of a D-H row turns about z or moves along it.
+    E043 dh_axis(link) "the joint of link `{link}` is not about z", "a D-H row has its joint on z",
+        "leave `axis` out, or place the link by `transform`";
+    /// Mass, bodies and beam exclude one another.
+    E044 two_masses(link, first, second) "link `{link}` has both `{first}` and `{second}`", "beside `{first}`",
+        "give one of `mass`, `bodies`, `beam`";
+    /// Centre of mass and inertia go with a mass.
+    E045 without_mass(link, key) "link `{link}` has `{key}` but no mass", "of what?", "add `mass:`, or remove `{key}`";
+    /// Every joint moves a mass of its own, else the mass matrix is singular.
+    E046 moves_nothing(coordinate) "coordinate `{coordinate}` moves no mass of its own", "the mass matrix is singular",
+        "give the links after this joint mass and inertia, or fix the joint";
+
+    // Inertias.
+    /// An inertia is positive definite.
+    E050 not_positive_definite(place, smallest) "{place} is not positive definite",
+        "smallest principal moment about the centre of mass: {smallest} kg m²",
+        "check signs, products and `about`; leave `inertia` out for a point mass";
+    /// Principal moments satisfy the triangle inequality: none exceeds the sum of the other two.
+    E051 triangle(place, largest, others) "{place} belongs to no body", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
+        "no principal moment about the centre of mass may exceed the sum of the other two";
+    /// An inertia is given by its tensor or by radii of gyration.
+    E052 two_inertias(place) "{place} is given in two ways", "beside `gyration`",
+        "give `gyration` alone, or `Ixx`, `Iyy`, `Izz`";
+
+    // Beams.
+    /// A beam has 1 to 1000 sections, or is rigid.
+    E060 sections(given) "a beam cannot have {given} sections", "expected an integer from 1 to 1000, or `rigid`",
+        "write an integer such as 4, or `rigid`";
+    /// A beam is given by sections or by elements.
+    E061 two_beams(key) "the beam is given in two ways: `{key}` beside `elements`", "belongs to a beam of equal sections",
+        "give `sections`, `material`, `section`, or `elements` and `springs`";
+    /// Between n + 1 elements there are n springs, at least one.
+    E062 springs(elements, springs) "{elements} elements cannot have {springs} springs", "a spring between each two elements",
+        "give one spring fewer than elements, and at least one";
+    /// Walls fit into their section.
+    E063 wall(thickness, size) "the wall of the section is too thick", "twice {thickness} m leaves no hollow in {size} m",
+        "make `thickness` less than half of the smaller side, in m, or use `solid` or `circle`";
+    /// The elements of a beam add up to its length.
+    E064 beam_length(sum, length) "the elements do not add up to the beam", "{sum} m in all, the beam is {length} m long",
+        "make the lengths of the elements add up to `length`, in m";
+    /// The sides of a solid rectangle are constants: its torsion constant is a series.
+    E065 live_side(place) "{place} cannot be a parameter", "the torsion constant of a solid rectangle is a series",
+        "write a number, or give `numbers: {{area, Jy, Jz, Jo}}` with parameters";
+
+    // Supports.
+    /// Supports carry a base that can move.
+    E070 base_fixed(base) "the crane has supports, but its base `{base}` is not free", "nothing to support",
+        "write `joint: free` in the first link, or remove `supports`";
+    /// Linear supports belong to a base that is placed without rotation.
+    E071 linear_rotated(support) "support `{support}` is linear, but the base is placed with a rotation",
+        "linear kinematics take the base's axes for the world's", "write `kinematics: exact`, or place the base without rotation";
+
+    // Drives, damping, profiles.
+    /// A coordinate has one drive, and one passive damping at most.
+    E080 driven_twice(coordinate) "coordinate `{coordinate}` is driven twice", "has a drive already", "keep one of the two";
+    /// Drives act on joints, not on a free base or inside a beam.
+    E081 cannot_drive(coordinate, owner) "coordinate `{coordinate}` cannot be driven", "it belongs to {owner}",
+        "drive the coordinate of a revolute or prismatic joint";
+    /// A table has as many values as times, at least two.
+    E082 table_length(times, values) "a table of {times} times and {values} values", "one value for each time, at least two",
+        "give as many `values` as `times`";
+    /// The times of a table increase.
+    E083 table_order(before, after) "the table runs backwards: {after} s after {before} s", "not later than {before} s",
+        "order `times` strictly increasing, in s";
+    /// The ramps of a trapezoid take more than nothing and at most half of its duration.
+    E084 blend(given) "a trapezoid cannot have blend {given}", "above 0, up to 0.5", "write the share of the duration spent accelerating, such as 0.25";
+    /// Passive damping is of joints that are not driven, nor inside a beam.
+    E085 not_passive(coordinate, owner) "coordinate `{coordinate}` is not passive", "it belongs to {owner}",
+        "give the damping there";
+
+    // Run.
+    /// `step` ≤ `output` ≤ `duration`.
+    E090 run_order(smaller, larger) "`{smaller}` is longer than `{larger}`", "longer than `{larger}`",
+        "choose step ≤ output ≤ duration, in s";
+    /// There is something to compute.
+    E091 no_analyses() "`analyses` is empty", "nothing to compute", "list some of statics, dynamics, modes, derivatives";
+}

@@ -1,0 +1,46 @@
+//! Draws mistakes under the lines they are on.
+
+use std::fmt;
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+
+use super::{Mistake, SourceFile};
+
+/// More mistakes than this are counted, not drawn: nobody reads on.
+const MAX_DRAWN: usize = 100;
+/// A line longer than this is cut around the mistake, bytes.
+const MAX_LINE: usize = 400;
+
+/// Writes every mistake with file, line, column, the offending line, label and help, then how many there are.
+pub(super) fn draw(source: &SourceFile, mistakes: &[Mistake], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let renderer = Renderer::plain();
+    for mistake in mistakes.iter().take(MAX_DRAWN) {
+        draw_one(&renderer, source, mistake, f)?;
+        f.write_str("\n\n")?;
+    }
+    match mistakes.len() {
+        1 => write!(f, "{}: 1 mistake", source.name),
+        n if n > MAX_DRAWN => write!(f, "{}: {n} mistakes, of which {} are not shown", source.name, n - MAX_DRAWN),
+        n => write!(f, "{}: {n} mistakes", source.name),
+    }
+}
+
+fn draw_one(renderer: &Renderer, source: &SourceFile, mistake: &Mistake, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let start = source.boundary(mistake.span.start);
+    let line = source.line(start);
+    let first = source.boundary(line.start.max(start.saturating_sub(MAX_LINE / 2)));
+    let last = source.boundary(line.end.min(start + MAX_LINE / 2));
+    // A span that runs over its line, as that of a block, is drawn as far as the line goes.
+    let end = source.boundary(mistake.span.end).clamp(start, last);
+    let (number, _) = source.position(start);
+    let snippet = Snippet::source(&source.text[first..last])
+        .line_start(number)
+        .path(&source.name)
+        .annotation(AnnotationKind::Primary.span(start - first..end - first).label(&mistake.label));
+    let report = Level::ERROR
+        .primary_title(&mistake.title)
+        .id(mistake.code)
+        .element(snippet)
+        .element(Level::HELP.message(&mistake.help));
+    f.write_str(&renderer.render(&[report]))
+}

@@ -1,0 +1,67 @@
+//! Mistakes of a spec: what is wrong, where, and what to write instead; all of a file at once.
+
+mod catalogue;
+mod draw;
+mod source;
+
+pub use catalogue::{CATALOGUE, Rule};
+pub(crate) use catalogue::rule;
+pub use source::{MAX_BYTES, SourceFile, Span};
+
+use std::fmt;
+
+/// One mistake.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mistake {
+    /// Code of the rule it breaks, such as `E031`.
+    pub code: &'static str,
+    /// Where it is, bytes of the source.
+    pub span: Span,
+    /// What is wrong, in the user's own names.
+    pub title: String,
+    /// Why, under the offending words.
+    pub label: String,
+    /// What to write instead.
+    pub help: String,
+}
+
+/// All mistakes of one file, in the order of the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostics {
+    source: SourceFile,
+    mistakes: Vec<Mistake>,
+}
+
+impl Diagnostics {
+    /// Mistakes of a source file; there is at least one.
+    pub(crate) fn new(source: &SourceFile, mut mistakes: Vec<Mistake>) -> Self {
+        mistakes.sort_by_key(|m| (m.span.start, m.code));
+        Diagnostics { source: source.clone(), mistakes }
+    }
+
+    /// The mistakes, in the order of the file.
+    #[must_use]
+    pub fn mistakes(&self) -> &[Mistake] {
+        &self.mistakes
+    }
+
+    /// The whole in one line, for places that show no more: `crane.yaml:3:5: unknown key `masss` [E010] (and 2 more)`.
+    #[must_use]
+    pub fn headline(&self) -> String {
+        let Some(first) = self.mistakes.first() else { return format!("{}: no mistakes", self.source.name) };
+        let (line, column) = self.source.position(first.span.start);
+        let more = match self.mistakes.len() - 1 {
+            0 => String::new(),
+            n => format!(" (and {n} more)"),
+        };
+        format!("{}:{line}:{column}: {} [{}]{more}", self.source.name, first.title, first.code)
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        draw::draw(&self.source, &self.mistakes, f)
+    }
+}
+
+impl std::error::Error for Diagnostics {}

@@ -1,0 +1,10 @@
+//! Formulas by which links become bodies: placements to steps, mass properties to pseudo-inertias, cross-sections to
+//! stiffnesses, flexible links to rigid finite elements, tables to splines. Nothing here can fail; what goes in has
+//! been checked by [`validate`](crate::validate()).
+
+pub(crate) mod beam;
+pub(crate) mod inertia;
+pub(crate) mod placement;
+pub(crate) mod profile;
+pub(crate) mod section;
+pub(crate) mod spline;

@@ -1,0 +1,227 @@
+//! How a [`Reader`] hands out what is inside a node.
+
+use std::collections::BTreeSet;
+
+use serde::de::value::StrDeserializer;
+use serde::de::{DeserializeSeed, EnumAccess, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor};
+
+use super::deserializer::{Reader, Unread};
+use super::nearest::suggest;
+use super::tree::{Content, Node};
+use crate::diagnostic::{Span, rule};
+
+/// Where a value is shown: a scalar where it stands, a list or mapping at its key.
+fn shown(key: Span, value: &Node) -> Span {
+    match value.content {
+        Content::Sequence(_) | Content::Mapping(_) | Content::Null => key,
+        _ => value.span,
+    }
+}
+
+/// Where an item of a list is shown: a mapping at its first key.
+fn shown_item(item: &Node) -> Span {
+    match &item.content {
+        Content::Mapping(entries) => entries.first().map_or(item.span, |(key, _)| key.span),
+        _ => item.span,
+    }
+}
+
+/// Start, end and value of a node, for [`Given`](crate::spec::Given).
+pub(super) struct Parts<'a> {
+    reader: Reader<'a>,
+    next: usize,
+}
+
+impl<'a> Parts<'a> {
+    pub fn new(reader: Reader<'a>) -> Self {
+        Parts { reader, next: 0 }
+    }
+}
+
+impl<'a> SeqAccess<'a> for Parts<'a> {
+    type Error = Unread;
+    fn next_element_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<Option<T::Value>, Unread> {
+        self.next += 1;
+        match self.next {
+            1 => seed.deserialize(self.reader.span.start.into_deserializer()).map(Some),
+            2 => seed.deserialize(self.reader.span.end.into_deserializer()).map(Some),
+            _ => match seed.deserialize(self.reader) {
+                Ok(value) => Ok(Some(value)),
+                Err(unread) => {
+                    self.reader.report_unread(unread);
+                    Err(Unread::Reported)
+                }
+            },
+        }
+    }
+}
+
+/// Items of a list.
+pub(super) struct Items<'a> {
+    reader: Reader<'a>,
+    items: std::slice::Iter<'a, Node>,
+}
+
+impl<'a> Items<'a> {
+    pub fn new(reader: Reader<'a>, items: &'a [Node]) -> Self {
+        Items { reader, items: items.iter() }
+    }
+}
+
+impl<'a> SeqAccess<'a> for Items<'a> {
+    type Error = Unread;
+    fn next_element_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<Option<T::Value>, Unread> {
+        let Some(item) = self.items.next() else { return Ok(None) };
+        seed.deserialize(Reader { node: Some(item), span: shown_item(item), ..self.reader }).map(Some)
+    }
+}
+
+/// Names of the user's own and their values; the second of two equal names is reported and skipped.
+pub(super) struct Entries<'a> {
+    reader: Reader<'a>,
+    entries: &'a [(Node, Node)],
+    next: usize,
+    seen: BTreeSet<String>,
+}
+
+impl<'a> Entries<'a> {
+    pub fn new(reader: Reader<'a>, entries: &'a [(Node, Node)]) -> Self {
+        Entries { reader, entries, next: 0, seen: BTreeSet::new() }
+    }
+}
+
+/// The key as a reader may borrow it.
+fn borrowed(key: &Node) -> &str {
+    match &key.content {
+        Content::Text(text) => text,
+        _ => "the entry",
+    }
+}
+
+impl<'a> MapAccess<'a> for Entries<'a> {
+    type Error = Unread;
+    fn next_key_seed<K: DeserializeSeed<'a>>(&mut self, seed: K) -> Result<Option<K::Value>, Unread> {
+        while let Some((key, _)) = self.entries.get(self.next) {
+            self.next += 1;
+            let name = key.key_text();
+            if !self.seen.insert(name.clone()) {
+                self.reader.report(rule::duplicate_key(key.span, name));
+                continue;
+            }
+            return seed.deserialize(Reader { node: Some(key), span: key.span, ..self.reader }).map(Some);
+        }
+        Ok(None)
+    }
+    fn next_value_seed<V: DeserializeSeed<'a>>(&mut self, seed: V) -> Result<V::Value, Unread> {
+        let (key, value) = &self.entries[self.next - 1];
+        let reader = self.reader;
+        let owner = reader.key;
+        seed.deserialize(Reader { node: Some(value), span: shown(key.span, value), key: borrowed(key), owner, ..reader })
+    }
+}
+
+/// Fields of a struct: those that are given, then those that are not, so that the ones that are required get reported.
+pub(super) struct Fields<'a> {
+    reader: Reader<'a>,
+    fields: &'static [&'static str],
+    given: Vec<Option<(Span, &'a Node)>>,
+    next: usize,
+}
+
+impl<'a> Fields<'a> {
+    /// Reports unknown and duplicate keys, and leaves them out.
+    pub fn new(reader: Reader<'a>, entries: &'a [(Node, Node)], fields: &'static [&'static str]) -> Self {
+        let mut given = vec![None; fields.len()];
+        for (key, value) in entries {
+            let name = key.key_text();
+            match fields.iter().position(|field| *field == name) {
+                None => {
+                    let help = suggest(&name, fields.iter().copied());
+                    reader.report(rule::unknown_key(key.span, name, help));
+                }
+                Some(field) if given[field].is_some() => {
+                    reader.report(rule::duplicate_key(key.span, name));
+                }
+                Some(field) => given[field] = Some((shown(key.span, value), value)),
+            }
+        }
+        Fields { reader, fields, given, next: 0 }
+    }
+}
+
+impl<'a> MapAccess<'a> for Fields<'a> {
+    type Error = Unread;
+    fn next_key_seed<K: DeserializeSeed<'a>>(&mut self, seed: K) -> Result<Option<K::Value>, Unread> {
+        let Some(field) = self.fields.get(self.next) else { return Ok(None) };
+        self.next += 1;
+        let key: StrDeserializer<Unread> = (*field).into_deserializer();
+        seed.deserialize(key).map(Some)
+    }
+    fn next_value_seed<V: DeserializeSeed<'a>>(&mut self, seed: V) -> Result<V::Value, Unread> {
+        let field = self.next - 1;
+        let (span, node) = match self.given[field] {
+            Some((span, node)) => (span, Some(node)),
+            None => (self.reader.span, None),
+        };
+        let owner = self.reader.key;
+        seed.deserialize(Reader { node, span, key: self.fields[field], owner, ..self.reader })
+    }
+}
+
+/// A chosen variant, and what was given with it.
+pub(super) struct Choice<'a> {
+    pub reader: Reader<'a>,
+    pub variant: &'static str,
+    pub node: Option<&'a Node>,
+}
+
+impl<'a> Choice<'a> {
+    /// Reader of what was given with the variant.
+    fn content(&self) -> Reader<'a> {
+        let span = self.node.map_or(self.reader.span, |node| shown(self.reader.span, node));
+        Reader { node: self.node, span, key: self.variant, owner: self.reader.key, ..self.reader }
+    }
+
+    /// Reports here what the content cannot report itself, as it has no place of its own.
+    fn placed<T>(reader: Reader<'a>, result: Result<T, Unread>) -> Result<T, Unread> {
+        result.map_err(|unread| {
+            reader.report_unread(unread);
+            Unread::Reported
+        })
+    }
+}
+
+impl<'a> EnumAccess<'a> for Choice<'a> {
+    type Error = Unread;
+    type Variant = Self;
+    fn variant_seed<V: DeserializeSeed<'a>>(self, seed: V) -> Result<(V::Value, Self), Unread> {
+        let name: StrDeserializer<Unread> = self.variant.into_deserializer();
+        Ok((seed.deserialize(name)?, self))
+    }
+}
+
+impl<'a> VariantAccess<'a> for Choice<'a> {
+    type Error = Unread;
+    fn unit_variant(self) -> Result<(), Unread> {
+        match self.node {
+            None => Ok(()),
+            Some(_) => Err(Unread::Expected(format!("the word `{}` alone", self.variant))),
+        }
+    }
+    fn newtype_variant_seed<T: DeserializeSeed<'a>>(self, seed: T) -> Result<T::Value, Unread> {
+        let reader = self.content();
+        Self::placed(reader, seed.deserialize(reader))
+    }
+    fn tuple_variant<V: Visitor<'a>>(self, _: usize, visitor: V) -> Result<V::Value, Unread> {
+        let reader = self.content();
+        Self::placed(reader, serde::Deserializer::deserialize_seq(reader, visitor))
+    }
+    fn struct_variant<V: Visitor<'a>>(
+        self,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Unread> {
+        let reader = self.content();
+        Self::placed(reader, reader.fields(fields, visitor))
+    }
+}

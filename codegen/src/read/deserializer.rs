@@ -1,0 +1,227 @@
+//! Reads derived types from a [`Node`], notes mistakes and goes on.
+
+use std::cell::RefCell;
+use std::fmt::Display;
+
+use serde::de::{self, Deserializer, Expected, Unexpected, Visitor};
+use serde::forward_to_deserialize_any;
+
+use super::access::{Choice, Entries, Fields, Items, Parts};
+use super::nearest::{list, suggest};
+use super::tree::{Content, Node};
+use crate::diagnostic::{Mistake, Span, rule};
+use crate::spec::{EITHER, GIVEN, MANY};
+
+/// Why a value could not be read.
+#[derive(Debug)]
+pub(super) enum Unread {
+    /// It has been reported.
+    Reported,
+    /// It is not what its type asks for.
+    Expected(String),
+}
+
+impl Display for Unread {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Unread::Reported => f.write_str("reported"),
+            Unread::Expected(expected) => write!(f, "expected {expected}"),
+        }
+    }
+}
+
+impl std::error::Error for Unread {}
+
+impl de::Error for Unread {
+    fn custom<T: Display>(message: T) -> Self {
+        Unread::Expected(message.to_string())
+    }
+    fn invalid_type(_: Unexpected, expected: &dyn Expected) -> Self {
+        Unread::Expected(expected.to_string())
+    }
+    fn invalid_value(_: Unexpected, expected: &dyn Expected) -> Self {
+        Unread::Expected(expected.to_string())
+    }
+}
+
+/// A node to read, or the place where one is missing.
+#[derive(Clone, Copy)]
+pub(super) struct Reader<'a> {
+    /// The node, unless it is missing.
+    pub node: Option<&'a Node>,
+    /// Where it stands, or where it is missed.
+    pub span: Span,
+    /// Its key.
+    pub key: &'a str,
+    /// What it is part of, for messages.
+    pub owner: &'a str,
+    /// The mistakes so far.
+    pub mistakes: &'a RefCell<Vec<Mistake>>,
+}
+
+impl<'a> Reader<'a> {
+    /// A reader of the whole file.
+    pub fn root(node: &'a Node, mistakes: &'a RefCell<Vec<Mistake>>) -> Self {
+        Reader { node: Some(node), span: node.span, key: "the crane", owner: "the file", mistakes }
+    }
+
+    /// Notes a mistake; the value is then [`Unread::Reported`].
+    pub fn report(&self, mistake: Mistake) -> Unread {
+        self.mistakes.borrow_mut().push(mistake);
+        Unread::Reported
+    }
+
+    /// Notes that the value is not what was expected, unless that was said.
+    pub fn report_unread(&self, unread: Unread) {
+        if let (Unread::Expected(expected), Some(node)) = (unread, self.node) {
+            self.report(rule::wrong_value(self.span, self.place(), expected, node.content.describe()));
+        }
+    }
+
+    /// The node's content; a missing node is a mistake.
+    fn content(&self) -> Result<&'a Content, Unread> {
+        match self.node {
+            Some(node) => Ok(&node.content),
+            None => Err(self.report(rule::missing_key(self.span, self.key, self.owner))),
+        }
+    }
+
+    /// Name of the place for messages.
+    pub fn place(&self) -> String {
+        format!("`{}`", self.key)
+    }
+
+    /// The fields of a mapping.
+    pub fn fields<V: Visitor<'a>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Unread> {
+        match self.content()? {
+            Content::Mapping(entries) => visitor.visit_map(Fields::new(self, entries, fields)),
+            _ if fields.is_empty() => Err(Unread::Expected("a mapping".into())),
+            _ => Err(Unread::Expected(format!("a mapping of {}", list(fields)))),
+        }
+    }
+}
+
+impl<'de> Deserializer<'de> for Reader<'de> {
+    type Error = Unread;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
+        match self.content()? {
+            Content::Null => visitor.visit_unit(),
+            Content::Boolean(boolean) => visitor.visit_bool(*boolean),
+            Content::Number(number) => visitor.visit_f64(*number),
+            Content::Text(text) => visitor.visit_borrowed_str(text),
+            Content::Sequence(items) => visitor.visit_seq(Items::new(self, items)),
+            Content::Mapping(entries) => visitor.visit_map(Entries::new(self, entries)),
+        }
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
+        if self.node.is_some() { visitor.visit_some(self) } else { visitor.visit_none() }
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, name: &'static str, visitor: V) -> Result<V::Value, Unread> {
+        if name == GIVEN {
+            return visitor.visit_seq(Parts::new(self));
+        }
+        match (name, self.content()?) {
+            (EITHER, Content::Mapping(_)) => visitor.visit_some(self),
+            (MANY, Content::Sequence(items)) => visitor.visit_seq(Items::new(self, items)),
+            (MANY, _) => visitor.visit_seq(Items::new(self, self.node.map_or(&[], std::slice::from_ref))),
+            _ => visitor.visit_newtype_struct(self),
+        }
+    }
+
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
+        match self.content()? {
+            Content::Sequence(items) => visitor.visit_seq(Items::new(self, items)),
+            _ => Err(Unread::Expected("a list".into())),
+        }
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Unread> {
+        match self.content()? {
+            Content::Sequence(items) if items.len() == length => visitor.visit_seq(Items::new(self, items)),
+            Content::Sequence(items) => {
+                Err(self.report(rule::wrong_length(self.span, self.place(), length, items.len())))
+            }
+            _ => Err(Unread::Expected(format!("a list of {length} numbers"))),
+        }
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
+        match self.content()? {
+            Content::Mapping(entries) => visitor.visit_map(Entries::new(self, entries)),
+            _ => Err(Unread::Expected("a mapping of names to values".into())),
+        }
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Unread> {
+        self.fields(fields, visitor)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        variants: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Unread> {
+        let chosen = |name: &str| variants.iter().copied().find(|variant| *variant == name);
+        let unknown = |span, name: &str| {
+            let help = suggest(name, variants.iter().copied());
+            self.report(rule::unknown_choice(span, self.place(), name, help))
+        };
+        match self.content()? {
+            Content::Text(name) => match chosen(name) {
+                Some(variant) => visitor.visit_enum(Choice { reader: self, variant, node: None }),
+                None => Err(unknown(self.span, name)),
+            },
+            Content::Mapping(entries) => {
+                let mut choices = Vec::new();
+                let mut all_known = true;
+                for (key, node) in entries {
+                    let name = key.key_text();
+                    match chosen(&name) {
+                        Some(variant) => choices.push((key, variant, node)),
+                        None => {
+                            unknown(key.span, &name);
+                            all_known = false;
+                        }
+                    }
+                }
+                match choices[..] {
+                    [(key, variant, node)] if all_known => {
+                        let reader = Reader { span: key.span, ..self };
+                        visitor.visit_enum(Choice { reader, variant, node: Some(node) })
+                    }
+                    _ if !all_known => Err(Unread::Reported),
+                    _ => {
+                        let span = choices.get(1).map_or(self.span, |(key, ..)| key.span);
+                        Err(self.report(rule::not_one_choice(span, self.place(), choices.len(), list(variants))))
+                    }
+                }
+            }
+            _ => Err(Unread::Expected(format!("one of {}", list(variants)))),
+        }
+    }
+
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
+        match self.content()? {
+            Content::Text(text) => visitor.visit_borrowed_str(text),
+            _ => Err(Unread::Expected("text".into())),
+        }
+    }
+
+    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
+        self.deserialize_string(visitor)
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char bytes byte_buf unit unit_struct tuple_struct
+        identifier ignored_any
+    }
+}

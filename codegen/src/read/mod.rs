@@ -1,0 +1,38 @@
+//! `SourceFile ─read→ CraneSpec`: text to the types of [`spec`](crate::spec).
+//!
+//! The text becomes a [`tree`] that keeps places and duplicate keys; the derived types are read from that tree by a
+//! [`deserializer`] that notes every mistake and goes on.
+
+mod access;
+mod deserializer;
+mod nearest;
+mod tree;
+
+pub(crate) use nearest::suggest;
+
+use std::cell::RefCell;
+
+use serde::Deserialize;
+
+use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile, Span, rule};
+use crate::spec::{Crane, CraneSpec};
+use deserializer::Reader;
+
+/// Reads a spec as far as it can be read. Mistakes of keys and shapes do not end the reading: they stay with the spec,
+/// and [`validate`](crate::validate()) reports them together with its own.
+///
+/// # Errors
+/// If there is nothing to go on with: the file is too large, empty, not YAML, or lacks what every crane has.
+pub fn read(source: &SourceFile) -> Result<CraneSpec, Diagnostics> {
+    let refuse = |mistakes| Diagnostics::new(source, mistakes);
+    if source.text.len() > MAX_BYTES {
+        let nothing = SourceFile::new(&source.name, "");
+        return Err(Diagnostics::new(&nothing, vec![rule::too_large(Span::START, source.text.len(), MAX_BYTES)]));
+    }
+    let root = tree::parse(&source.text).map_err(|mistake| refuse(vec![mistake]))?;
+    let mistakes = RefCell::default();
+    match Crane::deserialize(Reader::root(&root, &mistakes)) {
+        Ok(crane) => Ok(CraneSpec { crane, mistakes: mistakes.into_inner() }),
+        Err(_) => Err(refuse(mistakes.into_inner())),
+    }
+}

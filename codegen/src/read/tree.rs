@@ -1,0 +1,189 @@
+//! YAML as a tree that keeps every place and every key, duplicates included.
+
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde_yaml::{Location, Spanned};
+
+use crate::diagnostic::{Mistake, Span, rule};
+
+/// A node of the tree.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    /// Where it stands; of a list or mapping, where it begins.
+    pub span: Span,
+    /// What it is.
+    pub content: Content,
+}
+
+/// What a node is.
+#[derive(Clone, Debug)]
+pub(super) enum Content {
+    /// Nothing, `null` or `~`.
+    Null,
+    /// `true` or `false`.
+    Boolean(bool),
+    /// A number; NaN and infinities too, which validation refuses by name.
+    Number(f64),
+    /// Any other scalar.
+    Text(String),
+    /// A list.
+    Sequence(Vec<Node>),
+    /// Keys and values in the order of the file.
+    Mapping(Vec<(Node, Node)>),
+}
+
+impl Node {
+    /// What a key says, whatever it was written as.
+    pub fn key_text(&self) -> String {
+        match &self.content {
+            Content::Text(text) => text.clone(),
+            Content::Number(number) => number.to_string(),
+            Content::Boolean(boolean) => boolean.to_string(),
+            Content::Null => "null".into(),
+            Content::Sequence(_) | Content::Mapping(_) => "? ...".into(),
+        }
+    }
+}
+
+/// Depth at which no spec is nested, and recursion over the tree is still harmless.
+const MAX_DEPTH: usize = 24;
+/// Nodes of a crane with a thousand elements written one by one, twice over; aliases may not multiply them beyond this.
+const MAX_NODES: usize = 1 << 16;
+
+/// Parses YAML.
+pub(super) fn parse(text: &str) -> Result<Node, Mistake> {
+    let budget = serde_yaml::budget! {
+        max_depth: MAX_DEPTH,
+        flow_nesting_limit: MAX_DEPTH,
+        max_nodes: MAX_NODES,
+        max_events: 4 * MAX_NODES,
+    };
+    let options = serde_yaml::options! {
+        budget: budget,
+        duplicate_keys: serde_yaml::DuplicateKeyPolicy::LastWins,
+        merge_keys: serde_yaml::MergeKeyPolicy::AsOrdinary,
+        non_finite_float_policy: serde_yaml::NonFiniteFloatPolicy::PassThrough,
+        strict_booleans: true,
+        legacy_octal_numbers: false,
+        with_snippet: false,
+    };
+    let root: Spanned<Content> = serde_yaml::from_str_with_options(text, options).map_err(|error| {
+        let span = error.location().map_or(Span::START, |location| span(&location));
+        match text.trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}') {
+            "" => rule::empty(Span::START),
+            _ => rule::not_yaml(span, headline(&error)),
+        }
+    })?;
+    let root = Node::from(root);
+    let whole = Span { start: 0, ..root.span };
+    match root.content {
+        Content::Null => Err(rule::empty(whole)),
+        Content::Mapping(_) => Ok(root),
+        content => Err(rule::not_a_mapping(root.span, content.describe())),
+    }
+}
+
+/// The parser's message without the place, which the drawing shows.
+fn headline(error: &serde_yaml::Error) -> String {
+    let message = error.without_snippet().to_string();
+    let first = message.lines().next().unwrap_or_default();
+    let end = first.find(" at line ").or_else(|| first.find(" (line ")).unwrap_or(first.len());
+    first[..end].to_owned()
+}
+
+/// Bytes of a place; of the file's beginning if the parser lost it.
+fn span(location: &Location) -> Span {
+    let span = location.span();
+    let byte = |offset: Option<u64>| offset.and_then(|offset| usize::try_from(offset).ok()).unwrap_or(0);
+    let start = byte(span.byte_offset());
+    Span { start, end: start + byte(span.byte_len()) }
+}
+
+impl From<Spanned<Content>> for Node {
+    fn from(spanned: Spanned<Content>) -> Self {
+        Node { span: span(&spanned.defined), content: spanned.value }
+    }
+}
+
+impl Content {
+    /// What it is, for messages.
+    pub fn describe(&self) -> String {
+        match self {
+            Content::Null => "nothing".into(),
+            Content::Boolean(boolean) => format!("`{boolean}`"),
+            Content::Number(number) => format!("`{number}`"),
+            Content::Text(text) => format!("`{}`", abridged(text)),
+            Content::Sequence(_) => "a list".into(),
+            Content::Mapping(_) => "a mapping".into(),
+        }
+    }
+}
+
+/// The beginning of a text, for messages.
+fn abridged(text: &str) -> String {
+    const LONGEST: usize = 40;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+impl<'de> Deserialize<'de> for Content {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ContentVisitor)
+    }
+}
+
+struct ContentVisitor;
+
+impl<'de> Visitor<'de> for ContentVisitor {
+    type Value = Content;
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("YAML")
+    }
+    fn visit_unit<E>(self) -> Result<Content, E> {
+        Ok(Content::Null)
+    }
+    fn visit_none<E>(self) -> Result<Content, E> {
+        Ok(Content::Null)
+    }
+    fn visit_some<D: Deserializer<'de>>(self, deserializer: D) -> Result<Content, D::Error> {
+        Content::deserialize(deserializer)
+    }
+    fn visit_bool<E>(self, boolean: bool) -> Result<Content, E> {
+        Ok(Content::Boolean(boolean))
+    }
+    fn visit_i64<E>(self, number: i64) -> Result<Content, E> {
+        Ok(Content::Number(number as f64))
+    }
+    fn visit_u64<E>(self, number: u64) -> Result<Content, E> {
+        Ok(Content::Number(number as f64))
+    }
+    fn visit_i128<E>(self, number: i128) -> Result<Content, E> {
+        Ok(Content::Number(number as f64))
+    }
+    fn visit_u128<E>(self, number: u128) -> Result<Content, E> {
+        Ok(Content::Number(number as f64))
+    }
+    fn visit_f64<E>(self, number: f64) -> Result<Content, E> {
+        Ok(Content::Number(number))
+    }
+    fn visit_str<E>(self, text: &str) -> Result<Content, E> {
+        Ok(Content::Text(text.to_owned()))
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Content, A::Error> {
+        let mut sequence = Vec::new();
+        while let Some(item) = items.next_element::<Spanned<Content>>()? {
+            sequence.push(Node::from(item));
+        }
+        Ok(Content::Sequence(sequence))
+    }
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Content, A::Error> {
+        let mut mapping = Vec::new();
+        while let Some((key, value)) = entries.next_entry::<Spanned<Content>, Spanned<Content>>()? {
+            mapping.push((Node::from(key), Node::from(value)));
+        }
+        Ok(Content::Mapping(mapping))
+    }
+}

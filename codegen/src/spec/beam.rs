@@ -1,0 +1,180 @@
+//! Beams: flexible links of rigid finite elements.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Deserializer, Error, Unexpected, Visitor};
+use serde::Deserialize;
+
+use super::{Either, Given, Inertia, Number, Vector};
+
+/// A beam along x of its link: `sections`, `material` and `section`, or `elements` and `springs` one by one.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `length`, `sections`, `material`, `section`")]
+pub struct Beam {
+    /// Length, m.
+    pub length: Given<Number>,
+    /// Number of equal sections, an integer from 1 to 1000: n springs between n + 1 rigid elements; or `rigid`.
+    pub sections: Option<Given<Sections>>,
+    /// Material: the name of an entry of `materials`, or written out.
+    pub material: Option<Given<Either<String, Material>>>,
+    /// Cross-section, exactly one shape.
+    pub section: Option<Given<Section>>,
+    /// Mass besides the section's, kg/m, smeared with the section's radii of gyration. Default 0.
+    pub extra_mass: Option<Given<Number>>,
+    /// Damping of the springs. Default none.
+    pub damping: Option<Given<BeamDamping>>,
+    /// Rigid elements one by one, n + 1 of them.
+    pub elements: Option<Given<Vec<Given<Element>>>>,
+    /// Springs between the elements, n of them.
+    pub springs: Option<Given<Vec<Given<Spring>>>>,
+}
+
+/// Number of sections of a beam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sections {
+    /// As many as written, checked later.
+    Count(f64),
+    /// None: the beam does not bend.
+    Rigid,
+}
+
+impl<'de> Deserialize<'de> for Sections {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct SectionsVisitor;
+        impl Visitor<'_> for SectionsVisitor {
+            type Value = Sections;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("an integer from 1 to 1000, or `rigid`")
+            }
+            fn visit_f64<E: Error>(self, count: f64) -> Result<Sections, E> {
+                Ok(Sections::Count(count))
+            }
+            fn visit_str<E: Error>(self, word: &str) -> Result<Sections, E> {
+                match word {
+                    "rigid" => Ok(Sections::Rigid),
+                    _ => Err(E::invalid_value(Unexpected::Str(word), &self)),
+                }
+            }
+        }
+        deserializer.deserialize_any(SectionsVisitor)
+    }
+}
+
+impl JsonSchema for Sections {
+    fn schema_name() -> Cow<'static, str> {
+        "Sections".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "anyOf": [{ "type": "integer", "minimum": 1, "maximum": 1000 }, { "const": "rigid" }] })
+    }
+}
+
+/// An isotropic elastic material.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `E`, `G` and `density`")]
+pub struct Material {
+    /// Young's modulus, Pa.
+    #[serde(rename = "E")]
+    pub youngs_modulus: Given<Number>,
+    /// Shear modulus, Pa.
+    #[serde(rename = "G")]
+    pub shear_modulus: Given<Number>,
+    /// Density, kg/m³.
+    pub density: Given<Number>,
+}
+
+/// Cross-section of a beam: height along y, width along z.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", rename_all_fields = "snake_case", deny_unknown_fields)]
+pub enum Section {
+    /// Hollow rectangle with walls of one thickness.
+    Box {
+        /// Outer height along y, m.
+        height: Given<Number>,
+        /// Outer width along z, m.
+        width: Given<Number>,
+        /// Thickness of the walls, m.
+        thickness: Given<Number>,
+    },
+    /// Hollow circle.
+    Tube {
+        /// Outer diameter, m.
+        diameter: Given<Number>,
+        /// Thickness of the wall, m.
+        thickness: Given<Number>,
+    },
+    /// Solid rectangle.
+    Solid {
+        /// Height along y, m.
+        height: Given<Number>,
+        /// Width along z, m.
+        width: Given<Number>,
+    },
+    /// Solid circle.
+    Circle {
+        /// Diameter, m.
+        diameter: Given<Number>,
+    },
+    /// Any section, by its numbers.
+    Numbers {
+        /// Area, m².
+        area: Given<Number>,
+        /// Second moment of area ∫ z² dA, for bending in the x–z plane, m⁴.
+        #[serde(rename = "Jy")]
+        jy: Given<Number>,
+        /// Second moment of area ∫ y² dA, for bending in the x–y plane, m⁴.
+        #[serde(rename = "Jz")]
+        jz: Given<Number>,
+        /// Torsion constant, m⁴.
+        #[serde(rename = "Jo")]
+        jo: Given<Number>,
+    },
+}
+
+/// Damping of the springs of a beam, exactly one of these.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BeamDamping {
+    /// Kelvin–Voigt: damping = beta × stiffness, s; one number, or one a direction.
+    Beta(Given<Either<Number, Directions>>),
+    /// Damping of each spring, N m s/rad.
+    Coefficients(Directions),
+}
+
+/// One number a direction of a spring.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `psi`, `theta`, `phi`")]
+pub struct Directions {
+    /// Bending in the x–y plane, about z.
+    pub psi: Given<Number>,
+    /// Bending in the x–z plane, about y.
+    pub theta: Given<Number>,
+    /// Torsion, about x.
+    pub phi: Given<Number>,
+}
+
+/// A rigid element of a beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `length`, `mass`, `com` and `inertia`")]
+pub struct Element {
+    /// Length along x, m.
+    pub length: Given<Number>,
+    /// Mass, kg.
+    pub mass: Given<Number>,
+    /// Centre of mass in the element's frame, whose origin is at its beginning, m.
+    pub com: Given<Vector>,
+    /// Inertia.
+    pub inertia: Given<Inertia>,
+}
+
+/// A spring between two rigid elements.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness` and `damping`")]
+pub struct Spring {
+    /// Stiffness, N m/rad.
+    pub stiffness: Given<Directions>,
+    /// Damping, N m s/rad. Default none.
+    pub damping: Option<Given<Directions>>,
+}

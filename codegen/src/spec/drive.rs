@@ -1,0 +1,78 @@
+//! Drives and their motions.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Angle, Constant, FixedAngle, Given, Number};
+
+/// A flexible drive: a spring and a damper between a joint and a prescribed motion.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `coordinate`, `stiffness`, `damping` and `motion`")]
+pub struct Drive {
+    /// The coordinate it drives, such as `boom_psi`.
+    pub coordinate: Given<String>,
+    /// Stiffness, N m/rad or N/m.
+    pub stiffness: Given<Number>,
+    /// Damping, N m s/rad or N s/m. Default 0.
+    pub damping: Option<Given<Number>>,
+    /// Motion of the spring's far end, exactly one.
+    pub motion: Given<Motion>,
+}
+
+/// Motion of a drive; before it begins and after it ends, the drive holds its position.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    /// Held at one position, rad or m.
+    Hold(Given<Angle>),
+    /// `10τ³ − 15τ⁴ + 6τ⁵`: at rest without acceleration at both ends.
+    Quintic(Ramp),
+    /// `3τ² − 2τ³`: at rest at both ends.
+    Cubic(Ramp),
+    /// `τ − sin(2πτ)/2π`: smooth acceleration.
+    Cycloid(Ramp),
+    /// Constant acceleration, constant velocity, constant deceleration.
+    Trapezoid(Trapezoid),
+    /// Cubic spline through given positions, at rest at both ends.
+    Table(Table),
+}
+
+/// From where to where, and when.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `from`, `to`, `begin`, `duration`")]
+pub struct Ramp {
+    /// Position before, rad or m.
+    pub from: Given<Angle>,
+    /// Position after, rad or m.
+    pub to: Given<Angle>,
+    /// When it begins, s. Default 0.
+    pub begin: Option<Given<Number>>,
+    /// How long it takes, s.
+    pub duration: Given<Number>,
+}
+
+/// A trapezoid of velocity.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `from`, `to`, `begin`, `duration`, `blend`")]
+pub struct Trapezoid {
+    /// Position before, rad or m.
+    pub from: Given<Angle>,
+    /// Position after, rad or m.
+    pub to: Given<Angle>,
+    /// When it begins, s. Default 0.
+    pub begin: Option<Given<Number>>,
+    /// How long it takes, s.
+    pub duration: Given<Number>,
+    /// Share of the duration spent accelerating, and as much decelerating, above 0, up to 0.5. Default 0.25.
+    pub blend: Option<Given<Constant>>,
+}
+
+/// Positions at given times.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `times` and `values`")]
+pub struct Table {
+    /// Times, strictly increasing, s.
+    pub times: Given<Vec<Given<Constant>>>,
+    /// Positions, rad or m.
+    pub values: Given<Vec<Given<FixedAngle>>>,
+}

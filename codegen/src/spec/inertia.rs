@@ -1,0 +1,44 @@
+//! Inertia of a body.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Given, Number, Vector};
+
+/// Inertia of a body: the elements of its tensor as in URDF and `MuJoCo`, or radii of gyration.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `Ixx`, `Iyy`, `Izz`, or of `gyration`")]
+pub struct Inertia {
+    /// The point it is about. Default `com`.
+    pub about: Option<Given<About>>,
+    /// Moment about x, ∫ (y² + z²) dm, kg m².
+    #[serde(rename = "Ixx")]
+    pub xx: Option<Given<Number>>,
+    /// Moment about y, ∫ (x² + z²) dm, kg m².
+    #[serde(rename = "Iyy")]
+    pub yy: Option<Given<Number>>,
+    /// Moment about z, ∫ (x² + y²) dm, kg m².
+    #[serde(rename = "Izz")]
+    pub zz: Option<Given<Number>>,
+    /// Element of the tensor, −∫ x y dm, kg m². Default 0.
+    #[serde(rename = "Ixy")]
+    pub xy: Option<Given<Number>>,
+    /// Element of the tensor, −∫ x z dm, kg m². Default 0.
+    #[serde(rename = "Ixz")]
+    pub xz: Option<Given<Number>>,
+    /// Element of the tensor, −∫ y z dm, kg m². Default 0.
+    #[serde(rename = "Iyz")]
+    pub yz: Option<Given<Number>>,
+    /// Radii of gyration about the centre of mass, m: I = m k², so that the inertia follows a live mass.
+    pub gyration: Option<Given<Vector>>,
+}
+
+/// The point an inertia is about; the axes are those of the link's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum About {
+    /// The centre of mass.
+    Com,
+    /// The origin of the link's frame.
+    Origin,
+}

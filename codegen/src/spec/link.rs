@@ -1,0 +1,91 @@
+//! Links, their joints and what they carry.
+
+use schemars::{JsonSchema, Schema};
+use serde::Deserialize;
+
+use super::{AxisName, Beam, Given, Inertia, Number, Placement, Vector};
+
+/// A link: placement, joint, and what moves with it: `mass`, `com` and `inertia`, or several `bodies`, or a `beam`, or
+/// nothing (a massless frame).
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `placement`, `joint` and what the link carries")]
+pub struct Link {
+    /// Name, a `snake_case` identifier; coordinates are named after it, such as `boom_psi`.
+    pub name: Given<String>,
+    /// Where it sits on the link before. Default: in the same place.
+    pub placement: Option<Given<Placement>>,
+    /// How it moves. Default `fixed`.
+    pub joint: Option<Given<Joint>>,
+    /// Mass, kg.
+    pub mass: Option<Given<Number>>,
+    /// Centre of mass in the link's frame, m. Required with `mass`.
+    pub com: Option<Given<Vector>>,
+    /// Inertia. Default none: a point mass.
+    pub inertia: Option<Given<Inertia>>,
+    /// Several bodies lumped into the link.
+    pub bodies: Option<Given<Vec<Given<Body>>>>,
+    /// A beam along x, of rigid finite elements; the next link sits on its tip.
+    pub beam: Option<Given<Beam>>,
+}
+
+/// One of several bodies lumped into a link.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `mass`, `com` and `inertia`")]
+pub struct Body {
+    /// Name, a `snake_case` identifier, unique in its link.
+    pub name: Given<String>,
+    /// Mass, kg.
+    pub mass: Given<Number>,
+    /// Centre of mass in the link's frame, m.
+    pub com: Given<Vector>,
+    /// Inertia. Default none: a point mass.
+    pub inertia: Option<Given<Inertia>>,
+}
+
+/// How a link moves relative to its placement: `fixed`, `revolute`, `prismatic`, or for the first link `free`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(transform = allow_bare_words)]
+pub enum Joint {
+    /// Not at all.
+    Fixed,
+    /// Turns about its axis; the coordinate is `<link>_psi` (z), `_theta` (y) or `_phi` (x), rad.
+    Revolute(Option<JointAxis>),
+    /// Slides along its axis; the coordinate is `<link>_x`, `_y` or `_z`, m.
+    Prismatic(Option<JointAxis>),
+    /// Base only: moves along x, y, z, then turns by psi about z, theta about y, phi about x; or some of these six.
+    Free(Option<Vec<Given<BaseCoordinate>>>),
+}
+
+/// Axis of a joint.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `axis`")]
+pub struct JointAxis {
+    /// Axis of the placed frame. Default z.
+    pub axis: Option<Given<AxisName>>,
+}
+
+/// A coordinate of a free base.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BaseCoordinate {
+    /// Along x, m.
+    X,
+    /// Along y, m.
+    Y,
+    /// Along z, m.
+    Z,
+    /// About z, rad.
+    Psi,
+    /// About y, rad.
+    Theta,
+    /// About x, rad.
+    Phi,
+}
+
+/// `joint: revolute` is short for `joint: {revolute: {}}`.
+fn allow_bare_words(schema: &mut Schema) {
+    if let Some(forms) = schema.get_mut("oneOf").and_then(|forms| forms.as_array_mut()) {
+        forms.push(serde_json::json!({ "enum": ["revolute", "prismatic", "free"] }));
+    }
+}

@@ -1,0 +1,113 @@
+//! The spec language as written: one type a mapping, whose doc comments are its documentation and its JSON Schema.
+//!
+//! A key's type says what may stand there; [`Given`] says where it stands. A key that may be left out is an `Option`.
+
+mod beam;
+mod drive;
+mod given;
+mod inertia;
+mod link;
+mod placement;
+mod scalar;
+mod schema;
+mod support;
+
+pub use beam::{Beam, BeamDamping, Directions, Element, Material, Section, Sections, Spring};
+pub use drive::{Drive, Motion, Ramp, Table, Trapezoid};
+pub(crate) use given::{EITHER, GIVEN, MANY};
+pub use given::{Either, Entries, Given, Many};
+pub use inertia::{About, Inertia};
+pub use link::{BaseCoordinate, Body, Joint, JointAxis, Link};
+pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
+pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector};
+pub use schema::json_schema;
+pub use support::{Kinematics, Point, Support};
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::diagnostic::Mistake;
+
+/// A crane as written, with the mistakes that reading it has found; [`validate`](crate::validate()) reports them along
+/// with its own.
+#[derive(Clone, Debug)]
+pub struct CraneSpec {
+    /// What stands in the file.
+    pub crane: Crane,
+    /// Mistakes of keys and shapes.
+    pub(crate) mistakes: Vec<Mistake>,
+}
+
+/// A crane: an open chain of links from the base to the tip. Every number is in SI units; where a number stands, the
+/// name of an entry of `parameters` may stand instead, which keeps it live at run time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of keys to values")]
+pub struct Crane {
+    /// Version of the spec language: 1.
+    pub format: Given<Constant>,
+    /// Name of the crane, a `snake_case` identifier; names the generated module.
+    pub name: Given<String>,
+    /// One line for people. Default: the name.
+    pub title: Option<Given<String>>,
+    /// Acceleration of gravity in the world frame, m/s². Default `[0, 0, -9.81]`.
+    pub gravity: Option<Given<Vector>>,
+    /// What is to be computed; the rest is left out of the generated code. Default `[statics, dynamics, modes]`.
+    pub analyses: Option<Given<Vec<Given<Analysis>>>>,
+    /// Values that stay live at run time, by name.
+    pub parameters: Option<Given<Entries<Parameter>>>,
+    /// Materials of beams, by name.
+    pub materials: Option<Given<Entries<Material>>>,
+    /// The links in order from the base to the tip; each hangs on the one before.
+    pub links: Given<Vec<Given<Link>>>,
+    /// Springs and dampers between a free base and the ground.
+    pub supports: Option<Given<Vec<Given<Support>>>>,
+    /// Flexible drives of joints.
+    pub drives: Option<Given<Vec<Given<Drive>>>>,
+    /// Viscous damping of passive joints by coordinate, N m s/rad or N s/m.
+    pub damping: Option<Given<Entries<Number>>>,
+    /// Points whose motion is of interest.
+    pub points: Option<Given<Vec<Given<Point>>>>,
+    /// Where the static solution starts, by coordinate, rad or m. Default: a driven coordinate at its drive's position
+    /// at t = 0, all others at 0.
+    pub guess: Option<Given<Entries<FixedAngle>>>,
+    /// Settings of a run.
+    pub run: Option<Given<Run>>,
+}
+
+/// A kind of computation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Analysis {
+    /// Static residual and tangent stiffness.
+    Statics,
+    /// Mass matrix, bias, energies: motion.
+    Dynamics,
+    /// Linearisation at a pose: frequencies and damping.
+    Modes,
+    /// First and second derivatives of every body's transformation.
+    Derivatives,
+}
+
+/// A value that stays live at run time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `value`, `unit` and `about`")]
+pub struct Parameter {
+    /// Value unless set at run time, in SI units.
+    pub value: Given<FixedAngle>,
+    /// Unit, for tables, such as `kg`. Default: none.
+    pub unit: Option<Given<String>>,
+    /// What it is. Default: empty.
+    pub about: Option<Given<String>>,
+}
+
+/// Settings of a run.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `duration`, `step` and `output`")]
+pub struct Run {
+    /// Simulated time, s. Default 10.
+    pub duration: Option<Given<Constant>>,
+    /// Step of the integrator, s. Default 1e-4.
+    pub step: Option<Given<Constant>>,
+    /// Interval of the recorded results, s. Default 0.01.
+    pub output: Option<Given<Constant>>,
+}

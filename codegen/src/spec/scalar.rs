@@ -1,0 +1,180 @@
+//! Numbers and angles, as written.
+
+use std::borrow::Cow;
+use std::f64::consts::PI;
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
+
+use super::Given;
+
+/// Three numbers along x, y, z.
+pub type Vector = [Given<Number>; 3];
+
+/// What may be written where a number is expected.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scalar {
+    /// A plain number, in SI units.
+    Number(f64),
+    /// An angle such as `90 deg` or `7/18 pi`, in rad.
+    Angle(f64),
+    /// Name of a parameter.
+    Name(String),
+}
+
+impl Scalar {
+    /// Reads a word: an angle or a name.
+    fn from_word(word: &str) -> Option<Scalar> {
+        if let Some(angle) = parse_angle(word) {
+            return Some(Scalar::Angle(angle));
+        }
+        let named = word.starts_with(|c: char| c.is_alphabetic() || c == '_')
+            && word.chars().all(|c| c.is_alphanumeric() || c == '_');
+        named.then(|| Scalar::Name(word.to_owned()))
+    }
+}
+
+/// Reads `[−][a[/b]] pi` or `a[/b] deg`, in rad. Rational multiples of π are evaluated as `(a π)/b`, so that
+/// `1/2 pi` is the double nearest to π/2.
+pub(crate) fn parse_angle(word: &str) -> Option<f64> {
+    let word = word.trim();
+    let (ratio, half_turn) = match word.strip_suffix("pi") {
+        Some(ratio) => (ratio, 1.0),
+        None => (word.strip_suffix("deg")?, 180.0),
+    };
+    let (numerator, denominator) = match ratio.split_once('/') {
+        Some((a, b)) => (a, plain_number(b)?),
+        None => (ratio, 1.0),
+    };
+    let numerator = match numerator.trim() {
+        "" if half_turn == 1.0 => 1.0,
+        "-" if half_turn == 1.0 => -1.0,
+        number => plain_number(number)?,
+    };
+    Some(numerator * PI / (denominator * half_turn))
+}
+
+/// A decimal number; words that Rust reads as numbers, such as `nan`, are none.
+fn plain_number(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let decimal = text.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+    text.parse().ok().filter(|_| decimal)
+}
+
+/// Reads a [`Scalar`]; `EXPECTED` is what a message asks for.
+struct ScalarVisitor {
+    expected: &'static str,
+    angle: bool,
+    name: bool,
+}
+
+impl Visitor<'_> for ScalarVisitor {
+    type Value = Scalar;
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.expected)
+    }
+    fn visit_f64<E: Error>(self, number: f64) -> Result<Scalar, E> {
+        Ok(Scalar::Number(number))
+    }
+    fn visit_str<E: Error>(self, word: &str) -> Result<Scalar, E> {
+        Scalar::from_word(word)
+            .filter(|scalar| match scalar {
+                Scalar::Number(_) => true,
+                Scalar::Angle(_) => self.angle,
+                Scalar::Name(_) => self.name,
+            })
+            .ok_or_else(|| E::invalid_value(Unexpected::Str(word), &self))
+    }
+}
+
+/// Declares a kind of number: what it accepts, what a message asks for, its schema.
+macro_rules! scalar {
+    ($(#[doc = $about:literal])+ $name:ident, angle: $angle:literal, parameter: $parameter:literal, $expected:literal) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $name(pub Scalar);
+
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                // An angle in place of a number gets a message of its own, from validation.
+                let visitor = ScalarVisitor { expected: $expected, angle: $angle || $parameter, name: $parameter };
+                deserializer.deserialize_any(visitor).map($name)
+            }
+        }
+
+        impl JsonSchema for $name {
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                let mut forms = vec![json_schema!({ "type": "number" })];
+                if $angle {
+                    forms.push(json_schema!({ "type": "string", "pattern": ANGLE_PATTERN }));
+                }
+                if $parameter {
+                    forms.push(json_schema!({ "type": "string", "pattern": NAME_PATTERN }));
+                }
+                json_schema!({ "description": concat!($($about),+).trim(), "anyOf": forms })
+            }
+        }
+    };
+}
+
+/// Angles as [`parse_angle`] reads them.
+const ANGLE_PATTERN: &str = r"^\s*(-?([0-9.]+([eE][-+]?[0-9]+)?(\s*/\s*[0-9.]+)?)?\s*pi|-?[0-9.]+([eE][-+]?[0-9]+)?(\s*/\s*[0-9.]+)?\s*deg)\s*$";
+/// Names of parameters.
+const NAME_PATTERN: &str = "^[a-z][a-z0-9_]*$";
+
+scalar! {
+    /// A number in SI units, or the name of a parameter.
+    Number, angle: false, parameter: true, "a number in SI units without its unit, or the name of a parameter"
+}
+scalar! {
+    /// An angle in rad, or written `90 deg`, `7/18 pi`; or the name of a parameter. Where a length may stand as
+    /// well, as with a drive of a prismatic joint, a number in m.
+    Angle, angle: true, parameter: true, "a number, an angle such as `90 deg` or `7/18 pi`, or the name of a parameter"
+}
+scalar! {
+    /// A number in SI units, fixed when the crane is compiled.
+    Constant, angle: false, parameter: false, "a number, which cannot be a parameter here"
+}
+scalar! {
+    /// An angle in rad, or written `90 deg`, `7/18 pi`, or another number in SI units; fixed when the crane is
+    /// compiled.
+    FixedAngle, angle: true, parameter: false, "a number or an angle such as `90 deg`, which cannot be a parameter here"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_are_rational_multiples_of_pi() {
+        for (word, angle) in [
+            ("90 deg", PI / 2.0),
+            ("-90deg", -PI / 2.0),
+            ("7/18 pi", 7.0 * PI / 18.0),
+            ("-pi", -PI),
+            ("pi", PI),
+            ("1.5 pi", 1.5 * PI),
+            ("2pi", 2.0 * PI),
+            ("3/2 pi", 1.5 * PI),
+            ("45/2 deg", PI / 8.0),
+            ("1e-3 deg", PI / 180_000.0),
+        ] {
+            // One rounding of the product, one of the quotient.
+            let read = parse_angle(word).unwrap_or_else(|| panic!("{word} is an angle"));
+            assert!((read - angle).abs() <= 2.0 * f64::EPSILON * angle.abs(), "{word}: {read} {angle}");
+        }
+    }
+
+    #[test]
+    fn other_words_are_no_angles() {
+        for word in ["deg", "pie", "1/2", "nan pi", "inf deg", "1//2 pi", "90 degrees", "pi/2", "", "x pi", "- deg"] {
+            assert_eq!(parse_angle(word), None, "{word}");
+        }
+        assert_eq!(Scalar::from_word("load_mass"), Some(Scalar::Name("load_mass".into())));
+        assert_eq!(Scalar::from_word("5 kg"), None);
+    }
+}

@@ -1,0 +1,33 @@
+//! The JSON Schema of the spec language, from the types that read it.
+
+use serde_json::Value;
+
+use super::Crane;
+
+/// JSON Schema of the spec language, for editors that complete and check a spec while it is written.
+///
+/// # Panics
+/// Never: a schema is always printable.
+#[must_use]
+pub fn json_schema() -> String {
+    let mut schema = schemars::schema_for!(Crane).to_value();
+    forbid_null(&mut schema);
+    format!("{schema:#}\n")
+}
+
+/// A key that may be left out may not be left empty: removes the `null` that stands for `Option`.
+fn forbid_null(schema: &mut Value) {
+    match schema {
+        Value::Object(object) => {
+            if let Some(Value::Array(types)) = object.get_mut("type") {
+                types.retain(|t| t != "null");
+            }
+            if let Some(Value::Array(forms)) = object.get_mut("anyOf") {
+                forms.retain(|form| form.get("type").is_none_or(|t| t != "null"));
+            }
+            object.values_mut().for_each(forbid_null);
+        }
+        Value::Array(items) => items.iter_mut().for_each(forbid_null),
+        _ => {}
+    }
+}

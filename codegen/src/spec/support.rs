@@ -1,0 +1,46 @@
+//! Supports of the base, and points of interest.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Given, Vector};
+
+/// A support of a free base: three springs and dampers along the axes of the world.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `at`, `stiffness`, `damping`")]
+pub struct Support {
+    /// Name, a `snake_case` identifier.
+    pub name: Given<String>,
+    /// Where it holds the base, in the base's frame, m.
+    pub at: Given<Vector>,
+    /// Stiffness along x, y, z, N/m.
+    pub stiffness: Given<Vector>,
+    /// Damping along x, y, z, N s/m. Default `[0, 0, 0]`.
+    pub damping: Option<Given<Vector>>,
+    /// Elongation at which the springs are at rest, along x, y, z, m. Default `[0, 0, 0]`.
+    pub free_play: Option<Given<Vector>>,
+    /// How the elongation follows from the base's coordinates. Default `linear`.
+    pub kinematics: Option<Given<Kinematics>>,
+}
+
+/// How the elongation of a support follows from the base's coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Kinematics {
+    /// For small rotations, as in the paper.
+    Linear,
+    /// For any rotation.
+    Exact,
+}
+
+/// A point of interest.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `link`, `at`")]
+pub struct Point {
+    /// Name, a `snake_case` identifier.
+    pub name: Given<String>,
+    /// The link that carries it.
+    pub link: Given<String>,
+    /// Where, in the frame of the link (of a beam: undeformed), m.
+    pub at: Given<Vector>,
+}

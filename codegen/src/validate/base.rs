@@ -1,0 +1,44 @@
+//! Supports of the base.
+
+use super::Check;
+use super::numbers::Limit;
+use crate::chain::{Step, Support, SupportKinematics};
+use crate::diagnostic::rule;
+use crate::spec::{Crane, Kinematics};
+
+impl<'a> Check<'a> {
+    pub(super) fn supports(&mut self, crane: &'a Crane) -> Vec<Support> {
+        let Some(given) = &crane.supports else { return Vec::new() };
+        let Some(supports) = &given.value else { return Vec::new() };
+        let base = self.bodies.first().map(|body| body.name.clone()).unwrap_or_default();
+        if self.base.iter().all(Option::is_none) && !supports.is_empty() && !self.unknown.links {
+            self.report(rule::base_fixed(given.span, &base));
+        }
+        let rotated = self.bodies.first().is_some_and(|body| body.path.iter().any(|s| matches!(s, Step::Rotate { .. })));
+        let mut sound = Vec::new();
+        for support in supports.iter().filter_map(|support| support.value.as_ref()) {
+            let name = self.name(&support.name).unwrap_or_default().to_owned();
+            if !name.is_empty() {
+                self.take_name("supports", &name, "a support before".into(), support.name.span);
+            }
+            let kinematics = match support.kinematics.as_ref().and_then(|kinematics| kinematics.value) {
+                Some(Kinematics::Exact) => SupportKinematics::Exact,
+                Some(Kinematics::Linear) | None => SupportKinematics::Linear,
+            };
+            if kinematics == SupportKinematics::Linear && rotated {
+                let span = support.kinematics.as_ref().map_or(support.name.span, |kinematics| kinematics.span);
+                self.report(rule::linear_rotated(span, &name));
+            }
+            let place = |what: &str| format!("the {what} of support `{name}`");
+            sound.push(Support {
+                position: self.vector(&support.at, &place("position"), "m", Limit::Any),
+                stiffness: self.vector(&support.stiffness, &place("stiffness"), "N/m", Limit::NotNegative),
+                damping: self.vector_or_zero(support.damping.as_ref(), &place("damping"), "N s/m", Limit::NotNegative),
+                free_play: self.vector_or_zero(support.free_play.as_ref(), &place("free play"), "m", Limit::Any),
+                kinematics,
+                name,
+            });
+        }
+        sound
+    }
+}

@@ -1,0 +1,301 @@
+//! Beams: cross-section and material, or elements one by one.
+
+use super::numbers::Limit;
+use super::{Check, Owner};
+use crate::chain::{self, Axis, CoordinateKind, ElementSpring, Step, Value};
+use crate::diagnostic::{Span, rule};
+use crate::expand::beam::{self, Elements, Joint, RigidElement};
+use crate::expand::placement::translate;
+use crate::expand::section::{self, CrossSection};
+use crate::read::suggest;
+use crate::spec::{Beam, BeamDamping, Directions, Either, Element, Given, Material, Number, Section, Sections, Spring};
+
+/// Elements may miss the length of their beam by this share: lengths are written in decimal.
+const WRITTEN: f64 = 1e-9;
+/// The most sections a beam may have.
+const MOST_SECTIONS: f64 = 1000.0;
+/// Rotations of an element after the first, in order.
+const ROTATIONS: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
+
+impl<'a> Check<'a> {
+    /// Appends the elements of a beam; where they begin along x, and where the next link sits.
+    pub(super) fn beam(
+        &mut self,
+        given: &'a Given<Beam>,
+        link: &str,
+        span: Span,
+        path: Vec<Step>,
+    ) -> (Vec<Value>, Value) {
+        let elements = given.value.as_ref().and_then(|inside| {
+            let length = self.number(&inside.length, "`length`", "m", Limit::Positive);
+            match &inside.elements {
+                Some(elements) => self.one_by_one(inside, &length, elements),
+                None => self.equal_sections(inside, given.span, &length),
+            }
+        });
+        let Some(Elements { elements, joints }) = elements else {
+            // Its coordinates are not known.
+            self.unknown.links = true;
+            return (vec![Value::ZERO], Value::ZERO);
+        };
+        self.unroll(link, span, path, elements, joints)
+    }
+
+    /// Appends rigid elements as bodies: element 0 on the link's joint, element i ≥ 1 at the end of the one before
+    /// through `Rz(ψ) Ry(θ) Rx(φ)`.
+    fn unroll(
+        &mut self,
+        link: &str,
+        span: Span,
+        path: Vec<Step>,
+        elements: Vec<RigidElement>,
+        joints: Vec<Joint>,
+    ) -> (Vec<Value>, Value) {
+        let rigid = joints.is_empty();
+        let mut path = path;
+        let mut starts = Vec::new();
+        let mut start = Value::ZERO;
+        let mut joints = joints.into_iter();
+        let mut tip = Value::ZERO;
+        for (index, RigidElement { length, inertia }) in elements.into_iter().enumerate() {
+            let name = if rigid { link.to_owned() } else { format!("{link}_{index}") };
+            if index > 0 {
+                translate(&mut path, [tip, Value::ZERO, Value::ZERO]);
+            }
+            if let Some(joint) = (index > 0).then(|| joints.next()).flatten() {
+                for (axis, (stiffness, damping)) in ROTATIONS.into_iter().zip(joint.stiffness.into_iter().zip(joint.damping)) {
+                    let owner = Owner::Beam(link.to_owned());
+                    let id = self.push_coordinate((link, &name), CoordinateKind::Rotation, axis, owner, span);
+                    path.push(Step::Move(id));
+                    self.elements.push(ElementSpring { coordinate: id, stiffness, damping });
+                }
+            }
+            let body = chain::Body {
+                name,
+                link: link.to_owned(),
+                path: std::mem::take(&mut path),
+                inertia: Some(inertia),
+                parts: Vec::new(),
+                length: length.clone(),
+            };
+            self.push_body(body, span);
+            starts.push(start.clone());
+            start = start + length.clone();
+            tip = length;
+        }
+        (starts, tip)
+    }
+
+    /// A beam of equal sections of one material and cross-section.
+    fn equal_sections(&mut self, beam: &'a Beam, span: Span, length: &Value) -> Option<Elements> {
+        if let Some(springs) = &beam.springs {
+            self.report(rule::missing_key(springs.span, "elements", "a beam with `springs`"));
+        }
+        let required = [
+            ("sections", beam.sections.is_none()),
+            ("material", beam.material.is_none()),
+            ("section", beam.section.is_none()),
+        ];
+        for (key, _) in required.iter().filter(|(_, missing)| *missing && beam.springs.is_none()) {
+            self.report(rule::missing_key(span, key, "the beam"));
+        }
+        let sections = beam.sections.as_ref().and_then(|sections| self.sections(sections));
+        let material = beam.material.as_ref().and_then(|material| self.material(material));
+        let section = beam.section.as_ref().and_then(|section| self.section(section));
+        let extra = self.number_or(beam.extra_mass.as_ref(), 0.0, "`extra_mass`", "kg/m", Limit::NotNegative);
+        let damping = self.beam_damping(beam.damping.as_ref());
+        let ([youngs, shear, density], section, sections) = (material?, section?, sections?);
+
+        let line_density = density * section.area.clone() + extra;
+        let element = |length| beam::prismatic(length, &line_density, &section);
+        if sections == 0 {
+            return Some(Elements { elements: vec![element(length.clone())], joints: Vec::new() });
+        }
+        let d = length.clone() / (sections as f64).into();
+        let stiffness = beam::stiffness(&youngs, &shear, &section, &d);
+        let damping = damping.of(&stiffness);
+        Some(Elements {
+            elements: beam::element_lengths(length, sections).into_iter().map(element).collect(),
+            joints: vec![Joint { stiffness, damping }; sections],
+        })
+    }
+
+    /// Number of sections; 0 for a rigid beam.
+    fn sections(&mut self, given: &Given<Sections>) -> Option<usize> {
+        match given.value? {
+            Sections::Rigid => Some(0),
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an integer from 1 to 1000
+            Sections::Count(count) if (1.0..=MOST_SECTIONS).contains(&count) && count.fract() == 0.0 => {
+                Some(count as usize)
+            }
+            Sections::Count(count) => {
+                self.report(rule::sections(given.span, count));
+                None
+            }
+        }
+    }
+
+    /// Young's modulus, shear modulus, density.
+    fn material(&mut self, given: &'a Given<Either<String, Material>>) -> Option<[Value; 3]> {
+        let material = match given.value.as_ref()? {
+            Either::Full(material) => material,
+            Either::Short(name) => match self.materials.get(name.as_str()) {
+                Some(material) => material,
+                None => {
+                    if !self.unknown.materials {
+                        let help = suggest(name, self.materials.keys().copied());
+                        self.report(rule::unknown_material(given.span, name, help));
+                    }
+                    return None;
+                }
+            },
+        };
+        Some([
+            self.number(&material.youngs_modulus, "Young's modulus `E`", "Pa", Limit::Positive),
+            self.number(&material.shear_modulus, "the shear modulus `G`", "Pa", Limit::Positive),
+            self.number(&material.density, "`density`", "kg/m³", Limit::Positive),
+        ])
+    }
+
+    fn section(&mut self, given: &Given<Section>) -> Option<CrossSection> {
+        let mut positive = |number: &Given<Number>, place, unit| self.number(number, place, unit, Limit::Positive);
+        Some(match given.value.as_ref()? {
+            Section::Box { height, width, thickness } => {
+                let size = [positive(height, "`height`", "m"), positive(width, "`width`", "m")];
+                let wall = positive(thickness, "`thickness`", "m");
+                self.wall(thickness.span, &wall, size.iter());
+                section::hollow_rectangle(&size[0], &size[1], &wall)
+            }
+            Section::Tube { diameter, thickness } => {
+                let size = positive(diameter, "`diameter`", "m");
+                let wall = positive(thickness, "`thickness`", "m");
+                self.wall(thickness.span, &wall, [&size].into_iter());
+                section::tube(&size, &wall)
+            }
+            Section::Solid { height, width } => {
+                let sides = [(height, "`height`"), (width, "`width`")].map(|(side, place)| {
+                    let value = self.number(side, place, "m", Limit::Positive);
+                    if value.as_constant().is_none() {
+                        self.report(rule::live_side(side.span, place));
+                    }
+                    value.as_constant().unwrap_or(f64::NAN)
+                });
+                section::solid_rectangle(sides[0], sides[1])
+            }
+            Section::Circle { diameter } => section::circle(&positive(diameter, "`diameter`", "m")),
+            Section::Numbers { area, jy, jz, jo } => CrossSection {
+                area: positive(area, "`area`", "m²"),
+                jy: positive(jy, "`Jy`", "m⁴"),
+                jz: positive(jz, "`Jz`", "m⁴"),
+                jo: positive(jo, "`Jo`", "m⁴"),
+            },
+        })
+    }
+
+    /// Walls leave a hollow.
+    fn wall<'v>(&mut self, span: Span, thickness: &Value, sizes: impl Iterator<Item = &'v Value>) {
+        let smallest = sizes.map(|size| self.now(size)).fold(f64::INFINITY, f64::min);
+        let thickness = self.now(thickness);
+        if 2.0 * thickness >= smallest && smallest > 0.0 {
+            self.report(rule::wall(span, thickness, smallest));
+        }
+    }
+
+    fn beam_damping(&mut self, given: Option<&Given<BeamDamping>>) -> Damping {
+        let none = || [Value::ZERO; 3];
+        match given.and_then(|given| given.value.as_ref()) {
+            None => Damping::Coefficients(none()),
+            Some(BeamDamping::Coefficients(each)) => {
+                Damping::Coefficients(self.directions(each, "the damping", "N m s/rad", Limit::NotNegative))
+            }
+            Some(BeamDamping::Beta(beta)) => Damping::Beta(match &beta.value {
+                None => none(),
+                Some(Either::Full(each)) => self.directions(each, "`beta`", "s", Limit::NotNegative),
+                Some(Either::Short(number)) => {
+                    let beta = Given { value: Some(number.clone()), span: beta.span };
+                    let beta = self.number(&beta, "`beta`", "s", Limit::NotNegative);
+                    [beta.clone(), beta.clone(), beta]
+                }
+            }),
+        }
+    }
+
+    fn directions(&mut self, each: &Directions, place: &str, unit: &str, limit: Limit) -> [Value; 3] {
+        [&each.psi, &each.theta, &each.phi].map(|number| self.number(number, place, unit, limit))
+    }
+
+    /// A beam of elements and springs given one by one.
+    fn one_by_one(
+        &mut self,
+        beam: &'a Beam,
+        length: &Value,
+        elements: &Given<Vec<Given<Element>>>,
+    ) -> Option<Elements> {
+        let beside = [
+            ("sections", beam.sections.as_ref().map(|given| given.span)),
+            ("material", beam.material.as_ref().map(|given| given.span)),
+            ("section", beam.section.as_ref().map(|given| given.span)),
+            ("extra_mass", beam.extra_mass.as_ref().map(|given| given.span)),
+            ("damping", beam.damping.as_ref().map(|given| given.span)),
+        ];
+        for (key, span) in beside {
+            if let Some(span) = span {
+                self.report(rule::two_beams(span, key));
+            }
+        }
+        if beam.springs.is_none() {
+            self.report(rule::missing_key(elements.span, "springs", "a beam with `elements`"));
+        }
+        let (rigid, joints) = (elements.value.as_ref()?, beam.springs.as_ref()?.value.as_ref()?);
+        if rigid.len() != joints.len() + 1 || joints.is_empty() {
+            self.report(rule::springs(elements.span, rigid.len(), joints.len()));
+        }
+        let rigid: Vec<_> = rigid.iter().map(|element| self.element(element.value.as_ref()?)).collect();
+        let joints: Vec<_> = joints.iter().map(|spring| Some(self.spring(spring.value.as_ref()?))).collect();
+        let (elements_read, joints) = (rigid.into_iter().collect::<Option<Vec<_>>>()?, joints.into_iter().collect::<Option<Vec<_>>>()?);
+        let sum: f64 = elements_read.iter().map(|element| self.now(&element.length)).sum();
+        let whole = self.now(length);
+        if (sum - whole).abs() > WRITTEN * whole {
+            self.report(rule::beam_length(elements.span, sum, whole));
+        }
+        (elements_read.len() == joints.len() + 1).then_some(Elements { elements: elements_read, joints })
+    }
+
+    fn element(&mut self, element: &Element) -> Option<RigidElement> {
+        let length = self.number(&element.length, "`length`", "m", Limit::Positive);
+        let (inertia, _) = self.inertia(&element.mass, Some(&element.com), Some(&element.inertia), "the element")?;
+        Some(RigidElement { length, inertia })
+    }
+
+    fn spring(&mut self, spring: &Spring) -> Joint {
+        let mut each = |given: Option<&Given<Directions>>, place, unit| match given.map(|given| given.value.as_ref()) {
+            Some(Some(each)) => self.directions(each, place, unit, Limit::NotNegative),
+            _ => [Value::ZERO; 3],
+        };
+        Joint {
+            stiffness: each(Some(&spring.stiffness), "the stiffness", "N m/rad"),
+            damping: each(spring.damping.as_ref(), "the damping", "N m s/rad"),
+        }
+    }
+}
+
+/// Damping of a beam's springs.
+enum Damping {
+    /// In proportion to stiffness, s.
+    Beta([Value; 3]),
+    /// Outright, N m s/rad.
+    Coefficients([Value; 3]),
+}
+
+impl Damping {
+    /// Coefficients for springs of the given stiffness, `d = β s`.
+    fn of(self, stiffness: &[Value; 3]) -> [Value; 3] {
+        match self {
+            Damping::Coefficients(coefficients) => coefficients,
+            Damping::Beta(beta) => {
+                let [psi, theta, phi] = beta;
+                [psi * stiffness[0].clone(), theta * stiffness[1].clone(), phi * stiffness[2].clone()]
+            }
+        }
+    }
+}

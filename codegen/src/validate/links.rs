@@ -1,0 +1,205 @@
+//! Links, their placements and joints.
+
+use super::numbers::Limit;
+use super::{Check, Owner, Place};
+use crate::chain::{Axis, Body, BodyId, Coordinate, CoordinateId, CoordinateKind, Step, Value};
+use crate::diagnostic::{Span, rule};
+use crate::expand::placement;
+use crate::spec::{Angle, AxisName, BaseCoordinate, Given, Joint, JointAxis, Link, Number, Placement, Turn};
+
+impl From<AxisName> for Axis {
+    fn from(name: AxisName) -> Self {
+        match name {
+            AxisName::X => Axis::X,
+            AxisName::Y => Axis::Y,
+            AxisName::Z => Axis::Z,
+        }
+    }
+}
+
+/// Symbol of a coordinate: x, y, z, or psi about z, theta about y, phi about x.
+fn symbol(kind: CoordinateKind, axis: Axis) -> &'static str {
+    match kind {
+        CoordinateKind::Translation => ["x", "y", "z"][axis.index()],
+        CoordinateKind::Rotation => ["phi", "theta", "psi"][axis.index()],
+    }
+}
+
+/// The six motions of a free base, in their order.
+const BASE_MOTIONS: [(BaseCoordinate, CoordinateKind, Axis); 6] = [
+    (BaseCoordinate::X, CoordinateKind::Translation, Axis::X),
+    (BaseCoordinate::Y, CoordinateKind::Translation, Axis::Y),
+    (BaseCoordinate::Z, CoordinateKind::Translation, Axis::Z),
+    (BaseCoordinate::Psi, CoordinateKind::Rotation, Axis::Z),
+    (BaseCoordinate::Theta, CoordinateKind::Rotation, Axis::Y),
+    (BaseCoordinate::Phi, CoordinateKind::Rotation, Axis::X),
+];
+
+impl<'a> Check<'a> {
+    pub(super) fn links(&mut self, given: &'a Given<Vec<Given<Link>>>) {
+        let Some(links) = &given.value else {
+            self.unknown.links = true;
+            return;
+        };
+        if links.is_empty() {
+            self.report(rule::no_links(given.span));
+        }
+        // Where the next link sits in the frame of the last body: the tip of a beam.
+        let mut tip = Value::ZERO;
+        for (index, link) in links.iter().enumerate() {
+            match &link.value {
+                Some(inside) => tip = self.link(inside, index == 0, tip),
+                None => self.unknown.links = true,
+            }
+        }
+    }
+
+    /// Appends the bodies of a link to the chain; returns where the next link sits along x.
+    fn link(&mut self, link: &'a Link, is_base: bool, tip: Value) -> Value {
+        let name = self.name(&link.name).unwrap_or_else(|| {
+            self.unknown.links = true;
+            ""
+        });
+        let mut path = Vec::new();
+        placement::translate(&mut path, [tip, Value::ZERO, Value::ZERO]);
+        let motion = self.joint(link, name, is_base);
+        path.extend(self.placed(link, motion));
+
+        let first = self.bodies.len();
+        let (starts, tip) = self.carried(link, name, path);
+        if !name.is_empty() && self.links.insert(name, Place { first, starts }).is_some() {
+            self.report(rule::duplicate_name(link.name.span, "links", name, "a link before"));
+        }
+        tip
+    }
+
+    /// Appends a body, whose name must be new.
+    pub(super) fn push_body(&mut self, body: Body, span: Span) {
+        self.take_expanded("bodies", &body.name, &body.link, span);
+        self.bodies.push(body);
+    }
+
+    /// Appends a coordinate of the next body, named after the link or, of a beam, the element.
+    pub(super) fn push_coordinate(
+        &mut self,
+        (link, stem): (&str, &str),
+        kind: CoordinateKind,
+        axis: Axis,
+        owner: Owner,
+        span: Span,
+    ) -> CoordinateId {
+        let id = CoordinateId(self.coordinates.len());
+        let name = format!("{stem}_{}", symbol(kind, axis));
+        self.take_expanded("coordinates", &name, link, span);
+        self.coordinates.push(Coordinate { name, kind, axis, body: BodyId(self.bodies.len()) });
+        self.owners.push(owner);
+        id
+    }
+
+    /// The motion of a link's joint.
+    fn joint(&mut self, link: &Link, name: &str, is_base: bool) -> Vec<Step> {
+        let Some(given) = &link.joint else { return Vec::new() };
+        let span = given.span;
+        match &given.value {
+            Some(Joint::Fixed) => Vec::new(),
+            Some(Joint::Revolute(axis)) => self.single(link, name, CoordinateKind::Rotation, axis.as_ref(), span),
+            Some(Joint::Prismatic(axis)) => self.single(link, name, CoordinateKind::Translation, axis.as_ref(), span),
+            Some(Joint::Free(_)) if !is_base => {
+                self.report(rule::free_inside(span, name));
+                self.unknown.links = true;
+                Vec::new()
+            }
+            Some(Joint::Free(some)) => self.free(name, some.as_deref(), span),
+            None => {
+                self.unknown.links = true;
+                Vec::new()
+            }
+        }
+    }
+
+    fn single(
+        &mut self,
+        link: &Link,
+        name: &str,
+        kind: CoordinateKind,
+        axis: Option<&JointAxis>,
+        span: Span,
+    ) -> Vec<Step> {
+        let given = axis.and_then(|axis| axis.axis.as_ref());
+        let axis = given.map_or(Some(AxisName::Z), |given| given.value).map_or(Axis::Z, Axis::from);
+        let row = link.placement.as_ref().and_then(|placement| placement.value.as_ref());
+        if axis != Axis::Z && matches!(row, Some(Placement::ModifiedDh(_) | Placement::ClassicDh(_))) {
+            self.report(rule::dh_axis(given.map_or(span, |given| given.span), name));
+        }
+        vec![Step::Move(self.push_coordinate((name, name), kind, axis, Owner::Joint, span))]
+    }
+
+    fn free(&mut self, name: &str, some: Option<&[Given<BaseCoordinate>]>, span: Span) -> Vec<Step> {
+        let chosen = |motion| some.is_none_or(|some| some.iter().filter(|c| c.value == Some(motion)).count() > 0);
+        if let Some(some) = some {
+            let mut twice = some.iter().enumerate().filter(|(i, c)| some[..*i].iter().any(|b| b.value == c.value));
+            if some.is_empty() {
+                self.report(rule::base_coordinates(span, name, "none"));
+            } else if let Some((_, again)) = twice.find(|(_, coordinate)| coordinate.value.is_some()) {
+                self.report(rule::base_coordinates(again.span, name, "given twice"));
+            }
+            self.unknown.links |= some.iter().any(|coordinate| coordinate.value.is_none());
+        }
+        let mut steps = Vec::new();
+        for (index, (motion, kind, axis)) in BASE_MOTIONS.into_iter().enumerate() {
+            if chosen(motion) {
+                let id = self.push_coordinate((name, name), kind, axis, Owner::Base, span);
+                self.base[index] = Some(id);
+                steps.push(Step::Move(id));
+            }
+        }
+        steps
+    }
+
+    /// The placement of a link with its joint's motion in it.
+    fn placed(&mut self, link: &Link, motion: Vec<Step>) -> Vec<Step> {
+        match link.placement.as_ref().and_then(|placement| placement.value.as_ref()) {
+            Some(Placement::ModifiedDh(row)) => {
+                let (a, alpha, d, theta) =
+                    self.row(row.a.as_ref(), row.alpha.as_ref(), row.d.as_ref(), row.theta.as_ref());
+                placement::modified_dh(a, &alpha, d, &theta, motion)
+            }
+            Some(Placement::ClassicDh(row)) => {
+                let (a, alpha, d, theta) =
+                    self.row(row.a.as_ref(), row.alpha.as_ref(), row.d.as_ref(), row.theta.as_ref());
+                placement::classic_dh(a, &alpha, d, &theta, motion)
+            }
+            Some(Placement::Transform(transform)) => {
+                let place = "`translation`";
+                let translation = self.vector_or_zero(transform.translation.as_ref(), place, "m", Limit::Any);
+                let list = transform.rotation.as_ref().and_then(|rotation| rotation.value.as_ref());
+                let turns: Vec<_> = list
+                    .into_iter()
+                    .flat_map(|list| &list.0)
+                    .filter_map(|turn| turn.value.as_ref())
+                    .map(|turn| match turn {
+                        Turn::X(angle) => (Axis::X, self.angle(angle, "`rotation`")),
+                        Turn::Y(angle) => (Axis::Y, self.angle(angle, "`rotation`")),
+                        Turn::Z(angle) => (Axis::Z, self.angle(angle, "`rotation`")),
+                    })
+                    .collect();
+                placement::transform(translation, &turns, motion)
+            }
+            None => motion,
+        }
+    }
+
+    fn row(
+        &mut self,
+        a: Option<&Given<Number>>,
+        alpha: Option<&Given<Angle>>,
+        d: Option<&Given<Number>>,
+        theta: Option<&Given<Angle>>,
+    ) -> (Value, Value, Value, Value) {
+        let a = self.number_or(a, 0.0, "`a`", "m", Limit::Any);
+        let alpha = alpha.map_or(Value::ZERO, |alpha| self.angle(alpha, "`alpha`"));
+        let d = self.number_or(d, 0.0, "`d`", "m", Limit::Any);
+        let theta = theta.map_or(Value::ZERO, |theta| self.angle(theta, "`theta`"));
+        (a, alpha, d, theta)
+    }
+}

@@ -1,0 +1,157 @@
+//! What a link carries: masses and inertias.
+
+use super::Check;
+use super::numbers::Limit;
+use crate::chain::{self, Part, Step, Value};
+use crate::diagnostic::{Span, rule};
+use crate::expand::inertia::{self, Tensor};
+use crate::spec::{About, Body, Given, Inertia, Link, Number, Vector};
+
+/// Rounding that people do when they write an inertia down: the triangle inequality may miss by this share.
+const WRITTEN: f64 = 1e-6;
+/// A smallest principal moment below this share of the largest is zero to rounding.
+const VANISHING: f64 = 1e-12;
+
+impl<'a> Check<'a> {
+    /// Appends the bodies of a link; where they begin along x, and where the next link sits.
+    pub(super) fn carried(&mut self, link: &'a Link, name: &'a str, path: Vec<Step>) -> (Vec<Value>, Value) {
+        let carried: Vec<(&str, Span)> = [
+            ("mass", link.mass.as_ref().map(|given| given.span)),
+            ("bodies", link.bodies.as_ref().map(|given| given.span)),
+            ("beam", link.beam.as_ref().map(|given| given.span)),
+        ]
+        .into_iter()
+        .filter_map(|(key, span)| Some((key, span?)))
+        .collect();
+        if let [(first, _), (second, span), ..] = carried[..] {
+            self.report(rule::two_masses(span, name, first, second));
+        }
+        self.alone(link, name);
+
+        if let Some(beam) = &link.beam {
+            return self.beam(beam, name, link.name.span, path);
+        }
+        let (inertia, parts) = match (&link.mass, &link.bodies) {
+            (Some(mass), _) => {
+                let place = format!("link `{name}`");
+                let own = self.inertia(mass, link.com.as_ref(), link.inertia.as_ref(), &place);
+                (own.map(|(inertia, _)| inertia), Vec::new())
+            }
+            (None, Some(bodies)) => self.lumped(bodies.value.as_deref().unwrap_or_default()),
+            (None, None) => (None, Vec::new()),
+        };
+        let (name, link_name) = (name.to_owned(), name.to_owned());
+        self.push_body(chain::Body { name, link: link_name, path, inertia, parts, length: Value::ZERO }, link.name.span);
+        (vec![Value::ZERO], Value::ZERO)
+    }
+
+    /// `com` and `inertia` of a link go with `mass`.
+    fn alone(&mut self, link: &Link, name: &str) {
+        let com = link.com.as_ref().map(|given| ("com", given.span));
+        let inertia = link.inertia.as_ref().map(|given| ("inertia", given.span));
+        match (&link.mass, com) {
+            (None, _) => {
+                for (key, span) in [com, inertia].into_iter().flatten() {
+                    self.report(rule::without_mass(span, name, key));
+                }
+            }
+            (Some(mass), None) => self.report(rule::missing_key(mass.span, "com", format!("link `{name}`"))),
+            _ => {}
+        }
+    }
+
+    /// Several bodies in one.
+    fn lumped(&mut self, bodies: &[Given<Body>]) -> (Option<chain::Inertia>, Vec<Part>) {
+        let mut parts: Vec<Part> = Vec::new();
+        let mut whole = None;
+        for (body, span) in bodies.iter().filter_map(|body| Some((body.value.as_ref()?, body.span))) {
+            let name = self.name(&body.name).unwrap_or_default().to_owned();
+            if !name.is_empty() && parts.iter().any(|part| part.name == name) {
+                self.report(rule::duplicate_name(span, "bodies", &name, "a body of this link"));
+            }
+            let inertia = self.inertia(&body.mass, Some(&body.com), body.inertia.as_ref(), &format!("body `{name}`"));
+            if let Some((own, com)) = inertia {
+                parts.push(Part { name, mass: own.mass.clone(), com });
+                whole = Some(match whole {
+                    Some(others) => inertia::sum(others, own),
+                    None => own,
+                });
+            }
+        }
+        (whole, parts)
+    }
+
+    /// Mass, centre of mass and inertia as a pseudo-inertia about the origin of the frame; and the centre of mass.
+    pub(super) fn inertia(
+        &mut self,
+        mass: &Given<Number>,
+        com: Option<&Given<Vector>>,
+        inertia: Option<&Given<Inertia>>,
+        place: &str,
+    ) -> Option<(chain::Inertia, [Value; 3])> {
+        let m = self.number(mass, &format!("the mass of {place}"), "kg", Limit::Positive);
+        let com = self.vector_or_zero(com, &format!("the centre of mass of {place}"), "m", Limit::Any);
+        let place = format!("the inertia of {place}");
+        let Some(given) = inertia else { return Some((inertia::point(m, &com), com)) };
+        let written = given.value.as_ref()?;
+        let (tensor, about) = self.tensor(written, given.span, &m, &place)?;
+        self.possible(&m, &com, &tensor, about, given.span, &place);
+        let inertia = match about {
+            About::Com => inertia::about_com(m, &com, &tensor),
+            About::Origin => inertia::about_origin(m, &com, &tensor),
+        };
+        Some((inertia, com))
+    }
+
+    fn tensor(&mut self, inertia: &Inertia, span: Span, mass: &Value, place: &str) -> Option<(Tensor, About)> {
+        let keys = ["Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"];
+        let elements = [&inertia.xx, &inertia.yy, &inertia.zz, &inertia.xy, &inertia.xz, &inertia.yz];
+        let about = inertia.about.as_ref().map_or(Some(About::Com), |about| about.value)?;
+        if let Some(radii) = &inertia.gyration {
+            let beside = elements.iter().filter_map(|element| element.as_ref()).map(|element| element.span);
+            let beside = beside.chain(inertia.about.iter().map(|about| about.span)).next();
+            if let Some(span) = beside {
+                self.report(rule::two_inertias(span, place));
+                return None;
+            }
+            let radii = self.vector(radii, "`gyration`", "m", Limit::NotNegative);
+            return Some((inertia::gyration(mass, &radii), About::Com));
+        }
+        let mut tensor = [Value::ZERO; 6];
+        for (k, (key, element)) in keys.into_iter().zip(elements).enumerate() {
+            match element {
+                Some(element) => tensor[k] = self.number(element, &format!("`{key}`"), "kg m²", Limit::Any),
+                None if k < 3 => {
+                    self.report(rule::missing_key(span, key, place));
+                    tensor[k] = f64::NAN.into();
+                }
+                None => {}
+            }
+        }
+        Some((tensor, about))
+    }
+
+    /// An inertia that a body can have.
+    fn possible(&mut self, mass: &Value, com: &[Value; 3], tensor: &Tensor, about: About, span: Span, place: &str) {
+        let numbers = tensor.each_ref().map(|element| self.now(element));
+        let com = com.each_ref().map(|coordinate| self.now(coordinate));
+        let at_com = match about {
+            About::Com => numbers,
+            About::Origin => inertia::tensor_at_com(self.now(mass), com, numbers),
+        };
+        if !at_com.iter().all(|element| element.is_finite()) {
+            return;
+        }
+        let [smallest, middle, largest] = inertia::principal_moments(at_com);
+        if smallest <= VANISHING * largest {
+            self.report(rule::not_positive_definite(span, place, rounded(smallest)));
+        } else if largest > (smallest + middle) * (1.0 + WRITTEN) {
+            self.report(rule::triangle(span, place, rounded(largest), rounded(smallest + middle)));
+        }
+    }
+}
+
+/// A number as a person would write it, to six digits.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
+}

@@ -1,0 +1,167 @@
+//! `CraneSpec ─validate→ Chain`: checks every rule of the language and expands links into bodies.
+//!
+//! A mistake never ends the checking. In place of a number that is wrong stands NaN, of which no comparison is true, so
+//! that a number is reported once.
+
+mod base;
+mod beam;
+mod drives;
+mod links;
+mod mass;
+mod names;
+mod numbers;
+mod regular;
+mod run;
+
+use std::collections::BTreeMap;
+
+use crate::chain::{Analyses, Body, Chain, Coordinate, CoordinateId, ElementSpring, Parameter, Value};
+use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
+use crate::spec::{Analysis, Crane, CraneSpec, Given, Material};
+use names::Names;
+use numbers::Limit;
+
+/// Checks a spec and expands it into the chain of its bodies.
+///
+/// # Errors
+/// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
+pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnostics> {
+    let mut check = Check { mistakes: spec.mistakes.clone(), ..Check::default() };
+    let chain = check.crane(&spec.crane, source);
+    if check.mistakes.is_empty() {
+        // The mass matrix exists only where all else is sound.
+        check.regular(&chain, &spec.crane);
+    }
+    if check.mistakes.is_empty() { Ok(chain) } else { Err(Diagnostics::new(source, check.mistakes)) }
+}
+
+/// What a coordinate belongs to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Owner {
+    /// The free base.
+    Base,
+    /// A revolute or prismatic joint.
+    Joint,
+    /// The springs of a beam, by link.
+    Beam(String),
+}
+
+/// Where a link went in the chain.
+#[derive(Clone, Debug)]
+struct Place {
+    /// Index of its first body.
+    first: usize,
+    /// Where its bodies begin along x when undeformed, m.
+    starts: Vec<Value>,
+}
+
+/// The check of one spec: what is known so far, and what was found wrong.
+#[derive(Debug, Default)]
+struct Check<'a> {
+    mistakes: Vec<Mistake>,
+    parameters: Vec<Parameter>,
+    /// Their values, at which live numbers are checked.
+    defaults: Vec<f64>,
+    /// Which of them some number refers to.
+    used: Vec<bool>,
+    materials: BTreeMap<&'a str, &'a Material>,
+    coordinates: Vec<Coordinate>,
+    /// What each coordinate belongs to.
+    owners: Vec<Owner>,
+    bodies: Vec<Body>,
+    elements: Vec<ElementSpring>,
+    base: [Option<CoordinateId>; 6],
+    links: BTreeMap<&'a str, Place>,
+    /// Names of bodies and coordinates after expansion.
+    expanded: Names,
+    /// What could not be read, so that references to it may be right.
+    unknown: Unknown,
+}
+
+/// Kinds of names of which some could not be read: an unknown reference is then no mistake of its own.
+#[derive(Clone, Copy, Debug, Default)]
+struct Unknown {
+    parameters: bool,
+    materials: bool,
+    links: bool,
+}
+
+impl<'a> Check<'a> {
+    fn report(&mut self, mistake: Mistake) {
+        self.mistakes.push(mistake);
+    }
+
+    fn crane(&mut self, crane: &'a Crane, source: &SourceFile) -> Chain {
+        self.format(crane);
+        let name = self.name(&crane.name).unwrap_or_default();
+        self.take_parameters(crane);
+        self.take_materials(crane);
+        let gravity = match &crane.gravity {
+            Some(gravity) => self.vector(gravity, "`gravity`", "m/s²", Limit::Any),
+            None => [0.0, 0.0, -9.81].map(Value::from),
+        };
+        self.links(&crane.links);
+        let supports = self.supports(crane);
+        let drives = self.drives(crane);
+        let hinges = self.hinges(crane, &drives);
+        let points = self.points(crane);
+        let guess = self.guess(crane, &drives);
+        let run = self.run(crane.run.as_ref());
+        let analyses = self.analyses(crane.analyses.as_ref());
+        self.every_parameter_used(crane);
+        Chain {
+            title: crane.title.as_ref().and_then(|title| title.value.clone()).unwrap_or_else(|| name.to_owned()),
+            name: name.to_owned(),
+            spec_hash: source.hash(),
+            gravity,
+            parameters: std::mem::take(&mut self.parameters),
+            coordinates: std::mem::take(&mut self.coordinates),
+            bodies: std::mem::take(&mut self.bodies),
+            base: self.base,
+            supports,
+            elements: std::mem::take(&mut self.elements),
+            drives,
+            hinges,
+            points,
+            guess,
+            run,
+            analyses,
+        }
+    }
+
+    fn format(&mut self, crane: &Crane) {
+        let version = self.constant(&crane.format, "`format`", "", Limit::Any);
+        if !version.is_nan() && version.to_bits() != 1f64.to_bits() {
+            self.report(rule::wrong_format(crane.format.span, version));
+        }
+    }
+
+    fn take_materials(&mut self, crane: &'a Crane) {
+        let Some(materials) = &crane.materials else { return };
+        let Some(materials) = &materials.value else {
+            self.unknown.materials = true;
+            return;
+        };
+        for (name, material) in &materials.0 {
+            self.unknown.materials |= material.value.is_none();
+            if let (Some(name), Some(material)) = (self.name(name), &material.value) {
+                self.materials.insert(name, material);
+            }
+        }
+    }
+
+    fn analyses(&mut self, given: Option<&Given<Vec<Given<Analysis>>>>) -> Analyses {
+        let default = Analyses { statics: true, dynamics: true, modes: true, derivatives: false };
+        let Some((list, span)) = given.and_then(|given| Some((given.value.as_ref()?, given.span))) else { return default };
+        if list.is_empty() {
+            self.report(rule::no_analyses(span));
+        }
+        let wants = |analysis| list.iter().any(|item| item.value == Some(analysis));
+        Analyses {
+            statics: wants(Analysis::Statics),
+            dynamics: wants(Analysis::Dynamics),
+            modes: wants(Analysis::Modes),
+            derivatives: wants(Analysis::Derivatives),
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Names: identifiers, unique among their kind.
+
+use std::collections::BTreeMap;
+
+use super::Check;
+use crate::chain::CoordinateId;
+use crate::diagnostic::{Span, rule};
+use crate::read::suggest;
+use crate::spec::Given;
+
+/// Names taken so far, by kind and name, and what took them.
+#[derive(Debug, Default)]
+pub(super) struct Names(BTreeMap<(&'static str, String), String>);
+
+impl Names {
+    /// Takes a name, or tells what has it already.
+    fn take(&mut self, kind: &'static str, name: &str, taker: String) -> Result<(), String> {
+        match self.0.entry((kind, name.to_owned())) {
+            std::collections::btree_map::Entry::Vacant(free) => {
+                free.insert(taker);
+                Ok(())
+            }
+            std::collections::btree_map::Entry::Occupied(taken) => Err(taken.get().clone()),
+        }
+    }
+}
+
+impl Check<'_> {
+    /// A name that is a `snake_case` identifier and no keyword.
+    pub(super) fn name<'n>(&mut self, given: &'n Given<String>) -> Option<&'n str> {
+        let name = given.value.as_deref()?;
+        let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+        if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.chars().all(letters) {
+            self.report(rule::not_an_identifier(given.span, name.chars().take(40).collect::<String>()));
+            return None;
+        }
+        // `gen` is a keyword since edition 2024.
+        if name == "gen" || syn::parse_str::<syn::Ident>(name).is_err() {
+            self.report(rule::keyword(given.span, name));
+            return None;
+        }
+        Some(name)
+    }
+
+    /// Takes a name that must be unique among its kind.
+    pub(super) fn take_name(&mut self, kind: &'static str, name: &str, taker: String, span: Span) {
+        if let Err(other) = self.expanded.take(kind, name, taker) {
+            self.report(rule::duplicate_name(span, kind, name, other));
+        }
+    }
+
+    /// Takes the name of a body or coordinate of a link, unless the link's own name is in question.
+    pub(super) fn take_expanded(&mut self, kind: &'static str, name: &str, link: &str, span: Span) {
+        if !link.is_empty() && !self.links.contains_key(link) {
+            self.take_name(kind, name, format!("link `{link}`"), span);
+        }
+    }
+
+    /// The coordinate of that name.
+    pub(super) fn coordinate(&mut self, given: &Given<String>) -> Option<CoordinateId> {
+        let name = given.value.as_deref()?;
+        let found = self.coordinates.iter().position(|coordinate| coordinate.name == name);
+        if found.is_none() && !self.unknown.links {
+            let help = suggest(name, self.coordinates.iter().map(|coordinate| coordinate.name.as_str()));
+            self.report(rule::unknown_coordinate(given.span, name, help));
+        }
+        found.map(CoordinateId)
+    }
+}

@@ -1,0 +1,181 @@
+//! Numbers: finite, in range, resolved to constants or live parameters.
+
+use super::Check;
+use crate::chain::{CoordinateKind, Parameter, ParameterId, Value};
+use crate::diagnostic::{Span, rule};
+use crate::read::suggest;
+use crate::spec::{Angle, Constant, Crane, FixedAngle, Given, Number, Scalar, Vector};
+
+/// What a number may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Limit {
+    /// Anything finite.
+    Any,
+    /// Zero or above.
+    NotNegative,
+    /// Above zero.
+    Positive,
+}
+
+/// Magnitudes outside of this range, zero apart, come from a slip in an exponent. Inside, no product or quotient that
+/// the expansion forms leaves the range of a double.
+const SMALLEST: f64 = 1e-30;
+const LARGEST: f64 = 1e18;
+
+impl<'a> Check<'a> {
+    pub(super) fn take_parameters(&mut self, crane: &'a Crane) {
+        let Some(parameters) = &crane.parameters else { return };
+        let Some(entries) = &parameters.value else {
+            self.unknown.parameters = true;
+            return;
+        };
+        for (name, parameter) in &entries.0 {
+            let Some(name) = self.name(name) else {
+                self.unknown.parameters = true;
+                continue;
+            };
+            let (default, unit, about) = match &parameter.value {
+                Some(parameter) => {
+                    let default = self.fixed(&parameter.value, &format!("parameter `{name}`"), None);
+                    let text = |given: &Option<Given<String>>| given.as_ref()?.value.clone();
+                    (default, text(&parameter.unit), text(&parameter.about))
+                }
+                None => (f64::NAN, None, None),
+            };
+            self.parameters.push(Parameter {
+                name: name.to_owned(),
+                unit: unit.unwrap_or_default(),
+                about: about.unwrap_or_default(),
+                default,
+            });
+            self.defaults.push(default);
+            self.used.push(false);
+        }
+    }
+
+    pub(super) fn every_parameter_used(&mut self, crane: &Crane) {
+        // A number that could not be read may have been the one that refers to it.
+        if !self.mistakes.is_empty() {
+            return;
+        }
+        let Some(entries) = crane.parameters.as_ref().and_then(|parameters| parameters.value.as_ref()) else { return };
+        for ((name, _), used) in entries.0.iter().zip(std::mem::take(&mut self.used)) {
+            if let (false, Some(text)) = (used, &name.value) {
+                self.report(rule::unused_parameter(name.span, text));
+            }
+        }
+    }
+
+    /// The number with the default values of the parameters.
+    pub(super) fn now(&self, value: &Value) -> f64 {
+        value.at(&self.defaults)
+    }
+
+    /// A number, checked against its limit.
+    pub(super) fn number(&mut self, given: &Given<Number>, place: &str, unit: &str, limit: Limit) -> Value {
+        let value = self.resolve(given.value.as_ref().map(|number| &number.0), given.span, place, false);
+        self.keep_limit(&value, given.span, place, unit, limit);
+        value
+    }
+
+    /// A number that may be left out.
+    pub(super) fn number_or(
+        &mut self,
+        given: Option<&Given<Number>>,
+        default: f64,
+        place: &str,
+        unit: &str,
+        limit: Limit,
+    ) -> Value {
+        given.map_or(Value::Constant(default), |given| self.number(given, place, unit, limit))
+    }
+
+    /// Three numbers along x, y, z.
+    pub(super) fn vector(&mut self, given: &Given<Vector>, place: &str, unit: &str, limit: Limit) -> [Value; 3] {
+        match &given.value {
+            Some(vector) => vector.each_ref().map(|number| self.number(number, place, unit, limit)),
+            None => [f64::NAN; 3].map(Value::from),
+        }
+    }
+
+    /// Three numbers that may be left out, and are then zero.
+    pub(super) fn vector_or_zero(
+        &mut self,
+        given: Option<&Given<Vector>>,
+        place: &str,
+        unit: &str,
+        limit: Limit,
+    ) -> [Value; 3] {
+        given.map_or([Value::ZERO; 3], |given| self.vector(given, place, unit, limit))
+    }
+
+    /// An angle, rad.
+    pub(super) fn angle(&mut self, given: &Given<Angle>, place: &str) -> Value {
+        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, true)
+    }
+
+    /// A position of a coordinate, rad or m; of an unknown kind, either.
+    pub(super) fn position(&mut self, given: &Given<Angle>, kind: Option<CoordinateKind>, place: &str) -> Value {
+        let turns = kind != Some(CoordinateKind::Translation);
+        self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, turns)
+    }
+
+    /// A position that no parameter can replace.
+    pub(super) fn fixed(&mut self, given: &Given<FixedAngle>, place: &str, kind: Option<CoordinateKind>) -> f64 {
+        let turns = kind != Some(CoordinateKind::Translation);
+        let value = self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, turns);
+        value.as_constant().unwrap_or(f64::NAN)
+    }
+
+    /// A number that no parameter can replace.
+    pub(super) fn constant(&mut self, given: &Given<Constant>, place: &str, unit: &str, limit: Limit) -> f64 {
+        let value = self.resolve(given.value.as_ref().map(|constant| &constant.0), given.span, place, false);
+        self.keep_limit(&value, given.span, place, unit, limit);
+        value.as_constant().unwrap_or(f64::NAN)
+    }
+
+    /// Constant or parameter; NaN if the mistake has been reported.
+    fn resolve(&mut self, scalar: Option<&Scalar>, span: Span, place: &str, angle: bool) -> Value {
+        let reported = Value::Constant(f64::NAN);
+        let number = match scalar {
+            None => return reported,
+            Some(Scalar::Name(name)) => return self.parameter(name, span).map_or(reported, Value::Parameter),
+            Some(Scalar::Angle(_)) if !angle => {
+                self.report(rule::misplaced_angle(span, place));
+                return reported;
+            }
+            Some(Scalar::Number(number) | Scalar::Angle(number)) => *number,
+        };
+        if !number.is_finite() {
+            self.report(rule::not_finite(span, place, number));
+            return reported;
+        }
+        if number != 0.0 && !(SMALLEST..=LARGEST).contains(&number.abs()) {
+            self.report(rule::out_of_range(span, place, format!("{number:e}")));
+            return reported;
+        }
+        // The sign of zero means nothing here, and would show in the generated code.
+        Value::Constant(number + 0.0)
+    }
+
+    fn parameter(&mut self, name: &str, span: Span) -> Option<ParameterId> {
+        if let Some(index) = self.parameters.iter().position(|parameter| parameter.name == name) {
+            self.used[index] = true;
+            return Some(ParameterId(index));
+        }
+        if !self.unknown.parameters {
+            let help = suggest(name, self.parameters.iter().map(|parameter| parameter.name.as_str()));
+            self.report(rule::unknown_parameter(span, name, help));
+        }
+        None
+    }
+
+    fn keep_limit(&mut self, value: &Value, span: Span, place: &str, unit: &str, limit: Limit) {
+        let number = self.now(value);
+        match limit {
+            Limit::Positive if number <= 0.0 => self.report(rule::not_positive(span, place, number, unit)),
+            Limit::NotNegative if number < 0.0 => self.report(rule::negative(span, place, number, unit)),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Points of interest, the guess of the static solution, and the settings of a run.
+
+use super::Check;
+use super::numbers::Limit;
+use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Value};
+use crate::diagnostic::rule;
+use crate::expand::profile;
+use crate::read::suggest;
+use crate::spec::{self, Constant, Crane, Given};
+
+/// A point belongs to the element that begins at its x, were it off by this share of the beam's length: both are
+/// written or computed in decimal.
+const AT_THE_JOINT: f64 = 1e-12;
+
+impl<'a> Check<'a> {
+    pub(super) fn points(&mut self, crane: &'a Crane) -> Vec<Point> {
+        let given = crane.points.as_ref().and_then(|points| points.value.as_deref()).unwrap_or_default();
+        let mut points = Vec::new();
+        for point in given.iter().filter_map(|point| point.value.as_ref()) {
+            let name = self.name(&point.name).unwrap_or_default().to_owned();
+            if !name.is_empty() {
+                self.take_name("points", &name, "a point before".into(), point.name.span);
+            }
+            let at = self.vector(&point.at, &format!("the position of point `{name}`"), "m", Limit::Any);
+            if let Some((body, position)) = self.attach(&point.link, at) {
+                points.push(Point { name, body, position });
+            }
+        }
+        points
+    }
+
+    /// The body of a link that carries a point, and where: of a beam, the element that holds the point's x.
+    fn attach(&mut self, link: &Given<String>, at: [Value; 3]) -> Option<(BodyId, [Value; 3])> {
+        let name = link.value.as_deref()?;
+        let Some(place) = self.links.get(name) else {
+            if !self.unknown.links {
+                let help = suggest(name, self.links.keys().copied());
+                self.report(rule::unknown_link(link.span, name, help));
+            }
+            return None;
+        };
+        let [x, y, z] = at;
+        let reach = self.now(&x) + AT_THE_JOINT * place.starts.last().map_or(0.0, |start| self.now(start));
+        let element = place.starts.iter().rposition(|start| self.now(start) <= reach).unwrap_or(0);
+        let start = place.starts.get(element).cloned().unwrap_or(Value::ZERO);
+        Some((BodyId(place.first + element), [x - start, y, z]))
+    }
+
+    pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<f64> {
+        let mut guess = vec![0.0; self.coordinates.len()];
+        for drive in drives {
+            guess[drive.coordinate.0] = profile::start(&drive.profile, &self.defaults);
+        }
+        let Some(entries) = crane.guess.as_ref().and_then(|guess| guess.value.as_ref()) else { return guess };
+        for (name, position) in &entries.0 {
+            let coordinate = self.coordinate(name);
+            let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
+            let place = format!("the guess of `{}`", name.value.as_deref().unwrap_or_default());
+            let position = self.fixed(position, &place, kind);
+            if let Some(CoordinateId(index)) = coordinate {
+                guess[index] = position;
+            }
+        }
+        guess
+    }
+
+    pub(super) fn run(&mut self, given: Option<&Given<spec::Run>>) -> Run {
+        let run = given.and_then(|given| given.value.clone()).unwrap_or_default();
+        let mut seconds = |given: Option<&Given<Constant>>, default, place| {
+            given.map_or(default, |given| self.constant(given, place, "s", Limit::Positive))
+        };
+        let duration = seconds(run.duration.as_ref(), 10.0, "`duration`");
+        let step = seconds(run.step.as_ref(), 1e-4, "`step`");
+        let output = seconds(run.output.as_ref(), 0.01, "`output`");
+        let span = |own: &Option<Given<Constant>>| {
+            own.as_ref().map_or(given.map(|given| given.span).unwrap_or_default(), |own| own.span)
+        };
+        if step > output {
+            self.report(rule::run_order(span(&run.step), "step", "output"));
+        }
+        if output > duration {
+            self.report(rule::run_order(span(&run.output), "output", "duration"));
+        }
+        Run { duration, step, output }
+    }
+}
