@@ -13,6 +13,8 @@ from transforms import classic_dh, modified_dh, place, rotate, translate, transl
 ROTATIONS = {"psi": "z", "theta": "y", "phi": "x"}
 TRANSLATIONS = {"x": "x", "y": "y", "z": "z"}
 ROTATION_NAMES = {axis: name for name, axis in ROTATIONS.items()}
+# Two places along a beam are one if they differ by less than this share of its length: rounding of decimals.
+SAME_PLACE = 1e-12
 FREE = ["x", "y", "z", "psi", "theta", "phi"]
 
 
@@ -248,10 +250,14 @@ def read_drive(crane, written):
 
 
 def read_point(spec, written, span):
-    """Where a point of a link is in the world; on a beam, the element that holds its x carries it."""
+    """Where a point of a link is in the world; on a beam, the element that holds its x carries it.
+
+    On a spring, that is the element that begins there, to within rounding of written and added lengths.
+    """
     at = spec.vector(written["at"])
-    x = spec.default(at[0])
-    index = max((i for i, start in enumerate(span.starts) if spec.default(start) <= x), default=0)
+    starts = [spec.default(start) for start in span.starts]
+    reach = spec.default(at[0]) + SAME_PLACE * starts[-1]
+    index = max((i for i, start in enumerate(starts) if start <= reach), default=0)
     return place(span.bodies[index].transform, at - ca.vertcat(span.starts[index], 0, 0))
 
 
