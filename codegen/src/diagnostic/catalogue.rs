@@ -64,14 +64,14 @@ catalogue! {
     /// A key stands once in its mapping.
     E011 duplicate_key(key) "key `{key}` is given twice", "given before", "keep one of the two";
     /// Keys without a default are given.
-    E012 missing_key(key, place) "{place} lacks `{key}`", "`{key}` is missing here", "add `{key}:`";
+    E012 missing_key(key, place) "{place} lacks `{key}`", "`{key}` is missing here", "add `{key}:`; docs/SPEC.md tells its meaning and unit";
     /// A value has the shape that its key asks for.
-    E013 wrong_value(place, expected, found) "{place} cannot be {found}", "expected {expected}", "write {expected}";
+    E013 wrong_value(place, found, kind, expected) "{place} cannot be {found}", "this is {kind}", "write {expected}";
     /// A choice is one of those offered.
     E014 unknown_choice(place, given, help) "{place} cannot be `{given}`", "not one of the choices", "{help}";
     /// Of several ways to say it, one is used.
     E015 not_one_choice(place, count, choices) "{place} needs exactly one choice, here are {count}", "one of {choices}",
-        "keep exactly one of {choices}";
+        "write exactly one of {choices}";
     /// A list has as many items as its key asks for.
     E016 wrong_length(place, expected, found) "{place} has {found} items instead of {expected}",
         "{expected} items belong here", "write {expected} items";

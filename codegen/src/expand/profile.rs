@@ -17,7 +17,7 @@ pub(crate) fn start(profile: &Profile, parameters: &[f64]) -> f64 {
         Profile::Cycloid(ramp) => along(ramp, &|tau| tau - (2.0 * PI * tau).sin() / (2.0 * PI)),
         Profile::Trapezoid { ramp, blend } => along(ramp, &|tau| trapezoid(tau, *blend)),
         Profile::Table { from, segments } => segments.iter().fold(*from, |position, segment| {
-            let u = (-segment.begin).clamp(0.0, segment.duration);
+            let u = (-segment.begin).max(0.0).min(segment.duration);
             let [c1, c2, c3] = segment.coefficients;
             position + u * (c1 + u * (c2 + u * c3))
         }),

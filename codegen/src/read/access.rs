@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor};
 
-use super::deserializer::{Reader, Unread};
+use super::deserializer::{Place, Reader, Unread};
 use super::nearest::suggest;
 use super::tree::{Content, Node};
 use crate::diagnostic::{Span, rule};
@@ -24,6 +24,15 @@ fn shown_item(item: &Node) -> Span {
         Content::Mapping(entries) => entries.first().map_or(item.span, |(key, _)| key.span),
         _ => item.span,
     }
+}
+
+/// The name that an item of a list gives itself.
+fn name_of(item: &Node) -> Option<&str> {
+    let Content::Mapping(entries) = &item.content else { return None };
+    entries.iter().find_map(|(key, value)| match (&key.content, &value.content) {
+        (Content::Text(key), Content::Text(name)) if key == "name" => Some(name.as_str()),
+        _ => None,
+    })
 }
 
 /// Start, end and value of a node, for [`Given`](crate::spec::Given).
@@ -72,7 +81,8 @@ impl<'a> SeqAccess<'a> for Items<'a> {
     type Error = Unread;
     fn next_element_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<Option<T::Value>, Unread> {
         let Some(item) = self.items.next() else { return Ok(None) };
-        seed.deserialize(Reader { node: Some(item), span: shown_item(item), ..self.reader }).map(Some)
+        let place = Place::Entry(self.reader.place.key(), name_of(item));
+        seed.deserialize(Reader { node: Some(item), span: shown_item(item), place, ..self.reader }).map(Some)
     }
 }
 
@@ -115,8 +125,8 @@ impl<'a> MapAccess<'a> for Entries<'a> {
     fn next_value_seed<V: DeserializeSeed<'a>>(&mut self, seed: V) -> Result<V::Value, Unread> {
         let (key, value) = &self.entries[self.next - 1];
         let reader = self.reader;
-        let owner = reader.key;
-        seed.deserialize(Reader { node: Some(value), span: shown(key.span, value), key: borrowed(key), owner, ..reader })
+        let (span, place) = (shown(key.span, value), Place::Key(borrowed(key)));
+        seed.deserialize(Reader { node: Some(value), span, place, owner: reader.place, ..reader })
     }
 }
 
@@ -163,8 +173,8 @@ impl<'a> MapAccess<'a> for Fields<'a> {
             Some((span, node)) => (span, Some(node)),
             None => (self.reader.span, None),
         };
-        let owner = self.reader.key;
-        seed.deserialize(Reader { node, span, key: self.fields[field], owner, ..self.reader })
+        let (place, owner) = (Place::Key(self.fields[field]), self.reader.place);
+        seed.deserialize(Reader { node, span, place, owner, ..self.reader })
     }
 }
 
@@ -179,7 +189,7 @@ impl<'a> Choice<'a> {
     /// Reader of what was given with the variant.
     fn content(&self) -> Reader<'a> {
         let span = self.node.map_or(self.reader.span, |node| shown(self.reader.span, node));
-        Reader { node: self.node, span, key: self.variant, owner: self.reader.key, ..self.reader }
+        Reader { node: self.node, span, place: Place::Key(self.variant), owner: self.reader.place, ..self.reader }
     }
 
     /// Reports here what the content cannot report itself, as it has no place of its own.

@@ -44,6 +44,38 @@ impl de::Error for Unread {
     }
 }
 
+/// What a node is called in messages.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Place<'a> {
+    /// The whole file.
+    Whole,
+    /// The value of a key.
+    Key(&'a str),
+    /// An entry of the list of a key, by its own name if it has one.
+    Entry(&'a str, Option<&'a str>),
+}
+
+impl<'a> Place<'a> {
+    /// The key that it stands under.
+    pub fn key(self) -> &'a str {
+        match self {
+            Place::Whole => "",
+            Place::Key(key) | Place::Entry(key, _) => key,
+        }
+    }
+}
+
+impl Display for Place<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Place::Whole => f.write_str("the crane"),
+            Place::Key(key) => write!(f, "`{key}`"),
+            Place::Entry(key, Some(name)) => write!(f, "`{name}` of `{key}`"),
+            Place::Entry(key, None) => write!(f, "an entry of `{key}`"),
+        }
+    }
+}
+
 /// A node to read, or the place where one is missing.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a> {
@@ -51,10 +83,10 @@ pub(super) struct Reader<'a> {
     pub node: Option<&'a Node>,
     /// Where it stands, or where it is missed.
     pub span: Span,
-    /// Its key.
-    pub key: &'a str,
-    /// What it is part of, for messages.
-    pub owner: &'a str,
+    /// What it is called in messages.
+    pub place: Place<'a>,
+    /// What it is part of.
+    pub owner: Place<'a>,
     /// The mistakes so far.
     pub mistakes: &'a RefCell<Vec<Mistake>>,
 }
@@ -62,7 +94,7 @@ pub(super) struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// A reader of the whole file.
     pub fn root(node: &'a Node, mistakes: &'a RefCell<Vec<Mistake>>) -> Self {
-        Reader { node: Some(node), span: node.span, key: "the crane", owner: "the file", mistakes }
+        Reader { node: Some(node), span: node.span, place: Place::Whole, owner: Place::Whole, mistakes }
     }
 
     /// Notes a mistake; the value is then [`Unread::Reported`].
@@ -74,7 +106,7 @@ impl<'a> Reader<'a> {
     /// Notes that the value is not what was expected, unless that was said.
     pub fn report_unread(&self, unread: Unread) {
         if let (Unread::Expected(expected), Some(node)) = (unread, self.node) {
-            self.report(rule::wrong_value(self.span, self.place(), expected, node.content.describe()));
+            self.report(rule::wrong_value(self.span, self.place, node.content.describe(), node.content.kind(), expected));
         }
     }
 
@@ -82,13 +114,8 @@ impl<'a> Reader<'a> {
     fn content(&self) -> Result<&'a Content, Unread> {
         match self.node {
             Some(node) => Ok(&node.content),
-            None => Err(self.report(rule::missing_key(self.span, self.key, self.owner))),
+            None => Err(self.report(rule::missing_key(self.span, self.place.key(), self.owner))),
         }
-    }
-
-    /// Name of the place for messages.
-    pub fn place(&self) -> String {
-        format!("`{}`", self.key)
     }
 
     /// The fields of a mapping.
@@ -142,7 +169,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         match self.content()? {
             Content::Sequence(items) if items.len() == length => visitor.visit_seq(Items::new(self, items)),
             Content::Sequence(items) => {
-                Err(self.report(rule::wrong_length(self.span, self.place(), length, items.len())))
+                Err(self.report(rule::wrong_length(self.span, self.place, length, items.len())))
             }
             _ => Err(Unread::Expected(format!("a list of {length} numbers"))),
         }
@@ -173,7 +200,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         let chosen = |name: &str| variants.iter().copied().find(|variant| *variant == name);
         let unknown = |span, name: &str| {
             let help = suggest(name, variants.iter().copied());
-            self.report(rule::unknown_choice(span, self.place(), name, help))
+            self.report(rule::unknown_choice(span, self.place, name, help))
         };
         match self.content()? {
             Content::Text(name) => match chosen(name) {
@@ -201,7 +228,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                     _ if !all_known => Err(Unread::Reported),
                     _ => {
                         let span = choices.get(1).map_or(self.span, |(key, ..)| key.span);
-                        Err(self.report(rule::not_one_choice(span, self.place(), choices.len(), list(variants))))
+                        Err(self.report(rule::not_one_choice(span, self.place, choices.len(), list(variants))))
                     }
                 }
             }

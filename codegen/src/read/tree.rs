@@ -69,53 +69,71 @@ pub(super) fn parse(text: &str) -> Result<Node, Mistake> {
         with_snippet: false,
     };
     let root: Spanned<Content> = serde_yaml::from_str_with_options(text, options).map_err(|error| {
-        let span = error.location().map_or(Span::START, |location| span(&location));
+        let span = error.location().map_or(Span::START, |location| span(text, &location));
         match text.trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}') {
             "" => rule::empty(Span::START),
-            _ => rule::not_yaml(span, headline(&error)),
+            _ => rule::not_yaml(span, problem(&error)),
         }
     })?;
     let root = Node::from(root);
-    let whole = Span { start: 0, ..root.span };
     match root.content {
-        Content::Null => Err(rule::empty(whole)),
+        Content::Null => Err(rule::empty(Span::START)),
         Content::Mapping(_) => Ok(root),
         content => Err(rule::not_a_mapping(root.span, content.describe())),
     }
 }
 
-/// The parser's message without the place, which the drawing shows.
-fn headline(error: &serde_yaml::Error) -> String {
+/// The parser's message without the place, which the drawing shows, nor advice on how to call the parser.
+fn problem(error: &serde_yaml::Error) -> String {
+    if matches!(error.without_snippet(), serde_yaml::Error::MultipleDocuments { .. }) {
+        return "it holds several documents".into();
+    }
     let message = error.without_snippet().to_string();
     let first = message.lines().next().unwrap_or_default();
     let end = first.find(" at line ").or_else(|| first.find(" (line ")).unwrap_or(first.len());
     first[..end].to_owned()
 }
 
-/// Bytes of a place; of the file's beginning if the parser lost it.
-fn span(location: &Location) -> Span {
+/// Bytes of a place. The parser counts bytes of values, but only lines and columns of its own errors.
+fn span(text: &str, location: &Location) -> Span {
+    let count = |number: u64| usize::try_from(number).unwrap_or(usize::MAX);
     let span = location.span();
-    let byte = |offset: Option<u64>| offset.and_then(|offset| usize::try_from(offset).ok()).unwrap_or(0);
-    let start = byte(span.byte_offset());
-    Span { start, end: start + byte(span.byte_len()) }
+    if let (Some(start), Some(length)) = (span.byte_offset(), span.byte_len()) {
+        return Span { start: count(start), end: count(start).saturating_add(count(length)) };
+    }
+    let line: usize = text.split_inclusive('\n').take(count(location.line()).saturating_sub(1)).map(str::len).sum();
+    let before = text[line..].chars().take(count(location.column()).saturating_sub(1));
+    let start = line + before.take_while(|c| *c != '\n').map(char::len_utf8).sum::<usize>();
+    Span { start, end: start }
 }
 
 impl From<Spanned<Content>> for Node {
     fn from(spanned: Spanned<Content>) -> Self {
-        Node { span: span(&spanned.defined), content: spanned.value }
+        Node { span: span("", &spanned.defined), content: spanned.value }
     }
 }
 
 impl Content {
-    /// What it is, for messages.
+    /// Its kind, for messages.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Content::Null => "nothing",
+            Content::Boolean(_) => "true or false",
+            Content::Number(_) => "a number",
+            Content::Text(_) => "text",
+            Content::Sequence(_) => "a list",
+            Content::Mapping(_) => "a mapping",
+        }
+    }
+
+    /// What it says, for messages.
     pub fn describe(&self) -> String {
         match self {
-            Content::Null => "nothing".into(),
+            Content::Null => "left empty".into(),
             Content::Boolean(boolean) => format!("`{boolean}`"),
             Content::Number(number) => format!("`{number}`"),
             Content::Text(text) => format!("`{}`", abridged(text)),
-            Content::Sequence(_) => "a list".into(),
-            Content::Mapping(_) => "a mapping".into(),
+            Content::Sequence(_) | Content::Mapping(_) => self.kind().into(),
         }
     }
 }

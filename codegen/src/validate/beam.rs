@@ -137,24 +137,25 @@ impl<'a> Check<'a> {
 
     /// Young's modulus, shear modulus, density.
     fn material(&mut self, given: &'a Given<Either<String, Material>>) -> Option<[Value; 3]> {
-        let material = match given.value.as_ref()? {
-            Either::Full(material) => material,
-            Either::Short(name) => match self.materials.get(name.as_str()) {
-                Some(material) => material,
-                None => {
-                    if !self.unknown.materials {
-                        let help = suggest(name, self.materials.keys().copied());
-                        self.report(rule::unknown_material(given.span, name, help));
-                    }
-                    return None;
-                }
-            },
+        let name = match given.value.as_ref()? {
+            Either::Full(material) => return Some(self.elastic(material)),
+            Either::Short(name) => name,
         };
-        Some([
+        let known = self.materials.get(name.as_str()).cloned();
+        if known.is_none() && !self.unknown.materials {
+            let help = suggest(name, self.materials.keys().copied());
+            self.report(rule::unknown_material(given.span, name, help));
+        }
+        known
+    }
+
+    /// Young's modulus, shear modulus, density.
+    pub(super) fn elastic(&mut self, material: &Material) -> [Value; 3] {
+        [
             self.number(&material.youngs_modulus, "Young's modulus `E`", "Pa", Limit::Positive),
             self.number(&material.shear_modulus, "the shear modulus `G`", "Pa", Limit::Positive),
             self.number(&material.density, "`density`", "kg/m³", Limit::Positive),
-        ])
+        ]
     }
 
     fn section(&mut self, given: &Given<Section>) -> Option<CrossSection> {

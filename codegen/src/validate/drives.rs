@@ -110,17 +110,21 @@ impl<'a> Check<'a> {
     }
 
     fn table(&mut self, table: &Table, kind: Option<CoordinateKind>, span: Span) -> Option<Profile> {
-        let (times, values) = (table.times.value.as_ref()?, table.values.value.as_ref()?);
-        let (times_given, values): (_, Vec<f64>) =
-            (times, values.iter().map(|value| self.fixed(value, "`values`", kind)).collect());
-        let times: Vec<f64> = times.iter().map(|time| self.constant(time, "`times`", "s", Limit::Any)).collect();
-        for (pair, later) in times.windows(2).zip(&times_given[1..]) {
+        let (given, values) = (table.times.value.as_ref()?, table.values.value.as_ref()?);
+        let values: Vec<f64> = values.iter().map(|value| self.fixed(value, "`values`", kind)).collect();
+        let times: Vec<f64> = given.iter().map(|time| self.constant(time, "`times`", "s", Limit::Any)).collect();
+        let mut ordered = true;
+        for (pair, later) in times.windows(2).zip(given.iter().skip(1)) {
             if pair[0] >= pair[1] {
                 self.report(rule::table_order(later.span, pair[0], pair[1]));
+                ordered = false;
             }
         }
         if times.len() != values.len() || times.len() < 2 {
             self.report(rule::table_length(span, times.len(), values.len()));
+            return None;
+        }
+        if !ordered {
             return None;
         }
         Some(Profile::Table { from: values[0], segments: spline::clamped(&times, &values) })

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 use crate::chain::{Analyses, Body, Chain, Coordinate, CoordinateId, ElementSpring, Parameter, Value};
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
-use crate::spec::{Analysis, Crane, CraneSpec, Given, Material};
+use crate::spec::{Analysis, Crane, CraneSpec, Given};
 use names::Names;
 use numbers::Limit;
 
@@ -64,7 +64,8 @@ struct Check<'a> {
     defaults: Vec<f64>,
     /// Which of them some number refers to.
     used: Vec<bool>,
-    materials: BTreeMap<&'a str, &'a Material>,
+    /// Young's modulus, shear modulus and density of each material.
+    materials: BTreeMap<&'a str, [Value; 3]>,
     coordinates: Vec<Coordinate>,
     /// What each coordinate belongs to.
     owners: Vec<Owner>,
@@ -144,8 +145,9 @@ impl<'a> Check<'a> {
         };
         for (name, material) in &materials.0 {
             self.unknown.materials |= material.value.is_none();
-            if let (Some(name), Some(material)) = (self.name(name), &material.value) {
-                self.materials.insert(name, material);
+            let constants = material.value.as_ref().map(|material| self.elastic(material));
+            if let (Some(name), Some(constants)) = (self.name(name), constants) {
+                self.materials.insert(name, constants);
             }
         }
     }
