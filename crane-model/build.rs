@@ -1,12 +1,31 @@
 //! Compiles the cranes of `specs/` for the `cranes` feature.
 
-use std::{env, fs, io, path::PathBuf};
-
-fn main() -> io::Result<()> {
+fn main() -> std::io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
-    if env::var_os("CARGO_FEATURE_CRANES").is_none() {
-        return Ok(());
+    #[cfg(feature = "cranes")]
+    cranes::compile("../specs")?;
+    Ok(())
+}
+
+#[cfg(feature = "cranes")]
+mod cranes {
+    use std::path::PathBuf;
+    use std::{fs, io};
+
+    use crane_codegen::build;
+    use crane_codegen::chain::Analyses;
+
+    /// Compiles every spec of a folder, and writes `cranes.rs`, which declares them.
+    pub fn compile(folder: &str) -> io::Result<()> {
+        println!("cargo::rerun-if-changed={folder}");
+        let mut specs: Vec<PathBuf> =
+            fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
+        specs.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
+        // The order of a folder differs from machine to machine.
+        specs.sort();
+        // The command offers every analysis of every crane.
+        let compile = |spec: &PathBuf| build::compile_spec_for(spec, Some(Analyses::ALL)).name;
+        let names: Vec<String> = specs.iter().map(compile).collect();
+        fs::write(build::out_dir().join("cranes.rs"), format!("crate::cranes! {{ {} }}\n", names.join(", ")))
     }
-    let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
-    fs::write(out.join("cranes.rs"), "crate::cranes! {}\n")
 }

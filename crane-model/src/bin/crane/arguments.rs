@@ -1,0 +1,168 @@
+//! Arguments of the command.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+
+const EXAMPLES: &str = "\
+Examples:
+  crane                                       the eight-link crane, rigid against flexible: statics, run, figures
+  crane statics                               pose, drive torques and support reactions at rest
+  crane statics double_pendulum --format json the same of another crane, for a program
+  crane simulate --set load_mass=0 --out empty
+  crane modes eight_link_flexible             frequencies and damping about the deflected pose
+  crane list                                  the cranes to choose from
+  crane info                                  coordinates, parameters, drives and units of a crane
+  source <(crane completions bash)            completion of commands and options
+
+Exit codes:
+  0  done
+  1  no stable equilibrium, a run that grew without bound, a file that cannot be used
+  2  wrong arguments";
+
+/// Statics, motion and vibration of cranes compiled from YAML.
+///
+/// Without a command: the eight-link forest crane, rigid and with a flexible boom. Static pose, a manoeuvre of 5 s
+/// followed to 10 s, and the comparison of both as figures (SVG) and data (CSV) in `out/`.
+#[derive(Debug, Parser)]
+#[command(name = "crane", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub action: Option<Action>,
+    /// Options of the comparison.
+    #[command(flatten)]
+    pub compare: Compare,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Action {
+    /// Static equilibrium: pose, drive torques, support reactions
+    Statics(Analysis),
+    /// Motion from the static pose: results, figures and a record of the run into a folder
+    Simulate(Simulate),
+    /// Frequencies, damping and dominating coordinates about the static pose, and the largest stable step
+    Modes(Analysis),
+    /// What a crane consists of: coordinates, bodies, supports, drives, parameters
+    Info(Analysis),
+    /// T, ∂T/∂q, ∂²T/∂q∂q, A and e at a state, for checks by other programs
+    Eval(Eval),
+    /// The cranes to choose from
+    List(List),
+    /// Completion script for a shell
+    Completions {
+        /// Shell to write it for.
+        shell: clap_complete::Shell,
+    },
+}
+
+/// Form of what is printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Table,
+    /// For programs.
+    Json,
+}
+
+/// A crane with its live parameters.
+#[derive(Debug, Args)]
+pub struct Choice {
+    /// Crane; `crane list` shows all
+    #[arg(default_value = "eight_link_flexible", value_name = "CRANE")]
+    pub name: String,
+    #[command(flatten)]
+    pub parameters: Parameters,
+}
+
+/// Values of live parameters.
+#[derive(Debug, Args)]
+pub struct Parameters {
+    /// Value of a live parameter, in the unit that `crane info` shows; may be given several times
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub settings: Vec<String>,
+}
+
+/// An analysis that prints tables.
+#[derive(Debug, Args)]
+pub struct Analysis {
+    #[command(flatten)]
+    pub crane: Choice,
+    /// Form of what is printed
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Time and step of a run.
+#[derive(Debug, Args)]
+pub struct Timing {
+    /// Greatest step of the integrator, s [default: the crane's]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    /// Simulated time, s [default: the crane's]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub duration: Option<f64>,
+    /// Interval of recorded results, s [default: the crane's]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub output: Option<f64>,
+    /// Folder for results; made where it is missing
+    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+}
+
+/// The comparison of the rigid and the flexible crane.
+#[derive(Debug, Args)]
+pub struct Compare {
+    #[command(flatten)]
+    pub parameters: Parameters,
+    #[command(flatten)]
+    pub timing: Timing,
+}
+
+/// A run of one crane.
+#[derive(Debug, Args)]
+pub struct Simulate {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    #[command(flatten)]
+    pub timing: Timing,
+}
+
+/// A list of the cranes.
+#[derive(Debug, Args)]
+pub struct List {
+    /// Form of what is printed
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Form of evaluated matrices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum EvalFormat {
+    /// One object of nested arrays.
+    #[default]
+    Json,
+    /// NumPy archive, uncompressed.
+    Npz,
+}
+
+/// Quantities at one state.
+#[derive(Debug, Args)]
+pub struct Eval {
+    #[command(flatten)]
+    pub crane: Choice,
+    /// Coordinates, m and rad: numbers separated by commas or blanks, or a file of them [default: the crane's guess]
+    #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
+    pub q: Option<String>,
+    /// Their rates, m/s and rad/s, likewise [default: 0]
+    #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
+    pub v: Option<String>,
+    /// Form of the result
+    #[arg(long, value_enum, default_value_t)]
+    pub format: EvalFormat,
+    /// File to write; without it, standard output
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+}

@@ -1,0 +1,95 @@
+//! `crane` alone: the eight-link crane, rigid against flexible, as [Urbaś 2016, section 3] does it.
+
+use std::{io::Write, thread, time::Instant};
+
+use crane_model::{Description, results::Table};
+
+use crate::{
+    arguments::{Compare, Format},
+    figures::{Curve, PALETTE, Panel},
+    files,
+    problem::{Outcome, Problem},
+    report::readable,
+    run::{Recorded, progress, record},
+    simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
+    statics::{Case, deflection, tables},
+};
+
+const RIGID: &str = "eight_link_rigid";
+const FLEXIBLE: &str = "eight_link_flexible";
+
+/// Statics and motion of both cranes, figures and data.
+pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
+    let begin = Instant::now();
+    let (rigid, flexible) = (options.parameters.crane(RIGID)?, options.parameters.crane(FLEXIBLE)?);
+    let folder = &options.timing.out;
+
+    let cases = [Case::new("rigid", rigid.as_ref()), Case::new("flexible", flexible.as_ref())];
+    writeln!(out, "Statics of {}\n", flexible.description().title)?;
+    let mut report = tables(&cases);
+    let [rigid_case, flexible_case] = &cases;
+    report.grid(deflection(rigid_case, flexible_case));
+    report.print(Format::Table, out)?;
+    cases.iter().try_for_each(Case::stable)?;
+
+    files::folder(folder)?;
+    let settings = [options.timing.settings(rigid.as_ref())?, options.timing.settings(flexible.as_ref())?];
+    let bar = progress(settings.iter().map(|settings| settings.duration).sum());
+    bar.set_message("simulating");
+    let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
+        let runs: Vec<_> = cases
+            .iter()
+            .zip(&settings)
+            .map(|(case, settings)| scope.spawn(|| record(case.rig, &case.equilibrium.q, settings, &bar)))
+            .collect();
+        let broken = |_| Err(Problem::failed("a simulation broke off", "please report it"));
+        runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
+    });
+    bar.finish_and_clear();
+    let runs = results.into_iter().collect::<Outcome<Vec<Recorded>>>()?;
+    let [rigid_run, flexible_run] = runs.as_slice() else {
+        return Err(Problem::failed("a simulation is missing", "please report it"));
+    };
+
+    let mut written = Vec::new();
+    for ((case, settings), run) in cases.iter().zip(&settings).zip(&runs) {
+        written.extend(write_run(folder, case.rig, settings, run)?);
+    }
+    let description = flexible.description();
+    let traces = [
+        Trace { label: flexible_case.label, table: &flexible_run.table, dashed: false },
+        Trace { label: rigid_case.label, table: &rigid_run.table, dashed: true },
+    ];
+    written.extend(write_figures(folder, "comparison_", description, &traces)?);
+    let deviation_file = "comparison_deviation.svg".to_owned();
+    write_figure(&folder.join(&deviation_file), &deviation(description, &rigid_run.table, &flexible_run.table), 1)?;
+    written.push(deviation_file);
+
+    let duration = readable(settings[1].duration);
+    let step = readable(flexible_run.run.step);
+    writeln!(out, "\nMotion over {duration} s, classical Runge-Kutta, step {step} s\n")?;
+    summary(description, &[("rigid", rigid_run), ("flexible", flexible_run)]).print(out)?;
+    writeln!(out)?;
+    file_list(folder, &written).print(out)?;
+    writeln!(out, "\nAll in {:.1} s", begin.elapsed().as_secs_f64())?;
+    Ok(())
+}
+
+/// How far the flexible crane's points are from the rigid one's over time, along each axis.
+fn deviation(description: &Description, rigid: &Table, flexible: &Table) -> Vec<Panel> {
+    let panel = |axis: &str| {
+        let curves = description.points.iter().zip(PALETTE.iter().cycle()).map(|(point, &colour)| {
+            let column = format!("{point}_{axis}");
+            let [from, to] = [rigid, flexible].map(|table| points(table, "t", &column, 1e3));
+            let difference = from.iter().zip(&to).map(|(from, to)| (to.0, to.1 - from.1)).collect();
+            Curve { label: spoken(point), colour, dashed: false, points: difference }
+        });
+        Panel {
+            x: "t [s]".to_owned(),
+            y: format!("Δ{axis}, flexible − rigid [mm]"),
+            equal: false,
+            curves: curves.collect(),
+        }
+    };
+    ["x", "y", "z"].map(panel).into()
+}

@@ -1,0 +1,200 @@
+//! Figures as SVG: panels of curves with labelled axes and one legend, in colours that colour-blind readers tell apart.
+
+use plotters::{
+    coord::Shift,
+    prelude::*,
+    style::text_anchor::{HPos, Pos, VPos},
+};
+
+/// M. Okabe, K. Ito, Color Universal Design, 2008.
+pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+/// See [`BLUE`].
+pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
+/// See [`BLUE`].
+pub const GREEN: RGBColor = RGBColor(0, 158, 115);
+/// See [`BLUE`].
+pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
+/// See [`BLUE`].
+pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
+/// See [`BLUE`].
+pub const SKY: RGBColor = RGBColor(86, 180, 233);
+/// Colours for curves in order.
+pub const PALETTE: [RGBColor; 6] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY];
+
+/// Width of a panel, px.
+const WIDTH: u32 = 440;
+/// Height of a panel, px.
+const HEIGHT: u32 = 270;
+/// Height of a row of the legend, px.
+const LEGEND: u32 = 26;
+/// Font size, px.
+const FONT: f64 = 15.0;
+/// Width of a letter, of the font size: an estimate that leaves room.
+const LETTER: f64 = 0.56;
+/// Part of the range that is left free around the curves.
+const MARGIN: f64 = 0.06;
+/// Space for tick labels and axis titles, px: left, bottom.
+const AXES: (u32, u32) = (70, 46);
+
+/// A curve.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// Its name in the legend.
+    pub label: String,
+    /// Its colour.
+    pub colour: RGBColor,
+    /// Dashed: lies on top of others and lets them be seen.
+    pub dashed: bool,
+    /// Where it goes.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Axes with curves.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// Title of the horizontal axis, with unit.
+    pub x: String,
+    /// Title of the vertical axis, with unit.
+    pub y: String,
+    /// One metre along x is as long as one along y: for paths. Such a panel is twice as wide and high.
+    pub equal: bool,
+    /// Curves, the legend in their order.
+    pub curves: Vec<Curve>,
+}
+
+/// An SVG with the panels in rows of `columns`, below the legend of the first.
+pub fn svg(panels: &[Panel], columns: usize) -> Result<String, String> {
+    let columns = columns.clamp(1, panels.len().max(1));
+    let rows = panels.len().div_ceil(columns);
+    let scale = if panels.iter().any(|panel| panel.equal) { 2 } else { 1 };
+    let count = |n: usize| u32::try_from(n).unwrap_or(1);
+    let width = WIDTH * scale * count(columns);
+    let legend: &[Curve] = panels.first().map_or(&[], |panel| &panel.curves);
+    let legend_height = LEGEND * count(legend.len().div_ceil(entries_a_row(legend, width))) + 6;
+    let height = HEIGHT * scale * count(rows) + legend_height;
+
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
+        let drawn = (|| {
+            area.fill(&WHITE)?;
+            let (top, rest) = area.split_vertically(legend_height);
+            draw_legend(&top, legend)?;
+            for (panel, part) in panels.iter().zip(rest.split_evenly((rows, columns))) {
+                draw_panel(&part, panel)?;
+            }
+            area.present()
+        })();
+        drawn.map_err(|error| error.to_string())?;
+    }
+    Ok(text)
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Drawn<'a> = Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>>;
+
+fn font(size: f64) -> TextStyle<'static> {
+    ("sans-serif", size).into_font().color(&BLACK)
+}
+
+/// Width of an entry of the legend, px.
+fn entry_width(legend: &[Curve]) -> f64 {
+    let letters = legend.iter().map(|curve| curve.label.chars().count()).max().unwrap_or(0);
+    60.0 + letters as f64 * FONT * LETTER
+}
+
+fn entries_a_row(legend: &[Curve], width: u32) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
+    let entries = (f64::from(width) / entry_width(legend)) as usize;
+    entries.max(1)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "pixels")]
+fn draw_legend<'a>(area: &Area<'a>, legend: &[Curve]) -> Drawn<'a> {
+    let (width, _) = area.dim_in_pixel();
+    let a_row = entries_a_row(legend, width);
+    let entry = entry_width(legend);
+    for (index, curve) in legend.iter().enumerate() {
+        let x = (f64::from(AXES.0) * 0.5 + entry * (index % a_row) as f64) as i32;
+        let y = (f64::from(LEGEND) * (0.6 + (index / a_row) as f64)) as i32;
+        if curve.dashed {
+            for dash in [0, 12, 24] {
+                area.draw(&PathElement::new([(x + dash, y), (x + dash + 8, y)], curve.colour.stroke_width(2)))?;
+            }
+        } else {
+            area.draw(&PathElement::new([(x, y), (x + 32, y)], curve.colour.stroke_width(2)))?;
+        }
+        let style = font(FONT).pos(Pos::new(HPos::Left, VPos::Center));
+        area.draw(&Text::new(curve.label.clone(), (x + 42, y), style))?;
+    }
+    Ok(())
+}
+
+fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<'a> {
+    let points = || panel.curves.iter().flat_map(|curve| &curve.points);
+    let mut x = padded(points().map(|point| point.0), if panel.equal { MARGIN } else { 0.0 });
+    let mut y = padded(points().map(|point| point.1), MARGIN);
+    let (width, height) = area.dim_in_pixel();
+    let inner = (f64::from(width - AXES.0 - 20), f64::from(height - AXES.1 - 20));
+    if panel.equal {
+        let metre = (inner.0 / (x.1 - x.0)).min(inner.1 / (y.1 - y.0));
+        x = around(x, inner.0 / metre);
+        y = around(y, inner.1 / metre);
+    }
+    let mut chart = ChartBuilder::on(area)
+        .margin(10)
+        .set_label_area_size(LabelAreaPosition::Left, AXES.0)
+        .set_label_area_size(LabelAreaPosition::Bottom, AXES.1)
+        .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .x_desc(&panel.x)
+        .y_desc(&panel.y)
+        .x_labels(7)
+        .y_labels(7)
+        .x_label_formatter(&tick)
+        .y_label_formatter(&tick)
+        .label_style(font(FONT - 2.0))
+        .axis_desc_style(font(FONT))
+        .draw()?;
+    for curve in &panel.curves {
+        let points = curve.points.iter().copied().filter(|point| point.0.is_finite() && point.1.is_finite());
+        let style = curve.colour.stroke_width(2);
+        if curve.dashed {
+            chart.draw_series(DashedLineSeries::new(points, 7, 5, style))?;
+        } else {
+            chart.draw_series(LineSeries::new(points, style))?;
+        }
+    }
+    Ok(())
+}
+
+/// Text at a tick: without the digits that rounding leaves.
+fn tick(value: &f64) -> String {
+    let text = format!("{value:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
+}
+
+/// Range of finite values with a margin; of length 1 where all are equal.
+fn padded(values: impl Iterator<Item = f64>, margin: f64) -> (f64, f64) {
+    let (low, high) = values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    if low > high {
+        (0.0, 1.0)
+    } else if high - low <= f64::EPSILON * low.abs().max(high.abs()) {
+        (low - 0.5, low + 0.5)
+    } else {
+        let margin = margin * (high - low);
+        (low - margin, high + margin)
+    }
+}
+
+/// A range of this length about the middle of another.
+fn around(range: (f64, f64), length: f64) -> (f64, f64) {
+    let middle = 0.5 * (range.0 + range.1);
+    (middle - 0.5 * length, middle + 0.5 * length)
+}

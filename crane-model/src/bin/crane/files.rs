@@ -1,0 +1,87 @@
+//! Files, whole or not at all.
+
+use std::{
+    fs, io,
+    io::Write,
+    path::{Path, PathBuf},
+    process,
+};
+
+use crane_model::{dynamics, results::Table, rig::Rig};
+use serde_json::{Map, Value, json};
+
+use crate::{
+    problem::{Outcome, Problem},
+    run::Recorded,
+};
+
+/// Makes a folder where it is missing.
+pub fn folder(path: &Path) -> Outcome<()> {
+    fs::create_dir_all(path).map_err(|error| Problem::file(path, &error))
+}
+
+/// Writes a file under another name and renames it when it is whole: nobody ever sees half a file.
+pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome<()> {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.part", process::id()));
+    let part: PathBuf = path.with_file_name(name);
+    let written = (|| {
+        let mut file = io::BufWriter::new(fs::File::create(&part)?);
+        content(&mut file)?;
+        file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
+        fs::rename(&part, path)
+    })();
+    written.map_err(|error| {
+        // What is left of the part; the first error is the one to tell.
+        let _ = fs::remove_file(&part);
+        Problem::file(path, &error)
+    })
+}
+
+/// Writes text.
+pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
+    write(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// Writes a table as CSV, units in the header: `boom_psi [rad]`.
+pub fn write_csv(path: &Path, table: &Table) -> Outcome<()> {
+    write(path, |file| {
+        let mut csv = csv::Writer::from_writer(file);
+        csv.write_record(table.columns.iter().map(ToString::to_string))?;
+        for row in &table.rows {
+            // The shortest text that reads back as the same number.
+            csv.write_record(row.iter().map(|value| format!("{value:?}")))?;
+        }
+        csv.flush()
+    })
+}
+
+/// Writes what a run was: enough to repeat it.
+pub fn write_record(path: &Path, rig: &dyn Rig, settings: &dynamics::Settings, recorded: &Recorded) -> Outcome<()> {
+    let description = rig.description();
+    let parameters: Map<String, Value> = description
+        .parameters
+        .iter()
+        .enumerate()
+        .map(|(index, parameter)| {
+            (parameter.name.to_owned(), json!({"value": rig.parameter(index), "unit": parameter.unit}))
+        })
+        .collect();
+    let record = json!({
+        "crane": description.name,
+        "title": description.title,
+        "spec_hash": description.spec_hash,
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "method": "classical Runge-Kutta, order 4, constant step",
+        "start": "static equilibrium, at rest",
+        "step_s": recorded.run.step,
+        "steps": recorded.run.steps,
+        "duration_s": settings.duration,
+        "output_s": settings.output,
+        "parameters": parameters,
+        "wall_time_s": recorded.wall.as_secs_f64(),
+        "real_time_factor": recorded.real_time_factor(),
+    });
+    write_text(path, &format!("{record:#}\n"))
+}

@@ -1,0 +1,197 @@
+//! Tables for people and the same as JSON for programs.
+
+use std::io::Write;
+
+use serde_json::{Map, Value};
+
+use crate::{arguments::Format, problem::Outcome};
+
+/// One field of a table.
+#[derive(Clone, Debug)]
+pub enum Cell {
+    /// A name or a sentence.
+    Text(String),
+    /// A number.
+    Number(f64),
+    /// A count.
+    Count(usize),
+    /// Nothing to say.
+    Empty,
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Cell::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Cell::Text(text)
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(number: f64) -> Self {
+        Cell::Number(number)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(count: usize) -> Self {
+        Cell::Count(count)
+    }
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(number: Option<f64>) -> Self {
+        number.map_or(Cell::Empty, Cell::Number)
+    }
+}
+
+impl Cell {
+    fn text(&self) -> String {
+        match self {
+            Cell::Text(text) => text.clone(),
+            Cell::Number(number) => readable(*number),
+            Cell::Count(count) => count.to_string(),
+            Cell::Empty => "–".to_owned(),
+        }
+    }
+
+    fn json(&self) -> Value {
+        match self {
+            Cell::Text(text) => text.as_str().into(),
+            Cell::Number(number) => (*number).into(),
+            Cell::Count(count) => (*count).into(),
+            Cell::Empty => Value::Null,
+        }
+    }
+}
+
+/// A number with six significant digits, in powers of ten where it is very large or small.
+pub fn readable(number: f64) -> String {
+    let size = number.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e7).contains(&size) {
+        // Digits before the point count as significant: at most 5 behind it.
+        let places = (0..=5_usize).rev().find(|&places| size * 10_f64.powi(i32::try_from(places).unwrap_or(0)) < 1e6);
+        format!("{number:.*}", places.unwrap_or(0))
+    } else {
+        format!("{number:.4e}")
+    }
+}
+
+/// A table with named columns.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    key: &'static str,
+    title: String,
+    headers: Vec<String>,
+    rows: Vec<Vec<Cell>>,
+}
+
+impl Grid {
+    /// A table without rows; `key` names it in JSON, `title` for people.
+    pub fn new(key: &'static str, title: impl Into<String>, headers: &[&str]) -> Self {
+        let headers = headers.iter().map(ToString::to_string).collect();
+        Self { key, title: title.into(), headers, rows: Vec::new() }
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, cells: impl Into<Vec<Cell>>) {
+        self.rows.push(cells.into());
+    }
+
+    fn json(&self) -> Value {
+        let object = |row: &Vec<Cell>| -> Value {
+            let keys = self.headers.iter().map(|header| header.replace(' ', "_"));
+            keys.zip(row).map(|(key, cell)| (key, cell.json())).collect::<Map<_, _>>().into()
+        };
+        self.rows.iter().map(object).collect()
+    }
+
+    /// Prints it for people.
+    pub fn print(&self, out: &mut dyn Write) -> Outcome<()> {
+        writeln!(out, "{}", self.title)?;
+        let texts: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect();
+        let width = |column: usize| {
+            let cells = texts.iter().filter_map(|row| row.get(column)).map(|text| text.chars().count());
+            cells.chain([self.headers[column].chars().count()]).max().unwrap_or(0)
+        };
+        let right = |column: usize| {
+            self.rows.iter().all(|row| !matches!(row.get(column), Some(Cell::Text(_)))) && !self.rows.is_empty()
+        };
+        let mut line = |cells: &mut dyn Iterator<Item = &str>| -> Outcome<()> {
+            let mut text = String::from(" ");
+            for (column, cell) in cells.enumerate() {
+                let width = width(column);
+                text += &if right(column) { format!(" {cell:>width$} ") } else { format!(" {cell:<width$} ") };
+            }
+            Ok(writeln!(out, "{}", text.trim_end())?)
+        };
+        line(&mut self.headers.iter().map(String::as_str))?;
+        for row in &texts {
+            line(&mut row.iter().map(String::as_str))?;
+        }
+        Ok(())
+    }
+}
+
+/// Facts and tables in order.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    facts: Vec<(&'static str, Cell, &'static str)>,
+    grids: Vec<Grid>,
+}
+
+impl Report {
+    /// Adds a fact with its unit.
+    pub fn fact(&mut self, name: &'static str, value: impl Into<Cell>, unit: &'static str) {
+        self.facts.push((name, value.into(), unit));
+    }
+
+    /// Adds a table, unless it has no rows.
+    pub fn grid(&mut self, grid: Grid) {
+        if !grid.rows.is_empty() {
+            self.grids.push(grid);
+        }
+    }
+
+    /// Prints it in the form asked for.
+    pub fn print(&self, format: Format, out: &mut dyn Write) -> Outcome<()> {
+        match format {
+            Format::Json => Ok(writeln!(out, "{:#}", self.json())?),
+            Format::Table => {
+                let width = self.facts.iter().map(|(name, ..)| name.chars().count()).max().unwrap_or(0);
+                for (name, value, unit) in &self.facts {
+                    writeln!(out, "{}", format!("{name:<width$}  {} {unit}", value.text()).trim_end())?;
+                }
+                for (index, grid) in self.grids.iter().enumerate() {
+                    if index > 0 || !self.facts.is_empty() {
+                        writeln!(out)?;
+                    }
+                    grid.print(out)?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Facts and tables by name; units of facts as `<name>_unit`.
+    fn json(&self) -> Value {
+        let mut object = Map::new();
+        for (name, value, unit) in &self.facts {
+            let key = name.replace(' ', "_");
+            if !unit.is_empty() {
+                object.insert(format!("{key}_unit"), (*unit).into());
+            }
+            object.insert(key, value.json());
+        }
+        for grid in &self.grids {
+            object.insert(grid.key.to_owned(), grid.json());
+        }
+        object.into()
+    }
+}

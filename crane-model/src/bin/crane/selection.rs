@@ -1,0 +1,69 @@
+//! A crane by its name, with parameters set.
+
+use crane_model::{cranes, rig::Rig};
+
+use crate::{
+    arguments::{Choice, Parameters},
+    problem::{Outcome, Problem, nearest},
+};
+
+impl Choice {
+    /// The crane with its parameters.
+    pub fn open(&self) -> Outcome<Box<dyn Rig>> {
+        self.parameters.crane(&self.name)
+    }
+}
+
+fn crane(name: &str) -> Outcome<Box<dyn Rig>> {
+    let all = cranes::all();
+    let names: Vec<&str> = all.iter().map(|rig| rig.description().name).collect();
+    match names.iter().position(|&known| known == name) {
+        Some(index) => all.into_iter().nth(index).ok_or_else(|| Problem::failed("no such crane", "")),
+        None => Err(Problem::usage(format!("there is no crane `{name}`"), meant(name, &names, "cranes"))),
+    }
+}
+
+impl Parameters {
+    /// A shipped crane with these parameters.
+    pub fn crane(&self, name: &str) -> Outcome<Box<dyn Rig>> {
+        let mut rig = crane(name)?;
+        self.apply(rig.as_mut())?;
+        Ok(rig)
+    }
+
+    fn apply(&self, rig: &mut dyn Rig) -> Outcome<()> {
+        let parameters = rig.description().parameters;
+        for setting in &self.settings {
+            let (name, value) = setting.split_once('=').ok_or_else(|| {
+                Problem::usage(
+                    format!("`--set {setting}` has no value"),
+                    "write `--set name=value`, such as `--set load_mass=300`",
+                )
+            })?;
+            let Some(index) = parameters.iter().position(|parameter| parameter.name == name) else {
+                let names: Vec<String> =
+                    parameters.iter().map(|parameter| format!("{} [{}]", parameter.name, parameter.unit)).collect();
+                let title = format!("{} has no live parameter `{name}`", rig.description().name);
+                if names.is_empty() {
+                    return Err(Problem::usage(title, "it has none; name values under `parameters:` in its spec"));
+                }
+                let guess = nearest(name, parameters.iter().map(|parameter| parameter.name));
+                return Err(Problem::usage(title, hint(guess, &names.join(", "), "parameters")));
+            };
+            let unit = parameters[index].unit;
+            let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+                Problem::usage(format!("`{value}` is no value for {name}"), format!("write a finite number, in {unit}"))
+            })?;
+            rig.set_parameter(index, number);
+        }
+        Ok(())
+    }
+}
+
+fn meant(word: &str, known: &[&str], what: &str) -> String {
+    hint(nearest(word, known.iter().copied()), &known.join(", "), what)
+}
+
+fn hint(nearest: Option<&str>, known: &str, what: &str) -> String {
+    nearest.map_or_else(String::new, |nearest| format!("did you mean `{nearest}`? ")) + &format!("{what}: {known}")
+}
