@@ -86,7 +86,9 @@ fn a_hundred_megabytes_of_garbage_are_refused_at_once() {
 #[test]
 fn the_largest_garbage_that_is_read_is_refused_soon() {
     let size = crane_codegen::diagnostic::MAX_BYTES;
-    for unit in ["[", "{", "a: 1\n", "- ", "a", "&a [*a, *a]\n", "a: [1, 2]\nb: &x {c: d}\n", "\n", "'", "\u{1F3D7}", "? "] {
+    for unit in
+        ["[", "{", "a: 1\n", "- ", "a", "&a [*a, *a]\n", "a: [1, 2]\nb: &x {c: d}\n", "\n", "'", "\u{1F3D7}", "? "]
+    {
         let text = unit.repeat(size / unit.len());
         let begin = Instant::now();
         let found = mistakes("garbage.yaml", text.as_bytes()).to_string();

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crane_codegen::chain::{Chain, Inertia, Profile, Step};
+use crane_codegen::chain::{Chain, CoordinateKind, Inertia, Profile, Step, Value};
 use crane_codegen::{SourceFile, json_schema, read, validate};
 
 /// The folder of shipped specs.
@@ -53,7 +53,10 @@ fn reference_crane() {
     assert_eq!(chain.drives.len(), 5);
     assert_eq!(chain.elements.len(), 12);
     let names: Vec<&str> = chain.coordinates.iter().map(|c| c.name.as_str()).collect();
-    assert_eq!(names[..8], ["truck_x", "truck_y", "truck_z", "truck_psi", "truck_theta", "truck_phi", "column_psi", "boom_psi"]);
+    assert_eq!(
+        names[..8],
+        ["truck_x", "truck_y", "truck_z", "truck_psi", "truck_theta", "truck_phi", "column_psi", "boom_psi"]
+    );
     assert_eq!(names[8..11], ["boom_1_psi", "boom_1_theta", "boom_1_phi"]);
     assert_eq!(names[20..], ["outer_boom_psi", "telescope_z", "upper_hinge_psi", "rotator_psi", "grapple_psi"]);
     // 15000 + 515.5 + 408.1 + 335 + 224 + 15 + 55 + 276 + 500 kg, to rounding.
@@ -71,13 +74,17 @@ fn reference_crane() {
     assert_eq!(chain.guess[20], std::f64::consts::FRAC_PI_2);
     assert_eq!(chain.guess[21], 2.0);
     assert_eq!(chain.guess[22], std::f64::consts::PI);
-    assert!(matches!(&chain.drives[1].profile, Profile::Quintic(ramp) if ramp.to.at(&[]) == 7.0 * std::f64::consts::PI / 18.0));
+    assert!(
+        matches!(&chain.drives[1].profile, Profile::Quintic(ramp) if ramp.to.at(&[]) == 7.0 * std::f64::consts::PI / 18.0)
+    );
 }
 
 #[test]
 fn the_load_stays_live() {
     let chain = chain("eight_link_flexible");
-    let Some(Inertia { mass, second, .. }) = &chain.bodies.last().expect("a grapple").inertia else { panic!("no mass") };
+    let Some(Inertia { mass, second, .. }) = &chain.bodies.last().expect("a grapple").inertia else {
+        panic!("no mass")
+    };
     assert_eq!((mass.at(&[500.0]), mass.at(&[0.0])), (776.0, 276.0));
     // ∫z² of the log about the grapple's origin: ½(11 + 672 − 672) + 500 · 1² at six digits of the radii.
     let log = second[2].at(&[500.0]) - second[2].at(&[0.0]);
@@ -100,4 +107,82 @@ fn every_spec_names_its_schema() {
         let text = std::fs::read_to_string(folder().join(format!("{name}.yaml"))).expect("a shipped spec");
         assert_eq!(text.lines().next(), Some("# yaml-language-server: $schema=crane.schema.json"), "{name}");
     }
+}
+
+type Vector = [f64; 3];
+
+/// World position of a point at the guess, elements undeformed.
+fn position(chain: &Chain, name: &str) -> Vector {
+    let parameters = chain.parameter_defaults();
+    let point = chain.points.iter().find(|point| point.name == name).expect("a point");
+    // From the point back to the world: each step moves the point in the frame before it.
+    let mut r = point.position.each_ref().map(|v| v.at(&parameters));
+    let turn = |r: &mut Vector, axis: usize, (sin, cos): (f64, f64)| {
+        let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+        (r[a], r[b]) = (cos * r[a] - sin * r[b], sin * r[a] + cos * r[b]);
+    };
+    for step in chain.bodies[..=point.body.0].iter().flat_map(|body| &body.path).rev() {
+        match step {
+            Step::Translate(by) => by.iter().zip(&mut r).for_each(|(by, r)| *r += by.at(&parameters)),
+            Step::Rotate { axis, sin, cos } => turn(&mut r, axis.index(), (sin.at(&parameters), cos.at(&parameters))),
+            Step::Move(id) => {
+                let (coordinate, q) = (&chain.coordinates[id.0], chain.guess[id.0]);
+                match coordinate.kind {
+                    CoordinateKind::Translation => r[coordinate.axis.index()] += q,
+                    CoordinateKind::Rotation => turn(&mut r, coordinate.axis.index(), q.sin_cos()),
+                }
+            }
+        }
+    }
+    r
+}
+
+/// Agreement of positions of some ten metres after some dozens of rotations.
+const ROUNDING: f64 = 1e-13;
+
+fn assert_same(a: Vector, b: Vector) {
+    assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING * 10.0), "{a:?} {b:?}");
+}
+
+#[test]
+fn undeformed_variants_of_the_reference_crane_are_one_crane() {
+    let reference = chain("eight_link_flexible");
+    for name in ["eight_link_rigid", "eight_link_identified", "eight_link_two_flexible"] {
+        let variant = chain(name);
+        assert!((mass(&variant) - mass(&reference)).abs() < 1e-3, "{name}: masses are written to 0.1 g/m");
+        for point in ["log_left", "log_middle", "log_right"] {
+            assert_same(position(&variant, point), position(&reference, point));
+        }
+    }
+    // Also with the telescope, the outer boom and the column elsewhere, so that it slides along the same line.
+    let [mut a, mut b] = [reference, chain("eight_link_two_flexible")];
+    for chain in [&mut a, &mut b] {
+        for (coordinate, q) in chain.coordinates.iter().zip(&mut chain.guess) {
+            match coordinate.name.as_str() {
+                "telescope_z" => *q = 1.25,
+                "outer_boom_psi" => *q = 0.9,
+                "column_psi" => *q = 0.4,
+                _ => {}
+            }
+        }
+    }
+    assert_same(position(&a, "log_left"), position(&b, "log_left"));
+}
+
+#[test]
+fn loads_hang_at_the_guess() {
+    // Column 2.4 m high, 3.5 m of boom, 2.2 + 2 m of outer boom and telescope, then hinge, rotator and log below.
+    let log = position(&chain("eight_link_flexible"), "log_middle");
+    assert_same(log, [3.5 + 2.2 + 2.0, 0.0, 2.4 - 0.223 - 0.34 - 1.0]);
+    let knuckle = chain("knuckle_boom");
+    let (tip, load) = (position(&knuckle, "boom_tip"), position(&knuckle, "load_centre"));
+    assert_same(load, [tip[0], 0.0, tip[2] - 1.2]);
+}
+
+#[test]
+fn points_of_a_beam_belong_to_the_element_that_holds_them() {
+    let chain = chain("cantilever");
+    // Elements of 0.125, 0.25, ... m: x = 1 m is in the middle of element 4, which begins at 0.875 m.
+    assert_eq!(chain.bodies[chain.points[0].body.0].name, "beam_4");
+    assert_eq!(chain.points[0].position, [0.125, 0.0, 0.0].map(Value::from));
 }

@@ -13,6 +13,18 @@ pub struct Rule {
     pub about: &'static str,
 }
 
+/// A message on one line of bearable length, whatever the user's names are made of.
+fn printable(message: &str) -> String {
+    /// A list of the longest names of the language fits.
+    const LONGEST: usize = 400;
+    let visible = message.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c });
+    let mut line: String = visible.take(LONGEST).collect();
+    if message.chars().nth(LONGEST).is_some() {
+        line.push('…');
+    }
+    line
+}
+
 /// Turns the table below into one constructor a rule and into [`CATALOGUE`].
 macro_rules! catalogue {
     ($($(#[doc = $about:literal])+ $code:ident $name:ident($($word:ident),*) $title:literal, $label:literal, $help:literal;)+) => {
@@ -22,16 +34,16 @@ macro_rules! catalogue {
 
         /// One function a rule, that says how it was broken.
         pub(crate) mod rule {
-            use super::{Display, Mistake, Span};
+            use super::{Display, Mistake, Span, printable};
             $(
                 $(#[doc = $about])+
                 pub(crate) fn $name(span: Span, $($word: impl Display),*) -> Mistake {
                     Mistake {
                         code: stringify!($code),
                         span,
-                        title: format!($title),
-                        label: format!($label),
-                        help: format!($help),
+                        title: printable(&format!($title)),
+                        label: printable(&format!($label)),
+                        help: printable(&format!($help)),
                     }
                 }
             )+

@@ -4,8 +4,8 @@ mod catalogue;
 mod draw;
 mod source;
 
-pub use catalogue::{CATALOGUE, Rule};
 pub(crate) use catalogue::rule;
+pub use catalogue::{CATALOGUE, Rule};
 pub use source::{MAX_BYTES, SourceFile, Span};
 
 use std::fmt;

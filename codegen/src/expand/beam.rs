@@ -1,8 +1,8 @@
 //! Beams as rigid finite elements.
 
+use super::inertia::about_com;
 use super::section::CrossSection;
 use crate::chain::{Inertia, Value};
-use super::inertia::about_com;
 
 /// A rigid finite element.
 #[derive(Clone, Debug)]
@@ -86,10 +86,8 @@ mod tests {
         assert_eq!(one, [1.75, 1.75]);
 
         let line_density = Value::from(7850.0) * boom().area + 62.0896.into();
-        let mass: f64 = lengths
-            .iter()
-            .map(|l| prismatic((*l).into(), &line_density, &boom()).inertia.mass.at(&[]))
-            .sum();
+        let mass: f64 =
+            lengths.iter().map(|l| prismatic((*l).into(), &line_density, &boom()).inertia.mass.at(&[])).sum();
         // 116.6 kg/m over 3.5 m, to all digits written.
         assert!((mass - 408.1).abs() < 1e-9, "{mass}");
     }

@@ -44,7 +44,9 @@ mod tests {
     #[test]
     fn motions_that_began_before_are_under_way() {
         let ramp = |begin: f64| Ramp { from: 1.0.into(), to: 3.0.into(), begin: begin.into(), duration: 4.0.into() };
-        for make in [Profile::Quintic, Profile::Cubic, Profile::Cycloid, |ramp| Profile::Trapezoid { ramp, blend: 0.25 }] {
+        for make in
+            [Profile::Quintic, Profile::Cubic, Profile::Cycloid, |ramp| Profile::Trapezoid { ramp, blend: 0.25 }]
+        {
             for (begin, position) in [(0.0, 1.0), (5.0, 1.0), (-2.0, 2.0), (-9.0, 3.0)] {
                 let found = start(&make(ramp(begin)), &[]);
                 assert!((found - position).abs() < 1e-15, "{found} {position}");

@@ -102,7 +102,8 @@ mod tests {
     #[test]
     fn torsion_of_solid_rectangles() {
         // Timoshenko & Goodier, Theory of Elasticity, section 109: J = k₁ a b³, k₁ to three or four digits.
-        for (ratio, k1, tolerance) in [(1.0, 0.1406, 3e-4), (2.0, 0.229, 2e-3), (5.0, 0.291, 2e-3), (10.0, 0.312, 2e-3)] {
+        for (ratio, k1, tolerance) in [(1.0, 0.1406, 3e-4), (2.0, 0.229, 2e-3), (5.0, 0.291, 2e-3), (10.0, 0.312, 2e-3)]
+        {
             close(&solid_rectangle(ratio * 0.1, 0.1).jo, k1 * ratio * 1e-4, tolerance);
             close(&solid_rectangle(0.1, ratio * 0.1).jo, k1 * ratio * 1e-4, tolerance);
         }

@@ -226,11 +226,7 @@ impl<'a> VariantAccess<'a> for Choice<'a> {
         let reader = self.content();
         Self::placed(reader, serde::Deserializer::deserialize_seq(reader, visitor))
     }
-    fn struct_variant<V: Visitor<'a>>(
-        self,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Unread> {
+    fn struct_variant<V: Visitor<'a>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Unread> {
         let reader = self.content();
         Self::placed(reader, reader.fields(fields, visitor))
     }

@@ -106,7 +106,13 @@ impl<'a> Reader<'a> {
     /// Notes that the value is not what was expected, unless that was said.
     pub fn report_unread(&self, unread: Unread) {
         if let (Unread::Expected(expected), Some(node)) = (unread, self.node) {
-            self.report(rule::wrong_value(self.span, self.place, node.content.describe(), node.content.kind(), expected));
+            self.report(rule::wrong_value(
+                self.span,
+                self.place,
+                node.content.describe(),
+                node.content.kind(),
+                expected,
+            ));
         }
     }
 

@@ -14,7 +14,8 @@ impl<'a> Check<'a> {
         if self.base.iter().all(Option::is_none) && !supports.is_empty() && !self.unknown.links {
             self.report(rule::base_fixed(given.span, &base));
         }
-        let rotated = self.bodies.first().is_some_and(|body| body.path.iter().any(|s| matches!(s, Step::Rotate { .. })));
+        let rotated =
+            self.bodies.first().is_some_and(|body| body.path.iter().any(|s| matches!(s, Step::Rotate { .. })));
         let mut sound = Vec::new();
         for support in supports.iter().filter_map(|support| support.value.as_ref()) {
             let name = self.name(&support.name).unwrap_or_default().to_owned();

@@ -63,7 +63,9 @@ impl<'a> Check<'a> {
                 translate(&mut path, [tip, Value::ZERO, Value::ZERO]);
             }
             if let Some(joint) = (index > 0).then(|| joints.next()).flatten() {
-                for (axis, (stiffness, damping)) in ROTATIONS.into_iter().zip(joint.stiffness.into_iter().zip(joint.damping)) {
+                for (axis, (stiffness, damping)) in
+                    ROTATIONS.into_iter().zip(joint.stiffness.into_iter().zip(joint.damping))
+                {
                     let owner = Owner::Beam(link.to_owned());
                     let id = self.push_coordinate((link, &name), CoordinateKind::Rotation, axis, owner, span);
                     path.push(Step::Move(id));
@@ -253,7 +255,8 @@ impl<'a> Check<'a> {
         }
         let rigid: Vec<_> = rigid.iter().map(|element| self.element(element.value.as_ref()?)).collect();
         let joints: Vec<_> = joints.iter().map(|spring| Some(self.spring(spring.value.as_ref()?))).collect();
-        let (elements_read, joints) = (rigid.into_iter().collect::<Option<Vec<_>>>()?, joints.into_iter().collect::<Option<Vec<_>>>()?);
+        let (elements_read, joints) =
+            (rigid.into_iter().collect::<Option<Vec<_>>>()?, joints.into_iter().collect::<Option<Vec<_>>>()?);
         let sum: f64 = elements_read.iter().map(|element| self.now(&element.length)).sum();
         let whole = self.now(length);
         if (sum - whole).abs() > WRITTEN * whole {

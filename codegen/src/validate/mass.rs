@@ -41,7 +41,10 @@ impl<'a> Check<'a> {
             (None, None) => (None, Vec::new()),
         };
         let (name, link_name) = (name.to_owned(), name.to_owned());
-        self.push_body(chain::Body { name, link: link_name, path, inertia, parts, length: Value::ZERO }, link.name.span);
+        self.push_body(
+            chain::Body { name, link: link_name, path, inertia, parts, length: Value::ZERO },
+            link.name.span,
+        );
         (vec![Value::ZERO], Value::ZERO)
     }
 

@@ -154,7 +154,9 @@ impl<'a> Check<'a> {
 
     fn analyses(&mut self, given: Option<&Given<Vec<Given<Analysis>>>>) -> Analyses {
         let default = Analyses { statics: true, dynamics: true, modes: true, derivatives: false };
-        let Some((list, span)) = given.and_then(|given| Some((given.value.as_ref()?, given.span))) else { return default };
+        let Some((list, span)) = given.and_then(|given| Some((given.value.as_ref()?, given.span))) else {
+            return default;
+        };
         if list.is_empty() {
             self.report(rule::no_analyses(span));
         }

@@ -1,0 +1,188 @@
+//! Whatever stands in a file, reader and validator answer with a chain or with mistakes, and never panic.
+
+use std::path::Path;
+
+use crane_codegen::{SourceFile, read, validate};
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+/// Reads, validates and draws.
+fn answer(bytes: &[u8]) {
+    let chain = SourceFile::from_bytes("any.yaml", bytes)
+        .and_then(|source| read(&source).and_then(|spec| validate(&spec, &source)));
+    match chain {
+        Ok(chain) => assert_eq!(chain.guess.len(), chain.coordinates.len()),
+        Err(mistakes) => {
+            assert!(!mistakes.mistakes().is_empty());
+            assert!(mistakes.to_string().contains("mistake"));
+            assert!(!mistakes.headline().contains('\n'));
+        }
+    }
+}
+
+/// Texts of all shipped specs and all bad ones that are text.
+fn specs() -> Vec<String> {
+    ["../specs", "tests/bad"]
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).expect("a folder"))
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
+        .filter_map(|path| std::fs::read_to_string(path).ok())
+        .collect()
+}
+
+/// Words to put in place of others: keys, numbers at the edges, YAML's own signs.
+const WORDS: &[&str] = &[
+    "0",
+    "-1",
+    "1e300",
+    "1e-300",
+    ".nan",
+    "-.inf",
+    "1000",
+    "2.5",
+    "null",
+    "~",
+    "true",
+    "\"\"",
+    "''",
+    "[]",
+    "{}",
+    "[",
+    "{",
+    "]",
+    "}",
+    ":",
+    "-",
+    "&a",
+    "*a",
+    "<<",
+    "!!str",
+    "!!float",
+    "# ",
+    "---",
+    "...",
+    "? ",
+    "|",
+    ">",
+    "90 deg",
+    "1/0 pi",
+    "pi",
+    "name",
+    "mass",
+    "joint",
+    "free",
+    "fixed",
+    "revolute",
+    "prismatic",
+    "beam",
+    "bodies",
+    "sections",
+    "rigid",
+    "elements",
+    "load_mass",
+    "truck",
+    "boom",
+    "boom_1_psi",
+    "\u{feff}",
+    "\t",
+    "\r\n",
+    "\u{1F3D7}",
+    "type",
+    "gen",
+];
+
+/// One change of a text.
+#[derive(Clone, Debug)]
+enum Change {
+    DeleteLine(Index),
+    DoubleLine(Index, Index),
+    DeleteWord(Index),
+    ReplaceWord(Index, Index),
+    SwapWords(Index, Index),
+    Indent(Index, usize),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let index = any::<Index>;
+    prop_oneof![
+        index().prop_map(Change::DeleteLine),
+        (index(), index()).prop_map(|(from, to)| Change::DoubleLine(from, to)),
+        index().prop_map(Change::DeleteWord),
+        (index(), index()).prop_map(|(word, by)| Change::ReplaceWord(word, by)),
+        (index(), index()).prop_map(|(a, b)| Change::SwapWords(a, b)),
+        (index(), 0usize..5).prop_map(|(line, spaces)| Change::Indent(line, spaces)),
+    ]
+}
+
+/// Splits into words and what is between them, so that joining gives the text back.
+fn words(text: &str) -> Vec<String> {
+    let word = |c: char| c.is_alphanumeric() || "_.+-/".contains(c);
+    let mut parts: Vec<String> = Vec::new();
+    let mut inside = None;
+    for c in text.chars() {
+        match parts.last_mut() {
+            Some(part) if inside == Some(true) && word(c) => part.push(c),
+            _ => parts.push(c.into()),
+        }
+        inside = Some(word(c));
+    }
+    parts
+}
+
+fn apply(text: &str, change: &Change) -> String {
+    let mut lines: Vec<String> = text.split_inclusive('\n').map(Into::into).collect();
+    let mut parts = words(text);
+    if parts.is_empty() {
+        return text.into();
+    }
+    match change {
+        Change::DeleteLine(line) => {
+            lines.remove(line.index(lines.len()));
+            return lines.concat();
+        }
+        Change::DoubleLine(from, to) => {
+            let line = lines[from.index(lines.len())].clone();
+            lines.insert(to.index(lines.len()), line);
+            return lines.concat();
+        }
+        Change::Indent(line, spaces) => {
+            let line = line.index(lines.len());
+            lines[line] = format!("{}{}", " ".repeat(*spaces), lines[line].trim_start_matches(' '));
+            return lines.concat();
+        }
+        Change::DeleteWord(word) => drop(parts.remove(word.index(parts.len()))),
+        Change::ReplaceWord(word, by) => {
+            let word = word.index(parts.len());
+            parts[word] = WORDS[by.index(WORDS.len())].into();
+        }
+        Change::SwapWords(a, b) => {
+            let (a, b) = (a.index(parts.len()), b.index(parts.len()));
+            parts.swap(a, b);
+        }
+    }
+    parts.concat()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_bytes_get_an_answer(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        answer(&bytes);
+    }
+
+    #[test]
+    fn any_words_get_an_answer(words in proptest::collection::vec(0..WORDS.len(), 0..60), spaces in any::<u64>()) {
+        let text: String =
+            words.iter().enumerate().flat_map(|(i, w)| [WORDS[*w], [" ", "\n", ": ", "\n  "][(spaces >> (i % 32) * 2) as usize % 4]]).collect();
+        answer(text.as_bytes());
+    }
+
+    #[test]
+    fn changed_specs_get_an_answer(spec in any::<Index>(), changes in proptest::collection::vec(change(), 1..6)) {
+        let specs = specs();
+        let text = changes.iter().fold(specs[spec.index(specs.len())].clone(), |text, change| apply(&text, change));
+        answer(text.as_bytes());
+    }
+}
