@@ -164,8 +164,8 @@ fn method(block: &Block) -> TokenStream {
                 }
             }
         }
-        Shape::Transforms { counts, .. } => {
-            let total = integer(counts.iter().sum());
+        Shape::Transforms { .. } | Shape::Turned { .. } => {
+            let total = integer(matrices(&function.shape));
             quote! {
                 fn #name(&self, #(#names: #types,)* out: &mut [Matrix4<f64>]) {
                     if let Some(out) = out.first_chunk_mut::<#total>() {
@@ -190,5 +190,14 @@ fn method(block: &Block) -> TokenStream {
                 }
             }
         }
+    }
+}
+
+/// How many matrices a function writes.
+fn matrices(shape: &Shape) -> usize {
+    match shape {
+        Shape::Transforms { counts, .. } => counts.iter().sum(),
+        Shape::Turned { degrees, .. } => degrees.iter().map(|n| n * (n + 1) / 2).sum(),
+        _ => 0,
     }
 }

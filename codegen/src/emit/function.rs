@@ -32,16 +32,9 @@ impl Writer<'_> {
         let mut item = self.shell();
         let (mut body, used) = self.piece(&self.block.pieces[0]);
         let mut statements = self.unpack(&used);
-        match self.result.handover() {
-            // A single number needs no storage.
-            Handover::Return if self.is_scalar() => {}
-            Handover::Return => {
-                let (storage, blank) = (self.result.storage_type(), self.result.blank());
-                // Every slot may be zero.
-                let mutable = (!body.is_empty()).then(|| quote!(mut));
-                statements.push(parse_quote!(let #mutable out: #storage = #blank;));
-            }
-            Handover::OutArgument => statements.push(parse_quote!(out.fill(Matrix4::zeros());)),
+        // A single number needs no storage.
+        if !self.is_scalar() {
+            statements.push(self.begin());
         }
         statements.append(&mut body);
         if !self.is_scalar() {
@@ -55,28 +48,34 @@ impl Writer<'_> {
         matches!(self.block.function.shape, crate::symbolic::Shape::Scalar)
     }
 
-    fn finish(&self) -> Vec<Stmt> {
-        match self.result.handover() {
-            Handover::Return => {
-                let finish = self.result.finish();
-                let block: syn::Block = parse_quote!({ #finish });
-                block.stmts
-            }
-            Handover::OutArgument => vec![],
+    /// The storage, with its blank values.
+    fn begin(&self) -> Stmt {
+        if matches!(self.result.handover(), Handover::OutArgument) {
+            return parse_quote!(out.fill(Matrix4::zeros()););
         }
+        let name = format_ident!("{}", self.result.storage_name());
+        let (storage, blank) = (self.result.storage_type(), self.result.blank());
+        // Every slot may be zero.
+        let written = self.block.pieces.iter().flatten().any(|s| matches!(s, Statement::Output { .. }));
+        let mutable = written.then(|| quote!(mut));
+        parse_quote!(let #mutable #name: #storage = #blank;)
+    }
+
+    /// The result from its storage.
+    fn finish(&self) -> Vec<Stmt> {
+        if matches!(self.result.handover(), Handover::OutArgument) {
+            return vec![];
+        }
+        let finish = self.result.finish();
+        let block: syn::Block = parse_quote!({ #finish });
+        block.stmts
     }
 
     fn in_pieces(&self) -> Vec<syn::Item> {
         let mut item = self.shell();
         let storage = self.result.storage_type();
         let carried = integer(self.block.carried);
-        let mut statements: Vec<Stmt> = Vec::new();
-        if matches!(self.result.handover(), Handover::Return) {
-            let blank = self.result.blank();
-            statements.push(parse_quote!(let mut out: #storage = #blank;));
-        } else {
-            statements.push(parse_quote!(out.fill(Matrix4::zeros());));
-        }
+        let mut statements: Vec<Stmt> = vec![self.begin()];
         if self.block.carried > 0 {
             statements.push(parse_quote!(let mut kept = [0.0; #carried];));
         }
@@ -95,10 +94,12 @@ impl Writer<'_> {
                 arguments.push(borrow_mut(variable("kept")));
             }
             if outputs {
-                parameters.push(quote!(out: &mut #storage));
+                let name = format_ident!("{}", self.result.storage_name());
+                parameters.push(quote!(#name: &mut #storage));
+                let storage = variable(self.result.storage_name());
                 arguments.push(match self.result.handover() {
-                    Handover::Return => borrow_mut(variable("out")),
-                    Handover::OutArgument => variable("out"),
+                    Handover::OutArgument => storage,
+                    Handover::Return | Handover::FromFactors => borrow_mut(storage),
                 });
             }
             let called = call(&name.to_string(), arguments);
@@ -135,7 +136,7 @@ impl Writer<'_> {
         let output = self.result.public_type();
         let signature = match self.result.handover() {
             Handover::Return => quote!(pub fn #name(#(#parameters),*) -> #output),
-            Handover::OutArgument => {
+            Handover::OutArgument | Handover::FromFactors => {
                 parameters.push(quote!(out: &mut #output));
                 quote!(pub fn #name(#(#parameters),*))
             }

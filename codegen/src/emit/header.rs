@@ -29,6 +29,13 @@ pub fn header(chain: &Chain, report: &Report, spec_file: &str) -> String {
         lines.push("Left out:".into());
         lines.extend(report.left_out.iter().map(|(what, why)| format!("  {what}: {why}")));
     }
+    if let Some(pairs) = report.second_derivative_pairs {
+        lines.push(String::new());
+        lines.push(format!(
+            "In a loop: the {pairs} products Ω_m Ω_n T of transform_second_derivatives; written out they would be"
+        ));
+        lines.push("most of this file, and rustc would take longer for them than for all the rest.".into());
+    }
     lines.push(String::new());
     lines.push("Operations of each function, and before simplification:".into());
     lines.extend(

@@ -40,6 +40,13 @@ impl<'a> Labels<'a> {
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
             Shape::Transforms { counts, .. } => Some(self.transform(function.name, counts, slot / 12)),
+            Shape::Turned { degrees, rotations } => {
+                let axes = 3 * rotations.len();
+                if slot < axes {
+                    return Some("Axes of rotation".into());
+                }
+                Some(self.transform("transform_derivatives", degrees, (slot - axes) / 12))
+            }
             Shape::Record(_, fields) => {
                 let mut rest = slot;
                 let (name, shape) = fields.iter().find(|(_, shape)| {

@@ -58,7 +58,7 @@ pub fn emit(chain: &Chain, blocks: &Blocks, report: Report, spec_file: &str) -> 
 fn imports(body: &str) -> String {
     const SOURCES: [(&str, &[&str]); 3] = [
         ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),
-        ("::crane_model::support", &["fill", "sin_cos", "symmetric"]),
+        ("::crane_model::support", &["TransformFactors", "fill", "sin_cos", "symmetric"]),
         (
             "::crane_model",
             &[

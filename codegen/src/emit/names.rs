@@ -5,7 +5,8 @@ use std::collections::{HashMap, HashSet};
 use crate::symbolic::{ExprId, Op, Program};
 
 /// Words that generated functions use themselves.
-const TAKEN: [&str; 12] = ["t", "q", "v", "c", "out", "kept", "sin_cos", "symmetric", "max", "min", "Constants", "N"];
+const TAKEN: [&str; 13] =
+    ["factors", "t", "q", "v", "c", "out", "kept", "sin_cos", "symmetric", "max", "min", "Constants", "N"];
 
 /// Gives every value of a function one valid, unique name.
 pub struct Names<'p> {

@@ -1,13 +1,15 @@
 //! What a crane's functions cost, and what its scene does not need.
 
 use crate::lower::Blocks;
-use crate::symbolic::{OperationCount, Program};
+use crate::symbolic::{OperationCount, Program, Shape};
 
 /// Costs and omissions of a generated module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// One row a function, in the order of the file.
     pub costs: Vec<FunctionCost>,
+    /// How many second derivatives of transforms are computed in a loop, if they are.
+    pub second_derivative_pairs: Option<usize>,
     /// What is left out, and why.
     pub left_out: Vec<(&'static str, &'static str)>,
 }
@@ -35,10 +37,19 @@ impl Report {
                 operations: block.count,
                 verbatim: verbatim
                     .function(block.function.name)
-                    .map(|f| verbatim.count(&f.outputs, |_| false))
+                    .map(|f| {
+                        let mut count = verbatim.count(&f.outputs, |_| false);
+                        count += f.shape.closing_count();
+                        count
+                    })
                     .unwrap_or_default(),
             })
             .collect();
-        Report { costs, left_out }
+        let pairs = |shape: &Shape| match shape {
+            Shape::Turned { degrees, .. } => Some(degrees.iter().map(|n| n * (n + 1) / 2).sum()),
+            _ => None,
+        };
+        let second_derivative_pairs = blocks.functions.iter().find_map(|block| pairs(&block.function.shape));
+        Report { costs, second_derivative_pairs, left_out }
     }
 }

@@ -13,6 +13,8 @@ pub enum Handover {
     Return,
     /// Written to the caller's array, because it may be larger than a stack.
     OutArgument,
+    /// Made from factors into the caller's array.
+    FromFactors,
 }
 
 /// Type, storage and slots of a result.
@@ -28,6 +30,7 @@ impl<'f> Result<'f> {
     pub fn handover(&self) -> Handover {
         match self.shape {
             Shape::Transforms { corner: 0, .. } => Handover::OutArgument,
+            Shape::Turned { .. } => Handover::FromFactors,
             _ => Handover::Return,
         }
     }
@@ -41,11 +44,17 @@ impl<'f> Result<'f> {
             Shape::Vectors(n) => array(quote!(Vector3<f64>), *n),
             Shape::Pairs(n) => array(quote!([f64; 2]), *n),
             Shape::Transforms { counts, .. } => array(quote!(Matrix4<f64>), counts.iter().sum()),
+            Shape::Turned { degrees, .. } => array(quote!(Matrix4<f64>), degrees.iter().map(|n| n * (n + 1) / 2).sum()),
             Shape::Record(name, _) => {
                 let name = format_ident!("{name}");
                 quote!(#name<N>)
             }
         }
+    }
+
+    /// Name of the variable in which the result grows.
+    pub fn storage_name(&self) -> &'static str {
+        if matches!(self.shape, Shape::Turned { .. }) { "factors" } else { "out" }
     }
 
     /// Type of the variable `out` in which the result grows.
@@ -54,6 +63,10 @@ impl<'f> Result<'f> {
             Shape::Vector(_) => quote!([f64; N]),
             Shape::Symmetric(_) => quote!([[f64; N]; N]),
             Shape::Record(_, fields) => array(quote!([[f64; N]; N]), fields.len()),
+            Shape::Turned { degrees, .. } => {
+                let total = integer(degrees.iter().sum());
+                quote!(TransformFactors<N, #total>)
+            }
             _ => self.public_type(),
         }
     }
@@ -70,6 +83,7 @@ impl<'f> Result<'f> {
                 let blank = if *corner == 1 { quote!(BLANK) } else { quote!(Matrix4::zeros()) };
                 array(blank, counts.iter().sum())
             }
+            Shape::Turned { .. } => quote!(TransformFactors::zeros()),
             Shape::Record(_, fields) => array(quote!([[0.0; N]; N]), fields.len()),
         }
     }
@@ -87,13 +101,17 @@ impl<'f> Result<'f> {
                     #name { #(#names),* }
                 }
             }
+            Shape::Turned { degrees, .. } => {
+                let degrees = degrees.iter().map(|n| integer(*n));
+                quote!(factors.second_derivatives(&[#(#degrees),*], out);)
+            }
             _ => quote!(out),
         }
     }
 
     /// The place of a slot in the storage.
     pub fn place(&self, slot: usize) -> Expr {
-        slot_of(self.shape, slot, variable("out"))
+        slot_of(self.shape, slot, variable(self.storage_name()))
     }
 
     /// The group of slots that a slot belongs to, for a comment before it.
@@ -105,6 +123,10 @@ impl<'f> Result<'f> {
             Shape::Vectors(_) => slot / 3,
             Shape::Pairs(_) => slot / 2,
             Shape::Transforms { .. } => slot / 12,
+            Shape::Turned { rotations, .. } => {
+                let axes = 3 * rotations.len();
+                if slot < axes { 0 } else { 1 + (slot - axes) / 12 }
+            }
             Shape::Record(_, fields) => {
                 let (index, rest) = field_of(fields, slot);
                 let Shape::Symmetric(n) = fields[index].1 else { return index };
@@ -112,6 +134,12 @@ impl<'f> Result<'f> {
             }
         }
     }
+}
+
+/// Entry of a matrix in an array of matrices.
+fn matrix_slot(matrices: Expr, slot: usize) -> Expr {
+    let (row, column) = (slot % 12 / 4 + 1, slot % 4 + 1);
+    field(element(matrices, slot / 12), &format!("m{row}{column}"))
 }
 
 /// `[item; n]`, a type or a value.
@@ -130,9 +158,14 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
         }
         Shape::Vectors(_) => field(element(out, slot / 3), ["x", "y", "z"][slot % 3]),
         Shape::Pairs(_) => element(element(out, slot / 2), slot % 2),
-        Shape::Transforms { .. } => {
-            let (row, column) = (slot % 12 / 4 + 1, slot % 4 + 1);
-            field(element(out, slot / 12), &format!("m{row}{column}"))
+        Shape::Transforms { .. } => matrix_slot(out, slot),
+        Shape::Turned { rotations, .. } => {
+            let axes = 3 * rotations.len();
+            if slot < axes {
+                field(element(field(out, "axes"), slot / 3), ["x", "y", "z"][slot % 3])
+            } else {
+                matrix_slot(field(out, "first"), slot - axes)
+            }
         }
         Shape::Record(_, fields) => {
             let (index, rest) = field_of(fields, slot);

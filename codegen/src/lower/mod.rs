@@ -99,14 +99,9 @@ fn block<'p>(program: &'p Program, constants: &Constants, function: &'p Function
     let inlined = bundle::bundle(program, constants, &function.outputs);
     let line = order::order(program, constants, &inlined, function);
     let (pieces, carried) = split::split(program, constants, &inlined, line);
-    Block {
-        function,
-        reads_parameters: constants.read_by(program, &function.outputs),
-        pieces,
-        carried,
-        count: program.count(&function.outputs, |id| constants.is_stored(id)),
-        inlined,
-    }
+    let mut count = program.count(&function.outputs, |id| constants.is_stored(id));
+    count += function.shape.closing_count();
+    Block { function, reads_parameters: constants.read_by(program, &function.outputs), pieces, carried, count, inlined }
 }
 
 /// The values that must stand in variables of their own before `id` can be written down: its operands, or, where an

@@ -322,16 +322,15 @@ impl<'g> Derivation<'g> {
 
     fn transform_derivatives(&self) -> Vec<Function> {
         let (model, kinematics) = (&self.model, &self.kinematics);
-        let counts = |of: fn(usize) -> usize| {
-            (0..model.chain.bodies.len()).map(|p| of(model.chain.degrees_of_freedom(BodyId(p)))).collect()
-        };
+        let counts = (0..model.chain.bodies.len()).map(|p| model.chain.degrees_of_freedom(BodyId(p))).collect();
+        let (second_shape, second) = transforms::second_derivatives(model, kinematics);
         vec![
             function(
                 "transform_derivatives",
                 "Derivatives ∂T/∂q_j of every body, j running over the coordinates that move it; 1, m, 1/m.",
                 "∂T/∂q_j = Ω_j T",
                 &[Position],
-                Shape::Transforms { counts: counts(|n| n), corner: 0 },
+                Shape::Transforms { counts, corner: 0 },
                 transforms::derivatives(model, kinematics),
             ),
             function(
@@ -339,8 +338,8 @@ impl<'g> Derivation<'g> {
                 "Second derivatives ∂²T/∂q_m∂q_n of every body, m ≤ n running over the coordinates that move it.",
                 "∂²T/∂q_m∂q_n = Ω_m Ω_n T",
                 &[Position],
-                Shape::Transforms { counts: counts(|n| n * (n + 1) / 2), corner: 0 },
-                transforms::second_derivatives(model, kinematics),
+                second_shape,
+                second,
             ),
         ]
     }

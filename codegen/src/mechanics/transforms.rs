@@ -3,8 +3,8 @@
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
 use super::vector::Vec3;
-use crate::chain::BodyId;
-use crate::symbolic::Expr;
+use crate::chain::{BodyId, CoordinateKind};
+use crate::symbolic::{Expr, Shape};
 
 /// The columns of a 4×4 matrix without its last row, row by row.
 fn rows<'g>(columns: [Vec3<'g>; 4]) -> impl Iterator<Item = Expr<'g>> {
@@ -39,8 +39,26 @@ pub fn derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Ex
     outputs
 }
 
-/// `∂²T(p)/∂q_m∂q_n = Ω_m Ω_n T(p)`, m ≤ n, for every body and every pair of coordinates before it.
-pub fn second_derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+/// Pairs (m, n) with second derivatives other than zero above which these are left as factors: 36 operations each,
+/// written out, take rustc longer than the whole rest of the crane.
+const MOST_PAIRS_WRITTEN_OUT: usize = 500;
+
+/// `∂²T(p)/∂q_m∂q_n = Ω_m Ω_n T(p)`, m ≤ n, for every body and every pair of coordinates before it; written out for a
+/// small crane, as factors for a large one.
+pub fn second_derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> (Shape, Vec<Expr<'g>>) {
+    let rotations: Vec<bool> = model.chain.coordinates.iter().map(|c| c.kind == CoordinateKind::Rotation).collect();
+    let degrees: Vec<usize> = degrees_of_freedom(model).map(|(_, count)| count).collect();
+    let pairs: usize = degrees.iter().map(|&n| (0..n).filter(|&m| rotations[m]).map(|m| n - m).sum::<usize>()).sum();
+    if pairs <= MOST_PAIRS_WRITTEN_OUT {
+        let counts = degrees.iter().map(|n| n * (n + 1) / 2).collect();
+        return (Shape::Transforms { counts, corner: 0 }, written_out(model, kinematics));
+    }
+    let mut factors: Vec<Expr<'g>> = kinematics.generators.iter().flat_map(|generator| generator.omega.0).collect();
+    factors.extend(derivatives(model, kinematics));
+    (Shape::Turned { degrees, rotations }, factors)
+}
+
+fn written_out<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
     let mut outputs = Vec::new();
     for (body, count) in degrees_of_freedom(model) {
         let first: Vec<_> = (0..count).map(|j| derivative(kinematics, body, j)).collect();

@@ -59,7 +59,7 @@ impl<S: Scalar> Inputs<S> {
 }
 
 impl Program {
-    /// Evaluates a function; the result's slots are in the order of its [`Shape`](super::Shape).
+    /// Evaluates a function; the result is in the order of its [`Shape`](super::Shape), closed.
     ///
     /// # Panics
     /// If an input that the function uses is missing.
@@ -86,6 +86,7 @@ impl Program {
             };
             values[index] = Some(value);
         }
-        function.outputs.iter().map(|id| values[id.index()].clone().expect("outputs are needed")).collect()
+        let slots = function.outputs.iter().map(|id| values[id.index()].clone().expect("outputs are needed"));
+        function.shape.close(slots.collect())
     }
 }

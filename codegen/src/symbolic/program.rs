@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use super::count::OperationCount;
+use super::interpret::Scalar;
 use super::op::{ExprId, Op, SymbolId};
 
 /// Functions that share one graph of expressions.
@@ -81,6 +83,15 @@ pub enum Shape {
         /// Lower right corner.
         corner: u8,
     },
+    /// Second derivatives of transformations, left as factors because they are too many to be written out: slots are
+    /// the axes ω_m of all coordinates (zero for a translation), then the columns of the first derivatives T_n, body by
+    /// body, each as in [`Shape::Transforms`]. The result is `T_mn = ω_m × T_n` for m ≤ n.
+    Turned {
+        /// How many coordinates move each body.
+        degrees: Vec<usize>,
+        /// Whether each coordinate is a rotation.
+        rotations: Vec<bool>,
+    },
     /// Named results.
     Record(&'static str, Vec<(&'static str, Shape)>),
 }
@@ -96,8 +107,37 @@ impl Shape {
             Shape::Vectors(n) => 3 * n,
             Shape::Pairs(n) => 2 * n,
             Shape::Transforms { counts, .. } => 12 * counts.iter().sum::<usize>(),
+            Shape::Turned { degrees, rotations } => 3 * rotations.len() + 12 * degrees.iter().sum::<usize>(),
             Shape::Record(_, fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
         }
+    }
+
+    /// The result from its slots: themselves, unless they are factors.
+    pub fn close<S: Scalar>(&self, slots: Vec<S>) -> Vec<S> {
+        let Shape::Turned { degrees, rotations } = self else { return slots };
+        let (axes, derivatives) = slots.split_at(3 * rotations.len());
+        let mut closed = Vec::new();
+        let mut start = 0;
+        for &count in degrees {
+            for m in 0..count {
+                let axis = &axes[3 * m..3 * m + 3];
+                for n in m..count {
+                    let first = &derivatives[12 * (start + n)..12 * (start + n) + 12];
+                    closed.extend(turned(axis, first));
+                }
+            }
+            start += count;
+        }
+        closed
+    }
+
+    /// Operations of [`Shape::close`]; translations cost none.
+    #[must_use]
+    pub fn closing_count(&self) -> OperationCount {
+        let Shape::Turned { degrees, rotations } = self else { return OperationCount::default() };
+        let pairs: usize =
+            degrees.iter().map(|&count| (0..count).filter(|&m| rotations[m]).map(|m| count - m).sum::<usize>()).sum();
+        OperationCount { additions: 12 * pairs, multiplications: 24 * pairs, ..OperationCount::default() }
     }
 
     /// Whether it has no slots.
@@ -105,6 +145,16 @@ impl Shape {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+}
+
+/// `ω × column` of the four columns of a 3×4 matrix stored row by row.
+fn turned<S: Scalar>(axis: &[S], rows: &[S]) -> impl Iterator<Item = S> {
+    let at = |row: usize, column: usize| rows[4 * row + column].clone();
+    let entry = move |row: usize, column: usize| {
+        let (a, b) = ((row + 1) % 3, (row + 2) % 3);
+        axis[a].clone() * at(b, column) - axis[b].clone() * at(a, column)
+    };
+    (0..12).map(move |slot| entry(slot / 4, slot % 4))
 }
 
 impl Program {
