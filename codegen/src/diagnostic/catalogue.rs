@@ -89,7 +89,7 @@ catalogue! {
         "{expected} items belong here", "write {expected} items";
 
     // Names.
-    /// Names are snake_case identifiers: they become names in Rust.
+    /// Names are `snake_case` identifiers: they become names in Rust.
     E020 not_an_identifier(name) "`{name}` cannot be a name", "not an identifier",
         "use lower-case letters, digits and `_`, beginning with a letter, such as `outer_boom`";
     /// Names are not keywords of Rust.

@@ -89,14 +89,14 @@ impl<'a> SeqAccess<'a> for Items<'a> {
 /// Names of the user's own and their values; the second of two equal names is reported and skipped.
 pub(super) struct Entries<'a> {
     reader: Reader<'a>,
-    entries: &'a [(Node, Node)],
+    pairs: &'a [(Node, Node)],
     next: usize,
     seen: BTreeSet<String>,
 }
 
 impl<'a> Entries<'a> {
-    pub fn new(reader: Reader<'a>, entries: &'a [(Node, Node)]) -> Self {
-        Entries { reader, entries, next: 0, seen: BTreeSet::new() }
+    pub fn new(reader: Reader<'a>, pairs: &'a [(Node, Node)]) -> Self {
+        Entries { reader, pairs, next: 0, seen: BTreeSet::new() }
     }
 }
 
@@ -111,7 +111,7 @@ fn borrowed(key: &Node) -> &str {
 impl<'a> MapAccess<'a> for Entries<'a> {
     type Error = Unread;
     fn next_key_seed<K: DeserializeSeed<'a>>(&mut self, seed: K) -> Result<Option<K::Value>, Unread> {
-        while let Some((key, _)) = self.entries.get(self.next) {
+        while let Some((key, _)) = self.pairs.get(self.next) {
             self.next += 1;
             let name = key.key_text();
             if !self.seen.insert(name.clone()) {
@@ -123,7 +123,7 @@ impl<'a> MapAccess<'a> for Entries<'a> {
         Ok(None)
     }
     fn next_value_seed<V: DeserializeSeed<'a>>(&mut self, seed: V) -> Result<V::Value, Unread> {
-        let (key, value) = &self.entries[self.next - 1];
+        let (key, value) = &self.pairs[self.next - 1];
         let reader = self.reader;
         let (span, place) = (shown(key.span, value), Place::Key(borrowed(key)));
         seed.deserialize(Reader { node: Some(value), span, place, owner: reader.place, ..reader })
@@ -133,20 +133,20 @@ impl<'a> MapAccess<'a> for Entries<'a> {
 /// Fields of a struct: those that are given, then those that are not, so that the ones that are required get reported.
 pub(super) struct Fields<'a> {
     reader: Reader<'a>,
-    fields: &'static [&'static str],
+    names: &'static [&'static str],
     given: Vec<Option<(Span, &'a Node)>>,
     next: usize,
 }
 
 impl<'a> Fields<'a> {
     /// Reports unknown and duplicate keys, and leaves them out.
-    pub fn new(reader: Reader<'a>, entries: &'a [(Node, Node)], fields: &'static [&'static str]) -> Self {
-        let mut given = vec![None; fields.len()];
+    pub fn new(reader: Reader<'a>, entries: &'a [(Node, Node)], names: &'static [&'static str]) -> Self {
+        let mut given = vec![None; names.len()];
         for (key, value) in entries {
             let name = key.key_text();
-            match fields.iter().position(|field| *field == name) {
+            match names.iter().position(|field| *field == name) {
                 None => {
-                    let help = suggest(&name, fields.iter().copied());
+                    let help = suggest(&name, names.iter().copied());
                     reader.report(rule::unknown_key(key.span, name, help));
                 }
                 Some(field) if given[field].is_some() => {
@@ -155,14 +155,14 @@ impl<'a> Fields<'a> {
                 Some(field) => given[field] = Some((shown(key.span, value), value)),
             }
         }
-        Fields { reader, fields, given, next: 0 }
+        Fields { reader, names, given, next: 0 }
     }
 }
 
 impl<'a> MapAccess<'a> for Fields<'a> {
     type Error = Unread;
     fn next_key_seed<K: DeserializeSeed<'a>>(&mut self, seed: K) -> Result<Option<K::Value>, Unread> {
-        let Some(field) = self.fields.get(self.next) else { return Ok(None) };
+        let Some(field) = self.names.get(self.next) else { return Ok(None) };
         self.next += 1;
         let key: StrDeserializer<Unread> = (*field).into_deserializer();
         seed.deserialize(key).map(Some)
@@ -173,7 +173,7 @@ impl<'a> MapAccess<'a> for Fields<'a> {
             Some((span, node)) => (span, Some(node)),
             None => (self.reader.span, None),
         };
-        let (place, owner) = (Place::Key(self.fields[field]), self.reader.place);
+        let (place, owner) = (Place::Key(self.names[field]), self.reader.place);
         seed.deserialize(Reader { node, span, place, owner, ..self.reader })
     }
 }

@@ -124,6 +124,14 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The variant of that name.
+    fn variant(&self, name: &str, span: Span, variants: &[&'static str]) -> Result<&'static str, Unread> {
+        variants.iter().copied().find(|variant| *variant == name).ok_or_else(|| {
+            let help = suggest(name, variants.iter().copied());
+            self.report(rule::unknown_choice(span, self.place, name, help))
+        })
+    }
+
     /// The fields of a mapping.
     pub fn fields<V: Visitor<'a>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Unread> {
         match self.content()? {
@@ -203,40 +211,23 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Unread> {
-        let chosen = |name: &str| variants.iter().copied().find(|variant| *variant == name);
-        let unknown = |span, name: &str| {
-            let help = suggest(name, variants.iter().copied());
-            self.report(rule::unknown_choice(span, self.place, name, help))
-        };
         match self.content()? {
-            Content::Text(name) => match chosen(name) {
-                Some(variant) => visitor.visit_enum(Choice { reader: self, variant, node: None }),
-                None => Err(unknown(self.span, name)),
-            },
+            Content::Text(name) => {
+                let variant = self.variant(name, self.span, variants)?;
+                visitor.visit_enum(Choice { reader: self, variant, node: None })
+            }
             Content::Mapping(entries) => {
-                let mut choices = Vec::new();
-                let mut all_known = true;
-                for (key, node) in entries {
-                    let name = key.key_text();
-                    match chosen(&name) {
-                        Some(variant) => choices.push((key, variant, node)),
-                        None => {
-                            unknown(key.span, &name);
-                            all_known = false;
-                        }
-                    }
+                // All are looked up before any is refused.
+                let choices: Vec<_> = entries
+                    .iter()
+                    .map(|(key, node)| Ok((key.span, self.variant(&key.key_text(), key.span, variants)?, node)))
+                    .collect();
+                let choices = choices.into_iter().collect::<Result<Vec<_>, Unread>>()?;
+                if let [(span, variant, node)] = choices[..] {
+                    return visitor.visit_enum(Choice { reader: Reader { span, ..self }, variant, node: Some(node) });
                 }
-                match choices[..] {
-                    [(key, variant, node)] if all_known => {
-                        let reader = Reader { span: key.span, ..self };
-                        visitor.visit_enum(Choice { reader, variant, node: Some(node) })
-                    }
-                    _ if !all_known => Err(Unread::Reported),
-                    _ => {
-                        let span = choices.get(1).map_or(self.span, |(key, ..)| key.span);
-                        Err(self.report(rule::not_one_choice(span, self.place, choices.len(), list(variants))))
-                    }
-                }
+                let span = choices.get(1).map_or(self.span, |(span, ..)| *span);
+                Err(self.report(rule::not_one_choice(span, self.place, choices.len(), list(variants))))
             }
             _ => Err(Unread::Expected(format!("one of {}", list(variants)))),
         }

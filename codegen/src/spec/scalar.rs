@@ -39,17 +39,18 @@ impl Scalar {
 /// `1/2 pi` is the double nearest to π/2.
 pub(crate) fn parse_angle(word: &str) -> Option<f64> {
     let word = word.trim();
-    let (ratio, half_turn) = match word.strip_suffix("pi") {
-        Some(ratio) => (ratio, 1.0),
-        None => (word.strip_suffix("deg")?, 180.0),
+    // How many of the unit make half a turn, and whether one of it may go without saying.
+    let (ratio, half_turn, bare) = match word.strip_suffix("pi") {
+        Some(ratio) => (ratio, 1.0, true),
+        None => (word.strip_suffix("deg")?, 180.0, false),
     };
     let (numerator, denominator) = match ratio.split_once('/') {
         Some((a, b)) => (a, plain_number(b)?),
         None => (ratio, 1.0),
     };
     let numerator = match numerator.trim() {
-        "" if half_turn == 1.0 => 1.0,
-        "-" if half_turn == 1.0 => -1.0,
+        "" if bare => 1.0,
+        "-" if bare => -1.0,
         number => plain_number(number)?,
     };
     Some(numerator * PI / (denominator * half_turn))

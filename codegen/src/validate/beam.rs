@@ -1,4 +1,4 @@
-//! Beams: cross-section and material, or elements one by one.
+//! Beams: of equal sections, and how elements become bodies.
 
 use super::numbers::Limit;
 use super::{Check, Owner};
@@ -6,12 +6,8 @@ use crate::chain::{self, Axis, CoordinateKind, ElementSpring, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::beam::{self, Elements, Joint, RigidElement};
 use crate::expand::placement::translate;
-use crate::expand::section::{self, CrossSection};
-use crate::read::suggest;
-use crate::spec::{Beam, BeamDamping, Directions, Either, Element, Given, Material, Number, Section, Sections, Spring};
+use crate::spec::{Beam, BeamDamping, Directions, Either, Given, Sections};
 
-/// Elements may miss the length of their beam by this share: lengths are written in decimal.
-const WRITTEN: f64 = 1e-9;
 /// The most sections a beam may have.
 const MOST_SECTIONS: f64 = 1000.0;
 /// Rotations of an element after the first, in order.
@@ -137,73 +133,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Young's modulus, shear modulus, density.
-    fn material(&mut self, given: &'a Given<Either<String, Material>>) -> Option<[Value; 3]> {
-        let name = match given.value.as_ref()? {
-            Either::Full(material) => return Some(self.elastic(material)),
-            Either::Short(name) => name,
-        };
-        let known = self.materials.get(name.as_str()).cloned();
-        if known.is_none() && !self.unknown.materials {
-            let help = suggest(name, self.materials.keys().copied());
-            self.report(rule::unknown_material(given.span, name, help));
-        }
-        known
-    }
-
-    /// Young's modulus, shear modulus, density.
-    pub(super) fn elastic(&mut self, material: &Material) -> [Value; 3] {
-        [
-            self.number(&material.youngs_modulus, "Young's modulus `E`", "Pa", Limit::Positive),
-            self.number(&material.shear_modulus, "the shear modulus `G`", "Pa", Limit::Positive),
-            self.number(&material.density, "`density`", "kg/m³", Limit::Positive),
-        ]
-    }
-
-    fn section(&mut self, given: &Given<Section>) -> Option<CrossSection> {
-        let mut positive = |number: &Given<Number>, place, unit| self.number(number, place, unit, Limit::Positive);
-        Some(match given.value.as_ref()? {
-            Section::Box { height, width, thickness } => {
-                let size = [positive(height, "`height`", "m"), positive(width, "`width`", "m")];
-                let wall = positive(thickness, "`thickness`", "m");
-                self.wall(thickness.span, &wall, size.iter());
-                section::hollow_rectangle(&size[0], &size[1], &wall)
-            }
-            Section::Tube { diameter, thickness } => {
-                let size = positive(diameter, "`diameter`", "m");
-                let wall = positive(thickness, "`thickness`", "m");
-                self.wall(thickness.span, &wall, [&size].into_iter());
-                section::tube(&size, &wall)
-            }
-            Section::Solid { height, width } => {
-                let sides = [(height, "`height`"), (width, "`width`")].map(|(side, place)| {
-                    let value = self.number(side, place, "m", Limit::Positive);
-                    if value.as_constant().is_none() {
-                        self.report(rule::live_side(side.span, place));
-                    }
-                    value.as_constant().unwrap_or(f64::NAN)
-                });
-                section::solid_rectangle(sides[0], sides[1])
-            }
-            Section::Circle { diameter } => section::circle(&positive(diameter, "`diameter`", "m")),
-            Section::Numbers { area, jy, jz, jo } => CrossSection {
-                area: positive(area, "`area`", "m²"),
-                jy: positive(jy, "`Jy`", "m⁴"),
-                jz: positive(jz, "`Jz`", "m⁴"),
-                jo: positive(jo, "`Jo`", "m⁴"),
-            },
-        })
-    }
-
-    /// Walls leave a hollow.
-    fn wall<'v>(&mut self, span: Span, thickness: &Value, sizes: impl Iterator<Item = &'v Value>) {
-        let smallest = sizes.map(|size| self.now(size)).fold(f64::INFINITY, f64::min);
-        let thickness = self.now(thickness);
-        if 2.0 * thickness >= smallest && smallest > 0.0 {
-            self.report(rule::wall(span, thickness, smallest));
-        }
-    }
-
+    /// Damping of equal sections.
     fn beam_damping(&mut self, given: Option<&Given<BeamDamping>>) -> Damping {
         let none = || [Value::ZERO; 3];
         match given.and_then(|given| given.value.as_ref()) {
@@ -223,63 +153,9 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn directions(&mut self, each: &Directions, place: &str, unit: &str, limit: Limit) -> [Value; 3] {
+    /// One number a direction.
+    pub(super) fn directions(&mut self, each: &Directions, place: &str, unit: &str, limit: Limit) -> [Value; 3] {
         [&each.psi, &each.theta, &each.phi].map(|number| self.number(number, place, unit, limit))
-    }
-
-    /// A beam of elements and springs given one by one.
-    fn one_by_one(
-        &mut self,
-        beam: &'a Beam,
-        length: &Value,
-        elements: &Given<Vec<Given<Element>>>,
-    ) -> Option<Elements> {
-        let beside = [
-            ("sections", beam.sections.as_ref().map(|given| given.span)),
-            ("material", beam.material.as_ref().map(|given| given.span)),
-            ("section", beam.section.as_ref().map(|given| given.span)),
-            ("extra_mass", beam.extra_mass.as_ref().map(|given| given.span)),
-            ("damping", beam.damping.as_ref().map(|given| given.span)),
-        ];
-        for (key, span) in beside {
-            if let Some(span) = span {
-                self.report(rule::two_beams(span, key));
-            }
-        }
-        if beam.springs.is_none() {
-            self.report(rule::missing_key(elements.span, "springs", "a beam with `elements`"));
-        }
-        let (rigid, joints) = (elements.value.as_ref()?, beam.springs.as_ref()?.value.as_ref()?);
-        if rigid.len() != joints.len() + 1 || joints.is_empty() {
-            self.report(rule::springs(elements.span, rigid.len(), joints.len()));
-        }
-        let rigid: Vec<_> = rigid.iter().map(|element| self.element(element.value.as_ref()?)).collect();
-        let joints: Vec<_> = joints.iter().map(|spring| Some(self.spring(spring.value.as_ref()?))).collect();
-        let (elements_read, joints) =
-            (rigid.into_iter().collect::<Option<Vec<_>>>()?, joints.into_iter().collect::<Option<Vec<_>>>()?);
-        let sum: f64 = elements_read.iter().map(|element| self.now(&element.length)).sum();
-        let whole = self.now(length);
-        if (sum - whole).abs() > WRITTEN * whole {
-            self.report(rule::beam_length(elements.span, sum, whole));
-        }
-        (elements_read.len() == joints.len() + 1).then_some(Elements { elements: elements_read, joints })
-    }
-
-    fn element(&mut self, element: &Element) -> Option<RigidElement> {
-        let length = self.number(&element.length, "`length`", "m", Limit::Positive);
-        let (inertia, _) = self.inertia(&element.mass, Some(&element.com), Some(&element.inertia), "the element")?;
-        Some(RigidElement { length, inertia })
-    }
-
-    fn spring(&mut self, spring: &Spring) -> Joint {
-        let mut each = |given: Option<&Given<Directions>>, place, unit| match given.map(|given| given.value.as_ref()) {
-            Some(Some(each)) => self.directions(each, place, unit, Limit::NotNegative),
-            _ => [Value::ZERO; 3],
-        };
-        Joint {
-            stiffness: each(Some(&spring.stiffness), "the stiffness", "N m/rad"),
-            damping: each(spring.damping.as_ref(), "the damping", "N m s/rad"),
-        }
     }
 }
 

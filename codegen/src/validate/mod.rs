@@ -6,12 +6,14 @@
 mod base;
 mod beam;
 mod drives;
+mod elements;
 mod links;
 mod mass;
 mod names;
 mod numbers;
 mod regular;
 mod run;
+mod section;
 
 use std::collections::BTreeMap;
 

@@ -1,0 +1,70 @@
+//! Beams given element by element.
+
+use super::Check;
+use super::numbers::Limit;
+use crate::chain::Value;
+use crate::diagnostic::rule;
+use crate::expand::beam::{Elements, Joint, RigidElement};
+use crate::spec::{Beam, Directions, Element, Given, Spring};
+
+/// Elements may miss the length of their beam by this share: lengths are written in decimal.
+const WRITTEN: f64 = 1e-9;
+
+impl<'a> Check<'a> {
+    /// A beam of elements and springs given one by one.
+    pub(super) fn one_by_one(
+        &mut self,
+        beam: &'a Beam,
+        length: &Value,
+        elements: &Given<Vec<Given<Element>>>,
+    ) -> Option<Elements> {
+        let beside = [
+            ("sections", beam.sections.as_ref().map(|given| given.span)),
+            ("material", beam.material.as_ref().map(|given| given.span)),
+            ("section", beam.section.as_ref().map(|given| given.span)),
+            ("extra_mass", beam.extra_mass.as_ref().map(|given| given.span)),
+            ("damping", beam.damping.as_ref().map(|given| given.span)),
+        ];
+        for (key, span) in beside {
+            if let Some(span) = span {
+                self.report(rule::two_beams(span, key));
+            }
+        }
+        if beam.springs.is_none() {
+            self.report(rule::missing_key(elements.span, "springs", "a beam with `elements`"));
+        }
+        let (rigid, joints) = (elements.value.as_ref()?, beam.springs.as_ref()?.value.as_ref()?);
+        if rigid.len() != joints.len() + 1 || joints.is_empty() {
+            self.report(rule::springs(elements.span, rigid.len(), joints.len()));
+        }
+        let rigid: Vec<_> = rigid.iter().map(|element| self.element(element.value.as_ref()?)).collect();
+        let joints: Vec<_> = joints.iter().map(|spring| Some(self.spring(spring.value.as_ref()?))).collect();
+        let (elements_read, joints) =
+            (rigid.into_iter().collect::<Option<Vec<_>>>()?, joints.into_iter().collect::<Option<Vec<_>>>()?);
+        let sum: f64 = elements_read.iter().map(|element| self.now(&element.length)).sum();
+        let whole = self.now(length);
+        if (sum - whole).abs() > WRITTEN * whole {
+            self.report(rule::beam_length(elements.span, sum, whole));
+        }
+        (elements_read.len() == joints.len() + 1).then_some(Elements { elements: elements_read, joints })
+    }
+
+    /// A rigid element as given.
+    fn element(&mut self, element: &Element) -> Option<RigidElement> {
+        let length = self.number(&element.length, "`length`", "m", Limit::Positive);
+        let (inertia, _) = self.inertia(&element.mass, Some(&element.com), Some(&element.inertia), "the element")?;
+        Some(RigidElement { length, inertia })
+    }
+
+    /// A spring as given.
+    fn spring(&mut self, spring: &Spring) -> Joint {
+        let mut each = |given: Option<&Given<Directions>>, place, unit| match given.map(|given| given.value.as_ref()) {
+            Some(Some(each)) => self.directions(each, place, unit, Limit::NotNegative),
+            _ => [Value::ZERO; 3],
+        };
+        Joint {
+            stiffness: each(Some(&spring.stiffness), "the stiffness", "N m/rad"),
+            damping: each(spring.damping.as_ref(), "the damping", "N m s/rad"),
+        }
+    }
+}

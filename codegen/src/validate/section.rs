@@ -1,0 +1,79 @@
+//! Materials and cross-sections of beams.
+
+use super::Check;
+use super::numbers::Limit;
+use crate::chain::Value;
+use crate::diagnostic::{Span, rule};
+use crate::expand::section::{self, CrossSection};
+use crate::read::suggest;
+use crate::spec::{Either, Given, Material, Number, Section};
+
+impl<'a> Check<'a> {
+    /// Young's modulus, shear modulus, density.
+    pub(super) fn material(&mut self, given: &'a Given<Either<String, Material>>) -> Option<[Value; 3]> {
+        let name = match given.value.as_ref()? {
+            Either::Full(material) => return Some(self.elastic(material)),
+            Either::Short(name) => name,
+        };
+        let known = self.materials.get(name.as_str()).cloned();
+        if known.is_none() && !self.unknown.materials {
+            let help = suggest(name, self.materials.keys().copied());
+            self.report(rule::unknown_material(given.span, name, help));
+        }
+        known
+    }
+
+    /// Young's modulus, shear modulus, density.
+    pub(super) fn elastic(&mut self, material: &Material) -> [Value; 3] {
+        [
+            self.number(&material.youngs_modulus, "Young's modulus `E`", "Pa", Limit::Positive),
+            self.number(&material.shear_modulus, "the shear modulus `G`", "Pa", Limit::Positive),
+            self.number(&material.density, "`density`", "kg/m³", Limit::Positive),
+        ]
+    }
+
+    /// A cross-section by its shape or its numbers.
+    pub(super) fn section(&mut self, given: &Given<Section>) -> Option<CrossSection> {
+        let mut positive = |number: &Given<Number>, place, unit| self.number(number, place, unit, Limit::Positive);
+        Some(match given.value.as_ref()? {
+            Section::Box { height, width, thickness } => {
+                let size = [positive(height, "`height`", "m"), positive(width, "`width`", "m")];
+                let wall = positive(thickness, "`thickness`", "m");
+                self.wall(thickness.span, &wall, size.iter());
+                section::hollow_rectangle(&size[0], &size[1], &wall)
+            }
+            Section::Tube { diameter, thickness } => {
+                let size = positive(diameter, "`diameter`", "m");
+                let wall = positive(thickness, "`thickness`", "m");
+                self.wall(thickness.span, &wall, [&size].into_iter());
+                section::tube(&size, &wall)
+            }
+            Section::Solid { height, width } => {
+                let sides = [(height, "`height`"), (width, "`width`")].map(|(side, place)| {
+                    let value = self.number(side, place, "m", Limit::Positive);
+                    if value.as_constant().is_none() {
+                        self.report(rule::live_side(side.span, place));
+                    }
+                    value.as_constant().unwrap_or(f64::NAN)
+                });
+                section::solid_rectangle(sides[0], sides[1])
+            }
+            Section::Circle { diameter } => section::circle(&positive(diameter, "`diameter`", "m")),
+            Section::Numbers { area, jy, jz, jo } => CrossSection {
+                area: positive(area, "`area`", "m²"),
+                jy: positive(jy, "`Jy`", "m⁴"),
+                jz: positive(jz, "`Jz`", "m⁴"),
+                jo: positive(jo, "`Jo`", "m⁴"),
+            },
+        })
+    }
+
+    /// Walls leave a hollow.
+    fn wall<'v>(&mut self, span: Span, thickness: &Value, sizes: impl Iterator<Item = &'v Value>) {
+        let smallest = sizes.map(|size| self.now(size)).fold(f64::INFINITY, f64::min);
+        let thickness = self.now(thickness);
+        if 2.0 * thickness >= smallest && smallest > 0.0 {
+            self.report(rule::wall(span, thickness, smallest));
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! docs/SPEC.md tells of every key and every rule, and its example is a crane.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use crane_codegen::diagnostic::CATALOGUE;
+use crane_codegen::{SourceFile, json_schema, read, validate};
+use serde_json::Value;
+
+fn page() -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/SPEC.md")).expect("docs/SPEC.md")
+}
+
+/// Keys of mappings and words of choices in a schema.
+fn collect_words(schema: &Value, words: &mut BTreeSet<String>) {
+    match schema {
+        Value::Object(object) => {
+            if let Some(Value::Object(properties)) = object.get("properties") {
+                words.extend(properties.keys().cloned());
+            }
+            words.extend(object.get("const").and_then(Value::as_str).map(Into::into));
+            let choices = object.get("enum").and_then(Value::as_array).into_iter().flatten();
+            words.extend(choices.filter_map(Value::as_str).map(Into::into));
+            object.values().for_each(|inner| collect_words(inner, words));
+        }
+        Value::Array(items) => items.iter().for_each(|inner| collect_words(inner, words)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_is_documented() {
+    let (page, mut words) = (page(), BTreeSet::new());
+    collect_words(&serde_json::from_str(&json_schema()).expect("JSON"), &mut words);
+    assert!(words.len() > 90, "the schema was searched: {}", words.len());
+    // What stands in code, split into words.
+    let code: BTreeSet<&str> = page
+        .split('`')
+        .skip(1)
+        .step_by(2)
+        .flat_map(|code| code.split(|c: char| !c.is_alphanumeric() && c != '_'))
+        .collect();
+    let missing: Vec<_> = words.iter().filter(|word| !code.contains(word.as_str())).collect();
+    assert!(missing.is_empty(), "docs/SPEC.md does not tell of {missing:?}");
+}
+
+#[test]
+fn every_rule_is_documented() {
+    let page = page();
+    for rule in CATALOGUE {
+        let row = format!("| {} | {} |", rule.code, rule.about.trim());
+        assert!(page.contains(&row), "docs/SPEC.md lacks the row\n{row}");
+    }
+    assert_eq!(page.matches("\n| E0").count(), CATALOGUE.len(), "rows of rules that are gone");
+}
+
+#[test]
+fn the_example_is_a_crane() {
+    let page = page();
+    let (_, rest) = page.split_once("```yaml\n").expect("an example");
+    let (example, _) = rest.split_once("```").expect("its end");
+    let source = SourceFile::new("docs/SPEC.md", example);
+    let chain =
+        read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+    assert_eq!(chain.coordinates.len(), 2);
+}
