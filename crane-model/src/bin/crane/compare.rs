@@ -9,7 +9,6 @@ use crate::{
     figures::{Curve, PALETTE, Panel},
     files,
     problem::{Outcome, Problem},
-    report::readable,
     run::{Recorded, progress, record},
     simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
     statics::{Case, deflection, tables},
@@ -65,8 +64,8 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
     write_figure(&folder.join(&deviation_file), &deviation(description, &rigid_run.table, &flexible_run.table), 1)?;
     written.push(deviation_file);
 
-    let duration = readable(settings[1].duration);
-    let step = readable(flexible_run.run.step);
+    let duration = settings[1].duration;
+    let step = flexible_run.run.step;
     writeln!(out, "\nMotion over {duration} s, classical Runge-Kutta, step {step} s\n")?;
     summary(description, &[("rigid", rigid_run), ("flexible", flexible_run)]).print(out)?;
     writeln!(out)?;

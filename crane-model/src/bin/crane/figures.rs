@@ -21,20 +21,26 @@ pub const SKY: RGBColor = RGBColor(86, 180, 233);
 /// Colours for curves in order.
 pub const PALETTE: [RGBColor; 6] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY];
 
-/// Width of a panel, px.
-const WIDTH: u32 = 440;
-/// Height of a panel, px.
-const HEIGHT: u32 = 270;
-/// Height of a row of the legend, px.
-const LEGEND: u32 = 26;
-/// Font size, px.
-const FONT: f64 = 15.0;
+/// Points stand on whole units of the drawing: this many to a pixel keep curves smooth.
+const PIXEL: u32 = 10;
+/// Width of a panel.
+const WIDTH: u32 = 440 * PIXEL;
+/// Height of a panel.
+const HEIGHT: u32 = 270 * PIXEL;
+/// Height of a row of the legend.
+const LEGEND: u32 = 26 * PIXEL;
+/// Font size.
+const FONT: f64 = 15.0 * PIXEL as f64;
+/// Width of a curve.
+const STROKE: u32 = 2 * PIXEL;
+/// Free space around a panel.
+const SPACE: u32 = 12 * PIXEL;
 /// Width of a letter, of the font size: an estimate that leaves room.
 const LETTER: f64 = 0.56;
 /// Part of the range that is left free around the curves.
 const MARGIN: f64 = 0.06;
-/// Space for tick labels and axis titles, px: left, bottom.
-const AXES: (u32, u32) = (70, 46);
+/// Space for tick labels and axis titles: left, bottom.
+const AXES: (u32, u32) = (70 * PIXEL, 46 * PIXEL);
 
 /// A curve.
 #[derive(Clone, Debug)]
@@ -70,7 +76,7 @@ pub fn svg(panels: &[Panel], columns: usize) -> Result<String, String> {
     let count = |n: usize| u32::try_from(n).unwrap_or(1);
     let width = WIDTH * scale * count(columns);
     let legend: &[Curve] = panels.first().map_or(&[], |panel| &panel.curves);
-    let legend_height = LEGEND * count(legend.len().div_ceil(entries_a_row(legend, width))) + 6;
+    let legend_height = LEGEND * count(legend.len().div_ceil(entries_a_row(legend, width))) + SPACE / 2;
     let height = HEIGHT * scale * count(rows) + legend_height;
 
     let mut text = String::new();
@@ -87,7 +93,9 @@ pub fn svg(panels: &[Panel], columns: usize) -> Result<String, String> {
         })();
         drawn.map_err(|error| error.to_string())?;
     }
-    Ok(text)
+    // The picture is as large as its pixels; the drawing inside keeps its finer units.
+    let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
+    Ok(text.replacen(&size(width, height), &size(width / PIXEL, height / PIXEL), 1))
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -97,10 +105,10 @@ fn font(size: f64) -> TextStyle<'static> {
     ("sans-serif", size).into_font().color(&BLACK)
 }
 
-/// Width of an entry of the legend, px.
+/// Width of an entry of the legend.
 fn entry_width(legend: &[Curve]) -> f64 {
     let letters = legend.iter().map(|curve| curve.label.chars().count()).max().unwrap_or(0);
-    60.0 + letters as f64 * FONT * LETTER
+    60.0 * f64::from(PIXEL) + letters as f64 * FONT * LETTER
 }
 
 fn entries_a_row(legend: &[Curve], width: u32) -> usize {
@@ -109,7 +117,7 @@ fn entries_a_row(legend: &[Curve], width: u32) -> usize {
     entries.max(1)
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "pixels")]
+#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "places in a picture")]
 fn draw_legend<'a>(area: &Area<'a>, legend: &[Curve]) -> Drawn<'a> {
     let (width, _) = area.dim_in_pixel();
     let a_row = entries_a_row(legend, width);
@@ -117,15 +125,12 @@ fn draw_legend<'a>(area: &Area<'a>, legend: &[Curve]) -> Drawn<'a> {
     for (index, curve) in legend.iter().enumerate() {
         let x = (f64::from(AXES.0) * 0.5 + entry * (index % a_row) as f64) as i32;
         let y = (f64::from(LEGEND) * (0.6 + (index / a_row) as f64)) as i32;
-        if curve.dashed {
-            for dash in [0, 12, 24] {
-                area.draw(&PathElement::new([(x + dash, y), (x + dash + 8, y)], curve.colour.stroke_width(2)))?;
-            }
-        } else {
-            area.draw(&PathElement::new([(x, y), (x + 32, y)], curve.colour.stroke_width(2)))?;
+        let dashes: &[(i32, i32)] = if curve.dashed { &[(0, 8), (12, 20), (24, 32)] } else { &[(0, 32)] };
+        for (from, to) in dashes.iter().map(|&(from, to)| (x + from * PIXEL as i32, x + to * PIXEL as i32)) {
+            area.draw(&PathElement::new([(from, y), (to, y)], curve.colour.stroke_width(STROKE)))?;
         }
         let style = font(FONT).pos(Pos::new(HPos::Left, VPos::Center));
-        area.draw(&Text::new(curve.label.clone(), (x + 42, y), style))?;
+        area.draw(&Text::new(curve.label.clone(), (x + 42 * PIXEL as i32, y), style))?;
     }
     Ok(())
 }
@@ -135,35 +140,37 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<'a> {
     let mut x = padded(points().map(|point| point.0), if panel.equal { MARGIN } else { 0.0 });
     let mut y = padded(points().map(|point| point.1), MARGIN);
     let (width, height) = area.dim_in_pixel();
-    let inner = (f64::from(width - AXES.0 - 20), f64::from(height - AXES.1 - 20));
+    let inner = (f64::from(width - AXES.0 - 2 * SPACE), f64::from(height - AXES.1 - 2 * SPACE));
     if panel.equal {
         let metre = (inner.0 / (x.1 - x.0)).min(inner.1 / (y.1 - y.0));
         x = around(x, inner.0 / metre);
         y = around(y, inner.1 / metre);
     }
     let mut chart = ChartBuilder::on(area)
-        .margin(10)
+        .margin(SPACE)
         .set_label_area_size(LabelAreaPosition::Left, AXES.0)
         .set_label_area_size(LabelAreaPosition::Bottom, AXES.1)
         .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
+        .bold_line_style(BLACK.mix(0.12).stroke_width(PIXEL))
+        .axis_style(BLACK.stroke_width(PIXEL))
+        .set_all_tick_mark_size(5 * PIXEL)
         .x_desc(&panel.x)
         .y_desc(&panel.y)
         .x_labels(7)
         .y_labels(7)
         .x_label_formatter(&tick)
         .y_label_formatter(&tick)
-        .label_style(font(FONT - 2.0))
+        .label_style(font(0.87 * FONT))
         .axis_desc_style(font(FONT))
         .draw()?;
     for curve in &panel.curves {
         let points = curve.points.iter().copied().filter(|point| point.0.is_finite() && point.1.is_finite());
-        let style = curve.colour.stroke_width(2);
+        let style = curve.colour.stroke_width(STROKE);
         if curve.dashed {
-            chart.draw_series(DashedLineSeries::new(points, 7, 5, style))?;
+            chart.draw_series(DashedLineSeries::new(points, 7 * PIXEL, 5 * PIXEL, style))?;
         } else {
             chart.draw_series(LineSeries::new(points, style))?;
         }

@@ -69,15 +69,19 @@ impl Cell {
     }
 }
 
-/// A number with six significant digits, in powers of ten where it is very large or small.
-pub fn readable(number: f64) -> String {
+/// A number with six significant digits, in powers of ten where it is very large or small. What is below a trillionth of
+/// a unit is what rounding left of zero.
+fn readable(number: f64) -> String {
+    /// Significant digits.
+    const DIGITS: i32 = 6;
     let size = number.abs();
-    if size == 0.0 {
+    if size < 1e-12 {
         "0".to_owned()
     } else if (1e-3..1e7).contains(&size) {
-        // Digits before the point count as significant: at most 5 behind it.
-        let places = (0..=5_usize).rev().find(|&places| size * 10_f64.powi(i32::try_from(places).unwrap_or(0)) < 1e6);
-        format!("{number:.*}", places.unwrap_or(0))
+        // Digits before the point; 1e-3 counts as -2.
+        let before = (-2..=7).find(|&digits| size < 10_f64.powi(digits)).unwrap_or(7);
+        let places = usize::try_from(DIGITS - before).unwrap_or(0);
+        format!("{number:.places$}")
     } else {
         format!("{number:.4e}")
     }

@@ -1,6 +1,8 @@
 //! A run from the static pose, recorded.
 
 use std::{
+    io,
+    io::Write,
     ops::ControlFlow,
     time::{Duration, Instant},
 };
@@ -74,8 +76,18 @@ pub fn progress(seconds: f64) -> ProgressBar {
     bar
 }
 
-/// Runs from `start` at rest and records every result.
+/// Runs from `start` at rest and records every result; says before if the step will not do.
 pub fn record(rig: &dyn Rig, start: &[f64], settings: &dynamics::Settings, bar: &ProgressBar) -> Outcome<Recorded> {
+    let limit = largest_step(rig, start);
+    let name = rig.description().name;
+    if let Some(limit) = limit.filter(|limit| settings.step > *limit) {
+        let step = settings.step;
+        // Not eprintln: it panics where standard error is closed.
+        let _ = writeln!(
+            io::stderr(),
+            "warning: {name}: a step of {step:e} s is beyond the largest stable one about the start, {limit:.2e} s"
+        );
+    }
     let begin = Instant::now();
     let mut recording = Recording::new(rig);
     let mut shown = 0;
@@ -89,10 +101,10 @@ pub fn record(rig: &dyn Rig, start: &[f64], settings: &dynamics::Settings, bar: 
             ControlFlow::Continue(())
         })
         .map_err(|stopped| {
-            let limit = largest_step(rig, start).map_or_else(String::new, |limit| {
-                format!("; about the start the largest stable step is {limit:.2e} s")
+            let limit = limit.map_or_else(String::new, |limit| {
+                format!("; the largest stable step about the start is {limit:.2e} s")
             });
-            Problem::failed(format!("{}: {stopped}", rig.description().name), stopped.advice() + &limit)
+            Problem::failed(format!("{name}: {stopped}"), stopped.advice() + &limit)
         })?;
     Ok(Recorded { run, table: recording.into_table(), wall: begin.elapsed() })
 }

@@ -1,0 +1,189 @@
+//! The `crane` command as a user meets it.
+
+use std::{
+    env, fs,
+    io::Read,
+    path::PathBuf,
+    process::{Command, Output, Stdio},
+};
+
+use serde_json::Value;
+
+fn crane(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_crane")).args(arguments).output().expect("the command starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = crane(arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// A folder of this test's own.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    folder
+}
+
+/// Wrong arguments end with code 2 and say what was meant.
+fn refused(arguments: &[&str], said: &[&str]) {
+    let output = crane(arguments);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    for words in said {
+        assert!(message.contains(words), "{arguments:?}: `{words}` not in: {message}");
+    }
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn wrong_arguments_are_refused_with_the_nearest_right_one() {
+    refused(&["statics", "eight_link_flexibel"], &["there is no crane `eight_link_flexibel`", "`eight_link_flexible`"]);
+    refused(
+        &["statics", "--set", "load_mas=3"],
+        &["no live parameter `load_mas`", "did you mean `load_mass`?", "[kg]"],
+    );
+    refused(&["statics", "--set", "load_mass"], &["has no value", "name=value"]);
+    refused(&["statics", "--set", "load_mass=heavy"], &["`heavy` is no value for load_mass", "in kg"]);
+    refused(&["statics", "--set", "load_mass=inf"], &["finite"]);
+    refused(&["simulate", "--step", "0"], &["`--step 0`", "positive"]);
+    refused(&["simulate", "--duration", "-1"], &["`--duration -1`", "positive"]);
+    refused(&["simulate", "--output", "nan"], &["`--output NaN`", "positive"]);
+    refused(&["simulate", "--output", "1e-9"], &["more than a million"]);
+    refused(&["eval", "--q", "1,2"], &["`--q` has 2 numbers", "25 coordinates", "truck_x [m]"]);
+    refused(&["eval", "--q", "no_such_file"], &["neither a list of numbers nor a file"]);
+    refused(&["dance"], &["unrecognized subcommand"]);
+}
+
+#[test]
+fn statics_of_the_reference_crane_as_json() {
+    let report = json(&["statics", "--format", "json"]);
+    let rows = |key: &str| report[key].as_array().expect("a table").clone();
+    let value = |row: &Value| row["value"].as_f64().expect("a number");
+    let steps = rows("history").len() - 1;
+    assert!(steps <= 5, "{steps} Newton steps");
+    let sum: Vec<f64> = rows("reactions").iter().filter(|row| row["support"] == "Σ supports").map(value).collect();
+    let weight: Vec<f64> = rows("reactions").iter().filter(|row| row["support"] == "weight").map(value).collect();
+    // Newton's tolerance: 1e-10 of the greatest force.
+    assert!(sum.iter().zip(&weight).all(|(sum, weight)| (sum + weight).abs() < 1e-10 * weight.abs().max(1e5)));
+    let empty = json(&["statics", "--set", "load_mass=0", "--format", "json"]);
+    let z = |report: &Value| value(&report["reactions"].as_array().expect("a table")[26]);
+    // Σ along z; the log weighs 500 kg.
+    assert!((z(&report) - z(&empty) - 500.0 * 9.81).abs() < 1e-4, "{} {}", z(&report), z(&empty));
+}
+
+#[test]
+fn a_run_writes_columns_with_units_and_a_record() {
+    let out = folder("run");
+    let path = out.to_str().expect("a path");
+    let report = json(&["simulate", "double_pendulum", "--duration", "0.05", "--out", path, "--format", "json"]);
+    assert!(report["summary"].as_array().is_some_and(|rows| !rows.is_empty()));
+    let csv = fs::read_to_string(out.join("double_pendulum.csv")).expect("a CSV file");
+    let header = csv.lines().next().expect("a header");
+    for column in header.split(',') {
+        assert!(column.contains(" [") && column.ends_with(']'), "{column} has no unit");
+    }
+    assert!(header.starts_with("t [s],") && header.contains("_rate [rad/s]") && header.ends_with("energy_balance [J]"));
+    let record: Value =
+        serde_json::from_slice(&fs::read(out.join("double_pendulum.json")).expect("a record")).expect("JSON");
+    assert_eq!(record["crane"], "double_pendulum");
+    assert!(record["spec_hash"].as_str().is_some_and(|hash| !hash.is_empty()));
+    assert_eq!(record["duration_s"], 0.05);
+    // Nothing half-written is left behind.
+    assert!(
+        fs::read_dir(&out)
+            .expect("a folder")
+            .all(|file| { !file.expect("a file").file_name().to_string_lossy().ends_with(".part") })
+    );
+}
+
+#[test]
+fn the_comparison_writes_figures() {
+    let out = folder("comparison");
+    let output = crane(&["--duration", "0.02", "--out", out.to_str().expect("a path")]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let printed = text(&output.stdout);
+    for words in ["Deflection of the load points", "peak torque, boom_psi", "real-time factor", "N m"] {
+        assert!(printed.contains(words), "`{words}` not in: {printed}");
+    }
+    for figure in ["path", "drives", "deviation"] {
+        let svg = fs::read_to_string(out.join(format!("comparison_{figure}.svg"))).expect("a figure");
+        assert!(svg.starts_with("<svg width=\"") && svg.trim_end().ends_with("</svg>"));
+        assert!(svg.contains("[m]") || svg.contains("[mm]") || svg.contains("[kN m]"), "{figure} has no units");
+    }
+}
+
+#[test]
+fn a_step_beyond_stability_ends_with_advice() {
+    let out = folder("blown_up");
+    let output = crane(&["simulate", "--step", "2e-3", "--out", out.to_str().expect("a path")]);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    for words in ["warning:", "beyond the largest stable", "at t = ", "smaller step than 2.00e-3 s", "2.785/(βω²)"] {
+        assert!(message.contains(words), "`{words}` not in: {message}");
+    }
+    assert!(!out.join("eight_link_flexible.csv").exists());
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_named() {
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("in_the_way");
+    fs::write(&file, "").expect("a file");
+    let inside = file.join("out");
+    let output =
+        crane(&["simulate", "double_pendulum", "--duration", "0.01", "--out", inside.to_str().expect("a path")]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("in_the_way"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn evaluation_is_shaped_as_announced() {
+    let report = json(&["eval", "double_pendulum", "--q", "0.3,-0.2", "--v", "1 2"]);
+    let length = |key: &str| report[key].as_array().expect("an array").len();
+    assert_eq!(length("mass_matrix"), 2);
+    assert_eq!(length("bias"), 2);
+    assert_eq!(length("transforms"), length("bodies"));
+    assert_eq!(length("transform_derivatives"), length("transform_derivatives_index"));
+    assert_eq!(length("transform_second_derivatives"), length("transform_second_derivatives_index"));
+    let npz = crane(&["eval", "double_pendulum", "--format", "npz"]);
+    assert!(npz.status.success());
+    // A ZIP archive of NPY members, stored.
+    assert!(npz.stdout.starts_with(b"PK\x03\x04"));
+    assert!(npz.stdout.windows(6).any(|bytes| bytes == b"\x93NUMPY"));
+}
+
+#[test]
+fn every_crane_is_listed_described_and_analysed() {
+    let list = json(&["list", "--format", "json"]);
+    let cranes = list["cranes"].as_array().expect("cranes");
+    assert!(cranes.len() >= 7);
+    for name in cranes.iter().map(|crane| crane["name"].as_str().expect("a name")) {
+        for command in ["info", "statics", "modes"] {
+            let output = crane(&[command, name]);
+            assert!(output.status.success(), "{command} {name}: {}", text(&output.stderr));
+        }
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    for arguments in [&["eval"][..], &["completions", "bash"], &["--help"], &["info"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_crane"))
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the command starts");
+        drop(child.stdout.take());
+        let mut message = String::new();
+        let stderr = child.stderr.as_mut().expect("a pipe");
+        stderr.read_to_string(&mut message).expect("text");
+        assert!(child.wait().expect("an end").success(), "{arguments:?}: {message}");
+        assert!(message.is_empty(), "{arguments:?}: {message}");
+    }
+}

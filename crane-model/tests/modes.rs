@@ -1,0 +1,68 @@
+//! Small vibrations of cranes written by hand, and the stability limit of the integrator.
+
+mod common;
+
+use common::{DoublePendulum, GRAVITY, Lift};
+use crane_model::{
+    Linearise,
+    dynamics::rk4,
+    modes::{SmallMotions, damped, undamped},
+};
+use nalgebra::{Vector1, Vector2};
+
+fn relative(a: f64, b: f64) -> f64 {
+    ((a - b) / b).abs()
+}
+
+#[test]
+fn equal_double_pendulum_swings_at_two_plus_minus_root_two() {
+    let pendulum = DoublePendulum { mass: [1.0; 2], length: [0.5; 2], ..DoublePendulum::hanging() };
+    let motions = SmallMotions::from(&pendulum.linearise(&Vector2::zeros()));
+    let modes = undamped(&motions).expect("modes");
+    for (mode, factor) in modes.iter().zip([2.0 - 2_f64.sqrt(), 2.0 + 2_f64.sqrt()]) {
+        // A few roundings of a 2 × 2 eigenproblem.
+        assert!(relative(mode.omega_squared, factor * GRAVITY / 0.5) < 1e-14, "{mode:?}");
+        let norm = (mode.shape.transpose() * &motions.mass * &mode.shape)[0];
+        assert!((norm - 1.0).abs() < 1e-14);
+    }
+    // The damped solver of the undamped pendulum finds the same, on the imaginary axis.
+    for (mode, damped) in modes.iter().zip(damped(&motions).expect("modes")) {
+        assert!(relative(damped.eigenvalue.im, mode.omega_squared.sqrt()) < 1e-13, "{damped:?}");
+        assert!(damped.damping_ratio().abs() < 1e-13, "{damped:?}");
+    }
+}
+
+#[test]
+fn a_pendulum_upside_down_has_no_frequency() {
+    let pendulum = DoublePendulum::hanging();
+    let pose = Vector2::new(0.0, std::f64::consts::PI);
+    let modes = undamped(&(&pendulum.linearise(&pose)).into()).expect("modes");
+    assert!(modes[0].omega_squared < 0.0 && modes[0].frequency().is_none());
+    assert!(modes[1].frequency().is_some());
+}
+
+#[test]
+fn damping_ratio_and_frequency_of_one_mass() {
+    let lift = Lift::default();
+    let motions = SmallMotions::from(&lift.linearise(&Vector1::zeros()));
+    let modes = damped(&motions).expect("modes");
+    assert_eq!(modes.len(), 1);
+    let omega = (lift.stiffness / lift.mass).sqrt();
+    assert!(relative(modes[0].frequency(), omega / std::f64::consts::TAU) < 1e-14);
+    assert!(relative(modes[0].damping_ratio(), lift.damping / (2.0 * (lift.stiffness * lift.mass).sqrt())) < 1e-14);
+    assert_eq!(modes[0].dominating, [0]);
+    let state = motions.state_matrix().expect("a mass");
+    let expected = [0.0, -lift.stiffness / lift.mass, 1.0, -lift.damping / lift.mass];
+    assert!(state.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{state}");
+}
+
+#[test]
+fn stability_limits_of_rk4_on_both_axes() {
+    // Bisection to the last bits; |R| may exceed 1 by 1e-12, which moves the crossing by less than 1e-11.
+    let limit = |re, im| rk4::largest_step(re, im).expect("a limit");
+    assert!(relative(limit(0.0, 20.0), rk4::IMAGINARY_LIMIT / 20.0) < 1e-11);
+    assert!(relative(limit(-500.0, 0.0), rk4::REAL_LIMIT / 500.0) < 1e-11);
+    assert_eq!(rk4::largest_step(0.0, 0.0), None);
+    // Growth is the motion's own; rounding of a vanishing damping must not forbid every step.
+    assert!(relative(limit(1e-9, 20.0), rk4::IMAGINARY_LIMIT / 20.0) < 1e-11);
+}
