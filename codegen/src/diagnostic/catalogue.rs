@@ -143,6 +143,9 @@ catalogue! {
     /// Every joint moves a mass of its own, else the mass matrix is singular.
     E046 moves_nothing(coordinate) "coordinate `{coordinate}` moves no mass of its own", "the mass matrix is singular",
         "give the links after this joint mass and inertia, or fix the joint";
+    /// A crane has at most 10000 coordinates.
+    E047 too_many(link, count, most) "with beam `{link}` the crane has {count} coordinates", "at most {most} in all",
+        "cut beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
 
     // Inertias.
     /// An inertia is positive definite.

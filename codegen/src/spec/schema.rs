@@ -19,8 +19,10 @@ pub fn json_schema() -> String {
 fn forbid_null(schema: &mut Value) {
     match schema {
         Value::Object(object) => {
-            if let Some(Value::Array(types)) = object.get_mut("type") {
-                types.retain(|t| t != "null");
+            if let Some(kind) = object.get_mut("type")
+                && let Some(single) = kind.as_array().and_then(|types| types.iter().find(|t| *t != "null"))
+            {
+                *kind = single.clone();
             }
             if let Some(Value::Array(forms)) = object.get_mut("anyOf") {
                 forms.retain(|form| form.get("type").is_none_or(|t| t != "null"));

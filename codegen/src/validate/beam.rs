@@ -10,6 +10,8 @@ use crate::spec::{Beam, BeamDamping, Directions, Either, Given, Sections};
 
 /// The most sections a beam may have.
 const MOST_SECTIONS: f64 = 1000.0;
+/// The most coordinates that a crane may have: far more than make sense, few enough to answer at once.
+const MOST_COORDINATES: usize = 10_000;
 /// Rotations of an element after the first, in order.
 const ROTATIONS: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 
@@ -29,7 +31,12 @@ impl<'a> Check<'a> {
                 None => self.equal_sections(inside, given.span, &length),
             }
         });
-        let Some(Elements { elements, joints }) = elements else {
+        let count = |elements: &Elements| self.coordinates.len() + ROTATIONS.len() * elements.joints.len();
+        let total = elements.as_ref().map_or(0, count);
+        if total > MOST_COORDINATES {
+            self.report(rule::too_many(given.span, link, total, MOST_COORDINATES));
+        }
+        let Some(Elements { elements, joints }) = elements.filter(|_| total <= MOST_COORDINATES) else {
             // Its coordinates are not known.
             self.unknown.links = true;
             return (vec![Value::ZERO], Value::ZERO);
