@@ -1,1 +1,6 @@
-//! Whole-system tests of the compiler and the runtime.
+//! Whole-system tests of the compiler and the runtime: what they share.
+
+pub mod quantities;
+pub mod random;
+pub mod registry;
+pub mod workspace;

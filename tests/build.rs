@@ -1,0 +1,37 @@
+//! Compiles random cranes, and the small cranes that no spec ships, so that tests run generated code.
+
+use std::path::PathBuf;
+use std::{fs, io};
+
+use crane_codegen::build;
+use crane_codegen::chain::Analyses;
+
+#[path = "src/random.rs"]
+mod random;
+
+/// Random cranes that are compiled; the interpreter runs many more.
+const SEEDS: std::ops::Range<u64> = 0..6;
+
+fn main() -> io::Result<()> {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=src/random.rs");
+    let mut random = Vec::new();
+    for seed in SEEDS {
+        let spec = build::out_dir().join(format!("random_{seed}.yaml"));
+        fs::write(&spec, random::spec(seed))?;
+        random.push(build::compile_spec_for(&spec, Some(Analyses::ALL)).name);
+    }
+    let shipped = names("../specs")?;
+    let registry = format!("registry! {{ shipped: [{}], random: [{}] }}\n", shipped.join(", "), random.join(", "));
+    fs::write(build::out_dir().join("registry.rs"), registry)
+}
+
+/// Names of the specs in a folder.
+fn names(folder: &str) -> io::Result<Vec<String>> {
+    println!("cargo::rerun-if-changed={folder}");
+    let paths: Vec<PathBuf> = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
+    let yaml = paths.iter().filter(|path| path.extension().is_some_and(|extension| extension == "yaml"));
+    let mut names: Vec<String> = yaml.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();
+    names.sort();
+    Ok(names)
+}

@@ -1,0 +1,84 @@
+//! Evaluates generated cranes for checks in other languages.
+//!
+//! `evaluate list` prints the cranes, one a line. `evaluate layout CRANE` describes one as JSON.
+//! `evaluate values CRANE` reads records `t, q[N], v[N], parameters[P]` from standard input until its end, and writes for
+//! each all quantities in the order of the layout: 64-bit little-endian numbers, matrices row by row.
+
+use std::io::{self, BufReader, BufWriter, Read, Write};
+use std::process::ExitCode;
+
+use crane_tests::quantities::{State, quantities};
+use crane_tests::registry::{self, Entry};
+use serde_json::json;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match run(&words) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("evaluate: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(words: &[&str]) -> Result<(), String> {
+    match words {
+        ["list"] => {
+            for entry in registry::all() {
+                println!("{}", entry.name);
+            }
+            Ok(())
+        }
+        ["layout", name] => {
+            println!("{:#}", layout(&find(name)?));
+            Ok(())
+        }
+        ["values", name] => values(&find(name)?).map_err(|error| error.to_string()),
+        _ => Err("write `list`, `layout CRANE` or `values CRANE`".into()),
+    }
+}
+
+fn find(name: &str) -> Result<Entry, String> {
+    registry::all().into_iter().find(|entry| entry.name == name).ok_or(format!("no crane `{name}`; try `evaluate list`"))
+}
+
+fn layout(entry: &Entry) -> serde_json::Value {
+    let crane = entry.description;
+    let parameter = |p: &crane_model::ParameterInfo| json!({"name": p.name, "default": p.default});
+    let body = |b: &crane_model::BodyInfo| json!({"name": b.name, "degrees_of_freedom": b.degrees_of_freedom});
+    let quantity = |q: crane_tests::quantities::Quantity| json!({"name": q.name, "length": q.len(), "shape": q.shape});
+    json!({
+        "name": crane.name,
+        "spec": entry.spec(),
+        "coordinates": crane.coordinates.iter().map(|c| c.name).collect::<Vec<_>>(),
+        "parameters": crane.parameters.iter().map(parameter).collect::<Vec<_>>(),
+        "bodies": crane.bodies.iter().map(body).collect::<Vec<_>>(),
+        "points": crane.points,
+        "supports": crane.supports.iter().map(|s| s.name).collect::<Vec<_>>(),
+        "drives": crane.drives.iter().map(|d| d.coordinate).collect::<Vec<_>>(),
+        "quantities": quantities(crane).into_iter().map(quantity).collect::<Vec<_>>(),
+    })
+}
+
+fn values(entry: &Entry) -> io::Result<()> {
+    let n = entry.description.coordinates.len();
+    let length = 1 + 2 * n + entry.description.parameters.len();
+    let mut input = BufReader::new(io::stdin().lock());
+    let mut output = BufWriter::new(io::stdout().lock());
+    let mut bytes = vec![0; 8 * length];
+    loop {
+        match input.read_exact(&mut bytes) {
+            Ok(()) => {}
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return output.flush(),
+            Err(error) => return Err(error),
+        }
+        let numbers: Vec<f64> =
+            bytes.as_chunks::<8>().0.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
+        let state = State { t: numbers[0], q: numbers[1..=n].to_vec(), v: numbers[n + 1..=2 * n].to_vec() };
+        for value in (entry.evaluate)(&state, &numbers[2 * n + 1..]) {
+            output.write_all(&value.to_le_bytes())?;
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Every quantity that a generated crane computes, as plain numbers in one order.
+
+use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
+use crane_model::rig::Crane;
+use crane_model::{Description, Linearisation};
+
+/// A quantity: its name and the shape of its numbers, row-major.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Quantity {
+    /// Name, that of the generated function.
+    pub name: &'static str,
+    /// Extent of each index.
+    pub shape: Vec<usize>,
+}
+
+impl Quantity {
+    /// How many numbers.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// Whether it has no numbers.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The quantities of a crane, in order.
+#[must_use]
+pub fn quantities(crane: &Description) -> Vec<Quantity> {
+    let n = crane.coordinates.len();
+    let (bodies, points, supports, drives) =
+        (crane.bodies.len(), crane.points.len(), crane.supports.len(), crane.drives.len());
+    let (first, second) = derivative_counts(crane);
+    let rows: Vec<(&'static str, Vec<usize>)> = vec![
+        ("transforms", vec![bodies, 4, 4]),
+        ("transform_derivatives", vec![first, 4, 4]),
+        ("transform_second_derivatives", vec![second, 4, 4]),
+        ("mass_matrix", vec![n, n]),
+        ("bias", vec![n]),
+        ("forces", vec![n]),
+        ("support_forces", vec![n]),
+        ("element_forces", vec![n]),
+        ("drive_forces", vec![n]),
+        ("hinge_forces", vec![n]),
+        ("kinetic_energy", vec![1]),
+        ("gravity_energy", vec![1]),
+        ("support_energy", vec![1]),
+        ("element_energy", vec![1]),
+        ("drive_energy", vec![1]),
+        ("static_residual", vec![n]),
+        ("tangent_stiffness", vec![n, n]),
+        ("linearised_mass", vec![n, n]),
+        ("linearised_stiffness", vec![n, n]),
+        ("linearised_damping", vec![n, n]),
+        ("points", vec![points, 3]),
+        ("point_velocities", vec![points, 3]),
+        ("support_reactions", vec![supports, 3]),
+        ("drive_motions", vec![drives, 2]),
+        ("drive_power", vec![1]),
+        ("dissipation", vec![1]),
+    ];
+    rows.into_iter().map(|(name, shape)| Quantity { name, shape }).collect()
+}
+
+/// How many first and second derivatives of transforms a crane has.
+fn derivative_counts(crane: &Description) -> (usize, usize) {
+    let degrees = crane.bodies.iter().map(|body| body.degrees_of_freedom);
+    (degrees.clone().sum(), degrees.map(|n| n * (n + 1) / 2).sum())
+}
+
+/// A state: time, coordinates, velocities.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Time, s.
+    pub t: f64,
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+}
+
+/// All quantities of a generated crane at a state, one after the other.
+pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f64> {
+    let (t, q, v) = (state.t, &SVector::<f64, N>::from_column_slice(&state.q), &SVector::<f64, N>::from_column_slice(&state.v));
+    let info = crane.description();
+    let (first, second) = derivative_counts(info);
+    let mut out = Vec::new();
+
+    let mut transforms = vec![Matrix4::zeros(); info.bodies.len()];
+    crane.transforms(q, &mut transforms);
+    push_matrices(&mut out, &transforms);
+    let mut derivatives = vec![Matrix4::zeros(); first];
+    crane.transform_derivatives(q, &mut derivatives);
+    push_matrices(&mut out, &derivatives);
+    let mut derivatives = vec![Matrix4::zeros(); second];
+    crane.transform_second_derivatives(q, &mut derivatives);
+    push_matrices(&mut out, &derivatives);
+
+    push_matrix(&mut out, &crane.mass_matrix(q));
+    for vector in [
+        crane.bias(q, v),
+        crane.forces(t, q, v),
+        crane.support_forces(q, v),
+        crane.element_forces(q, v),
+        crane.drive_forces(t, q, v),
+        crane.hinge_forces(v),
+    ] {
+        out.extend(vector.iter());
+    }
+    out.extend([
+        crane.kinetic_energy(q, v),
+        crane.gravity_energy(q),
+        crane.support_energy(q),
+        crane.element_energy(q),
+        crane.drive_energy(t, q),
+    ]);
+    out.extend(crane.static_residual(q).iter());
+    push_matrix(&mut out, &crane.tangent_stiffness(q));
+    let Linearisation { mass, stiffness, damping } = crane.linearise(q);
+    for matrix in [mass, stiffness, damping] {
+        push_matrix(&mut out, &matrix);
+    }
+    let mut points = vec![Vector3::zeros(); info.points.len()];
+    crane.points(q, &mut points);
+    out.extend(points.iter().flatten());
+    crane.point_velocities(q, v, &mut points);
+    out.extend(points.iter().flatten());
+    let mut reactions = vec![Vector3::zeros(); info.supports.len()];
+    crane.support_reactions(q, v, &mut reactions);
+    out.extend(reactions.iter().flatten());
+    let mut motions = vec![[0.0; 2]; info.drives.len()];
+    crane.drive_motions(t, &mut motions);
+    out.extend(motions.iter().flatten());
+    out.extend([crane.drive_power(t, q, v), crane.dissipation(t, q, v)]);
+    out
+}
+
+fn push_matrices(out: &mut Vec<f64>, matrices: &[Matrix4<f64>]) {
+    for matrix in matrices {
+        out.extend(matrix.transpose().iter());
+    }
+}
+
+fn push_matrix<const N: usize>(out: &mut Vec<f64>, matrix: &SMatrix<f64, N, N>) {
+    out.extend(matrix.transpose().iter());
+}

@@ -1,0 +1,275 @@
+//! Random cranes, as specs, with fixed seeds: all kinds of joints, placements, drives and supports, two flexible links.
+
+use std::fmt::Write;
+
+use fastrand::Rng;
+
+/// A random crane as YAML. The same seed gives the same text.
+pub fn spec(seed: u64) -> String {
+    Writer { rng: Rng::with_seed(seed), text: String::new(), coordinates: Vec::new() }.crane(seed)
+}
+
+struct Writer {
+    rng: Rng,
+    text: String,
+    /// Coordinates of joints, and whether they are rotations.
+    coordinates: Vec<(String, bool)>,
+}
+
+/// What the base can do.
+#[derive(Clone, Copy, PartialEq)]
+enum Base {
+    Fixed,
+    Free,
+    Subset,
+}
+
+impl Writer {
+    fn crane(mut self, seed: u64) -> String {
+        let base = [Base::Free, Base::Subset, Base::Fixed][usize::try_from(seed % 3).unwrap_or(0)];
+        self.line("format: 1");
+        self.line(&format!("name: random_{seed}"));
+        let gravity = self.vector(3.0);
+        self.line(&format!("gravity: {gravity}"));
+        self.line("parameters:");
+        self.line("  payload: {value: 7.5, unit: kg}");
+        self.line("  reach: {value: 0.6, unit: m}");
+        self.line("  modulus: {value: 1.1e7, unit: Pa}");
+        self.line("  spring: {value: 4.0e3, unit: N/m}");
+        self.line("  turn: {value: 0.8, unit: rad}");
+        self.line("materials:");
+        self.line("  soft: {E: modulus, G: 4.0e6, density: 1200}");
+        self.line("links:");
+        self.base(base);
+        // Every kind at least once over the seeds: a fixed link, a prismatic one, both flexible ones, a classic row.
+        self.link("arm", "revolute", true);
+        self.beam("first", false);
+        self.link("plate", "fixed", false);
+        self.link("slide", "prismatic", true);
+        self.beam("second", seed % 2 == 1);
+        self.massless("fork");
+        self.tip("hand");
+        self.supports(base);
+        self.drives();
+        self.line("points:");
+        for (name, link) in [("middle", "first"), ("end", "hand")] {
+            let at = self.vector(0.5).replace("[-", "[");
+            self.line(&format!("  - {{name: {name}, link: {link}, at: {at}}}"));
+        }
+        self.text
+    }
+
+    fn base(&mut self, base: Base) {
+        self.line("  - name: foot");
+        match base {
+            Base::Fixed => self.line("    joint: fixed"),
+            Base::Free => self.line("    joint: free"),
+            Base::Subset => self.line("    joint: {free: [x, z, psi, phi]}"),
+        }
+        let at = self.vector(1.0);
+        self.line(&format!("    placement: {{transform: {{translation: {at}}}}}"));
+        self.body(40.0);
+    }
+
+    /// A link with its own mass.
+    fn link(&mut self, name: &str, joint: &str, may_turn_axis: bool) {
+        self.line(&format!("  - name: {name}"));
+        self.placement_and_joint(name, joint, may_turn_axis);
+        self.body(9.0);
+    }
+
+    fn placement_and_joint(&mut self, name: &str, joint: &str, may_turn_axis: bool) {
+        let (a, d) = (self.number(0.8), self.number(0.8));
+        let (alpha, theta) = (self.angle(), self.angle());
+        let kind = self.rng.u8(0..3);
+        let mut axis = "z";
+        match kind {
+            0 => self.line(&format!(
+                "    placement: {{modified_dh: {{a: {a}, alpha: {alpha}, d: {d}, theta: {theta}}}}}"
+            )),
+            1 => {
+                self.line(&format!("    placement: {{classic_dh: {{a: reach, alpha: {alpha}, d: {d}, theta: {theta}}}}}"));
+            }
+            _ => {
+                let by = self.vector(0.9);
+                self.line(&format!(
+                    "    placement: {{transform: {{translation: {by}, rotation: [{{y: {alpha}}}, {{x: {theta}}}]}}}}"
+                ));
+                if may_turn_axis {
+                    axis = ["x", "y", "z"][self.rng.usize(0..3)];
+                }
+            }
+        }
+        if joint == "fixed" {
+            self.line("    joint: fixed");
+            return;
+        }
+        self.line(&format!("    joint: {{{joint}: {{axis: {axis}}}}}"));
+        let rotation = joint == "revolute";
+        let symbol = match (rotation, axis) {
+            (true, "x") => "phi",
+            (true, "y") => "theta",
+            (true, _) => "psi",
+            (false, axis) => axis,
+        };
+        self.coordinates.push((format!("{name}_{symbol}"), rotation));
+    }
+
+    /// A flexible link, by its section or element by element.
+    fn beam(&mut self, name: &str, one_by_one: bool) {
+        self.line(&format!("  - name: {name}"));
+        self.placement_and_joint(name, "revolute", false);
+        self.line("    beam:");
+        self.line("      length: 1.2");
+        if one_by_one {
+            self.line("      elements:");
+            for length in [0.5, 0.7] {
+                let (mass, com) = (self.positive(2.0), self.vector(0.2));
+                let inertia = self.inertia(0.3);
+                self.line(&format!("        - {{length: {length}, mass: {mass}, com: {com}, inertia: {inertia}}}"));
+            }
+            self.line("      springs:");
+            self.line("        - {stiffness: {psi: 310, theta: 250, phi: 180}, damping: {psi: 0.4, theta: 0.3, phi: 0.2}}");
+            return;
+        }
+        let section = [
+            "{box: {height: 0.09, width: 0.07, thickness: 0.004}}",
+            "{tube: {diameter: 0.08, thickness: 0.005}}",
+            "{solid: {height: 0.05, width: 0.03}}",
+            "{circle: {diameter: 0.06}}",
+            "{numbers: {area: 1.1e-3, Jy: 8.0e-7, Jz: 1.2e-6, Jo: 1.5e-6}}",
+        ][self.rng.usize(0..5)];
+        self.line("      sections: 2");
+        self.line("      material: soft");
+        self.line(&format!("      section: {section}"));
+        self.line("      extra_mass: 0.8");
+        let damping = ["{beta: 2.0e-3}", "{beta: {psi: 1.0e-3, theta: 2.0e-3, phi: 3.0e-3}}"][self.rng.usize(0..2)];
+        self.line(&format!("      damping: {damping}"));
+    }
+
+    /// Half of a universal joint.
+    fn massless(&mut self, name: &str) {
+        self.line(&format!("  - name: {name}"));
+        self.placement_and_joint(name, "revolute", false);
+    }
+
+    /// Two bodies in one link, one of them live.
+    fn tip(&mut self, name: &str) {
+        self.line(&format!("  - name: {name}"));
+        // Its axis crosses that of the fork, or nothing would resist one of the two.
+        let by = self.vector(0.3);
+        self.line(&format!("    placement: {{transform: {{translation: {by}, rotation: {{x: 70 deg}}}}}}"));
+        self.line("    joint: revolute");
+        self.coordinates.push((format!("{name}_psi"), true));
+        let (claw, load) = (self.vector(0.3), self.vector(0.4));
+        let inertia = self.inertia(1.5);
+        self.line("    bodies:");
+        self.line(&format!("      - {{name: claw, mass: 4.2, com: {claw}, inertia: {inertia}}}"));
+        self.line(&format!("      - {{name: load, mass: payload, com: {load}, inertia: {{gyration: [0.2, 0.3, 0.25]}}}}"));
+    }
+
+    fn body(&mut self, scale: f64) {
+        let (mass, com, inertia) = (self.positive(scale), self.vector(0.4), self.inertia(scale));
+        self.line(&format!("    mass: {mass}"));
+        self.line(&format!("    com: {com}"));
+        self.line(&format!("    inertia: {inertia}"));
+    }
+
+    /// The inertia of six random particles: no other numbers are a body's.
+    fn inertia(&mut self, scale: f64) -> String {
+        let mut second = [[0.0; 3]; 3];
+        for _ in 0..6 {
+            let r = [0; 3].map(|_| self.rng.f64() - 0.5);
+            let mass = scale * (0.1 + self.rng.f64());
+            for (i, row) in second.iter_mut().enumerate() {
+                for (j, entry) in row.iter_mut().enumerate() {
+                    *entry += mass * r[i] * r[j];
+                }
+            }
+        }
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = second;
+        format!(
+            "{{Ixx: {:?}, Iyy: {:?}, Izz: {:?}, Ixy: {:?}, Ixz: {:?}, Iyz: {:?}}}",
+            yy + zz,
+            xx + zz,
+            xx + yy,
+            -xy,
+            -xz,
+            -yz
+        )
+    }
+
+    fn supports(&mut self, base: Base) {
+        if base == Base::Fixed {
+            return;
+        }
+        self.line("supports:");
+        for (name, kinematics) in [("left", "linear"), ("right", "exact"), ("rear", "linear")] {
+            let (at, play) = (self.vector(1.5), self.vector(0.02));
+            self.line(&format!(
+                "  - {{name: {name}, at: {at}, stiffness: [spring, 5.0e3, 9.0e3], damping: [40, 50, 90], \
+                 free_play: {play}, kinematics: {kinematics}}}"
+            ));
+        }
+    }
+
+    fn drives(&mut self) {
+        self.line("drives:");
+        let driven: Vec<_> = self.coordinates.iter().take(5).cloned().collect();
+        let passive = self.coordinates[5..].to_vec();
+        let first = self.rng.usize(0..6);
+        for (k, (coordinate, rotation)) in driven.into_iter().enumerate() {
+            let to = if rotation { "turn".into() } else { self.number(0.5) };
+            let from = self.number(0.5);
+            let motion = [
+                format!("{{quintic: {{from: {from}, to: {to}, begin: 0.2, duration: 1.5}}}}"),
+                format!("{{cubic: {{from: {from}, to: {to}, duration: 2}}}}"),
+                format!("{{cycloid: {{from: {from}, to: {to}, begin: 0.1, duration: 1.2}}}}"),
+                format!("{{trapezoid: {{from: {from}, to: {to}, begin: 0.3, duration: 1.8, blend: 0.2}}}}"),
+                format!("{{table: {{times: [0, 0.5, 1.2, 2], values: [0.1, {from}, -0.2, 0.4]}}}}"),
+                format!("{{hold: {to}}}"),
+            ][(first + k) % 6]
+                .clone();
+            let (stiffness, damping) = (self.positive(900.0), self.positive(30.0));
+            self.line(&format!(
+                "  - {{coordinate: {coordinate}, stiffness: {stiffness}, damping: {damping}, motion: {motion}}}"
+            ));
+        }
+        if !passive.is_empty() {
+            self.line("damping:");
+            for (coordinate, _) in passive {
+                let damping = self.positive(3.0);
+                self.line(&format!("  {coordinate}: {damping}"));
+            }
+        }
+    }
+
+    fn line(&mut self, line: &str) {
+        let _ = writeln!(self.text, "{line}");
+    }
+
+    /// A number in ±scale, as text that reads back exactly.
+    fn number(&mut self, scale: f64) -> String {
+        format!("{:?}", scale * (2.0 * self.rng.f64() - 1.0))
+    }
+
+    fn positive(&mut self, scale: f64) -> String {
+        format!("{:?}", scale * (0.2 + self.rng.f64()))
+    }
+
+    fn vector(&mut self, scale: f64) -> String {
+        let [x, y, z] = [0; 3].map(|_| self.number(scale));
+        format!("[{x}, {y}, {z}]")
+    }
+
+    /// An angle in one of the notations of the language.
+    fn angle(&mut self) -> String {
+        let degrees = self.rng.i32(-11..12) * 15;
+        match self.rng.u8(0..4) {
+            0 => format!("{degrees} deg"),
+            1 => format!("{}/12 pi", degrees / 15),
+            2 => "90 deg".into(),
+            _ => self.number(3.0),
+        }
+    }
+}

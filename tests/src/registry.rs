@@ -1,0 +1,83 @@
+//! All generated cranes of the tests: the shipped ones and random ones.
+
+use std::path::PathBuf;
+
+use crane_model::rig::Rig;
+use crane_model::{CraneModel, Description};
+
+use crate::quantities::{self, State};
+
+/// A generated crane.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// Name of the crane.
+    pub name: &'static str,
+    /// Whether its spec is made up.
+    pub random: bool,
+    /// Names, units and settings.
+    pub description: &'static Description,
+    /// All quantities at a state, with the given parameters.
+    pub evaluate: fn(&State, &[f64]) -> Vec<f64>,
+    /// The crane behind one pointer, with the parameters of its spec.
+    pub rig: fn() -> Box<dyn Rig>,
+}
+
+impl Entry {
+    /// Its YAML file.
+    #[must_use]
+    pub fn spec(&self) -> PathBuf {
+        let folder = if self.random { PathBuf::from(env!("OUT_DIR")) } else { crate::workspace::root().join("specs") };
+        folder.join(format!("{}.yaml", self.name))
+    }
+}
+
+/// A crane with these parameters.
+fn with_parameters<const N: usize, C: CraneModel<N> + Default>(parameters: &[f64]) -> C {
+    let mut crane = C::default();
+    for (index, &value) in parameters.iter().enumerate() {
+        crane.set_parameter(index, value);
+    }
+    crane
+}
+
+macro_rules! entry {
+    ($module:path, $name:ident, $random:literal) => {{
+        use $module as module;
+        Entry {
+            name: stringify!($name),
+            random: $random,
+            description: &module::DESCRIPTION,
+            evaluate: |state, parameters| {
+                let crane: module::Crane = with_parameters::<{ module::N }, _>(parameters);
+                quantities::evaluate::<{ module::N }, _>(&crane, state)
+            },
+            rig: || crane_model::rig::boxed::<{ module::N }, module::Crane>(),
+        }
+    }};
+}
+
+macro_rules! registry {
+    (shipped: [$($shipped:ident),*], random: [$($random:ident),*]) => {
+        /// Random cranes, compiled by the build script.
+        pub mod random {
+            $(
+                #[doc = concat!("The crane `", stringify!($random), "`.")]
+                #[allow(clippy::all, clippy::pedantic)]
+                pub mod $random {
+                    include!(concat!(env!("OUT_DIR"), "/", stringify!($random), ".rs"));
+                }
+            )*
+        }
+
+        /// All generated cranes: the shipped ones, then the random ones.
+        #[must_use]
+        pub fn all() -> Vec<Entry> {
+            vec![
+                $(entry!(crane_model::cranes::$shipped, $shipped, false),)*
+                $(entry!(self::random::$random, $random, true),)*
+            ]
+        }
+    };
+}
+
+include!(concat!(env!("OUT_DIR"), "/registry.rs"));

@@ -1,0 +1,45 @@
+//! Files of the workspace.
+
+use std::path::{Path, PathBuf};
+
+use crane_codegen::chain::Chain;
+use crane_codegen::{SourceFile, compile};
+
+/// The workspace's root.
+#[must_use]
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is a folder of the workspace").to_owned()
+}
+
+/// All shipped specs, in order of name.
+///
+/// # Panics
+/// If `specs/` cannot be read.
+#[must_use]
+pub fn specs() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(root().join("specs")).expect("specs/ is there");
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("specs/ can be read").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
+    paths.sort();
+    paths
+}
+
+/// The chain of a shipped spec.
+///
+/// # Panics
+/// If the spec has mistakes.
+#[must_use]
+pub fn chain(name: &str) -> Chain {
+    let path = root().join("specs").join(format!("{name}.yaml"));
+    let text = std::fs::read_to_string(&path).expect("the spec is there");
+    chain_of(name, &text)
+}
+
+/// The chain of a spec's text.
+///
+/// # Panics
+/// If the spec has mistakes.
+#[must_use]
+pub fn chain_of(name: &str, text: &str) -> Chain {
+    compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}"))
+}
