@@ -2,10 +2,12 @@
 
 mod catalogue;
 mod draw;
+mod nearest;
 mod source;
 
 pub(crate) use catalogue::rule;
 pub use catalogue::{CATALOGUE, Rule};
+pub(crate) use nearest::{list, suggest};
 pub use source::{MAX_BYTES, SourceFile, Span};
 
 use std::fmt;

@@ -6,9 +6,8 @@ use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor};
 
 use super::deserializer::{Place, Reader, Unread};
-use super::nearest::suggest;
 use super::tree::{Content, Node};
-use crate::diagnostic::{Span, rule};
+use crate::diagnostic::{Span, rule, suggest};
 
 /// Where a value is shown: a scalar where it stands, a list or mapping at its key.
 fn shown(key: Span, value: &Node) -> Span {

@@ -7,9 +7,8 @@ use serde::de::{self, Deserializer, Expected, Unexpected, Visitor};
 use serde::forward_to_deserialize_any;
 
 use super::access::{Choice, Entries, Fields, Items, Parts};
-use super::nearest::{list, suggest};
 use super::tree::{Content, Node};
-use crate::diagnostic::{Mistake, Span, rule};
+use crate::diagnostic::{Mistake, Span, list, rule, suggest};
 use crate::spec::{EITHER, GIVEN, MANY};
 
 /// Why a value could not be read.

@@ -5,10 +5,7 @@
 
 mod access;
 mod deserializer;
-mod nearest;
 mod tree;
-
-pub(crate) use nearest::suggest;
 
 use std::cell::RefCell;
 

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Check;
 use crate::chain::CoordinateId;
-use crate::diagnostic::{Span, rule};
-use crate::read::suggest;
+use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::Given;
 
 /// Names taken so far, by kind and name, and what took them.

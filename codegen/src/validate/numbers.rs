@@ -2,8 +2,7 @@
 
 use super::Check;
 use crate::chain::{CoordinateKind, Parameter, ParameterId, Value};
-use crate::diagnostic::{Span, rule};
-use crate::read::suggest;
+use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{Angle, Constant, Crane, FixedAngle, Given, Number, Scalar, Vector};
 
 /// What a number may be.

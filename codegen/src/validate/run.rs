@@ -3,9 +3,8 @@
 use super::Check;
 use super::numbers::Limit;
 use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Value};
-use crate::diagnostic::rule;
+use crate::diagnostic::{rule, suggest};
 use crate::expand::profile;
-use crate::read::suggest;
 use crate::spec::{self, Constant, Crane, Given};
 
 /// A point belongs to the element that begins at its x, were it off by this share of the beam's length: both are

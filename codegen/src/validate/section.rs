@@ -3,9 +3,8 @@
 use super::Check;
 use super::numbers::Limit;
 use crate::chain::Value;
-use crate::diagnostic::{Span, rule};
+use crate::diagnostic::{Span, rule, suggest};
 use crate::expand::section::{self, CrossSection};
-use crate::read::suggest;
 use crate::spec::{Either, Given, Material, Number, Section};
 
 impl<'a> Check<'a> {

@@ -17,7 +17,7 @@ pub(crate) fn suggest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>
 }
 
 /// Words in a row: `a`, `b`, `c`.
-pub(super) fn list(words: &[&str]) -> String {
+pub(crate) fn list(words: &[&str]) -> String {
     words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
 }
 
