@@ -64,3 +64,22 @@ fn the_example_is_a_crane() {
         read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
     assert_eq!(chain.coordinates.len(), 2);
 }
+
+#[test]
+fn what_the_schema_requires_the_reader_requires() {
+    // Every mapping of the language, empty: the reader asks for each key that the schema requires of it.
+    let schema: Value = serde_json::from_str(&json_schema()).expect("JSON");
+    let empty = "links: [{}]\nparameters: {a: {}}\nmaterials: {m: {}}\nsupports: [{}]\ndrives: [{}]\npoints: [{}]\n";
+    let source = SourceFile::new("empty.yaml", empty);
+    let found = read(&source).and_then(|spec| validate(&spec, &source)).expect_err("nothing in it").to_string();
+    let top = &schema["required"];
+    let definitions =
+        ["Link", "Parameter", "Material", "Support", "Drive", "Point"].map(|name| &schema["$defs"][name]["required"]);
+    let mut required = 0;
+    for key in [top].into_iter().chain(definitions).flat_map(|keys| keys.as_array().into_iter().flatten()) {
+        let key = key.as_str().expect("a key");
+        assert!(key == "links" || found.contains(&format!("lacks `{key}`")), "{key} is not asked for:\n{found}");
+        required += 1;
+    }
+    assert_eq!(found.matches("error[E012]").count(), required - 1, "all but `links`, which are there:\n{found}");
+}
