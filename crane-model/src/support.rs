@@ -37,10 +37,10 @@ pub fn fill<T: Copy>(out: &mut [T], results: &[T]) {
 }
 
 /// What the second derivatives of transforms are made of, `∂²T/∂q_m∂q_n = Ω_m Ω_n T`: the columns of `Ω_n T` are
-/// directions, so Ω_m only turns them about its axis.
+/// directions, so `Ω_m` only turns them about its axis.
 #[derive(Clone, Copy, Debug)]
 pub struct TransformFactors<const N: usize, const D: usize> {
-    /// ω_m, zero for a translation.
+    /// `ω_m`, zero for a translation.
     pub axes: [Vector3<f64>; N],
     /// `∂T/∂q_n`, body by body.
     pub first: [Matrix4<f64>; D],

@@ -27,7 +27,7 @@ fn newton_converges_quadratically() {
         .windows(2)
         .filter(|pair| pair[0] < 1e-2 && pair[1] > 1e-14)
         .map(|pair| pair[1].ln() / pair[0].ln())
-        .last()
+        .next_back()
         .expect("two residuals within the range of quadratic convergence");
     assert!(order > 1.8, "{order}: {residuals:?}");
 }

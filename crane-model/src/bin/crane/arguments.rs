@@ -144,7 +144,7 @@ pub enum EvalFormat {
     /// One object of nested arrays.
     #[default]
     Json,
-    /// NumPy archive, uncompressed.
+    /// Archive for `numpy.load`, uncompressed.
     Npz,
 }
 

@@ -1,6 +1,6 @@
 //! `crane eval`: transforms, their derivatives, A and e at one state.
 
-use std::{fs, io::Write, path::Path};
+use std::{fs, io::Write};
 
 use crane_model::{Description, rig::Rig};
 use nalgebra::Matrix4;
@@ -33,24 +33,7 @@ pub fn eval(options: &Eval, out: &mut dyn Write) -> Outcome<()> {
 /// Numbers given in place or in a file, one a coordinate.
 fn state(name: &str, given: Option<&str>, description: &Description) -> Outcome<Option<Vec<f64>>> {
     let Some(given) = given else { return Ok(None) };
-    let numbers = match parse(given) {
-        Some(numbers) => numbers,
-        None => {
-            let path = Path::new(given);
-            let text = fs::read_to_string(path).map_err(|error| {
-                Problem::usage(
-                    format!("`--{name} {given}` is neither a list of numbers nor a file: {error}"),
-                    "write finite numbers separated by commas, such as 0,0.1,-2e-3, or name a file of them",
-                )
-            })?;
-            parse(&text).ok_or_else(|| {
-                Problem::usage(
-                    format!("{given} holds something else than finite numbers"),
-                    "separate numbers by commas or blanks",
-                )
-            })?
-        }
-    };
+    let numbers = parse(given).map_or_else(|| parse_file(name, given), Ok)?;
     let wanted = description.coordinates.len();
     if numbers.len() != wanted {
         let names: Vec<String> =
@@ -61,6 +44,21 @@ fn state(name: &str, given: Option<&str>, description: &Description) -> Outcome<
         ));
     }
     Ok(Some(numbers))
+}
+
+fn parse_file(name: &str, path: &str) -> Outcome<Vec<f64>> {
+    let text = fs::read_to_string(path).map_err(|error| {
+        Problem::usage(
+            format!("`--{name} {path}` is neither a list of numbers nor a file: {error}"),
+            "write finite numbers separated by commas, such as 0,0.1,-2e-3, or name a file of them",
+        )
+    })?;
+    parse(&text).ok_or_else(|| {
+        Problem::usage(
+            format!("{path} holds something else than finite numbers"),
+            "separate numbers by commas or blanks",
+        )
+    })
 }
 
 fn parse(text: &str) -> Option<Vec<f64>> {

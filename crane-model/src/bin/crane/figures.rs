@@ -161,8 +161,8 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<'a> {
         .y_desc(&panel.y)
         .x_labels(7)
         .y_labels(7)
-        .x_label_formatter(&tick)
-        .y_label_formatter(&tick)
+        .x_label_formatter(&|value| tick(*value))
+        .y_label_formatter(&|value| tick(*value))
         .label_style(font(0.87 * FONT))
         .axis_desc_style(font(FONT))
         .draw()?;
@@ -179,7 +179,7 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<'a> {
 }
 
 /// Text at a tick: without the digits that rounding leaves.
-fn tick(value: &f64) -> String {
+fn tick(value: f64) -> String {
     let text = format!("{value:.6}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }

@@ -1,4 +1,4 @@
-//! Arrays, as NumPy archives and as JSON.
+//! Arrays, as archives for `numpy.load` and as JSON.
 
 use std::io::{Cursor, Write};
 
@@ -37,8 +37,8 @@ impl Array {
         const PREAMBLE: usize = 10;
         /// The data begin at a multiple of this.
         const ALIGNMENT: usize = 64;
-        let shape: String = self.shape.iter().map(|length| format!("{length}, ")).collect();
-        let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}), }}", shape.trim_end());
+        let shape: Vec<String> = self.shape.iter().map(|length| format!("{length},")).collect();
+        let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}), }}", shape.join(" "));
         let end = (PREAMBLE + header.len() + 1).next_multiple_of(ALIGNMENT);
         header.extend(std::iter::repeat_n(' ', end - PREAMBLE - header.len() - 1));
         header.push('\n');

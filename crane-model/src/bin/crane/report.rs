@@ -128,12 +128,11 @@ impl Grid {
             self.rows.iter().all(|row| !matches!(row.get(column), Some(Cell::Text(_)))) && !self.rows.is_empty()
         };
         let mut line = |cells: &mut dyn Iterator<Item = &str>| -> Outcome<()> {
-            let mut text = String::from(" ");
-            for (column, cell) in cells.enumerate() {
+            let padded = cells.enumerate().map(|(column, cell)| {
                 let width = width(column);
-                text += &if right(column) { format!(" {cell:>width$} ") } else { format!(" {cell:<width$} ") };
-            }
-            Ok(writeln!(out, "{}", text.trim_end())?)
+                if right(column) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+            });
+            Ok(writeln!(out, "  {}", padded.collect::<Vec<_>>().join("  ").trim_end())?)
         };
         line(&mut self.headers.iter().map(String::as_str))?;
         for row in &texts {
