@@ -1,0 +1,5 @@
+//! Compiles `crane.yaml` into a Rust module.
+
+fn main() {
+    crane_codegen::build::compile_spec("crane.yaml");
+}
