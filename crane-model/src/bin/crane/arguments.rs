@@ -6,14 +6,16 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
 const EXAMPLES: &str = "\
 Examples:
-  crane                                       the eight-link crane, rigid against flexible: statics, run, figures
-  crane statics                               pose, drive torques and support reactions at rest
-  crane statics double_pendulum --format json the same of another crane, for a program
+  crane                                the eight-link crane, rigid against flexible
+  crane statics                        pose, drive torques, support reactions
+  crane statics cantilever --format json
+                                       the same of another crane, for a program
   crane simulate --set load_mass=0 --out empty
-  crane modes eight_link_flexible             frequencies and damping about the deflected pose
-  crane list                                  the cranes to choose from
-  crane info                                  coordinates, parameters, drives and units of a crane
-  source <(crane completions bash)            completion of commands and options
+                                       the manoeuvre without the log
+  crane modes                          frequencies and damping about the static pose
+  crane list                           the cranes to choose from
+  crane info                           coordinates, parameters, drives of a crane
+  source <(crane completions bash)     completion of commands and options
 
 Exit codes:
   0  done

@@ -69,14 +69,19 @@ impl Cell {
     }
 }
 
-/// A number with six significant digits, in powers of ten where it is very large or small. What is below a trillionth of
+/// A number with six significant digits, in powers of ten where it is very large or small. What is below 1e-10 of
 /// a unit is what rounding left of zero.
 fn readable(number: f64) -> String {
     /// Significant digits.
     const DIGITS: i32 = 6;
+    /// A number as short as this is shown as it is.
+    const SHORT: usize = 7;
     let size = number.abs();
-    if size < 1e-12 {
+    let plain = number.to_string();
+    if size < 1e-10 {
         "0".to_owned()
+    } else if plain.len() <= SHORT {
+        plain
     } else if (1e-3..1e7).contains(&size) {
         // Digits before the point; 1e-3 counts as -2.
         let before = (-2..=7).find(|&digits| size < 10_f64.powi(digits)).unwrap_or(7);

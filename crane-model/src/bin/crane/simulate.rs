@@ -116,7 +116,23 @@ pub fn spoken(name: &str) -> String {
     name.replace('_', " ")
 }
 
+/// The path of the points in the horizontal plane, [Urbaś 2016, Fig. 8]; in a vertical one where they hardly leave it.
 fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
+    /// A point hardly moves along an axis below this part of its way along z.
+    const HARDLY: f64 = 0.01;
+    let way = |axis: &str| {
+        let columns = description.points.iter().map(|point| format!("{point}_{axis}"));
+        let ranges = columns.filter_map(|column| {
+            let values: Vec<f64> = traces.first()?.table.values(&column)?.collect();
+            Some(values.iter().copied().fold(f64::MIN, f64::max) - values.iter().copied().fold(f64::MAX, f64::min))
+        });
+        ranges.fold(0.0, f64::max)
+    };
+    let [x, y] = match (way("x"), way("y"), HARDLY * way("z")) {
+        (_, y, hardly) if y < hardly => ["x", "z"],
+        (x, _, hardly) if x < hardly => ["y", "z"],
+        _ => ["x", "y"],
+    };
     let curves = traces
         .iter()
         .flat_map(|trace| {
@@ -124,11 +140,11 @@ fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
                 label: format!("{}, {}", spoken(point), spoken(trace.label)),
                 colour,
                 dashed: trace.dashed,
-                points: points(trace.table, &format!("{point}_x"), &format!("{point}_y"), 1.0),
+                points: points(trace.table, &format!("{point}_{x}"), &format!("{point}_{y}"), 1.0),
             })
         })
         .collect();
-    Panel { x: "x [m]".to_owned(), y: "y [m]".to_owned(), equal: true, curves }
+    Panel { x: format!("{x} [m]"), y: format!("{y} [m]"), equal: true, curves }
 }
 
 fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {

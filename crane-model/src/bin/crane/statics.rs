@@ -8,6 +8,8 @@ use crane_model::{
     statics::{Equilibrium, Settings},
 };
 
+use nalgebra::Vector3;
+
 use crate::{
     arguments::{Analysis, Format},
     problem::{Outcome, Problem},
@@ -148,48 +150,45 @@ fn drives(cases: &[Case<'_>]) -> Grid {
 }
 
 fn reactions(cases: &[Case<'_>]) -> Grid {
-    let mut grid = Grid::new("reactions", "Support reactions", &headers(&["support", "axis"], cases));
-    let Some(first) = cases.first() else { return grid };
+    let mut grid = vectors("reactions", "Support reactions", "support", cases);
     let reactions: Vec<_> =
         cases.iter().map(|case| case.rig.support_reactions(&case.equilibrium.q, &case.rest())).collect();
-    let weights: Vec<_> = cases.iter().map(Case::weight).collect();
-    let supports = first.rig.description().supports;
-    if supports.is_empty() {
-        return grid;
-    }
-    let mut row = |name: &str, axis: usize, value: &dyn Fn(usize) -> Option<f64>| {
-        let cells = [name.into(), ["x", "y", "z"][axis].into()].into_iter();
-        grid.row(
-            cells.chain((0..cases.len()).map(|case| value(case).into())).chain(["N".into()]).collect::<Vec<Cell>>(),
-        );
-    };
+    let supports = cases.first().map_or(&[][..], |case| case.rig.description().supports);
     for (index, support) in supports.iter().enumerate() {
-        for axis in 0..3 {
-            row(support.name, axis, &|case| reactions[case].get(index).map(|force| force[axis]));
-        }
+        let forces = reactions.iter().map(|of| of.get(index).map_or([None; 3], |force| (*force).map(Some).into()));
+        grid.row(vector_row(support.name, forces, "N"));
     }
-    for axis in 0..3 {
-        row("Σ supports", axis, &|case| Some(reactions[case].iter().map(|force| force[axis]).sum()));
-    }
-    for axis in 0..3 {
-        row("weight", axis, &|case| weights[case][axis]);
+    if !supports.is_empty() {
+        let sums = reactions.iter().map(|of| <[f64; 3]>::from(of.iter().sum::<Vector3<f64>>()));
+        grid.row(vector_row("Σ supports", sums, "N"));
+        grid.row(vector_row("weight", cases.iter().map(Case::weight), "N"));
     }
     grid
 }
 
 fn points(cases: &[Case<'_>]) -> Grid {
-    let mut grid = Grid::new("points", "Points of interest", &headers(&["point", "axis"], cases));
+    let mut grid = vectors("points", "Points of interest", "point", cases);
     let positions: Vec<_> = cases.iter().map(|case| case.rig.points(&case.equilibrium.q)).collect();
-    let Some(first) = cases.first() else { return grid };
-    for (index, name) in first.rig.description().points.iter().enumerate() {
-        for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
-            let values = positions.iter().map(|of| Cell::from(of.get(index).map(|position| position[axis])));
-            let row: Vec<Cell> =
-                [(*name).into(), letter.into()].into_iter().chain(values).chain(["m".into()]).collect();
-            grid.row(row);
-        }
+    for (index, name) in cases.first().map_or(&[][..], |case| case.rig.description().points).iter().enumerate() {
+        let places = positions.iter().map(|of| of.get(index).map_or([None; 3], |place| (*place).map(Some).into()));
+        grid.row(vector_row(name, places, "m"));
     }
     grid
+}
+
+/// A table of vectors, three columns a case.
+fn vectors(key: &'static str, title: &str, first: &str, cases: &[Case<'_>]) -> Grid {
+    let axes = cases.iter().flat_map(|case| {
+        let prefix = if cases.len() > 1 { format!("{} ", case.label) } else { String::new() };
+        ["x", "y", "z"].map(|axis| format!("{prefix}{axis}"))
+    });
+    let headers: Vec<String> = [first.to_owned()].into_iter().chain(axes).chain(["unit".to_owned()]).collect();
+    Grid::new(key, title, &headers.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+fn vector_row<T: Into<Cell>>(name: &str, vectors: impl Iterator<Item = [T; 3]>, unit: &str) -> Vec<Cell> {
+    let cells = vectors.flatten().map(Into::into);
+    [name.into()].into_iter().chain(cells).chain([unit.into()]).collect()
 }
 
 fn history(equilibrium: &Equilibrium) -> Grid {
