@@ -85,7 +85,9 @@ impl OpenError {
 
 /// The build script's output directory.
 pub fn out_dir() -> PathBuf {
-    env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_else(|| fail("OUT_DIR is set by cargo in build scripts only", ""))
+    env::var_os("OUT_DIR")
+        .map(PathBuf::from)
+        .unwrap_or_else(|| fail("OUT_DIR is set by cargo in build scripts only", ""))
 }
 
 /// Writes a file whole or not at all.

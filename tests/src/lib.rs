@@ -1,6 +1,9 @@
 //! Whole-system tests of the compiler and the runtime: what they share.
 
+pub mod dual;
+pub mod interpreted;
 pub mod quantities;
 pub mod random;
 pub mod registry;
+pub mod states;
 pub mod workspace;

@@ -31,12 +31,7 @@ impl Writer {
         self.line(&format!("name: random_{seed}"));
         let gravity = self.vector(3.0);
         self.line(&format!("gravity: {gravity}"));
-        self.line("parameters:");
-        self.line("  payload: {value: 7.5, unit: kg}");
-        self.line("  reach: {value: 0.6, unit: m}");
-        self.line("  modulus: {value: 1.1e7, unit: Pa}");
-        self.line("  spring: {value: 4.0e3, unit: N/m}");
-        self.line("  turn: {value: 0.8, unit: rad}");
+        let head = std::mem::take(&mut self.text);
         self.line("materials:");
         self.line("  soft: {E: modulus, G: 4.0e6, density: 1200}");
         self.line("links:");
@@ -56,7 +51,20 @@ impl Writer {
             let at = self.vector(0.5).replace("[-", "[");
             self.line(&format!("  - {{name: {name}, link: {link}, at: {at}}}"));
         }
-        self.text
+        format!("{head}{}{}", self.parameters(), self.text)
+    }
+
+    /// The live parameters that the crane came to use.
+    fn parameters(&self) -> String {
+        let rows = [
+            ("payload", "{value: 7.5, unit: kg}"),
+            ("reach", "{value: 0.6, unit: m}"),
+            ("modulus", "{value: 1.1e7, unit: Pa}"),
+            ("ground", "{value: 4.0e3, unit: N/m}"),
+            ("swing", "{value: 0.8, unit: rad}"),
+        ];
+        let used = rows.into_iter().filter(|(name, _)| self.text.contains(name));
+        used.fold("parameters:\n".into(), |text, (name, value)| format!("{text}  {name}: {value}\n"))
     }
 
     fn base(&mut self, base: Base) {
@@ -207,7 +215,7 @@ impl Writer {
         for (name, kinematics) in [("left", "linear"), ("right", "exact"), ("rear", "linear")] {
             let (at, play) = (self.vector(1.5), self.vector(0.02));
             self.line(&format!(
-                "  - {{name: {name}, at: {at}, stiffness: [spring, 5.0e3, 9.0e3], damping: [40, 50, 90], \
+                "  - {{name: {name}, at: {at}, stiffness: [ground, 5.0e3, 9.0e3], damping: [40, 50, 90], \
                  free_play: {play}, kinematics: {kinematics}}}"
             ));
         }
@@ -219,7 +227,7 @@ impl Writer {
         let passive = self.coordinates[5..].to_vec();
         let first = self.rng.usize(0..6);
         for (k, (coordinate, rotation)) in driven.into_iter().enumerate() {
-            let to = if rotation { "turn".into() } else { self.number(0.5) };
+            let to = if rotation { "swing".into() } else { self.number(0.5) };
             let from = self.number(0.5);
             let motion = [
                 format!("{{quintic: {{from: {from}, to: {to}, begin: 0.2, duration: 1.5}}}}"),

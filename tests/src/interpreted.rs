@@ -1,0 +1,151 @@
+//! Cranes run by the interpreter: any spec, any scalar, no rustc.
+
+use crane_codegen::chain::{Analyses, Chain};
+use crane_codegen::mechanics;
+use crane_codegen::symbolic::{Inputs, Program, Scalar, Shape};
+use crane_model::nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use crate::quantities::State;
+
+/// A chain and its program.
+pub struct Interpreted {
+    /// The chain.
+    pub chain: Chain,
+    /// All its functions.
+    pub program: Program,
+}
+
+impl Interpreted {
+    /// All functions of a chain.
+    #[must_use]
+    pub fn new(chain: Chain) -> Self {
+        let program = mechanics::derive(&chain, Analyses::ALL);
+        Interpreted { chain, program }
+    }
+
+    /// Number of coordinates.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.chain.coordinates.len()
+    }
+
+    /// Inputs at a state with the spec's parameters.
+    #[must_use]
+    pub fn inputs(&self, state: &State) -> Inputs<f64> {
+        Inputs { t: state.t, q: state.q.clone(), v: state.v.clone(), parameters: self.chain.parameter_defaults() }
+    }
+
+    /// A function's result; zeros, as many as `otherwise`, where the scene does not need the function.
+    pub fn get<S: Scalar>(&self, function: &str, inputs: &Inputs<S>, otherwise: usize) -> Vec<S> {
+        match self.program.function(function) {
+            Some(function) => expand(&function.shape, self.program.evaluate(function, inputs)),
+            None => vec![S::from_f64(0.0); otherwise],
+        }
+    }
+
+    /// A vector of one number a coordinate.
+    #[must_use]
+    pub fn vector(&self, function: &str, state: &State) -> DVector<f64> {
+        DVector::from_vec(self.get(function, &self.inputs(state), self.size()))
+    }
+
+    /// A square matrix.
+    #[must_use]
+    pub fn matrix(&self, function: &str, state: &State) -> DMatrix<f64> {
+        let n = self.size();
+        DMatrix::from_row_slice(n, n, &self.get(function, &self.inputs(state), n * n))
+    }
+
+    /// One number.
+    #[must_use]
+    pub fn scalar(&self, function: &str, state: &State) -> f64 {
+        self.get(function, &self.inputs(state), 1)[0]
+    }
+
+    /// `q̈ = A⁻¹ (e + f)`.
+    ///
+    /// # Panics
+    /// If A is not positive definite.
+    #[must_use]
+    pub fn acceleration(&self, state: &State) -> DVector<f64> {
+        let force = self.vector("bias", state) + self.vector("forces", state);
+        self.matrix("mass_matrix", state).cholesky().expect("A is positive definite").solve(&force)
+    }
+
+    /// Plain Newton iteration on the static residual from the spec's guess.
+    ///
+    /// # Panics
+    /// If the tangent stiffness is singular.
+    #[must_use]
+    pub fn equilibrium(&self) -> State {
+        let mut state = State { t: 0.0, q: self.chain.guess.clone(), v: vec![0.0; self.size()] };
+        for _ in 0..30 {
+            let step = self
+                .matrix("tangent_stiffness", &state)
+                .lu()
+                .solve(&self.vector("static_residual", &state))
+                .expect("the tangent stiffness is regular");
+            for (q, s) in state.q.iter_mut().zip(&step) {
+                *q -= s;
+            }
+        }
+        state
+    }
+
+    /// Undamped circular frequencies about a pose, ascending, rad/s.
+    ///
+    /// # Panics
+    /// If A is not positive definite.
+    #[must_use]
+    pub fn frequencies(&self, state: &State) -> Vec<f64> {
+        let lower = self.matrix("mass_matrix", state).cholesky().expect("A is positive definite").l();
+        let half = lower.solve_lower_triangular(&self.matrix("tangent_stiffness", state)).expect("L is regular");
+        let reduced = lower.solve_lower_triangular(&half.transpose()).expect("L is regular");
+        let mut squares = SymmetricEigen::new(reduced).eigenvalues.as_slice().to_vec();
+        squares.sort_by(f64::total_cmp);
+        squares.into_iter().map(f64::sqrt).collect()
+    }
+}
+
+/// Slots of a result as full arrays: symmetric matrices with both halves, transformations with their last row.
+fn expand<S: Scalar>(shape: &Shape, slots: Vec<S>) -> Vec<S> {
+    match shape {
+        Shape::Symmetric(n) => symmetric(*n, &slots),
+        Shape::Transforms { corner, .. } => homogeneous(&slots, *corner),
+        Shape::Turned { .. } => homogeneous(&slots, 0),
+        Shape::Record(_, fields) => {
+            let mut rest = slots.as_slice();
+            let mut out = Vec::new();
+            for (_, shape) in fields {
+                let (own, others) = rest.split_at(shape.len());
+                out.extend(expand(shape, own.to_vec()));
+                rest = others;
+            }
+            out
+        }
+        _ => slots,
+    }
+}
+
+fn symmetric<S: Scalar>(n: usize, upper: &[S]) -> Vec<S> {
+    let mut full = vec![S::from_f64(0.0); n * n];
+    let mut slots = upper.iter();
+    for row in 0..n {
+        for column in row..n {
+            if let Some(entry) = slots.next() {
+                full[row * n + column] = entry.clone();
+                full[column * n + row] = entry.clone();
+            }
+        }
+    }
+    full
+}
+
+fn homogeneous<S: Scalar>(rows: &[S], corner: u8) -> Vec<S> {
+    let zero = || S::from_f64(0.0);
+    rows.chunks(12)
+        .flat_map(|matrix| {
+            matrix.iter().cloned().chain([zero(), zero(), zero(), S::from_f64(f64::from(corner))])
+        })
+        .collect()
+}

@@ -1,0 +1,173 @@
+//! How far off the printed formulas are [Urbaś 2016], each on a crane where it shows. docs/EQUATIONS.md tells why.
+
+use crane_codegen::chain::Inertia;
+use crane_model::nalgebra::{DVector, Matrix3, Matrix4, Matrix6, SMatrix, Vector3, Vector6};
+use crane_tests::interpreted::Interpreted;
+use crane_tests::{states, workspace};
+
+type U = SMatrix<f64, 3, 6>;
+
+/// H of Eq. (4).
+fn pseudo_inertia(inertia: &Inertia, parameters: &[f64]) -> Matrix4<f64> {
+    let [xx, yy, zz, xy, xz, yz] = [0, 1, 2, 3, 4, 5].map(|i| inertia.second[i].at(parameters));
+    let [x, y, z] = [0, 1, 2].map(|i| inertia.first[i].at(parameters));
+    Matrix4::new(xx, xy, xz, x, xy, yy, yz, y, xz, yz, zz, z, x, y, z, inertia.mass.at(parameters))
+}
+
+/// The triple sum of Eq. (5), over m and all n (right), or n ≥ m once (as printed).
+fn velocity_forces(crane: &Interpreted, state: &crane_tests::quantities::State, printed: bool) -> DVector<f64> {
+    let inputs = crane.inputs(state);
+    let (first, second) =
+        (crane.get("transform_derivatives", &inputs, 0), crane.get("transform_second_derivatives", &inputs, 0));
+    let matrix = |values: &[f64], k: usize| Matrix4::from_row_slice(&values[16 * k..16 * (k + 1)]);
+    let parameters = crane.chain.parameter_defaults();
+    let mut h = DVector::zeros(crane.size());
+    let (mut start, mut pair) = (0, 0);
+    for (p, body) in crane.chain.bodies.iter().enumerate() {
+        let count = crane.chain.degrees_of_freedom(crane_codegen::chain::BodyId(p));
+        if let Some(inertia) = &body.inertia {
+            let inertia = pseudo_inertia(inertia, &parameters);
+            let mut acceleration = Matrix4::zeros();
+            let mut k = pair;
+            for m in 0..count {
+                for n in m..count {
+                    let weight = if n > m && !printed { 2.0 } else { 1.0 };
+                    acceleration += matrix(&second, k) * (weight * state.v[m] * state.v[n]);
+                    k += 1;
+                }
+            }
+            for i in 0..count {
+                h[i] += (matrix(&first, start + i) * inertia * acceleration.transpose()).trace();
+            }
+        }
+        start += count;
+        pair += count * (count + 1) / 2;
+    }
+    h
+}
+
+#[test]
+fn eq_5_summed_once_halves_the_coriolis_forces() {
+    let crane = Interpreted::new(workspace::chain("eight_link_rigid"));
+    for state in states::far(&crane.chain, 3, 5) {
+        let rest = crane_tests::quantities::State { v: vec![0.0; crane.size()], ..state.clone() };
+        let h = crane.vector("bias", &rest) - crane.vector("bias", &state);
+        let right = velocity_forces(&crane, &state, false);
+        // A triple sum of ten thousand terms that cancel.
+        assert!((&right - &h).amax() < 1e-11 * h.amax(), "the full sum is the recursion's result");
+        let printed = velocity_forces(&crane, &state, true);
+        let off = (printed - &h).amax() / h.amax();
+        assert!(off > 0.1, "the print is off by {:.0} %", 100.0 * off);
+    }
+}
+
+fn reference_supports() -> Vec<([f64; 3], Vector3<f64>)> {
+    let chain = workspace::chain("eight_link_rigid");
+    let numbers = |values: &[crane_codegen::chain::Value; 3]| [0, 1, 2].map(|i| values[i].at(&[]));
+    chain.supports.iter().map(|s| (numbers(&s.position), Vector3::from(numbers(&s.stiffness)))).collect()
+}
+
+/// Columns in the order x y z ψ θ φ.
+fn right_u([x, y, z]: [f64; 3]) -> U {
+    U::from_row_slice(&[1., 0., 0., -y, z, 0., 0., 1., 0., x, 0., -z, 0., 0., 1., 0., -x, y])
+}
+
+/// As printed in Eq. (16): rotations in the order φ θ ψ, against q̃ in the order ψ θ φ.
+fn printed_u([x, y, z]: [f64; 3]) -> U {
+    U::from_row_slice(&[1., 0., 0., 0., z, -y, 0., 1., 0., -z, 0., x, 0., 0., 1., y, -x, 0.])
+}
+
+#[test]
+fn eq_16_printed_column_order_lets_yaw_push_the_vertical_springs() {
+    let yaw = Vector6::new(0.0, 0.0, 0.0, 0.01, 0.0, 0.0);
+    let lift = |u: fn([f64; 3]) -> U| -> f64 {
+        reference_supports().iter().map(|&(at, s)| (s.z * (u(at) * yaw).z).abs()).sum()
+    };
+    assert_eq!(lift(right_u), 0.0);
+    // Eight feet, 0, 1, 8 and 9 m from the origin, 1e7 N/m, 0.01 rad.
+    assert!((lift(printed_u) - 2.0 * (1.0 + 8.0 + 9.0) * 1e7 * 0.01).abs() < 1e-3, "{} N", lift(printed_u));
+}
+
+#[test]
+fn eq_16_with_an_absolute_value_is_undefined_at_rest_and_has_two_wells() {
+    // Force s (|u| − l₀)/|u| u of Eq. (18), for one spring.
+    let force = |u: f64, free: f64| 1e7 * (u.abs() - free) / u.abs() * u;
+    assert!(force(0.0, 0.0).is_nan(), "0/0 where the crane stands");
+    assert!(force(0.01, 0.01).abs() < 1e-9 && force(-0.01, 0.01).abs() < 1e-9, "two places without force");
+    assert!(force(0.005, 0.01) < 0.0 && force(-0.005, 0.01) > 0.0, "and it pushes away in between");
+}
+
+#[test]
+fn eq_18_with_u_transposed_u_counts_each_spring_three_times() {
+    let (mut right, mut printed) = (Matrix6::zeros(), Matrix6::zeros());
+    for (at, s) in reference_supports() {
+        let u = right_u(at);
+        right += u.transpose() * Matrix3::from_diagonal(&s) * u;
+        printed += s.sum() * u.transpose() * u;
+    }
+    assert_eq!(right[(2, 2)], 8e7);
+    assert_eq!(printed[(2, 2)], 8.0 * 1.6e7, "vertical stiffness 1.6 times too high");
+    assert_eq!(printed[(0, 0)] / right[(0, 0)], 1.6e7 / 3e6, "horizontal stiffness 5.3 times too high");
+    let crane = Interpreted::new(workspace::chain("eight_link_rigid"));
+    let rest = crane_tests::quantities::State { t: 0.0, q: vec![0.0; crane.size()], v: vec![0.0; crane.size()] };
+    let forces = |j: usize| {
+        let mut moved = rest.clone();
+        moved.q[j] = 1e-3;
+        crane.vector("support_forces", &moved)
+    };
+    for j in 0..6 {
+        for i in 0..6 {
+            let (force, expected) = (forces(j)[i], -1e-3 * right[(i, j)]);
+            assert!((force - expected).abs() <= 1e-12 * right.amax(), "{i} {j}: {force} against {expected}");
+        }
+    }
+}
+
+/// Tip deflection under a unit force of a cantilever of unit length and stiffness with springs at these places, each
+/// bending as a section of length d.
+fn tip_deflection(springs: &[f64], d: f64) -> f64 {
+    springs.iter().map(|x| d * (1.0 - x) * (1.0 - x)).sum()
+}
+
+#[test]
+fn translations_of_elements_as_printed_put_the_springs_in_the_wrong_places() {
+    let n = 4.0;
+    let d = 1.0 / n;
+    let places = |of: &dyn Fn(f64) -> f64| -> Vec<f64> { [0.0, 1.0, 2.0, 3.0].map(of).to_vec() };
+    // Right: spring i in the middle of section i, element i at l(i−1). Printed: at l(i), a whole section further from the
+    // first on, the last one half a section short.
+    let right = tip_deflection(&places(&|i| d * (i + 0.5)), d);
+    assert!((3.0 * right - (1.0 - 1.0 / (4.0 * n * n))).abs() < 1e-15, "the law of the cantilever");
+    let printed = tip_deflection(&places(&|i| if i < 3.0 { d * (i + 1.0) } else { d * 3.5 }), d);
+    assert!(printed < 0.7 * right, "{:.0} % of the right deflection", 100.0 * printed / right);
+}
+
+#[test]
+fn eqs_11_14_15_with_one_spring_too_many_are_too_soft() {
+    let d = 0.25;
+    let right = tip_deflection(&[0.125, 0.375, 0.625, 0.875], d);
+    // i = 1 … n_rfe = n + 1: the additional spring can only sit at the joint, where element 0 has none.
+    let printed = tip_deflection(&[0.0, 0.125, 0.375, 0.625, 0.875], d);
+    assert!(printed > 1.7 * right, "{:.2} times the right deflection", printed / right);
+}
+
+#[test]
+fn eq_14_with_positions_in_the_dissipation_dissipates_at_rest() {
+    let crane = Interpreted::new(workspace::chain("eight_link_flexible"));
+    let state = crane_tests::quantities::State { t: 100.0, ..crane.equilibrium() };
+    let printed: f64 =
+        crane.chain.elements.iter().map(|e| e.damping.at(&[]) * state.q[e.coordinate.0].powi(2)).sum();
+    let mut at_rest = state.clone();
+    at_rest.v.fill(0.0);
+    assert_eq!(crane.scalar("dissipation", &at_rest), 0.0);
+    assert!(printed > 1e-3, "{printed} W in a crane that does not move");
+}
+
+#[test]
+fn eq_23_with_rates_in_the_energy_gives_supports_without_stiffness() {
+    let crane = Interpreted::new(workspace::chain("eight_link_rigid"));
+    let state = crane.equilibrium();
+    let carried: f64 = crane.get("support_reactions", &crane.inputs(&state), 0).iter().skip(2).step_by(3).sum();
+    // ∂E_p/∂q̇ is zero: as printed nothing would carry the crane's 164 kN.
+    assert!(carried > 1.6e5, "{carried} N");
+}

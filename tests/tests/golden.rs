@@ -1,0 +1,57 @@
+//! Generated code that a person can read in a diff, compiled with warnings denied, and operation counts of all specs.
+//!
+//! `UPDATE_GOLDEN=1 cargo test -p crane-tests --test golden` writes the files anew; commit them with the reason.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use crane_codegen::build;
+use crane_codegen::chain::Analyses;
+use crane_codegen::compile;
+use crane_tests::workspace;
+
+#[allow(clippy::pedantic)]
+mod compiled {
+    #![deny(warnings)]
+    #![allow(missing_docs, unreachable_pub, dead_code)]
+    pub mod double_pendulum {
+        include!("../golden/double_pendulum.rs");
+    }
+    pub mod knuckle_boom {
+        include!("../golden/knuckle_boom.rs");
+    }
+}
+
+fn assert_golden(path: PathBuf, actual: &str) {
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        build::write(&path, actual).unwrap();
+    }
+    let golden = std::fs::read_to_string(&path).unwrap_or_default();
+    let differs = golden.lines().zip(actual.lines()).position(|(a, b)| a != b);
+    assert!(golden == actual, "{} is not current (line {:?})", path.display(), differs.map(|line| line + 1));
+}
+
+#[test]
+fn generated_code_of_two_small_cranes() {
+    for name in ["double_pendulum", "knuckle_boom"] {
+        let chain = workspace::chain(name);
+        let code = compile::generate(&chain, chain.analyses, &format!("{name}.yaml"));
+        assert_golden(workspace::root().join(format!("tests/golden/{name}.rs")), &code.text);
+    }
+    assert_eq!(compiled::double_pendulum::N, 2);
+    assert_eq!(compiled::knuckle_boom::DESCRIPTION.name, "knuckle_boom");
+}
+
+#[test]
+fn operations_of_all_specs() {
+    let mut text = String::new();
+    for path in workspace::specs() {
+        let name = path.file_stem().unwrap().to_string_lossy();
+        let report = compile::generate(&workspace::chain(&name), Analyses::ALL, "").report;
+        let _ = writeln!(text, "{name}");
+        for cost in report.costs {
+            let _ = writeln!(text, "  {:<30} {}", cost.function, cost.operations);
+        }
+    }
+    assert_golden(workspace::root().join("tests/golden/operations.txt"), &text);
+}

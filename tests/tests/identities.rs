@@ -1,0 +1,194 @@
+//! Physical identities on random cranes with fixed seeds, by the interpreter.
+
+use crane_codegen::symbolic::Inputs;
+use crane_model::nalgebra::{DVector, Rotation2, Vector2};
+use crane_tests::dual::Dual;
+use crane_tests::interpreted::Interpreted;
+use crane_tests::quantities::State;
+use crane_tests::{random, states, workspace};
+
+const SEEDS: std::ops::Range<u64> = 0..24;
+
+fn cranes() -> impl Iterator<Item = (u64, Interpreted)> {
+    SEEDS.map(|seed| (seed, Interpreted::new(workspace::chain_of("random", &random::spec(seed)))))
+}
+
+/// The state moving along `(1, v, a)`.
+fn moving(crane: &Interpreted, state: &State, rates: (f64, &[f64], &[f64])) -> Inputs<Dual> {
+    let (t, q, v) = rates;
+    let pair = |values: &[f64], rates: &[f64]| values.iter().zip(rates).map(|(x, r)| Dual::new(*x, *r)).collect();
+    Inputs {
+        t: Dual::new(state.t, t),
+        q: pair(&state.q, q),
+        v: pair(&state.v, v),
+        parameters: crane.chain.parameter_defaults().into_iter().map(|p| Dual::new(p, 0.0)).collect(),
+    }
+}
+
+/// Relative to the larger of both, or to a size given by what cancels.
+fn assert_close(a: f64, b: f64, size: f64, tolerance: f64, what: &str) {
+    assert!((a - b).abs() <= tolerance * size.max(a.abs()).max(b.abs()), "{what}: {a} against {b}, size {size}");
+}
+
+#[test]
+fn mass_matrix_is_positive_definite_and_gives_the_kinetic_energy() {
+    for (seed, crane) in cranes() {
+        for state in states::far(&crane.chain, 4, seed) {
+            let matrix = crane.matrix("mass_matrix", &state);
+            assert!(matrix.clone().cholesky().is_some(), "seed {seed}: A is not positive definite");
+            let v = DVector::from_column_slice(&state.v);
+            let energy = 0.5 * v.dot(&(matrix * &v));
+            // Different sums of the same thousand terms.
+            assert_close(energy, crane.scalar("kinetic_energy", &state), 0.0, 1e-12, &format!("seed {seed}"));
+        }
+    }
+}
+
+/// `½ vᵀ Ȧ v = vᵀ h`: what the skew symmetry of Ȧ − 2C means, with Ȧ by dual numbers and h from the bias.
+#[test]
+fn velocity_forces_and_the_rate_of_the_mass_matrix_fit() {
+    for (seed, crane) in cranes() {
+        for state in states::far(&crane.chain, 3, seed) {
+            let n = crane.size();
+            let rest = vec![0.0; n];
+            let inputs = moving(&crane, &state, (0.0, &state.v, &rest));
+            let rate: Vec<f64> = crane.get("mass_matrix", &inputs, n * n).into_iter().map(Dual::derivative).collect();
+            let v = DVector::from_column_slice(&state.v);
+            let half = 0.5 * v.dot(&(crane_model::nalgebra::DMatrix::from_row_slice(n, n, &rate) * &v));
+            let at_rest = State { v: rest.clone(), ..state.clone() };
+            let h = crane.vector("bias", &at_rest) - crane.vector("bias", &state);
+            let size = v.iter().zip(&h).map(|(v, h)| (v * h).abs()).sum();
+            assert_close(half, v.dot(&h), size, 1e-11, &format!("seed {seed}"));
+        }
+    }
+}
+
+/// d/dt (E_k + E_p) = drive power − dissipation, along the motion that the equations give.
+#[test]
+fn power_balances() {
+    for (seed, crane) in cranes() {
+        for state in states::far(&crane.chain, 3, seed) {
+            let acceleration = crane.acceleration(&state);
+            let inputs = moving(&crane, &state, (1.0, &state.v, acceleration.as_slice()));
+            let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy"];
+            let rates: Vec<f64> =
+                parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
+            let supplied = crane.scalar("drive_power", &state) - crane.scalar("dissipation", &state);
+            let size = rates.iter().map(|rate| rate.abs()).sum();
+            // q̈ comes from a dense solve, so the condition of A is in it.
+            assert_close(rates.iter().sum(), supplied, size, 1e-9, &format!("seed {seed}: {rates:?}"));
+        }
+    }
+}
+
+/// The residual is the gradient of the potential energy and the tangent is its Hessian, by dual numbers.
+#[test]
+fn residual_and_tangent_are_derivatives_of_the_energy() {
+    for (seed, crane) in cranes() {
+        let n = crane.size();
+        for state in states::far(&crane.chain, 2, seed) {
+            let state = State { t: 0.0, v: vec![0.0; n], ..state };
+            let residual = crane.vector("static_residual", &state);
+            let tangent = crane.matrix("tangent_stiffness", &state);
+            for j in 0..n {
+                let mut direction = vec![0.0; n];
+                direction[j] = 1.0;
+                let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n]));
+                let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy"];
+                let slopes: Vec<f64> =
+                    parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
+                let size = slopes.iter().map(|slope| slope.abs()).sum();
+                assert_close(slopes.iter().sum(), residual[j], size, 1e-11, &format!("seed {seed}, residual {j}"));
+                let column: Vec<f64> =
+                    crane.get("static_residual", &inputs, n).into_iter().map(Dual::derivative).collect();
+                for (i, slope) in column.iter().enumerate() {
+                    let what = format!("seed {seed}, tangent {i} {j}");
+                    assert_close(*slope, tangent[(i, j)], tangent.amax(), 1e-12, &what);
+                }
+            }
+        }
+    }
+}
+
+/// ∂T/∂q and ∂²T/∂q∂q against dual numbers through T and ∂T/∂q.
+#[test]
+fn transform_derivatives_are_derivatives() {
+    for (seed, crane) in cranes().take(8) {
+        let n = crane.size();
+        let degrees: Vec<usize> =
+            (0..crane.chain.bodies.len()).map(|p| crane.chain.degrees_of_freedom(crane_codegen::chain::BodyId(p))).collect();
+        for state in states::far(&crane.chain, 1, seed) {
+            let first = crane.get("transform_derivatives", &crane.inputs(&state), 0);
+            let second = crane.get("transform_second_derivatives", &crane.inputs(&state), 0);
+            for m in 0..n {
+                let mut direction = vec![0.0; n];
+                direction[m] = 1.0;
+                let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n]));
+                let slopes = |function: &str| -> Vec<f64> {
+                    crane.get(function, &inputs, 0).into_iter().map(Dual::derivative).collect()
+                };
+                let (of_pose, of_first) = (slopes("transforms"), slopes("transform_derivatives"));
+                let (mut start, mut pairs) = (0, 0);
+                for (body, &count) in degrees.iter().enumerate() {
+                    for k in 0..16 {
+                        let expected = if m < count { first[16 * (start + m) + k] } else { 0.0 };
+                        assert_close(of_pose[16 * body + k], expected, 1.0, 1e-13, &format!("seed {seed}, T of body {body}"));
+                    }
+                    for j in m..count {
+                        let pair = pairs + m * count - m * m.saturating_sub(1) / 2 + j - m;
+                        for k in 0..16 {
+                            let (a, b) = (of_first[16 * (start + j) + k], second[16 * pair + k]);
+                            assert_close(a, b, 1.0, 1e-13, &format!("seed {seed}, body {body}, {m} {j}"));
+                        }
+                    }
+                    start += count;
+                    pairs += count * (count + 1) / 2;
+                }
+            }
+        }
+    }
+}
+
+/// Turning an unsupported crane about the vertical changes neither its energies nor its forces, seen from itself.
+#[test]
+fn an_unsupported_crane_may_slew_freely() {
+    let mut tested = 0;
+    for seed in SEEDS {
+        let spec = random::spec(seed);
+        if !spec.contains("joint: free\n") {
+            continue;
+        }
+        tested += 1;
+        let spec: Vec<String> = spec
+            .lines()
+            .map(|line| if line.starts_with("gravity") { "gravity: [0, 0, -9.81]".into() } else { line.to_owned() })
+            .collect();
+        let text = spec.join("\n");
+        let (start, end) = (text.find("supports:").unwrap(), text.find("drives:").unwrap());
+        let free = format!("{}{}", &text[..start], &text[end..]).replace("  ground: {value: 4.0e3, unit: N/m}\n", "");
+        let crane = Interpreted::new(workspace::chain_of("unsupported", &free));
+        let foot = match &crane.chain.bodies[0].path[0] {
+            crane_codegen::chain::Step::Translate(by) => Vector2::new(by[0].at(&[]), by[1].at(&[])),
+            step => panic!("the foot is placed by a translation, not {step:?}"),
+        };
+        let turn = Rotation2::new(1.1);
+        let turned = |x: &mut [f64], about: Vector2<f64>| {
+            let moved = turn * (Vector2::new(x[0], x[1]) + about) - about;
+            x[..2].copy_from_slice(moved.as_slice());
+        };
+        for state in states::far(&crane.chain, 3, seed) {
+            let mut slewed = state.clone();
+            turned(&mut slewed.q, foot);
+            slewed.q[3] += 1.1;
+            turned(&mut slewed.v, Vector2::zeros());
+            for energy in ["kinetic_energy", "gravity_energy"] {
+                let (a, b) = (crane.scalar(energy, &state), crane.scalar(energy, &slewed));
+                assert_close(a, b, 1.0, 1e-12, &format!("seed {seed}: {energy}"));
+            }
+            let (mut bias, after) = (crane.vector("bias", &state), crane.vector("bias", &slewed));
+            turned(bias.as_mut_slice(), Vector2::zeros());
+            assert!((&bias - &after).amax() < 1e-11 * bias.amax(), "seed {seed}: bias");
+        }
+    }
+    assert!(tested >= 4, "{tested} cranes on a free base");
+}

@@ -1,0 +1,99 @@
+//! Generated code means what its program means, and simplification changes nothing.
+
+use crane_codegen::chain::Analyses;
+use crane_codegen::compile;
+use crane_codegen::mechanics;
+use crane_codegen::symbolic::Inputs;
+use crane_tests::interpreted::Interpreted;
+use crane_tests::quantities::{Quantity, State, quantities};
+use crane_tests::registry::{self, Entry};
+use crane_tests::{random, states, workspace};
+
+fn load(entry: &Entry) -> Interpreted {
+    let text = std::fs::read_to_string(entry.spec()).unwrap();
+    Interpreted::new(workspace::chain_of(entry.name, &text))
+}
+
+/// One quantity of `evaluate` by the interpreter.
+fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<f64>) -> Vec<f64> {
+    let n = crane.size();
+    let linearised = |k: usize| crane.get("linearise", inputs, 3 * n * n)[k * n * n..(k + 1) * n * n].to_vec();
+    match quantity.name {
+        "linearised_mass" => linearised(0),
+        "linearised_stiffness" => linearised(1),
+        "linearised_damping" => linearised(2),
+        name => crane.get(name, inputs, quantity.len()),
+    }
+}
+
+#[test]
+fn generated_code_equals_the_interpreter_to_the_bit() {
+    for entry in registry::all() {
+        let crane = load(&entry);
+        let parameters: Vec<f64> = crane.chain.parameter_defaults().iter().map(|p| 1.25 * p).collect();
+        for state in states::far(&crane.chain, 4, 7) {
+            let generated = (entry.evaluate)(&state, &parameters);
+            let inputs = Inputs { parameters: parameters.clone(), ..crane.inputs(&state) };
+            let mut rest = generated.as_slice();
+            for quantity in quantities(entry.description) {
+                let (own, others) = rest.split_at(quantity.len());
+                rest = others;
+                let expected = interpret(&crane, &quantity, &inputs);
+                assert_eq!(own.len(), expected.len(), "{} {}", entry.name, quantity.name);
+                for (i, (a, b)) in own.iter().zip(&expected).enumerate() {
+                    // Same operations in the same order; only the sign of a zero may differ.
+                    assert!(a == b, "{} {}[{i}]: {a:?} against {b:?}", entry.name, quantity.name);
+                }
+            }
+            assert!(rest.is_empty());
+        }
+    }
+}
+
+#[test]
+fn simplification_changes_nothing_but_rounding() {
+    for seed in 0..8 {
+        let chain = workspace::chain_of("random", &random::spec(seed));
+        let crane = Interpreted::new(chain);
+        let verbatim = mechanics::derive_verbatim(&crane.chain, Analyses::ALL);
+        for state in states::far(&crane.chain, 2, seed) {
+            let inputs = crane.inputs(&state);
+            for function in &crane.program.functions {
+                let simple = crane.program.evaluate(function, &inputs);
+                let plain = verbatim.evaluate(verbatim.function(function.name).unwrap(), &inputs);
+                let size = plain.iter().fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
+                for (a, b) in simple.iter().zip(&plain) {
+                    // Some hundred roundings of the largest intermediate results.
+                    assert!((a - b).abs() <= 1e-12 * size, "seed {seed} {}: {a} against {b}", function.name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_spec_gives_the_same_bytes_from_any_folder() {
+    let text = std::fs::read_to_string(workspace::root().join("specs/eight_link_flexible.yaml")).unwrap();
+    let compiled = |name: &str| {
+        let source = crane_codegen::SourceFile::new(name, text.clone());
+        compile::compile(&source, Some(Analyses::ALL)).unwrap().text
+    };
+    let first = compiled("/somewhere/eight_link_flexible.yaml");
+    assert_eq!(first, compiled("elsewhere/deep/eight_link_flexible.yaml"));
+    assert!(!first.contains("somewhere"), "no path in generated code");
+}
+
+#[test]
+fn functions_that_a_scene_does_not_need_are_zero() {
+    let entry = registry::all().into_iter().find(|entry| entry.name == "double_pendulum").unwrap();
+    let state = State { t: 0.0, q: vec![0.1; 2], v: vec![0.2; 2] };
+    let values = (entry.evaluate)(&state, &[]);
+    let mut rest = values.as_slice();
+    for quantity in quantities(entry.description) {
+        let (own, others) = rest.split_at(quantity.len());
+        rest = others;
+        if ["support_forces", "element_forces", "drive_forces", "drive_energy"].contains(&quantity.name) {
+            assert!(own.iter().all(|x| *x == 0.0), "{}", quantity.name);
+        }
+    }
+}
