@@ -78,10 +78,7 @@ impl Value {
                 let (sin, cos) = exact_sin_cos(*angle);
                 (Value::Constant(sin), Value::Constant(cos))
             }
-            live => (
-                Value::Sin(Box::new(live.clone())),
-                Value::Cos(Box::new(live.clone())),
-            ),
+            live => (Value::Sin(Box::new(live.clone())), Value::Cos(Box::new(live.clone()))),
         }
     }
 }
