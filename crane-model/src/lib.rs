@@ -5,11 +5,11 @@
 //! |---|---|---|
 //! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Statics`], [`Linearise`], [`TransformDerivatives`] | nothing |
 //! | one step in time | [`dynamics::rk4`] | nothing |
-//! | equilibrium | [`statics`] | `std` |
-//! | a run with recorded results | [`dynamics::simulate`] | `std` |
-//! | frequencies, damping | [`modes`] | `std` |
-//! | any crane through one pointer | [`rig::Rig`] | `std` |
-//! | the shipped cranes | [`cranes`] | `cranes` |
+//! | equilibrium | `statics` | `std` |
+//! | a run with recorded results | `dynamics::simulate` | `std` |
+//! | frequencies, damping | `modes` | `std` |
+//! | any crane through one pointer | `rig::Rig` | `std` |
+//! | the shipped cranes | `cranes` | `cranes` |
 //!
 //! With `default-features = false` the crate is `no_std` and needs no heap.
 

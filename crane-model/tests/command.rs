@@ -55,6 +55,7 @@ fn wrong_arguments_are_refused_with_the_nearest_right_one() {
     refused(&["simulate", "--duration", "-1"], &["`--duration -1`", "positive"]);
     refused(&["simulate", "--output", "nan"], &["`--output NaN`", "positive"]);
     refused(&["simulate", "--output", "1e-9"], &["more than a million"]);
+    refused(&["simulate", "--step", "1e-300"], &["more than ten billion", "longer step"]);
     refused(&["eval", "--q", "1,2"], &["`--q` has 2 numbers", "25 coordinates", "truck_x [m]"]);
     refused(&["eval", "--q", "no_such_file"], &["neither a list of numbers nor a file"]);
     refused(&["dance"], &["unrecognized subcommand"]);
@@ -117,6 +118,28 @@ fn the_comparison_writes_figures() {
         let svg = fs::read_to_string(out.join(format!("comparison_{figure}.svg"))).expect("a figure");
         assert!(svg.starts_with("<svg width=\"") && svg.trim_end().ends_with("</svg>"));
         assert!(svg.contains("[m]") || svg.contains("[mm]") || svg.contains("[kN m]"), "{figure} has no units");
+    }
+}
+
+#[test]
+fn the_comparison_speaks_json() {
+    let out = folder("comparison_json");
+    let report = json(&["--duration", "0.02", "--format", "json", "--out", out.to_str().expect("a path")]);
+    for table in ["pose", "drives", "reactions", "deflection", "summary", "files"] {
+        assert!(report[table].as_array().is_some_and(|rows| !rows.is_empty()), "{table}: {report}");
+    }
+    // The boom bends under load: every load point hangs lower than on the rigid crane.
+    let deflection = report["deflection"].as_array().expect("a table");
+    assert!(deflection.iter().all(|row| row["z"].as_f64().is_some_and(|z| z < -50.0)), "{deflection:?}");
+}
+
+#[test]
+fn an_impossible_load_is_told_not_panicked() {
+    for (load, command) in [("-400", "simulate"), ("-1e6", "modes"), ("1e12", "statics"), ("-1e6", "statics")] {
+        let output = crane(&[command, "--set", &format!("load_mass={load}")]);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{command} {load}: {message}");
+        assert!(message.starts_with("error:") && !message.contains("panicked"), "{command} {load}: {message}");
     }
 }
 

@@ -119,6 +119,9 @@ pub struct Timing {
 pub struct Compare {
     #[command(flatten)]
     pub parameters: Parameters,
+    /// Form of what is printed
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
     #[command(flatten)]
     pub timing: Timing,
 }

@@ -1,6 +1,6 @@
 //! `crane` alone: the eight-link crane, rigid against flexible, as [Urbaś 2016, section 3] does it.
 
-use std::{io::Write, thread, time::Instant};
+use std::{io::Write, mem, thread, time::Instant};
 
 use crane_model::{Description, results::Table};
 
@@ -24,11 +24,15 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
     let folder = &options.timing.out;
 
     let cases = [Case::new("rigid", rigid.as_ref()), Case::new("flexible", flexible.as_ref())];
-    writeln!(out, "Statics of {}\n", flexible.description().title)?;
+    let format = options.format;
     let mut report = tables(&cases);
     let [rigid_case, flexible_case] = &cases;
     report.grid(deflection(rigid_case, flexible_case));
-    report.print(Format::Table, out)?;
+    if format == Format::Table {
+        // Something to read while the cranes move.
+        writeln!(out, "Statics of {}\n", flexible.description().title)?;
+        mem::take(&mut report).print(format, out)?;
+    }
     cases.iter().try_for_each(Case::stable)?;
 
     files::folder(folder)?;
@@ -64,13 +68,16 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
     write_figure(&folder.join(&deviation_file), &deviation(description, &rigid_run.table, &flexible_run.table), 1)?;
     written.push(deviation_file);
 
-    let duration = settings[1].duration;
-    let step = flexible_run.run.step;
-    writeln!(out, "\nMotion over {duration} s, classical Runge-Kutta, step {step} s\n")?;
-    summary(description, &[("rigid", rigid_run), ("flexible", flexible_run)]).print(out)?;
-    writeln!(out)?;
-    file_list(folder, &written).print(out)?;
-    writeln!(out, "\nAll in {:.1} s", begin.elapsed().as_secs_f64())?;
+    report.grid(summary(description, &[("rigid", rigid_run), ("flexible", flexible_run)]));
+    report.grid(file_list(folder, &written));
+    if format == Format::Table {
+        let (duration, step) = (settings[1].duration, flexible_run.run.step);
+        writeln!(out, "\nMotion over {duration} s, classical Runge-Kutta, step {step} s\n")?;
+    }
+    report.print(format, out)?;
+    if format == Format::Table {
+        writeln!(out, "\nAll in {:.1} s", begin.elapsed().as_secs_f64())?;
+    }
     Ok(())
 }
 

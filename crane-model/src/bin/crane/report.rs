@@ -122,7 +122,7 @@ impl Grid {
     }
 
     /// Prints it for people.
-    pub fn print(&self, out: &mut dyn Write) -> Outcome<()> {
+    fn print(&self, out: &mut dyn Write) -> Outcome<()> {
         writeln!(out, "{}", self.title)?;
         let texts: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect();
         let width = |column: usize| {

@@ -23,6 +23,9 @@ use crate::{
 /// Most results of a run that are kept in memory and written.
 const MOST_RESULTS: f64 = 1e6;
 
+/// Most steps of a run: hours of waiting.
+const MOST_STEPS: f64 = 1e10;
+
 /// A finished run.
 pub struct Recorded {
     /// Steps and time.
@@ -59,6 +62,12 @@ impl Timing {
             return Err(Problem::usage(
                 format!("results every {} s for {} s are more than a million", settings.output, settings.duration),
                 "write a longer interval with `--output`, in s",
+            ));
+        }
+        if settings.duration / settings.step > MOST_STEPS {
+            return Err(Problem::usage(
+                format!("steps of {:e} s for {} s are more than ten billion", settings.step, settings.duration),
+                "write a longer step with `--step`, in s",
             ));
         }
         Ok(settings)
