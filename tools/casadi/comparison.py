@@ -4,16 +4,17 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-# What the project asks of its derivatives. Round-off of both sides together stays a hundred times below.
+# What the project asks of its derivatives.
 TOLERANCE = 1e-10
 
 # An entry is measured by the largest value it takes in any state, so that a small moment is not hidden by a large one
 # in the same array. But a small entry may be nothing but round-off of large terms (cos 90° = 6e-17 times one of them),
 # so below a share of the array's largest value it is measured by that share.
+# The last bit of the largest entry, 2e-16, then counts as 2e-11. That much is lost where composite inertias are taken
+# about the world's origin: the torsional inertia of a slender element is 1e-3 kg m² beside 1e2 of the whole beam.
+NEGLIGIBLE_ENTRY = 1e-5
 # Entries of T, T', T'' are direction cosines and lengths, alike in size, and sums along the whole chain.
 NEGLIGIBLE_ENTRY_OF_TRANSFORM = 1e-4
-# Forces, masses and stiffnesses of one crane span seven decades (a hinge on a truck); their round-off stays in its row.
-NEGLIGIBLE_ENTRY = 1e-6
 
 # An array may vanish in a state (the power of a drive that comes to rest as (1 - τ)², weight in a hanging pose) and is
 # then the round-off of terms that cancel: below this share of the largest that it is in any state, the share measures.
