@@ -3,6 +3,7 @@
 //! The command, and whoever picks a crane at run time, handles all cranes with one code path; only what is behind
 //! [`Rig`] is compiled for each.
 
+mod declare;
 mod instance;
 
 use std::ops::ControlFlow;
