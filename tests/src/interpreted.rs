@@ -144,8 +144,6 @@ fn symmetric<S: Scalar>(n: usize, upper: &[S]) -> Vec<S> {
 fn homogeneous<S: Scalar>(rows: &[S], corner: u8) -> Vec<S> {
     let zero = || S::from_f64(0.0);
     rows.chunks(12)
-        .flat_map(|matrix| {
-            matrix.iter().cloned().chain([zero(), zero(), zero(), S::from_f64(f64::from(corner))])
-        })
+        .flat_map(|matrix| matrix.iter().cloned().chain([zero(), zero(), zero(), S::from_f64(f64::from(corner))]))
         .collect()
 }

@@ -84,7 +84,8 @@ pub struct State {
 
 /// All quantities of a generated crane at a state, one after the other.
 pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f64> {
-    let (t, q, v) = (state.t, &SVector::<f64, N>::from_column_slice(&state.q), &SVector::<f64, N>::from_column_slice(&state.v));
+    let (t, q, v) =
+        (state.t, &SVector::<f64, N>::from_column_slice(&state.q), &SVector::<f64, N>::from_column_slice(&state.v));
     let info = crane.description();
     let (first, second) = derivative_counts(info);
     let mut out = Vec::new();

@@ -92,11 +92,12 @@ impl Writer {
         let kind = self.rng.u8(0..3);
         let mut axis = "z";
         match kind {
-            0 => self.line(&format!(
-                "    placement: {{modified_dh: {{a: {a}, alpha: {alpha}, d: {d}, theta: {theta}}}}}"
-            )),
+            0 => self
+                .line(&format!("    placement: {{modified_dh: {{a: {a}, alpha: {alpha}, d: {d}, theta: {theta}}}}}")),
             1 => {
-                self.line(&format!("    placement: {{classic_dh: {{a: reach, alpha: {alpha}, d: {d}, theta: {theta}}}}}"));
+                self.line(&format!(
+                    "    placement: {{classic_dh: {{a: reach, alpha: {alpha}, d: {d}, theta: {theta}}}}}"
+                ));
             }
             _ => {
                 let by = self.vector(0.9);
@@ -137,7 +138,9 @@ impl Writer {
                 self.line(&format!("        - {{length: {length}, mass: {mass}, com: {com}, inertia: {inertia}}}"));
             }
             self.line("      springs:");
-            self.line("        - {stiffness: {psi: 310, theta: 250, phi: 180}, damping: {psi: 0.4, theta: 0.3, phi: 0.2}}");
+            self.line(
+                "        - {stiffness: {psi: 310, theta: 250, phi: 180}, damping: {psi: 0.4, theta: 0.3, phi: 0.2}}",
+            );
             return;
         }
         let section = [
@@ -173,7 +176,9 @@ impl Writer {
         let inertia = self.inertia(1.5);
         self.line("    bodies:");
         self.line(&format!("      - {{name: claw, mass: 4.2, com: {claw}, inertia: {inertia}}}"));
-        self.line(&format!("      - {{name: load, mass: payload, com: {load}, inertia: {{gyration: [0.2, 0.3, 0.25]}}}}"));
+        self.line(&format!(
+            "      - {{name: load, mass: payload, com: {load}, inertia: {{gyration: [0.2, 0.3, 0.25]}}}}"
+        ));
     }
 
     fn body(&mut self, scale: f64) {

@@ -155,8 +155,7 @@ fn eqs_11_14_15_with_one_spring_too_many_are_too_soft() {
 fn eq_14_with_positions_in_the_dissipation_dissipates_at_rest() {
     let crane = Interpreted::new(workspace::chain("eight_link_flexible"));
     let state = crane_tests::quantities::State { t: 100.0, ..crane.equilibrium() };
-    let printed: f64 =
-        crane.chain.elements.iter().map(|e| e.damping.at(&[]) * state.q[e.coordinate.0].powi(2)).sum();
+    let printed: f64 = crane.chain.elements.iter().map(|e| e.damping.at(&[]) * state.q[e.coordinate.0].powi(2)).sum();
     let mut at_rest = state.clone();
     at_rest.v.fill(0.0);
     assert_eq!(crane.scalar("dissipation", &at_rest), 0.0);

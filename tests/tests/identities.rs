@@ -71,8 +71,7 @@ fn power_balances() {
             let acceleration = crane.acceleration(&state);
             let inputs = moving(&crane, &state, (1.0, &state.v, acceleration.as_slice()));
             let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy"];
-            let rates: Vec<f64> =
-                parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
+            let rates: Vec<f64> = parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
             let supplied = crane.scalar("drive_power", &state) - crane.scalar("dissipation", &state);
             let size = rates.iter().map(|rate| rate.abs()).sum();
             // q̈ comes from a dense solve, so the condition of A is in it.
@@ -95,8 +94,7 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
                 direction[j] = 1.0;
                 let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n]));
                 let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy"];
-                let slopes: Vec<f64> =
-                    parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
+                let slopes: Vec<f64> = parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
                 let size = slopes.iter().map(|slope| slope.abs()).sum();
                 assert_close(slopes.iter().sum(), residual[j], size, 1e-11, &format!("seed {seed}, residual {j}"));
                 let column: Vec<f64> =
@@ -115,8 +113,9 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
 fn transform_derivatives_are_derivatives() {
     for (seed, crane) in cranes().take(8) {
         let n = crane.size();
-        let degrees: Vec<usize> =
-            (0..crane.chain.bodies.len()).map(|p| crane.chain.degrees_of_freedom(crane_codegen::chain::BodyId(p))).collect();
+        let degrees: Vec<usize> = (0..crane.chain.bodies.len())
+            .map(|p| crane.chain.degrees_of_freedom(crane_codegen::chain::BodyId(p)))
+            .collect();
         for state in states::far(&crane.chain, 1, seed) {
             let first = crane.get("transform_derivatives", &crane.inputs(&state), 0);
             let second = crane.get("transform_second_derivatives", &crane.inputs(&state), 0);
@@ -132,7 +131,13 @@ fn transform_derivatives_are_derivatives() {
                 for (body, &count) in degrees.iter().enumerate() {
                     for k in 0..16 {
                         let expected = if m < count { first[16 * (start + m) + k] } else { 0.0 };
-                        assert_close(of_pose[16 * body + k], expected, 1.0, 1e-13, &format!("seed {seed}, T of body {body}"));
+                        assert_close(
+                            of_pose[16 * body + k],
+                            expected,
+                            1.0,
+                            1e-13,
+                            &format!("seed {seed}, T of body {body}"),
+                        );
                     }
                     for j in m..count {
                         let pair = pairs + m * count - m * m.saturating_sub(1) / 2 + j - m;

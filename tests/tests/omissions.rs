@@ -51,7 +51,9 @@ fn a_planar_scene_holds_nothing_out_of_its_plane() {
         let constant = |slot: usize| matches!(program.op(transforms[slot]), Op::Constant(_));
         let planes: Vec<Axis> = [Axis::X, Axis::Y, Axis::Z]
             .into_iter()
-            .filter(|axis| (0..crane.chain.bodies.len()).all(|p| (0..4).all(|k| constant(12 * p + 4 * axis.index() + k))))
+            .filter(|axis| {
+                (0..crane.chain.bodies.len()).all(|p| (0..4).all(|k| constant(12 * p + 4 * axis.index() + k)))
+            })
             .collect();
         assert_eq!(planes.len(), 1, "{name}: the row of the normal is constant in every pose");
         // A planar crane costs a fraction of the same chain in space.

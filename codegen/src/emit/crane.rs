@@ -5,6 +5,7 @@ use quote::{format_ident, quote};
 use syn::{Item, parse_quote};
 
 use super::arithmetic::integer;
+use super::print::plain;
 use crate::chain::Chain;
 use crate::lower::{Block, Blocks};
 use crate::symbolic::{Argument, Shape};
@@ -41,7 +42,7 @@ const TRAITS: [(&str, &[&str]); 5] = [
 /// `Crane` and its traits.
 pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
     let live = !chain.parameters.is_empty();
-    let title = format!(" {}: the generated functions behind the traits of the runtime.", chain.title);
+    let title = format!(" {}: the generated functions behind the traits of the runtime.", plain(&chain.title));
     let fields = if live { quote!({ params: Params, constants: Constants }) } else { quote!(;) };
     let mut items: Vec<Item> = vec![parse_quote! {
         #[doc = #title]

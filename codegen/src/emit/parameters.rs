@@ -6,6 +6,7 @@ use syn::{Item, Stmt, parse_quote};
 use super::arithmetic::{number, variable};
 use super::function::{local, operation};
 use super::labels::Labels;
+use super::print::plain;
 use crate::chain::Chain;
 use crate::lower::Blocks;
 use crate::symbolic::{Argument, ExprId, Op};
@@ -20,6 +21,7 @@ pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> 
         .parameters
         .iter()
         .map(|p| if p.about.is_empty() { format!(" {}.", p.unit) } else { format!(" {}, {}.", p.about, p.unit) })
+        .map(|doc| plain(&doc))
         .collect();
     let defaults = chain.parameters.iter().map(|p| number(p.default));
     let stored: Vec<_> = blocks.constants.stored.iter().map(|id| format_ident!("{}", labels.constant(*id))).collect();

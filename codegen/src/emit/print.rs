@@ -56,3 +56,18 @@ pub fn constant(doc: &str, name: &str, of: proc_macro2::TokenStream, value: proc
     let doc = format!(" {doc}");
     syn::Item::Const(parse_quote!(#[doc = #doc] pub const #name: #of = #value;))
 }
+
+/// A user's words in documentation, where `[A]` would be a link, `<b>` a tag and `*` emphasis.
+pub fn plain(text: &str) -> String {
+    let special = |letter: char| "[]<>*_`\\".contains(letter);
+    let escaped = |letter| if special(letter) { vec!['\\', letter] } else { vec![letter] };
+    text.chars().flat_map(escaped).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_users_words_are_no_markup() {
+        assert_eq!(super::plain("log [A], 0...800 kg"), r"log \[A\], 0...800 kg");
+    }
+}

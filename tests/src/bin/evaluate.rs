@@ -41,7 +41,10 @@ fn run(words: &[&str]) -> Result<(), String> {
 }
 
 fn find(name: &str) -> Result<Entry, String> {
-    registry::all().into_iter().find(|entry| entry.name == name).ok_or(format!("no crane `{name}`; try `evaluate list`"))
+    registry::all()
+        .into_iter()
+        .find(|entry| entry.name == name)
+        .ok_or(format!("no crane `{name}`; try `evaluate list`"))
 }
 
 fn layout(entry: &Entry) -> serde_json::Value {
@@ -74,8 +77,7 @@ fn values(entry: &Entry) -> io::Result<()> {
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return output.flush(),
             Err(error) => return Err(error),
         }
-        let numbers: Vec<f64> =
-            bytes.as_chunks::<8>().0.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
+        let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
         let state = State { t: numbers[0], q: numbers[1..=n].to_vec(), v: numbers[n + 1..=2 * n].to_vec() };
         for value in (entry.evaluate)(&state, &numbers[2 * n + 1..]) {
             output.write_all(&value.to_le_bytes())?;
