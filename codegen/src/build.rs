@@ -19,6 +19,7 @@ use crate::{GeneratedCode, compile};
 /// }
 ///
 /// // src/main.rs
+/// #[allow(dead_code, clippy::all)]
 /// mod my_crane {
 ///     include!(concat!(env!("OUT_DIR"), "/my_crane.rs"));
 /// }
@@ -85,9 +86,7 @@ impl OpenError {
 
 /// The build script's output directory.
 pub fn out_dir() -> PathBuf {
-    env::var_os("OUT_DIR")
-        .map(PathBuf::from)
-        .unwrap_or_else(|| fail("OUT_DIR is set by cargo in build scripts only", ""))
+    env::var_os("OUT_DIR").map_or_else(|| fail("OUT_DIR is set by cargo in build scripts only", ""), PathBuf::from)
 }
 
 /// Writes a file whole or not at all.

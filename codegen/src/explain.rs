@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::chain::{Axis, BodyId, Chain, CoordinateKind, Step};
-use crate::emit::Report;
+use crate::emit::{GeneratedCode, Report};
 
 /// Everything about a chain and its functions, as text for a terminal.
 #[must_use]
@@ -88,6 +88,30 @@ fn costs(report: &Report) -> String {
             c.angles,
             cost.verbatim.total()
         );
+    }
+    text
+}
+
+/// Operations per function and crane as a Markdown table; an empty cell where the scene does not need the function.
+#[must_use]
+pub fn operations_table(codes: &[GeneratedCode]) -> String {
+    let mut functions: Vec<&str> = Vec::new();
+    for cost in codes.iter().flat_map(|code| &code.report.costs) {
+        if !functions.contains(&cost.function.as_str()) {
+            functions.push(&cost.function);
+        }
+    }
+    let names: Vec<String> = codes.iter().map(|code| format!("`{}`", code.name)).collect();
+    let mut text = format!("| function | {} |\n|---|{}\n", names.join(" | "), "---:|".repeat(codes.len()));
+    for function in functions {
+        let cells: Vec<String> = codes
+            .iter()
+            .map(|code| {
+                let cost = code.report.costs.iter().find(|cost| cost.function == function);
+                cost.map(|cost| cost.operations.total().to_string()).unwrap_or_default()
+            })
+            .collect();
+        let _ = writeln!(text, "| `{function}` | {} |", cells.join(" | "));
     }
     text
 }

@@ -1,6 +1,5 @@
 //! The compiler as a command.
 
-use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -97,7 +96,7 @@ fn run(command: &Command) -> Result<String, String> {
         }
         Command::Operations { specs } => {
             let codes: Result<Vec<_>, _> = specs.iter().map(|spec| compiled(spec, true)).collect();
-            Ok(operations_table(&codes?))
+            Ok(explain::operations_table(&codes?))
         }
         Command::Schema => Ok(json_schema()),
     }
@@ -111,27 +110,4 @@ fn loaded(spec: &Path) -> Result<Chain, String> {
 fn compiled(spec: &Path, all: bool) -> Result<GeneratedCode, String> {
     let source = build::open(spec).map_err(|error| error.to_string())?;
     compile::compile(&source, all.then_some(Analyses::ALL)).map_err(|mistakes| mistakes.to_string())
-}
-
-/// Operations per function; an empty cell where the scene does not need the function.
-fn operations_table(codes: &[GeneratedCode]) -> String {
-    let mut functions: Vec<&str> = Vec::new();
-    for cost in codes.iter().flat_map(|code| &code.report.costs) {
-        if !functions.contains(&cost.function.as_str()) {
-            functions.push(&cost.function);
-        }
-    }
-    let names: Vec<String> = codes.iter().map(|code| format!("`{}`", code.name)).collect();
-    let mut text = format!("| function | {} |\n|---|{}\n", names.join(" | "), "---:|".repeat(codes.len()));
-    for function in functions {
-        let cells: Vec<String> = codes
-            .iter()
-            .map(|code| {
-                let cost = code.report.costs.iter().find(|cost| cost.function == function);
-                cost.map(|cost| cost.operations.total().to_string()).unwrap_or_default()
-            })
-            .collect();
-        let _ = writeln!(text, "| `{function}` | {} |", cells.join(" | "));
-    }
-    text
 }

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use crane_codegen::build;
 use crane_codegen::chain::Analyses;
 use crane_codegen::compile;
+use crane_codegen::explain;
 use crane_tests::workspace;
 
 #[allow(clippy::pedantic)]
@@ -40,6 +41,26 @@ fn generated_code_of_two_small_cranes() {
     }
     assert_eq!(compiled::double_pendulum::N, 2);
     assert_eq!(compiled::knuckle_boom::DESCRIPTION.name, "knuckle_boom");
+}
+
+/// The table of docs/OPERATIONS.md, as `crane-codegen operations` prints it.
+#[test]
+fn operations_table_of_the_documentation() {
+    let codes: Vec<_> = workspace::specs()
+        .iter()
+        .map(|path| {
+            let name = path.file_stem().unwrap().to_string_lossy();
+            compile::generate(&workspace::chain(&name), Analyses::ALL, "")
+        })
+        .collect();
+    let text = format!(
+        "# Operations of the generated functions\n\n\
+         Floating-point operations of one call, an angle's sine and cosine counted as one; all functions of all shipped \
+         cranes,\nalso those that a spec's `analyses` do not ask for. An empty cell: the scene does not need the \
+         function.\n\nMade by `cargo run -p crane-codegen -- operations specs/*.yaml`.\n\n{}",
+        explain::operations_table(&codes)
+    );
+    assert_golden(workspace::root().join("docs/OPERATIONS.md"), &text);
 }
 
 #[test]

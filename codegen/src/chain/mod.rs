@@ -245,7 +245,8 @@ pub struct Run {
     pub output: f64,
 }
 
-/// What is to be computed.
+/// What is to be computed: a set of independent choices.
+#[allow(clippy::struct_excessive_bools)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Analyses {
     /// Static residual and tangent stiffness.

@@ -58,6 +58,7 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
                 }
 
                 #[doc = " Values of the live parameters."]
+                #[allow(dead_code)]
                 pub fn params(&self) -> &Params {
                     &self.params
                 }

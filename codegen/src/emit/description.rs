@@ -11,9 +11,7 @@ use crate::chain::{BodyId, Chain, CoordinateKind, Value};
 /// Sizes and the `DESCRIPTION`.
 pub fn description(chain: &Chain) -> Vec<Item> {
     let n = integer(chain.coordinates.len());
-    let mut items = vec![constant("Number of generalized coordinates.", "N", quote!(usize), quote!(#n))];
-    let bodies = integer(chain.bodies.len());
-    items.push(constant("Number of bodies.", "BODIES", quote!(usize), quote!(#bodies)));
+    let mut items = vec![constant("Number of generalized coordinates.", "N", &quote!(usize), &quote!(#n))];
     items.push(description_constant(chain));
     items
 }

@@ -1,7 +1,7 @@
 //! A block as a Rust function.
 
 use proc_macro2::{Span, TokenStream};
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 use syn::{Expr, Ident, Stmt, parse_quote};
 
 use super::arithmetic::{
@@ -31,7 +31,7 @@ impl Writer<'_> {
     fn whole(&self) -> syn::Item {
         let mut item = self.shell();
         let (mut body, used) = self.piece(&self.block.pieces[0]);
-        let mut statements = self.unpack(&used);
+        let mut statements = Self::unpack(&used);
         // A single number needs no storage.
         if !self.is_scalar() {
             statements.push(self.begin());
@@ -84,7 +84,7 @@ impl Writer<'_> {
         for (index, piece) in self.block.pieces.iter().enumerate() {
             let name = format_ident!("{}_{}", self.block.function.name, index + 1);
             let (body, used) = self.piece(piece);
-            let unpack = self.unpack(&used);
+            let unpack = Self::unpack(&used);
             let keeps = piece.iter().any(|s| matches!(s, Statement::Keep { .. } | Statement::Fetch { .. }));
             let outputs = piece.iter().any(|s| matches!(s, Statement::Output { .. }));
             let mut parameters: Vec<TokenStream> = self.inputs(&used);
@@ -182,7 +182,7 @@ impl Writer<'_> {
     }
 
     /// Plain arrays behind the vectors: a constant index into an array is checked when it is compiled.
-    fn unpack(&self, used: &Used) -> Vec<Stmt> {
+    fn unpack(used: &Used) -> Vec<Stmt> {
         let mut statements: Vec<Stmt> = Vec::new();
         if used.position {
             statements.push(parse_quote!(let q = &q.data.0[0];));
@@ -207,7 +207,7 @@ impl Writer<'_> {
                     let source = self.input(id, &mut used);
                     let name = names.of(id);
                     if !matches!(&source, Expr::Path(path) if path.path.is_ident(&name)) {
-                        pending.push(local(&name, source));
+                        pending.push(local(&name, &source));
                     }
                 }
                 Statement::SinCos { angle, sin, cos } => {
@@ -220,7 +220,7 @@ impl Writer<'_> {
                 }
                 Statement::Let(id) => {
                     let value = self.operation(id, &mut names, &mut used);
-                    pending.push(local(&names.of(id), value));
+                    pending.push(local(&names.of(id), &value));
                 }
                 Statement::Output { slot, value } => {
                     if group != Some(self.result.group(slot)) {
@@ -247,7 +247,7 @@ impl Writer<'_> {
                     pending.push(parse_quote!(#place = #value;));
                 }
                 Statement::Fetch { place, value } => {
-                    pending.push(local(&names.of(value), element(variable("kept"), place)));
+                    pending.push(local(&names.of(value), &element(variable("kept"), place)));
                 }
             }
             if matches!(statement, Statement::SinCos { .. }) {
@@ -325,19 +325,15 @@ fn field_of_pair(angle: Expr, index: u32) -> Expr {
 }
 
 /// `let name = value;`
-pub fn local(name: &str, value: Expr) -> Stmt {
+pub fn local(name: &str, value: &Expr) -> Stmt {
     let name = Ident::new(name, Span::call_site());
     parse_quote!(let #name = #value;)
 }
 
 /// `let (sin, cos) = sin_cos(angle);`
 fn sin_cos(angle: Expr, sin: Option<String>, cos: Option<String>) -> Stmt {
-    let pattern = |name: Option<String>| match name {
-        Some(name) => {
-            let name = Ident::new(&name, Span::call_site());
-            quote!(#name)
-        }
-        None => quote!(_),
+    let pattern = |name: Option<String>| {
+        name.map_or_else(|| quote!(_), |name| Ident::new(&name, Span::call_site()).into_token_stream())
     };
     let (sin, cos, call) = (pattern(sin), pattern(cos), call("sin_cos", [angle]));
     parse_quote!(let (#sin, #cos) = #call;)
@@ -352,7 +348,8 @@ fn argument_name(argument: Argument) -> (&'static str, TokenStream) {
     }
 }
 
-/// Which inputs a piece reads.
+/// Which inputs a piece reads: a set of independent facts.
+#[allow(clippy::struct_excessive_bools)]
 #[derive(Default)]
 struct Used {
     time: bool,

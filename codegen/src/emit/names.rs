@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::symbolic::{ExprId, Op, Program};
+use crate::symbolic::{Argument, ExprId, Op, Program};
 
 /// Words that generated functions use themselves.
 const TAKEN: [&str; 13] =
@@ -27,7 +27,11 @@ impl<'p> Names<'p> {
             return name.clone();
         }
         let name = match self.program.op(id) {
-            Op::Symbol(symbol) => self.unique(&self.program.symbol(symbol).name),
+            Op::Symbol(symbol) => match self.program.symbol(symbol) {
+                // The argument itself.
+                time if time.argument == Argument::Time => time.name.clone(),
+                other => self.unique(&other.name),
+            },
             _ => match self.program.names.get(&id) {
                 Some(name) => self.unique(name),
                 None => self.numbered(),

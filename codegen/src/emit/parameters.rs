@@ -80,6 +80,6 @@ fn constants_body(blocks: &Blocks, labels: &Labels) -> Vec<Stmt> {
     program
         .ids()
         .filter(|id| needed[id.index()] && !program.op(*id).is_leaf())
-        .map(|id| local(&name(id), operation(program.op(id), &mut |operand| argument(operand))))
+        .map(|id| local(&name(id), &operation(program.op(id), &mut |operand| argument(operand))))
         .collect()
 }

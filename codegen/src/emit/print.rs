@@ -1,5 +1,6 @@
 //! Syntax to text: formatted by prettyplease, with comments.
 
+use proc_macro2::TokenStream;
 use syn::{Stmt, parse_quote};
 
 /// A comment line among statements. The formatter drops comments, so it travels as a macro call and is turned into a
@@ -14,21 +15,18 @@ pub fn file(items: Vec<syn::Item>) -> String {
     let mut out = String::with_capacity(text.len());
     let mut in_function = false;
     for line in text.lines() {
-        match comment_of(line) {
-            Some((indent, comment)) => {
-                out.push_str(indent);
-                out.push_str("// ");
-                out.push_str(&comment);
+        if let Some((indent, comment)) = comment_of(line) {
+            out.push_str(indent);
+            out.push_str("// ");
+            out.push_str(&comment);
+        } else {
+            // The formatter puts no blank line between items.
+            let starts_item = !line.starts_with([' ', '}', ')', ']']) && !line.is_empty();
+            if starts_item && !in_function && !out.is_empty() && !out.ends_with("\n\n") {
+                out.push('\n');
             }
-            None => {
-                // The formatter puts no blank line between items.
-                let starts_item = !line.starts_with([' ', '}', ')', ']']) && !line.is_empty();
-                if starts_item && !in_function && !out.is_empty() && !out.ends_with("\n\n") {
-                    out.push('\n');
-                }
-                in_function = starts_item && !ends_item(line);
-                out.push_str(line);
-            }
+            in_function = starts_item && !ends_item(line);
+            out.push_str(line);
         }
         out.push('\n');
     }
@@ -51,7 +49,7 @@ fn comment_of(line: &str) -> Option<(&str, String)> {
 }
 
 /// A constant of the module.
-pub fn constant(doc: &str, name: &str, of: proc_macro2::TokenStream, value: proc_macro2::TokenStream) -> syn::Item {
+pub fn constant(doc: &str, name: &str, of: &TokenStream, value: &TokenStream) -> syn::Item {
     let name = quote::format_ident!("{name}");
     let doc = format!(" {doc}");
     syn::Item::Const(parse_quote!(#[doc = #doc] pub const #name: #of = #value;))

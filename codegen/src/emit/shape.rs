@@ -41,10 +41,12 @@ impl<'f> Result<'f> {
             Shape::Scalar => quote!(f64),
             Shape::Vector(_) => quote!(SVector<f64, N>),
             Shape::Symmetric(_) => quote!(SMatrix<f64, N, N>),
-            Shape::Vectors(n) => array(quote!(Vector3<f64>), *n),
-            Shape::Pairs(n) => array(quote!([f64; 2]), *n),
-            Shape::Transforms { counts, .. } => array(quote!(Matrix4<f64>), counts.iter().sum()),
-            Shape::Turned { degrees, .. } => array(quote!(Matrix4<f64>), degrees.iter().map(|n| n * (n + 1) / 2).sum()),
+            Shape::Vectors(n) => array(&quote!(Vector3<f64>), *n),
+            Shape::Pairs(n) => array(&quote!([f64; 2]), *n),
+            Shape::Transforms { counts, .. } => array(&quote!(Matrix4<f64>), counts.iter().sum()),
+            Shape::Turned { degrees, .. } => {
+                array(&quote!(Matrix4<f64>), degrees.iter().map(|n| n * (n + 1) / 2).sum())
+            }
             Shape::Record(name, _) => {
                 let name = format_ident!("{name}");
                 quote!(#name<N>)
@@ -62,7 +64,7 @@ impl<'f> Result<'f> {
         match self.shape {
             Shape::Vector(_) => quote!([f64; N]),
             Shape::Symmetric(_) => quote!([[f64; N]; N]),
-            Shape::Record(_, fields) => array(quote!([[f64; N]; N]), fields.len()),
+            Shape::Record(_, fields) => array(&quote!([[f64; N]; N]), fields.len()),
             Shape::Turned { degrees, .. } => {
                 let total = integer(degrees.iter().sum());
                 quote!(TransformFactors<N, #total>)
@@ -77,14 +79,14 @@ impl<'f> Result<'f> {
             Shape::Scalar => quote!(0.0),
             Shape::Vector(_) => quote!([0.0; N]),
             Shape::Symmetric(_) => quote!([[0.0; N]; N]),
-            Shape::Vectors(n) => array(quote!(Vector3::zeros()), *n),
-            Shape::Pairs(n) => array(quote!([0.0; 2]), *n),
+            Shape::Vectors(n) => array(&quote!(Vector3::zeros()), *n),
+            Shape::Pairs(n) => array(&quote!([0.0; 2]), *n),
             Shape::Transforms { counts, corner } => {
                 let blank = if *corner == 1 { quote!(BLANK) } else { quote!(Matrix4::zeros()) };
-                array(blank, counts.iter().sum())
+                array(&blank, counts.iter().sum())
             }
             Shape::Turned { .. } => quote!(TransformFactors::zeros()),
-            Shape::Record(_, fields) => array(quote!([[0.0; N]; N]), fields.len()),
+            Shape::Record(_, fields) => array(&quote!([[0.0; N]; N]), fields.len()),
         }
     }
 
@@ -143,7 +145,7 @@ fn matrix_slot(matrices: Expr, slot: usize) -> Expr {
 }
 
 /// `[item; n]`, a type or a value.
-fn array(item: TokenStream, n: usize) -> TokenStream {
+fn array(item: &TokenStream, n: usize) -> TokenStream {
     let n = integer(n);
     quote!([#item; #n])
 }

@@ -359,5 +359,5 @@ fn function(
     outputs: Vec<Expr<'_>>,
 ) -> Function {
     debug_assert_eq!(shape.len(), outputs.len(), "{name}");
-    Function { name, doc, equation, arguments, shape, outputs: outputs.iter().map(|e| e.id()).collect() }
+    Function { name, doc, equation, arguments, shape, outputs: outputs.into_iter().map(Expr::id).collect() }
 }

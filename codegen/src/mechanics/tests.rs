@@ -109,9 +109,3 @@ fn a_planar_crane_stays_planar() {
     assert_eq!(program.op(tip[1]), crate::symbolic::Op::ZERO);
     assert!(super::left_out(&double_pendulum(), Analyses::ALL).iter().any(|(what, _)| what.contains("plane")));
 }
-
-#[test]
-fn zz_print() {
-    let code = crate::compile::generate(&double_pendulum(), Analyses::ALL, "double_pendulum.yaml");
-    std::fs::write("/tmp/dp.rs", code.text).unwrap();
-}

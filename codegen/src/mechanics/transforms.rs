@@ -7,7 +7,7 @@ use crate::chain::{BodyId, CoordinateKind};
 use crate::symbolic::{Expr, Shape};
 
 /// The columns of a 4×4 matrix without its last row, row by row.
-fn rows<'g>(columns: [Vec3<'g>; 4]) -> impl Iterator<Item = Expr<'g>> {
+fn rows(columns: [Vec3<'_>; 4]) -> impl Iterator<Item = Expr<'_>> {
     (0..3).flat_map(move |row| columns.map(|column| column[row]))
 }
 

@@ -39,14 +39,14 @@ impl<'g> Index<usize> for Vec3<'g> {
     }
 }
 
-impl<'g> Add for Vec3<'g> {
+impl Add for Vec3<'_> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Vec3([0, 1, 2].map(|i| self[i] + other[i]))
     }
 }
 
-impl<'g> Sub for Vec3<'g> {
+impl Sub for Vec3<'_> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         Vec3([0, 1, 2].map(|i| self[i] - other[i]))

@@ -14,8 +14,10 @@ pub trait Scalar:
     /// Sine and cosine.
     fn sin_cos(&self) -> (Self, Self);
     /// The smaller of two.
+    #[must_use]
     fn min(self, other: Self) -> Self;
     /// The larger of two.
+    #[must_use]
     fn max(self, other: Self) -> Self;
 }
 

@@ -171,6 +171,9 @@ impl Program {
     }
 
     /// All expressions, operands before their users.
+    ///
+    /// # Panics
+    /// If there are 2^32 expressions or more, which no graph can hold.
     pub fn ids(&self) -> impl Iterator<Item = ExprId> + use<> {
         (0..u32::try_from(self.operations.len()).expect("fewer than 2^32 expressions")).map(ExprId)
     }

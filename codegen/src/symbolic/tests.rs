@@ -19,6 +19,7 @@ fn values(program: &Program, x: f64, y: f64) -> Vec<f64> {
 }
 
 /// Every rule, in one list of expressions.
+#[allow(clippy::eq_op)] // x − x is what a rule is for
 fn all_rules<'g>(g: &'g Graph, x: Expr<'g>, y: Expr<'g>) -> Vec<Expr<'g>> {
     let c = |value| g.constant(value);
     vec![

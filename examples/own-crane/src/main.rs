@@ -8,7 +8,7 @@ use crane_model::{CraneModel, dynamics, statics};
 use own_crane::{Crane, N, Params};
 
 /// The crane of `crane.yaml`, as the build script compiled it; a program need not use all of it.
-#[allow(dead_code)]
+#[allow(dead_code, clippy::all)]
 mod own_crane {
     include!(concat!(env!("OUT_DIR"), "/own_crane.rs"));
 }

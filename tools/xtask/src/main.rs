@@ -1,2 +1,108 @@
-//! Developer tasks.
-fn main() {}
+//! Everything a developer runs.
+//!
+//! `cargo xtask test` runs every check there is; the others are its parts, for the time in between.
+
+mod casadi;
+mod equations;
+mod imports;
+mod python;
+mod step;
+mod workspace;
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use step::Step;
+
+const USAGE: &str = "cargo xtask TASK
+
+  test     every check: lint, unit and whole-system tests, CasADi, the example crate, the default run
+  lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md
+  casadi   generated code against CasADi, over all shipped and some random cranes
+  bless    write anew what tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let task = arguments.first().map_or("", String::as_str);
+    let steps = match task {
+        "test" => [lint(), tests(), casadi()].concat(),
+        "lint" => lint(),
+        "casadi" => casadi(),
+        "bless" => bless(),
+        "help" | "--help" | "-h" => {
+            println!("{USAGE}");
+            return ExitCode::SUCCESS;
+        }
+        other => {
+            eprintln!("no task `{other}`\n\n{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    run(&steps)
+}
+
+/// Runs steps in order; the first that fails ends it.
+fn run(steps: &[Step]) -> ExitCode {
+    let start = Instant::now();
+    for (number, step) in steps.iter().enumerate() {
+        println!("\n=== {}/{} {}", number + 1, steps.len(), step.title);
+        let begun = Instant::now();
+        if let Err(message) = step.run() {
+            eprintln!("\n{} failed: {message}", step.title);
+            return ExitCode::FAILURE;
+        }
+        println!("=== {} done, {:.0} s", step.title, begun.elapsed().as_secs_f64());
+    }
+    println!("\nall {} steps passed in {:.0} s", steps.len(), start.elapsed().as_secs_f64());
+    ExitCode::SUCCESS
+}
+
+fn lint() -> Vec<Step> {
+    vec![
+        Step::cargo("formatting", &["fmt", "--all", "--", "--check"]),
+        Step::check("import rules", imports::check),
+        Step::check("docs/EQUATIONS.md is current", equations::check),
+        Step::cargo(
+            "clippy",
+            &["clippy", "--release", "--workspace", "--all-targets", "--features", CLI, "--", "-D", "warnings"],
+        ),
+        Step::cargo("documentation", &["doc", "--release", "--workspace", "--no-deps", "--features", CLI])
+            .with("RUSTDOCFLAGS", "-D warnings"),
+    ]
+}
+
+/// Features of the commands, on in every step so that nothing is built twice.
+const CLI: &str = "crane-codegen/cli,crane-model/cli";
+
+fn tests() -> Vec<Step> {
+    vec![
+        Step::cargo("tests", &["test", "--release", "--workspace", "--features", CLI]),
+        Step::cargo("the default run", &["run", "--release"]),
+        Step::cargo("a crane of one's own", &["run", "--release", "--package", "own-crane"]),
+    ]
+}
+
+fn casadi() -> Vec<Step> {
+    vec![
+        Step::check("Python environment", python::prepare),
+        Step::cargo(
+            "the program that evaluates generated code",
+            &["build", "--release", "--workspace", "--features", CLI, "--bins"],
+        ),
+        Step::check("CasADi's own checks notice errors", casadi::self_test),
+        Step::check("generated code against CasADi", casadi::check),
+    ]
+}
+
+fn bless() -> Vec<Step> {
+    let update = |title, arguments: &[&str]| {
+        Step::cargo(title, arguments)
+            .with("UPDATE_GOLDEN", "1")
+            .with("UPDATE_SCHEMA", "1")
+            .with("INSTA_UPDATE", "always")
+    };
+    vec![
+        update("schema and messages", &["test", "--release", "--package", "crane-codegen"]),
+        update("goldens and operation counts", &["test", "--release", "--package", "crane-tests", "--test", "golden"]),
+    ]
+}

@@ -1,0 +1,73 @@
+//! docs/EQUATIONS.md names functions and tests; all of them must exist, and no generated function may be missing.
+
+use crate::workspace;
+
+const DOCUMENT: &str = "docs/EQUATIONS.md";
+/// Where the generated functions are listed.
+const FUNCTIONS: &str = "codegen/src/mechanics/functions.rs";
+
+/// Every name that is stale, and every generated function without a row.
+pub fn check() -> Result<(), String> {
+    let document = workspace::read(DOCUMENT)?;
+    let generated = generated_functions(&workspace::read(FUNCTIONS)?);
+    let mut stale = Vec::new();
+    let mut documented = Vec::new();
+    for (index, line) in document.lines().enumerate().filter(|(_, line)| line.starts_with('|')) {
+        let mut complain = |what: String| stale.push(format!("{DOCUMENT}:{}: {what}", index + 1));
+        let names: Vec<&str> = line.split('`').skip(1).step_by(2).collect();
+        for name in names.iter().filter(|name| name.contains("::")) {
+            if !exists(name)? {
+                complain(format!("`{name}` does not exist"));
+            }
+        }
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        // Rows of the first table: equation, what, derived by, generated, tests.
+        if cells.len() == 7 {
+            for name in cells[4].split('`').skip(1).step_by(2) {
+                if !generated.iter().any(|function| function == name) {
+                    complain(format!("no function `{name}` is generated"));
+                }
+                documented.push(name.to_owned());
+            }
+        }
+    }
+    stale.extend(
+        generated
+            .iter()
+            .filter(|function| !documented.contains(function))
+            .map(|function| format!("{DOCUMENT}: the generated function `{function}` has no row")),
+    );
+    if stale.is_empty() { Ok(()) } else { Err(format!("\n{}", stale.join("\n"))) }
+}
+
+/// Whether `path/file.rs::name` or `module::name` of the compiler is a function.
+fn exists(name: &str) -> Result<bool, String> {
+    let Some((place, function)) = name.rsplit_once("::") else { return Ok(false) };
+    let candidates = if place.contains('.') {
+        vec![place.to_owned()]
+    } else {
+        let path = place.replace("::", "/");
+        vec![format!("codegen/src/{path}.rs"), format!("codegen/src/{path}/mod.rs")]
+    };
+    let found: Vec<&String> = candidates.iter().filter(|path| workspace::root().join(path).is_file()).collect();
+    for path in found {
+        let text = workspace::read(path)?;
+        let defined = ["fn ", "def "].iter().any(|keyword| {
+            text.match_indices(&format!("{keyword}{function}"))
+                .any(|(at, found)| text[at + found.len()..].starts_with(['(', '<']))
+        });
+        if defined {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// First arguments of `function(` and `scalar(` calls: the names of the generated functions.
+fn generated_functions(text: &str) -> Vec<String> {
+    text.lines()
+        .filter_map(|line| line.trim().strip_prefix('"')?.strip_suffix("\","))
+        .filter(|name| name.chars().all(|c| c.is_ascii_lowercase() || c == '_'))
+        .map(str::to_owned)
+        .collect()
+}

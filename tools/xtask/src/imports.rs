@@ -1,0 +1,105 @@
+//! Who may import whom; ARCHITECTURE.md tells why.
+
+use crate::workspace;
+
+/// A folder of the compiler, and the modules of the compiler that it may name besides itself.
+const MAY_IMPORT: [(&str, &[&str]); 8] = [
+    ("symbolic", &[]),
+    ("chain", &[]),
+    ("diagnostic", &[]),
+    ("spec", &["diagnostic"]),
+    ("expand", &["chain"]),
+    ("mechanics", &["chain", "symbolic"]),
+    ("lower", &["symbolic"]),
+    ("emit", &["chain", "lower", "symbolic"]),
+];
+
+/// Words that a folder may not contain, and why.
+const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 4] = [
+    ("crane-model/src", "rs", &["crane_codegen"], "the runtime uses the compiler in its build script only"),
+    (
+        "tests/golden",
+        "rs",
+        &["std::", "alloc::", "panic!", "unwrap("],
+        "generated code needs core and the runtime only",
+    ),
+    ("tools/casadi", "py", &["codegen/src", "import yaml"], "the check shares the YAML file and nothing else"),
+    ("codegen/src", "rs", &["unsafe "], "no unsafe code"),
+];
+
+/// Modules of the compiler that alone may touch files, the environment or the process.
+const MAY_TOUCH_THE_WORLD: [&str; 2] = ["codegen/src/build.rs", "codegen/src/main.rs"];
+
+/// Every breach of the rules.
+pub fn check() -> Result<(), String> {
+    let mut breaches = Vec::new();
+    for (folder, allowed) in MAY_IMPORT {
+        for file in workspace::files(&format!("codegen/src/{folder}"), "rs")? {
+            for (number, line) in code_lines(&workspace::read(&file)?) {
+                for module in named_modules(&line) {
+                    if module != folder && !allowed.contains(&module.as_str()) {
+                        breaches.push(format!("{file}:{number}: `{folder}` may not import `{module}`"));
+                    }
+                }
+            }
+        }
+    }
+    for (folder, extension, words, reason) in MAY_NOT_NAME {
+        for file in workspace::files(folder, extension)? {
+            for (number, line) in code_lines(&workspace::read(&file)?) {
+                breaches.extend(
+                    words.iter().filter(|w| line.contains(**w)).map(|w| format!("{file}:{number}: `{w}`: {reason}")),
+                );
+            }
+        }
+    }
+    for file in workspace::files("codegen/src", "rs")? {
+        if !MAY_TOUCH_THE_WORLD.contains(&file.as_str()) {
+            for (number, line) in code_lines(&workspace::read(&file)?) {
+                if ["std::fs", "std::env", "process::exit"].iter().any(|word| line.contains(word)) {
+                    breaches.push(format!("{file}:{number}: `build` alone touches files, environment and process"));
+                }
+            }
+        }
+    }
+    if breaches.is_empty() { Ok(()) } else { Err(format!("\n{}", breaches.join("\n"))) }
+}
+
+/// Lines that are code, without the tests at the end of a file, with their numbers.
+fn code_lines(text: &str) -> Vec<(usize, String)> {
+    text.lines()
+        .enumerate()
+        .take_while(|(_, line)| line.trim() != "#[cfg(test)]" || text.contains("mod tests;"))
+        .filter(|(_, line)| !line.trim_start().starts_with("//"))
+        .map(|(index, line)| (index + 1, line.to_owned()))
+        .collect()
+}
+
+/// Modules after `crate::` in a line; a type re-exported at the root counts as none.
+fn named_modules(line: &str) -> Vec<String> {
+    line.split("crate::")
+        .skip(1)
+        .filter(|_| !line.contains("macro_rules"))
+        .flat_map(|rest| match rest.strip_prefix('{') {
+            Some(list) => list.split(',').map(first_word).collect(),
+            None => vec![first_word(rest)],
+        })
+        .filter(|word| word.chars().next().is_some_and(char::is_lowercase))
+        .collect()
+}
+
+fn first_word(text: &str) -> String {
+    text.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modules_are_found() {
+        assert_eq!(named_modules("use crate::chain::Chain;"), ["chain"]);
+        assert_eq!(named_modules("use crate::{SourceFile, compile, emit::Report};"), ["compile", "emit"]);
+        assert_eq!(named_modules("    crate::lower::lower(p)"), ["lower"]);
+    }
+}
