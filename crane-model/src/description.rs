@@ -25,7 +25,7 @@ pub struct Description {
     pub gravity: [f64; 3],
     /// Whether the spec asks for statics: a run then starts from the static equilibrium, otherwise from the guess.
     pub statics: bool,
-    /// Where the static solution starts, m and rad.
+    /// Where the static solution starts, or the run without statics, m and rad.
     pub guess: &'static [f64],
     /// Simulated time, s.
     pub duration: f64,

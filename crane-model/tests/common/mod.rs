@@ -28,6 +28,8 @@ pub const fn description(
         supports: &[],
         drives: &[],
         points: &[],
+        gravity: [0.0, 0.0, -GRAVITY],
+        statics: true,
         guess,
         duration: 10.0,
         step: 1e-3,

@@ -33,7 +33,7 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
         writeln!(out, "Statics of {}\n", flexible.description().title)?;
         mem::take(&mut report).print(format, out)?;
     }
-    cases.iter().try_for_each(Case::stable)?;
+    let starts = cases.iter().map(Case::start).collect::<Outcome<Vec<_>>>()?;
 
     files::folder(folder)?;
     let settings = [options.timing.settings(rigid.as_ref())?, options.timing.settings(flexible.as_ref())?];
@@ -42,8 +42,9 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
     let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
         let runs: Vec<_> = cases
             .iter()
+            .zip(&starts)
             .zip(&settings)
-            .map(|(case, settings)| scope.spawn(|| record(case.rig, &case.equilibrium.q, settings, &bar)))
+            .map(|((case, start), settings)| scope.spawn(|| record(case.rig, start, settings, &bar)))
             .collect();
         let broken = |_| Err(Problem::failed("a simulation broke off", "please report it"));
         runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
@@ -72,7 +73,11 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
     report.grid(file_list(folder, &written));
     if format == Format::Table {
         let (duration, step) = (settings[1].duration, flexible_run.run.step);
-        writeln!(out, "\nMotion over {duration} s, classical Runge-Kutta, step {step} s\n")?;
+        writeln!(
+            out,
+            "\nMotion over {duration} s from the {}, classical Runge-Kutta, step {step} s\n",
+            flexible_run.start
+        )?;
     }
     report.print(format, out)?;
     if format == Format::Table {

@@ -74,7 +74,7 @@ pub fn write_record(path: &Path, rig: &dyn Rig, settings: &dynamics::Settings, r
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "method": "classical Runge-Kutta, order 4, constant step",
-        "start": "static equilibrium, at rest",
+        "start": recorded.start,
         "step_s": recorded.run.step,
         "steps": recorded.run.steps,
         "duration_s": settings.duration,

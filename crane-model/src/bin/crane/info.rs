@@ -8,6 +8,7 @@ use crate::{
     arguments::{Analysis, Format},
     problem::Outcome,
     report::{Cell, Grid, Report},
+    run::{EQUILIBRIUM, GUESS},
 };
 
 /// Prints the cranes to choose from.
@@ -31,6 +32,7 @@ pub fn info(options: &Analysis, out: &mut dyn Write) -> Outcome<()> {
     report.fact("title", description.title, "");
     report.fact("spec hash", description.spec_hash, "");
     report.fact("coordinates", description.coordinates.len(), "");
+    report.fact("start", if description.statics { EQUILIBRIUM } else { GUESS }, "");
     report.fact("duration", description.duration, "s");
     report.fact("step", description.step, "s");
     report.fact("output", description.output, "s");

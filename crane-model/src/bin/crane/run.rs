@@ -1,4 +1,4 @@
-//! A run from the static pose, recorded.
+//! A recorded run.
 
 use std::{
     io,
@@ -18,6 +18,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::{
     arguments::Timing,
     problem::{Outcome, Problem},
+    statics::Case,
 };
 
 /// Most results of a run that are kept in memory and written.
@@ -26,8 +27,36 @@ const MOST_RESULTS: f64 = 1e6;
 /// Most steps of a run: hours of waiting.
 const MOST_STEPS: f64 = 1e10;
 
+/// Start of a crane whose spec asks for statics.
+pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
+
+/// Start of a crane whose spec does not.
+pub const GUESS: &str = "guess, at rest";
+
+/// Pose from which a run starts, at rest.
+pub struct Start {
+    /// The pose, m and rad.
+    pub q: Vec<f64>,
+    /// Which one: [`EQUILIBRIUM`] or [`GUESS`].
+    pub what: &'static str,
+}
+
+impl Start {
+    /// The static equilibrium where the crane's spec asks for statics, otherwise its guess.
+    pub fn of(rig: &dyn Rig) -> Outcome<Self> {
+        let description = rig.description();
+        if description.statics {
+            Case::new(description.name, rig).start()
+        } else {
+            Ok(Self { q: description.guess.to_vec(), what: GUESS })
+        }
+    }
+}
+
 /// A finished run.
 pub struct Recorded {
+    /// What it started from.
+    pub start: &'static str,
     /// Steps and time.
     pub run: Run,
     /// All results.
@@ -85,9 +114,9 @@ pub fn progress(seconds: f64) -> ProgressBar {
     bar
 }
 
-/// Runs from `start` at rest and records every result; says before if the step will not do.
-pub fn record(rig: &dyn Rig, start: &[f64], settings: &dynamics::Settings, bar: &ProgressBar) -> Outcome<Recorded> {
-    let limit = largest_step(rig, start);
+/// Runs from `start` and records every result; says before if the step will not do.
+pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: &ProgressBar) -> Outcome<Recorded> {
+    let limit = largest_step(rig, &start.q);
     let name = rig.description().name;
     if let Some(limit) = limit.filter(|limit| settings.step > *limit) {
         let step = settings.step;
@@ -101,7 +130,7 @@ pub fn record(rig: &dyn Rig, start: &[f64], settings: &dynamics::Settings, bar: 
     let mut recording = Recording::new(rig);
     let mut shown = 0;
     let run = rig
-        .simulate(start, settings, &mut |sample| {
+        .simulate(&start.q, settings, &mut |sample| {
             recording.push(sample);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
             let reached = (sample.t * 1e3) as u64;
@@ -115,7 +144,7 @@ pub fn record(rig: &dyn Rig, start: &[f64], settings: &dynamics::Settings, bar: 
             });
             Problem::failed(format!("{name}: {stopped}"), stopped.advice() + &limit)
         })?;
-    Ok(Recorded { run, table: recording.into_table(), wall: begin.elapsed() })
+    Ok(Recorded { start: start.what, run, table: recording.into_table(), wall: begin.elapsed() })
 }
 
 /// Largest stable step of small motions about pose `q`, s; `None` where nothing limits it or there are no modes.

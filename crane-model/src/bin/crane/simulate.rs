@@ -14,8 +14,7 @@ use crate::{
     files,
     problem::{Outcome, Problem},
     report::{Grid, Report},
-    run::{Recorded, progress, record},
-    statics::Case,
+    run::{Recorded, Start, progress, record},
 };
 
 /// A recorded run as a curve of the figures.
@@ -34,11 +33,10 @@ pub fn simulate(options: &Simulate, out: &mut dyn Write) -> Outcome<()> {
     let rig = rig.as_ref();
     let name = rig.description().name;
     let settings = options.timing.settings(rig)?;
-    let case = Case::new(name, rig);
-    case.stable()?;
+    let start = Start::of(rig)?;
     files::folder(&options.timing.out)?;
     let bar = progress(settings.duration);
-    let recorded = record(rig, &case.equilibrium.q, &settings, &bar)?;
+    let recorded = record(rig, &start, &settings, &bar)?;
     bar.finish_and_clear();
 
     let mut written = write_run(&options.timing.out, rig, &settings, &recorded)?;
@@ -47,6 +45,7 @@ pub fn simulate(options: &Simulate, out: &mut dyn Write) -> Outcome<()> {
 
     let mut report = Report::default();
     report.fact("crane", name, "");
+    report.fact("start", recorded.start, "");
     report.fact("steps", recorded.run.steps, "");
     report.fact("step", recorded.run.step, "s");
     report.grid(summary(rig.description(), &[(name, &recorded)]));

@@ -14,6 +14,7 @@ use crate::{
     arguments::{Analysis, Format},
     problem::{Outcome, Problem},
     report::{Cell, Grid, Report},
+    run::{EQUILIBRIUM, Start},
 };
 
 /// A crane in equilibrium.
@@ -41,6 +42,12 @@ impl<'a> Case<'a> {
         }
     }
 
+    /// Where a run from this equilibrium starts: a problem unless it is stable.
+    pub fn start(&self) -> Outcome<Start> {
+        self.stable()?;
+        Ok(Start { q: self.equilibrium.q.clone(), what: EQUILIBRIUM })
+    }
+
     fn coordinates(&self) -> &'static [CoordinateInfo] {
         self.rig.description().coordinates
     }
@@ -55,17 +62,14 @@ impl<'a> Case<'a> {
         self.coordinates().iter().position(|coordinate| coordinate.name == name).map(|index| values[index])
     }
 
-    /// Gravity along the base's translations: the weight, as far as the base can yield to it. N.
+    /// Weight of the crane with its load, N; unknown where the base cannot be lifted or pushed.
+    ///
+    /// A translation of the base moves everything alike, so that its entry of the mass matrix is the whole mass.
     fn weight(&self) -> [Option<f64>; 3] {
-        let forces = self.rig.bias(&self.equilibrium.q, &self.rest());
-        ["_x", "_y", "_z"].map(|axis| {
-            let index = self.coordinates().iter().position(|coordinate| {
-                coordinate.role == CoordinateRole::Base
-                    && coordinate.kind == CoordinateKind::Translation
-                    && coordinate.name.ends_with(axis)
-            })?;
-            Some(forces[index])
-        })
+        let lifts = |c: &CoordinateInfo| c.role == CoordinateRole::Base && c.kind == CoordinateKind::Translation;
+        let index = self.coordinates().iter().position(lifts);
+        let mass = index.map(|index| self.rig.mass_matrix(&self.equilibrium.q)[(index, index)]);
+        self.rig.description().gravity.map(|gravity| mass.map(|mass| mass * gravity))
     }
 }
 
