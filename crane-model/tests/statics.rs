@@ -48,6 +48,15 @@ fn a_joint_that_nothing_holds_is_singular() {
 }
 
 #[test]
+fn a_joint_that_is_pushed_and_not_held_is_singular() {
+    // No spring resists gravity in the other joint; no step helps from the start.
+    let lift = Lift { stiffness: 0.0, ..Lift::default() };
+    let equilibrium = solve(&lift, &Settings::default());
+    assert_eq!(equilibrium.status, Status::Singular { coordinates: vec!["lift_z"] });
+    assert_eq!(equilibrium.steps(), 0);
+}
+
+#[test]
 fn a_guess_with_vanishing_stiffness_is_left_behind() {
     // Horizontal rods: K = 0, yet gravity pushes. Both equilibria of a rod are within reach; any will do.
     let equilibrium = solve(&DoublePendulum::horizontal(), &Settings::default());

@@ -40,9 +40,4 @@ impl<const N: usize> Balance<N> {
     pub(super) fn norm(&self, residual: &SVector<f64, N>) -> f64 {
         residual.component_div(&self.scale).norm()
     }
-
-    /// Whether the residual pushes along `direction` by more than `tolerance` of what balances there.
-    pub(super) fn pushes(&self, residual: &SVector<f64, N>, direction: &SVector<f64, N>, tolerance: f64) -> bool {
-        residual.dot(direction).abs() > tolerance * self.scale.dot(&direction.abs())
-    }
 }

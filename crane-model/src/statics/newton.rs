@@ -76,30 +76,23 @@ pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> E
         let Some(tangent) = Tangent::new(&crane.tangent_stiffness(&q), description) else {
             break Status::NotConverged;
         };
-        if norm <= settings.tolerance
-            && let Some(coordinates) = tangent.negative_direction(description)
-        {
-            break Status::Unstable { coordinates };
-        }
-        let pushed = |direction: &SVector<f64, N>| balance.pushes(&residual, direction, settings.tolerance);
-        if let Some(coordinates) = tangent.free_directions(description, pushed) {
-            break Status::Singular { coordinates };
-        }
         if norm <= settings.tolerance {
-            break Status::Converged;
+            break tangent.status(description);
         }
-        let improved = (history.len() <= settings.iterations).then(|| {
-            let step = limited(tangent.step(&residual), |i| description.coordinates[i].kind);
-            (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
-                let pose = q + step * fraction;
-                let residual = crane.static_residual(&pose);
-                let trial = balance.norm(&residual);
-                (trial < norm).then_some((pose, residual, trial, fraction))
-            })
+        if history.len() > settings.iterations {
+            break Status::NotConverged;
+        }
+        let step = limited(tangent.step(&residual), |i| description.coordinates[i].kind);
+        let improved = (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
+            let pose = q + step * fraction;
+            let residual = crane.static_residual(&pose);
+            let trial = balance.norm(&residual);
+            (trial < norm).then_some((pose, residual, trial, fraction))
         });
-        let Some(Some((pose, next, trial, fraction))) = improved else {
+        let Some((pose, next, trial, fraction)) = improved else {
+            // Pushed, and nothing holds it: a free direction says why no step helps.
             break tangent
-                .free_directions(description, |_| false)
+                .free_directions(description)
                 .map_or(Status::NotConverged, |coordinates| Status::Singular { coordinates });
         };
         (q, residual, norm) = (pose, next, trial);

@@ -12,7 +12,8 @@ pub enum Status {
         /// Coordinates that lead the motion away from it.
         coordinates: Vec<&'static str>,
     },
-    /// Nothing holds the crane in one direction: the tangent stiffness is singular.
+    /// Nothing holds the crane in some direction: the tangent stiffness is singular, at an equilibrium or where no step
+    /// makes the residual smaller.
     Singular {
         /// Coordinates that move in that direction.
         coordinates: Vec<&'static str>,

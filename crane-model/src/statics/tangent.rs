@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, SMatrix, SVector, SymmetricEigen};
 
+use super::Status;
 use crate::{CoordinateKind, Description};
 
 /// A diagonal entry below this part of the greatest of its kind (N/m or N m/rad) counts as no stiffness of its own. Real
@@ -58,25 +59,25 @@ impl<const N: usize> Tangent<N> {
         SVector::from_fn(|i, _| -step[i] * self.scale[i])
     }
 
-    /// Coordinates of the directions that nothing holds, if there are such: those of them that are not `pushed`.
-    pub(super) fn free_directions(
-        &self,
-        names: &Description,
-        pushed: impl Fn(&SVector<f64, N>) -> bool,
-    ) -> Option<Vec<&'static str>> {
-        let mut free = Vec::new();
-        for k in (0..N).filter(|&k| self.values[k].abs() < self.free) {
-            if !pushed(&SVector::from_fn(|i, _| self.vectors[(i, k)] * self.scale[i])) {
-                free.extend(self.names_of(k, names));
-            }
-        }
-        free.sort_unstable();
-        free.dedup();
-        (!free.is_empty()).then_some(free)
+    /// What kind of equilibrium it is.
+    pub(super) fn status(&self, names: &Description) -> Status {
+        let unstable = self.negative_direction(names).map(|coordinates| Status::Unstable { coordinates });
+        unstable
+            .or_else(|| self.free_directions(names).map(|coordinates| Status::Singular { coordinates }))
+            .unwrap_or(Status::Converged)
+    }
+
+    /// Coordinates of the directions that nothing holds, if there are such.
+    pub(super) fn free_directions(&self, names: &Description) -> Option<Vec<&'static str>> {
+        let free = (0..N).filter(|&k| self.values[k].abs() < self.free);
+        let mut coordinates: Vec<_> = free.flat_map(|k| self.names_of(k, names)).collect();
+        coordinates.sort_unstable();
+        coordinates.dedup();
+        (!coordinates.is_empty()).then_some(coordinates)
     }
 
     /// Coordinates of the direction of the most negative stiffness, if there is one.
-    pub(super) fn negative_direction(&self, names: &Description) -> Option<Vec<&'static str>> {
+    fn negative_direction(&self, names: &Description) -> Option<Vec<&'static str>> {
         let k = self.values.imin();
         (self.values[k] < -self.free).then(|| self.names_of(k, names))
     }
