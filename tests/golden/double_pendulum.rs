@@ -38,9 +38,6 @@ use ::crane_model::{
 /// Number of generalized coordinates.
 pub const N: usize = 2;
 
-/// Number of bodies.
-pub const BODIES: usize = 2;
-
 /// Names, units and settings.
 pub const DESCRIPTION: Description = Description {
     name: "double_pendulum",
@@ -78,6 +75,8 @@ pub const DESCRIPTION: Description = Description {
     supports: &[],
     drives: &[],
     points: &["end"],
+    gravity: [0.0, 0.0, -9.81],
+    statics: false,
     guess: &[1.5707963267948966, -1.5707963267948966],
     duration: 10.0,
     step: 0.001,

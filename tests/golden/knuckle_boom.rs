@@ -43,9 +43,6 @@ use ::crane_model::{
 /// Number of generalized coordinates.
 pub const N: usize = 4;
 
-/// Number of bodies.
-pub const BODIES: usize = 5;
-
 /// Names, units and settings.
 pub const DESCRIPTION: Description = Description {
     name: "knuckle_boom",
@@ -125,6 +122,8 @@ pub const DESCRIPTION: Description = Description {
         DriveInfo { coordinate: 2 },
     ],
     points: &["boom_tip", "load_centre"],
+    gravity: [0.0, 0.0, -9.81],
+    statics: true,
     guess: &[-0.7853981633974483, 1.3089969389957472, 0.2, -0.5235987755982988],
     duration: 10.0,
     step: 0.001,
@@ -398,8 +397,7 @@ pub fn drive_forces(
     let v = &v.data.0[0];
     let mut out: [f64; N] = [0.0; N];
     // Sines and cosines
-    let t_2 = t;
-    let t001 = (0.25 * t_2).max(0.0).min(1.0);
+    let t001 = (0.25 * t).max(0.0).min(1.0);
     let t002 = 6.283185307179586 * t001;
     let (t003, t004) = sin_cos(t002);
     // main_boom_theta
@@ -413,7 +411,7 @@ pub fn drive_forces(
         - 60000.0 * (main_boom_theta_dot + 0.06544984694978734 * (1.0 - t004));
     out[0] = effort_main_boom_theta;
     // knuckle_theta
-    let t006 = (0.25 * (t_2 - 1.0)).max(0.0).min(1.0);
+    let t006 = (0.25 * (t - 1.0)).max(0.0).min(1.0);
     let t007 = (t006 - 0.7).max(0.0).min(0.30000000000000004);
     let t008 = t006.max(0.0).min(0.3);
     let t009 = 1.6666666666666667 * (t008 * t008 - t007 * t007);
@@ -426,14 +424,14 @@ pub fn drive_forces(
         - 30000.0 * (knuckle_theta_dot + 0.5194432297602172 * (t008 - t007));
     out[1] = effort_knuckle_theta;
     // extension_x
-    let t011 = t_2.max(0.0).min(2.0);
-    let t012 = (t_2 - 2.0).max(0.0).min(2.0);
+    let t011 = t.max(0.0).min(2.0);
+    let t012 = (t - 2.0).max(0.0).min(2.0);
     let t013 = t012
         * (t012 * (0.02499999999999998 - 0.012500000000000011 * t012)
             + 0.25000000000000006);
     let t014 = 0.2 + t011 * (t011 * (0.09999999999999995 - 0.012499999999999983 * t011))
         + t013;
-    let t015 = (t_2 - 4.0).max(0.0).min(2.0);
+    let t015 = (t - 4.0).max(0.0).min(2.0);
     let extension_x = q[2];
     let t016 = t014
         + t015
@@ -458,8 +456,7 @@ pub fn drive_forces(
 pub fn drive_motions(t: f64) -> [[f64; 2]; 3] {
     let mut out: [[f64; 2]; 3] = [[0.0; 2]; 3];
     // Sines and cosines
-    let t_2 = t;
-    let t001 = (0.25 * t_2).max(0.0).min(1.0);
+    let t001 = (0.25 * t).max(0.0).min(1.0);
     let t002 = 6.283185307179586 * t001;
     let (t003, t004) = sin_cos(t002);
     // main_boom_theta
@@ -467,7 +464,7 @@ pub fn drive_motions(t: f64) -> [[f64; 2]; 3] {
         - 0.26179938779914935 * (t001 - 0.15915494309189535 * t003);
     out[0][1] = -0.06544984694978734 * (1.0 - t004);
     // knuckle_theta
-    let t005 = (0.25 * (t_2 - 1.0)).max(0.0).min(1.0);
+    let t005 = (0.25 * (t - 1.0)).max(0.0).min(1.0);
     let t006 = (t005 - 0.7).max(0.0).min(0.30000000000000004);
     let t007 = t005.max(0.0).min(0.3);
     let t008 = 1.6666666666666667 * (t007 * t007 - t006 * t006);
@@ -476,14 +473,14 @@ pub fn drive_motions(t: f64) -> [[f64; 2]; 3] {
             * (t006 + ((t005 - 0.3).max(0.0).min(0.39999999999999997) + t008));
     out[1][1] = -0.5194432297602172 * (t007 - t006);
     // extension_x
-    let t009 = t_2.max(0.0).min(2.0);
-    let t010 = (t_2 - 2.0).max(0.0).min(2.0);
+    let t009 = t.max(0.0).min(2.0);
+    let t010 = (t - 2.0).max(0.0).min(2.0);
     let t011 = t010
         * (t010 * (0.02499999999999998 - 0.012500000000000011 * t010)
             + 0.25000000000000006);
     let t012 = 0.2 + t009 * (t009 * (0.09999999999999995 - 0.012499999999999983 * t009))
         + t011;
-    let t013 = (t_2 - 4.0).max(0.0).min(2.0);
+    let t013 = (t - 4.0).max(0.0).min(2.0);
     out[2][0] = t012
         + t013
             * (t013 * (-0.04999999999999996 - 6.938893903907228e-18 * t013)
@@ -519,8 +516,7 @@ pub fn forces(t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, 
     let v = &v.data.0[0];
     let mut out: [f64; N] = [0.0; N];
     // Sines and cosines
-    let t_2 = t;
-    let t001 = (0.25 * t_2).max(0.0).min(1.0);
+    let t001 = (0.25 * t).max(0.0).min(1.0);
     let t002 = 6.283185307179586 * t001;
     let (t003, t004) = sin_cos(t002);
     // main_boom_theta
@@ -534,7 +530,7 @@ pub fn forces(t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, 
         - 60000.0 * (main_boom_theta_dot + 0.06544984694978734 * (1.0 - t004));
     out[0] = effort_main_boom_theta;
     // knuckle_theta
-    let t006 = (0.25 * (t_2 - 1.0)).max(0.0).min(1.0);
+    let t006 = (0.25 * (t - 1.0)).max(0.0).min(1.0);
     let t007 = (t006 - 0.7).max(0.0).min(0.30000000000000004);
     let t008 = t006.max(0.0).min(0.3);
     let t009 = 1.6666666666666667 * (t008 * t008 - t007 * t007);
@@ -547,14 +543,14 @@ pub fn forces(t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, 
         - 30000.0 * (knuckle_theta_dot + 0.5194432297602172 * (t008 - t007));
     out[1] = effort_knuckle_theta;
     // extension_x
-    let t011 = t_2.max(0.0).min(2.0);
-    let t012 = (t_2 - 2.0).max(0.0).min(2.0);
+    let t011 = t.max(0.0).min(2.0);
+    let t012 = (t - 2.0).max(0.0).min(2.0);
     let t013 = t012
         * (t012 * (0.02499999999999998 - 0.012500000000000011 * t012)
             + 0.25000000000000006);
     let t014 = 0.2 + t011 * (t011 * (0.09999999999999995 - 0.012499999999999983 * t011))
         + t013;
-    let t015 = (t_2 - 4.0).max(0.0).min(2.0);
+    let t015 = (t - 4.0).max(0.0).min(2.0);
     let extension_x = q[2];
     let t016 = t014
         + t015
@@ -620,13 +616,12 @@ pub fn gravity_energy(q: &SVector<f64, N>, c: &Constants) -> f64 {
 pub fn drive_energy(t: f64, q: &SVector<f64, N>) -> f64 {
     let q = &q.data.0[0];
     // Sines and cosines
-    let t_2 = t;
-    let t001 = (0.25 * t_2).max(0.0).min(1.0);
+    let t001 = (0.25 * t).max(0.0).min(1.0);
     let (t002, _) = sin_cos(6.283185307179586 * t001);
     let main_boom_theta = q[0];
     let t003 = -0.7853981633974483
         - 0.26179938779914935 * (t001 - 0.15915494309189535 * t002) - main_boom_theta;
-    let t004 = (0.25 * (t_2 - 1.0)).max(0.0).min(1.0);
+    let t004 = (0.25 * (t - 1.0)).max(0.0).min(1.0);
     let t005 = (t004 - 0.7).max(0.0).min(0.30000000000000004);
     let t006 = t004.max(0.0).min(0.3);
     let t007 = 1.6666666666666667 * (t006 * t006 - t005 * t005);
@@ -636,14 +631,14 @@ pub fn drive_energy(t: f64, q: &SVector<f64, N>) -> f64 {
     let knuckle_theta = q[1];
     let t009 = t008 - knuckle_theta;
     let t010 = 4000000.0 * (t003 * t003) + 2000000.0 * (t009 * t009);
-    let t011 = t_2.max(0.0).min(2.0);
-    let t012 = (t_2 - 2.0).max(0.0).min(2.0);
+    let t011 = t.max(0.0).min(2.0);
+    let t012 = (t - 2.0).max(0.0).min(2.0);
     let t013 = t012
         * (t012 * (0.02499999999999998 - 0.012500000000000011 * t012)
             + 0.25000000000000006);
     let t014 = 0.2 + t011 * (t011 * (0.09999999999999995 - 0.012499999999999983 * t011))
         + t013;
-    let t015 = (t_2 - 4.0).max(0.0).min(2.0);
+    let t015 = (t - 4.0).max(0.0).min(2.0);
     let extension_x = q[2];
     let t016 = t014
         + t015
@@ -661,15 +656,14 @@ pub fn drive_power(t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
     let q = &q.data.0[0];
     let v = &v.data.0[0];
     // Sines and cosines
-    let t_2 = t;
-    let t001 = (0.25 * t_2).max(0.0).min(1.0);
+    let t001 = (0.25 * t).max(0.0).min(1.0);
     let t002 = 6.283185307179586 * t001;
     let (t003, t004) = sin_cos(t002);
-    let t005 = t_2.max(0.0).min(2.0);
-    let t006 = (t_2 - 2.0).max(0.0).min(2.0);
+    let t005 = t.max(0.0).min(2.0);
+    let t006 = (t - 2.0).max(0.0).min(2.0);
     let t007 = t005 * (0.1999999999999999 - 0.03749999999999995 * t005)
         + t006 * (0.04999999999999996 - 0.03750000000000003 * t006);
-    let t008 = (t_2 - 4.0).max(0.0).min(2.0);
+    let t008 = (t - 4.0).max(0.0).min(2.0);
     let t009 = t007 + t008 * (-0.09999999999999992 - 2.0816681711721685e-17 * t008);
     let t010 = t006
         * (t006 * (0.02499999999999998 - 0.012500000000000011 * t006)
@@ -691,7 +685,7 @@ pub fn drive_power(t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
             - main_boom_theta);
     let main_boom_theta_dot = v[0];
     let effort_main_boom_theta = t014 - 60000.0 * (main_boom_theta_dot + t013);
-    let t015 = (0.25 * (t_2 - 1.0)).max(0.0).min(1.0);
+    let t015 = (0.25 * (t - 1.0)).max(0.0).min(1.0);
     let t016 = t015.max(0.0).min(0.3);
     let t017 = (t015 - 0.7).max(0.0).min(0.30000000000000004);
     let t018 = 0.5194432297602172 * (t016 - t017);
@@ -716,22 +710,21 @@ pub fn drive_power(t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
 pub fn dissipation(t: f64, _q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
     let v = &v.data.0[0];
     // Sines and cosines
-    let t_2 = t;
-    let (_, t001) = sin_cos(6.283185307179586 * (0.25 * t_2).max(0.0).min(1.0));
+    let (_, t001) = sin_cos(6.283185307179586 * (0.25 * t).max(0.0).min(1.0));
     let hook_theta_dot = v[3];
     let main_boom_theta_dot = v[0];
     let t002 = main_boom_theta_dot + 0.06544984694978734 * (1.0 - t001);
     let knuckle_theta_dot = v[1];
-    let t003 = (0.25 * (t_2 - 1.0)).max(0.0).min(1.0);
+    let t003 = (0.25 * (t - 1.0)).max(0.0).min(1.0);
     let t004 = 0.5194432297602172
         * (t003.max(0.0).min(0.3) - (t003 - 0.7).max(0.0).min(0.30000000000000004));
     let t005 = knuckle_theta_dot + t004;
     let t006 = 60000.0 * (t002 * t002) + 30000.0 * (t005 * t005);
-    let t007 = t_2.max(0.0).min(2.0);
-    let t008 = (t_2 - 2.0).max(0.0).min(2.0);
+    let t007 = t.max(0.0).min(2.0);
+    let t008 = (t - 2.0).max(0.0).min(2.0);
     let t009 = t007 * (0.1999999999999999 - 0.03749999999999995 * t007)
         + t008 * (0.04999999999999996 - 0.03750000000000003 * t008);
-    let t010 = (t_2 - 4.0).max(0.0).min(2.0);
+    let t010 = (t - 4.0).max(0.0).min(2.0);
     let extension_x_dot = v[2];
     let t011 = t009 + t010 * (-0.09999999999999992 - 2.0816681711721685e-17 * t010)
         - extension_x_dot;
@@ -1367,6 +1360,7 @@ impl Crane {
         }
     }
     /// Values of the live parameters.
+    #[allow(dead_code)]
     pub fn params(&self) -> &Params {
         &self.params
     }

@@ -63,9 +63,6 @@ impl Interpreted {
     }
 
     /// `q̈ = A⁻¹ (e + f)`.
-    ///
-    /// # Panics
-    /// If A is not positive definite.
     #[must_use]
     pub fn acceleration(&self, state: &State) -> DVector<f64> {
         let force = self.vector("bias", state) + self.vector("forces", state);
@@ -73,9 +70,6 @@ impl Interpreted {
     }
 
     /// Plain Newton iteration on the static residual from the spec's guess.
-    ///
-    /// # Panics
-    /// If the tangent stiffness is singular.
     #[must_use]
     pub fn equilibrium(&self) -> State {
         let mut state = State { t: 0.0, q: self.chain.guess.clone(), v: vec![0.0; self.size()] };
@@ -93,9 +87,6 @@ impl Interpreted {
     }
 
     /// Undamped circular frequencies about a pose, ascending, rad/s.
-    ///
-    /// # Panics
-    /// If A is not positive definite.
     #[must_use]
     pub fn frequencies(&self, state: &State) -> Vec<f64> {
         let lower = self.matrix("mass_matrix", state).cholesky().expect("A is positive definite").l();

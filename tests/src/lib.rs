@@ -1,5 +1,7 @@
 //! Whole-system tests of the compiler and the runtime: what they share.
 
+#![allow(clippy::missing_panics_doc, reason = "tests fail by panicking")]
+
 pub mod dual;
 pub mod interpreted;
 pub mod quantities;

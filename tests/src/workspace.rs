@@ -12,9 +12,6 @@ pub fn root() -> PathBuf {
 }
 
 /// All shipped specs, in order of name.
-///
-/// # Panics
-/// If `specs/` cannot be read.
 #[must_use]
 pub fn specs() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(root().join("specs")).expect("specs/ is there");
@@ -25,9 +22,6 @@ pub fn specs() -> Vec<PathBuf> {
 }
 
 /// The chain of a shipped spec.
-///
-/// # Panics
-/// If the spec has mistakes.
 #[must_use]
 pub fn chain(name: &str) -> Chain {
     let path = root().join("specs").join(format!("{name}.yaml"));
@@ -36,9 +30,6 @@ pub fn chain(name: &str) -> Chain {
 }
 
 /// The chain of a spec's text.
-///
-/// # Panics
-/// If the spec has mistakes.
 #[must_use]
 pub fn chain_of(name: &str, text: &str) -> Chain {
     compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}"))
