@@ -5,7 +5,7 @@
 pub struct ExprId(pub(super) u32);
 
 impl ExprId {
-    /// Position in [`Graph::operations`](super::Graph::operations).
+    /// Position in [`Program::operations`](super::Program::operations).
     #[must_use]
     pub fn index(self) -> usize {
         self.0 as usize
