@@ -1,0 +1,78 @@
+//! No function of a generated crane allocates.
+
+use std::hint::black_box;
+
+use crane_model::nalgebra::{Matrix4, SVector, Vector3};
+use crane_model::rig::Crane;
+use crane_model::{CraneModel, cranes};
+
+/// Calls every function of the traits at the guess; vectors and matrices stay on the stack, lists go into `places`.
+fn every_function<const N: usize>(crane: &mut impl Crane<N>, places: &mut Places) {
+    let (t, q, v) = (0.7, SVector::<f64, N>::from_column_slice(crane.description().guess), SVector::repeat(0.1));
+    let (q, v) = (&q, &v);
+    crane.set_parameter(0, black_box(crane.parameter(0)));
+    crane.transforms(q, &mut places.matrices);
+    crane.transform_derivatives(q, &mut places.matrices);
+    crane.transform_second_derivatives(q, &mut places.matrices);
+    crane.points(q, &mut places.vectors);
+    crane.point_velocities(q, v, &mut places.vectors);
+    crane.support_reactions(q, v, &mut places.vectors);
+    crane.drive_motions(t, &mut places.motions);
+    black_box((
+        crane.support_forces(q, v),
+        crane.element_forces(q, v),
+        crane.drive_forces(t, q, v),
+        crane.hinge_forces(v),
+    ));
+    black_box((crane.forces(t, q, v), crane.mass_matrix(q), crane.bias(q, v), crane.linearise(q)));
+    black_box((crane.static_residual(q), crane.tangent_stiffness(q)));
+    black_box((crane.gravity_energy(q), crane.support_energy(q), crane.element_energy(q), crane.drive_energy(t, q)));
+    black_box((crane.potential_energy(t, q), crane.kinetic_energy(q, v)));
+    black_box((crane.drive_power(t, q, v), crane.dissipation(t, q, v)));
+}
+
+/// Where lists go; made before anything is counted.
+struct Places {
+    matrices: Vec<Matrix4<f64>>,
+    vectors: Vec<Vector3<f64>>,
+    motions: Vec<[f64; 2]>,
+}
+
+impl Places {
+    fn of<const N: usize>(crane: &impl CraneModel<N>) -> Self {
+        let description = crane.description();
+        let degrees = description.bodies.iter().map(|body| body.degrees_of_freedom);
+        Self {
+            matrices: vec![
+                Matrix4::zeros();
+                degrees.map(|n| n * (n + 1) / 2).sum::<usize>().max(description.bodies.len())
+            ],
+            vectors: vec![Vector3::zeros(); description.points.len().max(description.supports.len())],
+            motions: vec![[0.0; 2]; description.drives.len()],
+        }
+    }
+}
+
+macro_rules! every_crane {
+    ($($name:ident)*) => {
+        $(
+            #[test]
+            fn $name() {
+                let mut crane = cranes::$name::Crane::default();
+                let mut places = Places::of::<{ cranes::$name::N }>(&crane);
+                let calls = allocation_counter::measure(|| every_function(&mut crane, &mut places));
+                assert_eq!(calls.count_total, 0);
+            }
+        )*
+
+        #[test]
+        fn none_is_missing() {
+            let names: Vec<&str> = cranes::all().iter().map(|rig| rig.description().name).collect();
+            assert_eq!(names, [$(stringify!($name)),*]);
+        }
+    };
+}
+
+every_crane! {
+    cantilever double_pendulum eight_link_flexible eight_link_identified eight_link_rigid eight_link_two_flexible knuckle_boom
+}
