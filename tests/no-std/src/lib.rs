@@ -1,0 +1,69 @@
+//! The reference crane for a machine without operating system: no `std`, no heap, and no function that can panic.
+//!
+//! That it builds proves the first two. The program of this package proves the third: it links only where the optimiser
+//! has found every path to a panic impossible.
+
+#![no_std]
+
+use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
+use crane_model::{CraneModel, Dynamics, Linearisation, Linearise, Statics, TransformDerivatives};
+
+pub use crane::{Crane, DESCRIPTION, N};
+
+/// The generated module.
+mod crane {
+    #![allow(dead_code)]
+    include!(concat!(env!("OUT_DIR"), "/eight_link_flexible.rs"));
+}
+
+/// Coordinates, velocities or generalized forces.
+pub type Vector = SVector<f64, N>;
+/// Mass or stiffness.
+pub type Matrix = SMatrix<f64, N, N>;
+
+/// One function a method of the traits.
+macro_rules! exported {
+    ($($name:ident($($argument:ident: $of:ty),*) $(-> $result:ty)?;)*) => {
+        $(
+            #[doc = concat!("`", stringify!($name), "` of the generated crane.")]
+            #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
+            pub fn $name(crane: &Crane, $($argument: $of),*) $(-> $result)? {
+                crane.$name($($argument),*)
+            }
+        )*
+    };
+}
+
+exported! {
+    transforms(q: &Vector, out: &mut [Matrix4<f64>]);
+    points(q: &Vector, out: &mut [Vector3<f64>]);
+    point_velocities(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
+    forces(t: f64, q: &Vector, v: &Vector) -> Vector;
+    support_forces(q: &Vector, v: &Vector) -> Vector;
+    element_forces(q: &Vector, v: &Vector) -> Vector;
+    drive_forces(t: f64, q: &Vector, v: &Vector) -> Vector;
+    hinge_forces(v: &Vector) -> Vector;
+    support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
+    drive_motions(t: f64, out: &mut [[f64; 2]]);
+    gravity_energy(q: &Vector) -> f64;
+    support_energy(q: &Vector) -> f64;
+    element_energy(q: &Vector) -> f64;
+    drive_energy(t: f64, q: &Vector) -> f64;
+    potential_energy(t: f64, q: &Vector) -> f64;
+    drive_power(t: f64, q: &Vector, v: &Vector) -> f64;
+    dissipation(t: f64, q: &Vector, v: &Vector) -> f64;
+    mass_matrix(q: &Vector) -> Matrix;
+    bias(q: &Vector, v: &Vector) -> Vector;
+    kinetic_energy(q: &Vector, v: &Vector) -> f64;
+    static_residual(q: &Vector) -> Vector;
+    tangent_stiffness(q: &Vector) -> Matrix;
+    linearise(q: &Vector) -> Linearisation<N>;
+    transform_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
+    transform_second_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
+}
+
+/// Another value of a live parameter.
+#[cfg_attr(feature = "no-panic", no_panic::no_panic)]
+pub fn set_parameter(crane: &mut Crane, index: usize, value: f64) {
+    crane.set_parameter(index, value);
+}
