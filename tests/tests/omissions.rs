@@ -70,3 +70,22 @@ fn the_header_says_what_is_left_out_and_why() {
     assert!(text.contains("//   supports: the spec has none\n"));
     assert!(text.contains("//   static residual and tangent stiffness: `analyses` does not ask for statics\n"));
 }
+
+/// The feet of the reference crane are symmetric about x = 0: what cancels is gone, not a rounding error.
+#[test]
+fn symmetric_supports_couple_nothing_by_rounding() {
+    let crane = Interpreted::new(workspace::chain("eight_link_rigid"));
+    let forces = crane.program.function("support_forces").unwrap();
+    let needed = crane.program.needed(forces.outputs.iter().copied());
+    let smallest = crane
+        .program
+        .ids()
+        .filter(|id| needed[id.index()])
+        .filter_map(|id| match crane.program.op(id) {
+            Op::Constant(c) if c.value() != 0.0 => Some(c.value().abs()),
+            _ => None,
+        })
+        .fold(f64::INFINITY, f64::min);
+    // The smallest true coefficient is a damping of 8 · 5e4 · 0.57 N s.
+    assert!(smallest > 1e5, "a coefficient of {smallest}");
+}

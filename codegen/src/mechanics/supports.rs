@@ -109,11 +109,27 @@ fn linear_matrix<'g>(model: &Model<'g>, of: impl Fn(&Support) -> Vec3<'g>, matri
 
 /// One entry of [`linear_matrix`], for the places a and b in `x y z ψ θ φ`.
 fn linear_entry<'g>(model: &Model<'g>, of: impl Fn(&Support) -> Vec3<'g>, a: usize, b: usize) -> Expr<'g> {
-    linear(model).fold(model.zero(), |sum, support| {
+    let terms = linear(model).map(|support| {
         let (r, c) = (model.vector(&support.position), of(support));
         let (u, w) = (linear_column(model, r, a), linear_column(model, r, b));
-        sum + Vec3([0, 1, 2].map(|axis| c[axis] * u[axis])).dot(w)
-    })
+        Vec3([0, 1, 2].map(|axis| c[axis] * u[axis])).dot(w)
+    });
+    balanced_sum(model, terms.collect())
+}
+
+/// A sum in which numbers that cancel, as those of a symmetric layout do, leave exactly zero and not a rounding error:
+/// what is not coupled stays so.
+fn balanced_sum<'g>(model: &Model<'g>, terms: Vec<Expr<'g>>) -> Expr<'g> {
+    let numbers: Option<Vec<f64>> = terms.iter().map(|term| term.as_constant()).collect();
+    if let Some(numbers) = numbers {
+        let size: f64 = numbers.iter().map(|x| x.abs()).sum();
+        let sum: f64 = numbers.iter().sum();
+        // Each term carries a few roundings, each addition one.
+        if sum.abs() <= (numbers.len() + 4) as f64 * f64::EPSILON * size {
+            return model.zero();
+        }
+    }
+    terms.into_iter().fold(model.zero(), |sum, term| sum + term)
 }
 
 /// All pairs of items, the first not after the second.
@@ -144,11 +160,12 @@ pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, v: &[Expr<'g>]
 
 /// `Σ uᵀ s δ`: what free play of the linear supports pushes at q̃ = 0.
 fn linear_preload<'g>(model: &Model<'g>, place: usize) -> Expr<'g> {
-    linear(model).fold(model.zero(), |sum, support| {
+    let terms = linear(model).map(|support| {
         let (s, free_play) = (model.vector(&support.stiffness), model.vector(&support.free_play));
         let column = linear_column(model, model.vector(&support.position), place);
-        sum + Vec3([0, 1, 2].map(|axis| s[axis] * free_play[axis])).dot(column)
-    })
+        Vec3([0, 1, 2].map(|axis| s[axis] * free_play[axis])).dot(column)
+    });
+    balanced_sum(model, terms.collect())
 }
 
 /// Force of each support on the crane, world frame, N.
