@@ -1,10 +1,20 @@
 //! The reference crane for a machine without operating system: no `std`, no heap, and no function that can panic.
 //!
-//! That it builds proves the first two. The program of this package proves the third: it links only where the optimiser
-//! has found every path to a panic impossible.
+//! As a static library with the panic handler below it builds only where no crate beneath needs `std` or a heap:
+//!
+//! ```text
+//! cargo rustc --release -p no-std-crane --lib --features bare --crate-type staticlib -- -C panic=abort
+//! ```
+//!
+//! The program of this package links only where the optimiser has found every path to a panic impossible:
+//!
+//! ```text
+//! cargo build --profile no-panic -p no-std-crane --features no-panic
+//! ```
 
 #![no_std]
 
+use crane_model::dynamics::rk4::{self, State};
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use crane_model::{CraneModel, Dynamics, Linearisation, Linearise, Statics, TransformDerivatives};
 
@@ -12,7 +22,7 @@ pub use crane::{Crane, DESCRIPTION, N};
 
 /// The generated module.
 mod crane {
-    #![allow(dead_code)]
+    #![allow(dead_code, clippy::all)]
     include!(concat!(env!("OUT_DIR"), "/eight_link_flexible.rs"));
 }
 
@@ -66,4 +76,17 @@ exported! {
 #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
 pub fn set_parameter(crane: &mut Crane, index: usize, value: f64) {
     crane.set_parameter(index, value);
+}
+
+/// One step of the motion; false where the mass matrix is not positive definite.
+#[cfg_attr(feature = "no-panic", no_panic::no_panic)]
+pub fn step(crane: &Crane, t: f64, h: f64, state: &mut State<N>) -> bool {
+    rk4::step(crane, t, h, state).is_ok()
+}
+
+/// What a panic does is up to whoever owns the machine. `std` has a handler of its own; two of them do not compile.
+#[cfg(all(feature = "bare", not(feature = "no-panic")))]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {}
 }

@@ -2,6 +2,7 @@
 
 use std::hint::black_box;
 
+use crane_model::dynamics::rk4::State;
 use crane_model::nalgebra::{Matrix4, Vector3};
 use no_std_crane::{Crane, DESCRIPTION, Vector};
 
@@ -38,5 +39,7 @@ fn main() {
     black_box(no_std_crane::linearise(&crane, &q));
     no_std_crane::transform_derivatives(&crane, &q, &mut matrices);
     no_std_crane::transform_second_derivatives(&crane, &q, &mut matrices);
-    black_box((matrices, vectors, motions));
+    let mut state = State { q, v };
+    black_box(no_std_crane::step(&crane, t, black_box(1e-4), &mut state));
+    black_box((state, matrices, vectors, motions));
 }
