@@ -87,6 +87,9 @@ catalogue! {
     /// A list has as many items as its key asks for.
     E016 wrong_length(place, expected, found) "{place} has {found} items instead of {expected}",
         "{expected} items belong here", "write {expected} items";
+    /// Text is one line without control characters.
+    E017 not_one_line(place) "{place} is not one line of plain text", "has a line break, or a character that does not print",
+        "write it on one line; `>-` folds a long text into one";
 
     // Names.
     /// Names are `snake_case` identifiers: they become names in Rust.

@@ -97,6 +97,7 @@ impl<'a> Check<'a> {
     fn crane(&mut self, crane: &'a Crane, source: &SourceFile) -> Chain {
         self.format(crane);
         let name = self.name(&crane.name).unwrap_or_default();
+        let title = self.text(crane.title.as_ref(), "`title`").unwrap_or_else(|| name.to_owned());
         self.take_parameters(crane);
         self.take_materials(crane);
         let gravity = match &crane.gravity {
@@ -113,7 +114,7 @@ impl<'a> Check<'a> {
         let analyses = self.analyses(crane.analyses.as_ref());
         self.every_parameter_used(crane);
         Chain {
-            title: crane.title.as_ref().and_then(|title| title.value.clone()).unwrap_or_else(|| name.to_owned()),
+            title,
             name: name.to_owned(),
             spec_hash: source.hash(),
             gravity,

@@ -41,6 +41,17 @@ impl Check<'_> {
         Some(name)
     }
 
+    /// A text for people, which comments of the generated code repeat: a line without characters that break or turn it.
+    pub(super) fn text(&mut self, given: Option<&Given<String>>, place: &str) -> Option<String> {
+        let given = given?;
+        let text = given.value.as_ref()?;
+        let turns = |c| matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        if text.chars().any(|c| c.is_control() || turns(c)) {
+            self.report(rule::not_one_line(given.span, place));
+        }
+        Some(text.clone())
+    }
+
     /// Takes a name that must be unique among its kind.
     pub(super) fn take_name(&mut self, kind: &'static str, name: &str, taker: String, span: Span) {
         if let Err(other) = self.expanded.take(kind, name, taker) {

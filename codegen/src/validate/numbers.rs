@@ -36,8 +36,9 @@ impl<'a> Check<'a> {
             let (default, unit, about) = match &parameter.value {
                 Some(parameter) => {
                     let default = self.fixed(&parameter.value, &format!("parameter `{name}`"), None);
-                    let text = |given: &Option<Given<String>>| given.as_ref()?.value.clone();
-                    (default, text(&parameter.unit), text(&parameter.about))
+                    let unit = self.text(parameter.unit.as_ref(), &format!("the unit of parameter `{name}`"));
+                    let about = self.text(parameter.about.as_ref(), &format!("`about` of parameter `{name}`"));
+                    (default, unit, about)
                 }
                 None => (f64::NAN, None, None),
             };
