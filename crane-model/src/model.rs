@@ -5,7 +5,7 @@
 //!
 //! Throughout: `N` coordinates, `q` in m and rad, `v = q̇` in m/s and rad/s, `t` in s, world frame with z up.
 
-use nalgebra::{Matrix4, SMatrix, SVector, Vector3};
+use nalgebra::{Const, DefaultAllocator, Dim, Matrix4, OMatrix, SMatrix, SVector, Vector3, allocator::Allocator};
 
 use crate::Description;
 
@@ -140,4 +140,30 @@ pub struct Linearisation<const N: usize> {
     pub stiffness: SMatrix<f64, N, N>,
     /// Damping matrix D.
     pub damping: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize> Linearisation<N> {
+    /// Blocks `(−A⁻¹K, −A⁻¹D)` of the state matrix
+    ///
+    /// ```text
+    /// d/dt [δq; δq̇] = [[0, I], [−A⁻¹K, −A⁻¹D]] [δq; δq̇]
+    /// ```
+    ///
+    /// `None` unless A is positive definite. Needs neither `std` nor heap.
+    pub fn state_blocks(&self) -> Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>)> {
+        state_blocks::<Const<N>>(self.mass, &self.stiffness, &self.damping)
+    }
+}
+
+/// `(−A⁻¹K, −A⁻¹D)` of matrices of any size, by Cholesky's factors of A.
+pub(crate) fn state_blocks<D: Dim>(
+    mass: OMatrix<f64, D, D>,
+    stiffness: &OMatrix<f64, D, D>,
+    damping: &OMatrix<f64, D, D>,
+) -> Option<(OMatrix<f64, D, D>, OMatrix<f64, D, D>)>
+where
+    DefaultAllocator: Allocator<D, D>,
+{
+    let mass = mass.cholesky()?;
+    Some((-mass.solve(stiffness), -mass.solve(damping)))
 }

@@ -4,11 +4,11 @@ mod common;
 
 use common::{DoublePendulum, GRAVITY, Lift};
 use crane_model::{
-    Linearise,
+    Linearisation, Linearise,
     dynamics::rk4,
     modes::{SmallMotions, damped, undamped},
 };
-use nalgebra::{Vector1, Vector2};
+use nalgebra::{Matrix2, Vector1, Vector2};
 
 fn relative(a: f64, b: f64) -> f64 {
     ((a - b) / b).abs()
@@ -54,6 +54,22 @@ fn damping_ratio_and_frequency_of_one_mass() {
     let state = motions.state_matrix().expect("a mass");
     let expected = [0.0, -lift.stiffness / lift.mass, 1.0, -lift.damping / lift.mass];
     assert!(state.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{state}");
+}
+
+#[test]
+fn state_blocks_by_hand() {
+    // A⁻¹ = [[1, −1], [−1, 2]].
+    let linearisation = Linearisation {
+        mass: Matrix2::new(2.0, 1.0, 1.0, 1.0),
+        stiffness: Matrix2::new(5.0, 2.0, 2.0, 3.0),
+        damping: Matrix2::new(1.0, 0.0, 0.0, 4.0),
+    };
+    let (stiffness, damping) = linearisation.state_blocks().expect("a positive definite mass matrix");
+    // A few roundings of numbers of size 1.
+    assert!((stiffness - Matrix2::new(-3.0, 1.0, 1.0, -4.0)).amax() < 1e-14, "{stiffness}");
+    assert!((damping - Matrix2::new(-1.0, 4.0, 1.0, -8.0)).amax() < 1e-14, "{damping}");
+    let massless = Linearisation { mass: Matrix2::new(1.0, 1.0, 1.0, 1.0), ..linearisation };
+    assert_eq!(massless.state_blocks(), None);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use nalgebra::{Complex, ComplexField, DMatrix, DVector};
 
 use super::NoModes;
-use crate::Linearisation;
+use crate::{Linearisation, model::state_blocks};
 
 /// A coordinate belongs to a mode from this part of the greatest share of energy.
 const SHARE: f64 = 0.2;
@@ -34,11 +34,12 @@ impl SmallMotions {
     /// The mass matrix is not positive definite.
     pub fn state_matrix(&self) -> Result<DMatrix<f64>, NoModes> {
         let n = self.mass.nrows();
-        let mass = self.mass.clone().cholesky().ok_or(NoModes::MassMatrix)?;
+        let (stiffness, damping) =
+            state_blocks(self.mass.clone(), &self.stiffness, &self.damping).ok_or(NoModes::MassMatrix)?;
         let mut state = DMatrix::zeros(2 * n, 2 * n);
         state.view_mut((0, n), (n, n)).fill_with_identity();
-        state.view_mut((n, 0), (n, n)).copy_from(&-mass.solve(&self.stiffness));
-        state.view_mut((n, n), (n, n)).copy_from(&-mass.solve(&self.damping));
+        state.view_mut((n, 0), (n, n)).copy_from(&stiffness);
+        state.view_mut((n, n), (n, n)).copy_from(&damping);
         Ok(state)
     }
 
