@@ -134,5 +134,29 @@ fn a_massless_crane_is_refused() {
     let settings = Settings::of(&common::description("", &[], &[]));
     let stopped = simulate(&lift, rk4::State::at_rest(Vector1::zeros()), &settings, |_| ControlFlow::Continue(()))
         .expect_err("no mass, no motion");
-    assert_eq!(stopped.cause, Cause::MassMatrix);
+    assert_eq!((stopped.cause, stopped.coordinate), (Cause::MassMatrix, "lift_z"));
+}
+
+#[test]
+fn a_joint_without_inertia_is_named() {
+    let pendulum = DoublePendulum { mass: [2.0, 0.0], ..DoublePendulum::hanging() };
+    let settings = Settings::of(pendulum.description);
+    let stopped = simulate(&pendulum, rk4::State::at_rest(Vector2::zeros()), &settings, |_| ControlFlow::Continue(()))
+        .expect_err("no mass, no motion");
+    assert_eq!((stopped.cause, stopped.coordinate), (Cause::MassMatrix, "lower"));
+    let (message, advice) = (stopped.to_string(), stopped.advice());
+    assert!(message.contains("not positive definite") && message.contains("lower"), "{message}");
+    assert!(advice.contains("lower") && advice.contains("`mass`") && !advice.contains("step"), "{advice}");
+}
+
+#[test]
+fn a_step_out_of_all_bounds_is_no_want_of_inertia() {
+    // The first stage already overflows: the mass matrix there is no number, that of the start is sound.
+    let pendulum = DoublePendulum { gravity: 1e300, ..DoublePendulum::hanging() };
+    let settings = Settings { step: 1e10, output: 1e10, duration: 1e10, ..Settings::of(pendulum.description) };
+    let stopped =
+        simulate(&pendulum, rk4::State::at_rest(Vector2::new(0.4, -0.3)), &settings, |_| ControlFlow::Continue(()))
+            .expect_err("no number");
+    assert_eq!(stopped.cause, Cause::Growth);
+    assert!(stopped.advice().contains("smaller step"), "{}", stopped.advice());
 }

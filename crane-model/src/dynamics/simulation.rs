@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{SVector, Vector2};
 
-use super::{Cause, Stopped, rk4};
+use super::{Stopped, rk4};
 use crate::{Description, Dynamics};
 
 /// No crane is 1 km long and no joint of one turns 160 times: beyond this, m or rad, a run has blown up.
@@ -109,12 +109,13 @@ fn integrate<const N: usize, const M: usize, C: Dynamics<N>>(
         let (steps, h) = divided(end - begin, settings.step);
         for k in 0..steps {
             let t = begin + h * k as f64;
-            let stopped = |cause, q: &SVector<f64, N>| Stopped::new(cause, t, h, q.as_slice(), crane.description());
-            sum += rk4::step_with(crane, t, h, &mut state, &integrand)
-                .map_err(|rk4::NotPositiveDefinite| stopped(Cause::MassMatrix, &state.q))?;
+            sum += rk4::step_with(crane, t, h, &mut state, &integrand).map_err(|rk4::NotPositiveDefinite| {
+                let mass = crane.mass_matrix(&state.q);
+                Stopped::mass_matrix(t, h, state.q.as_slice(), &mass, crane.description())
+            })?;
             // Written so that NaN fails.
             if !state.q.iter().all(|x| x.abs() <= settings.bound) {
-                return Err(stopped(Cause::Growth, &state.q));
+                return Err(Stopped::growth(t, h, state.q.as_slice(), crane.description()));
             }
         }
         run.steps += steps;

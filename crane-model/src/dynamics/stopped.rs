@@ -2,6 +2,8 @@
 
 use std::{error::Error, fmt};
 
+use nalgebra::SMatrix;
+
 use crate::Description;
 
 /// Why a run stopped before its time.
@@ -9,7 +11,7 @@ use crate::Description;
 pub enum Cause {
     /// A coordinate left the bound of the settings, or is no number any more.
     Growth,
-    /// The mass matrix is not positive definite.
+    /// The mass matrix is not positive definite: a coordinate moves nothing that has inertia.
     MassMatrix,
 }
 
@@ -20,7 +22,7 @@ pub struct Stopped {
     pub cause: Cause,
     /// When, s.
     pub time: f64,
-    /// Coordinate that is furthest out.
+    /// Coordinate that is furthest out, or that moves no inertia.
     pub coordinate: &'static str,
     /// Its value.
     pub value: f64,
@@ -31,23 +33,51 @@ pub struct Stopped {
 }
 
 impl Stopped {
-    /// Names the coordinate of `q` that is furthest out: the first that is not finite, else the greatest.
-    pub(super) fn new(cause: Cause, time: f64, step: f64, q: &[f64], description: &Description) -> Self {
+    /// Growth, by the coordinate of `q` that is furthest out: the first that is not finite, else the greatest.
+    pub(super) fn growth(time: f64, step: f64, q: &[f64], description: &Description) -> Self {
         let size = |x: f64| if x.is_finite() { x.abs() } else { f64::INFINITY };
         let worst = (0..q.len()).rev().max_by(|&i, &j| size(q[i]).total_cmp(&size(q[j]))).unwrap_or(0);
+        Self::at(worst, Cause::Growth, time, step, q, description)
+    }
+
+    /// A step that met a mass matrix not positive definite: for want of inertia where `mass`, the matrix at its beginning
+    /// `q`, is not either, else because the step leads out of all bounds.
+    pub(super) fn mass_matrix<const N: usize>(
+        time: f64,
+        step: f64,
+        q: &[f64],
+        mass: &SMatrix<f64, N, N>,
+        description: &Description,
+    ) -> Self {
+        // Positive definite as far as all leading blocks are; the first that is not has a pivot of zero at its end.
+        let regular = |size: &usize| mass.view((0, 0), (*size, *size)).into_owned().cholesky().is_some();
+        match (1..=N).find(|size| !regular(size)) {
+            Some(size) => Self::at(size - 1, Cause::MassMatrix, time, step, q, description),
+            None => Self::growth(time, step, q, description),
+        }
+    }
+
+    fn at(index: usize, cause: Cause, time: f64, step: f64, q: &[f64], description: &Description) -> Self {
         let (coordinate, unit) =
-            description.coordinates.get(worst).map_or(("", ""), |info| (info.name, info.kind.unit()));
-        let value = q.get(worst).copied().unwrap_or(f64::NAN);
+            description.coordinates.get(index).map_or(("", ""), |info| (info.name, info.kind.unit()));
+        let value = q.get(index).copied().unwrap_or(f64::NAN);
         Self { cause, time, coordinate, value, unit, step }
     }
 
     /// What to do about it.
     pub fn advice(&self) -> String {
-        format!(
-            "try a smaller step than {:.2e} s; RK4 is stable for h < min(2.83/ω, 2.785/(βω²)) of the fastest mode \
-             (ω in rad/s, damping β in s)",
-            self.step
-        )
+        match self.cause {
+            Cause::Growth => format!(
+                "try a smaller step than {:.2e} s; RK4 is stable for h < min(2.83/ω, 2.785/(βω²)) of the fastest mode \
+                 (ω in rad/s, damping β in s)",
+                self.step
+            ),
+            Cause::MassMatrix => format!(
+                "give what {} moves a `mass` above zero, in kg, and where it only turns an `inertia`, in kg m², or hold \
+                 it by `joint: fixed`; a parameter set to zero may have taken it away",
+                self.coordinate
+            ),
+        }
     }
 }
 
@@ -60,8 +90,8 @@ impl fmt::Display for Stopped {
             }
             Cause::MassMatrix => write!(
                 f,
-                "the mass matrix is not positive definite at t = {time:.6} s; furthest out is {coordinate}, \
-                 {value:.3e} {unit}"
+                "the mass matrix is not positive definite at t = {time:.6} s: nothing that {coordinate} \
+                 ({value:.3e} {unit}) moves has a mass or inertia of its own"
             ),
         }
     }
