@@ -21,8 +21,6 @@ pub struct Description {
     pub drives: &'static [DriveInfo],
     /// Names of the points of interest.
     pub points: &'static [&'static str],
-    /// Acceleration of gravity with default parameters, world frame, m/s².
-    pub gravity: [f64; 3],
     /// Whether the spec asks for statics: a run then starts from the static equilibrium, otherwise from the guess.
     pub statics: bool,
     /// Where the static solution starts, or the run without statics, m and rad.

@@ -44,7 +44,6 @@ fn description_constant(chain: &Chain) -> Item {
         quote!(DriveInfo { coordinate: #coordinate })
     });
     let points = chain.points.iter().map(|point| &point.name);
-    let gravity = chain.gravity.iter().map(at_defaults);
     let statics = chain.analyses.statics;
     let guess = chain.guess.iter().map(|&x| number(x));
     let (name, title, hash) = (&chain.name, &chain.title, &chain.spec_hash);
@@ -61,7 +60,6 @@ fn description_constant(chain: &Chain) -> Item {
             supports: &[#(#supports),*],
             drives: &[#(#drives),*],
             points: &[#(#points),*],
-            gravity: [#(#gravity),*],
             statics: #statics,
             guess: &[#(#guess),*],
             duration: #duration,

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 pub use instance::{Crane, Instance, boxed};
 
 use crate::{
-    Description, dynamics,
+    CoordinateKind, CoordinateRole, Description, dynamics,
     dynamics::{Run, Sample, Stopped},
     modes::SmallMotions,
     statics,
@@ -85,6 +85,26 @@ pub trait Rig: Send + Sync {
 
     /// Forces of the supports on the crane, N.
     fn support_reactions(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>>;
+
+    /// Weight of the crane with its load, world frame, N; unknown along an axis that the base cannot move along.
+    ///
+    /// A translation of the base moves everything alike: its generalized force of gravity, the bias at rest, is the part
+    /// of the weight along it.
+    fn weight(&self, q: &[f64]) -> [Option<f64>; 3] {
+        /// A base moves along an axis where its directions hold all of it but for rounding.
+        const ROUNDING: f64 = 1e-9;
+        let (bias, derivatives) = (self.bias(q, &vec![0.0; q.len()]), self.transform_derivatives(q));
+        let (mut weight, mut held) = (Vector3::zeros(), Vector3::zeros());
+        // The derivatives of the base come first, one a coordinate.
+        for ((coordinate, derivative), force) in self.description().coordinates.iter().zip(&derivatives).zip(&bias) {
+            if (coordinate.role, coordinate.kind) == (CoordinateRole::Base, CoordinateKind::Translation) {
+                let direction = derivative.fixed_view::<3, 1>(0, 3);
+                weight += direction * *force;
+                held += direction.component_mul(&direction);
+            }
+        }
+        [0, 1, 2].map(|axis| (held[axis] > 1.0 - ROUNDING).then_some(weight[axis]))
+    }
 
     /// Energies by part.
     fn energies(&self, t: f64, q: &[f64], v: &[f64]) -> Energies;

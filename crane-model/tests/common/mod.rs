@@ -1,11 +1,13 @@
 //! Cranes written by hand from textbook formulas: they share nothing with the compiler.
-#![allow(dead_code, reason = "every test file uses its own part")]
+#![allow(dead_code, unused_imports, reason = "every test file uses its own part")]
 
 mod lift;
 mod pendulum;
+mod sledge;
 
 pub use lift::Lift;
 pub use pendulum::DoublePendulum;
+pub use sledge::Sledge;
 
 use crane_model::{CoordinateInfo, CoordinateKind, CoordinateRole, Description};
 
@@ -28,7 +30,6 @@ pub const fn description(
         supports: &[],
         drives: &[],
         points: &[],
-        gravity: [0.0, 0.0, -GRAVITY],
         statics: true,
         guess,
         duration: 10.0,

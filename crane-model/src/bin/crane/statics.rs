@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use crane_model::{
-    CoordinateInfo, CoordinateKind, CoordinateRole,
+    CoordinateInfo,
     rig::Rig,
     statics::{Equilibrium, Settings},
 };
@@ -60,16 +60,6 @@ impl<'a> Case<'a> {
     /// Value of `values`, one a coordinate, at the coordinate of this name.
     fn value(&self, name: &str, values: &[f64]) -> Option<f64> {
         self.coordinates().iter().position(|coordinate| coordinate.name == name).map(|index| values[index])
-    }
-
-    /// Weight of the crane with its load, N; unknown where the base cannot be lifted or pushed.
-    ///
-    /// A translation of the base moves everything alike, so that its entry of the mass matrix is the whole mass.
-    fn weight(&self) -> [Option<f64>; 3] {
-        let lifts = |c: &CoordinateInfo| c.role == CoordinateRole::Base && c.kind == CoordinateKind::Translation;
-        let index = self.coordinates().iter().position(lifts);
-        let mass = index.map(|index| self.rig.mass_matrix(&self.equilibrium.q)[(index, index)]);
-        self.rig.description().gravity.map(|gravity| mass.map(|mass| mass * gravity))
     }
 }
 
@@ -165,7 +155,7 @@ fn reactions(cases: &[Case<'_>]) -> Grid {
     if !supports.is_empty() {
         let sums = reactions.iter().map(|of| <[f64; 3]>::from(of.iter().sum::<Vector3<f64>>()));
         grid.row(vector_row("Σ supports", sums, "N"));
-        grid.row(vector_row("weight", cases.iter().map(Case::weight), "N"));
+        grid.row(vector_row("weight", cases.iter().map(|case| case.rig.weight(&case.equilibrium.q)), "N"));
     }
     grid
 }

@@ -1,0 +1,117 @@
+//! A block on springs whose base moves along x and z, its axes turned about y, under live gravity: its weight is known.
+
+use crane_model::{
+    BodyInfo, CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Base, CraneModel, Description, Dynamics,
+    Linearisation, Linearise, ParameterInfo, Statics, TransformDerivatives,
+};
+use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2, Vector3};
+
+use super::{GRAVITY, coordinate, description};
+
+const COORDINATES: &[CoordinateInfo] =
+    &[coordinate("sledge_x", Translation, Base), coordinate("sledge_z", Translation, Base)];
+static DESCRIPTION: Description = Description {
+    parameters: &[ParameterInfo { name: "gravity", unit: "m/s²", about: "downwards", default: GRAVITY }],
+    bodies: &[BodyInfo { name: "sledge", link: "sledge", mass: MASS, length: 0.0, degrees_of_freedom: 2 }],
+    ..description("sledge", COORDINATES, &[0.0, 0.0])
+};
+/// Mass, kg.
+const MASS: f64 = 20.0;
+/// Springs along both axes, N/m.
+const STIFFNESS: f64 = 1e4;
+/// Turn of the axes about y, rad.
+const TURN: f64 = 0.3;
+
+/// Mass on two springs.
+#[derive(Clone, Copy)]
+pub struct Sledge {
+    /// Gravity, m/s².
+    pub gravity: f64,
+}
+
+impl Default for Sledge {
+    fn default() -> Self {
+        Self { gravity: GRAVITY }
+    }
+}
+
+impl Sledge {
+    /// Directions of the coordinates in the world frame.
+    fn directions() -> [Vector3<f64>; 2] {
+        let (sin, cos) = TURN.sin_cos();
+        [Vector3::new(cos, 0.0, -sin), Vector3::new(sin, 0.0, cos)]
+    }
+
+    /// Weight, world frame, N.
+    pub fn weight(&self) -> Vector3<f64> {
+        Vector3::new(0.0, 0.0, -MASS * self.gravity)
+    }
+}
+
+impl CraneModel<2> for Sledge {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn parameter(&self, _: usize) -> f64 {
+        self.gravity
+    }
+
+    fn set_parameter(&mut self, _: usize, value: f64) {
+        self.gravity = value;
+    }
+
+    fn transforms(&self, q: &Vector2<f64>, out: &mut [Matrix4<f64>]) {
+        let [x, z] = Self::directions();
+        let rotation = Matrix3::from_columns(&[x, z.cross(&x), z]);
+        out[0] = rotation.to_homogeneous().append_translation(&(x * q.x + z * q.y));
+    }
+
+    fn forces(&self, _: f64, q: &Vector2<f64>, _: &Vector2<f64>) -> Vector2<f64> {
+        -STIFFNESS * q
+    }
+
+    fn gravity_energy(&self, q: &Vector2<f64>) -> f64 {
+        -self.bias(q, &Vector2::zeros()).dot(q)
+    }
+}
+
+impl Dynamics<2> for Sledge {
+    fn mass_matrix(&self, _: &Vector2<f64>) -> Matrix2<f64> {
+        Matrix2::identity() * MASS
+    }
+
+    fn bias(&self, _: &Vector2<f64>, _: &Vector2<f64>) -> Vector2<f64> {
+        Self::directions().map(|direction| direction.dot(&self.weight())).into()
+    }
+
+    fn kinetic_energy(&self, _: &Vector2<f64>, v: &Vector2<f64>) -> f64 {
+        0.5 * MASS * v.norm_squared()
+    }
+}
+
+impl Statics<2> for Sledge {
+    fn static_residual(&self, q: &Vector2<f64>) -> Vector2<f64> {
+        STIFFNESS * q - self.bias(q, &Vector2::zeros())
+    }
+
+    fn tangent_stiffness(&self, _: &Vector2<f64>) -> Matrix2<f64> {
+        Matrix2::identity() * STIFFNESS
+    }
+}
+
+impl Linearise<2> for Sledge {
+    fn linearise(&self, q: &Vector2<f64>) -> Linearisation<2> {
+        Linearisation { mass: self.mass_matrix(q), stiffness: self.tangent_stiffness(q), damping: Matrix2::zeros() }
+    }
+}
+
+impl TransformDerivatives<2> for Sledge {
+    fn transform_derivatives(&self, _: &Vector2<f64>, out: &mut [Matrix4<f64>]) {
+        for (out, direction) in out.iter_mut().zip(Self::directions()) {
+            out.fixed_view_mut::<3, 1>(0, 3).copy_from(&direction);
+        }
+    }
+
+    fn transform_second_derivatives(&self, _: &Vector2<f64>, _: &mut [Matrix4<f64>]) {}
+}

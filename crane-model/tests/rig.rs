@@ -1,0 +1,20 @@
+//! Cranes written by hand behind one pointer.
+
+mod common;
+
+use common::Sledge;
+use crane_model::rig::{Instance, Rig};
+
+#[test]
+fn the_weight_follows_live_gravity() {
+    let mut rig = Instance(Sledge::default());
+    for gravity in [9.81, 1.62] {
+        rig.set_parameter(0, gravity);
+        let [x, y, z] = rig.weight(&[0.1, 0.2]);
+        // The base does not move along y. A few roundings of the weight.
+        assert_eq!(y, None);
+        let expected = Sledge { gravity }.weight();
+        let error = (x.expect("a way along x") - expected.x).hypot(z.expect("a way along z") - expected.z);
+        assert!(error < 1e-13, "{error:e} N");
+    }
+}
