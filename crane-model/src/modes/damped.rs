@@ -40,6 +40,9 @@ impl DampedMode {
 /// # Errors
 /// The mass matrix is not positive definite, or the QR algorithm does not come to an end.
 pub fn damped(motions: &SmallMotions) -> Result<Vec<DampedMode>, NoModes> {
+    if motions.mass.is_empty() {
+        return Ok(Vec::new());
+    }
     let mut state = motions.state_matrix()?;
     if !state.iter().all(|x| x.is_finite()) {
         return Err(NoModes::Eigenvalues);

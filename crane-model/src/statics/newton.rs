@@ -65,6 +65,11 @@ impl Equilibrium {
 /// balances at the guess, that of a rotation the greatest moment: N and N m become comparable. Any equilibrium is found,
 /// a stable one or not; the tangent stiffness there tells which.
 pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> Equilibrium {
+    if N == 0 {
+        // Nothing can move; an empty matrix has no eigenvalues to look at.
+        let history = vec![Iteration { residual: 0.0, fraction: 0.0 }];
+        return Equilibrium { status: Status::Converged, q: Vec::new(), history };
+    }
     let description = crane.description();
     let mut q = SVector::from_fn(|i, _| description.guess[i]);
     let balance = Balance::at(crane, &q);

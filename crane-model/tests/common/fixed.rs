@@ -1,0 +1,66 @@
+//! A crane without coordinates: nothing moves.
+
+use crane_model::{CraneModel, Description, Dynamics, Linearisation, Linearise, Statics, TransformDerivatives};
+use nalgebra::{Matrix4, SMatrix, SVector};
+
+use super::description;
+
+static DESCRIPTION: Description = description("fixed", &[], &[]);
+
+/// No coordinates.
+#[derive(Clone, Copy, Default)]
+pub struct Fixed;
+
+impl CraneModel<0> for Fixed {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn parameter(&self, _: usize) -> f64 {
+        f64::NAN
+    }
+
+    fn set_parameter(&mut self, _: usize, _: f64) {}
+
+    fn transforms(&self, _: &SVector<f64, 0>, _: &mut [Matrix4<f64>]) {}
+
+    fn gravity_energy(&self, _: &SVector<f64, 0>) -> f64 {
+        0.0
+    }
+}
+
+impl Dynamics<0> for Fixed {
+    fn mass_matrix(&self, _: &SVector<f64, 0>) -> SMatrix<f64, 0, 0> {
+        SMatrix::zeros()
+    }
+
+    fn bias(&self, _: &SVector<f64, 0>, _: &SVector<f64, 0>) -> SVector<f64, 0> {
+        SVector::zeros()
+    }
+
+    fn kinetic_energy(&self, _: &SVector<f64, 0>, _: &SVector<f64, 0>) -> f64 {
+        0.0
+    }
+}
+
+impl Statics<0> for Fixed {
+    fn static_residual(&self, _: &SVector<f64, 0>) -> SVector<f64, 0> {
+        SVector::zeros()
+    }
+
+    fn tangent_stiffness(&self, _: &SVector<f64, 0>) -> SMatrix<f64, 0, 0> {
+        SMatrix::zeros()
+    }
+}
+
+impl Linearise<0> for Fixed {
+    fn linearise(&self, _: &SVector<f64, 0>) -> Linearisation<0> {
+        Linearisation { mass: SMatrix::zeros(), stiffness: SMatrix::zeros(), damping: SMatrix::zeros() }
+    }
+}
+
+impl TransformDerivatives<0> for Fixed {
+    fn transform_derivatives(&self, _: &SVector<f64, 0>, _: &mut [Matrix4<f64>]) {}
+
+    fn transform_second_derivatives(&self, _: &SVector<f64, 0>, _: &mut [Matrix4<f64>]) {}
+}
