@@ -35,7 +35,7 @@ pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> G
     let spec = spec.as_ref();
     println!("cargo::rerun-if-changed={}", spec.display());
     let code = open(spec)
-        .and_then(|source| compile::compile(&source, analyses).map_err(OpenError::Mistakes))
+        .and_then(|source| compile::compile(&source, analyses).map_err(Failure::Mistakes))
         .unwrap_or_else(|error| error.fail());
     let target = out_dir().join(format!("{}.rs", code.name));
     write(&target, &code.text).unwrap_or_else(|error| fail(&format!("{}: {error}", target.display()), ""));
@@ -46,40 +46,40 @@ pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> G
 ///
 /// # Errors
 /// Those of the file system, a file that is too large or not text.
-pub fn open(spec: &Path) -> Result<SourceFile, OpenError> {
+pub fn open(spec: &Path) -> Result<SourceFile, Failure> {
     let name = spec.display().to_string();
-    let failed = |error: io::Error| OpenError::File(format!("{name}: {error}"));
+    let failed = |error: io::Error| Failure::File(format!("{name}: {error}"));
     let mut bytes = Vec::new();
     let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX).saturating_add(1);
     fs::File::open(spec).map_err(failed)?.take(limit).read_to_end(&mut bytes).map_err(failed)?;
-    SourceFile::from_bytes(name.clone(), &bytes).map_err(OpenError::Mistakes)
+    SourceFile::from_bytes(name.clone(), &bytes).map_err(Failure::Mistakes)
 }
 
 /// Why a spec could not be opened or compiled.
 #[derive(Debug)]
-pub enum OpenError {
+pub enum Failure {
     /// The file system said no.
     File(String),
     /// The spec has mistakes.
     Mistakes(Diagnostics),
 }
 
-impl fmt::Display for OpenError {
+impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            OpenError::File(message) => f.write_str(message),
-            OpenError::Mistakes(mistakes) => mistakes.fmt(f),
+            Failure::File(message) => f.write_str(message),
+            Failure::Mistakes(mistakes) => mistakes.fmt(f),
         }
     }
 }
 
-impl std::error::Error for OpenError {}
+impl std::error::Error for Failure {}
 
-impl OpenError {
+impl Failure {
     fn fail(&self) -> ! {
         match self {
-            OpenError::File(message) => fail(message, ""),
-            OpenError::Mistakes(mistakes) => fail(&mistakes.headline(), &mistakes.to_string()),
+            Failure::File(message) => fail(message, ""),
+            Failure::Mistakes(mistakes) => fail(&mistakes.headline(), &mistakes.to_string()),
         }
     }
 }
@@ -94,7 +94,9 @@ pub fn out_dir() -> PathBuf {
 /// # Errors
 /// Those of the file system.
 pub fn write(target: &Path, text: &str) -> io::Result<()> {
-    let unfinished = target.with_extension("unfinished");
+    let mut name = target.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.unfinished", process::id()));
+    let unfinished = target.with_file_name(name);
     fs::write(&unfinished, text)?;
     fs::rename(&unfinished, target)
 }

@@ -24,6 +24,9 @@ fn bodies(chain: &Chain) -> String {
         let path: Vec<String> = body.path.iter().map(|step| describe(chain, step, &defaults)).collect();
         let degrees = chain.degrees_of_freedom(BodyId(p));
         let _ = writeln!(text, "{:<20} {mass:>12.3} {degrees:>6}  {}", body.name, path.join(" "));
+        for part in body.parts.iter().filter(|part| part.name != body.link) {
+            let _ = writeln!(text, "  {:<18} {:>12.3}", part.name, part.mass.at(&defaults));
+        }
     }
     text
 }

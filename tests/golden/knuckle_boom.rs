@@ -11,7 +11,7 @@
 //   coordinates of the base: the base is fixed
 //   supports: the spec has none
 //   springs and dampers of rigid elements: no link is flexible
-//   everything out of the crane's plane: all joints turn about one direction
+//   everything out of the crane's plane: all joints turn about one direction, none moves along it
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives
 //
 // Operations of each function, and before simplification:
@@ -19,9 +19,9 @@
 //   points                              30       125
 //   point_velocities                    54       210
 //   drive_forces                        84        95
-//   drive_motions                       71        80
-//   hinge_forces                         2         2
-//   forces                              86       105
+//   drive_motions                       69        80
+//   hinge_forces                         1         2
+//   forces                              85       105
 //   gravity_energy                      37       188
 //   drive_energy                        66        74
 //   drive_power                         89       101
@@ -30,8 +30,8 @@
 //   bias                               157      1205
 //   kinetic_energy                     216       837
 //   static_residual                     53       392
-//   tangent_stiffness                   53       337
-//   linearise                          211       958
+//   tangent_stiffness                   51       337
+//   linearise                          209       958
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::support::{fill, sin_cos, symmetric};
@@ -146,7 +146,7 @@ impl Default for Params {
 /// Live parameters, and what depends on them alone, computed once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constants {
-    payload: f64,
+    params: Params,
     c001: f64,
     c002: f64,
     c003: f64,
@@ -159,16 +159,15 @@ pub struct Constants {
 
 impl From<&Params> for Constants {
     fn from(params: &Params) -> Self {
-        let payload = params.payload;
-        let c001 = payload + 25.0;
-        let t219 = 1.2 * payload;
+        let c001 = params.payload + 25.0;
+        let t219 = 1.2 * params.payload;
         let c002 = -7.5 - t219;
-        let t226 = 0.16000000000000003 * payload;
-        let t228 = 0.32000000000000006 * payload;
+        let t226 = 0.16000000000000003 * params.payload;
+        let t228 = 0.32000000000000006 * params.payload;
         let t230 = t228 - t226;
         let t231 = 0.5 * t230;
         let c003 = 0.10000000000000003 + t231;
-        let t235 = 1.44 * payload;
+        let t235 = 1.44 * params.payload;
         let t237 = t231 + t235;
         let c004 = 2.75 + t237;
         let c005 = 0.5 * c001;
@@ -177,7 +176,7 @@ impl From<&Params> for Constants {
         let t293 = 420.0 + c007;
         let c008 = 2.0 * t293;
         Constants {
-            payload,
+            params: *params,
             c001,
             c002,
             c003,
@@ -452,7 +451,7 @@ pub fn drive_forces(
 ///
 /// `q_dr(t), q̇_dr(t)`
 ///
-/// 71 operations: 28 add, 26 mul, 0 div, 1 sin_cos, 16 min/max.
+/// 69 operations: 26 add, 26 mul, 0 div, 1 sin_cos, 16 min/max.
 pub fn drive_motions(t: f64) -> [[f64; 2]; 3] {
     let mut out: [[f64; 2]; 3] = [[0.0; 2]; 3];
     // Sines and cosines
@@ -495,7 +494,7 @@ pub fn drive_motions(t: f64) -> [[f64; 2]; 3] {
 ///
 /// `−d q̇`
 ///
-/// 2 operations: 1 add, 1 mul, 0 div, 0 sin_cos.
+/// 1 operations: 0 add, 1 mul, 0 div, 0 sin_cos.
 pub fn hinge_forces(v: &SVector<f64, N>) -> SVector<f64, N> {
     let v = &v.data.0[0];
     let mut out: [f64; N] = [0.0; N];
@@ -510,7 +509,7 @@ pub fn hinge_forces(v: &SVector<f64, N>) -> SVector<f64, N> {
 /// `f_s + f_l + t_dr and viscous joints`
 /// [Urbaś 2016, Eq. (23)]
 ///
-/// 86 operations: 36 add, 33 mul, 0 div, 1 sin_cos, 16 min/max.
+/// 85 operations: 35 add, 33 mul, 0 div, 1 sin_cos, 16 min/max.
 pub fn forces(t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
     let q = &q.data.0[0];
     let v = &v.data.0[0];
@@ -1141,7 +1140,7 @@ pub fn static_residual(q: &SVector<f64, N>, c: &Constants) -> SVector<f64, N> {
 ///
 /// `∂²E_p/∂q∂q`
 ///
-/// 53 operations: 25 add, 25 mul, 0 div, 3 sin_cos.
+/// 51 operations: 23 add, 25 mul, 0 div, 3 sin_cos.
 pub fn tangent_stiffness(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
     let q = &q.data.0[0];
     let mut out: [[f64; N]; N] = [[0.0; N]; N];
@@ -1198,7 +1197,7 @@ pub fn tangent_stiffness(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, 
 ///
 /// `A δq̈ + D δq̇ + K δq = 0`
 ///
-/// 211 operations: 93 add, 115 mul, 0 div, 3 sin_cos.
+/// 209 operations: 91 add, 115 mul, 0 div, 3 sin_cos.
 pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
     let q = &q.data.0[0];
     let mut out: [[[f64; N]; N]; 3] = [[[0.0; N]; N]; 3];
@@ -1347,7 +1346,6 @@ pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
 /// Planar knuckle-boom crane on a fixed base: the generated functions behind the traits of the runtime.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crane {
-    params: Params,
     constants: Constants,
 }
 
@@ -1355,14 +1353,13 @@ impl Crane {
     /// The crane with these values of its live parameters.
     pub fn new(params: Params) -> Self {
         Crane {
-            params,
             constants: Constants::from(&params),
         }
     }
     /// Values of the live parameters.
     #[allow(dead_code)]
     pub fn params(&self) -> &Params {
-        &self.params
+        &self.constants.params
     }
 }
 
@@ -1378,12 +1375,12 @@ impl CraneModel<N> for Crane {
     }
     fn parameter(&self, index: usize) -> f64 {
         match index {
-            0 => self.params.payload,
+            0 => self.constants.params.payload,
             _ => f64::NAN,
         }
     }
     fn set_parameter(&mut self, index: usize, value: f64) {
-        let mut params = self.params;
+        let mut params = self.constants.params;
         match index {
             0 => params.payload = value,
             _ => {}

@@ -6,7 +6,13 @@ use fastrand::Rng;
 
 /// A random crane as YAML. The same seed gives the same text.
 pub fn spec(seed: u64) -> String {
-    Writer { rng: Rng::with_seed(seed), text: String::new(), coordinates: Vec::new() }.crane(seed)
+    Writer::new(seed, true).crane(seed)
+}
+
+/// The same without drives and dampers: what it has of energy it keeps.
+#[allow(dead_code)] // the build script compiles driven cranes only
+pub fn conservative(seed: u64) -> String {
+    Writer::new(seed, false).crane(seed)
 }
 
 struct Writer {
@@ -14,6 +20,8 @@ struct Writer {
     text: String,
     /// Coordinates of joints, and whether they are rotations.
     coordinates: Vec<(String, bool)>,
+    /// Whether it has drives and dampers.
+    driven: bool,
 }
 
 /// What the base can do.
@@ -25,6 +33,10 @@ enum Base {
 }
 
 impl Writer {
+    fn new(seed: u64, driven: bool) -> Self {
+        Writer { rng: Rng::with_seed(seed), text: String::new(), coordinates: Vec::new(), driven }
+    }
+
     fn crane(mut self, seed: u64) -> String {
         let base = [Base::Free, Base::Subset, Base::Fixed][usize::try_from(seed % 3).unwrap_or(0)];
         self.line("format: 1");
@@ -45,7 +57,9 @@ impl Writer {
         self.massless("fork");
         self.tip("hand");
         self.supports(base);
-        self.drives();
+        if self.driven {
+            self.drives();
+        }
         self.line("points:");
         for (name, link) in [("middle", "first"), ("end", "hand")] {
             let at = self.vector(0.5).replace("[-", "[");
@@ -138,9 +152,8 @@ impl Writer {
                 self.line(&format!("        - {{length: {length}, mass: {mass}, com: {com}, inertia: {inertia}}}"));
             }
             self.line("      springs:");
-            self.line(
-                "        - {stiffness: {psi: 310, theta: 250, phi: 180}, damping: {psi: 0.4, theta: 0.3, phi: 0.2}}",
-            );
+            let damping = if self.driven { ", damping: {psi: 0.4, theta: 0.3, phi: 0.2}" } else { "" };
+            self.line(&format!("        - {{stiffness: {{psi: 310, theta: 250, phi: 180}}{damping}}}"));
             return;
         }
         let section = [
@@ -155,7 +168,9 @@ impl Writer {
         self.line(&format!("      section: {section}"));
         self.line("      extra_mass: 0.8");
         let damping = ["{beta: 2.0e-3}", "{beta: {psi: 1.0e-3, theta: 2.0e-3, phi: 3.0e-3}}"][self.rng.usize(0..2)];
-        self.line(&format!("      damping: {damping}"));
+        if self.driven {
+            self.line(&format!("      damping: {damping}"));
+        }
     }
 
     /// Half of a universal joint.
@@ -217,11 +232,12 @@ impl Writer {
             return;
         }
         self.line("supports:");
+        let damping = if self.driven { "damping: [40, 50, 90], " } else { "" };
         for (name, kinematics) in [("left", "linear"), ("right", "exact"), ("rear", "linear")] {
             let (at, play) = (self.vector(1.5), self.vector(0.02));
             self.line(&format!(
-                "  - {{name: {name}, at: {at}, stiffness: [ground, 5.0e3, 9.0e3], damping: [40, 50, 90], \
-                 free_play: {play}, kinematics: {kinematics}}}"
+                "  - {{name: {name}, at: {at}, stiffness: [ground, 5.0e3, 9.0e3], {damping}free_play: {play}, \
+                 kinematics: {kinematics}}}"
             ));
         }
     }

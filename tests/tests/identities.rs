@@ -1,7 +1,7 @@
 //! Physical identities on random cranes with fixed seeds, by the interpreter.
 
 use crane_codegen::symbolic::Inputs;
-use crane_model::nalgebra::{DVector, Rotation2, Vector2};
+use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use crane_tests::dual::Dual;
 use crane_tests::interpreted::Interpreted;
 use crane_tests::quantities::State;
@@ -54,13 +54,99 @@ fn velocity_forces_and_the_rate_of_the_mass_matrix_fit() {
             let inputs = moving(&crane, &state, (0.0, &state.v, &rest));
             let rate: Vec<f64> = crane.get("mass_matrix", &inputs, n * n).into_iter().map(Dual::derivative).collect();
             let v = DVector::from_column_slice(&state.v);
-            let half = 0.5 * v.dot(&(crane_model::nalgebra::DMatrix::from_row_slice(n, n, &rate) * &v));
+            let half = 0.5 * v.dot(&(DMatrix::from_row_slice(n, n, &rate) * &v));
             let at_rest = State { v: rest.clone(), ..state.clone() };
             let h = crane.vector("bias", &at_rest) - crane.vector("bias", &state);
             let size = v.iter().zip(&h).map(|(v, h)| (v * h).abs()).sum();
             assert_close(half, v.dot(&h), size, 1e-11, &format!("seed {seed}"));
         }
     }
+}
+
+/// `Ȧ − 2C` is skew: `wᵀ Ȧ(v) w = 2 wᵀ C(v) w` for any w, with `C(v) w = ½ (h(v + w) − h(v) − h(w))`, h being quadratic
+/// in the velocities and Ȧ by dual numbers.
+#[test]
+fn rate_of_the_mass_matrix_less_twice_c_is_skew() {
+    for (seed, crane) in cranes() {
+        let n = crane.size();
+        for pair in states::far(&crane.chain, 4, seed).chunks(2) {
+            let (state, w) = (&pair[0], DVector::from_column_slice(&pair[1].v));
+            let v = DVector::from_column_slice(&state.v);
+            let h = |v: &DVector<f64>| {
+                let at = |v: &DVector<f64>| State { v: v.as_slice().to_vec(), ..state.clone() };
+                crane.vector("bias", &at(&DVector::zeros(n))) - crane.vector("bias", &at(v))
+            };
+            let coriolis = 0.5 * (h(&(&v + &w)) - h(&v) - h(&w));
+            let inputs = moving(&crane, state, (0.0, &state.v, &vec![0.0; n]));
+            let rate: Vec<f64> = crane.get("mass_matrix", &inputs, n * n).into_iter().map(Dual::derivative).collect();
+            let quadratic = w.dot(&(DMatrix::from_row_slice(n, n, &rate) * &w));
+            let size = w.iter().zip(&h(&(&v + &w))).map(|(w, h)| (w * h).abs()).sum();
+            assert_close(quadratic, 2.0 * w.dot(&coriolis), size, 1e-11, &format!("seed {seed}"));
+        }
+    }
+}
+
+/// What the supports push on the base's translations is the sum of their reactions, and what gravity pulls is the weight:
+/// in equilibrium the reactions carry the weight, whatever the crane.
+#[test]
+fn reactions_and_weight_are_what_acts_on_the_base() {
+    for (seed, crane) in cranes().filter(|(seed, _)| seed % 3 == 0) {
+        let parameters = crane.chain.parameter_defaults();
+        let inertias = crane.chain.bodies.iter().filter_map(|body| body.inertia.as_ref());
+        let mass: f64 = inertias.map(|inertia| inertia.mass.at(&parameters)).sum();
+        for state in states::far(&crane.chain, 3, seed) {
+            let reactions = crane.get("support_reactions", &crane.inputs(&state), 0);
+            let forces = crane.vector("support_forces", &state);
+            let weight = crane.vector("bias", &State { v: vec![0.0; crane.size()], ..state.clone() });
+            for axis in 0..3 {
+                let total: f64 = reactions.iter().skip(axis).step_by(3).sum();
+                assert_close(total, forces[axis], forces.amax(), 1e-13, &format!("seed {seed}: reactions"));
+                let gravity = mass * crane.chain.gravity[axis].at(&parameters);
+                assert_close(weight[axis], gravity, weight.amax(), 1e-13, &format!("seed {seed}: weight"));
+            }
+        }
+    }
+}
+
+/// The error of the energy of a conservative crane after a given time falls as h⁴.
+#[test]
+fn energy_drift_falls_as_h4() {
+    for seed in 0..3 {
+        let crane = Interpreted::new(workspace::chain_of("conservative", &random::conservative(seed)));
+        let start = State { t: 0.0, ..states::far(&crane.chain, 1, seed)[0].clone() };
+        let energy = |state: &State| -> f64 {
+            let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy"];
+            parts.iter().map(|part| crane.scalar(part, state)).sum()
+        };
+        // The stiffest springs turn about 500 rad/s, so the largest step is well inside the region of stability.
+        let drift = |steps: u32| (energy(&after(&crane, &start, 0.02, steps)) - energy(&start)).abs();
+        let drifts = [40, 80, 160].map(drift);
+        for pair in drifts.windows(2) {
+            let order = (pair[0] / pair[1]).log2();
+            // The leading term may nearly vanish, never grow.
+            assert!(order > 3.7, "seed {seed}: order {order}, {drifts:?}");
+        }
+    }
+}
+
+/// Classical Runge–Kutta steps by the interpreter.
+fn after(crane: &Interpreted, start: &State, duration: f64, steps: u32) -> State {
+    let h = duration / f64::from(steps);
+    let moved = |state: &State, rate: &(DVector<f64>, DVector<f64>), h: f64| State {
+        t: state.t + h,
+        q: state.q.iter().zip(&rate.0).map(|(q, r)| q + h * r).collect(),
+        v: state.v.iter().zip(&rate.1).map(|(v, r)| v + h * r).collect(),
+    };
+    let rate = |state: &State| (DVector::from_column_slice(&state.v), crane.acceleration(state));
+    (0..steps).fold(start.clone(), |state, _| {
+        let k1 = rate(&state);
+        let k2 = rate(&moved(&state, &k1, h / 2.0));
+        let k3 = rate(&moved(&state, &k2, h / 2.0));
+        let k4 = rate(&moved(&state, &k3, h));
+        let mean =
+            |a: &DVector<f64>, b: &DVector<f64>, c: &DVector<f64>, d: &DVector<f64>| (a + 2.0 * b + 2.0 * c + d) / 6.0;
+        moved(&state, &(mean(&k1.0, &k2.0, &k3.0, &k4.0), mean(&k1.1, &k2.1, &k3.1, &k4.1)), h)
+    })
 }
 
 /// d/dt (E_k + E_p) = drive power − dissipation, along the motion that the equations give.

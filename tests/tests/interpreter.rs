@@ -71,6 +71,41 @@ fn simplification_changes_nothing_but_rounding() {
     }
 }
 
+/// The guess of a driven coordinate comes from the profile in numbers, the motion from the profile in expressions.
+#[test]
+fn driven_coordinates_start_where_their_drives_do() {
+    for entry in registry::all() {
+        let crane = load(&entry);
+        let start = State { t: 0.0, q: crane.chain.guess.clone(), v: vec![0.0; crane.size()] };
+        let motions = crane.get("drive_motions", &crane.inputs(&start), 0);
+        for (drive, motion) in crane.chain.drives.iter().zip(motions.chunks(2)) {
+            let guess = crane.chain.guess[drive.coordinate.0];
+            assert!((guess - motion[0]).abs() <= 1e-15 * guess.abs(), "{}: {guess} {}", entry.name, motion[0]);
+        }
+    }
+}
+
+/// Parameters may be called what generated code calls its own: each keeps its value.
+#[test]
+fn parameters_named_like_generated_code_keep_their_values() {
+    let names = ["c001", "t012", "params", "sin_cos", "out", "q", "t", "v"];
+    let parameters: Vec<String> = names.iter().map(|name| format!("  {name}: {{value: 2.0}}")).collect();
+    let bodies: Vec<String> =
+        names.iter().map(|name| format!("      - {{name: b_{name}, mass: {name}, com: [{name}, 0, 1]}}")).collect();
+    let spec = format!(
+        "format: 1\nname: names\nparameters:\n{}\nlinks:\n  - name: arm\n    joint: revolute\n    bodies:\n{}\n",
+        parameters.join("\n"),
+        bodies.join("\n")
+    );
+    let chain = workspace::chain_of("names", &spec);
+    let code = compile::generate(&chain, chain.analyses, "names.yaml").text;
+    for name in names {
+        assert!(code.contains(&format!("pub {name}: f64")), "{name}");
+        assert!(code.contains(&format!("params.{name}")), "{name} is read from the parameters");
+        assert!(!code.contains(&format!("let {name} = params")), "{name} is no variable");
+    }
+}
+
 #[test]
 fn the_same_spec_gives_the_same_bytes_from_any_folder() {
     let text = std::fs::read_to_string(workspace::root().join("specs/eight_link_flexible.yaml")).unwrap();

@@ -43,7 +43,7 @@ const TRAITS: [(&str, &[&str]); 5] = [
 pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
     let live = !chain.parameters.is_empty();
     let title = format!(" {}: the generated functions behind the traits of the runtime.", plain(&chain.title));
-    let fields = if live { quote!({ params: Params, constants: Constants }) } else { quote!(;) };
+    let fields = if live { quote!({ constants: Constants }) } else { quote!(;) };
     let mut items: Vec<Item> = vec![parse_quote! {
         #[doc = #title]
         #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,13 +54,13 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
             impl Crane {
                 #[doc = " The crane with these values of its live parameters."]
                 pub fn new(params: Params) -> Self {
-                    Crane { params, constants: Constants::from(&params) }
+                    Crane { constants: Constants::from(&params) }
                 }
 
                 #[doc = " Values of the live parameters."]
                 #[allow(dead_code)]
                 pub fn params(&self) -> &Params {
-                    &self.params
+                    &self.constants.params
                 }
             }
         });
@@ -114,14 +114,14 @@ fn common_methods(chain: &Chain) -> TokenStream {
             quote!(
                 fn parameter(&self, index: usize) -> f64 {
                     match index {
-                        #(#indices => self.params.#names,)*
+                        #(#indices => self.constants.params.#names,)*
                         _ => f64::NAN,
                     }
                 }
             ),
             quote!(
                 fn set_parameter(&mut self, index: usize, value: f64) {
-                    let mut params = self.params;
+                    let mut params = self.constants.params;
                     match index {
                         #(#indices => params.#names = value,)*
                         _ => {}

@@ -275,7 +275,7 @@ impl Writer<'_> {
             Op::Constant(c) => number(c.value()),
             Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Parameters => {
                 used.parameters = true;
-                field(variable("c"), &program.symbol(symbol).name)
+                field(field(variable("c"), "params"), &program.symbol(symbol).name)
             }
             _ if self.block.inlined[id.index()] => self.operation(id, names, used),
             _ => variable(&names.of(id)),
@@ -295,7 +295,7 @@ impl Writer<'_> {
             Argument::Time => variable("t"),
             Argument::Position => element(variable("q"), symbol.index),
             Argument::Velocity => element(variable("v"), symbol.index),
-            Argument::Parameters => field(variable("c"), &symbol.name),
+            Argument::Parameters => unreachable!("parameters are read where they are used"),
         }
     }
 }

@@ -12,7 +12,11 @@ mod print;
 mod report;
 mod shape;
 
+use std::collections::HashSet;
 use std::fmt::Write;
+
+use proc_macro2::{TokenStream, TokenTree};
+use quote::ToTokens;
 
 use syn::parse_quote;
 
@@ -48,14 +52,15 @@ pub fn emit(chain: &Chain, blocks: &Blocks, report: Report, spec_file: &str) -> 
         items.extend(function::function(blocks, block, &labels));
     }
     items.extend(crane::crane(chain, blocks));
+    let imports = imports(&items);
     let body = print::file(items);
-    let text = format!("{}\n{}\n{body}", header::header(chain, &report, spec_file), imports(&body));
+    let text = format!("{}\n{}\n{body}", header::header(chain, &report, spec_file), imports);
     GeneratedCode { name: chain.name.clone(), text, report }
 }
 
 /// What the body uses, and nothing else; nalgebra comes through the runtime, so that a user's crate depends on the
 /// runtime alone.
-fn imports(body: &str) -> String {
+fn imports(items: &[syn::Item]) -> String {
     const SOURCES: [(&str, &[&str]); 3] = [
         ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),
         ("::crane_model::support", &["TransformFactors", "fill", "sin_cos", "symmetric"]),
@@ -79,12 +84,29 @@ fn imports(body: &str) -> String {
             ],
         ),
     ];
-    let words: std::collections::HashSet<&str> =
-        body.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty()).collect();
+    let words = identifiers(items);
     let mut text = String::new();
     for (source, names) in SOURCES {
-        let used: Vec<&str> = names.iter().copied().filter(|name| words.contains(name)).collect();
+        let used: Vec<&str> = names.iter().copied().filter(|name| words.contains(*name)).collect();
         let _ = writeln!(text, "use {source}::{{{}}};", used.join(", "));
     }
     syn::parse_file(&text).map(|file| prettyplease::unparse(&file)).unwrap_or(text)
+}
+
+/// All identifiers of the code; not what stands in strings and documentation, which is the user's.
+fn identifiers(items: &[syn::Item]) -> HashSet<String> {
+    let mut found = HashSet::new();
+    let mut streams: Vec<TokenStream> = items.iter().map(ToTokens::to_token_stream).collect();
+    while let Some(stream) = streams.pop() {
+        for token in stream {
+            match token {
+                TokenTree::Ident(ident) => {
+                    found.insert(ident.to_string());
+                }
+                TokenTree::Group(group) => streams.push(group.stream()),
+                TokenTree::Punct(_) | TokenTree::Literal(_) => {}
+            }
+        }
+    }
+    found
 }

@@ -1,13 +1,13 @@
 //! Live parameters and the constants made of them.
 
-use quote::{format_ident, quote};
+use quote::format_ident;
 use syn::{Item, Stmt, parse_quote};
 
-use super::arithmetic::{number, variable};
+use super::arithmetic::{field, number, variable};
 use super::function::{local, operation};
 use super::labels::Labels;
 use super::print::plain;
-use crate::chain::Chain;
+use crate::chain::{Chain, Parameter};
 use crate::lower::Blocks;
 use crate::symbolic::{Argument, ExprId, Op};
 
@@ -17,16 +17,10 @@ pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> 
         return vec![];
     }
     let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
-    let docs: Vec<String> = chain
-        .parameters
-        .iter()
-        .map(|p| if p.about.is_empty() { format!(" {}.", p.unit) } else { format!(" {}, {}.", p.about, p.unit) })
-        .map(|doc| plain(&doc))
-        .collect();
+    let docs: Vec<String> = chain.parameters.iter().map(documentation).collect();
     let defaults = chain.parameters.iter().map(|p| number(p.default));
     let stored: Vec<_> = blocks.constants.stored.iter().map(|id| format_ident!("{}", labels.constant(*id))).collect();
     let body = constants_body(blocks, labels);
-    let private = if stored.is_empty() { quote!() } else { quote!(#(#stored: f64,)*) };
     vec![
         parse_quote! {
             #[doc = " Values that stay live at run time."]
@@ -46,20 +40,26 @@ pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> 
             #[doc = " Live parameters, and what depends on them alone, computed once."]
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct Constants {
-                #(#names: f64,)*
-                #private
+                params: Params,
+                #(#stored: f64,)*
             }
         },
         parse_quote! {
             impl From<&Params> for Constants {
                 fn from(params: &Params) -> Self {
-                    #(let #names = params.#names;)*
                     #(#body)*
-                    Constants { #(#names,)* #(#stored),* }
+                    Constants { params: *params, #(#stored),* }
                 }
             }
         },
     ]
+}
+
+/// What a parameter is, and its unit, as far as the user said.
+fn documentation(parameter: &Parameter) -> String {
+    let words = [&parameter.about, &parameter.unit].map(|text| plain(text));
+    let said: Vec<String> = words.into_iter().filter(|text| !text.is_empty()).collect();
+    if said.is_empty() { format!(" `{}`.", parameter.name) } else { format!(" {}.", said.join(", ")) }
 }
 
 /// One `let` for each value on the way to the stored constants.
@@ -73,7 +73,7 @@ fn constants_body(blocks: &Blocks, labels: &Labels) -> Vec<Stmt> {
         Op::Constant(c) => number(c.value()),
         Op::Symbol(symbol) => {
             debug_assert_eq!(program.symbol(symbol).argument, Argument::Parameters);
-            variable(&program.symbol(symbol).name)
+            field(variable("params"), &program.symbol(symbol).name)
         }
         _ => variable(&name(id)),
     };

@@ -14,7 +14,7 @@ pub(crate) fn start(profile: &Profile, parameters: &[f64]) -> f64 {
         Profile::Hold(position) => position.at(parameters),
         Profile::Quintic(ramp) => along(ramp, &|tau| tau.powi(3) * (10.0 - 15.0 * tau + 6.0 * tau * tau)),
         Profile::Cubic(ramp) => along(ramp, &|tau| tau * tau * (3.0 - 2.0 * tau)),
-        Profile::Cycloid(ramp) => along(ramp, &|tau| tau - (2.0 * PI * tau).sin() / (2.0 * PI)),
+        Profile::Cycloid(ramp) => along(ramp, &|tau| tau - libm::sin(2.0 * PI * tau) / (2.0 * PI)),
         Profile::Trapezoid { ramp, blend } => along(ramp, &|tau| trapezoid(tau, *blend)),
         Profile::Table { from, segments } => segments.iter().fold(*from, |position, segment| {
             let u = (-segment.begin).max(0.0).min(segment.duration);

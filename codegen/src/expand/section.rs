@@ -71,7 +71,7 @@ pub(crate) fn solid_rectangle(height: f64, width: f64) -> CrossSection {
     let falling: f64 = (0..TERMS)
         .rev() // smallest first, for rounding
         .map(|k| f64::from(2 * k + 1))
-        .map(|n| 2.0 / (((n * PI * a / b).exp() + 1.0) * n.powi(5)))
+        .map(|n| 2.0 / ((libm::exp(n * PI * a / b) + 1.0) * n.powi(5)))
         .sum();
     let series = 31.0 / 32.0 * ZETA_5 - falling;
     let jo = a * b.powi(3) * (1.0 / 3.0 - 64.0 / PI.powi(5) * (b / a) * series);

@@ -15,7 +15,7 @@ mod constants;
 mod order;
 mod split;
 
-use crate::symbolic::{ExprId, Function, OperationCount, Program};
+use crate::symbolic::{ExprId, Function, Op, OperationCount, Program};
 
 pub use constants::Constants;
 
@@ -101,6 +101,16 @@ fn block<'p>(program: &'p Program, constants: &Constants, function: &'p Function
     let (pieces, carried) = split::split(program, constants, &inlined, line);
     let mut count = program.count(&function.outputs, |id| constants.is_stored(id));
     count += function.shape.closing_count();
+    // −(2 · b) is written as −2 · b.
+    let folded = |id: &ExprId| match program.op(*id) {
+        Op::Neg(a) => match program.op(a) {
+            Op::Mul(factor, _) => inlined[a.index()] && matches!(program.op(factor), Op::Constant(_)),
+            _ => false,
+        },
+        _ => false,
+    };
+    let needed = program.needed(function.outputs.iter().copied());
+    count.additions -= program.ids().filter(|id| needed[id.index()]).filter(folded).count();
     Block { function, reads_parameters: constants.read_by(program, &function.outputs), pieces, carried, count, inlined }
 }
 

@@ -1,7 +1,8 @@
 //! What a crane's scene does not need, and is therefore not derived.
 
-use super::kinematics::Kinematics;
+use super::kinematics::{Generator, Kinematics};
 use super::model::Model;
+use super::vector::Vec3;
 use crate::chain::{Analyses, Chain, CoordinateKind};
 use crate::symbolic::{Expr, Graph};
 
@@ -23,7 +24,11 @@ pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'stati
     out(chain.hinges.is_empty(), "viscous damping of joints", "the spec has none");
     out(chain.points.is_empty(), "points of interest", "the spec has none");
     out(chain.parameters.is_empty(), "live parameters", "the spec has none: all numbers are baked in");
-    out(planar(chain), "everything out of the crane's plane", "all joints turn about one direction");
+    out(
+        planar(chain),
+        "everything out of the crane's plane",
+        "all joints turn about one direction, none moves along it",
+    );
     out(!analyses.statics, "static residual and tangent stiffness", "`analyses` does not ask for statics");
     out(!analyses.dynamics, "mass matrix, bias and kinetic energy", "`analyses` does not ask for dynamics");
     out(!analyses.modes, "linearisation", "`analyses` does not ask for modes");
@@ -31,7 +36,7 @@ pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'stati
     rows
 }
 
-/// Whether all rotations keep one direction of the world: the chain moves in a plane.
+/// Whether all rotations keep one direction of the world and no translation is along it: the chain moves in a plane.
 fn planar(chain: &Chain) -> bool {
     let graph = Graph::simplifying();
     let kinematics = Kinematics::new(&Model::new(&graph, chain));
@@ -39,5 +44,9 @@ fn planar(chain: &Chain) -> bool {
     let mut axes = rotations.map(|g| g.omega.0.map(Expr::as_constant));
     let Some(first) = axes.next() else { return false };
     let opposite = first.map(|x| x.map(|x| -x));
-    first.iter().all(Option::is_some) && axes.all(|axis| axis == first || axis == opposite)
+    let normal = first.map(|x| x.map(|x| graph.constant(x)));
+    let [Some(x), Some(y), Some(z)] = normal else { return false };
+    let within = |g: &Generator<'_>| g.upsilon.dot(Vec3([x, y, z])).is_zero();
+    let translations = kinematics.generators.iter().filter(|g| g.kind == CoordinateKind::Translation);
+    axes.all(|axis| axis == first || axis == opposite) && translations.into_iter().all(within)
 }

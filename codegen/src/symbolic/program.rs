@@ -76,7 +76,7 @@ pub enum Shape {
     /// Several pairs.
     Pairs(usize),
     /// Homogeneous transformations or their derivatives, grouped by body; slots are the upper three rows of each, row
-    /// by row. `last_row` is the corner of the constant fourth row: 1 for a transformation, 0 for a derivative.
+    /// by row. `corner` is the corner of the constant fourth row: 1 for a transformation, 0 for a derivative.
     Transforms {
         /// How many matrices each body has.
         counts: Vec<usize>,

@@ -144,7 +144,8 @@ fn divide(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
 
 fn sine(graph: &Graph, a: ExprId) -> ExprId {
     match graph.op(a) {
-        Op::Constant(c) => constant(graph, c.value().sin()),
+        // Not the platform's: the same bytes on any machine.
+        Op::Constant(c) => constant(graph, libm::sin(c.value())),
         Neg(x) => {
             let sin = graph.intern(Sin(x));
             negate(graph, sin)
@@ -155,7 +156,7 @@ fn sine(graph: &Graph, a: ExprId) -> ExprId {
 
 fn cosine(graph: &Graph, a: ExprId) -> ExprId {
     match graph.op(a) {
-        Op::Constant(c) => constant(graph, c.value().cos()),
+        Op::Constant(c) => constant(graph, libm::cos(c.value())),
         Neg(x) => graph.intern(Cos(x)),
         _ => graph.intern(Cos(a)),
     }

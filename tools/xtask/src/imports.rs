@@ -3,11 +3,13 @@
 use crate::workspace;
 
 /// A folder of the compiler, and the modules of the compiler that it may name besides itself.
-const MAY_IMPORT: [(&str, &[&str]); 8] = [
+const MAY_IMPORT: [(&str, &[&str]); 10] = [
     ("symbolic", &[]),
     ("chain", &[]),
     ("diagnostic", &[]),
     ("spec", &["diagnostic"]),
+    ("read", &["diagnostic", "spec"]),
+    ("validate", &["chain", "diagnostic", "expand", "spec"]),
     ("expand", &["chain"]),
     ("mechanics", &["chain", "symbolic"]),
     ("lower", &["symbolic"]),
@@ -56,7 +58,8 @@ pub fn check() -> Result<(), String> {
     for file in workspace::files("codegen/src", "rs")? {
         if !MAY_TOUCH_THE_WORLD.contains(&file.as_str()) {
             for (number, line) in code_lines(&workspace::read(&file)?) {
-                if ["std::fs", "std::env", "process::exit"].iter().any(|word| line.contains(word)) {
+                let words = ["fs::", "env::", "process::", "std::{"];
+                if words.iter().any(|word| line.contains(word)) && !line.contains("env!(") {
                     breaches.push(format!("{file}:{number}: `build` alone touches files, environment and process"));
                 }
             }

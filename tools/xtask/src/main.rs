@@ -79,6 +79,20 @@ fn tests() -> Vec<Step> {
         Step::cargo("tests", &["test", "--release", "--workspace", "--features", CLI]),
         Step::cargo("the default run", &["run", "--release"]),
         Step::cargo("a crane of one's own", &["run", "--release", "--package", "own-crane"]),
+        // A static library with its own panic handler: no crate beneath it may link std or a heap.
+        Step::cargo(
+            "a crane without std and heap",
+            &[
+                &["rustc", "--release", "--package", "no-std-crane", "--lib", "--features", "bare"][..],
+                &["--crate-type", "staticlib", "--", "-C", "panic=abort"],
+            ]
+            .concat(),
+        ),
+        // It links only where the optimiser finds every path to a panic impossible.
+        Step::cargo(
+            "a crane without panics",
+            &["build", "--profile", "no-panic", "--features", "no-panic", "--package", "no-std-crane"],
+        ),
     ]
 }
 

@@ -23,7 +23,7 @@ pub fn prepare() -> Result<(), String> {
     }
     let environment = workspace::root().join(".venv");
     step::finish(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&environment)).map_err(|error| {
-        format!("{error}; Python 3.10 or newer with its venv module is needed (Debian: apt-get install python3-venv)")
+        format!("{error}; Python 3.11 or newer with its venv module is needed (Debian: apt-get install python3-venv)")
     })?;
     step::finish(
         Command::new(python())
