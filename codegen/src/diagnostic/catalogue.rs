@@ -186,9 +186,10 @@ catalogue! {
     /// Supports carry a base that can move.
     E070 base_fixed(base) "the crane has supports, but its base `{base}` is not free", "nothing to support",
         "write `joint: free` in the first link, or remove `supports`";
-    /// Linear supports belong to a base that is placed without rotation.
-    E071 linear_rotated(support) "support `{support}` is linear, but the base is placed with a rotation",
-        "linear kinematics take the base's axes for the world's", "write `kinematics: exact`, or place the base without rotation";
+    /// Linear supports belong to a base that is placed without rotation and moves about the origin of its own frame.
+    E071 linear_placed(support, how) "support `{support}` is linear, but the base is placed {how}",
+        "linear kinematics need the world's axes, about the centre of rotation",
+        "write `kinematics: exact`, or place the base by `transform` without `rotation`";
 
     // Drives, damping, profiles.
     /// A coordinate has one drive, and one passive damping at most.

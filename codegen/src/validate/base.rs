@@ -14,8 +14,14 @@ impl<'a> Check<'a> {
         if self.base.iter().all(Option::is_none) && !supports.is_empty() && !self.unknown.links {
             self.report(rule::base_fixed(given.span, &base));
         }
-        let rotated =
-            self.bodies.first().is_some_and(|body| body.path.iter().any(|s| matches!(s, Step::Rotate { .. })));
+        let path = self.bodies.first().map(|body| body.path.clone()).unwrap_or_default();
+        let misplaced = if path.iter().any(|step| matches!(step, Step::Rotate { .. })) {
+            Some("with a rotation")
+        } else if path.windows(2).any(|pair| matches!(pair, [Step::Move(_), Step::Translate(_)])) {
+            Some("off its centre of rotation")
+        } else {
+            None
+        };
         let mut sound = Vec::new();
         for support in supports.iter().filter_map(|support| support.value.as_ref()) {
             let name = self.name(&support.name).unwrap_or_default().to_owned();
@@ -26,9 +32,9 @@ impl<'a> Check<'a> {
                 Some(Kinematics::Exact) => SupportKinematics::Exact,
                 Some(Kinematics::Linear) | None => SupportKinematics::Linear,
             };
-            if kinematics == SupportKinematics::Linear && rotated {
+            if let (SupportKinematics::Linear, Some(how)) = (kinematics, misplaced) {
                 let span = support.kinematics.as_ref().map_or(support.name.span, |kinematics| kinematics.span);
-                self.report(rule::linear_rotated(span, &name));
+                self.report(rule::linear_placed(span, &name, how));
             }
             let place = |what: &str| format!("the {what} of support `{name}`");
             sound.push(Support {
