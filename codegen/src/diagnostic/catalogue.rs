@@ -190,6 +190,9 @@ catalogue! {
     E071 linear_placed(support, how) "support `{support}` is linear, but the base is placed {how}",
         "linear kinematics need the world's axes, about the centre of rotation",
         "write `kinematics: exact`, or place the base by `transform` without `rotation`";
+    /// Supports carry a base that is rigid.
+    E072 supports_on_beam(base) "the crane has supports, but its base `{base}` is a flexible beam",
+        "they would hold its first element alone", "put a rigid link with `joint: free` under the beam";
 
     // Drives, damping, profiles.
     /// A coordinate has one drive, and one passive damping at most.

@@ -10,9 +10,11 @@ impl<'a> Check<'a> {
     pub(super) fn supports(&mut self, crane: &'a Crane) -> Vec<Support> {
         let Some(given) = &crane.supports else { return Vec::new() };
         let Some(supports) = &given.value else { return Vec::new() };
-        let base = self.bodies.first().map(|body| body.name.clone()).unwrap_or_default();
+        let base = self.bodies.first().map(|body| body.link.clone()).unwrap_or_default();
         if self.base.iter().all(Option::is_none) && !supports.is_empty() && !self.unknown.links {
             self.report(rule::base_fixed(given.span, &base));
+        } else if self.links.get(base.as_str()).is_some_and(|place| place.starts.len() > 1) && !supports.is_empty() {
+            self.report(rule::supports_on_beam(given.span, &base));
         }
         let path = self.bodies.first().map(|body| body.path.clone()).unwrap_or_default();
         let misplaced = if path.iter().any(|step| matches!(step, Step::Rotate { .. })) {
