@@ -149,6 +149,9 @@ catalogue! {
     /// A crane has at most 10000 coordinates.
     E047 too_many(link, count, most) "with beam `{link}` the crane has {count} coordinates", "at most {most} in all",
         "cut beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
+    /// A crane has a joint that moves, or a beam with sections.
+    E048 nothing_moves() "nothing in the crane can move", "no link has a joint that moves or a beam with sections",
+        "write `joint: revolute`, `prismatic` or, in the first link, `free`; or give a beam `sections`";
 
     // Inertias.
     /// An inertia is positive definite.

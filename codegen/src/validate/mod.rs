@@ -112,6 +112,7 @@ impl<'a> Check<'a> {
         let guess = self.guess(crane, &drives);
         let run = self.run(crane.run.as_ref());
         let analyses = self.analyses(crane.analyses.as_ref());
+        self.something_moves(crane);
         self.every_parameter_used(crane);
         Chain {
             title,
@@ -137,6 +138,13 @@ impl<'a> Check<'a> {
         let version = self.constant(&crane.format, "`format`", "", Limit::Any);
         if !version.is_nan() && version.to_bits() != 1f64.to_bits() {
             self.report(rule::wrong_format(crane.format.span, version));
+        }
+    }
+
+    fn something_moves(&mut self, crane: &Crane) {
+        // A joint that is wrong may be the one that moves.
+        if self.mistakes.is_empty() && self.coordinates.is_empty() {
+            self.report(rule::nothing_moves(crane.links.span));
         }
     }
 
