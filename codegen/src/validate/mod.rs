@@ -108,7 +108,7 @@ impl<'a> Check<'a> {
         let supports = self.supports(crane);
         let drives = self.drives(crane);
         let hinges = self.hinges(crane, &drives);
-        let points = self.points(crane);
+        let points = self.points(crane, &supports);
         let guess = self.guess(crane, &drives);
         let run = self.run(crane.run.as_ref());
         let analyses = self.analyses(crane.analyses.as_ref());

@@ -2,8 +2,8 @@
 
 use super::Check;
 use super::numbers::Limit;
-use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Value};
-use crate::diagnostic::{rule, suggest};
+use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Support, Value};
+use crate::diagnostic::{Span, rule, suggest};
 use crate::expand::profile;
 use crate::spec::{self, Constant, Crane, Given};
 
@@ -12,13 +12,14 @@ use crate::spec::{self, Constant, Crane, Given};
 const AT_THE_JOINT: f64 = 1e-12;
 
 impl<'a> Check<'a> {
-    pub(super) fn points(&mut self, crane: &'a Crane) -> Vec<Point> {
+    pub(super) fn points(&mut self, crane: &'a Crane, supports: &[Support]) -> Vec<Point> {
         let given = crane.points.as_ref().and_then(|points| points.value.as_deref()).unwrap_or_default();
         let mut points = Vec::new();
         for point in given.iter().filter_map(|point| point.value.as_ref()) {
             let name = self.name(&point.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
                 self.take_name("points", &name, "a point before".into(), point.name.span);
+                self.own_columns(&name, supports, point.name.span);
             }
             let at = self.vector(&point.at, &format!("the position of point `{name}`"), "m", Limit::Any);
             if let Some((body, position)) = self.attach(&point.link, at) {
@@ -26,6 +27,17 @@ impl<'a> Check<'a> {
             }
         }
         points
+    }
+
+    /// Tables of results name the motion of a point as they name coordinates and the forces of supports.
+    fn own_columns(&mut self, point: &str, supports: &[Support], span: Span) {
+        let reactions =
+            supports.iter().flat_map(|support| ["x", "y", "z"].map(|axis| format!("{}_reaction_{axis}", support.name)));
+        let mut columns = self.coordinates.iter().map(|coordinate| coordinate.name.clone()).chain(reactions);
+        let shared = |column: &String| matches!(column.strip_prefix(point), Some("_x" | "_y" | "_z"));
+        if let Some(column) = columns.find(shared) {
+            self.report(rule::shared_column(span, point, column));
+        }
     }
 
     /// The body of a link that carries a point, and where: of a beam, the element that holds the point's x.
