@@ -151,7 +151,7 @@ impl<const N: usize> Linearisation<N> {
     ///
     /// `None` unless A is positive definite. Needs neither `std` nor heap.
     pub fn state_blocks(&self) -> Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>)> {
-        state_blocks::<Const<N>>(self.mass, &self.stiffness, &self.damping)
+        state_blocks::<Const<N>>(self.mass, &self.stiffness, &self.damping).map(Into::into)
     }
 }
 
@@ -160,10 +160,10 @@ pub(crate) fn state_blocks<D: Dim>(
     mass: OMatrix<f64, D, D>,
     stiffness: &OMatrix<f64, D, D>,
     damping: &OMatrix<f64, D, D>,
-) -> Option<(OMatrix<f64, D, D>, OMatrix<f64, D, D>)>
+) -> Option<[OMatrix<f64, D, D>; 2]>
 where
     DefaultAllocator: Allocator<D, D>,
 {
     let mass = mass.cholesky()?;
-    Some((-mass.solve(stiffness), -mass.solve(damping)))
+    Some([-mass.solve(stiffness), -mass.solve(damping)])
 }

@@ -34,7 +34,7 @@ impl SmallMotions {
     /// The mass matrix is not positive definite.
     pub fn state_matrix(&self) -> Result<DMatrix<f64>, NoModes> {
         let n = self.mass.nrows();
-        let (stiffness, damping) =
+        let [stiffness, damping] =
             state_blocks(self.mass.clone(), &self.stiffness, &self.damping).ok_or(NoModes::MassMatrix)?;
         let mut state = DMatrix::zeros(2 * n, 2 * n);
         state.view_mut((0, n), (n, n)).fill_with_identity();

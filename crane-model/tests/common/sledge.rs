@@ -43,7 +43,7 @@ impl Sledge {
     }
 
     /// Weight, world frame, N.
-    pub fn weight(&self) -> Vector3<f64> {
+    pub fn weight(self) -> Vector3<f64> {
         Vector3::new(0.0, 0.0, -MASS * self.gravity)
     }
 }
