@@ -4,10 +4,11 @@ use std::path::Path;
 
 use crate::chain::{Analyses, Chain};
 use crate::diagnostic::{Diagnostics, SourceFile};
-use crate::emit::{GeneratedCode, Report, emit};
-use crate::lower::lower;
+use crate::emit::{GeneratedCode, emit};
+use crate::lower::{Blocks, lower};
 use crate::mechanics::{derive, derive_verbatim, left_out};
 use crate::read::read;
+use crate::report::Report;
 use crate::validate::validate;
 
 /// Compiles a spec to Rust: what its `analyses` ask for, or `analyses` in their place.
@@ -36,6 +37,15 @@ pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
 pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> GeneratedCode {
     let program = derive(chain, analyses);
     let blocks = lower(&program);
-    let report = Report::new(&blocks, &derive_verbatim(chain, analyses), left_out(chain, analyses));
-    emit(chain, &blocks, report, spec_file)
+    emit(chain, &blocks, report_on(&blocks, chain, analyses), spec_file)
+}
+
+/// What the functions of a chain cost and what is left out, without writing them.
+#[must_use]
+pub fn report(chain: &Chain, analyses: Analyses) -> Report {
+    report_on(&lower(&derive(chain, analyses)), chain, analyses)
+}
+
+fn report_on(blocks: &Blocks, chain: &Chain, analyses: Analyses) -> Report {
+    Report::new(blocks, &derive_verbatim(chain, analyses), left_out(chain, analyses))
 }

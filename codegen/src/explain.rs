@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::chain::{Axis, BodyId, Chain, CoordinateKind, Step};
-use crate::emit::{GeneratedCode, Report};
+use crate::report::Report;
 
 /// Everything about a chain and its functions, as text for a terminal.
 #[must_use]
@@ -97,23 +97,21 @@ fn costs(report: &Report) -> String {
 
 /// Operations per function and crane as a Markdown table; an empty cell where the scene does not need the function.
 #[must_use]
-pub fn operations_table(codes: &[GeneratedCode]) -> String {
+pub fn operations_table(reports: &[(String, Report)]) -> String {
     let mut functions: Vec<&str> = Vec::new();
-    for cost in codes.iter().flat_map(|code| &code.report.costs) {
+    for cost in reports.iter().flat_map(|(_, report)| &report.costs) {
         if !functions.contains(&cost.function.as_str()) {
             functions.push(&cost.function);
         }
     }
-    let names: Vec<String> = codes.iter().map(|code| format!("`{}`", code.name)).collect();
-    let mut text = format!("| function | {} |\n|---|{}\n", names.join(" | "), "---:|".repeat(codes.len()));
+    let names: Vec<String> = reports.iter().map(|(name, _)| format!("`{name}`")).collect();
+    let mut text = format!("| function | {} |\n|---|{}\n", names.join(" | "), "---:|".repeat(reports.len()));
     for function in functions {
-        let cells: Vec<String> = codes
-            .iter()
-            .map(|code| {
-                let cost = code.report.costs.iter().find(|cost| cost.function == function);
-                cost.map(|cost| cost.operations.total().to_string()).unwrap_or_default()
-            })
-            .collect();
+        let cell = |report: &Report| {
+            let cost = report.costs.iter().find(|cost| cost.function == function);
+            cost.map(|cost| cost.operations.total().to_string()).unwrap_or_default()
+        };
+        let cells: Vec<String> = reports.iter().map(|(_, report)| cell(report)).collect();
         let _ = writeln!(text, "| `{function}` | {} |", cells.join(" | "));
     }
     text

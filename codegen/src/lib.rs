@@ -19,6 +19,7 @@ pub mod explain;
 pub mod lower;
 pub mod mechanics;
 mod read;
+pub mod report;
 pub mod spec;
 pub mod symbolic;
 mod validate;

@@ -91,12 +91,12 @@ fn run(command: &Command) -> Result<String, String> {
         Command::Explain { spec, all } => {
             let chain = loaded(spec)?;
             let analyses = if *all { Analyses::ALL } else { chain.analyses };
-            let code = compile::generate(&chain, analyses, "");
-            Ok(explain::explain(&chain, &code.report))
+            Ok(explain::explain(&chain, &compile::report(&chain, analyses)))
         }
         Command::Operations { specs } => {
-            let codes: Result<Vec<_>, _> = specs.iter().map(|spec| compiled(spec, true)).collect();
-            Ok(explain::operations_table(&codes?))
+            let report =
+                |spec: &PathBuf| loaded(spec).map(|chain| (chain.name.clone(), compile::report(&chain, Analyses::ALL)));
+            Ok(explain::operations_table(&specs.iter().map(report).collect::<Result<Vec<_>, _>>()?))
         }
         Command::Schema => Ok(json_schema()),
     }

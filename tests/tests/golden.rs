@@ -46,11 +46,11 @@ fn generated_code_of_two_small_cranes() {
 /// The table of docs/OPERATIONS.md, as `crane-codegen operations` prints it.
 #[test]
 fn operations_table_of_the_documentation() {
-    let codes: Vec<_> = workspace::specs()
+    let reports: Vec<_> = workspace::specs()
         .iter()
         .map(|path| {
-            let name = path.file_stem().unwrap().to_string_lossy();
-            compile::generate(&workspace::chain(&name), Analyses::ALL, "")
+            let chain = workspace::chain(&path.file_stem().unwrap().to_string_lossy());
+            (chain.name.clone(), compile::report(&chain, Analyses::ALL))
         })
         .collect();
     let text = format!(
@@ -58,7 +58,7 @@ fn operations_table_of_the_documentation() {
          Floating-point operations of one call, an angle's sine and cosine counted as one; all functions of all shipped \
          cranes,\nalso those that a spec's `analyses` do not ask for. An empty cell: the scene does not need the \
          function.\n\nMade by `cargo run -p crane-codegen -- operations specs/*.yaml`.\n\n{}",
-        explain::operations_table(&codes)
+        explain::operations_table(&reports)
     );
     assert_golden(workspace::root().join("docs/OPERATIONS.md"), &text);
 }
@@ -68,7 +68,7 @@ fn operations_of_all_specs() {
     let mut text = String::new();
     for path in workspace::specs() {
         let name = path.file_stem().unwrap().to_string_lossy();
-        let report = compile::generate(&workspace::chain(&name), Analyses::ALL, "").report;
+        let report = compile::report(&workspace::chain(&name), Analyses::ALL);
         let _ = writeln!(text, "{name}");
         for cost in report.costs {
             let _ = writeln!(text, "  {:<30} {}", cost.function, cost.operations);

@@ -57,7 +57,7 @@ fn a_planar_scene_holds_nothing_out_of_its_plane() {
             .collect();
         assert_eq!(planes.len(), 1, "{name}: the row of the normal is constant in every pose");
         // A planar crane costs a fraction of the same chain in space.
-        let report = compile::generate(&crane.chain, Analyses::ALL, "").report;
+        let report = compile::report(&crane.chain, Analyses::ALL);
         let mass_matrix = report.costs.iter().find(|c| c.function == "mass_matrix").unwrap();
         let (kept, all) = (mass_matrix.operations.total(), mass_matrix.verbatim.total());
         assert!(3 * kept < all, "{name}: {kept} of {all} operations");

@@ -6,6 +6,7 @@ use syn::{Item, parse_quote};
 
 use super::arithmetic::integer;
 use super::print::plain;
+use super::shape::Storage;
 use crate::chain::Chain;
 use crate::lower::{Block, Blocks};
 use crate::symbolic::{Argument, Shape};
@@ -167,7 +168,7 @@ fn method(block: &Block) -> TokenStream {
             }
         }
         Shape::Transforms { .. } | Shape::Turned { .. } => {
-            let total = integer(matrices(&function.shape));
+            let total = integer(function.shape.matrices());
             quote! {
                 fn #name(&self, #(#names: #types,)* out: &mut [Matrix4<f64>]) {
                     if let Some(out) = out.first_chunk_mut::<#total>() {
@@ -176,30 +177,13 @@ fn method(block: &Block) -> TokenStream {
                 }
             }
         }
-        shape => {
-            let result = match shape {
-                Shape::Vector(_) => quote!(SVector<f64, N>),
-                Shape::Symmetric(_) => quote!(SMatrix<f64, N, N>),
-                Shape::Record(record, _) => {
-                    let record = format_ident!("{record}");
-                    quote!(#record<N>)
-                }
-                _ => quote!(f64),
-            };
+        _ => {
+            let result = Storage::of(function).public_type();
             quote! {
                 fn #name(&self, #(#names: #types),*) -> #result {
                     #name(#(#arguments),*)
                 }
             }
         }
-    }
-}
-
-/// How many matrices a function writes.
-fn matrices(shape: &Shape) -> usize {
-    match shape {
-        Shape::Transforms { counts, .. } => counts.iter().sum(),
-        Shape::Turned { degrees, .. } => degrees.iter().map(|n| n * (n + 1) / 2).sum(),
-        _ => 0,
     }
 }

@@ -10,20 +10,20 @@ use super::arithmetic::{
 use super::labels::Labels;
 use super::names::Names;
 use super::print::comment;
-use super::shape::{Handover, Result};
+use super::shape::{Handover, Storage};
 use crate::lower::{Block, Blocks, Statement};
 use crate::symbolic::{Argument, ExprId, Op};
 
 /// The items of one function: itself, and its pieces if it is long.
 pub fn function(blocks: &Blocks, block: &Block, labels: &Labels) -> Vec<syn::Item> {
-    let writer = Writer { blocks, block, result: Result::of(block.function), labels };
+    let writer = Writer { blocks, block, storage: Storage::of(block.function), labels };
     if block.pieces.len() == 1 { vec![writer.whole()] } else { writer.in_pieces() }
 }
 
 struct Writer<'a> {
     blocks: &'a Blocks<'a>,
     block: &'a Block<'a>,
-    result: Result<'a>,
+    storage: Storage<'a>,
     labels: &'a Labels<'a>,
 }
 
@@ -50,11 +50,11 @@ impl Writer<'_> {
 
     /// The storage, with its blank values.
     fn begin(&self) -> Stmt {
-        if matches!(self.result.handover(), Handover::OutArgument) {
+        if matches!(self.storage.handover(), Handover::OutArgument) {
             return parse_quote!(out.fill(Matrix4::zeros()););
         }
-        let name = format_ident!("{}", self.result.storage_name());
-        let (storage, blank) = (self.result.storage_type(), self.result.blank());
+        let name = format_ident!("{}", self.storage.storage_name());
+        let (storage, blank) = (self.storage.storage_type(), self.storage.blank());
         // Every slot may be zero.
         let written = self.block.pieces.iter().flatten().any(|s| matches!(s, Statement::Output { .. }));
         let mutable = written.then(|| quote!(mut));
@@ -63,17 +63,17 @@ impl Writer<'_> {
 
     /// The result from its storage.
     fn finish(&self) -> Vec<Stmt> {
-        if matches!(self.result.handover(), Handover::OutArgument) {
+        if matches!(self.storage.handover(), Handover::OutArgument) {
             return vec![];
         }
-        let finish = self.result.finish();
+        let finish = self.storage.finish();
         let block: syn::Block = parse_quote!({ #finish });
         block.stmts
     }
 
     fn in_pieces(&self) -> Vec<syn::Item> {
         let mut item = self.shell();
-        let storage = self.result.storage_type();
+        let storage = self.storage.storage_type();
         let carried = integer(self.block.carried);
         let mut statements: Vec<Stmt> = vec![self.begin()];
         if self.block.carried > 0 {
@@ -94,10 +94,10 @@ impl Writer<'_> {
                 arguments.push(borrow_mut(variable("kept")));
             }
             if outputs {
-                let name = format_ident!("{}", self.result.storage_name());
+                let name = format_ident!("{}", self.storage.storage_name());
                 parameters.push(quote!(#name: &mut #storage));
-                let storage = variable(self.result.storage_name());
-                arguments.push(match self.result.handover() {
+                let storage = variable(self.storage.storage_name());
+                arguments.push(match self.storage.handover() {
                     Handover::OutArgument => storage,
                     Handover::Return | Handover::FromFactors => borrow_mut(storage),
                 });
@@ -133,8 +133,8 @@ impl Writer<'_> {
         ];
         let docs = docs.iter().enumerate().filter(|(i, line)| *i != 3 || !line.is_empty()).map(|(_, line)| line);
         let mut parameters = self.all_inputs();
-        let output = self.result.public_type();
-        let signature = match self.result.handover() {
+        let output = self.storage.public_type();
+        let signature = match self.storage.handover() {
             Handover::Return => quote!(pub fn #name(#(#parameters),*) -> #output),
             Handover::OutArgument | Handover::FromFactors => {
                 parameters.push(quote!(out: &mut #output));
@@ -223,8 +223,8 @@ impl Writer<'_> {
                     pending.push(local(&names.of(id), &value));
                 }
                 Statement::Output { slot, value } => {
-                    if group != Some(self.result.group(slot)) {
-                        group = Some(self.result.group(slot));
+                    if group != Some(self.storage.group(slot)) {
+                        group = Some(self.storage.group(slot));
                         if let Some(label) = self.labels.of(self.block.function, slot) {
                             statements.push(comment(&label));
                         }
@@ -234,7 +234,7 @@ impl Writer<'_> {
                     if alone {
                         pending.push(Stmt::Expr(value, None));
                     } else {
-                        let mut place = self.result.place(slot);
+                        let mut place = self.storage.place(slot);
                         if self.is_scalar() {
                             place = parse_quote!(*out);
                         }

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::Report;
 use crate::chain::Chain;
+use crate::report::Report;
 
 /// The header, without a line of code.
 pub fn header(chain: &Chain, report: &Report, spec_file: &str) -> String {

@@ -9,7 +9,6 @@ mod labels;
 mod names;
 mod parameters;
 mod print;
-mod report;
 mod shape;
 
 use std::collections::HashSet;
@@ -22,9 +21,8 @@ use syn::parse_quote;
 
 use crate::chain::Chain;
 use crate::lower::Blocks;
+use crate::report::Report;
 use labels::Labels;
-
-pub use report::{FunctionCost, Report};
 
 /// The module of a crane.
 #[derive(Clone, Debug)]

@@ -18,13 +18,13 @@ pub enum Handover {
 }
 
 /// Type, storage and slots of a result.
-pub struct Result<'f> {
+pub struct Storage<'f> {
     shape: &'f Shape,
 }
 
-impl<'f> Result<'f> {
+impl<'f> Storage<'f> {
     pub fn of(function: &'f Function) -> Self {
-        Result { shape: &function.shape }
+        Storage { shape: &function.shape }
     }
 
     pub fn handover(&self) -> Handover {
@@ -43,10 +43,7 @@ impl<'f> Result<'f> {
             Shape::Symmetric(_) => quote!(SMatrix<f64, N, N>),
             Shape::Vectors(n) => array(&quote!(Vector3<f64>), *n),
             Shape::Pairs(n) => array(&quote!([f64; 2]), *n),
-            Shape::Transforms { counts, .. } => array(&quote!(Matrix4<f64>), counts.iter().sum()),
-            Shape::Turned { degrees, .. } => {
-                array(&quote!(Matrix4<f64>), degrees.iter().map(|n| n * (n + 1) / 2).sum())
-            }
+            Shape::Transforms { .. } | Shape::Turned { .. } => array(&quote!(Matrix4<f64>), self.shape.matrices()),
             Shape::Record(name, _) => {
                 let name = format_ident!("{name}");
                 quote!(#name<N>)

@@ -112,6 +112,16 @@ impl Shape {
         }
     }
 
+    /// How many homogeneous matrices the result has.
+    #[must_use]
+    pub fn matrices(&self) -> usize {
+        match self {
+            Shape::Transforms { counts, .. } => counts.iter().sum(),
+            Shape::Turned { degrees, .. } => degrees.iter().map(|n| n * (n + 1) / 2).sum(),
+            _ => 0,
+        }
+    }
+
     /// The result from its slots: themselves, unless they are factors.
     pub fn close<S: Scalar>(&self, slots: Vec<S>) -> Vec<S> {
         let Shape::Turned { degrees, rotations } = self else { return slots };

@@ -13,7 +13,7 @@ const MAY_IMPORT: [(&str, &[&str]); 10] = [
     ("expand", &["chain"]),
     ("mechanics", &["chain", "symbolic"]),
     ("lower", &["symbolic"]),
-    ("emit", &["chain", "lower", "symbolic"]),
+    ("emit", &["chain", "lower", "report", "symbolic"]),
 ];
 
 /// Words that a folder may not contain, and why.

@@ -66,6 +66,8 @@ fn lint() -> Vec<Step> {
             "clippy",
             &["clippy", "--release", "--workspace", "--all-targets", "--features", CLI, "--", "-D", "warnings"],
         ),
+        // A workspace of its own, which no other step would notice.
+        Step::cargo("fuzz target", &["check", "--release", "--manifest-path", "codegen/fuzz/Cargo.toml"]),
         Step::cargo("documentation", &["doc", "--release", "--workspace", "--no-deps", "--features", CLI])
             .with("RUSTDOCFLAGS", "-D warnings"),
     ]

@@ -45,11 +45,9 @@ impl Report {
                     .unwrap_or_default(),
             })
             .collect();
-        let pairs = |shape: &Shape| match shape {
-            Shape::Turned { degrees, .. } => Some(degrees.iter().map(|n| n * (n + 1) / 2).sum()),
-            _ => None,
-        };
-        let second_derivative_pairs = blocks.functions.iter().find_map(|block| pairs(&block.function.shape));
+        let in_a_loop = |shape: &&Shape| matches!(shape, Shape::Turned { .. });
+        let mut shapes = blocks.functions.iter().map(|block| &block.function.shape);
+        let second_derivative_pairs = shapes.find(in_a_loop).map(Shape::matrices);
         Report { costs, second_derivative_pairs, left_out }
     }
 }
