@@ -23,7 +23,7 @@ pub struct Description {
     pub points: &'static [&'static str],
     /// Whether the spec asks for statics: a run then starts from the static equilibrium, otherwise from the guess.
     pub statics: bool,
-    /// Where the static solution starts, or the run without statics, m and rad.
+    /// Where the static solution starts, or the run without statics, with default parameters, m and rad.
     pub guess: &'static [f64],
     /// Simulated time, s.
     pub duration: f64,

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{DoublePendulum, Lift};
-use crane_model::statics::{Settings, Status, solve};
+use crane_model::statics::{Settings, Status, guess, solve};
 
 #[test]
 fn a_linear_crane_takes_one_step() {
@@ -13,6 +13,17 @@ fn a_linear_crane_takes_one_step() {
     assert_eq!(equilibrium.steps(), 1);
     // One division and one subtraction of rounding.
     assert!((equilibrium.q[0] - lift.sag()).abs() < 1e-15, "{:?}", equilibrium.q);
+}
+
+#[test]
+fn the_guess_of_a_driven_coordinate_follows_its_drive() {
+    let lift = Lift { height: 2.0, ..Lift::default() };
+    // Sums of small whole numbers and halves are exact.
+    assert_eq!(guess(&lift)[0], 2.0);
+    assert_eq!(guess(&Lift::default())[0], 0.0);
+    // A guess that is not the drive's position is meant.
+    assert_eq!(guess(&Lift { height: 2.0, ..Lift::guessed() })[0], 0.5);
+    assert!((solve(&lift, &Settings::default()).q[0] - lift.sag()).abs() < 1e-15);
 }
 
 #[test]

@@ -14,9 +14,9 @@ use crate::{
 };
 
 /// A crane compiled with every analysis.
-pub trait Crane<const N: usize>: Dynamics<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> {}
+pub trait Crane<const N: usize>: Dynamics<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone {}
 
-impl<const N: usize, C: Dynamics<N> + Statics<N> + Linearise<N> + TransformDerivatives<N>> Crane<N> for C {}
+impl<const N: usize, C: Dynamics<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone> Crane<N> for C {}
 
 /// A crane of `N` coordinates behind [`Rig`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -111,6 +111,10 @@ impl<const N: usize, C: Crane<N> + Send + Sync> Rig for Instance<N, C> {
             elements: self.0.element_energy(&q),
             drives: self.0.drive_energy(t, &q),
         }
+    }
+
+    fn guess(&self) -> Vec<f64> {
+        statics::guess(&self.0).as_slice().to_vec()
     }
 
     fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {

@@ -109,6 +109,9 @@ pub trait Rig: Send + Sync {
     /// Energies by part.
     fn energies(&self, t: f64, q: &[f64], v: &[f64]) -> Energies;
 
+    /// The guess for the present parameters: [`statics::guess`].
+    fn guess(&self) -> Vec<f64>;
+
     /// Static equilibrium from the guess: [`statics::solve`].
     fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium;
 

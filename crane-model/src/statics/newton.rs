@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Status, balance::Balance, tangent::Tangent};
+use super::{Status, balance::Balance, guess, tangent::Tangent};
 use crate::{CoordinateKind, Statics};
 
 /// Halvings of a step before it is given up: 1e-6 of a Newton step no longer makes progress.
@@ -58,20 +58,20 @@ impl Equilibrium {
     }
 }
 
-/// Solves `∂E_p/∂q = 0` at t = 0, Eq. (23) with `q̇ = q̈ = 0`, from the description's guess.
+/// Solves `∂E_p/∂q = 0` at t = 0, Eq. (23) with `q̇ = q̈ = 0`, from the [`guess`].
 ///
 /// Newton–Raphson on `r(q) = ∂E_p/∂q` with `K = ∂²E_p/∂q²`: `q ← q − α K⁻¹ r`, α = 1, halved until the residual falls.
 /// The residual is measured as `‖r/scale‖`, the scale of a translation being the greatest force that any translation
 /// balances at the guess, that of a rotation the greatest moment: N and N m become comparable. Any equilibrium is found,
 /// a stable one or not; the tangent stiffness there tells which.
-pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> Equilibrium {
+pub fn solve<const N: usize, C: Statics<N> + Clone>(crane: &C, settings: &Settings) -> Equilibrium {
     if N == 0 {
         // Nothing can move; an empty matrix has no eigenvalues to look at.
         let history = vec![Iteration { residual: 0.0, fraction: 0.0 }];
         return Equilibrium { status: Status::Converged, q: Vec::new(), history };
     }
     let description = crane.description();
-    let mut q = SVector::from_fn(|i, _| description.guess[i]);
+    let mut q = guess(crane);
     let balance = Balance::at(crane, &q);
     let mut residual = crane.static_residual(&q);
     let mut norm = balance.norm(&residual);

@@ -1,21 +1,29 @@
-//! A mass on a driven spring and damper: `m z̈ = s (z_dr − z) + d (ż_dr − ż) − m g`, `z_dr = a sin Ωt`. Linear, so that its
+//! A mass on a driven spring and damper: `m z̈ = s (z_dr − z) + d (ż_dr − ż) − m g`, `z_dr = z_0 + a sin Ωt`. Linear, so that its
 //! motion is known in closed form.
 
 use crane_model::{
     CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Driven, CraneModel, Description, DriveInfo, Dynamics,
-    Linearisation, Linearise, Statics,
+    Linearisation, Linearise, ParameterInfo, Statics,
 };
 use nalgebra::{Complex, Matrix1, Matrix4, Vector1};
 
 use super::{GRAVITY, coordinate, description};
 
 const COORDINATES: &[CoordinateInfo] = &[coordinate("lift_z", Translation, Driven)];
-static DESCRIPTION: Description =
-    Description { drives: &[DriveInfo { coordinate: 0 }], ..description("lift", COORDINATES, &[0.0]) };
+static DESCRIPTION: Description = Description {
+    drives: &[DriveInfo { coordinate: 0 }],
+    parameters: &[ParameterInfo { name: "height", unit: "m", about: "where the support starts", default: 0.0 }],
+    ..description("lift", COORDINATES, &[0.0])
+};
+static GUESSED: Description = Description { guess: &[0.5], ..DESCRIPTION };
 
 /// Mass, spring, damper, moved support.
 #[derive(Clone, Copy)]
 pub struct Lift {
+    /// Names and guess.
+    pub description: &'static Description,
+    /// Where the support starts, m; live.
+    pub height: f64,
     /// Mass, kg.
     pub mass: f64,
     /// Spring, N/m.
@@ -30,20 +38,33 @@ pub struct Lift {
 
 impl Default for Lift {
     fn default() -> Self {
-        Self { mass: 10.0, stiffness: 4000.0, damping: 40.0, amplitude: 0.1, frequency: 7.0 }
+        Self {
+            description: &DESCRIPTION,
+            height: 0.0,
+            mass: 10.0,
+            stiffness: 4000.0,
+            damping: 40.0,
+            amplitude: 0.1,
+            frequency: 7.0,
+        }
     }
 }
 
 impl Lift {
+    /// Starts at a guess of its own.
+    pub fn guessed() -> Self {
+        Self { description: &GUESSED, ..Self::default() }
+    }
+
     /// Position at rest, m.
     pub fn sag(&self) -> f64 {
-        -self.mass * GRAVITY / self.stiffness
+        self.height - self.mass * GRAVITY / self.stiffness
     }
 
     /// Position at `t` after a start at rest from the equilibrium: forced plus free vibration.
     pub fn exact(&self, t: f64) -> f64 {
         let i = Complex::i();
-        let Self { mass: m, stiffness: s, damping: d, amplitude, frequency } = *self;
+        let Self { mass: m, stiffness: s, damping: d, amplitude, frequency, .. } = *self;
         let forced = amplitude * (s + i * d * frequency) / (s - m * frequency.powi(2) + i * d * frequency);
         let lambda = Complex::new(-d / (2.0 * m), (s / m - (d / (2.0 * m)).powi(2)).sqrt());
         // Im(forced) + Re(c) = 0 and Re(forced) Ω + Re(λ c) = 0.
@@ -54,20 +75,22 @@ impl Lift {
 
     fn support(&self, t: f64) -> [f64; 2] {
         let (sin, cos) = (self.frequency * t).sin_cos();
-        [self.amplitude * sin, self.amplitude * self.frequency * cos]
+        [self.height + self.amplitude * sin, self.amplitude * self.frequency * cos]
     }
 }
 
 impl CraneModel<1> for Lift {
     fn description(&self) -> &'static Description {
-        &DESCRIPTION
+        self.description
     }
 
     fn parameter(&self, _: usize) -> f64 {
-        f64::NAN
+        self.height
     }
 
-    fn set_parameter(&mut self, _: usize, _: f64) {}
+    fn set_parameter(&mut self, _: usize, value: f64) {
+        self.height = value;
+    }
 
     fn transforms(&self, _: &Vector1<f64>, _: &mut [Matrix4<f64>]) {}
 
@@ -78,6 +101,10 @@ impl CraneModel<1> for Lift {
     fn drive_forces(&self, t: f64, q: &Vector1<f64>, v: &Vector1<f64>) -> Vector1<f64> {
         let [z, rate] = self.support(t);
         Vector1::new(self.stiffness * (z - q.x) + self.damping * (rate - v.x))
+    }
+
+    fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
+        out[0] = self.support(t);
     }
 
     fn gravity_energy(&self, q: &Vector1<f64>) -> f64 {

@@ -17,7 +17,7 @@ use crate::{
 pub fn eval(options: &Eval, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.crane.open()?;
     let description = rig.description();
-    let q = state("q", options.q.as_deref(), description)?.unwrap_or_else(|| description.guess.to_vec());
+    let q = state("q", options.q.as_deref(), description)?.unwrap_or_else(|| rig.guess());
     let v = state("v", options.v.as_deref(), description)?.unwrap_or_else(|| vec![0.0; q.len()]);
     let arrays = arrays(rig.as_ref(), &q, &v);
     let bytes = match options.format {

@@ -51,6 +51,7 @@ pub fn info(options: &Analysis, out: &mut dyn Write) -> Outcome<()> {
     report.grid(parameters);
 
     let mut coordinates = Grid::new("q", "Coordinates", &["index", "name", "unit", "role", "guess"]);
+    let guess = rig.guess();
     for (index, coordinate) in description.coordinates.iter().enumerate() {
         let role = match coordinate.role {
             CoordinateRole::Base => "base",
@@ -58,13 +59,12 @@ pub fn info(options: &Analysis, out: &mut dyn Write) -> Outcome<()> {
             CoordinateRole::Passive => "passive",
             CoordinateRole::Element => "element",
         };
-        let guess = description.guess[index];
         coordinates.row([
             index.into(),
             coordinate.name.into(),
             coordinate.kind.unit().into(),
             role.into(),
-            guess.into(),
+            guess[index].into(),
         ]);
     }
     report.grid(coordinates);

@@ -48,7 +48,7 @@ impl Start {
         if description.statics {
             Case::new(description.name, rig).start()
         } else {
-            Ok(Self { q: description.guess.to_vec(), what: GUESS })
+            Ok(Self { q: rig.guess(), what: GUESS })
         }
     }
 }
