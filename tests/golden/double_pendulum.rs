@@ -75,7 +75,6 @@ pub const DESCRIPTION: Description = Description {
     supports: &[],
     drives: &[],
     points: &["end"],
-    gravity: [0.0, 0.0, -9.81],
     statics: false,
     guess: &[1.5707963267948966, -1.5707963267948966],
     duration: 10.0,

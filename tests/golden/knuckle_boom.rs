@@ -122,7 +122,6 @@ pub const DESCRIPTION: Description = Description {
         DriveInfo { coordinate: 2 },
     ],
     points: &["boom_tip", "load_centre"],
-    gravity: [0.0, 0.0, -9.81],
     statics: true,
     guess: &[-0.7853981633974483, 1.3089969389957472, 0.2, -0.5235987755982988],
     duration: 10.0,
