@@ -3,7 +3,7 @@
 //! `cargo xtask bless` writes the files anew; commit them with the reason.
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::Path;
 
 use crane_codegen::build;
 use crane_codegen::chain::Analyses;
@@ -11,9 +11,10 @@ use crane_codegen::compile;
 use crane_codegen::explain;
 use crane_tests::workspace;
 
-#[allow(clippy::pedantic)]
 mod compiled {
     #![deny(warnings)]
+    // Clippy asks for named constants where a number of the crane happens to be π/4.
+    #![allow(clippy::all, clippy::pedantic)]
     #![allow(missing_docs, unreachable_pub, dead_code)]
     pub mod double_pendulum {
         include!("../golden/double_pendulum.rs");
@@ -23,11 +24,11 @@ mod compiled {
     }
 }
 
-fn assert_golden(path: PathBuf, actual: &str) {
+fn assert_golden(path: &Path, actual: &str) {
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        build::write(&path, actual).unwrap();
+        build::write(path, actual).unwrap();
     }
-    let golden = std::fs::read_to_string(&path).unwrap_or_default();
+    let golden = std::fs::read_to_string(path).unwrap_or_default();
     let differs = golden.lines().zip(actual.lines()).position(|(a, b)| a != b);
     assert!(golden == actual, "{} is not current (line {:?})", path.display(), differs.map(|line| line + 1));
 }
@@ -37,7 +38,7 @@ fn generated_code_of_two_small_cranes() {
     for name in ["double_pendulum", "knuckle_boom"] {
         let chain = workspace::chain(name);
         let code = compile::generate(&chain, chain.analyses, &format!("{name}.yaml"));
-        assert_golden(workspace::root().join(format!("tests/golden/{name}.rs")), &code.text);
+        assert_golden(&workspace::root().join(format!("tests/golden/{name}.rs")), &code.text);
     }
     assert_eq!(compiled::double_pendulum::N, 2);
     assert_eq!(compiled::knuckle_boom::DESCRIPTION.name, "knuckle_boom");
@@ -60,7 +61,7 @@ fn operations_table_of_the_documentation() {
          function.\n\nMade by `cargo run -p crane-codegen -- operations specs/*.yaml`.\n\n{}",
         explain::operations_table(&reports)
     );
-    assert_golden(workspace::root().join("docs/OPERATIONS.md"), &text);
+    assert_golden(&workspace::root().join("docs/OPERATIONS.md"), &text);
 }
 
 #[test]
@@ -74,5 +75,5 @@ fn operations_of_all_specs() {
             let _ = writeln!(text, "  {:<30} {}", cost.function, cost.operations);
         }
     }
-    assert_golden(workspace::root().join("tests/golden/operations.txt"), &text);
+    assert_golden(&workspace::root().join("tests/golden/operations.txt"), &text);
 }
