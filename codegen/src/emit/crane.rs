@@ -5,6 +5,7 @@ use quote::{format_ident, quote};
 use syn::{Item, parse_quote};
 
 use super::arithmetic::integer;
+use super::function::argument_name;
 use super::print::plain;
 use super::shape::Storage;
 use crate::chain::Chain;
@@ -145,11 +146,9 @@ fn common_methods(chain: &Chain) -> TokenStream {
 fn method(block: &Block) -> TokenStream {
     let function = block.function;
     let name = format_ident!("{}", function.name);
-    let of = |argument: &Argument| match argument {
-        Argument::Time => (format_ident!("t"), quote!(f64)),
-        Argument::Position => (format_ident!("q"), quote!(&SVector<f64, N>)),
-        Argument::Velocity => (format_ident!("v"), quote!(&SVector<f64, N>)),
-        Argument::Parameters => (format_ident!("c"), quote!(&Constants)),
+    let of = |argument: &Argument| {
+        let (name, of) = argument_name(*argument);
+        (format_ident!("{name}"), of)
     };
     let (names, types): (Vec<_>, Vec<_>) = function.arguments.iter().map(of).unzip();
     let constants = block.reads_parameters.then(|| quote!(&self.constants));

@@ -339,7 +339,8 @@ fn sin_cos(angle: Expr, sin: Option<String>, cos: Option<String>) -> Stmt {
     parse_quote!(let (#sin, #cos) = #call;)
 }
 
-fn argument_name(argument: Argument) -> (&'static str, TokenStream) {
+/// Name and type of an argument, in functions and in the methods that call them.
+pub fn argument_name(argument: Argument) -> (&'static str, TokenStream) {
     match argument {
         Argument::Time => ("t", quote!(f64)),
         Argument::Position => ("q", quote!(&SVector<f64, N>)),

@@ -6,7 +6,7 @@ use crate::chain::{BodyId, Chain};
 use crate::lower::Blocks;
 use crate::symbolic::{ExprId, Function, Shape};
 
-use super::shape::row_of_triangle;
+use super::shape::{field_of, row_of_triangle};
 
 /// Names that come from the chain.
 pub struct Labels<'a> {
@@ -48,14 +48,8 @@ impl<'a> Labels<'a> {
                 Some(self.transform("transform_derivatives", degrees, (slot - axes) / 12))
             }
             Shape::Record(_, fields) => {
-                let mut rest = slot;
-                let (name, shape) = fields.iter().find(|(_, shape)| {
-                    let here = rest < shape.len();
-                    if !here {
-                        rest -= shape.len();
-                    }
-                    here
-                })?;
+                let (index, rest) = field_of(fields, slot);
+                let (name, shape) = &fields[index];
                 let Shape::Symmetric(n) = shape else { return Some((*name).to_owned()) };
                 let row = coordinate(row_of_triangle(*n, rest).0);
                 Some(format!("{}, row of {row}", capitalised(name)))

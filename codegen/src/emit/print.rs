@@ -14,8 +14,9 @@ pub fn file(items: Vec<syn::Item>) -> String {
     let text = prettyplease::unparse(&syn::File { shebang: None, attrs: vec![], items, frontmatter: None });
     let mut out = String::with_capacity(text.len());
     let mut in_function = false;
-    for line in text.lines() {
-        if let Some((indent, comment)) = comment_of(line) {
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        if let Some((indent, comment)) = comment_of(line, &mut lines) {
             out.push_str(indent);
             out.push_str("// ");
             out.push_str(&comment);
@@ -38,13 +39,18 @@ fn ends_item(line: &str) -> bool {
     line.ends_with([';', '}'])
 }
 
-fn comment_of(line: &str) -> Option<(&str, String)> {
-    let start = line.find("comment!(")?;
-    let (indent, call) = line.split_at(start);
-    if !indent.trim().is_empty() {
-        return None;
-    }
-    let literal = call.strip_prefix("comment!(")?.strip_suffix(");")?;
+/// The comment that a line carries, and its indentation. The formatter breaks a long one into three lines; then the other
+/// two are taken from `following`.
+fn comment_of<'t>(line: &'t str, following: &mut std::str::Lines<'t>) -> Option<(&'t str, String)> {
+    let call = line.trim_start().strip_prefix("comment!(")?;
+    let indent = &line[..line.len() - line.trim_start().len()];
+    let literal = if let Some(literal) = call.strip_suffix(");") {
+        literal
+    } else {
+        let literal = following.next()?.trim();
+        following.next();
+        literal
+    };
     Some((indent, syn::parse_str::<syn::LitStr>(literal).ok()?.value()))
 }
 
@@ -64,6 +70,16 @@ pub fn plain(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn comments_of_any_length_are_comments() {
+        for length in [1, 60, 90, 200] {
+            let text = "x".repeat(length);
+            let comment = super::comment(&text);
+            let printed = super::file(vec![syn::parse_quote!(fn f() { #comment let a = 1; })]);
+            assert_eq!(printed, format!("fn f() {{\n    // {text}\n    let a = 1;\n}}\n"));
+        }
+    }
+
     #[test]
     fn a_users_words_are_no_markup() {
         assert_eq!(super::plain("log [A], 0...800 kg"), r"log \[A\], 0...800 kg");

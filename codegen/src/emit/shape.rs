@@ -184,7 +184,7 @@ pub fn row_of_triangle(n: usize, mut slot: usize) -> (usize, usize) {
 }
 
 /// The field of a record that a slot is in, and the slot in it.
-fn field_of(fields: &[(&'static str, Shape)], mut slot: usize) -> (usize, usize) {
+pub fn field_of(fields: &[(&'static str, Shape)], mut slot: usize) -> (usize, usize) {
     let mut index = 0;
     while slot >= fields[index].1.len() {
         slot -= fields[index].1.len();
