@@ -8,7 +8,7 @@ from comparison import compare, negligible_entry
 PERTURBATION = 1e-8
 
 
-def perturb(quantity, values, rng):
+def perturb(quantity, values, rng, perturbation=PERTURBATION):
     """The values with one entry, picked at random, wrong by the perturbation in the state where it is largest.
 
     Where all is zero, an entry is no longer so.
@@ -17,7 +17,7 @@ def perturb(quantity, values, rng):
     entry = rng.choice(np.flatnonzero(size >= negligible_entry(quantity) * size.max()))
     state = np.argmax(np.abs(values[:, entry]))
     wrong = values.copy()
-    wrong[state, entry] += PERTURBATION * (values[state, entry] or 1.0)
+    wrong[state, entry] += perturbation * (values[state, entry] or 1.0)
     return wrong
 
 

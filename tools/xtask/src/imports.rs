@@ -17,7 +17,7 @@ const MAY_IMPORT: [(&str, &[&str]); 10] = [
 ];
 
 /// Words that a folder may not contain, and why.
-const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 4] = [
+const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 5] = [
     ("crane-model/src", "rs", &["crane_codegen"], "the runtime uses the compiler in its build script only"),
     (
         "tests/golden",
@@ -26,6 +26,7 @@ const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 4] = [
         "generated code needs core and the runtime only",
     ),
     ("tools/casadi", "py", &["codegen/src", "import yaml"], "the check shares the YAML file and nothing else"),
+    ("tools/peers", "py", &["codegen/src", "import yaml"], "the peers share the YAML file and nothing else"),
     ("codegen/src", "rs", &["unsafe "], "no unsafe code"),
 ];
 

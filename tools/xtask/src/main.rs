@@ -2,9 +2,9 @@
 //!
 //! `cargo xtask test` runs every check there is; the others are its parts, for the time in between.
 
-mod casadi;
 mod equations;
 mod imports;
+mod oracles;
 mod python;
 mod step;
 mod workspace;
@@ -16,18 +16,18 @@ use step::Step;
 
 const USAGE: &str = "cargo xtask TASK
 
-  test     every check: lint, unit and whole-system tests, CasADi, the example crate, the default run
+  test     every check: lint, unit and whole-system tests, oracles, the example crate, the default run
   lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md
-  casadi   generated code against CasADi, over all shipped and some random cranes
+  oracles  generated code against CasADi, Pinocchio and MuJoCo, over all shipped and some random cranes
   bless    write anew what tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let task = arguments.first().map_or("", String::as_str);
     let steps = match task {
-        "test" => [lint(), tests(), casadi()].concat(),
+        "test" => [lint(), tests(), oracles()].concat(),
         "lint" => lint(),
-        "casadi" => casadi(),
+        "oracles" => oracles(),
         "bless" => bless(),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");
@@ -98,15 +98,17 @@ fn tests() -> Vec<Step> {
     ]
 }
 
-fn casadi() -> Vec<Step> {
+fn oracles() -> Vec<Step> {
     vec![
         Step::check("Python environment", python::prepare),
         Step::cargo(
             "the program that evaluates generated code",
             &["build", "--release", "--workspace", "--features", CLI, "--bins"],
         ),
-        Step::check("CasADi's own checks notice errors", casadi::self_test),
-        Step::check("generated code against CasADi", casadi::check),
+        Step::check("CasADi's own checks notice errors", oracles::self_test),
+        Step::check("generated code against CasADi", oracles::check),
+        Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::peers_self_test),
+        Step::check("generated code against Pinocchio and MuJoCo", oracles::peers),
     ]
 }
 

@@ -1,4 +1,4 @@
-//! The Python environment of the CasADi check: made once, with pinned packages.
+//! The Python environment of the checks with other libraries: made once, with pinned packages.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::{step, workspace};
 
-const REQUIREMENTS: &str = "tools/casadi/requirements.txt";
+const REQUIREMENTS: [&str; 2] = ["tools/casadi/requirements.txt", "tools/peers/requirements.txt"];
 
 /// Python of the environment.
 pub fn python() -> PathBuf {
@@ -15,10 +15,10 @@ pub fn python() -> PathBuf {
 
 /// Makes the environment, unless it has what is required already.
 pub fn prepare() -> Result<(), String> {
-    let requirements = workspace::read(REQUIREMENTS)?;
+    let requirements = REQUIREMENTS.map(workspace::read).into_iter().collect::<Result<String, _>>()?;
     let stamp = workspace::root().join(".venv/requirements.installed");
     if fs::read_to_string(&stamp).is_ok_and(|installed| installed == requirements) {
-        println!("{REQUIREMENTS} is installed");
+        println!("{} are installed", REQUIREMENTS.join(" and "));
         return Ok(());
     }
     let environment = workspace::root().join(".venv");
@@ -27,8 +27,9 @@ pub fn prepare() -> Result<(), String> {
     })?;
     step::finish(
         Command::new(python())
-            .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"])
-            .arg(workspace::root().join(REQUIREMENTS)),
+            .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
+            .args(REQUIREMENTS.iter().flat_map(|file| ["--requirement", file]))
+            .current_dir(workspace::root()),
     )?;
     fs::write(&stamp, requirements).map_err(|error| format!("{}: {error}", stamp.display()))
 }

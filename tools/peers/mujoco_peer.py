@@ -1,0 +1,73 @@
+"""A chain in MuJoCo: one body a link, its joints in a row in it."""
+
+import mujoco
+import numpy as np
+
+FLAGS = mujoco.mjtDisableBit
+# Nothing but the chain: no contact, no constraint, no sensor, no implicit damping; the forces are applied.
+DISABLED = (
+    FLAGS.mjDSBL_CONSTRAINT
+    | FLAGS.mjDSBL_CONTACT
+    | FLAGS.mjDSBL_LIMIT
+    | FLAGS.mjDSBL_EQUALITY
+    | FLAGS.mjDSBL_FRICTIONLOSS
+    | FLAGS.mjDSBL_ACTUATION
+    | FLAGS.mjDSBL_SENSOR
+    | FLAGS.mjDSBL_EULERDAMP
+    | FLAGS.mjDSBL_WARMSTART
+)
+# MuJoCo refuses what has no inertia at all; a point mass gets this much, kg m².
+LEAST_INERTIA = 1e-14
+
+
+class MuJoCo:
+    """A, e and q̈ of a chain: mj_fullM, qfrc_bias, qacc."""
+
+    name = "MuJoCo"
+
+    def __init__(self, chain):
+        self.model = build(chain).compile()
+        self.data = mujoco.MjData(self.model)
+
+    def evaluate(self, q, v, force):
+        """A, e and q̈ at a state with generalized forces."""
+        data = self.data
+        data.qpos, data.qvel, data.qfrc_applied = q, v, force
+        mujoco.mj_forward(self.model, data)
+        mass_matrix = np.zeros((self.model.nv, self.model.nv))
+        mujoco.mj_fullM(self.model, data, mass_matrix)
+        return mass_matrix, -data.qfrc_bias, data.qacc.copy()
+
+
+def build(chain):
+    """The chain as a model to be compiled."""
+    spec = mujoco.MjSpec()
+    spec.option.gravity = chain.gravity
+    spec.option.disableflags = int(DISABLED)
+    body = spec.worldbody
+    for link in chain.links:
+        body = body.add_body(pos=link.placement[:3, 3], quat=quaternion(link.placement[:3, :3]))
+        for joint in link.joints:
+            kind = mujoco.mjtJoint.mjJNT_HINGE if joint.is_rotation else mujoco.mjtJoint.mjJNT_SLIDE
+            body.add_joint(type=kind, axis=joint.axis, pos=joint.point, armature=0, limited=False)
+        # Principal axes from here: MuJoCo's own are good to 1e-12 only.
+        moments, axes = principal(link.tensor)
+        body.mass, body.ipos, body.iquat = link.mass, link.com, quaternion(axes)
+        body.inertia = np.maximum(moments, LEAST_INERTIA)
+        body.explicitinertial = True
+    return spec
+
+
+def principal(tensor):
+    """Principal moments and axes; the axes of the frame where they are principal."""
+    if np.count_nonzero(tensor - np.diag(np.diagonal(tensor))) == 0:
+        return np.diagonal(tensor), np.eye(3)
+    moments, axes = np.linalg.eigh(tensor)
+    return moments, axes * np.linalg.det(axes)
+
+
+def quaternion(rotation):
+    """Unit quaternion (w, x, y, z) of a rotation matrix, from the eigenvector of its quadratic form to full precision."""
+    quat = np.zeros(4)
+    mujoco.mju_mat2Quat(quat, rotation.ravel())
+    return quat / np.linalg.norm(quat)

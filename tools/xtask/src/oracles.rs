@@ -1,0 +1,38 @@
+//! The checks with other libraries: `tools/casadi` derives every quantity, `tools/peers` computes the dynamics.
+
+use std::process::Command;
+
+use crate::{python, step, workspace};
+
+fn script(path: &str) -> Command {
+    let mut command = Command::new(python::python());
+    command.arg(workspace::root().join(path)).current_dir(workspace::root());
+    command
+}
+
+fn on_generated_code(path: &str) -> Result<(), String> {
+    step::finish(script(path).arg("--evaluate").arg(workspace::target().join("release/evaluate")))
+}
+
+const CHECK: &str = "tools/casadi/check.py";
+const AGREE: &str = "tools/peers/agree.py";
+
+/// CasADi's derivations obey the laws of mechanics, and an error of 1e-8 in any quantity is noticed.
+pub fn self_test() -> Result<(), String> {
+    step::finish(script(CHECK).arg("--self-test"))
+}
+
+/// Every generated function of every shipped crane and of random cranes.
+pub fn check() -> Result<(), String> {
+    on_generated_code(CHECK)
+}
+
+/// Pinocchio and MuJoCo agree with each other, and an error of 1e-7 in A, e or q̈ is noticed.
+pub fn peers_self_test() -> Result<(), String> {
+    step::finish(script(AGREE).arg("--self-test"))
+}
+
+/// A, e and q̈ of the same cranes.
+pub fn peers() -> Result<(), String> {
+    on_generated_code(AGREE)
+}
