@@ -5,7 +5,9 @@
 //!
 //! Throughout: `N` coordinates, `q` in m and rad, `v = q̇` in m/s and rad/s, `t` in s, world frame with z up.
 
-use nalgebra::{Const, DefaultAllocator, Dim, Matrix4, OMatrix, SMatrix, SVector, Vector3, allocator::Allocator};
+use nalgebra::{
+    Cholesky, Const, DefaultAllocator, Dim, Matrix4, OMatrix, SMatrix, SVector, Vector3, allocator::Allocator,
+};
 
 use crate::Description;
 
@@ -102,8 +104,49 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
     /// Bias `e = −(h + g)`, Eq. (9): velocity and gravity forces.
     fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N>;
 
+    /// Accelerations q̈ of `A q̈ = e + f`, Eq. (23), in O(n) by articulated bodies: A is never formed. m/s² and rad/s².
+    fn forward_dynamics(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+        self.solve_mass(q, &(self.bias(q, v) + self.forces(t, q, v)))
+    }
+
+    /// x of `A(q) x = r`, in O(n). `r` in N and N m, x in m/s² and rad/s².
+    ///
+    /// A model written by hand may leave it to A: by Cholesky's factors, NaN where A is not positive definite.
+    fn solve_mass(&self, q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
+        Cholesky::new(self.mass_matrix(q)).map_or(SVector::repeat(f64::NAN), |factors| factors.solve(r))
+    }
+
     /// Kinetic energy, Eq. (4). J.
     fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64;
+}
+
+/// What an implicit step needs: stiffness and damping by their structure, and systems with them at the price of A alone.
+///
+/// All springs and dampers sit on single coordinates, or in the block of the base's coordinates, which are the first of q.
+pub trait Implicit<const N: usize>: Dynamics<N> {
+    /// What [`Implicit::factorise`] leaves for [`Implicit::solve`].
+    type Factors;
+
+    /// Factors of `A(q) + D̂`, in O(n). D̂ is block-diagonal: `base` in the rows and columns of the base's coordinates, as far
+    /// as the crane has them, and `resistance` on the diagonal of all others. Positive semidefinite; kg and kg m².
+    fn factorise(&self, q: &SVector<f64, N>, resistance: &SVector<f64, N>, base: &SMatrix<f64, 6, 6>) -> Self::Factors;
+
+    /// x of `(A + D̂) x = r`.
+    fn solve(&self, f: &Self::Factors, r: &SVector<f64, N>) -> SVector<f64, N>;
+
+    /// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of elements, drives and joints on single coordinates; zero for
+    /// the base's. `out`: one pair a coordinate.
+    fn joint_impedances(&self, out: &mut [[f64; 2]]);
+
+    /// Stiffness over the base's coordinates: supports and drives. N/m, N and N m.
+    fn base_stiffness(&self, _q: &SVector<f64, N>) -> SMatrix<f64, 6, 6> {
+        SMatrix::zeros()
+    }
+
+    /// Damping over the base's coordinates: supports, drives, joints. N s/m, N s and N m s.
+    fn base_damping(&self, _q: &SVector<f64, N>) -> SMatrix<f64, 6, 6> {
+        SMatrix::zeros()
+    }
 }
 
 /// Static equilibrium at t = 0.

@@ -32,7 +32,7 @@ impl Interpreted {
     /// Inputs at a state with the spec's parameters.
     #[must_use]
     pub fn inputs(&self, state: &State) -> Inputs<f64> {
-        Inputs { t: state.t, q: state.q.clone(), v: state.v.clone(), parameters: self.chain.parameter_defaults() }
+        Inputs::state(state.t, state.q.clone(), state.v.clone(), self.chain.parameter_defaults())
     }
 
     /// A function's result; zeros, as many as `otherwise`, where the scene does not need the function.
@@ -62,11 +62,10 @@ impl Interpreted {
         self.get(function, &self.inputs(state), 1)[0]
     }
 
-    /// `q̈ = A⁻¹ (e + f)`.
+    /// Accelerations q̈.
     #[must_use]
     pub fn acceleration(&self, state: &State) -> DVector<f64> {
-        let force = self.vector("bias", state) + self.vector("forces", state);
-        self.matrix("mass_matrix", state).cholesky().expect("A is positive definite").solve(&force)
+        self.vector("forward_dynamics", state)
     }
 
     /// Plain Newton iteration on the static residual from the spec's guess.
@@ -102,6 +101,7 @@ impl Interpreted {
 fn expand<S: Scalar>(shape: &Shape, slots: Vec<S>) -> Vec<S> {
     match shape {
         Shape::Symmetric(n) => symmetric(*n, &slots),
+        Shape::Base => symmetric(6, &slots),
         Shape::Transforms { corner, .. } => homogeneous(&slots, *corner),
         Shape::Turned { .. } => homogeneous(&slots, 0),
         Shape::Record(_, fields) => {

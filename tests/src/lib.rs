@@ -4,8 +4,10 @@
 
 pub mod dual;
 pub mod interpreted;
+pub mod precise;
 pub mod quantities;
 pub mod random;
 pub mod registry;
+pub mod runtime;
 pub mod states;
 pub mod workspace;

@@ -45,6 +45,9 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("element_forces", vec![n]),
         ("drive_forces", vec![n]),
         ("hinge_forces", vec![n]),
+        ("forward_dynamics", vec![n]),
+        ("mass_solution", vec![n]),
+        ("implicit_solution", vec![n]),
         ("kinetic_energy", vec![1]),
         ("gravity_energy", vec![1]),
         ("support_energy", vec![1]),
@@ -108,6 +111,9 @@ pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f6
         crane.element_forces(q, v),
         crane.drive_forces(t, q, v),
         crane.hinge_forces(v),
+        crane.forward_dynamics(t, q, v),
+        crane.solve_mass(q, v),
+        implicit_solution(crane, q, v),
     ] {
         out.extend(vector.iter());
     }
@@ -137,6 +143,23 @@ pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f6
     out.extend(motions.iter().flatten());
     out.extend([crane.drive_power(t, q, v), crane.dissipation(t, q, v)]);
     out
+}
+
+/// Step of [`implicit_solution`], s.
+pub const IMPLICIT_STEP: f64 = 0.01;
+
+/// x of `(A + h D + h² K) x = v`, D and K without gravity.
+fn implicit_solution<const N: usize, C: Crane<N>>(
+    crane: &C,
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+) -> SVector<f64, N> {
+    let h = IMPLICIT_STEP;
+    let mut joints = [[0.0; 2]; N];
+    crane.joint_impedances(&mut joints);
+    let resistance = SVector::from_fn(|i, _| h * joints[i][1] + h * h * joints[i][0]);
+    let base = crane.base_damping(q) * h + crane.base_stiffness(q) * (h * h);
+    crane.solve(&crane.factorise(q, &resistance, &base), v)
 }
 
 fn push_matrices(out: &mut Vec<f64>, matrices: &[Matrix4<f64>]) {

@@ -29,6 +29,16 @@ pub fn chain(name: &str) -> Chain {
     chain_of(name, &text)
 }
 
+/// The chain of the reference crane with another number of sections.
+#[must_use]
+pub fn reference(sections: usize) -> Chain {
+    let path = root().join("specs/eight_link_flexible.yaml");
+    let text = std::fs::read_to_string(&path).expect("the spec is there");
+    let changed = text.replace("sections: 4", &format!("sections: {sections}"));
+    assert_ne!(changed, text, "the reference crane has 4 sections");
+    chain_of("reference", &changed)
+}
+
 /// The chain of a spec's text.
 #[must_use]
 pub fn chain_of(name: &str, text: &str) -> Chain {

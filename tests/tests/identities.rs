@@ -17,12 +17,8 @@ fn cranes() -> impl Iterator<Item = (u64, Interpreted)> {
 fn moving(crane: &Interpreted, state: &State, rates: (f64, &[f64], &[f64])) -> Inputs<Dual> {
     let (t, q, v) = rates;
     let pair = |values: &[f64], rates: &[f64]| values.iter().zip(rates).map(|(x, r)| Dual::new(*x, *r)).collect();
-    Inputs {
-        t: Dual::new(state.t, t),
-        q: pair(&state.q, q),
-        v: pair(&state.v, v),
-        parameters: crane.chain.parameter_defaults().into_iter().map(|p| Dual::new(p, 0.0)).collect(),
-    }
+    let parameters = crane.chain.parameter_defaults().into_iter().map(|p| Dual::new(p, 0.0)).collect();
+    Inputs::state(Dual::new(state.t, t), pair(&state.q, q), pair(&state.v, v), parameters)
 }
 
 /// Relative to the larger of both, or to a size given by what cancels.

@@ -5,6 +5,7 @@ No formula of the equations of motion is written down here: A, e, forces, K and 
 """
 
 import casadi as ca
+import numpy as np
 
 
 def row_major(matrix):
@@ -134,7 +135,13 @@ class Derivations:
         potential = self.gravity_energy() + sum(energy for energy, _ in self.potentials().values())
         stiffness, residual = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
         stiffness = row_major(ca.densify(stiffness))
-        return {"static_residual": residual, "tangent_stiffness": stiffness, "linearised_stiffness": stiffness}
+        springs = ca.hessian(sum(energy for energy, _ in self.potentials().values()), self.crane.q)[0]
+        return {
+            "static_residual": residual,
+            "tangent_stiffness": stiffness,
+            "linearised_stiffness": stiffness,
+            "impedance_stiffness": row_major(ca.densify(springs)),
+        }
 
     def motions(self):
         """Points and their velocities, reactions of the supports, and what the drives prescribe and deliver."""
@@ -158,4 +165,31 @@ class Derivations:
         names = list(self.quantities)
         function = ca.Function("quantities", self.arguments, [ca.densify(self.quantities[name]) for name in names])
         values = function(*columns)
-        return {name: value.full().T for name, value in zip(names, values)}
+        values = {name: value.full().T for name, value in zip(names, values)}
+        return values | solutions(values, states.v)
+
+
+# Step of `implicit_solution`, s; that of the program that evaluates.
+IMPLICIT_STEP = 0.01
+
+
+def solutions(values, v):
+    """Accelerations and solutions of linear systems, by dense factors of the derived matrices."""
+    count = v.shape[1]
+    mass, damping, stiffness = (
+        values[name].reshape(-1, count, count) for name in ("mass_matrix", "linearised_damping", "impedance_stiffness")
+    )
+    implicit = mass + IMPLICIT_STEP * damping + IMPLICIT_STEP**2 * stiffness
+    del values["impedance_stiffness"]
+    return {
+        "forward_dynamics": solve_scaled(mass, values["bias"] + values["forces"]),
+        "mass_solution": solve_scaled(mass, v),
+        "implicit_solution": solve_scaled(implicit, v),
+    }
+
+
+def solve_scaled(matrices, right):
+    """`A x = r` for positive definite A, with unit diagonal by scaling: less of A's condition is lost."""
+    scale = 1 / np.sqrt(np.einsum("sii->si", matrices))
+    scaled = matrices * scale[:, :, None] * scale[:, None, :]
+    return scale * np.linalg.solve(scaled, (scale * right)[:, :, None])[:, :, 0]

@@ -26,20 +26,26 @@ pub fn integer(value: usize) -> Expr {
     Expr::Lit(syn::ExprLit { attrs: vec![], lit: Lit::Int(literal) })
 }
 
-/// −a; `−(2 · b)` becomes `−2 · b`, the same number at one operation less.
+/// −a; −(−2) becomes 2, and `−(2 · b)` becomes `−2 · b`, the same number at one operation less.
 pub fn negative(a: Expr) -> Expr {
     let a = match a {
         Expr::Binary(ExprBinary { left, op: op @ BinOp::Mul(_), right, .. }) if matches!(*left, Expr::Lit(_)) => {
             return binary(negative(*left), op, *right);
         }
+        Expr::Unary(ExprUnary { op: UnOp::Neg(_), expr, .. }) if matches!(*expr, Expr::Lit(_)) => return *expr,
         other => other,
     };
     let operand = if precedence(&a) < Precedence::Unary { parenthesised(a) } else { a };
     Expr::Unary(ExprUnary { attrs: vec![], op: UnOp::Neg(Token![-](Span::call_site())), expr: Box::new(operand) })
 }
 
-/// a + b
+/// a + b; `a + −2` becomes `a − 2`.
 pub fn sum(a: Expr, b: Expr) -> Expr {
+    if let Expr::Unary(ExprUnary { op: UnOp::Neg(_), expr, .. }) = &b
+        && matches!(**expr, Expr::Lit(_))
+    {
+        return difference(a, (**expr).clone());
+    }
     binary(a, BinOp::Add(Token![+](Span::call_site())), b)
 }
 
@@ -99,7 +105,7 @@ pub fn field(value: Expr, name: &str) -> Expr {
         attrs: vec![],
         base: Box::new(value),
         dot_token: Token![.](Span::call_site()),
-        member: syn::Member::Named(Ident::new(name, Span::call_site())),
+        member: syn::parse_str(name).expect("a name or the place in a tuple"),
     })
 }
 
@@ -160,9 +166,11 @@ mod tests {
         assert_eq!(text(&product(sum(a(), b()), c())), "(a+b)*c");
         assert_eq!(text(&sum(a(), sum(b(), c()))), "a+(b+c)");
         assert_eq!(text(&sum(sum(a(), b()), c())), "a+b+c");
+        assert_eq!(text(&sum(a(), number(-2.0))), "a-2.0");
         assert_eq!(text(&difference(a(), difference(b(), c()))), "a-(b-c)");
         assert_eq!(text(&negative(sum(a(), b()))), "-(a+b)");
         assert_eq!(text(&negative(product(a(), b()))), "-(a*b)");
+        assert_eq!(text(&negative(number(-2.0))), "2.0");
         assert_eq!(text(&negative(product(number(2.0), b()))), "-2.0*b");
         assert_eq!(text(&quotient(a(), product(b(), c()))), "a/(b*c)");
         assert_eq!(text(&product(negative(a()), b())), "-a*b");

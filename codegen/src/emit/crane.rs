@@ -13,7 +13,7 @@ use crate::lower::{Block, Blocks};
 use crate::symbolic::{Argument, Shape};
 
 /// Traits of the runtime, and the functions that each needs.
-const TRAITS: [(&str, &[&str]); 5] = [
+const TRAITS: [(&str, &[&str]); 6] = [
     (
         "CraneModel",
         &[
@@ -35,7 +35,8 @@ const TRAITS: [(&str, &[&str]); 5] = [
             "dissipation",
         ],
     ),
-    ("Dynamics", &["mass_matrix", "bias", "kinetic_energy"]),
+    ("Dynamics", &["forward_dynamics", "solve_mass", "mass_matrix", "bias", "kinetic_energy"]),
+    ("Implicit", &["factorise", "solve", "joint_impedances", "base_stiffness", "base_damping"]),
     ("Statics", &["static_residual", "tangent_stiffness"]),
     ("Linearise", &["linearise"]),
     ("TransformDerivatives", &["transform_derivatives", "transform_second_derivatives"]),
@@ -84,7 +85,13 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
         if methods.is_empty() {
             continue;
         }
-        let common = if name == "CraneModel" { common_methods(chain) } else { quote!() };
+        let common = match name {
+            "CraneModel" => common_methods(chain),
+            "Implicit" => quote!(
+                type Factors = Factors;
+            ),
+            _ => quote!(),
+        };
         let name = format_ident!("{name}");
         items.push(parse_quote! {
             impl #name<N> for Crane {
@@ -154,6 +161,13 @@ fn method(block: &Block) -> TokenStream {
     let constants = block.reads_parameters.then(|| quote!(&self.constants));
     let arguments: Vec<_> = names.iter().map(|name| quote!(#name)).chain(constants).collect();
     match &function.shape {
+        Shape::Factors(_) => {
+            quote! {
+                fn #name(&self, #(#names: #types),*) -> Factors {
+                    #name(#(#arguments),*)
+                }
+            }
+        }
         Shape::Vectors(_) | Shape::Pairs(_) | Shape::Transforms { corner: 1, .. } => {
             let element = match function.shape {
                 Shape::Vectors(_) => quote!(Vector3<f64>),

@@ -1,5 +1,7 @@
 //! A block as a Rust function.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::{Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::{Expr, Ident, Stmt, parse_quote};
@@ -11,7 +13,7 @@ use super::labels::Labels;
 use super::names::Names;
 use super::print::comment;
 use super::shape::{Handover, Storage};
-use crate::lower::{Block, Blocks, Statement};
+use crate::lower::{Angle, Block, Blocks, Statement};
 use crate::symbolic::{Argument, ExprId, Op};
 
 /// The items of one function: itself, and its pieces if it is long.
@@ -149,11 +151,16 @@ impl Writer<'_> {
 
     /// Arguments of the function itself: always the same for a function, used or not.
     fn all_inputs(&self) -> Vec<TokenStream> {
-        let used = Used::by_all(self);
+        let used = self.block.pieces.iter().flatten().fold(Used::new(), |mut used, statement| {
+            if let Statement::Input(id) = statement {
+                self.input(*id, &mut used);
+            }
+            used
+        });
         let mut inputs: Vec<TokenStream> = Vec::new();
         for argument in self.block.function.arguments {
             let (name, of) = argument_name(*argument);
-            let name = if used.has(*argument) { format_ident!("{name}") } else { format_ident!("_{name}") };
+            let name = if used.contains(argument) { format_ident!("{name}") } else { format_ident!("_{name}") };
             inputs.push(quote!(#name: #of));
         }
         if self.block.reads_parameters {
@@ -165,30 +172,30 @@ impl Writer<'_> {
     /// Arguments of a piece: what it uses.
     fn inputs(&self, used: &Used) -> Vec<TokenStream> {
         let mut inputs: Vec<TokenStream> = Vec::new();
-        for argument in self.block.function.arguments.iter().filter(|a| used.has(**a)) {
+        for argument in self.block.function.arguments.iter().filter(|a| used.contains(a)) {
             let (name, of) = argument_name(*argument);
             let name = format_ident!("{name}");
             inputs.push(quote!(#name: #of));
         }
-        if used.parameters {
+        if used.contains(&Argument::Parameters) {
             inputs.push(quote!(c: &Constants));
         }
         inputs
     }
 
     fn input_names(&self, used: &Used) -> Vec<&'static str> {
-        let arguments = self.block.function.arguments.iter().filter(|a| used.has(**a));
-        arguments.map(|a| argument_name(*a).0).chain(used.parameters.then_some("c")).collect()
+        let arguments = self.block.function.arguments.iter().filter(|a| used.contains(a));
+        arguments.map(|a| argument_name(*a).0).chain(used.contains(&Argument::Parameters).then_some("c")).collect()
     }
 
     /// Plain arrays behind the vectors: a constant index into an array is checked when it is compiled.
     fn unpack(used: &Used) -> Vec<Stmt> {
         let mut statements: Vec<Stmt> = Vec::new();
-        if used.position {
-            statements.push(parse_quote!(let q = &q.data.0[0];));
-        }
-        if used.velocity {
-            statements.push(parse_quote!(let v = &v.data.0[0];));
+        for (argument, vector) in VECTORS {
+            if used.contains(&argument) {
+                let vector = format_ident!("{vector}");
+                statements.push(parse_quote!(let #vector = &#vector.data.0[0];));
+            }
         }
         statements
     }
@@ -196,33 +203,33 @@ impl Writer<'_> {
     /// Statements of a piece, and what they use.
     fn piece(&self, piece: &[Statement]) -> (Vec<Stmt>, Used) {
         let mut names = Names::new(self.blocks.program);
-        let mut used = Used::default();
+        let mut used = Used::new();
         let mut statements = Vec::new();
         let mut group = None;
         let mut pending: Vec<Stmt> = Vec::new();
-        let mut section = "";
         for statement in piece {
-            match *statement {
-                Statement::Input(id) => {
+            match statement {
+                &Statement::Input(id) => {
                     let source = self.input(id, &mut used);
                     let name = names.of(id);
                     if !matches!(&source, Expr::Path(path) if path.path.is_ident(&name)) {
                         pending.push(local(&name, &source));
                     }
                 }
-                Statement::SinCos { angle, sin, cos } => {
-                    if section.is_empty() {
-                        section = "angles";
-                        statements.push(comment("Sines and cosines"));
-                    }
-                    let angle = self.expression(angle, &mut names, &mut used);
-                    pending.push(sin_cos(angle, sin.map(|id| names.of(id)), cos.map(|id| names.of(id))));
+                Statement::SinCos(angles) => {
+                    statements.append(&mut pending);
+                    statements.push(comment("Sines and cosines"));
+                    let results = angles.iter().map(|known| pair(known, &mut names));
+                    let results: Vec<TokenStream> = results.collect();
+                    let angles = angles.iter().map(|known| self.expression(known.angle, &mut names, &mut used));
+                    let angles: Vec<Expr> = angles.collect();
+                    statements.push(parse_quote!(let [#(#results),*] = sin_cos([#(#angles),*]);));
                 }
-                Statement::Let(id) => {
+                &Statement::Let(id) => {
                     let value = self.operation(id, &mut names, &mut used);
                     pending.push(local(&names.of(id), &value));
                 }
-                Statement::Output { slot, value } => {
+                &Statement::Output { slot, value } => {
                     if group != Some(self.storage.group(slot)) {
                         group = Some(self.storage.group(slot));
                         if let Some(label) = self.labels.of(self.block.function, slot) {
@@ -242,16 +249,13 @@ impl Writer<'_> {
                     }
                     statements.append(&mut pending);
                 }
-                Statement::Keep { place, value } => {
+                &Statement::Keep { place, value } => {
                     let (place, value) = (element(variable("kept"), place), variable(&names.of(value)));
                     pending.push(parse_quote!(#place = #value;));
                 }
-                Statement::Fetch { place, value } => {
+                &Statement::Fetch { place, value } => {
                     pending.push(local(&names.of(value), &element(variable("kept"), place)));
                 }
-            }
-            if matches!(statement, Statement::SinCos { .. }) {
-                statements.append(&mut pending);
             }
         }
         statements.append(&mut pending);
@@ -268,13 +272,13 @@ impl Writer<'_> {
     fn expression(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
         let program = self.blocks.program;
         if self.blocks.constants.is_stored(id) {
-            used.parameters = true;
+            used.insert(Argument::Parameters);
             return field(variable("c"), &self.labels.constant(id));
         }
         match program.op(id) {
             Op::Constant(c) => number(c.value()),
             Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Parameters => {
-                used.parameters = true;
+                used.insert(Argument::Parameters);
                 field(field(variable("c"), "params"), &program.symbol(symbol).name)
             }
             _ if self.block.inlined[id.index()] => self.operation(id, names, used),
@@ -284,18 +288,39 @@ impl Writer<'_> {
 
     /// An operation on its arguments. Recursion ends within the bound of one statement.
     fn operation(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
+        if let Some(product) = self.block.fused[id.index()] {
+            return self.fused(id, product, names, used);
+        }
         operation(self.blocks.program.op(id), &mut |operand| self.expression(operand, names, used))
+    }
+
+    /// A sum or difference with a product in it: `fma(a, b, c)`.
+    fn fused(&self, id: ExprId, product: ExprId, names: &mut Names, used: &mut Used) -> Expr {
+        let program = self.blocks.program;
+        let Op::Mul(a, b) = program.op(product) else { unreachable!("only products are fused") };
+        let mut of = |operand: ExprId| self.expression(operand, names, used);
+        let (a, b) = (of(a), of(b));
+        let [a, b, c] = match program.op(id) {
+            Op::Add(x, y) => [a, b, of(if x == product { y } else { x })],
+            Op::Sub(x, y) if x == product => [a, b, negative(of(y))],
+            Op::Sub(x, _) => [negative(a), b, of(x)],
+            _ => unreachable!("only sums and differences take a product"),
+        };
+        call("fma", [a, b, c])
     }
 
     fn input(&self, id: ExprId, used: &mut Used) -> Expr {
         let Op::Symbol(symbol) = self.blocks.program.op(id) else { unreachable!("inputs are symbols") };
         let symbol = self.blocks.program.symbol(symbol);
-        used.note(symbol.argument);
+        used.insert(symbol.argument);
         match symbol.argument {
             Argument::Time => variable("t"),
-            Argument::Position => element(variable("q"), symbol.index),
-            Argument::Velocity => element(variable("v"), symbol.index),
+            Argument::BaseResistance => {
+                let columns = field(field(variable("base"), "data"), "0");
+                element(element(columns, symbol.index / 6), symbol.index % 6)
+            }
             Argument::Parameters => unreachable!("parameters are read where they are used"),
+            vector => element(variable(argument_name(vector).0), symbol.index),
         }
     }
 }
@@ -310,16 +335,17 @@ pub fn operation(op: Op, of: &mut dyn FnMut(ExprId) -> Expr) -> Expr {
         Op::Div(a, b) => quotient(of(a), of(b)),
         Op::Min(a, b) => method(of(a), "min", of(b)),
         Op::Max(a, b) => method(of(a), "max", of(b)),
-        Op::Sin(a) => field_of_pair(of(a), 0),
-        Op::Cos(a) => field_of_pair(of(a), 1),
+        Op::Sin(a) => field_of_pair(&of(a), 0),
+        Op::Cos(a) => field_of_pair(&of(a), 1),
         Op::Constant(c) => number(c.value()),
         Op::Symbol(_) => unreachable!("inputs are read, not computed"),
     }
 }
 
-/// `sin_cos(angle).0`
-fn field_of_pair(angle: Expr, index: u32) -> Expr {
-    let pair = call("sin_cos", [angle]);
+/// `sin_cos([angle])[0].0`
+fn field_of_pair(angle: &Expr, index: u32) -> Expr {
+    let angles: Expr = parse_quote!([#angle]);
+    let pair = element(call("sin_cos", [angles]), 0);
     let index = syn::Index { index, span: Span::call_site() };
     parse_quote!(#pair.#index)
 }
@@ -330,14 +356,25 @@ pub fn local(name: &str, value: &Expr) -> Stmt {
     parse_quote!(let #name = #value;)
 }
 
-/// `let (sin, cos) = sin_cos(angle);`
-fn sin_cos(angle: Expr, sin: Option<String>, cos: Option<String>) -> Stmt {
-    let pattern = |name: Option<String>| {
-        name.map_or_else(|| quote!(_), |name| Ident::new(&name, Span::call_site()).into_token_stream())
+/// `(sin, cos)`, or `_` for what is not needed.
+fn pair(known: &Angle, names: &mut Names) -> TokenStream {
+    let mut pattern = |id: Option<ExprId>| {
+        id.map_or_else(|| quote!(_), |id| Ident::new(&names.of(id), Span::call_site()).into_token_stream())
     };
-    let (sin, cos, call) = (pattern(sin), pattern(cos), call("sin_cos", [angle]));
-    parse_quote!(let (#sin, #cos) = #call;)
+    let (sin, cos) = (pattern(known.sin), pattern(known.cos));
+    quote!((#sin, #cos))
 }
+
+/// Which inputs a piece reads.
+type Used = BTreeSet<Argument>;
+
+/// Arguments that are vectors, and their names.
+const VECTORS: [(Argument, &str); 4] = [
+    (Argument::Position, "q"),
+    (Argument::Velocity, "v"),
+    (Argument::Right, "r"),
+    (Argument::Resistance, "resistance"),
+];
 
 /// Name and type of an argument, in functions and in the methods that call them.
 pub fn argument_name(argument: Argument) -> (&'static str, TokenStream) {
@@ -345,46 +382,10 @@ pub fn argument_name(argument: Argument) -> (&'static str, TokenStream) {
         Argument::Time => ("t", quote!(f64)),
         Argument::Position => ("q", quote!(&SVector<f64, N>)),
         Argument::Velocity => ("v", quote!(&SVector<f64, N>)),
+        Argument::Right => ("r", quote!(&SVector<f64, N>)),
+        Argument::Resistance => ("resistance", quote!(&SVector<f64, N>)),
+        Argument::BaseResistance => ("base", quote!(&SMatrix<f64, 6, 6>)),
+        Argument::Factors => ("f", quote!(&Factors)),
         Argument::Parameters => ("c", quote!(&Constants)),
-    }
-}
-
-/// Which inputs a piece reads: a set of independent facts.
-#[allow(clippy::struct_excessive_bools)]
-#[derive(Default)]
-struct Used {
-    time: bool,
-    position: bool,
-    velocity: bool,
-    parameters: bool,
-}
-
-impl Used {
-    fn by_all(writer: &Writer) -> Self {
-        let mut used = Used { parameters: writer.block.reads_parameters, ..Used::default() };
-        for statement in writer.block.pieces.iter().flatten() {
-            if let Statement::Input(id) = statement {
-                writer.input(*id, &mut used);
-            }
-        }
-        used
-    }
-
-    fn note(&mut self, argument: Argument) {
-        match argument {
-            Argument::Time => self.time = true,
-            Argument::Position => self.position = true,
-            Argument::Velocity => self.velocity = true,
-            Argument::Parameters => self.parameters = true,
-        }
-    }
-
-    fn has(&self, argument: Argument) -> bool {
-        match argument {
-            Argument::Time => self.time,
-            Argument::Position => self.position,
-            Argument::Velocity => self.velocity,
-            Argument::Parameters => self.parameters,
-        }
     }
 }

@@ -33,11 +33,16 @@ impl<'a> Labels<'a> {
         let chain = self.chain;
         let coordinate = |i: usize| chain.coordinates[i].name.as_str();
         match &function.shape {
-            Shape::Scalar => None,
+            Shape::Scalar | Shape::Factors(_) => None,
+            Shape::Base => {
+                let coordinates = chain.base.iter().flatten().map(|id| coordinate(id.0));
+                coordinates.skip(row_of_triangle(6, slot).0).map(|name| format!("Row of {name}")).next()
+            }
             Shape::Vector(_) => Some(coordinate(slot).to_owned()),
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
             Shape::Vectors(_) if function.name == "support_reactions" => Some(chain.supports[slot / 3].name.clone()),
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
+            Shape::Pairs(_) if function.name == "joint_impedances" => Some(coordinate(slot / 2).to_owned()),
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
             Shape::Transforms { counts, .. } => Some(self.transform(function.name, counts, slot / 12)),
             Shape::Turned { degrees, rotations } => {

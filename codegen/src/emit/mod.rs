@@ -22,6 +22,8 @@ use syn::parse_quote;
 use crate::chain::Chain;
 use crate::lower::Blocks;
 use crate::report::Report;
+use crate::symbolic::Shape;
+use arithmetic::integer;
 use labels::Labels;
 
 /// The module of a crane.
@@ -47,6 +49,13 @@ pub fn emit(chain: &Chain, blocks: &Blocks, report: Report, spec_file: &str) -> 
             Matrix4::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     ));
     for block in &blocks.functions {
+        if let Shape::Factors(count) = block.function.shape {
+            let count = integer(count);
+            items.push(parse_quote!(
+                #[doc = " What [`factorise`] leaves for [`solve`]."]
+                pub type Factors = [f64; #count];
+            ));
+        }
         items.extend(function::function(blocks, block, &labels));
     }
     items.extend(crane::crane(chain, blocks));
@@ -61,7 +70,7 @@ pub fn emit(chain: &Chain, blocks: &Blocks, report: Report, spec_file: &str) -> 
 fn imports(items: &[syn::Item]) -> String {
     const SOURCES: [(&str, &[&str]); 3] = [
         ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),
-        ("::crane_model::support", &["TransformFactors", "fill", "sin_cos", "symmetric"]),
+        ("::crane_model::support", &["TransformFactors", "fill", "fma", "sin_cos", "symmetric"]),
         (
             "::crane_model",
             &[
@@ -73,6 +82,7 @@ fn imports(items: &[syn::Item]) -> String {
                 "Description",
                 "DriveInfo",
                 "Dynamics",
+                "Implicit",
                 "Linearisation",
                 "Linearise",
                 "ParameterInfo",

@@ -5,8 +5,26 @@ use std::collections::{HashMap, HashSet};
 use crate::symbolic::{Argument, ExprId, Op, Program};
 
 /// Words that generated functions use themselves.
-const TAKEN: [&str; 13] =
-    ["factors", "t", "q", "v", "c", "out", "kept", "sin_cos", "symmetric", "max", "min", "Constants", "N"];
+const TAKEN: [&str; 18] = [
+    "factors",
+    "fma",
+    "t",
+    "q",
+    "v",
+    "r",
+    "f",
+    "base",
+    "resistance",
+    "c",
+    "out",
+    "kept",
+    "sin_cos",
+    "symmetric",
+    "max",
+    "min",
+    "Constants",
+    "N",
+];
 
 /// Gives every value of a function one valid, unique name.
 pub struct Names<'p> {

@@ -41,6 +41,8 @@ impl<'f> Storage<'f> {
             Shape::Scalar => quote!(f64),
             Shape::Vector(_) => quote!(SVector<f64, N>),
             Shape::Symmetric(_) => quote!(SMatrix<f64, N, N>),
+            Shape::Base => quote!(SMatrix<f64, 6, 6>),
+            Shape::Factors(_) => quote!(Factors),
             Shape::Vectors(n) => array(&quote!(Vector3<f64>), *n),
             Shape::Pairs(n) => array(&quote!([f64; 2]), *n),
             Shape::Transforms { .. } | Shape::Turned { .. } => array(&quote!(Matrix4<f64>), self.shape.matrices()),
@@ -61,6 +63,7 @@ impl<'f> Storage<'f> {
         match self.shape {
             Shape::Vector(_) => quote!([f64; N]),
             Shape::Symmetric(_) => quote!([[f64; N]; N]),
+            Shape::Base => quote!([[f64; 6]; 6]),
             Shape::Record(_, fields) => array(&quote!([[f64; N]; N]), fields.len()),
             Shape::Turned { degrees, .. } => {
                 let total = integer(degrees.iter().sum());
@@ -76,6 +79,8 @@ impl<'f> Storage<'f> {
             Shape::Scalar => quote!(0.0),
             Shape::Vector(_) => quote!([0.0; N]),
             Shape::Symmetric(_) => quote!([[0.0; N]; N]),
+            Shape::Base => quote!([[0.0; 6]; 6]),
+            Shape::Factors(n) => array(&quote!(0.0), *n),
             Shape::Vectors(n) => array(&quote!(Vector3::zeros()), *n),
             Shape::Pairs(n) => array(&quote!([0.0; 2]), *n),
             Shape::Transforms { counts, corner } => {
@@ -91,7 +96,7 @@ impl<'f> Storage<'f> {
     pub fn finish(&self) -> TokenStream {
         match self.shape {
             Shape::Vector(_) => quote!(SVector::from(out)),
-            Shape::Symmetric(_) => quote!(symmetric(out)),
+            Shape::Symmetric(_) | Shape::Base => quote!(symmetric(out)),
             Shape::Record(name, fields) => {
                 let name = format_ident!("{name}");
                 let names: Vec<_> = fields.iter().map(|(field, _)| format_ident!("{field}")).collect();
@@ -116,8 +121,9 @@ impl<'f> Storage<'f> {
     /// The group of slots that a slot belongs to, for a comment before it.
     pub fn group(&self, slot: usize) -> usize {
         match self.shape {
-            Shape::Scalar => 0,
+            Shape::Scalar | Shape::Factors(_) => 0,
             Shape::Vector(_) => slot,
+            Shape::Base => row_of_triangle(6, slot).0,
             Shape::Symmetric(n) => row_of_triangle(*n, slot).0,
             Shape::Vectors(_) => slot / 3,
             Shape::Pairs(_) => slot / 2,
@@ -150,7 +156,8 @@ fn array(item: &TokenStream, n: usize) -> TokenStream {
 fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
     match shape {
         Shape::Scalar => out,
-        Shape::Vector(_) => element(out, slot),
+        Shape::Vector(_) | Shape::Factors(_) => element(out, slot),
+        Shape::Base => slot_of(&Shape::Symmetric(6), slot, out),
         Shape::Symmetric(n) => {
             let (row, column) = row_of_triangle(*n, slot);
             element(element(out, column), row)

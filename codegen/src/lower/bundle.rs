@@ -6,8 +6,13 @@ use crate::symbolic::{ExprId, Op, Program};
 /// Operations in one statement at most: about one line of text.
 const LARGEST_EXPRESSION: usize = 7;
 
-/// For every node, whether it stands inside the one expression that uses it.
-pub(super) fn bundle(program: &Program, constants: &Constants, roots: &[ExprId]) -> Vec<bool> {
+/// For every node, whether it stands inside the expressions that use it: more than one only for a fused product.
+pub(super) fn bundle(
+    program: &Program,
+    constants: &Constants,
+    fused: &[Option<ExprId>],
+    roots: &[ExprId],
+) -> Vec<bool> {
     let needed = program.needed(roots.iter().copied());
     let mut uses = vec![0usize; program.operations.len()];
     for root in roots {
@@ -19,19 +24,28 @@ pub(super) fn bundle(program: &Program, constants: &Constants, roots: &[ExprId])
         }
     }
     let mut inlined = vec![false; program.operations.len()];
+    let mut shared = vec![false; program.operations.len()];
+    for product in fused.iter().flatten() {
+        shared[product.index()] = uses[product.index()] > 1;
+    }
     let mut size = vec![0usize; program.operations.len()];
     for id in program.ids().filter(|id| needed[id.index()] && !constants.is_free(program, *id)) {
         let op = program.op(id);
         if op.is_leaf() {
             continue;
         }
-        let mut candidates: Vec<ExprId> = op
-            .operands()
-            .filter(|operand| may_be_inlined(program, constants, *operand, uses[operand.index()]))
-            .collect();
+        // What is written more than once is a product of two variables.
+        let operands = op.operands().filter(|_| !shared[id.index()]);
+        let mut candidates: Vec<ExprId> =
+            operands.filter(|operand| may_be_inlined(program, constants, *operand, uses[operand.index()])).collect();
         // Smaller operands first: the larger one gets a variable if both do not fit.
         candidates.sort_by_key(|operand| size[operand.index()]);
         let mut total = 1;
+        if let Some(product) = fused[id.index()] {
+            total = size[product.index()];
+            inlined[product.index()] = true;
+            candidates.retain(|operand| *operand != product);
+        }
         for operand in candidates {
             if total + size[operand.index()] <= LARGEST_EXPRESSION {
                 total += size[operand.index()];

@@ -4,6 +4,7 @@
 //! | pass | file | after it |
 //! |---|---|---|
 //! | constants | `constants` | what depends on live parameters alone is computed once, outside of all functions |
+//! | fuse | `fuse` | a product that only sums use is part of them, `a b + c` |
 //! | bundle | `bundle` | a value used once stands where it is used, as long as the expression stays bounded |
 //! | order | `order` | angles first, then each value shortly before its use, each output as soon as it is known |
 //! | split | `split` | no piece is longer than rustc likes; only what crosses a cut is carried |
@@ -12,6 +13,7 @@
 
 mod bundle;
 mod constants;
+mod fuse;
 mod order;
 mod split;
 
@@ -43,24 +45,19 @@ pub struct Block<'p> {
     pub carried: usize,
     /// Its operations, without those of the constants.
     pub count: OperationCount,
-    /// For every node of the graph, whether it stands inside the one expression that uses it.
+    /// For every node of the graph, whether it stands inside the expressions that use it.
     pub inlined: Vec<bool>,
+    /// For every sum or difference, the product that is fused into it.
+    pub fused: Vec<Option<ExprId>>,
 }
 
 /// One statement of a straight line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Statement {
     /// Reads an input: `let boom_psi = q[6];`
     Input(ExprId),
-    /// Sine and cosine of one angle: `let (sin_psi, cos_psi) = sin_cos(psi);`; `None` where one is not needed.
-    SinCos {
-        /// The angle.
-        angle: ExprId,
-        /// Node of its sine.
-        sin: Option<ExprId>,
-        /// Node of its cosine.
-        cos: Option<ExprId>,
-    },
+    /// Sines and cosines of all angles: `let [(sin_psi, cos_psi), …] = sin_cos([psi, …]);`
+    SinCos(Vec<Angle>),
     /// Computes a value: `let t017 = …;`
     Let(ExprId),
     /// Writes a slot of the result.
@@ -86,6 +83,17 @@ pub enum Statement {
     },
 }
 
+/// An angle and what is needed of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Angle {
+    /// The angle.
+    pub angle: ExprId,
+    /// Node of its sine.
+    pub sin: Option<ExprId>,
+    /// Node of its cosine.
+    pub cos: Option<ExprId>,
+}
+
 /// Lowers a program.
 #[must_use]
 pub fn lower(program: &Program) -> Blocks<'_> {
@@ -96,7 +104,8 @@ pub fn lower(program: &Program) -> Blocks<'_> {
 }
 
 fn block<'p>(program: &'p Program, constants: &Constants, function: &'p Function) -> Block<'p> {
-    let inlined = bundle::bundle(program, constants, &function.outputs);
+    let fused = fuse::fuse(program, constants, &function.outputs);
+    let inlined = bundle::bundle(program, constants, &fused, &function.outputs);
     let line = order::order(program, constants, &inlined, function);
     let (pieces, carried) = split::split(program, constants, &inlined, line);
     let mut count = program.count(&function.outputs, |id| constants.is_stored(id));
@@ -111,7 +120,8 @@ fn block<'p>(program: &'p Program, constants: &Constants, function: &'p Function
     };
     let needed = program.needed(function.outputs.iter().copied());
     count.additions -= program.ids().filter(|id| needed[id.index()]).filter(folded).count();
-    Block { function, reads_parameters: constants.read_by(program, &function.outputs), pieces, carried, count, inlined }
+    let reads_parameters = constants.read_by(program, &function.outputs);
+    Block { function, reads_parameters, pieces, carried, count, inlined, fused }
 }
 
 /// The values that must stand in variables of their own before `id` can be written down: its operands, or, where an

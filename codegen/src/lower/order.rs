@@ -1,6 +1,6 @@
 //! Order of statements: all angles first, then depth first from each output, so that a value stands near its use.
 
-use super::{Constants, Statement, variables_of};
+use super::{Angle, Constants, Statement, variables_of};
 use crate::symbolic::{ExprId, Function, Op, Program};
 
 /// One straight line for a function.
@@ -8,11 +8,7 @@ pub(super) fn order(program: &Program, constants: &Constants, inlined: &[bool], 
     let mut line =
         Line { program, constants, inlined, done: vec![false; program.operations.len()], statements: vec![] };
     let needed = needed_here(program, constants, &function.outputs);
-    for id in program.ids().filter(|id| needed[id.index()]) {
-        if let Op::Sin(angle) | Op::Cos(angle) = program.op(id) {
-            line.angle(angle, id, &needed);
-        }
-    }
+    line.angles(&needed);
     for (slot, &value) in function.outputs.iter().enumerate() {
         if program.op(value) != Op::ZERO {
             line.compute_variables(value);
@@ -43,18 +39,26 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// Sine and cosine of an angle, together if both are needed.
-    fn angle(&mut self, angle: ExprId, one: ExprId, needed: &[bool]) {
-        if self.done[one.index()] {
-            return;
-        }
+    /// Sines and cosines of all angles, in one pass. No angle is made of another's sine.
+    fn angles(&mut self, needed: &[bool]) {
         let find = |op: Op| self.program.find(op).filter(|id| needed[id.index()]);
-        let (sin, cos) = (find(Op::Sin(angle)), find(Op::Cos(angle)));
-        self.compute_variables(angle);
-        for id in [sin, cos].into_iter().flatten() {
+        let mut angles: Vec<Angle> = Vec::new();
+        for id in self.program.ids().filter(|id| needed[id.index()]) {
+            if let Op::Sin(angle) | Op::Cos(angle) = self.program.op(id)
+                && !angles.iter().any(|known| known.angle == angle)
+            {
+                angles.push(Angle { angle, sin: find(Op::Sin(angle)), cos: find(Op::Cos(angle)) });
+            }
+        }
+        for known in &angles {
+            self.compute_variables(known.angle);
+        }
+        for id in angles.iter().flat_map(|known| [known.sin, known.cos]).flatten() {
             self.done[id.index()] = true;
         }
-        self.statements.push(Statement::SinCos { angle, sin, cos });
+        if !angles.is_empty() {
+            self.statements.push(Statement::SinCos(angles));
+        }
     }
 
     /// What has to stand in variables before `id` can be an argument.

@@ -1,6 +1,6 @@
 //! Cutting a long line into pieces that rustc compiles fast.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Constants, Statement, variables_of};
 use crate::symbolic::{ExprId, Op, Program};
@@ -47,17 +47,19 @@ impl Lives {
         let mut last_read = BTreeMap::new();
         let mut reads = Vec::with_capacity(line.len());
         for (at, statement) in line.iter().enumerate() {
-            let read = match *statement {
-                Statement::SinCos { angle, .. } => operands(program, constants, inlined, angle),
-                Statement::Let(id) => variables_of(program, constants, inlined, id),
-                Statement::Output { value, .. } => operands(program, constants, inlined, value),
+            let read = match statement {
+                Statement::SinCos(angles) => {
+                    angles.iter().flat_map(|known| operands(program, constants, inlined, known.angle)).collect()
+                }
+                Statement::Let(id) => variables_of(program, constants, inlined, *id),
+                Statement::Output { value, .. } => operands(program, constants, inlined, *value),
                 Statement::Input(_) | Statement::Keep { .. } | Statement::Fetch { .. } => vec![],
             };
             for id in &read {
                 last_read.insert(*id, at);
             }
             reads.push(read);
-            for id in defines(*statement) {
+            for id in defines(statement) {
                 defined.insert(id, at);
             }
         }
@@ -85,7 +87,7 @@ impl Lives {
         let mut heads = Vec::new();
         for window in cuts.windows(2) {
             let mut head = Vec::new();
-            let mut here = std::collections::BTreeSet::new();
+            let mut here = BTreeSet::new();
             for id in self.reads[window[0]..window[1]].iter().flatten() {
                 if self.defined[id] >= window[0] || !here.insert(*id) {
                     continue;
@@ -103,9 +105,14 @@ impl Lives {
             .windows(2)
             .zip(heads)
             .map(|(window, mut piece)| {
+                let read_here: BTreeSet<ExprId> = self.reads[window[0]..window[1]].iter().flatten().copied().collect();
                 for statement in &line[window[0]..window[1]] {
-                    piece.push(*statement);
-                    for id in defines(*statement) {
+                    // An input at the end of a piece is read in the next, which reads it again.
+                    if matches!(statement, Statement::Input(id) if !read_here.contains(id)) {
+                        continue;
+                    }
+                    piece.push(statement.clone());
+                    for id in defines(statement) {
                         if let Some(&place) = places.get(&id) {
                             piece.push(Statement::Keep { place, value: id });
                         }
@@ -130,11 +137,10 @@ fn operands(program: &Program, constants: &Constants, inlined: &[bool], id: Expr
 }
 
 /// Values that a statement defines.
-fn defines(statement: Statement) -> impl Iterator<Item = ExprId> {
-    let [first, second] = match statement {
-        Statement::Input(id) | Statement::Let(id) | Statement::Fetch { value: id, .. } => [Some(id), None],
-        Statement::SinCos { sin, cos, .. } => [sin, cos],
-        Statement::Output { .. } | Statement::Keep { .. } => [None, None],
-    };
-    [first, second].into_iter().flatten()
+fn defines(statement: &Statement) -> Vec<ExprId> {
+    match statement {
+        Statement::Input(id) | Statement::Let(id) | Statement::Fetch { value: id, .. } => vec![*id],
+        Statement::SinCos(angles) => angles.iter().flat_map(|known| [known.sin, known.cos]).flatten().collect(),
+        Statement::Output { .. } | Statement::Keep { .. } => vec![],
+    }
 }

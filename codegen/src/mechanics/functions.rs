@@ -1,25 +1,30 @@
 //! Which functions a crane gets: signatures, documentation, and what is left out.
 
 use crate::chain::{Analyses, BodyId, Chain};
-use crate::symbolic::Argument::{self, Position, Time, Velocity};
-use crate::symbolic::{Expr, Function, Graph, Program, Shape};
+use crate::symbolic::Argument::{self, BaseResistance, Factors, Position, Resistance, Right, Time, Velocity};
+use crate::symbolic::{Expr, Function, Graph, Program, Shape, Stages, Symbol, SymbolId};
 
+use super::articulated::Effort;
+use super::factors::{Factor, factors};
+use super::forward::{self, Loads};
 use super::inertia::Inertias;
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::twist::{Twist, twists};
-use super::vector::SymmetricMatrix;
-use super::{drives, dynamics, gravity, points, springs, supports, transforms};
+use super::vector::{SymmetricMatrix, Vec3};
+use super::{drives, dynamics, gravity, points, resisted, springs, supports, transforms};
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
-    let functions = Derivation::new(&graph, chain).functions(analyses);
-    graph.into_program(Model::symbols(chain), functions)
+    let mut symbols = Model::symbols(chain);
+    let functions = Derivation::new(&graph, chain).functions(analyses, &mut symbols);
+    graph.into_program(symbols, functions)
 }
 
 /// A model with everything that several functions share.
 struct Derivation<'g> {
     model: Model<'g>,
+    factors: Vec<Factor<'g>>,
     kinematics: Kinematics<'g>,
     inertias: Inertias<'g>,
     twists: Vec<Twist<'g>>,
@@ -28,18 +33,20 @@ struct Derivation<'g> {
 impl<'g> Derivation<'g> {
     fn new(graph: &'g Graph, chain: &'g Chain) -> Self {
         let model = Model::new(graph, chain);
+        let factors = factors(&model);
         let kinematics = Kinematics::new(&model);
         let inertias = Inertias::new(&model, &kinematics);
         let twists = twists(&model, &kinematics);
-        Derivation { model, kinematics, inertias, twists }
+        Derivation { model, factors, kinematics, inertias, twists }
     }
 
-    fn functions(&self, analyses: Analyses) -> Vec<Function> {
+    fn functions(&self, analyses: Analyses, symbols: &mut Vec<Symbol>) -> Vec<Function> {
         let mut functions = self.poses();
         functions.extend(self.forces());
         functions.extend(self.energies());
         if analyses.dynamics {
             functions.extend(self.dynamics());
+            functions.extend(self.implicit(symbols));
         }
         if analyses.statics {
             functions.extend(self.statics());
@@ -167,6 +174,17 @@ impl<'g> Derivation<'g> {
         functions
     }
 
+    /// Generalized forces of all but inertia and gravity.
+    fn all_forces(&self, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        sum(&[
+            supports::forces(model, &self.kinematics, v),
+            springs::element_forces(model, &model.q, v),
+            drives::forces(model, t, v),
+            springs::hinge_forces(model, v),
+        ])
+    }
+
     fn energies(&self) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
         let scalar =
@@ -228,8 +246,27 @@ impl<'g> Derivation<'g> {
 
     fn dynamics(&self) -> Vec<Function> {
         let model = &self.model;
+        let gravity = model.vector(&model.chain.gravity);
+        let accelerations = self.accelerations(&model.v, &self.all_forces(model.t, &model.v), gravity);
+        let solution = self.accelerations(&model.zeros(), &model.right, Vec3::zero(model.graph));
         let matrix = dynamics::mass_matrix(model, &self.kinematics, &self.inertias);
         vec![
+            function(
+                "forward_dynamics",
+                "Accelerations q̈, m/s² and rad/s².",
+                "A q̈ = e + f [Urbaś 2016, Eq. (23)], by articulated bodies",
+                &[Time, Position, Velocity],
+                Shape::Vector(model.size()),
+                accelerations,
+            ),
+            function(
+                "solve_mass",
+                "Solution x of `A x = r`; r in N and N m, x in m/s² and rad/s².",
+                "A x = r, by articulated bodies at rest",
+                &[Position, Right],
+                Shape::Vector(model.size()),
+                solution,
+            ),
             function(
                 "mass_matrix",
                 "Mass matrix A; kg, kg m and kg m².",
@@ -255,6 +292,100 @@ impl<'g> Derivation<'g> {
                 vec![dynamics::kinetic_energy(model, &self.inertias, &self.twists)],
             ),
         ]
+    }
+
+    /// Accelerations from velocities, forces and gravity.
+    fn accelerations(&self, v: &[Expr<'g>], forces: &[Expr<'g>], gravity: Vec3<'g>) -> Vec<Expr<'g>> {
+        let resistance = self.model.zero();
+        let efforts: Vec<_> = forces.iter().map(|&applied| Effort { applied, resistance }).collect();
+        forward::accelerations(&self.model, &self.factors, &Loads { v, efforts: &efforts, gravity })
+    }
+
+    /// What implicit integration needs: structured stiffness and damping, and systems with them.
+    fn implicit(&self, symbols: &mut Vec<Symbol>) -> Vec<Function> {
+        let model = &self.model;
+        let solution = resisted::solution(model, &self.kinematics, &self.factors);
+        let first = SymbolId(u32::try_from(symbols.len()).expect("fewer than 2^32 inputs"));
+        let late = |SymbolId(id): SymbolId| symbols.get(id as usize).is_some_and(|symbol| symbol.argument == Right);
+        let Stages { factors, results } = model.graph.stages(&solution, late, first);
+        symbols.extend((0..factors.len()).map(|index| Symbol {
+            name: format!("f{index:03}"),
+            argument: Factors,
+            index,
+        }));
+        let mut functions = vec![
+            function(
+                "factorise",
+                "Factors of `A + D̂` for [`solve`]: D̂ has `resistance` on its diagonal, but `base` in the base's rows and columns.",
+                "A + D̂, by articulated bodies at rest",
+                &[Position, Resistance, BaseResistance],
+                Shape::Factors(factors.len()),
+                factors,
+            ),
+            function(
+                "solve",
+                "Solution x of `(A + D̂) x = r` from the factors of `A + D̂`.",
+                "(A + D̂) x = r",
+                &[Factors, Right],
+                Shape::Vector(model.size()),
+                results,
+            ),
+        ];
+        let (stiffness, damping) = self.impedances();
+        let base: Vec<usize> = model.chain.base.iter().flatten().map(|id| id.0).collect();
+        let diagonal =
+            |j: usize| [&stiffness, &damping].map(|m| if base.contains(&j) { model.zero() } else { m.at(j, j) });
+        functions.push(function(
+            "joint_impedances",
+            "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, those of the base left out.",
+            "s, d [Urbaś 2016, Eqs. (14), (19)]",
+            &[],
+            Shape::Pairs(model.size()),
+            (0..model.size()).flat_map(diagonal).collect(),
+        ));
+        if !base.is_empty() {
+            let block = |matrix: &SymmetricMatrix<'g>| {
+                let entry = |i: usize, j: usize| match (base.get(i), base.get(j)) {
+                    (Some(&i), Some(&j)) => matrix.at(i, j),
+                    _ => model.zero(),
+                };
+                (0..6).flat_map(|i| (i..6).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).collect()
+            };
+            for (name, doc, matrix) in [
+                (
+                    "base_stiffness",
+                    "Stiffness of supports and drives over the base's coordinates; N/m, N and N m.",
+                    &stiffness,
+                ),
+                (
+                    "base_damping",
+                    "Damping of supports, drives and joints over the base's coordinates; N s/m, N s and N m s.",
+                    &damping,
+                ),
+            ] {
+                functions.push(function(
+                    name,
+                    doc,
+                    "Σ Jᵀ diag(s, d) J [Urbaś 2016, Eq. (18)]",
+                    &[Position],
+                    Shape::Base,
+                    block(matrix),
+                ));
+            }
+        }
+        functions
+    }
+
+    /// Stiffness and damping of supports, elements, drives and joints; gravity's stiffness is not among them.
+    fn impedances(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
+        let model = &self.model;
+        let zero = || SymmetricMatrix::zero(model.graph, model.size());
+        let (mut stiffness, mut damping) = (zero(), zero());
+        supports::stiffness(model, &self.kinematics, &mut stiffness);
+        springs::stiffness(model, &mut stiffness);
+        supports::damping(model, &self.kinematics, &mut damping);
+        springs::damping(model, &mut damping);
+        (stiffness, damping)
     }
 
     fn statics(&self) -> Vec<Function> {
@@ -293,18 +424,14 @@ impl<'g> Derivation<'g> {
 
     fn stiffness(&self) -> SymmetricMatrix<'g> {
         let model = &self.model;
-        let mut matrix = SymmetricMatrix::zero(model.graph, model.size());
+        let mut matrix = self.impedances().0;
         gravity::stiffness(model, &self.kinematics, &self.inertias, &mut matrix);
-        supports::stiffness(model, &self.kinematics, &mut matrix);
-        springs::stiffness(model, &mut matrix);
         matrix
     }
 
     fn linearise(&self) -> Function {
         let model = &self.model;
-        let mut damping = SymmetricMatrix::zero(model.graph, model.size());
-        supports::damping(model, &self.kinematics, &mut damping);
-        springs::damping(model, &mut damping);
+        let damping = self.impedances().1;
         let mut outputs = dynamics::mass_matrix(model, &self.kinematics, &self.inertias).into_upper();
         outputs.extend(self.stiffness().into_upper().iter().chain(&damping.into_upper()));
         let matrix = || Shape::Symmetric(model.size());

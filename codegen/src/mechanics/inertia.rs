@@ -79,7 +79,6 @@ fn world_inertia<'g>(model: &Model<'g>, inertia: &Inertia, pose: &Pose<'g>, name
     let second = Symmetric3([0, 1, 2, 3, 4, 5].map(|i| model.number(&inertia.second[i])));
     let lever = (0.5 * mass) * pose.origin;
     let second = second.rotated(pose.rotation) + Symmetric3::outer(first + lever, pose.origin);
-    let [xx, yy, zz, xy, xz, yz] = second.0;
-    let tensor = Symmetric3([yy + zz, xx + zz, xx + yy, -xy, -xz, -yz]).named(&format!("inertia_{name}"));
+    let tensor = second.tensor().named(&format!("inertia_{name}"));
     WorldInertia { mass, first: (first + mass * pose.origin).named(&format!("first_{name}")), tensor }
 }

@@ -14,6 +14,7 @@
 use crate::chain::{CoordinateId, CoordinateKind, Step};
 
 use super::model::Model;
+use super::turn::Turn;
 use super::vector::{Rotation, Vec3};
 
 /// A frame in the world.
@@ -104,16 +105,13 @@ fn generator<'g>(model: &Model<'g>, pose: Pose<'g>, id: CoordinateId, body: usiz
 /// The pose after the elementary motion of a coordinate.
 fn moved<'g>(model: &Model<'g>, pose: Pose<'g>, id: CoordinateId) -> Pose<'g> {
     let coordinate = &model.chain.coordinates[id.0];
-    let q = model.q[id.0];
     match coordinate.kind {
         CoordinateKind::Rotation => {
-            let (sin, cos) = (q.sin(), q.cos());
-            model.graph.name(sin, format!("sin_{}", coordinate.name));
-            model.graph.name(cos, format!("cos_{}", coordinate.name));
-            Pose { rotation: pose.rotation.turned(coordinate.axis, sin, cos), ..pose }
+            let Turn { axis, sin, cos } = model.turn(id.0);
+            Pose { rotation: pose.rotation.turned(axis, sin, cos), ..pose }
         }
         CoordinateKind::Translation => {
-            let along: Vec3<'g> = q * pose.rotation.axis(coordinate.axis);
+            let along: Vec3<'g> = model.q[id.0] * pose.rotation.axis(coordinate.axis);
             Pose { origin: pose.origin + along, ..pose }
         }
     }

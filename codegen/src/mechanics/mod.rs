@@ -4,21 +4,27 @@
 //! implementation of the rigid finite element method in the statics and dynamics analysis of forest cranes*, Applied
 //! Mathematical Modelling, 2016; where we depart from the print, `docs/EQUATIONS.md` says why.
 
+mod articulated;
 mod drives;
 mod dynamics;
+mod factors;
+mod forward;
 mod functions;
 mod gravity;
 mod inertia;
 mod kinematics;
 mod model;
 mod omissions;
+mod outward;
 mod points;
 mod profile;
+mod resisted;
 mod springs;
 mod supports;
 #[cfg(test)]
 mod tests;
 mod transforms;
+mod turn;
 mod twist;
 mod vector;
 

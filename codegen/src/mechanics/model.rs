@@ -3,6 +3,7 @@
 use crate::chain::{Chain, ParameterId, Value};
 use crate::symbolic::{Argument, Expr, Graph, Symbol, SymbolId};
 
+use super::turn::Turn;
 use super::vector::Vec3;
 
 /// A chain whose inputs and numbers are expressions of one graph.
@@ -15,36 +16,58 @@ pub struct Model<'g> {
     pub q: Vec<Expr<'g>>,
     /// Velocities.
     pub v: Vec<Expr<'g>>,
+    /// Right-hand side of a linear system.
+    pub right: Vec<Expr<'g>>,
+    /// Resistances of the coordinates.
+    pub resistance: Vec<Expr<'g>>,
+    /// Resistance of the base, row by row from the diagonal.
+    pub base_resistance: Vec<Expr<'g>>,
     parameters: Vec<Expr<'g>>,
 }
 
 impl<'g> Model<'g> {
     pub fn new(graph: &'g Graph, chain: &'g Chain) -> Self {
-        let mut next = 0;
-        let mut symbols = |count: usize| -> Vec<Expr<'g>> {
-            let first = next;
-            next += u32::try_from(count).expect("fewer than 2^32 inputs");
-            (first..next).map(|i| graph.symbol(SymbolId(i))).collect()
+        let symbols = Self::symbols(chain);
+        let of = |argument: Argument| -> Vec<Expr<'g>> {
+            let own = (0..).zip(&symbols).filter(|(_, symbol)| symbol.argument == argument);
+            own.map(|(id, _)| graph.symbol(SymbolId(id))).collect()
         };
-        let n = chain.coordinates.len();
-        let t = symbols(1)[0];
-        let (q, v) = (symbols(n), symbols(n));
-        let parameters = symbols(chain.parameters.len());
-        Model { graph, chain, t, q, v, parameters }
+        Model {
+            graph,
+            chain,
+            t: of(Argument::Time)[0],
+            q: of(Argument::Position),
+            v: of(Argument::Velocity),
+            right: of(Argument::Right),
+            resistance: of(Argument::Resistance),
+            base_resistance: of(Argument::BaseResistance),
+            parameters: of(Argument::Parameters),
+        }
     }
 
-    /// The inputs in the order in which [`Model::new`] numbers them.
+    /// All inputs in their order; the factors of staged functions come after them.
     pub fn symbols(chain: &Chain) -> Vec<Symbol> {
         let symbol = |name: String, argument, index| Symbol { name, argument, index };
-        let mut symbols = vec![symbol("t".into(), Argument::Time, 0)];
-        symbols
-            .extend(chain.coordinates.iter().enumerate().map(|(i, c)| symbol(c.name.clone(), Argument::Position, i)));
-        symbols.extend(
-            chain.coordinates.iter().enumerate().map(|(i, c)| symbol(format!("{}_dot", c.name), Argument::Velocity, i)),
-        );
-        symbols
-            .extend(chain.parameters.iter().enumerate().map(|(i, p)| symbol(p.name.clone(), Argument::Parameters, i)));
-        symbols
+        let each = |argument, suffix: &str| {
+            let named = chain.coordinates.iter().map(|coordinate| format!("{}{suffix}", coordinate.name));
+            named.enumerate().map(|(i, name)| symbol(name, argument, i)).collect::<Vec<_>>()
+        };
+        // Upper triangle of a matrix stored column by column.
+        let base = (0..6).flat_map(|row| (row..6).map(move |column| (row, column)));
+        let base = base.map(|(row, column)| {
+            symbol(format!("base_{}_{}", row + 1, column + 1), Argument::BaseResistance, row + 6 * column)
+        });
+        let parameters = chain.parameters.iter().enumerate();
+        [
+            vec![symbol("t".into(), Argument::Time, 0)],
+            each(Argument::Position, ""),
+            each(Argument::Velocity, "_dot"),
+            each(Argument::Right, "_force"),
+            each(Argument::Resistance, "_resistance"),
+            base.collect(),
+            parameters.map(|(i, parameter)| symbol(parameter.name.clone(), Argument::Parameters, i)).collect(),
+        ]
+        .concat()
     }
 
     /// Number of coordinates.
@@ -59,6 +82,15 @@ impl<'g> Model<'g> {
     /// A generalized vector of zeros: forces to be summed, or a state at rest.
     pub fn zeros(&self) -> Vec<Expr<'g>> {
         vec![self.zero(); self.size()]
+    }
+
+    /// The rotation by coordinate j.
+    pub fn turn(&self, j: usize) -> Turn<'g> {
+        let (coordinate, q) = (&self.chain.coordinates[j], self.q[j]);
+        let (sin, cos) = (q.sin(), q.cos());
+        self.graph.name(sin, format!("sin_{}", coordinate.name));
+        self.graph.name(cos, format!("cos_{}", coordinate.name));
+        Turn { axis: coordinate.axis, sin, cos }
     }
 
     /// A number of the chain.

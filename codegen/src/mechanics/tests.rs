@@ -58,7 +58,7 @@ fn double_pendulum() -> Chain {
 }
 
 fn evaluate(program: &Program, name: &str, q: [f64; 2], v: [f64; 2]) -> Vec<f64> {
-    let inputs = Inputs { t: 0.0, q: q.to_vec(), v: v.to_vec(), parameters: vec![] };
+    let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), vec![]);
     program.evaluate(program.function(name).unwrap(), &inputs)
 }
 

@@ -39,18 +39,18 @@ impl Graph {
 
     /// The number `value`.
     pub fn constant(&self, value: f64) -> Expr<'_> {
-        self.wrap(self.intern(Op::Constant(Constant::new(value))))
+        self.expr(self.intern(Op::Constant(Constant::new(value))))
     }
 
     /// An input.
     pub fn symbol(&self, symbol: SymbolId) -> Expr<'_> {
-        self.wrap(self.intern(Op::Symbol(symbol)))
+        self.expr(self.intern(Op::Symbol(symbol)))
     }
 
     /// The expression of an operation, simplified if the graph simplifies.
     pub(super) fn build(&self, op: Op) -> Expr<'_> {
         let id = if self.simplify { rules::simplify(self, op) } else { self.intern(op) };
-        self.wrap(id)
+        self.expr(id)
     }
 
     /// The node of exactly this operation, new or known.
@@ -89,7 +89,8 @@ impl Graph {
         Program { operations, index, names, symbols, functions }
     }
 
-    fn wrap(&self, id: ExprId) -> Expr<'_> {
+    /// A node as an expression.
+    pub(super) fn expr(&self, id: ExprId) -> Expr<'_> {
         Expr::new(self, id)
     }
 }

@@ -1,5 +1,6 @@
 //! The meaning of a program: runs it without rustc, over any scalar.
 
+use std::collections::BTreeMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::op::{Constant, Op};
@@ -36,27 +37,28 @@ impl Scalar for f64 {
     }
 }
 
-/// Values of a program's inputs.
+/// Values of a program's inputs, argument by argument.
 #[derive(Clone, Debug)]
-pub struct Inputs<S> {
-    /// Time, s.
-    pub t: S,
-    /// Coordinates, m and rad.
-    pub q: Vec<S>,
-    /// Velocities, m/s and rad/s.
-    pub v: Vec<S>,
-    /// Live parameters.
-    pub parameters: Vec<S>,
-}
+pub struct Inputs<S>(BTreeMap<Argument, Vec<S>>);
 
 impl<S: Scalar> Inputs<S> {
-    fn get(&self, argument: Argument, index: usize) -> S {
-        match argument {
-            Argument::Time => self.t.clone(),
-            Argument::Position => self.q[index].clone(),
-            Argument::Velocity => self.v[index].clone(),
-            Argument::Parameters => self.parameters[index].clone(),
-        }
+    /// A state: time in s, coordinates in m and rad, velocities in m/s and rad/s; and the live parameters.
+    pub fn state(t: S, q: Vec<S>, v: Vec<S>, parameters: Vec<S>) -> Self {
+        let arguments = [Argument::Time, Argument::Position, Argument::Velocity, Argument::Parameters];
+        Inputs(arguments.into_iter().zip([vec![t], q, v, parameters]).collect())
+    }
+
+    /// The same with other values of an argument.
+    #[must_use]
+    pub fn with(mut self, argument: Argument, values: Vec<S>) -> Self {
+        self.0.insert(argument, values);
+        self
+    }
+
+    /// The values of an argument; none if it was not given.
+    #[must_use]
+    pub fn get(&self, argument: Argument) -> Vec<S> {
+        self.0.get(&argument).cloned().unwrap_or_default()
     }
 }
 
@@ -74,7 +76,7 @@ impl Program {
                 Op::Constant(c) => S::from_f64(Constant::value(c)),
                 Op::Symbol(id) => {
                     let symbol = self.symbol(id);
-                    inputs.get(symbol.argument, symbol.index)
+                    inputs.0[&symbol.argument][symbol.index].clone()
                 }
                 Op::Neg(a) => -of(a),
                 Op::Add(a, b) => of(a) + of(b),

@@ -7,6 +7,7 @@ mod interpret;
 mod op;
 mod program;
 mod rules;
+mod stage;
 #[cfg(test)]
 mod tests;
 
@@ -16,3 +17,4 @@ pub use graph::Graph;
 pub use interpret::{Inputs, Scalar};
 pub use op::{Constant, ExprId, Op, SymbolId};
 pub use program::{Argument, Function, Program, Shape, Symbol};
+pub use stage::Stages;

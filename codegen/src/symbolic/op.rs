@@ -77,6 +77,23 @@ impl Op {
         [first, second].into_iter().flatten()
     }
 
+    /// The same operation on other operands.
+    #[must_use]
+    pub fn map(self, mut of: impl FnMut(ExprId) -> ExprId) -> Op {
+        match self {
+            Op::Constant(_) | Op::Symbol(_) => self,
+            Op::Neg(a) => Op::Neg(of(a)),
+            Op::Sin(a) => Op::Sin(of(a)),
+            Op::Cos(a) => Op::Cos(of(a)),
+            Op::Add(a, b) => Op::Add(of(a), of(b)),
+            Op::Sub(a, b) => Op::Sub(of(a), of(b)),
+            Op::Mul(a, b) => Op::Mul(of(a), of(b)),
+            Op::Div(a, b) => Op::Div(of(a), of(b)),
+            Op::Min(a, b) => Op::Min(of(a), of(b)),
+            Op::Max(a, b) => Op::Max(of(a), of(b)),
+        }
+    }
+
     /// Whether it is an input or a number, at no cost.
     #[must_use]
     pub fn is_leaf(self) -> bool {

@@ -41,6 +41,14 @@ pub enum Argument {
     Position,
     /// A vector, `v`.
     Velocity,
+    /// A generalized force, the right-hand side `r` of a linear system.
+    Right,
+    /// Resistances of single coordinates, a diagonal.
+    Resistance,
+    /// Resistance of the base, a symmetric 6×6 matrix.
+    BaseResistance,
+    /// What an earlier function left for this one.
+    Factors,
     /// Live parameters.
     Parameters,
 }
@@ -92,6 +100,10 @@ pub enum Shape {
         /// Whether each coordinate is a rotation.
         rotations: Vec<bool>,
     },
+    /// A symmetric 6×6 matrix over the base's coordinates, slots as in [`Shape::Symmetric`].
+    Base,
+    /// Numbers for another function, in no order that means anything.
+    Factors(usize),
     /// Named results.
     Record(&'static str, Vec<(&'static str, Shape)>),
 }
@@ -102,7 +114,8 @@ impl Shape {
     pub fn len(&self) -> usize {
         match self {
             Shape::Scalar => 1,
-            Shape::Vector(n) => *n,
+            Shape::Vector(n) | Shape::Factors(n) => *n,
+            Shape::Base => 21,
             Shape::Symmetric(n) => n * (n + 1) / 2,
             Shape::Vectors(n) => 3 * n,
             Shape::Pairs(n) => 2 * n,
@@ -184,7 +197,7 @@ impl Program {
     ///
     /// # Panics
     /// If there are 2^32 expressions or more, which no graph can hold.
-    pub fn ids(&self) -> impl Iterator<Item = ExprId> + use<> {
+    pub fn ids(&self) -> impl DoubleEndedIterator<Item = ExprId> + use<> {
         (0..u32::try_from(self.operations.len()).expect("fewer than 2^32 expressions")).map(ExprId)
     }
 

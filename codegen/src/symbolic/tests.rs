@@ -14,7 +14,7 @@ fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>
 }
 
 fn values(program: &Program, x: f64, y: f64) -> Vec<f64> {
-    let inputs = Inputs { t: 0.0, q: vec![x, y], v: vec![], parameters: vec![] };
+    let inputs = Inputs::state(0.0, vec![x, y], vec![], vec![]);
     program.evaluate(&program.functions[0], &inputs)
 }
 

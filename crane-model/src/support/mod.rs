@@ -1,21 +1,12 @@
 //! What generated code calls besides nalgebra.
 
-use nalgebra::{Matrix4, SMatrix, Vector3};
+pub mod lanes;
+mod sin_cos;
 
-/// Sine and cosine of `x`, rad.
-///
-/// The standard library's with feature `std`, the portable `libm`'s without.
-#[inline]
-pub fn sin_cos(x: f64) -> (f64, f64) {
-    #[cfg(feature = "std")]
-    {
-        x.sin_cos()
-    }
-    #[cfg(not(feature = "std"))]
-    {
-        nalgebra::ComplexField::sin_cos(x)
-    }
-}
+pub use lanes::fma;
+pub use sin_cos::{sin_cos, sin_cos_lanes};
+
+use nalgebra::{Matrix4, SMatrix, Vector3};
 
 /// A symmetric matrix from its upper triangle: `upper[column][row]` with row ≤ column; what stands below is ignored.
 #[inline]

@@ -1,0 +1,51 @@
+//! Which products are fused into the sums that use them, `a b + c` with one rounding where the target can.
+
+use super::Constants;
+use crate::symbolic::{ExprId, Op, Program};
+
+/// A product in more sums than this is computed once: its factors would stay alive too long.
+const MOST_SUMS: usize = 4;
+
+/// For every sum or difference of `roots`, the product among its operands that is fused into it.
+///
+/// A product is fused into all the sums that use it, or into none, so that it needs no operation of its own. Products of one
+/// sum come first; where a sum could take either of its two operands, it takes the one constructed later, whose factors are
+/// known later.
+pub(super) fn fuse(program: &Program, constants: &Constants, roots: &[ExprId]) -> Vec<Option<ExprId>> {
+    let needed = program.needed(roots.iter().copied());
+    let computed = |id: ExprId| needed[id.index()] && !constants.is_free(program, id);
+    let mut users: Vec<Vec<ExprId>> = vec![vec![]; program.operations.len()];
+    for id in program.ids().filter(|id| computed(*id)) {
+        for operand in program.op(id).operands() {
+            users[operand.index()].push(id);
+        }
+    }
+    let is_output = {
+        let mut is_output = vec![false; program.operations.len()];
+        for root in roots {
+            is_output[root.index()] = true;
+        }
+        is_output
+    };
+    let mut fused = vec![None; program.operations.len()];
+    for sums in 1..=MOST_SUMS {
+        let products = program.ids().rev().filter(|id| {
+            computed(*id)
+                && matches!(program.op(*id), Op::Mul(..))
+                && users[id.index()].len() == sums
+                && !is_output[id.index()]
+        });
+        for product in products {
+            let free = |user: &ExprId| match program.op(*user) {
+                Op::Add(a, b) | Op::Sub(a, b) => a != b && fused[user.index()].is_none(),
+                _ => false,
+            };
+            if users[product.index()].iter().all(free) {
+                for user in &users[product.index()] {
+                    fused[user.index()] = Some(product);
+                }
+            }
+        }
+    }
+    fused
+}

@@ -1,0 +1,80 @@
+//! The way from the base to the tip as one row of factors: constant placements, joints, bodies.
+
+use crate::chain::{Axis, CoordinateKind, Step};
+
+use super::model::Model;
+use super::turn::Turn;
+use super::vector::Vec3;
+
+/// One factor of the way from the base to the tip.
+#[derive(Clone, Debug)]
+pub enum Factor<'g> {
+    /// Constant translation.
+    Translate(Vec3<'g>),
+    /// Constant rotation.
+    Turn(Turn<'g>),
+    /// Rotation by coordinate `j`.
+    Revolute { j: usize, turn: Turn<'g> },
+    /// Translation by coordinate `j` along an axis.
+    Prismatic { j: usize, axis: Axis },
+    /// Three rotations through one point about three different axes, by coordinates `j`, `j + 1`, `j + 2`: what moves
+    /// with them turns freely.
+    Ball { j: usize, turns: [Turn<'g>; 3] },
+    /// The frame reached is that of a body.
+    Body(usize),
+}
+
+/// The factors of a chain, from the base to the tip.
+pub fn factors<'g>(model: &Model<'g>) -> Vec<Factor<'g>> {
+    let mut factors = Vec::new();
+    for (index, body) in model.chain.bodies.iter().enumerate() {
+        let mut path = body.path.as_slice();
+        while let Some((step, rest)) = path.split_first() {
+            path = rest;
+            factors.push(match step {
+                Step::Translate(by) => Factor::Translate(model.vector(by)),
+                Step::Rotate { axis, sin, cos } => {
+                    Factor::Turn(Turn { axis: *axis, sin: model.number(sin), cos: model.number(cos) })
+                }
+                Step::Move(id) => {
+                    let j = id.0;
+                    let joint = joint(model, j);
+                    match (&joint, path) {
+                        (Factor::Revolute { turn, .. }, [Step::Move(_), Step::Move(_), rest @ ..]) => {
+                            if let Some(turns) = ball(model, j, *turn) {
+                                path = rest;
+                                Factor::Ball { j, turns }
+                            } else {
+                                joint
+                            }
+                        }
+                        _ => joint,
+                    }
+                }
+            });
+        }
+        factors.push(Factor::Body(index));
+    }
+    factors
+}
+
+/// The joint of one coordinate.
+fn joint<'g>(model: &Model<'g>, j: usize) -> Factor<'g> {
+    let coordinate = &model.chain.coordinates[j];
+    match coordinate.kind {
+        CoordinateKind::Translation => Factor::Prismatic { j, axis: coordinate.axis },
+        CoordinateKind::Rotation => Factor::Revolute { j, turn: model.turn(j) },
+    }
+}
+
+/// The turns of coordinates j, j + 1, j + 2, all elementary motions without a placement between them, if they make a ball
+/// joint.
+fn ball<'g>(model: &Model<'g>, j: usize, first: Turn<'g>) -> Option<[Turn<'g>; 3]> {
+    let (Factor::Revolute { turn: second, .. }, Factor::Revolute { turn: third, .. }) =
+        (joint(model, j + 1), joint(model, j + 2))
+    else {
+        return None;
+    };
+    let different = first.axis != second.axis && second.axis != third.axis && third.axis != first.axis;
+    different.then_some([first, second, third])
+}

@@ -1,0 +1,222 @@
+//! Accelerations from efforts in O(n), by articulated bodies.
+//!
+//! Three sweeps: outward for velocities ([`super::outward`]), inward for articulated inertias, outward for accelerations.
+//! The mass matrix is never formed, and nothing is lost to its condition number.
+//!
+//! With velocities and gravity: `q̈` of `A q̈ = e + f` [Urbaś 2016, Eq. (23)]. At rest without gravity: `A x = r`, and with
+//! resistances D̂, block-diagonal, `(A + D̂) x = r`.
+
+use super::articulated::{Articulated, BallResponse, Effort, Response};
+use super::factors::Factor;
+use super::model::Model;
+use super::outward::{Velocities, velocities};
+use super::turn::Turn;
+use super::vector::{Rotation, Symmetric3, Vec3, plane};
+use crate::chain::Axis;
+use crate::symbolic::Expr;
+
+/// What acts on the chain.
+pub struct Loads<'a, 'g> {
+    /// Velocities of the coordinates.
+    pub v: &'a [Expr<'g>],
+    /// Efforts on the coordinates.
+    pub efforts: &'a [Effort<'g>],
+    /// Acceleration of gravity in the world frame.
+    pub gravity: Vec3<'g>,
+}
+
+/// How a joint responds, found on the way in and used on the way out.
+pub(super) enum Joint<'g> {
+    None,
+    Single(Response<'g>),
+    Ball(Ball<'g>, Box<BallResponse<'g>>),
+}
+
+/// q̈ of all coordinates.
+pub fn accelerations<'g>(model: &Model<'g>, factors: &[Factor<'g>], loads: &Loads<'_, 'g>) -> Vec<Expr<'g>> {
+    let velocities = velocities(model, factors, loads.v);
+    let (joints, _) = inward(model, factors, &velocities, loads.efforts);
+    outward(model, factors, &velocities, &joints, (Vec3::zero(model.graph), -loads.gravity))
+}
+
+/// Articulated inertias from tip to base, and what is left there.
+pub(super) fn inward<'g>(
+    model: &Model<'g>,
+    factors: &[Factor<'g>],
+    velocities: &[Velocities<'g>],
+    efforts: &[Effort<'g>],
+) -> (Vec<Joint<'g>>, Articulated<'g>) {
+    let mut articulated = Articulated::zero(model.graph);
+    let mut joints: Vec<Joint<'g>> = factors
+        .iter()
+        .zip(velocities)
+        .rev()
+        .map(|(factor, velocity)| match (factor, velocity) {
+            (Factor::Body(index), Velocities::Body { omega }) => {
+                let body = &model.chain.bodies[*index];
+                if let Some(inertia) = &body.inertia {
+                    let second = Symmetric3([0, 1, 2, 3, 4, 5].map(|i| model.number(&inertia.second[i])));
+                    let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
+                    articulated.add_body(mass, first, second.tensor(), *omega);
+                    articulated.named(&body.name);
+                }
+                Joint::None
+            }
+            (Factor::Turn(turn), _) => {
+                articulated.turn(turn);
+                Joint::None
+            }
+            (Factor::Translate(_), Velocities::Translation { by, acceleration }) => {
+                articulated.shift(*by, *acceleration);
+                Joint::None
+            }
+            (Factor::Prismatic { j, axis }, Velocities::Translation { by, acceleration }) => {
+                let response = articulated.free_translation(*axis, efforts[*j]);
+                articulated.shift(*by, *acceleration);
+                Joint::Single(response)
+            }
+            (Factor::Revolute { j, turn }, Velocities::Revolute { gyration }) => {
+                let response = articulated.free_rotation(turn.axis, efforts[*j], *gyration);
+                articulated.turn(turn);
+                Joint::Single(response)
+            }
+            (Factor::Ball { j, turns }, Velocities::Ball { .. }) => {
+                let ball = Ball { turns: *turns, resists: efforts[*j..j + 3].iter().any(|e| !e.resistance.is_zero()) };
+                let response = ball.free(&mut articulated, [efforts[*j], efforts[j + 1], efforts[j + 2]]);
+                Joint::Ball(ball, Box::new(response))
+            }
+            _ => unreachable!("velocities were made from the same factors"),
+        })
+        .collect();
+    joints.reverse();
+    (joints, articulated)
+}
+
+/// Accelerations from base to tip; angular and linear ones before the first factor are `start`.
+pub(super) fn outward<'g>(
+    model: &Model<'g>,
+    factors: &[Factor<'g>],
+    velocities: &[Velocities<'g>],
+    joints: &[Joint<'g>],
+    start: (Vec3<'g>, Vec3<'g>),
+) -> Vec<Expr<'g>> {
+    let (mut angular, mut linear) = start;
+    let mut accelerations = model.zeros();
+    for ((factor, velocity), joint) in factors.iter().zip(velocities).zip(joints) {
+        if let Velocities::Translation { by, acceleration } = velocity {
+            linear = linear + angular.cross(*by) + *acceleration;
+        }
+        match (factor, velocity, joint) {
+            (Factor::Turn(turn), ..) => (angular, linear) = (turn.inward(angular), turn.inward(linear)),
+            (Factor::Revolute { j, turn }, Velocities::Revolute { gyration }, Joint::Single(response)) => {
+                (angular, linear) = (turn.inward(angular), turn.inward(linear));
+                accelerations[*j] = response.acceleration(angular, linear);
+                angular = angular + Vec3::along(turn.axis, accelerations[*j]) + *gyration;
+            }
+            (Factor::Prismatic { j, axis }, _, Joint::Single(response)) => {
+                accelerations[*j] = response.acceleration(angular, linear);
+                linear = linear + Vec3::along(*axis, accelerations[*j]);
+            }
+            (Factor::Ball { j, .. }, Velocities::Ball { gyrations }, Joint::Ball(ball, response)) => {
+                let own;
+                (own, angular, linear) = ball.move_on(response, gyrations, angular, linear);
+                accelerations[*j..j + 3].copy_from_slice(&own);
+            }
+            (Factor::Body(index), ..) => {
+                let name = &model.chain.bodies[*index].name;
+                angular.named(&format!("alpha_{name}"));
+                linear.named(&format!("acceleration_{name}"));
+            }
+            _ => {}
+        }
+    }
+    for (acceleration, coordinate) in accelerations.iter().zip(&model.chain.coordinates) {
+        model.graph.name(*acceleration, format!("{}_ddot", coordinate.name));
+    }
+    accelerations
+}
+
+/// Three rotations through one point, `R_a(ψ) R_b(θ) R_c(φ)`.
+///
+/// In the frame after the second, with `σ = ±1` so that `e_b × e_a = σ e_c`, the relative angular acceleration is
+/// `w = (cos θ ψ̈) e_a + θ̈ e_b + (φ̈ − σ sin θ ψ̈) e_c`: as long as θ is not ±90° every w has its q̈, and the three behave
+/// as a free ball.
+pub(super) struct Ball<'g> {
+    turns: [Turn<'g>; 3],
+    resists: bool,
+}
+
+impl<'g> Ball<'g> {
+    /// Indices of the axes a, b, c, and `σ tan θ`, `1 / cos θ`.
+    fn geometry(&self) -> ([usize; 3], Expr<'g>, Expr<'g>) {
+        let [a, b, c] = self.turns.map(|turn| turn.axis.index());
+        let Turn { sin, cos, .. } = self.turns[1];
+        let secant = 1.0 / cos;
+        let tangent = sin * secant;
+        let cyclic = plane([Axis::X, Axis::Y, Axis::Z][c]) == (b, a);
+        ([a, b, c], if cyclic { tangent } else { -tangent }, secant)
+    }
+
+    /// Frees the joint and leaves the articulated inertia in the frame before it.
+    ///
+    /// Without resistance it is freed in the body's own frame, where its inertia has most zeros; with resistance in the
+    /// frame after the second rotation, where D' has.
+    fn free(&self, articulated: &mut Articulated<'g>, efforts: [Effort<'g>; 3]) -> BallResponse<'g> {
+        let ([a, b, c], tangent, secant) = self.geometry();
+        let [first, second, third] = &self.turns;
+        // n · (∂w/∂ψ̇, ∂w/∂θ̇, ∂w/∂φ̇) = τ
+        let mut moment = Vec3::zero(secant.graph());
+        moment.0[a] = secant * efforts[0].applied + tangent * efforts[2].applied;
+        moment.0[b] = efforts[1].applied;
+        moment.0[c] = efforts[2].applied;
+        if self.resists {
+            articulated.turn(third);
+            let [psi, theta, phi] = efforts.map(|effort| effort.resistance);
+            let mut resistance = Symmetric3::zero(secant.graph());
+            *resistance.at_mut(a, a) = psi * secant.squared() + phi * tangent.squared();
+            *resistance.at_mut(b, b) = theta;
+            *resistance.at_mut(c, c) = phi;
+            *resistance.at_mut(a, c) = phi * tangent;
+            let response = articulated.free_ball(moment, Some(resistance));
+            articulated.turn(second);
+            articulated.turn(first);
+            response
+        } else {
+            let response = articulated.free_ball(third.inward(moment), None);
+            articulated.rotate_force(self.rotation(), first.outward(second.outward(moment)));
+            response
+        }
+    }
+
+    /// `R_a(ψ) R_b(θ) R_c(φ)` as a matrix, known long before the inertias: the chain of dependent operations is shorter than
+    /// by plane rotations.
+    fn rotation(&self) -> Rotation<'g> {
+        let graph = self.turns[0].sin.graph();
+        let rotate = |rotation: Rotation<'g>, turn: &Turn<'g>| rotation.turned(turn.axis, turn.sin, turn.cos);
+        self.turns.iter().fold(Rotation::identity(graph), rotate)
+    }
+
+    /// The joint's own accelerations, and α and a after it.
+    fn move_on(
+        &self,
+        response: &BallResponse<'g>,
+        gyrations: &[Vec3<'g>; 3],
+        mut angular: Vec3<'g>,
+        mut linear: Vec3<'g>,
+    ) -> ([Expr<'g>; 3], Vec3<'g>, Vec3<'g>) {
+        let [first, second, third] = &self.turns;
+        let before = second.inward(first.inward(angular) + gyrations[0]) + gyrations[1];
+        let relative;
+        if let Some(own) = &response.angular {
+            linear = second.inward(first.inward(linear));
+            relative = response.rest - response.linear.apply(linear) - own.apply(before);
+            (angular, linear) = (third.inward(before + relative), third.inward(linear));
+        } else {
+            linear = self.rotation().apply_transposed(linear);
+            angular = response.rest - response.linear.apply(linear);
+            relative = third.outward(angular - gyrations[2]) - before;
+        }
+        let ([a, b, c], tangent, secant) = self.geometry();
+        ([secant * relative[a], relative[b], relative[c] + tangent * relative[a]], angular, linear)
+    }
+}

@@ -1,0 +1,71 @@
+//! The first sweep of every recursion along the chain: from base to tip, in local frames.
+//!
+//! Notation
+//! : `ω` angular velocity of the frame reached, `a` acceleration of its origin, `α` its angular acceleration, all by their
+//!   components in that frame. Accelerations are the classical ones of points, so that no linear velocity is needed.
+//!
+//! Output
+//! : ω after every factor, and the part of the accelerations that velocities alone make:
+//!   `α = Rᵀ α₋ + e q̈ + ω × e q̇` at a rotation, `a = a₋ + α × d + ω × (ω × d)` at a translation by d, and
+//!   `e q̈ + 2 ω × e q̇` more where d grows.
+
+use super::factors::Factor;
+use super::model::Model;
+use super::turn::Turn;
+use super::vector::Vec3;
+use crate::symbolic::Expr;
+
+/// What velocities alone do at one factor.
+#[derive(Clone, Copy, Debug)]
+pub enum Velocities<'g> {
+    /// Angular velocity after a rotation, and `ω × e q̇`.
+    Revolute { gyration: Vec3<'g> },
+    /// `ω × e q̇` at each of three rotations, each in its own frame.
+    Ball { gyrations: [Vec3<'g>; 3] },
+    /// The way d of a translation, and `ω × (ω × d)` with Coriolis' acceleration.
+    Translation { by: Vec3<'g>, acceleration: Vec3<'g> },
+    /// A constant rotation changes nothing but components.
+    Turn,
+    /// The frame of a body, with its angular velocity.
+    Body { omega: Vec3<'g> },
+}
+
+/// Sweeps outward along `factors` with the velocities `v`, the base at rest.
+pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>]) -> Vec<Velocities<'g>> {
+    let mut omega = Vec3::zero(model.graph);
+    let rotate = |omega: &mut Vec3<'g>, turn: &Turn<'g>, rate: Expr<'g>| {
+        let spin = Vec3::along(turn.axis, rate);
+        *omega = turn.inward(*omega) + spin;
+        omega.cross(spin)
+    };
+    let mut along = Vec::new();
+    for factor in factors {
+        along.push(match factor {
+            Factor::Translate(by) => Velocities::Translation { by: *by, acceleration: centripetal(omega, *by) },
+            Factor::Turn(turn) => {
+                omega = turn.inward(omega);
+                Velocities::Turn
+            }
+            Factor::Revolute { j, turn } => Velocities::Revolute { gyration: rotate(&mut omega, turn, v[*j]) },
+            Factor::Prismatic { j, axis } => {
+                let by = Vec3::along(*axis, model.q[*j]);
+                let coriolis = omega.cross(Vec3::along(*axis, 2.0 * v[*j]));
+                Velocities::Translation { by, acceleration: centripetal(omega, by) + coriolis }
+            }
+            Factor::Ball { j, turns } => {
+                let mut gyration = |k: usize| rotate(&mut omega, &turns[k], v[j + k]);
+                Velocities::Ball { gyrations: [gyration(0), gyration(1), gyration(2)] }
+            }
+            Factor::Body(index) => {
+                omega.named(&format!("omega_{}", model.chain.bodies[*index].name));
+                Velocities::Body { omega }
+            }
+        });
+    }
+    along
+}
+
+/// `ω × (ω × d)`
+fn centripetal<'g>(omega: Vec3<'g>, d: Vec3<'g>) -> Vec3<'g> {
+    omega.cross(omega.cross(d))
+}

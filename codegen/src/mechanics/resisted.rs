@@ -1,0 +1,97 @@
+//! `(A + D̂) x = r` in O(n), D̂ diagonal but for the base's own block.
+//!
+//! The springs and dampers of elements and drives sit on single coordinates, those of the supports on the base: whatever an
+//! implicit step adds to A has this structure, and costs what A alone costs.
+
+use super::articulated::{Articulated, Effort};
+use super::factors::Factor;
+use super::forward::{inward, outward};
+use super::kinematics::Kinematics;
+use super::model::Model;
+use super::outward::velocities;
+use super::vector::{SymmetricMatrix, Vec3};
+use crate::chain::CoordinateId;
+use crate::symbolic::Expr;
+
+/// x of `(A + D̂) x = r`.
+///
+/// All that hangs on the base is freed joint by joint; what is left is a system of the base's coordinates, with the columns
+/// `(ω_j, υ_j)` of the motions of the first body's origin.
+pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
+    let base: Vec<usize> = model.chain.base.iter().flatten().map(|CoordinateId(j)| *j).collect();
+    let zero = Vec3::zero(model.graph);
+    let efforts: Vec<Effort<'g>> = (model.right.iter().zip(&model.resistance))
+        .map(|(&applied, &resistance)| Effort { applied, resistance })
+        .collect();
+    let velocities = velocities(model, factors, &model.zeros());
+    let split = if base.is_empty() { 0 } else { first_body(factors) };
+
+    let (joints, mut articulated) = inward(model, &factors[split..], &velocities[split..], &efforts);
+    let path = &factors[..split];
+    path.iter().rev().for_each(|factor| turn_outward(factor, &mut articulated));
+    let columns: Vec<(Vec3<'g>, Vec3<'g>)> = base
+        .iter()
+        .map(|&j| {
+            let generator = &kinematics.generators[j];
+            (generator.omega, generator.velocity(kinematics.poses[0].origin))
+        })
+        .collect();
+    let mut own = base_system(model, &articulated, &columns);
+    let right: Vec<Expr<'g>> = (columns.iter().zip(&base))
+        .map(|((omega, upsilon), &j)| model.right[j] - (omega.dot(articulated.moment) + upsilon.dot(articulated.force)))
+        .collect();
+    for (i, j) in (0..base.len()).flat_map(|i| (i..base.len()).map(move |j| (i, j))) {
+        own.add(i, j, model.base_resistance[6 * i - i * i.saturating_sub(1) / 2 + j - i]);
+    }
+    let motion = own.solve(&right);
+
+    let sum = |pick: fn(&(Vec3<'g>, Vec3<'g>)) -> Vec3<'g>| {
+        columns.iter().zip(&motion).fold(zero, |sum, (column, &x)| sum + x * pick(column))
+    };
+    let start = path.iter().fold((sum(|column| column.0), sum(|column| column.1)), |(alpha, a), factor| {
+        (turn_inward(factor, alpha), turn_inward(factor, a))
+    });
+    let mut x = outward(model, &factors[split..], &velocities[split..], &joints, start);
+    for (&j, value) in base.iter().zip(motion) {
+        x[j] = value;
+    }
+    x
+}
+
+/// Where the frame of the first body is reached.
+fn first_body(factors: &[Factor]) -> usize {
+    factors.iter().position(|factor| matches!(factor, Factor::Body(_))).unwrap_or(0)
+}
+
+fn turn_outward<'g>(factor: &Factor<'g>, articulated: &mut Articulated<'g>) {
+    match factor {
+        Factor::Turn(turn) | Factor::Revolute { turn, .. } => articulated.turn(turn),
+        Factor::Ball { turns, .. } => turns.iter().rev().for_each(|turn| articulated.turn(turn)),
+        Factor::Translate(_) | Factor::Prismatic { .. } | Factor::Body(_) => {}
+    }
+}
+
+fn turn_inward<'g>(factor: &Factor<'g>, x: Vec3<'g>) -> Vec3<'g> {
+    match factor {
+        Factor::Turn(turn) | Factor::Revolute { turn, .. } => turn.inward(x),
+        Factor::Ball { turns, .. } => turns.iter().fold(x, |x, turn| turn.inward(x)),
+        Factor::Translate(_) | Factor::Prismatic { .. } | Factor::Body(_) => x,
+    }
+}
+
+/// `ω_i · (J ω_j + H υ_j) + υ_i · (Hᵀ ω_j + M υ_j)`
+fn base_system<'g>(
+    model: &Model<'g>,
+    articulated: &Articulated<'g>,
+    columns: &[(Vec3<'g>, Vec3<'g>)],
+) -> SymmetricMatrix<'g> {
+    let mut matrix = SymmetricMatrix::zero(model.graph, columns.len());
+    for (j, (omega, upsilon)) in columns.iter().enumerate() {
+        let moment = articulated.rotational.apply(*omega) + articulated.coupling.apply(*upsilon);
+        let force = articulated.coupling.apply_transposed(*omega) + articulated.translational.apply(*upsilon);
+        for (i, (omega, upsilon)) in columns[..=j].iter().enumerate() {
+            matrix.add(i, j, omega.dot(moment) + upsilon.dot(force));
+        }
+    }
+    matrix
+}

@@ -1,0 +1,90 @@
+//! Elementary rotations of frames, applied as plane rotations: no 3×3 product with known zeros.
+//!
+//! A turn is `R = R_axis(angle)`, from the inner frame (towards the tip) to the outer one (towards the base).
+//! `inward` is `x ↦ Rᵀ x`, from base to tip; `outward` is `x ↦ R x`, `S ↦ R S Rᵀ`, from tip to base.
+
+use super::vector::{Matrix3, Symmetric3, Vec3, plane};
+use crate::chain::Axis;
+use crate::symbolic::Expr;
+
+/// An elementary rotation by its sine and cosine.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<'g> {
+    pub axis: Axis,
+    pub sin: Expr<'g>,
+    pub cos: Expr<'g>,
+}
+
+impl<'g> Turn<'g> {
+    /// `Rᵀ x`
+    pub fn inward(&self, x: Vec3<'g>) -> Vec3<'g> {
+        let (a, b) = plane(self.axis);
+        let mut turned = x;
+        turned.0[a] = self.cos * x[a] + self.sin * x[b];
+        turned.0[b] = self.cos * x[b] - self.sin * x[a];
+        turned
+    }
+
+    /// `R x`
+    pub fn outward(&self, x: Vec3<'g>) -> Vec3<'g> {
+        Turn { sin: -self.sin, ..*self }.inward(x)
+    }
+
+    /// `R S Rᵀ`
+    ///
+    /// In the plane of rotation `S_aa` loses to `S_bb` what `w` is: entries of very different size keep their digits as the
+    /// angle goes to zero.
+    pub fn outward_symmetric(&self, s: &Symmetric3<'g>) -> Symmetric3<'g> {
+        let (a, b) = plane(self.axis);
+        let k = self.axis.index();
+        let mut turned = *s;
+        let (difference, twice) = (s.at(a, a) - s.at(b, b), s.at(a, b) + s.at(a, b));
+        let (w, t) = self.exchange(difference, twice);
+        *turned.at_mut(a, a) = self.diagonal(s.at(a, a), s.at(b, b), -w);
+        *turned.at_mut(b, b) = self.diagonal(s.at(b, b), s.at(a, a), w);
+        *turned.at_mut(a, b) = self.off_diagonal(s.at(a, b), -s.at(a, b), t);
+        *turned.at_mut(k, a) = self.cos * s.at(k, a) - self.sin * s.at(k, b);
+        *turned.at_mut(k, b) = self.sin * s.at(k, a) + self.cos * s.at(k, b);
+        turned
+    }
+
+    /// `R M Rᵀ`
+    pub fn outward_matrix(&self, m: &Matrix3<'g>) -> Matrix3<'g> {
+        let (a, b) = plane(self.axis);
+        let k = self.axis.index();
+        let m = m.0;
+        let mut turned = m;
+        let (w, t) = self.exchange(m[a][a] - m[b][b], m[a][b] + m[b][a]);
+        turned[a][a] = self.diagonal(m[a][a], m[b][b], -w);
+        turned[b][b] = self.diagonal(m[b][b], m[a][a], w);
+        turned[a][b] = self.off_diagonal(m[a][b], -m[b][a], t);
+        turned[b][a] = self.off_diagonal(m[b][a], -m[a][b], t);
+        turned[k][a] = self.cos * m[k][a] - self.sin * m[k][b];
+        turned[k][b] = self.sin * m[k][a] + self.cos * m[k][b];
+        turned[a][k] = self.cos * m[a][k] - self.sin * m[b][k];
+        turned[b][k] = self.sin * m[a][k] + self.cos * m[b][k];
+        Matrix3(turned)
+    }
+
+    /// What a rotation moves between the entries of a 2×2 block `[[p, q], [r, s]]`, from `p − s` and `q + r`:
+    /// `w = sin² (p − s) + sin cos (q + r)` and `t = sin cos (p − s) − sin² (q + r)`.
+    fn exchange(&self, difference: Expr<'g>, sum: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
+        let (squared, product) = (self.sin * self.sin, self.sin * self.cos);
+        (squared * difference + product * sum, product * difference - squared * sum)
+    }
+
+    /// `own + change`, or the other's value where the turn swaps the two.
+    fn diagonal(&self, own: Expr<'g>, other: Expr<'g>, change: Expr<'g>) -> Expr<'g> {
+        if self.is_quarter() { other } else { own + change }
+    }
+
+    /// `own + change`, or what a quarter turn leaves.
+    fn off_diagonal(&self, own: Expr<'g>, swapped: Expr<'g>, change: Expr<'g>) -> Expr<'g> {
+        if self.is_quarter() { swapped } else { own + change }
+    }
+
+    /// Whether it is a quarter turn by construction: axes are renamed, nothing is computed.
+    fn is_quarter(&self) -> bool {
+        self.cos.is_zero()
+    }
+}

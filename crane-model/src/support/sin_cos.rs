@@ -1,0 +1,123 @@
+//! Sines and cosines of all angles of a state in one pass, eight at a time.
+//!
+//! Reduction to `x = n π/2 + y`, |y| ≤ π/4, by the four parts of π/2 of W. J. Cody and W. Waite, *Software Manual for the
+//! Elementary Functions*, Prentice-Hall 1980, with the rounding error of y carried along; then the polynomials of K. C. Ng
+//! (`fdlibm`, Sun Microsystems 1993). The error is below 0.8 units in the last place for every angle. Angles of 2²⁰ quarter
+//! turns or more, and those that are no number, go one by one through the standard library's functions.
+
+use wide::{bytemuck::cast, f64x8, i64x8};
+
+use super::lanes::fma;
+
+/// Parts of π/2: three of 33 bits, whose products with n are exact, and the rest.
+const HALF_PI: [f64; 4] =
+    [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_711_166_5e-21, 8.478_427_660_368_9e-32];
+/// Up to here n has 20 bits.
+const LARGEST: f64 = 1_048_576.0 * core::f64::consts::FRAC_PI_2;
+/// Added to a number below 2⁵¹ it rounds it to an integer, which then stands in the lowest bits.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// Coefficients of `sin y = y + y³ (S₁ + S₂ y² + …)`.
+const SIN: [f64; 6] = [
+    -1.666_666_666_666_663_2e-1,
+    8.333_333_333_322_49e-3,
+    -1.984_126_982_985_795e-4,
+    2.755_731_370_707_006_8e-6,
+    -2.505_076_025_340_686_3e-8,
+    1.589_690_995_211_55e-10,
+];
+/// Coefficients of `cos y = 1 − y²/2 + y⁴ (C₁ + C₂ y² + …)`.
+const COS: [f64; 6] = [
+    4.166_666_666_666_66e-2,
+    -1.388_888_888_887_411e-3,
+    2.480_158_728_947_673e-5,
+    -2.755_731_435_139_066_3e-7,
+    2.087_572_321_298_175e-9,
+    -1.135_964_755_778_819_5e-11,
+];
+
+/// `(sin x, cos x)` of every angle, rad.
+#[inline]
+pub fn sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
+    let mut results = [(0.0, 0.0); K];
+    for (angles, results) in angles.chunks(8).zip(results.chunks_mut(8)) {
+        let mut eight = [0.0; 8];
+        for (place, angle) in eight.iter_mut().zip(angles) {
+            *place = *angle;
+        }
+        let (sin, cos) = sin_cos_lanes(f64x8::new(eight));
+        for (result, pair) in results.iter_mut().zip(sin.to_array().into_iter().zip(cos.to_array())) {
+            *result = pair;
+        }
+    }
+    results
+}
+
+/// `(sin x, cos x)` of eight angles, rad.
+#[inline]
+pub fn sin_cos_lanes(x: f64x8) -> (f64x8, f64x8) {
+    // False for what is no number.
+    if !x.abs().simd_lt(f64x8::splat(LARGEST)).all() {
+        return one_by_one(x);
+    }
+    let shifted = fma(x, f64x8::splat(core::f64::consts::FRAC_2_PI), f64x8::splat(ROUND));
+    let (y, tail) = reduced(x, shifted - ROUND);
+    let (sin, cos) = (sine(y, tail), cosine(y, tail));
+    let quarter: i64x8 = cast(shifted);
+    let one = i64x8::splat(1);
+    // All bits of a lane where n is odd.
+    let odd: f64x8 = cast(i64x8::splat(0) - (quarter & one));
+    let minus_sin: f64x8 = cast((quarter & i64x8::splat(2)) << 62);
+    let minus_cos: f64x8 = cast(((quarter + one) & i64x8::splat(2)) << 62);
+    (odd.bitselect(cos, sin) ^ minus_sin, odd.bitselect(sin, cos) ^ minus_cos)
+}
+
+/// `x − n π/2` and what its rounding lost.
+#[inline]
+fn reduced(x: f64x8, n: f64x8) -> (f64x8, f64x8) {
+    let [first, second, third, rest] = HALF_PI;
+    let y = x - n * first;
+    let (part, y_before) = (n * second, y);
+    let y = y_before - part;
+    let lost = (y_before - y) - part;
+    let (part, y_before) = (n * third, y);
+    let y = y_before - part;
+    let lost = lost + ((y_before - y) - part) - n * rest;
+    let sum = y + lost;
+    (sum, (y - sum) + lost)
+}
+
+/// sin(y + tail)
+#[inline]
+fn sine(y: f64x8, tail: f64x8) -> f64x8 {
+    let z = y * y;
+    let cubed = z * y;
+    let higher = polynomial(z, [SIN[1], SIN[2], SIN[3], SIN[4], SIN[5]]);
+    let correction = fma(z, fma(tail, f64x8::splat(0.5), -(cubed * higher)), -tail);
+    y - fma(cubed, f64x8::splat(-SIN[0]), correction)
+}
+
+/// cos(y + tail)
+#[inline]
+fn cosine(y: f64x8, tail: f64x8) -> f64x8 {
+    let z = y * y;
+    let half = z * 0.5;
+    let leading = f64x8::splat(1.0) - half;
+    let higher = z * polynomial(z, COS);
+    leading + (((f64x8::splat(1.0) - leading) - half) + fma(z, higher, -(y * tail)))
+}
+
+/// `c₀ + c₁ z + …` by Horner's rule.
+#[inline]
+fn polynomial<const K: usize>(z: f64x8, coefficients: [f64; K]) -> f64x8 {
+    coefficients.iter().rev().fold(f64x8::splat(0.0), |sum, c| fma(sum, z, f64x8::splat(*c)))
+}
+
+#[cold]
+fn one_by_one(x: f64x8) -> (f64x8, f64x8) {
+    let mut pairs = (x.to_array(), x.to_array());
+    for (sin, cos) in pairs.0.iter_mut().zip(&mut pairs.1) {
+        (*sin, *cos) = nalgebra::ComplexField::sin_cos(*sin);
+    }
+    (f64x8::new(pairs.0), f64x8::new(pairs.1))
+}

@@ -1,0 +1,47 @@
+//! Numbers of 64 bits with the runtime's sine and cosine, so that the interpreter rounds as generated code does.
+
+use crane_codegen::symbolic::Scalar;
+use crane_model::support;
+
+/// A number as generated code has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Runtime(pub f64);
+
+macro_rules! operator {
+    ($trait:ident, $method:ident) => {
+        impl std::ops::$trait for Runtime {
+            type Output = Runtime;
+            fn $method(self, other: Runtime) -> Runtime {
+                Runtime(self.0.$method(other.0))
+            }
+        }
+    };
+}
+
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
+
+impl std::ops::Neg for Runtime {
+    type Output = Runtime;
+    fn neg(self) -> Runtime {
+        Runtime(-self.0)
+    }
+}
+
+impl Scalar for Runtime {
+    fn from_f64(value: f64) -> Self {
+        Runtime(value)
+    }
+    fn sin_cos(&self) -> (Self, Self) {
+        let [(sin, cos)] = support::sin_cos([self.0]);
+        (Runtime(sin), Runtime(cos))
+    }
+    fn min(self, other: Self) -> Self {
+        Runtime(self.0.min(other.0))
+    }
+    fn max(self, other: Self) -> Self {
+        Runtime(self.0.max(other.0))
+    }
+}
