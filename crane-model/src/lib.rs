@@ -8,6 +8,7 @@
 //! | equilibrium | `statics` | `std` |
 //! | a run with recorded results | `dynamics::simulate` | `std` |
 //! | frequencies, damping | `modes` | `std` |
+//! | largest stable step | `stability` | `std` |
 //! | any crane through one pointer | `rig::Rig` | `std` |
 //! | the shipped cranes | `cranes` | `cranes` |
 //!
@@ -30,6 +31,8 @@ pub mod modes;
 pub mod results;
 #[cfg(feature = "std")]
 pub mod rig;
+#[cfg(feature = "std")]
+pub mod stability;
 #[cfg(feature = "std")]
 pub mod statics;
 pub mod support;

@@ -182,10 +182,12 @@ fn an_impossible_load_is_told_not_panicked() {
 #[test]
 fn a_step_beyond_stability_ends_with_advice() {
     let out = folder("blown_up");
-    let output = crane(&["simulate", "--step", "2e-3", "--out", out.to_str().expect("a path")]);
+    let output = crane(&["simulate", "--step", "2e-3", "--force", "--out", out.to_str().expect("a path")]);
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{message}");
-    for words in ["warning:", "beyond the largest stable", "at t = ", "smaller step than 2.00e-3 s", "2.785/(βω²)"] {
+    for words in
+        ["unstable", "at t = ", "largest stable step is 1.215e-4 s", "smaller step than 2.00e-3 s", "2.785/(βω²)"]
+    {
         assert!(message.contains(words), "`{words}` not in: {message}");
     }
     assert!(!out.join("eight_link_flexible.csv").exists());
@@ -247,4 +249,40 @@ fn a_closed_pipe_is_no_error() {
         assert!(child.wait().expect("an end").success(), "{arguments:?}: {message}");
         assert!(message.is_empty(), "{arguments:?}: {message}");
     }
+}
+
+#[test]
+fn an_unstable_step_is_refused_unless_forced() {
+    let out = folder("unstable");
+    let path = out.to_str().expect("a path");
+    let refused = crane(&["simulate", "eight_link_rigid", "--step", "5e-3", "--out", path]);
+    assert_eq!(refused.status.code(), Some(1));
+    let message = text(&refused.stderr);
+    for words in ["a step of 5e-3 s is unstable", "drive of telescope_z", "--step auto", "--force"] {
+        assert!(message.contains(words), "{message}");
+    }
+    // Stable at the start, where the limit is 6.2e-3 s, and not at the end.
+    let forced = crane(&["simulate", "eight_link_rigid", "--step", "5e-3", "--force", "--out", path]);
+    let message = text(&forced.stderr);
+    assert_eq!(forced.status.code(), Some(1));
+    assert!(message.contains("the run is unstable: at t = ") && message.contains("telescope_z"), "{message}");
+    assert!(!out.join("eight_link_rigid.csv").exists());
+    let report = json(&["simulate", "eight_link_rigid", "--step", "auto", "--out", path, "--format", "json"]);
+    // 90 % of 4.57e-3 s, and a whole number of times in 0.01 s.
+    assert!((report["step"].as_f64().expect("a number") - 0.01 / 3.0).abs() < 1e-12, "{}", report["step"]);
+}
+
+#[test]
+fn stability_names_what_limits_the_step_and_draws_it() {
+    let out = folder("stability");
+    let path = out.to_str().expect("a path");
+    let report = json(&["stability", "--out", path, "--format", "json"]);
+    let limits = report["limits"].as_array().expect("a table");
+    let rk4 = limits.iter().find(|row| row["method"] == "rk4").expect("a row");
+    let step = rk4["step_s"].as_f64().expect("a number");
+    // 2.785/22,921 rad/s.
+    assert!((step - 1.2152e-4).abs() < 1e-8, "{step}");
+    assert!(rk4["limited_by"].as_str().is_some_and(|words| words.starts_with("torsion of boom elements 3, 2; 22,9")));
+    let svg = fs::read_to_string(out.join("eight_link_flexible_stability.svg")).expect("a figure");
+    assert!(svg.starts_with("<svg") && svg.contains("Re hλ") && svg.matches("<circle").count() > 40);
 }

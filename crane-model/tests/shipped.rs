@@ -4,8 +4,10 @@ use std::ops::ControlFlow;
 
 use crane_model::{
     cranes,
-    dynamics::{Settings, rk4, simulate},
-    modes, rig, statics,
+    dynamics::{Method, Settings, rk4, simulate},
+    modes, rig,
+    stability::limit,
+    statics,
 };
 use nalgebra::SVector;
 
@@ -25,11 +27,8 @@ fn every_crane_rests_in_a_stable_equilibrium_within_five_steps() {
 fn every_spec_asks_for_a_stable_step() {
     for rig in cranes::all() {
         let q = rig.equilibrium(&statics::Settings::default()).q;
-        let limit = modes::damped(&rig.small_motions(&q))
-            .expect("modes")
-            .iter()
-            .filter_map(|mode| rk4::largest_step(mode.eigenvalue.re, mode.eigenvalue.im))
-            .fold(f64::INFINITY, f64::min);
+        let modes = modes::damped(&rig.small_motions(&q)).expect("modes");
+        let limit = limit(&modes, &Method::Rk4.stability()).expect("a limit").step;
         let description = rig.description();
         assert!(description.step < limit, "{}: step {}, limit {limit}", description.name, description.step);
     }

@@ -3,7 +3,8 @@
 mod common;
 
 use common::{DoublePendulum, Lift};
-use crane_model::statics::{Settings, Status, guess, solve};
+use crane_model::statics::{Settings, Status, guess, solve, solve_at};
+use nalgebra::Vector1;
 
 #[test]
 fn a_linear_crane_takes_one_step() {
@@ -13,6 +14,18 @@ fn a_linear_crane_takes_one_step() {
     assert_eq!(equilibrium.steps(), 1);
     // One division and one subtraction of rounding.
     assert!((equilibrium.q[0] - lift.sag()).abs() < 1e-15, "{:?}", equilibrium.q);
+}
+
+#[test]
+fn an_equilibrium_follows_the_drives() {
+    let lift = Lift::default();
+    // The damper of the drive is at rest where the mass moves with it.
+    let t = 0.1;
+    let equilibrium = solve_at(&lift, t, Vector1::zeros(), &Settings::default());
+    assert_eq!(equilibrium.status, Status::Converged);
+    let expected = lift.sag() + lift.amplitude * (lift.frequency * t).sin();
+    // Forces of 400 N in rounding, over 4000 N/m.
+    assert!((equilibrium.q[0] - expected).abs() < 1e-15, "{:?}", equilibrium.q);
 }
 
 #[test]

@@ -23,38 +23,8 @@ use crate::Dynamics;
 pub const IMAGINARY_LIMIT: f64 = 2.0 * core::f64::consts::SQRT_2;
 /// End of the stability region on the negative real axis.
 pub const REAL_LIMIT: f64 = 2.785_293_563_405_282;
-
-/// Largest stable step for an eigenvalue `re + i im`, 1/s, of the linearised motion: `|R(hλ)| = 1` at the first end of the
-/// region along λ, s. A growing mode (`re > 0`) counts as undamped: its growth is the crane's, not the method's. `None` for
-/// λ = 0, which limits nothing.
-#[cfg(feature = "std")]
-pub fn largest_step(re: f64, im: f64) -> Option<f64> {
-    /// Beyond rounding of `|R|` near the origin, where it is 1 up to 6th order on the imaginary axis.
-    const ABOVE_ONE: f64 = 1.0 + 1e-12;
-    /// The region ends within 4 of the origin in every direction of the left half-plane; it has no hole wider than this.
-    const SCAN: f64 = 0.01;
-    let re = re.min(0.0);
-    let size = re.hypot(im);
-    if !(size.is_finite() && size > 0.0) {
-        return None;
-    }
-    let direction = nalgebra::Complex::new(re, im) / size;
-    let stable = |radius: f64| {
-        let z = direction * radius;
-        ((((z / 24.0 + 1.0 / 6.0) * z + 0.5) * z + 1.0) * z + 1.0).norm() <= ABOVE_ONE
-    };
-    let mut inside = 0.0;
-    while stable(inside + SCAN) {
-        inside += SCAN;
-    }
-    let mut outside = inside + SCAN;
-    // Halving 0.01 this often reaches the last bit.
-    for _ in 0..50 {
-        let middle = 0.5 * (inside + outside);
-        *(if stable(middle) { &mut inside } else { &mut outside }) = middle;
-    }
-    Some(inside / size)
-}
+/// Coefficients of `R(z) = 1 + z + z²/2 + z³/6 + z⁴/24`.
+pub const STABILITY: [f64; 5] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0];
 
 /// The mass matrix is not positive definite: a body without inertia, or a pose that is not finite any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,6 +87,17 @@ pub fn step_with<const N: usize, const M: usize, C: Dynamics<N>>(
     state: &mut State<N>,
     integrand: impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
 ) -> Result<SVector<f64, M>, NotPositiveDefinite> {
+    advance(crane, t, h, state, integrand).map(|(_, increments)| increments)
+}
+
+/// As [`step_with`]; also the acceleration at the beginning.
+pub(super) fn advance<const N: usize, const M: usize, C: Dynamics<N>>(
+    crane: &C,
+    t: f64,
+    h: f64,
+    state: &mut State<N>,
+    integrand: impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
+) -> Result<(SVector<f64, N>, SVector<f64, M>), NotPositiveDefinite> {
     let State { q, v } = &*state;
     let middle = t + 0.5 * h;
     let end = t + h;
@@ -141,5 +122,5 @@ pub fn step_with<const N: usize, const M: usize, C: Dynamics<N>>(
 
     state.q += (v + (v2 + v3) * 2.0 + v4) * (h / 6.0);
     state.v += (a1 + (a2 + a3) * 2.0 + a4) * (h / 6.0);
-    Ok((i1 + (i2 + i3) * 2.0 + i4) * (h / 6.0))
+    Ok((a1, (i1 + (i2 + i3) * 2.0 + i4) * (h / 6.0)))
 }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{SVector, Vector2};
 
-use super::{Stopped, rk4};
+use super::{Stopped, rk4, roughness::Roughness};
 use crate::{Description, Dynamics};
 
 /// No crane is 1 km long and no joint of one turns 160 times: beyond this, m or rad, a run has blown up.
@@ -94,6 +94,7 @@ fn integrate<const N: usize, const M: usize, C: Dynamics<N>>(
     mut observe: impl FnMut(&Sample<'_>) -> ControlFlow<()>,
 ) -> Result<Run, Stopped> {
     let mut state = start;
+    let mut roughness = Roughness::new(&crane.mass_matrix(&state.q));
     let mut sum = SVector::<f64, M>::zeros();
     let mut run = Run { steps: 0, step: divided(settings.output, settings.step).1, time: 0.0 };
     let intervals = divided(settings.duration, settings.output).0;
@@ -109,13 +110,22 @@ fn integrate<const N: usize, const M: usize, C: Dynamics<N>>(
         let (steps, h) = divided(end - begin, settings.step);
         for k in 0..steps {
             let t = begin + h * k as f64;
-            sum += rk4::step_with(crane, t, h, &mut state, &integrand).map_err(|rk4::NotPositiveDefinite| {
-                let mass = crane.mass_matrix(&state.q);
-                Stopped::mass_matrix(t, h, state.q.as_slice(), &mass, crane.description())
+            let v = state.v;
+            let step = rk4::advance(crane, t, h, &mut state, &integrand);
+            let q = state.q.as_slice();
+            let rough = |roughness: &Roughness<N>| {
+                roughness.roughest().map(|coordinate| Stopped::rough(coordinate, t, h, q, crane.description()))
+            };
+            let (acceleration, increments) = step.map_err(|rk4::NotPositiveDefinite| {
+                let mass = || Stopped::mass_matrix(t, h, q, &crane.mass_matrix(&state.q), crane.description());
+                rough(&roughness).unwrap_or_else(mass)
             })?;
+            sum += increments;
+            let grows = roughness.grows(&(v + acceleration * h), &state.v);
             // Written so that NaN fails.
-            if !state.q.iter().all(|x| x.abs() <= settings.bound) {
-                return Err(Stopped::growth(t, h, state.q.as_slice(), crane.description()));
+            let bounded = state.q.iter().all(|x| x.abs() <= settings.bound);
+            if grows || !bounded {
+                return Err(rough(&roughness).unwrap_or_else(|| Stopped::growth(t, h, q, crane.description())));
             }
         }
         run.steps += steps;

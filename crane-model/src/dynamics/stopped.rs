@@ -11,6 +11,8 @@ use crate::Description;
 pub enum Cause {
     /// A coordinate left the bound of the settings, or is no number any more.
     Growth,
+    /// The motion grows from step to step against its own acceleration: the step is beyond the limit of stability.
+    Step,
     /// The mass matrix is not positive definite: a coordinate moves nothing that has inertia.
     MassMatrix,
 }
@@ -40,6 +42,11 @@ impl Stopped {
         Self::at(worst, Cause::Growth, time, step, q, description)
     }
 
+    /// Growth from step to step, of the coordinate that is roughest.
+    pub(super) fn rough(coordinate: usize, time: f64, step: f64, q: &[f64], description: &Description) -> Self {
+        Self::at(coordinate, Cause::Step, time, step, q, description)
+    }
+
     /// A step that met a mass matrix not positive definite: for want of inertia where `mass`, the matrix at its beginning
     /// `q`, is not either, else because the step leads out of all bounds.
     pub(super) fn mass_matrix<const N: usize>(
@@ -67,7 +74,7 @@ impl Stopped {
     /// What to do about it.
     pub fn advice(&self) -> String {
         match self.cause {
-            Cause::Growth => format!(
+            Cause::Growth | Cause::Step => format!(
                 "try a smaller step than {:.2e} s; RK4 is stable for h < min(2.83/ω, 2.785/(βω²)) of the fastest mode \
                  (ω in rad/s, damping β in s)",
                 self.step
@@ -88,6 +95,7 @@ impl fmt::Display for Stopped {
             Cause::Growth => {
                 write!(f, "the run grew without bound: at t = {time:.6} s {coordinate} is {value:.3e} {unit}")
             }
+            Cause::Step => write!(f, "the run is unstable: at t = {time:.6} s {coordinate} grows from step to step"),
             Cause::MassMatrix => write!(
                 f,
                 "the mass matrix is not positive definite at t = {time:.6} s: nothing that {coordinate} \

@@ -121,6 +121,10 @@ impl<const N: usize, C: Crane<N> + Send + Sync> Rig for Instance<N, C> {
         statics::solve(&self.0, settings)
     }
 
+    fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
+        statics::solve_at(&self.0, t, vector(q), settings)
+    }
+
     fn small_motions(&self, q: &[f64]) -> SmallMotions {
         (&self.0.linearise(&vector(q))).into()
     }

@@ -115,6 +115,9 @@ pub trait Rig: Send + Sync {
     /// Static equilibrium from the guess: [`statics::solve`].
     fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium;
 
+    /// Equilibrium with the drives as at time `t`, from pose `q`: [`statics::solve_at`].
+    fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium;
+
     /// Coefficients of small motions about a pose at rest.
     fn small_motions(&self, q: &[f64]) -> SmallMotions;
 

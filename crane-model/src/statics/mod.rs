@@ -7,5 +7,5 @@ mod status;
 mod tangent;
 
 pub use guess::guess;
-pub use newton::{Equilibrium, Iteration, Settings, solve};
+pub use newton::{Equilibrium, Iteration, Settings, solve, solve_at};
 pub use status::Status;

@@ -65,15 +65,46 @@ impl Equilibrium {
 /// balances at the guess, that of a rotation the greatest moment: N and N m become comparable. Any equilibrium is found,
 /// a stable one or not; the tangent stiffness there tells which.
 pub fn solve<const N: usize, C: Statics<N> + Clone>(crane: &C, settings: &Settings) -> Equilibrium {
+    newton(crane, guess(crane), settings, |q| crane.static_residual(q))
+}
+
+/// As [`solve`], with the drives where their motions are at time `t`, s, and from the pose `q`: where the crane would rest
+/// if its motion froze. Poses along a manoeuvre, each from the one before.
+pub fn solve_at<const N: usize, C: Statics<N>>(
+    crane: &C,
+    t: f64,
+    q: SVector<f64, N>,
+    settings: &Settings,
+) -> Equilibrium {
+    let drives = crane.description().drives;
+    let mut motions = vec![[0.0; 2]; drives.len()];
+    // Forces of the drives' springs: at the prescribed rates the dampers are at rest.
+    let mut springs = |t: f64, q: &SVector<f64, N>| {
+        crane.drive_motions(t, &mut motions);
+        let mut v = SVector::zeros();
+        for (drive, [_, rate]) in drives.iter().zip(&motions) {
+            v[drive.coordinate] = *rate;
+        }
+        crane.drive_forces(t, q, &v)
+    };
+    newton(crane, q, settings, |q| crane.static_residual(q) + springs(0.0, q) - springs(t, q))
+}
+
+/// The iteration of [`solve`] on any residual with the crane's tangent stiffness.
+fn newton<const N: usize, C: Statics<N>>(
+    crane: &C,
+    mut q: SVector<f64, N>,
+    settings: &Settings,
+    mut residual_at: impl FnMut(&SVector<f64, N>) -> SVector<f64, N>,
+) -> Equilibrium {
     if N == 0 {
         // Nothing can move; an empty matrix has no eigenvalues to look at.
         let history = vec![Iteration { residual: 0.0, fraction: 0.0 }];
         return Equilibrium { status: Status::Converged, q: Vec::new(), history };
     }
     let description = crane.description();
-    let mut q = guess(crane);
     let balance = Balance::at(crane, &q);
-    let mut residual = crane.static_residual(&q);
+    let mut residual = residual_at(&q);
     let mut norm = balance.norm(&residual);
     let mut history = vec![Iteration { residual: norm, fraction: 0.0 }];
 
@@ -90,7 +121,7 @@ pub fn solve<const N: usize, C: Statics<N> + Clone>(crane: &C, settings: &Settin
         let step = limited(tangent.step(&residual), |i| description.coordinates[i].kind);
         let improved = (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
             let pose = q + step * fraction;
-            let residual = crane.static_residual(&pose);
+            let residual = residual_at(&pose);
             let trial = balance.norm(&residual);
             (trial < norm).then_some((pose, residual, trial, fraction))
         });

@@ -1,6 +1,6 @@
 //! Arguments of the command.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, str::FromStr};
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
@@ -13,6 +13,7 @@ Examples:
   crane simulate --set load_mass=0 --out empty
                                        the manoeuvre without the log
   crane modes                          frequencies and damping about the static pose
+  crane stability                      largest stable steps, what limits them, and a figure
   crane list                           the cranes to choose from
   crane info                           coordinates, parameters, drives of a crane
   source <(crane completions bash)     completion of commands and options
@@ -46,6 +47,8 @@ pub enum Action {
     Simulate(Simulate),
     /// Frequencies, damping and dominating coordinates about the static pose, and the largest stable step
     Modes(Analysis),
+    /// Largest stable step of every method and what limits it, at the static pose and along the manoeuvre
+    Stability(Stability),
     /// What a crane consists of: coordinates, bodies, supports, drives, parameters
     Info(Analysis),
     /// T, ∂T/∂q, ∂²T/∂q∂q, A and e at a state, for checks by other programs
@@ -97,12 +100,35 @@ pub struct Analysis {
     pub format: Format,
 }
 
+/// Step of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// The largest safe one.
+    Auto,
+    /// So many seconds.
+    Seconds(f64),
+}
+
+impl FromStr for Step {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Step::Auto);
+        }
+        text.parse().map(Step::Seconds).map_err(|_| "write a number of seconds, such as 1e-4, or `auto`".to_owned())
+    }
+}
+
 /// Time and step of a run.
 #[derive(Debug, Args)]
 pub struct Timing {
-    /// Greatest step of the integrator, s [default: the crane's]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    pub step: Option<f64>,
+    /// Greatest step of the integrator, s; `auto`: the largest safe one [default: the crane's]
+    #[arg(long, value_name = "SECONDS|auto", allow_negative_numbers = true)]
+    pub step: Option<Step>,
+    /// Run even where the step is beyond the largest stable one
+    #[arg(long)]
+    pub force: bool,
     /// Simulated time, s [default: the crane's]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub duration: Option<f64>,
@@ -133,6 +159,19 @@ pub struct Simulate {
     pub analysis: Analysis,
     #[command(flatten)]
     pub timing: Timing,
+}
+
+/// Stability of time steps.
+#[derive(Debug, Args)]
+pub struct Stability {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Poses along the manoeuvre at which to look as well, evenly in time: where the crane would rest there
+    #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u16).range(..=1000))]
+    pub along: u16,
+    /// Folder for the figure; made where it is missing
+    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
 }
 
 /// A list of the cranes.

@@ -6,7 +6,7 @@ use crane_model::{Description, results::Table};
 
 use crate::{
     arguments::{Compare, Format},
-    figures::{Curve, PALETTE, Panel},
+    figures::{Curve, Mark, PALETTE, Panel},
     files,
     problem::{Outcome, Problem},
     run::{Recorded, progress, record},
@@ -36,7 +36,11 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
     let starts = cases.iter().map(Case::start).collect::<Outcome<Vec<_>>>()?;
 
     files::folder(folder)?;
-    let settings = [options.timing.settings(rigid.as_ref())?, options.timing.settings(flexible.as_ref())?];
+    let settings = cases
+        .iter()
+        .zip(&starts)
+        .map(|(case, start)| options.timing.settings(case.rig, start))
+        .collect::<Outcome<Vec<_>>>()?;
     let bar = progress(settings.iter().map(|settings| settings.duration).sum());
     bar.set_message("simulating");
     let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
@@ -93,7 +97,7 @@ fn deviation(description: &Description, rigid: &Table, flexible: &Table) -> Vec<
             let column = format!("{point}_{axis}");
             let [from, to] = [rigid, flexible].map(|table| points(table, "t", &column, 1e3));
             let difference = from.iter().zip(&to).map(|(from, to)| (to.0, to.1 - from.1)).collect();
-            Curve { label: spoken(point), colour, dashed: false, points: difference }
+            Curve { label: spoken(point), colour, mark: Mark::Solid, points: difference }
         });
         Panel {
             x: "t [s]".to_owned(),

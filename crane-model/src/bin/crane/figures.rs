@@ -33,6 +33,8 @@ const LEGEND: u32 = 26 * PIXEL;
 const FONT: f64 = 15.0 * PIXEL as f64;
 /// Width of a curve.
 const STROKE: u32 = 2 * PIXEL;
+/// Radius of a dot.
+const DOT: u32 = 3 * PIXEL;
 /// Free space around a panel.
 const SPACE: u32 = 12 * PIXEL;
 /// Width of a letter, of the font size: an estimate that leaves room.
@@ -42,6 +44,17 @@ const MARGIN: f64 = 0.06;
 /// Space for tick labels and axis titles: left, bottom.
 const AXES: (u32, u32) = (70 * PIXEL, 46 * PIXEL);
 
+/// How a curve is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// A line.
+    Solid,
+    /// A line that lies on top of others and lets them be seen.
+    Dashed,
+    /// Its points alone.
+    Dots,
+}
+
 /// A curve.
 #[derive(Clone, Debug)]
 pub struct Curve {
@@ -49,8 +62,8 @@ pub struct Curve {
     pub label: String,
     /// Its colour.
     pub colour: RGBColor,
-    /// Dashed: lies on top of others and lets them be seen.
-    pub dashed: bool,
+    /// How it is drawn.
+    pub mark: Mark,
     /// Where it goes.
     pub points: Vec<(f64, f64)>,
 }
@@ -125,7 +138,14 @@ fn draw_legend<'a>(area: &Area<'a>, legend: &[Curve]) -> Drawn<'a> {
     for (index, curve) in legend.iter().enumerate() {
         let x = (f64::from(AXES.0) * 0.5 + entry * (index % a_row) as f64) as i32;
         let y = (f64::from(LEGEND) * (0.6 + (index / a_row) as f64)) as i32;
-        let dashes: &[(i32, i32)] = if curve.dashed { &[(0, 8), (12, 20), (24, 32)] } else { &[(0, 32)] };
+        let dashes: &[(i32, i32)] = match curve.mark {
+            Mark::Solid => &[(0, 32)],
+            Mark::Dashed => &[(0, 8), (12, 20), (24, 32)],
+            Mark::Dots => &[],
+        };
+        if curve.mark == Mark::Dots {
+            area.draw(&Circle::new((x + 16 * PIXEL as i32, y), DOT, curve.colour.filled()))?;
+        }
         for (from, to) in dashes.iter().map(|&(from, to)| (x + from * PIXEL as i32, x + to * PIXEL as i32)) {
             area.draw(&PathElement::new([(from, y), (to, y)], curve.colour.stroke_width(STROKE)))?;
         }
@@ -169,11 +189,11 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<'a> {
     for curve in &panel.curves {
         let points = curve.points.iter().copied().filter(|point| point.0.is_finite() && point.1.is_finite());
         let style = curve.colour.stroke_width(STROKE);
-        if curve.dashed {
-            chart.draw_series(DashedLineSeries::new(points, 7 * PIXEL, 5 * PIXEL, style))?;
-        } else {
-            chart.draw_series(LineSeries::new(points, style))?;
-        }
+        match curve.mark {
+            Mark::Solid => chart.draw_series(LineSeries::new(points, style))?,
+            Mark::Dashed => chart.draw_series(DashedLineSeries::new(points, 7 * PIXEL, 5 * PIXEL, style))?,
+            Mark::Dots => chart.draw_series(points.map(|point| Circle::new(point, DOT, curve.colour.filled())))?,
+        };
     }
     Ok(())
 }

@@ -13,6 +13,7 @@ mod report;
 mod run;
 mod selection;
 mod simulate;
+mod stability;
 mod statics;
 
 use std::{io, io::Write, process::ExitCode};
@@ -43,6 +44,7 @@ fn act(arguments: &Arguments, out: &mut dyn Write) -> Outcome<()> {
         Some(Action::Statics(options)) => statics::statics(options, out),
         Some(Action::Simulate(options)) => simulate::simulate(options, out),
         Some(Action::Modes(options)) => modes::modes(options, out),
+        Some(Action::Stability(options)) => stability::stability(options, out),
         Some(Action::Info(options)) => info::info(options, out),
         Some(Action::Eval(options)) => eval::eval(options, out),
         Some(Action::List(options)) => info::list(options.format, out),

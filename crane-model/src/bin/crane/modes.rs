@@ -4,15 +4,15 @@ use std::io::Write;
 
 use crane_model::{
     Description,
-    dynamics::rk4,
-    modes::{damped, undamped},
+    dynamics::Method,
+    modes::{DampedMode, damped, undamped},
+    stability::limit,
 };
 
 use crate::{
     arguments::Analysis,
     problem::Outcome,
     report::{Cell, Grid, Report},
-    run::largest_step,
     statics::Case,
 };
 
@@ -31,29 +31,35 @@ pub fn modes(options: &Analysis, out: &mut dyn Write) -> Outcome<()> {
         let names = names(description, &mode.dominating);
         natural.row([(index + 1).into(), mode.frequency().into(), omega.into(), names]);
     }
-    let mut real = Grid::new(
+    let modes = damped(&motions)?;
+    let mut report = Report::default();
+    report.fact("crane", description.name, "");
+    let step = limit(&modes, &Method::Rk4.stability()).map(|limit| limit.step);
+    report.fact("largest stable step", Cell::from(step), "s");
+    report.grid(natural);
+    report.grid(damped_modes(description, &modes));
+    report.print(options.format, out)
+}
+
+/// Damped modes as a table.
+pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
+    let mut grid = Grid::new(
         "damped",
         "Damped modes (ratio 1: creeps back without swinging)",
         &["mode", "frequency Hz", "damping ratio", "re 1/s", "im 1/s", "stable step s", "dominated by"],
     );
-    for (index, mode) in damped(&motions)?.iter().enumerate() {
-        let (re, im) = (mode.eigenvalue.re, mode.eigenvalue.im);
-        real.row([
+    for (index, mode) in modes.iter().enumerate() {
+        grid.row([
             (index + 1).into(),
             mode.frequency().into(),
             mode.damping_ratio().into(),
-            re.into(),
-            im.into(),
-            rk4::largest_step(re, im).into(),
+            mode.eigenvalue.re.into(),
+            mode.eigenvalue.im.into(),
+            Method::Rk4.stability().largest_step(mode.eigenvalue).into(),
             names(description, &mode.dominating),
         ]);
     }
-    let mut report = Report::default();
-    report.fact("crane", description.name, "");
-    report.fact("largest stable step", Cell::from(largest_step(rig.as_ref(), q)), "s");
-    report.grid(natural);
-    report.grid(real);
-    report.print(options.format, out)
+    grid
 }
 
 fn names(description: &Description, coordinates: &[usize]) -> Cell {

@@ -1,22 +1,22 @@
 //! A recorded run.
 
 use std::{
-    io,
-    io::Write,
     ops::ControlFlow,
     time::{Duration, Instant},
 };
 
 use crane_model::{
-    dynamics::{self, Run, rk4},
-    modes,
+    dynamics::{self, Method, Run},
+    modes::{self, DampedMode},
     results::{Recording, Table},
     rig::Rig,
+    stability::{Limit, cause, limit},
+    statics::Settings,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
-    arguments::Timing,
+    arguments::{Step, Timing},
     problem::{Outcome, Problem},
     statics::Case,
 };
@@ -26,6 +26,9 @@ const MOST_RESULTS: f64 = 1e6;
 
 /// Most steps of a run: hours of waiting.
 const MOST_STEPS: f64 = 1e10;
+
+/// Poses along the manoeuvre at which the step is checked: 2 ms each for 25 coordinates.
+const POSES: u16 = 10;
 
 /// Start of a crane whose spec asks for statics.
 pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
@@ -72,12 +75,21 @@ impl Recorded {
     }
 }
 
+/// Part of the largest stable step that `--step auto` takes: swinging moves the limit by some per cent.
+pub const SAFE: f64 = 0.9;
+
 impl Timing {
-    /// Settings of a run: the crane's own unless given here.
-    pub fn settings(&self, rig: &dyn Rig) -> Outcome<dynamics::Settings> {
+    /// Settings of a run from `start`: the crane's own unless given here, with a stable step unless forced.
+    pub fn settings(&self, rig: &dyn Rig, start: &Start) -> Outcome<dynamics::Settings> {
         let mut settings = dynamics::Settings { audit: true, ..dynamics::Settings::of(rig.description()) };
+        let limit = step_limit(rig, start);
+        let step = match self.step {
+            None => None,
+            Some(Step::Seconds(step)) => Some(step),
+            Some(Step::Auto) => limit.as_ref().map(|bound| SAFE * bound.limit.step),
+        };
         for (name, given, value) in [
-            ("step", self.step, &mut settings.step),
+            ("step", step, &mut settings.step),
             ("duration", self.duration, &mut settings.duration),
             ("output", self.output, &mut settings.output),
         ] {
@@ -99,8 +111,79 @@ impl Timing {
                 "write a longer step with `--step`, in s",
             ));
         }
-        Ok(settings)
+        match limit {
+            // The step of a run is never longer than the interval of its results.
+            Some(Bound { t, limit }) if settings.step.min(settings.output) > limit.step && !self.force => {
+                Err(unstable(rig, settings.step, t, &limit))
+            }
+            _ => Ok(settings),
+        }
     }
+}
+
+/// A step beyond the limit that holds at time `t`.
+fn unstable(rig: &dyn Rig, step: f64, t: f64, limit: &Limit) -> Problem {
+    let description = rig.description();
+    Problem::failed(
+        format!(
+            "{}: a step of {step:e} s is unstable; {} takes at most {:.3e} s, limited at t = {t} s by {}",
+            description.name,
+            Method::Rk4,
+            limit.step,
+            cause(description, &limit.mode)
+        ),
+        format!("`--step auto` takes {:.2e} s; `--force` runs all the same", SAFE * limit.step),
+    )
+}
+
+/// Damped modes of a crane at a moment of its manoeuvre.
+pub struct Pose {
+    /// Time, s.
+    pub t: f64,
+    /// Modes about the pose at rest.
+    pub modes: Vec<DampedMode>,
+}
+
+/// The least of the largest stable steps along a manoeuvre.
+pub struct Bound {
+    /// When it holds, s.
+    pub t: f64,
+    /// It, and what limits it.
+    pub limit: Limit,
+}
+
+impl Bound {
+    /// The least over some poses; `None` where nothing limits the step.
+    pub fn of(poses: &[Pose], method: Method) -> Option<Self> {
+        let bounds =
+            poses.iter().filter_map(|pose| Some(Self { t: pose.t, limit: limit(&pose.modes, &method.stability())? }));
+        bounds.min_by(|a, b| a.limit.step.total_cmp(&b.limit.step))
+    }
+}
+
+/// The start and `count` further poses evenly in time, each where the crane would rest if its drives stopped there. As far
+/// as there are such: without statics, or where the crane would fall, the poses end.
+pub fn manoeuvre(rig: &dyn Rig, start: &Start, count: u16) -> Outcome<Vec<Pose>> {
+    let description = rig.description();
+    let mut q = start.q.clone();
+    let mut poses = vec![Pose { t: 0.0, modes: modes::damped(&rig.small_motions(&q))? }];
+    if start.what == EQUILIBRIUM {
+        for index in 1..=count {
+            let t = description.duration * f64::from(index) / f64::from(count);
+            let equilibrium = rig.equilibrium_at(t, &q, &Settings::default());
+            if !equilibrium.is_stable() {
+                break;
+            }
+            q = equilibrium.q;
+            poses.push(Pose { t, modes: modes::damped(&rig.small_motions(&q))? });
+        }
+    }
+    Ok(poses)
+}
+
+/// What limits the step along the manoeuvre; `None` where nothing does or there are no modes.
+fn step_limit(rig: &dyn Rig, start: &Start) -> Option<Bound> {
+    Bound::of(&manoeuvre(rig, start, POSES).ok()?, Method::Rk4)
 }
 
 /// A progress bar in seconds of simulated time; hidden where standard error is no terminal.
@@ -114,18 +197,9 @@ pub fn progress(seconds: f64) -> ProgressBar {
     bar
 }
 
-/// Runs from `start` and records every result; says before if the step will not do.
+/// Runs from `start` and records every result.
 pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: &ProgressBar) -> Outcome<Recorded> {
-    let limit = largest_step(rig, &start.q);
     let name = rig.description().name;
-    if let Some(limit) = limit.filter(|limit| settings.step > *limit) {
-        let step = settings.step;
-        // Not eprintln: it panics where standard error is closed.
-        let _ = writeln!(
-            io::stderr(),
-            "warning: {name}: a step of {step:e} s is beyond the largest stable one about the start, {limit:.2e} s"
-        );
-    }
     let begin = Instant::now();
     let mut recording = Recording::new(rig);
     let mut shown = 0;
@@ -139,16 +213,11 @@ pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: 
             ControlFlow::Continue(())
         })
         .map_err(|stopped| {
-            let limit = limit.map_or_else(String::new, |limit| {
-                format!("; the largest stable step about the start is {limit:.2e} s")
+            let limit = step_limit(rig, start).map_or_else(String::new, |Bound { t, limit }| {
+                let cause = cause(rig.description(), &limit.mode);
+                format!("; the largest stable step is {:.3e} s, limited at t = {t} s by {cause}", limit.step)
             });
             Problem::failed(format!("{name}: {stopped}"), stopped.advice() + &limit)
         })?;
     Ok(Recorded { start: start.what, run, table: recording.into_table(), wall: begin.elapsed() })
-}
-
-/// Largest stable step of small motions about pose `q`, s; `None` where nothing limits it or there are no modes.
-pub fn largest_step(rig: &dyn Rig, q: &[f64]) -> Option<f64> {
-    let modes = modes::damped(&rig.small_motions(q)).ok()?;
-    modes.iter().filter_map(|mode| rk4::largest_step(mode.eigenvalue.re, mode.eigenvalue.im)).reduce(f64::min)
 }

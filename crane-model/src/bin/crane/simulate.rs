@@ -10,7 +10,7 @@ use crane_model::{
 
 use crate::{
     arguments::Simulate,
-    figures::{Curve, PALETTE, Panel, svg},
+    figures::{Curve, Mark, PALETTE, Panel, svg},
     files,
     problem::{Outcome, Problem},
     report::{Grid, Report},
@@ -32,8 +32,8 @@ pub fn simulate(options: &Simulate, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.analysis.crane.open()?;
     let rig = rig.as_ref();
     let name = rig.description().name;
-    let settings = options.timing.settings(rig)?;
     let start = Start::of(rig)?;
+    let settings = options.timing.settings(rig, &start)?;
     files::folder(&options.timing.out)?;
     let bar = progress(settings.duration);
     let recorded = record(rig, &start, &settings, &bar)?;
@@ -138,7 +138,7 @@ fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
             description.points.iter().zip(PALETTE.iter().cycle()).map(|(point, &colour)| Curve {
                 label: format!("{}, {}", spoken(point), spoken(trace.label)),
                 colour,
-                dashed: trace.dashed,
+                mark: if trace.dashed { Mark::Dashed } else { Mark::Solid },
                 points: points(trace.table, &format!("{point}_{x}"), &format!("{point}_{y}"), 1.0),
             })
         })
@@ -160,7 +160,7 @@ fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
             .map(|(trace, &colour)| Curve {
                 label: spoken(trace.label),
                 colour,
-                dashed: trace.dashed,
+                mark: if trace.dashed { Mark::Dashed } else { Mark::Solid },
                 points: points(trace.table, "t", &effort, 1e-3),
             })
             .collect();

@@ -1,0 +1,103 @@
+//! `crane stability`: the largest stable step of every method, and what limits it.
+
+use std::io::Write;
+
+use crane_model::{
+    Description,
+    dynamics::Method,
+    modes::DampedMode,
+    stability::{cause, limit},
+};
+
+use crate::{
+    arguments::Stability,
+    figures::{BLUE, Curve, Mark, Panel, VERMILLION},
+    files,
+    modes::damped_modes,
+    problem::Outcome,
+    report::{Grid, Report},
+    run::{Bound, Pose, SAFE, Start, manoeuvre},
+    simulate::{file_list, write_figure},
+};
+
+/// Prints limits and modes, and draws the regions.
+pub fn stability(options: &Stability, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.open()?;
+    let rig = rig.as_ref();
+    let description = rig.description();
+    let start = Start::of(rig)?;
+    let poses = manoeuvre(rig, &start, options.along)?;
+    let modes = poses.first().map_or(&[][..], |pose| &pose.modes);
+
+    let mut report = Report::default();
+    report.fact("crane", description.name, "");
+    report.fact("start", start.what, "");
+    let headers = ["method", "order", "step s", "safe step s", "at t s", "limited by"];
+    let mut limits = Grid::new("limits", "Largest stable steps", &headers);
+    for method in Method::ALL {
+        let bound = Bound::of(&poses, method);
+        let step = bound.as_ref().map(|bound| bound.limit.step);
+        let why = bound.as_ref().map_or_else(|| "nothing".to_owned(), |bound| cause(description, &bound.limit.mode));
+        limits.row([
+            method.name().into(),
+            method.order().into(),
+            step.into(),
+            step.map(|step| SAFE * step).into(),
+            bound.map(|bound| bound.t).into(),
+            why.into(),
+        ]);
+    }
+    report.grid(limits);
+    if poses.len() > 1 {
+        report.grid(along(description, &poses));
+    }
+    report.grid(damped_modes(description, modes));
+
+    files::folder(&options.out)?;
+    let file = format!("{}_stability.svg", description.name);
+    write_figure(&options.out.join(&file), &regions(modes, description.step), 1)?;
+    report.grid(file_list(&options.out, &[file]));
+    report.print(options.analysis.format, out)
+}
+
+/// Limits at every pose, one method after the other.
+fn along(description: &Description, poses: &[Pose]) -> Grid {
+    let title = "Along the manoeuvre, as if the drives stopped there";
+    let mut grid = Grid::new("along", title, &["method", "t s", "step s", "limited by"]);
+    for method in Method::ALL {
+        for pose in poses {
+            if let Some(limit) = limit(&pose.modes, &method.stability()) {
+                let why = cause(description, &limit.mode);
+                grid.row([method.name().into(), pose.t.into(), limit.step.into(), why.into()]);
+            }
+        }
+    }
+    grid
+}
+
+/// The region of every method that has an end, with hλ of every mode at its largest stable step and at the spec's.
+fn regions(modes: &[DampedMode], own: f64) -> Vec<Panel> {
+    let panel = |method: Method| {
+        let function = method.stability();
+        let boundary = function.boundary().iter().map(|z| (z.re, z.im)).collect();
+        let largest = limit(modes, &function).map_or(own, |limit| limit.step);
+        let marks = |h: f64| {
+            let pair = |mode: &DampedMode| {
+                let z = mode.eigenvalue * h;
+                [(z.re, z.im), (z.re, -z.im)]
+            };
+            modes.iter().flat_map(pair).collect()
+        };
+        let curve = |label: String, colour, points, mark| Curve { label, colour, mark, points };
+        Panel {
+            x: "Re hλ".to_owned(),
+            y: "Im hλ".to_owned(),
+            equal: true,
+            curves: vec![
+                curve(format!("|R(hλ)| = 1 of {method}"), BLUE, boundary, Mark::Solid),
+                curve(format!("hλ at h = {largest:.3e} s"), VERMILLION, marks(largest), Mark::Dots),
+            ],
+        }
+    };
+    Method::ALL.into_iter().filter(|method| method.stability().denominator.len() == 1).map(panel).collect()
+}

@@ -1,0 +1,13 @@
+//! Stability of a time step, known before a run.
+//!
+//! A method multiplies a small motion `e^{λt}` by R(hλ) a step. The run is stable where |R(hλ)| ≤ 1 for every eigenvalue λ of
+//! the damped crane, linearised about its pose.
+
+mod boundary;
+mod function;
+mod limit;
+mod words;
+
+pub use function::StabilityFunction;
+pub use limit::{Limit, limit};
+pub use words::{cause, grouped};

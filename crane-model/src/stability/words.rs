@@ -1,0 +1,69 @@
+//! What a mode is, in plain words.
+
+use crate::{CoordinateRole, Description, modes::DampedMode};
+
+/// What moves in a mode and how fast: `torsion of boom elements 3, 2; 22,900 rad/s`.
+///
+/// The frequency is |λ|, which for a mode that does not swing is the rate at which it creeps back.
+pub fn cause(description: &Description, mode: &DampedMode) -> String {
+    let mut parts: Vec<(String, Vec<&str>)> = Vec::new();
+    for &coordinate in &mode.dominating {
+        let (what, element) = moving(description, coordinate);
+        let index = parts.iter().position(|(known, _)| *known == what).unwrap_or_else(|| {
+            parts.push((what, Vec::new()));
+            parts.len() - 1
+        });
+        parts[index].1.extend(element);
+    }
+    let spoken = parts.iter().map(|(what, elements)| match elements.as_slice() {
+        [] => what.clone(),
+        [element] => format!("{what} element {element}"),
+        several => format!("{what} elements {}", several.join(", ")),
+    });
+    let spoken: Vec<String> = spoken.collect();
+    let rate = grouped(mode.eigenvalue.norm());
+    if spoken.is_empty() { format!("{rate} rad/s") } else { format!("{}; {rate} rad/s", spoken.join(" and ")) }
+}
+
+/// What a coordinate does, and the number of its element if it belongs to a flexible link.
+fn moving(description: &Description, coordinate: usize) -> (String, Option<&'static str>) {
+    let name = description.coordinates[coordinate].name;
+    match description.coordinates[coordinate].role {
+        CoordinateRole::Base => (format!("base ({name})"), None),
+        CoordinateRole::Driven => (format!("drive of {name}"), None),
+        CoordinateRole::Passive => (format!("joint {name}"), None),
+        CoordinateRole::Element => {
+            // The rotations of an element come in a row; the first body that a coordinate moves carries it.
+            let body = description.bodies.iter().find(|body| body.degrees_of_freedom > coordinate);
+            let (link, body) = body.map_or(("", name), |body| (body.link, body.name));
+            let what = match name.rsplit('_').next() {
+                Some("psi") => "bending in x-y",
+                Some("theta") => "bending in x-z",
+                _ => "torsion",
+            };
+            (format!("{what} of {link}"), body.rsplit('_').next())
+        }
+    }
+}
+
+/// Three significant digits, thousands set apart: 22,900.
+pub fn grouped(number: f64) -> String {
+    /// Significant digits.
+    const DIGITS: usize = 3;
+    // 2.29e4: the digits as rounding to so many gives them, and the power of ten of the first.
+    let text = format!("{:.*e}", DIGITS - 1, number.abs());
+    let Some((digits, Ok(power))) = text.split_once('e').map(|(digits, power)| (digits, power.parse::<usize>())) else {
+        return format!("{number:.DIGITS$}");
+    };
+    let digits: String = digits.chars().filter(char::is_ascii_digit).collect();
+    let mut out = if number < 0.0 { "-".to_owned() } else { String::new() };
+    for place in 0..=power.max(digits.len() - 1) {
+        if place == power + 1 {
+            out.push('.');
+        } else if place > 0 && place <= power && (power + 1 - place).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digits.chars().nth(place).unwrap_or('0'));
+    }
+    out
+}
