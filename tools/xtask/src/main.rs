@@ -65,20 +65,25 @@ fn lint() -> Vec<Step> {
         Step::cargo(
             "clippy",
             &["clippy", "--release", "--workspace", "--all-targets", "--features", CLI, "--", "-D", "warnings"],
-        ),
+        )
+        .with(SECTIONS, "0"),
         // A workspace of its own, which no other step would notice.
         Step::cargo("fuzz target", &["check", "--release", "--manifest-path", "codegen/fuzz/Cargo.toml"]),
         Step::cargo("documentation", &["doc", "--release", "--workspace", "--no-deps", "--features", CLI])
-            .with("RUSTDOCFLAGS", "-D warnings"),
+            .with("RUSTDOCFLAGS", "-D warnings")
+            .with(SECTIONS, "0"),
     ]
 }
 
 /// Features of the commands, on in every step so that nothing is built twice.
 const CLI: &str = "crane-codegen/cli,crane-model/cli";
 
+/// Which cranes the benchmarks compile: to look at them the smallest will do.
+const SECTIONS: &str = "CRANE_BENCH_SECTIONS";
+
 fn tests() -> Vec<Step> {
     vec![
-        Step::cargo("tests", &["test", "--release", "--workspace", "--features", CLI]),
+        Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench", "--features", CLI]),
         Step::cargo("the default run", &["run", "--release"]),
         Step::cargo("a crane of one's own", &["run", "--release", "--package", "own-crane"]),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.
@@ -103,7 +108,7 @@ fn oracles() -> Vec<Step> {
         Step::check("Python environment", python::prepare),
         Step::cargo(
             "the program that evaluates generated code",
-            &["build", "--release", "--workspace", "--features", CLI, "--bins"],
+            &["build", "--release", "--workspace", "--exclude", "crane-bench", "--features", CLI, "--bins"],
         ),
         Step::check("CasADi's own checks notice errors", oracles::self_test),
         Step::check("generated code against CasADi", oracles::check),

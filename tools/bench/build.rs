@@ -1,0 +1,48 @@
+//! Compiles the reference crane with several numbers of sections, from the text of its spec.
+
+use std::{env, fs, io};
+
+use crane_codegen::build;
+use crane_codegen::chain::Analyses;
+
+const SPEC: &str = "../../specs/eight_link_flexible.yaml";
+/// Sections of the boom; 0 is a rigid one. `CRANE_BENCH_SECTIONS="0 4"` in the environment builds fewer.
+const SECTIONS: &str = "0 4 10 20 30";
+/// Up to so many sections the derivatives of all transforms are generated, for the explicit triple sum.
+const DERIVATIVES_UP_TO: usize = 4;
+
+fn main() -> io::Result<()> {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed={SPEC}");
+    println!("cargo::rerun-if-env-changed=CRANE_BENCH_SECTIONS");
+    let text = fs::read_to_string(SPEC)?;
+    let wanted = env::var("CRANE_BENCH_SECTIONS").unwrap_or_else(|_| SECTIONS.to_owned());
+    let (mut small, mut large) = (Vec::new(), Vec::new());
+    for word in wanted.split_whitespace() {
+        let sections: usize = word.parse().map_err(io::Error::other)?;
+        let spec = build::out_dir().join(format!("crane_{sections}.yaml"));
+        fs::write(&spec, with_sections(&text, sections).map_err(io::Error::other)?)?;
+        let derivatives = sections <= DERIVATIVES_UP_TO;
+        let analyses = Analyses { statics: false, dynamics: true, modes: false, derivatives };
+        let name = build::compile_spec_for(&spec, Some(analyses)).name;
+        (if derivatives { &mut small } else { &mut large }).push(name);
+    }
+    let cranes = format!("cranes! {{ small: [{}], large: [{}] }}\n", small.join(", "), large.join(", "));
+    fs::write(build::out_dir().join("cranes.rs"), cranes)
+}
+
+/// The text of the reference crane with another number of sections.
+fn with_sections(text: &str, sections: usize) -> Result<String, String> {
+    let count = if sections == 0 { "rigid".to_owned() } else { sections.to_string() };
+    let mut text = text.to_owned();
+    for (written, wanted) in [
+        ("name: eight_link_flexible\n", format!("name: crane_{sections}\n")),
+        ("sections: 4 ", format!("sections: {count} ")),
+    ] {
+        if text.matches(written).count() != 1 {
+            return Err(format!("{SPEC}: `{}` expected once", written.trim()));
+        }
+        text = text.replace(written, &wanted);
+    }
+    Ok(text)
+}

@@ -1,0 +1,57 @@
+//! What is timed: a line a kernel.
+
+use crane_model::dynamics::rk4;
+use crane_model::nalgebra::{Matrix4, SMatrix, SVector};
+use crane_model::{Dynamics, TransformDerivatives};
+
+use crate::kernel::Kernel;
+use crate::states::{self, State};
+use crate::triple_sum::TripleSum;
+
+/// Step of the reference crane, s.
+const STEP: f64 = 1e-4;
+
+/// Kernels of any crane.
+#[must_use]
+pub fn all<const N: usize, C: Dynamics<N> + Default + Copy + 'static>(_spec: &str) -> Vec<Kernel> {
+    let crane = C::default();
+    let states = &states::near_guess::<N>(crane.description());
+    let poses = vec![Matrix4::zeros(); crane.description().bodies.len()];
+    let (vector, square) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros());
+    vec![
+        Kernel::new("transforms", 1, states, poses, move |s, out| crane.transforms(&s.q, out)),
+        Kernel::new("mass_matrix", 1, states, square, move |s, out| *out = crane.mass_matrix(&s.q)),
+        Kernel::new("bias", 1, states, vector, move |s, out| *out = crane.bias(&s.q, &s.v)),
+        Kernel::new("forces", 1, states, vector, move |s, out| *out = crane.forces(s.t, &s.q, &s.v)),
+        Kernel::new("mass_matrix_and_bias", 1, states, (square, vector), move |s, out| {
+            *out = (crane.mass_matrix(&s.q), crane.bias(&s.q, &s.v));
+        }),
+        Kernel::new("dense_forward_dynamics", 1, states, vector, move |s, out| {
+            if let Ok(acceleration) = rk4::acceleration(&crane, s.t, &s.q, &s.v) {
+                *out = acceleration;
+            }
+        }),
+        Kernel::new("rk4_step", 1, states, (vector, vector), move |s, out| {
+            let mut state = rk4::State { q: s.q, v: s.v };
+            if rk4::step(&crane, s.t, STEP, &mut state).is_ok() {
+                *out = (state.q, state.v);
+            }
+        }),
+    ]
+}
+
+/// These, and those of a crane with derivatives of its transforms.
+#[must_use]
+pub fn all_of_small<const N: usize, C>(spec: &str) -> Vec<Kernel>
+where
+    C: Dynamics<N> + TransformDerivatives<N> + Default + Copy + 'static,
+{
+    let crane = C::default();
+    let states = &states::near_guess::<N>(crane.description());
+    let mut kernels = all::<N, C>(spec);
+    kernels.extend(TripleSum::read(spec).map(|sum| {
+        let room = sum.room::<N>();
+        Kernel::new("triple_sum", 1, states, room, move |s: &State<N>, out| sum.evaluate(&crane, &s.q, &s.v, out))
+    }));
+    kernels
+}

@@ -1,0 +1,71 @@
+//! Times one kernel, so that programs that time other libraries can take turns with it.
+//!
+//! ```text
+//! crane-bench coordinates              the numbers of coordinates, one a line
+//! crane-bench spec N                   the YAML text of the crane with N coordinates
+//! crane-bench kernels N                names of its kernels and how many cranes a call serves, one a line
+//! crane-bench states N                 states as records t, q, v, f: 64-bit little-endian numbers
+//! crane-bench values N KERNEL          what a kernel computes at these states, in the same form
+//! crane-bench time N KERNEL SECONDS    nanoseconds a call, measured for so long
+//! ```
+
+use std::io::Write as _;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use crane_bench::cranes::{self, Entry};
+use crane_bench::kernel::Kernel;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match run(&words) {
+        Ok(bytes) => {
+            // A reader that has seen enough may close the pipe.
+            let _ = std::io::stdout().write_all(&bytes);
+            ExitCode::SUCCESS
+        }
+        Err(message) => {
+            eprintln!("crane-bench: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(words: &[&str]) -> Result<Vec<u8>, String> {
+    match words {
+        ["coordinates"] => Ok(lines(cranes::all().iter().map(|entry| entry.coordinates.to_string()))),
+        ["spec", n] => Ok(crane(n)?.spec.into()),
+        ["kernels", n] => {
+            Ok(lines((crane(n)?.kernels)().iter().map(|kernel| format!("{} {}", kernel.name, kernel.lanes))))
+        }
+        ["states", n] => Ok(bytes(&(crane(n)?.records)())),
+        ["values", n, name] => Ok(bytes(&kernel(n, name)?.values())),
+        ["time", n, name, seconds] => {
+            let seconds: f64 = seconds.parse().map_err(|error| format!("{seconds}: {error}"))?;
+            let budget = Duration::try_from_secs_f64(seconds).map_err(|error| format!("{seconds}: {error}"))?;
+            Ok(lines([kernel(n, name)?.nanoseconds(budget).to_string()].into_iter()))
+        }
+        _ => {
+            Err("write `coordinates`, `spec N`, `kernels N`, `states N`, `values N KERNEL` or `time N KERNEL SECONDS`"
+                .into())
+        }
+    }
+}
+
+fn crane(n: &str) -> Result<Entry, String> {
+    let coordinates = n.parse().ok();
+    coordinates.and_then(cranes::find).ok_or(format!("no crane with {n} coordinates; try `crane-bench coordinates`"))
+}
+
+fn kernel(n: &str, name: &str) -> Result<Kernel, String> {
+    crane(n)?.kernel(name).ok_or(format!("no kernel `{name}`; try `crane-bench kernels {n}`"))
+}
+
+fn lines(lines: impl Iterator<Item = String>) -> Vec<u8> {
+    lines.map(|line| line + "\n").collect::<String>().into_bytes()
+}
+
+fn bytes(numbers: &[f64]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+}

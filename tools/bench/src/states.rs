@@ -1,0 +1,56 @@
+//! The states at which everything is timed and compared.
+
+use crane_model::nalgebra::SVector;
+use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Description};
+use fastrand::Rng;
+
+/// So many that no result is found in a register or a branch predictor, so few that all stay in the first cache.
+const COUNT: usize = 64;
+const SEED: u64 = 3;
+
+/// Time, pose and velocities.
+#[derive(Clone, Debug)]
+pub struct State<const N: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// Coordinates, m and rad.
+    pub q: SVector<f64, N>,
+    /// Their rates, m/s and rad/s.
+    pub v: SVector<f64, N>,
+}
+
+/// Random states about the guess of the spec, before the drives begin to move: other libraries then see springs.
+#[must_use]
+pub fn near_guess<const N: usize>(crane: &Description) -> Vec<State<N>> {
+    let mut rng = Rng::with_seed(SEED);
+    let mut symmetric = |scale: f64| scale * (2.0 * rng.f64() - 1.0);
+    (0..COUNT)
+        .map(|_| State {
+            t: symmetric(0.25) - 0.5,
+            q: SVector::from_fn(|i, _| crane.guess[i] + symmetric(reach(crane, i))),
+            v: SVector::from_fn(|_, _| symmetric(0.5)),
+        })
+        .collect()
+}
+
+/// How far a coordinate strays from the guess, m and rad.
+fn reach(crane: &Description, index: usize) -> f64 {
+    let coordinate = &crane.coordinates[index];
+    match (coordinate.role, coordinate.kind) {
+        (CoordinateRole::Driven | CoordinateRole::Passive, CoordinateKind::Rotation) => 0.3,
+        _ => 0.02,
+    }
+}
+
+/// These states as records `t, q, v, f`, `f` being the generalized forces.
+#[must_use]
+pub fn records<const N: usize, C: CraneModel<N> + Default>() -> Vec<f64> {
+    let crane = C::default();
+    near_guess(crane.description())
+        .iter()
+        .flat_map(|State { t, q, v }| {
+            let forces = crane.forces(*t, q, v);
+            [*t].into_iter().chain([q, v, &forces].map(|vector| vector.as_slice().to_vec()).concat())
+        })
+        .collect()
+}
