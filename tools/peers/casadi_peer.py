@@ -11,16 +11,25 @@ AXES = {"x": ca.DM([1, 0, 0]), "y": ca.DM([0, 1, 0]), "z": ca.DM([0, 0, 1])}
 PLANES = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}
 
 
-def write_c(chain, path):
-    """Writes `forward_dynamics(q, v, tau)` and `mass_matrix_and_bias(q, v)` of a chain as C."""
-    q, v, tau = (ca.SX.sym(name, chain.size) for name in ("q", "v", "tau"))
+def functions(chain):
+    """`forward_dynamics(q, v, f) -> q̈` and `mass_matrix_and_bias(q, v) -> A, e` of a chain."""
+    q, v, f = (ca.SX.sym(name, chain.size) for name in ("q", "v", "f"))
+
+    def function(name, arguments, *results):
+        return ca.Function(name, arguments, ca.cse([ca.densify(result) for result in results]))
+
+    return [
+        function("forward_dynamics", [q, v, f], forward_dynamics(chain, q, v, f)),
+        function("mass_matrix_and_bias", [q, v], *mass_matrix_and_bias(chain, q, v)),
+    ]
+
+
+def write_c(functions_of_chain, path):
+    """Writes them as C."""
     generator = ca.CodeGenerator(path.name)
-    for name, arguments, results in (
-        ("forward_dynamics", [q, v, tau], [forward_dynamics(chain, q, v, tau)]),
-        ("mass_matrix_and_bias", [q, v], list(mass_matrix_and_bias(chain, q, v))),
-    ):
-        generator.add(ca.Function(name, arguments, ca.cse([ca.densify(result) for result in results])))
-    generator.generate(str(path.parent) + "/")
+    for function in functions_of_chain:
+        generator.add(function)
+    generator.generate(f"{path.parent}/")
 
 
 def elementary_rotation(axis, angle):

@@ -177,3 +177,13 @@ def whole(numbers):
     """The numbers, those that are whole but for round-off as whole numbers."""
     rounded = np.round(numbers)
     return np.where(np.abs(numbers - rounded) < ROUND_OFF, rounded, numbers) + 0.0
+
+
+def as_text(chain):
+    """Gravity, then a line a joint: is_rotation axis, rotation and translation of its placement, mass, com, tensor."""
+    lines = [chain.gravity]
+    for step in chain.steps():
+        rotation, translation = step.placement[:3, :3], step.placement[:3, 3]
+        numbers = [*rotation.ravel(), *translation, step.mass, *step.com, *step.tensor.ravel()]
+        lines.append([int(step.is_rotation), step.axis, *map(float, numbers)])
+    return "\n".join(" ".join(map(str, line)) for line in lines) + "\n"

@@ -39,9 +39,32 @@ class MuJoCo:
         return mass_matrix, -data.qfrc_bias, data.qacc.copy()
 
 
+def with_springs(chain, springs, step):
+    """The chain with all forces of the crane as springs and dampers, to be integrated by RK4."""
+    spec = build(chain)
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    spec.option.timestep = step
+    for index, joint in enumerate(spec.joints):
+        joint.name = f"joint_{index}"
+        joint.stiffness, joint.damping = linear(springs.stiffness[index]), linear(springs.damping[index])
+        joint.springref = springs.rest[index]
+    # A fixed tendon has for its length a linear combination of joint positions: a linear support.
+    for row, rest, stiffness, damping in springs.principal_rows():
+        tendon = spec.add_tendon(stiffness=linear(stiffness), damping=linear(damping), springlength=[rest, rest])
+        for index in np.flatnonzero(row):
+            tendon.wrap_joint(f"joint_{index}", row[index])
+    return spec
+
+
+def linear(number):
+    """MuJoCo's polynomial of a spring or damper."""
+    return [number, 0, 0]
+
+
 def build(chain):
     """The chain as a model to be compiled."""
     spec = mujoco.MjSpec()
+    spec.compiler.degree = False
     spec.option.gravity = chain.gravity
     spec.option.disableflags = int(DISABLED)
     body = spec.worldbody

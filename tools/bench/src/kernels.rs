@@ -8,8 +8,8 @@ use crate::kernel::Kernel;
 use crate::states::{self, State};
 use crate::triple_sum::TripleSum;
 
-/// Step of the reference crane, s.
-const STEP: f64 = 1e-4;
+/// Stable for all numbers of sections, so that one step agrees with another library's, s.
+pub const STEP: f64 = 1e-6;
 
 /// Kernels of any crane.
 #[must_use]
@@ -24,7 +24,7 @@ pub fn all<const N: usize, C: Dynamics<N> + Default + Copy + 'static>(_spec: &st
         Kernel::new("bias", 1, states, vector, move |s, out| *out = crane.bias(&s.q, &s.v)),
         Kernel::new("forces", 1, states, vector, move |s, out| *out = crane.forces(s.t, &s.q, &s.v)),
         Kernel::new("mass_matrix_and_bias", 1, states, (square, vector), move |s, out| {
-            *out = (crane.mass_matrix(&s.q), crane.bias(&s.q, &s.v));
+            (out.0, out.1) = (crane.mass_matrix(&s.q), crane.bias(&s.q, &s.v));
         }),
         Kernel::new("dense_forward_dynamics", 1, states, vector, move |s, out| {
             if let Ok(acceleration) = rk4::acceleration(&crane, s.t, &s.q, &s.v) {

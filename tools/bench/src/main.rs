@@ -4,6 +4,10 @@
 //! crane-bench coordinates              the numbers of coordinates, one a line
 //! crane-bench spec N                   the YAML text of the crane with N coordinates
 //! crane-bench kernels N                names of its kernels and how many cranes a call serves, one a line
+//! crane-bench step                     the step of the kernel rk4_step, s
+//! crane-bench repeat N KERNEL CALLS    calls a kernel so often, for programs that count instructions
+//! crane-bench step                     the step of the kernel rk4_step, s
+//! crane-bench repeat N KERNEL CALLS    calls a kernel so often, for programs that count instructions
 //! crane-bench states N                 states as records t, q, v, f: 64-bit little-endian numbers
 //! crane-bench values N KERNEL          what a kernel computes at these states, in the same form
 //! crane-bench time N KERNEL SECONDS    nanoseconds a call, measured for so long
@@ -15,6 +19,7 @@ use std::time::Duration;
 
 use crane_bench::cranes::{self, Entry};
 use crane_bench::kernel::Kernel;
+use crane_bench::kernels;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -35,6 +40,8 @@ fn main() -> ExitCode {
 fn run(words: &[&str]) -> Result<Vec<u8>, String> {
     match words {
         ["coordinates"] => Ok(lines(cranes::all().iter().map(|entry| entry.coordinates.to_string()))),
+        ["step"] => Ok(lines([kernels::STEP.to_string()].into_iter())),
+        ["step"] => Ok(lines([kernels::STEP.to_string()].into_iter())),
         ["spec", n] => Ok(crane(n)?.spec.into()),
         ["kernels", n] => {
             Ok(lines((crane(n)?.kernels)().iter().map(|kernel| format!("{} {}", kernel.name, kernel.lanes))))
@@ -46,10 +53,11 @@ fn run(words: &[&str]) -> Result<Vec<u8>, String> {
             let budget = Duration::try_from_secs_f64(seconds).map_err(|error| format!("{seconds}: {error}"))?;
             Ok(lines([kernel(n, name)?.nanoseconds(budget).to_string()].into_iter()))
         }
-        _ => {
-            Err("write `coordinates`, `spec N`, `kernels N`, `states N`, `values N KERNEL` or `time N KERNEL SECONDS`"
-                .into())
+        ["repeat", n, name, calls] => {
+            kernel(n, name)?.time(calls.parse().map_err(|error| format!("{calls}: {error}"))?);
+            Ok(Vec::new())
         }
+        _ => Err("no such command; the first lines of its source list all".into()),
     }
 }
 

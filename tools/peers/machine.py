@@ -1,0 +1,81 @@
+"""Facts about the machine, the versions and the functions that the document states beside the times."""
+
+import os
+import platform
+import subprocess
+from importlib.metadata import version
+
+from programs import WORKSPACE
+
+PACKAGES = {"Pinocchio": "pin", "CasADi": "casadi", "MuJoCo": "mujoco", "Exudyn": "exudyn", "Eigen": "cmeel-eigen"}
+# Events of perf, and their names in the document.
+EVENTS = {"instructions": "instructions", "L1-dcache-load-misses": "L1 misses"}
+COUNTED_CALLS = 20000
+
+
+def describe(compilers):
+    """Processor, system, versions, date."""
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        names = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
+    rustc = subprocess.run(["rustc", "--version"], cwd=WORKSPACE, capture_output=True, text=True, check=True).stdout
+    return {
+        "processor": f"{names[0] if names else platform.machine()}, {os.cpu_count()} cores",
+        "system": f"{platform.system()} {platform.machine()}",
+        "target": target_cpu(),
+        "versions": [
+            " ".join(rustc.split()[:2]),
+            *[compiler.version for compiler in compilers],
+            *[f"{name} {version(package)}" for name, package in PACKAGES.items()],
+        ],
+        "date": subprocess.run(["date", "+%Y-%m-%d"], capture_output=True, text=True, check=True).stdout.strip(),
+    }
+
+
+def target_cpu():
+    """What rustc takes this processor for."""
+    lines = subprocess.run(["rustc", "--print", "target-cpus"], cwd=WORKSPACE, capture_output=True, text=True, check=True).stdout
+    native = next((line for line in lines.splitlines() if line.strip().startswith("native")), "")
+    return native.split("currently ")[-1].rstrip(").") if "currently" in native else "native"
+
+
+def peak(programs):
+    """The most operations a second, 1e9/s, of one core on scalars and on vectors: the best of any compiler."""
+    runs = [subprocess.run([program], capture_output=True, text=True, check=True).stdout.split() for program in programs]
+    return {kind: max(float(run[k]) for run in runs) for k, kind in enumerate(("scalar", "vector"))}
+
+
+def operations(builds, coordinates):
+    """Floating-point operations of each generated function, as the compiler counts them."""
+    command = ["cargo", "run", "--release", "--quiet", "--package", "crane-codegen", "--features", "cli", "--"]
+    spec = builds.folder / f"crane_{coordinates}.yaml"
+    table = subprocess.run(
+        [*command, "operations", spec], cwd=WORKSPACE, capture_output=True, text=True, check=True
+    ).stdout
+    rows = [[cell.strip(" `") for cell in line.split("|")[1:-1]] for line in table.splitlines() if line.startswith("| `")]
+    return {row[0]: int(row[1]) for row in rows if row[1].isdigit()}
+
+
+def counters(bench, coordinates):
+    """Instructions and L1 misses a call of our kernels; empty where the machine does not count them."""
+    kernels = subprocess.run([bench, "kernels", str(coordinates)], capture_output=True, text=True, check=True).stdout
+    counted = {}
+    for kernel in [line.split()[0] for line in kernels.splitlines()]:
+        once, twice = (count(bench, coordinates, kernel, calls) for calls in (COUNTED_CALLS, 2 * COUNTED_CALLS))
+        if once is None or twice is None:
+            return {}
+        counted[kernel] = {name: (twice[name] - once[name]) / COUNTED_CALLS for name in once}
+    return counted
+
+
+def count(bench, coordinates, kernel, calls):
+    """Events of a run with so many calls; None where there is no perf or it cannot count."""
+    command = ["perf", "stat", "-x", ",", "-e", ",".join(EVENTS), bench, "repeat", str(coordinates), kernel, str(calls)]
+    try:
+        lines = subprocess.run(command, capture_output=True, text=True, check=True).stderr.splitlines()
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    fields = [line.split(",") for line in lines if line.count(",") > 2]
+    values = {EVENTS[f[2].removesuffix(":u")]: f[0] for f in fields if f[2].removesuffix(":u") in EVENTS}
+    if len(values) != len(EVENTS) or not all(value.isdigit() for value in values.values()):
+        return None
+    return {name: int(value) for name, value in values.items()}

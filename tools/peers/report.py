@@ -1,0 +1,256 @@
+"""Writes docs/performance.md and its figure from measured times."""
+
+from statistics import median
+
+import figure
+from contestants import OURS
+
+SERIES = {
+    "Pinocchio, gcc": ("Pinocchio", "gcc"),
+    "Pinocchio, clang": ("Pinocchio", "clang"),
+    "CasADi C, gcc": ("CasADi C", "gcc"),
+    "CasADi C, clang": ("CasADi C", "clang"),
+    "MuJoCo": ("MuJoCo", ""),
+    "Exudyn": ("Exudyn", ""),
+}
+# Our kernel that stands for a quantity, the first that there is.
+BEST_OF_OURS = {
+    "forward_dynamics": ["forward_dynamics", "dense_forward_dynamics"],
+    "mass_matrix_and_bias": ["mass_matrix_and_bias"],
+    "rk4_step": ["rk4_step"],
+}
+LANES = "forward_dynamics_lanes"
+
+
+class Times:
+    """Medians of all that was measured, ns for one crane."""
+
+    def __init__(self, results):
+        self.contestants = results["contestants"]
+        self.coordinates = sorted({c["coordinates"] for c in self.contestants})
+
+    def ours(self, coordinates, kernel):
+        """Of one of our kernels; None if there is none."""
+        return self.fastest(coordinates, library=OURS, variant=kernel)[0]
+
+    def of_quantity(self, coordinates, quantity):
+        """Of our kernel for a quantity."""
+        return next((t for kernel in BEST_OF_OURS[quantity] if (t := self.ours(coordinates, kernel))), None)
+
+    def fastest(self, coordinates, **properties):
+        """The least median of those with the properties, and who it is; (None, None) if there is nobody."""
+        wanted = {"coordinates": coordinates, **properties}
+        found = [c for c in self.contestants if all(c[key] == value for key, value in wanted.items())]
+        return min(((median(c["times"]), c) for c in found), key=lambda pair: pair[0], default=(None, None))
+
+    def series(self, coordinates, quantity, series):
+        """Of a library and compiler."""
+        library, compiler = SERIES[series]
+        return self.fastest(coordinates, quantity=quantity, library=library, compiler=compiler)[0]
+
+    def spread(self):
+        """The middle half of a contestant's times over its median, at the median contestant."""
+        widths = []
+        for contestant in self.contestants:
+            times = sorted(contestant["times"])
+            widths.append((times[-1 - len(times) // 4] - times[len(times) // 4]) / median(times))
+        return median(widths)
+
+
+def write(results, document, drawing):
+    """The document and its figure."""
+    times = Times(results)
+    figure.draw(times, drawing, SERIES)
+    document.write_text(text(results, times, drawing.relative_to(document.parent)), encoding="utf-8")
+
+
+def text(results, times, drawing):
+    """The document."""
+    facts, peak = results["machine"], results["peak"]
+    rounds = f"{results['rounds']} rounds of {1000 * results['seconds']:.0f} ms"
+    return f"""# Performance
+
+What the generated functions cost beside libraries that read the same crane at run time, and beside C that CasADi wrote for
+it: the reference crane, `specs/eight_link_flexible.yaml`, with 0, 4, 10, 20 and 30 sections of the boom. One thread, everything
+compiled for the machine's own instructions, medians of {rounds} in which everybody takes turns; a time scatters by
+{100 * times.spread():.1f} %. Before it is timed, everybody's result is compared with recursions in 80-bit numbers; whoever is
+not right to {results["right"]:.0e} does not count.
+
+{facts["processor"]} (`{facts["target"]}`), {facts["system"]}, {facts["date"]}. {", ".join(facts["versions"])}.
+
+This page is written by `cargo xtask performance`. `cargo bench -p crane-bench` times the kernels alone.
+
+![Time of one forward dynamics, and of A and e, over the number of coordinates, both axes logarithmic.]({drawing})
+
+## Forward dynamics, q̈
+{times_table(times, "forward_dynamics", ["Pinocchio, gcc", "Pinocchio, clang", "CasADi C, gcc", "CasADi C, clang", "MuJoCo"])}
+
+How many times as long the others take. 8 lanes: one call computes eight cranes, each with its own state and parameters; the time is
+that of one crane.
+{ratio_table(times)}
+
+## A and e
+{times_table(times, "mass_matrix_and_bias", ["Pinocchio, gcc", "Pinocchio, clang", "CasADi C, gcc", "CasADi C, clang"], "triple_sum")}
+
+The last column is [Urbaś 2016, Eq. (5)] as printed, a sum over bodies and triples of coordinates, on generated derivatives of the
+transforms.
+
+## One RK4 step with all forces
+{times_table(times, "rk4_step", ["MuJoCo", "Exudyn"])}
+
+## What is in these times
+* **Ours**: from t, q, v to q̈; sines and cosines, supports, elements, drives with their motions, and gravity included.
+* **Pinocchio**: `aba`, or `crba`, `nonLinearEffects` and a Cholesky factorisation, whichever is fastest; forces are given. All of its
+  joint models of a base and of a rigid finite element take part: elementary joints, angles ψ θ φ as one joint, composite joints, a
+  free flyer with a quaternion, whose conversion is not timed. Headers alone, so that all of it is compiled here.
+* **CasADi C**: an articulated-body recursion, and composite bodies with Newton's and Euler's equations, in the same coordinates,
+  with the crane's numbers and zeros folded in; forces are given. Where a general library pays for being general, this does not: what
+  remains between it and ours is algorithm, trigonometry and the compiler.
+* **MuJoCo**: `mj_forward` with forces applied, constraints, contacts, sensors and actuators off. The three rotations of an element are
+  three hinges of one body. In the step, springs and dampers are those of joints, and supports are fixed tendons, as few as will do.
+* **Exudyn**: a kinematic tree with springs in its joints and the supports as matrices, a run of 600 steps less one of 200.
+* **Compilers matter.** Ours is compiled by rustc, the others by gcc and by clang, both with `-O3 -march=native`; MuJoCo and Exudyn come
+  compiled by their makers for any machine of the kind.
+
+The fastest of each kind:
+{winners(times)}
+
+{wrong(results)}
+
+## Our kernels
+ns a call for one crane{counters_heading(results)}.
+{kernels(times)}
+
+Operations of a call as the compiler counts them, sine and cosine of an angle as one, and the share of what one core can do at most:
+{peak["scalar"]:.1f} scalar and {peak["vector"]:.0f} vector operations a nanosecond, multiplications fused with additions.
+{operations(results, times)}
+
+{counters(results)}
+"""
+
+
+def number(value):
+    """Three significant digits."""
+    return "" if value is None else f"{value:.0f}" if value >= 100 else f"{value:.3g}"
+
+
+def microseconds(nanoseconds):
+    """ns as µs."""
+    return "" if nanoseconds is None else f"{nanoseconds / 1000:.3g}"
+
+
+def table(heading, rows):
+    """A Markdown table, numbers to the right."""
+    lines = [heading, ["---:"] * len(heading), *rows]
+    return "\n" + "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def times_table(times, quantity, series, *further):
+    """µs, ours and others'."""
+    rows = [
+        [
+            str(n),
+            microseconds(times.of_quantity(n, quantity)),
+            *(microseconds(times.series(n, quantity, name)) for name in series),
+            *(microseconds(times.ours(n, kernel)) for kernel in further),
+        ]
+        for n in times.coordinates
+    ]
+    return table(["coordinates", "ours, µs", *series, *(kernel.replace("_", " ") for kernel in further)], rows)
+
+
+def ratio_table(times):
+    """How many times as long the best of each library takes."""
+
+    def ratio(n, quantity, library, ours):
+        theirs = times.fastest(n, quantity=quantity, library=library)[0]
+        return f"{theirs / ours:.2g} ×" if theirs and ours else ""
+
+    rows = []
+    for n in times.coordinates:
+        ours, terms, step = (times.of_quantity(n, quantity) for quantity in BEST_OF_OURS)
+        rows.append(
+            [
+                str(n),
+                *(ratio(n, "forward_dynamics", library, ours) for library in ("Pinocchio", "CasADi C", "MuJoCo")),
+                ratio(n, "forward_dynamics", "Pinocchio", times.ours(n, LANES)),
+                ratio(n, "mass_matrix_and_bias", "Pinocchio", terms),
+                ratio(n, "mass_matrix_and_bias", "CasADi C", terms),
+                ratio(n, "rk4_step", "MuJoCo", step),
+                ratio(n, "rk4_step", "Exudyn", step),
+            ]
+        )
+    heading = ["coordinates", "Pinocchio", "CasADi C", "MuJoCo", "8 lanes: Pinocchio", "A, e: Pinocchio", "A, e: CasADi C"]
+    return table([*heading, "RK4: MuJoCo", "RK4: Exudyn"], rows)
+
+
+def winners(times):
+    """Which variant of Pinocchio was the fastest."""
+    rows = []
+    for n in times.coordinates:
+        for quantity in ("forward_dynamics", "mass_matrix_and_bias"):
+            for name in ("Pinocchio, gcc", "Pinocchio, clang"):
+                library, compiler = SERIES[name]
+                time, best = times.fastest(n, quantity=quantity, library=library, compiler=compiler)
+                if best:
+                    rows.append([str(n), quantity, name, best["variant"], f"{best['error']:.0e}", microseconds(time)])
+    return table(["coordinates", "quantity", "library", "variant", "error", "µs"], rows)
+
+
+def wrong(results):
+    """Who was not right."""
+    found = results["wrong"]
+    if not found:
+        return "All variants of all libraries were right."
+    rows = {}
+    for contestant in found:
+        key = contestant["coordinates"], contestant["library"], contestant["variant"].split(",")[0]
+        rows.setdefault(key, []).append(contestant)
+    lines = [
+        [str(key[0]), key[1], key[2], str(len(group)), f"{max(c['error'] for c in group):.0e}",
+         ", ".join(sorted({c["variant"].split("elements ")[-1] for c in group}))]
+        for key, group in sorted(rows.items())
+    ]
+    return "Not right, and therefore not counted:\n" + table(
+        ["coordinates", "library", "algorithm", "variants", "worst error", "joints of elements"], lines
+    )
+
+
+def kernels(times):
+    """Our kernels."""
+    names = list(dict.fromkeys(c["variant"] for c in times.contestants if c["library"] == OURS))
+    rows = [[f"`{name}`", *(number(times.ours(n, name)) for n in times.coordinates)] for name in names]
+    return table(["kernel", *map(str, times.coordinates)], rows)
+
+
+def operations(results, times):
+    """Operations a call, a nanosecond, and their share of the scalar peak."""
+    rows = []
+    kernels_of = dict.fromkeys(c["variant"] for c in times.contestants if c["library"] == OURS)
+    for kernel in kernels_of:
+        cells = []
+        for n in times.coordinates:
+            count, time = results["operations"][str(n)].get(kernel), times.ours(n, kernel)
+            share = f"{count}: {100 * count / time / results['peak']['scalar']:.0f} %" if count and time else ""
+            cells.append(share)
+        if any(cells):
+            rows.append([f"`{kernel}`", *cells])
+    return table(["operations: share of the scalar peak", *map(str, times.coordinates)], rows)
+
+
+def counters_heading(results):
+    """Whether counters follow."""
+    return "; what the processor counted follows below" if any(results["counters"].values()) else ""
+
+
+def counters(results):
+    """Instructions and misses, or that they could not be counted."""
+    if not any(results["counters"].values()):
+        return "Instructions and cache misses: this machine does not let `perf stat` count them."
+    rows = [
+        [str(n), f"`{kernel}`", *(number(value) for value in counts.values())]
+        for n, kernels_of in results["counters"].items()
+        for kernel, counts in kernels_of.items()
+    ]
+    names = next(iter(next(counts for counts in results["counters"].values() if counts).values()))
+    return "Counted by the processor, a call:\n" + table(["coordinates", "kernel", *names], rows)
