@@ -4,7 +4,7 @@ import matplotlib
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402: the back end is chosen first
-from matplotlib.ticker import ScalarFormatter  # noqa: E402
+from matplotlib.ticker import FormatStrFormatter, ScalarFormatter  # noqa: E402
 
 # Okabe and Ito's colours, which tell apart for all kinds of colour vision; the markers do without colour.
 STYLES = {
@@ -43,6 +43,7 @@ def draw(times, path, series):
         panel.set_xticks(times.coordinates, minor=False)
         panel.set_xticks([], minor=True)
         panel.xaxis.set_major_formatter(ScalarFormatter())
+        panel.yaxis.set_major_formatter(FormatStrFormatter("%g"))
         panel.grid(True, which="both", linewidth=0.3)
         panel.legend(fontsize=7)
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,8 +1,8 @@
 //! What is timed: a line a kernel.
 
 use crane_model::dynamics::rk4;
-use crane_model::nalgebra::{Matrix4, SMatrix, SVector};
-use crane_model::{Dynamics, TransformDerivatives};
+use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
+use crane_model::{Implicit, TransformDerivatives};
 
 use crate::kernel::Kernel;
 use crate::states::{self, State};
@@ -13,7 +13,7 @@ pub const STEP: f64 = 1e-6;
 
 /// Kernels of any crane.
 #[must_use]
-pub fn all<const N: usize, C: Dynamics<N> + Default + Copy + 'static>(_spec: &str) -> Vec<Kernel> {
+pub fn all<const N: usize, C: Implicit<N> + Default + Copy + 'static>(_spec: &str) -> Vec<Kernel> {
     let crane = C::default();
     let states = &states::near_guess::<N>(crane.description());
     let poses = vec![Matrix4::zeros(); crane.description().bodies.len()];
@@ -26,10 +26,17 @@ pub fn all<const N: usize, C: Dynamics<N> + Default + Copy + 'static>(_spec: &st
         Kernel::new("mass_matrix_and_bias", 1, states, (square, vector), move |s, out| {
             (out.0, out.1) = (crane.mass_matrix(&s.q), crane.bias(&s.q, &s.v));
         }),
+        Kernel::new("forward_dynamics", 1, states, vector, move |s, out| {
+            *out = crane.forward_dynamics(s.t, &s.q, &s.v);
+        }),
         Kernel::new("dense_forward_dynamics", 1, states, vector, move |s, out| {
-            if let Ok(acceleration) = rk4::acceleration(&crane, s.t, &s.q, &s.v) {
-                *out = acceleration;
+            if let Some(factors) = Cholesky::new(crane.mass_matrix(&s.q)) {
+                *out = factors.solve(&(crane.bias(&s.q, &s.v) + crane.forces(s.t, &s.q, &s.v)));
             }
+        }),
+        Kernel::new("solve_mass", 1, states, vector, move |s, out| *out = crane.solve_mass(&s.q, &s.v)),
+        Kernel::new("factorise_and_solve", 1, states, vector, move |s, out| {
+            *out = crane.solve(&crane.factorise(&s.q, &SVector::repeat(1.0), &Matrix6::identity()), &s.v);
         }),
         Kernel::new("rk4_step", 1, states, (vector, vector), move |s, out| {
             let mut state = rk4::State { q: s.q, v: s.v };
@@ -44,7 +51,7 @@ pub fn all<const N: usize, C: Dynamics<N> + Default + Copy + 'static>(_spec: &st
 #[must_use]
 pub fn all_of_small<const N: usize, C>(spec: &str) -> Vec<Kernel>
 where
-    C: Dynamics<N> + TransformDerivatives<N> + Default + Copy + 'static,
+    C: Implicit<N> + TransformDerivatives<N> + Default + Copy + 'static,
 {
     let crane = C::default();
     let states = &states::near_guess::<N>(crane.description());

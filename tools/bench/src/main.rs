@@ -6,8 +6,6 @@
 //! crane-bench kernels N                names of its kernels and how many cranes a call serves, one a line
 //! crane-bench step                     the step of the kernel rk4_step, s
 //! crane-bench repeat N KERNEL CALLS    calls a kernel so often, for programs that count instructions
-//! crane-bench step                     the step of the kernel rk4_step, s
-//! crane-bench repeat N KERNEL CALLS    calls a kernel so often, for programs that count instructions
 //! crane-bench states N                 states as records t, q, v, f: 64-bit little-endian numbers
 //! crane-bench values N KERNEL          what a kernel computes at these states, in the same form
 //! crane-bench time N KERNEL SECONDS    nanoseconds a call, measured for so long
@@ -40,7 +38,6 @@ fn main() -> ExitCode {
 fn run(words: &[&str]) -> Result<Vec<u8>, String> {
     match words {
         ["coordinates"] => Ok(lines(cranes::all().iter().map(|entry| entry.coordinates.to_string()))),
-        ["step"] => Ok(lines([kernels::STEP.to_string()].into_iter())),
         ["step"] => Ok(lines([kernels::STEP.to_string()].into_iter())),
         ["spec", n] => Ok(crane(n)?.spec.into()),
         ["kernels", n] => {

@@ -3,7 +3,8 @@
 use crane_codegen::chain::{Chain, Inertia};
 use crane_codegen::{SourceFile, compile};
 use crane_model::TransformDerivatives;
-use crane_model::nalgebra::{Matrix4, SMatrix, SVector, SVectorView, Vector3};
+use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
+use crane_model::support::fma;
 
 use crate::kernel::Numbers;
 
@@ -25,8 +26,8 @@ pub struct Sums<const N: usize> {
     bias: SVector<f64, N>,
     first: Vec<Matrix4<f64>>,
     second: Vec<Matrix4<f64>>,
-    /// A row for each coordinate i of one body, `∂T/∂q_i H`: `tr(∂T/∂q_i H Bᵀ)` is its product with the entries of B.
-    momenta: SMatrix<f64, N, 16>,
+    /// `∂T/∂q_i H` of one body, a row an entry, a column a coordinate i.
+    momenta: [[f64; N]; 16],
 }
 
 impl TripleSum {
@@ -51,7 +52,7 @@ impl TripleSum {
             bias: SVector::zeros(),
             first: vec![Matrix4::zeros(); counts.clone().sum()],
             second: vec![Matrix4::zeros(); counts.map(|n| n * (n + 1) / 2).sum()],
-            momenta: SMatrix::zeros(),
+            momenta: [[0.0; N]; 16],
         }
     }
 
@@ -72,19 +73,21 @@ impl TripleSum {
             let count = body.degrees_of_freedom;
             let (derivatives, further) = first.split_at(count);
             first = further;
-            sums.momenta.fill(0.0);
+            sums.momenta = [[0.0; N]; 16];
             for (i, derivative) in derivatives.iter().enumerate() {
                 let momentum = derivative * body.pseudo_inertia;
-                sums.momenta.row_mut(i).copy_from_slice(momentum.as_slice());
+                for (row, entry) in sums.momenta.iter_mut().zip(&momentum) {
+                    row[i] = *entry;
+                }
                 sums.bias[i] += self.gravity.dot(&momentum.fixed_view::<3, 1>(0, 3));
             }
             for (j, derivative) in derivatives.iter().enumerate() {
-                sums.mass_matrix.column_mut(j).gemv(1.0, &sums.momenta, &entries(derivative), 1.0);
+                add_products(&mut sums.mass_matrix.data.0[j], 1.0, &sums.momenta, derivative);
             }
             for m in 0..count {
                 for (n, derivative) in (m..count).zip(&mut second) {
                     let twice = if n > m { 2.0 } else { 1.0 };
-                    sums.bias.gemv(-twice * v[m] * v[n], &sums.momenta, &entries(derivative), 1.0);
+                    add_products(&mut sums.bias.data.0[0], -twice * v[m] * v[n], &sums.momenta, derivative);
                 }
             }
         }
@@ -116,6 +119,15 @@ fn pseudo_inertia(inertia: &Inertia, parameters: &[f64]) -> Matrix4<f64> {
     Matrix4::new(xx, xy, xz, x, xy, yy, yz, y, xz, yz, zz, z, x, y, z, inertia.mass.at(parameters))
 }
 
-fn entries(matrix: &Matrix4<f64>) -> SVectorView<'_, f64, 16> {
-    SVectorView::from_slice(matrix.as_slice())
+/// Adds `factor · tr(∂T/∂q_i H Bᵀ)` for all i.
+fn add_products<const N: usize>(sums: &mut [f64; N], factor: f64, momenta: &[[f64; N]; 16], matrix: &Matrix4<f64>) {
+    let mut products = [0.0; N];
+    for (row, entry) in momenta.iter().zip(matrix) {
+        for i in 0..N {
+            products[i] = fma(row[i], *entry, products[i]);
+        }
+    }
+    for i in 0..N {
+        sums[i] = fma(products[i], factor, sums[i]);
+    }
 }

@@ -19,6 +19,8 @@ const USAGE: &str = "cargo xtask TASK
   test     every check: lint, unit and whole-system tests, oracles, the example crate, the default run
   lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md
   oracles  generated code against CasADi, Pinocchio and MuJoCo, over all shipped and some random cranes
+  performance [--quick]
+           time the generated functions and other libraries in turns, write docs/performance.md; g++ or clang needed
   bless    write anew what tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md";
 
 fn main() -> ExitCode {
@@ -28,6 +30,9 @@ fn main() -> ExitCode {
         "test" => [lint(), tests(), oracles()].concat(),
         "lint" => lint(),
         "oracles" => oracles(),
+        "performance" => {
+            vec![Step::check("times of the generated functions and of other libraries", oracles::performance)]
+        }
         "bless" => bless(),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");
@@ -105,7 +110,7 @@ fn tests() -> Vec<Step> {
 
 fn oracles() -> Vec<Step> {
     vec![
-        Step::check("Python environment", python::prepare),
+        Step::check("Python environment", oracles::prepare),
         Step::cargo(
             "the program that evaluates generated code",
             &["build", "--release", "--workspace", "--exclude", "crane-bench", "--features", CLI, "--bins"],

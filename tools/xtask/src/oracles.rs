@@ -1,17 +1,18 @@
-//! The checks with other libraries: `tools/casadi` derives every quantity, `tools/peers` computes the dynamics.
+//! Other libraries: `tools/casadi` derives every quantity, `tools/peers` computes the dynamics, and is timed.
 
 use std::process::Command;
 
-use crate::{python, step, workspace};
+use crate::python::{CHECKS, Environment, PERFORMANCE};
+use crate::{step, workspace};
 
-fn script(path: &str) -> Command {
-    let mut command = Command::new(python::python());
+fn script(environment: &Environment, path: &str) -> Command {
+    let mut command = Command::new(environment.python());
     command.arg(workspace::root().join(path)).current_dir(workspace::root());
     command
 }
 
 fn on_generated_code(path: &str) -> Result<(), String> {
-    step::finish(script(path).arg("--evaluate").arg(workspace::target().join("release/evaluate")))
+    step::finish(script(&CHECKS, path).arg("--evaluate").arg(workspace::target().join("release/evaluate")))
 }
 
 const CHECK: &str = "tools/casadi/check.py";
@@ -19,7 +20,7 @@ const AGREE: &str = "tools/peers/agree.py";
 
 /// CasADi's derivations obey the laws of mechanics, and an error of 1e-8 in any quantity is noticed.
 pub fn self_test() -> Result<(), String> {
-    step::finish(script(CHECK).arg("--self-test"))
+    step::finish(script(&CHECKS, CHECK).arg("--self-test"))
 }
 
 /// Every generated function of every shipped crane and of random cranes.
@@ -29,10 +30,21 @@ pub fn check() -> Result<(), String> {
 
 /// Pinocchio and MuJoCo agree with each other, and an error of 1e-7 in A, e or q̈ is noticed.
 pub fn peers_self_test() -> Result<(), String> {
-    step::finish(script(AGREE).arg("--self-test"))
+    step::finish(script(&CHECKS, AGREE).arg("--self-test"))
 }
 
 /// A, e and q̈ of the same cranes.
 pub fn peers() -> Result<(), String> {
     on_generated_code(AGREE)
+}
+
+/// The environment of the checks.
+pub fn prepare() -> Result<(), String> {
+    CHECKS.prepare()
+}
+
+/// Times the generated functions and other libraries, and writes docs/performance.md; the words after the task are options.
+pub fn performance() -> Result<(), String> {
+    PERFORMANCE.prepare()?;
+    step::finish(script(&PERFORMANCE, "tools/peers/measure.py").args(std::env::args().skip(2)))
 }

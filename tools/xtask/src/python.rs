@@ -1,4 +1,4 @@
-//! The Python environment of the checks with other libraries: made once, with pinned packages.
+//! Python environments with pinned packages, made once.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,30 +6,52 @@ use std::process::Command;
 
 use crate::{step, workspace};
 
-const REQUIREMENTS: [&str; 2] = ["tools/casadi/requirements.txt", "tools/peers/requirements.txt"];
-
-/// Python of the environment.
-pub fn python() -> PathBuf {
-    workspace::root().join(".venv/bin/python")
+/// An environment: its folder at the workspace's root, and the lists of what it has.
+pub struct Environment {
+    folder: &'static str,
+    requirements: &'static [&'static str],
 }
 
-/// Makes the environment, unless it has what is required already.
-pub fn prepare() -> Result<(), String> {
-    let requirements = REQUIREMENTS.map(workspace::read).into_iter().collect::<Result<String, _>>()?;
-    let stamp = workspace::root().join(".venv/requirements.installed");
-    if fs::read_to_string(&stamp).is_ok_and(|installed| installed == requirements) {
-        println!("{} are installed", REQUIREMENTS.join(" and "));
-        return Ok(());
+/// For the checks with other libraries.
+pub const CHECKS: Environment =
+    Environment { folder: ".venv", requirements: &["tools/casadi/requirements.txt", "tools/peers/requirements.txt"] };
+
+/// For the measurement beside other libraries.
+pub const PERFORMANCE: Environment = Environment {
+    folder: ".venv-performance",
+    requirements: &[
+        "tools/casadi/requirements.txt",
+        "tools/peers/requirements.txt",
+        "tools/peers/requirements-performance.txt",
+    ],
+};
+
+impl Environment {
+    /// Its Python.
+    pub fn python(&self) -> PathBuf {
+        workspace::root().join(self.folder).join("bin/python")
     }
-    let environment = workspace::root().join(".venv");
-    step::finish(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&environment)).map_err(|error| {
-        format!("{error}; Python 3.11 or newer with its venv module is needed (Debian: apt-get install python3-venv)")
-    })?;
-    step::finish(
-        Command::new(python())
-            .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
-            .args(REQUIREMENTS.iter().flat_map(|file| ["--requirement", file]))
-            .current_dir(workspace::root()),
-    )?;
-    fs::write(&stamp, requirements).map_err(|error| format!("{}: {error}", stamp.display()))
+
+    /// Makes it, unless it has what is required already.
+    pub fn prepare(&self) -> Result<(), String> {
+        let folder = workspace::root().join(self.folder);
+        let requirements = self.requirements.iter().map(|file| workspace::read(file)).collect::<Result<String, _>>()?;
+        let stamp = folder.join("requirements.installed");
+        if fs::read_to_string(&stamp).is_ok_and(|installed| installed == requirements) {
+            println!("{}: installed", self.requirements.join(", "));
+            return Ok(());
+        }
+        step::finish(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder)).map_err(|error| {
+            format!(
+                "{error}; Python 3.11 or newer with its venv module is needed (Debian: apt-get install python3-venv)"
+            )
+        })?;
+        step::finish(
+            Command::new(self.python())
+                .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
+                .args(self.requirements.iter().flat_map(|file| ["--requirement", file]))
+                .current_dir(workspace::root()),
+        )?;
+        fs::write(&stamp, requirements).map_err(|error| format!("{}: {error}", stamp.display()))
+    }
 }
