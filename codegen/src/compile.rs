@@ -17,7 +17,8 @@ use crate::validate::validate;
 /// All mistakes of the spec at once.
 pub fn compile(source: &SourceFile, analyses: Option<Analyses>) -> Result<GeneratedCode, Diagnostics> {
     let chain = load(source)?;
-    let analyses = analyses.unwrap_or(chain.analyses);
+    // Eight cranes a call are asked for by the spec alone.
+    let analyses = Analyses { ensemble: chain.analyses.ensemble, ..analyses.unwrap_or(chain.analyses) };
     // A path would differ from machine to machine.
     let file = Path::new(&source.name).file_name().unwrap_or_default().to_string_lossy();
     Ok(generate(&chain, analyses, &file))
@@ -37,7 +38,7 @@ pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
 pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> GeneratedCode {
     let program = derive(chain, analyses);
     let blocks = lower(&program);
-    emit(chain, &blocks, report_on(&blocks, chain, analyses), spec_file)
+    emit(chain, analyses, &blocks, report_on(&blocks, chain, analyses), spec_file)
 }
 
 /// What the functions of a chain cost and what is left out, without writing them.

@@ -3,7 +3,7 @@
 //!
 //! | what | where | needs |
 //! |---|---|---|
-//! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Implicit`], [`Statics`], [`Linearise`], [`TransformDerivatives`] | nothing |
+//! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Implicit`], [`Ensemble`], [`Statics`], [`Linearise`], [`TransformDerivatives`] | nothing |
 //! | one step in time | [`dynamics::rk4`] | nothing |
 //! | equilibrium | `statics` | `std` |
 //! | a run with recorded results | `dynamics::simulate` | `std` |
@@ -40,6 +40,9 @@ pub mod support;
 pub use description::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, SupportInfo,
 };
-pub use model::{CraneModel, Dynamics, Implicit, Linearisation, Linearise, Statics, TransformDerivatives};
+pub use model::{
+    CraneModel, Dynamics, Ensemble, Implicit, LaneDynamics, Linearisation, Linearise, OneByOne, Statics,
+    TransformDerivatives,
+};
 /// The linear algebra of every signature, so that generated code needs this crate alone.
 pub use nalgebra;

@@ -10,6 +10,7 @@ use nalgebra::{
 };
 
 use crate::Description;
+use crate::support::lanes::f64x8;
 
 /// Poses, forces and potential energy of a crane.
 pub trait CraneModel<const N: usize> {
@@ -118,6 +119,38 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
 
     /// Kinetic energy, Eq. (4). J.
     fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64;
+}
+
+/// Cranes that can be moved eight at a time, each with its own state and parameters.
+pub trait Ensemble<const N: usize>: Dynamics<N> + Sized {
+    /// Eight cranes.
+    type Lanes: LaneDynamics<N>;
+
+    /// Eight cranes with the parameters of these.
+    fn lanes(cranes: [&Self; 8]) -> Self::Lanes;
+}
+
+/// Equations of motion of eight cranes, one a lane.
+pub trait LaneDynamics<const N: usize> {
+    /// Accelerations q̈ as [`Dynamics::forward_dynamics`], lane by lane.
+    fn forward_dynamics(&self, t: f64x8, q: &SVector<f64x8, N>, v: &SVector<f64x8, N>) -> SVector<f64x8, N>;
+}
+
+/// Eight cranes, moved one after the other: for a crane whose spec does not ask for `ensemble`.
+#[derive(Clone, Copy, Debug)]
+pub struct OneByOne<C>(pub [C; 8]);
+
+impl<const N: usize, C: Dynamics<N>> LaneDynamics<N> for OneByOne<C> {
+    fn forward_dynamics(&self, t: f64x8, q: &SVector<f64x8, N>, v: &SVector<f64x8, N>) -> SVector<f64x8, N> {
+        let mut lanes = [[0.0; 8]; N];
+        for (lane, (crane, t)) in self.0.iter().zip(t.to_array()).enumerate() {
+            let of = |x: &SVector<f64x8, N>| x.map(|x| x.to_array()[lane]);
+            for (lanes, x) in lanes.iter_mut().zip(&crane.forward_dynamics(t, &of(q), &of(v))) {
+                lanes[lane] = *x;
+            }
+        }
+        SVector::from(lanes.map(f64x8::new))
+    }
 }
 
 /// What an implicit step needs: stiffness and damping by their structure, and systems with them at the price of A alone.

@@ -37,7 +37,7 @@ use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::support::{fill, fma, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description,
-    Dynamics, Implicit,
+    Dynamics, Ensemble, Implicit, OneByOne,
 };
 
 /// Number of generalized coordinates.
@@ -118,7 +118,7 @@ pub fn transforms(q: &SVector<f64, N>) -> [Matrix4<f64>; 2] {
     let upper_theta = q[0];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_upper_theta, cos_upper_theta), (sin_lower_theta, cos_lower_theta)] = sin_cos([
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
         upper_theta,
         lower_theta,
     ]);
@@ -163,7 +163,7 @@ pub fn points(q: &SVector<f64, N>) -> [Vector3<f64>; 1] {
     let upper_theta = q[0];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_upper_theta, cos_upper_theta), (sin_lower_theta, cos_lower_theta)] = sin_cos([
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
         upper_theta,
         lower_theta,
     ]);
@@ -197,7 +197,7 @@ pub fn point_velocities(q: &SVector<f64, N>, v: &SVector<f64, N>) -> [Vector3<f6
     let upper_theta = q[0];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_upper_theta, cos_upper_theta), (sin_lower_theta, cos_lower_theta)] = sin_cos([
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
         upper_theta,
         lower_theta,
     ]);
@@ -240,7 +240,7 @@ pub fn gravity_energy(q: &SVector<f64, N>) -> f64 {
     let upper_theta = q[0];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_upper_theta, cos_upper_theta), (sin_lower_theta, cos_lower_theta)] = sin_cos([
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
         upper_theta,
         lower_theta,
     ]);
@@ -269,7 +269,7 @@ pub fn forward_dynamics(
     let upper_theta = q[0];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_upper_theta, cos_upper_theta), (sin_lower_theta, cos_lower_theta)] = sin_cos([
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
         upper_theta,
         lower_theta,
     ]);
@@ -331,7 +331,7 @@ pub fn solve_mass(q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
     let mut out: [f64; N] = [0.0; N];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_lower_theta, cos_lower_theta)] = sin_cos([lower_theta]);
+    let ([sin_lower_theta], [cos_lower_theta]) = sin_cos([lower_theta]);
     // upper_theta
     let rotational_upper_yy = fma(
         0.7511737089201878,
@@ -369,7 +369,7 @@ pub fn mass_matrix(q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
     let upper_theta = q[0];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_upper_theta, cos_upper_theta), (sin_lower_theta, cos_lower_theta)] = sin_cos([
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
         upper_theta,
         lower_theta,
     ]);
@@ -444,7 +444,7 @@ pub fn bias(q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
     let upper_theta = q[0];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_upper_theta, cos_upper_theta), (sin_lower_theta, cos_lower_theta)] = sin_cos([
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
         upper_theta,
         lower_theta,
     ]);
@@ -499,7 +499,7 @@ pub fn kinetic_energy(q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
     let upper_theta = q[0];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_upper_theta, cos_upper_theta), (sin_lower_theta, cos_lower_theta)] = sin_cos([
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
         upper_theta,
         lower_theta,
     ]);
@@ -583,7 +583,7 @@ pub fn factorise(
     let mut out: Factors = [0.0; 6];
     let lower_theta = q[1];
     // Sines and cosines
-    let [(sin_lower_theta, cos_lower_theta)] = sin_cos([lower_theta]);
+    let ([sin_lower_theta], [cos_lower_theta]) = sin_cos([lower_theta]);
     let lower_theta_resistance = resistance[1];
     out[0] = lower_theta_resistance;
     out[1] = cos_lower_theta;
@@ -715,5 +715,12 @@ impl Implicit<N> for Crane {
     }
     fn joint_impedances(&self, out: &mut [[f64; 2]]) {
         fill(out, &joint_impedances());
+    }
+}
+
+impl Ensemble<N> for Crane {
+    type Lanes = OneByOne<Crane>;
+    fn lanes(cranes: [&Self; 8]) -> OneByOne<Crane> {
+        OneByOne(cranes.map(|crane| *crane))
     }
 }

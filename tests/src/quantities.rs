@@ -2,7 +2,8 @@
 
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use crane_model::rig::Crane;
-use crane_model::{Description, Linearisation};
+use crane_model::support::lanes::f64x8;
+use crane_model::{Description, LaneDynamics, Linearisation};
 
 /// A quantity: its name and the shape of its numbers, row-major.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,6 +49,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("forward_dynamics", vec![n]),
         ("mass_solution", vec![n]),
         ("implicit_solution", vec![n]),
+        ("lane_forward_dynamics", vec![n]),
         ("kinetic_energy", vec![1]),
         ("gravity_energy", vec![1]),
         ("support_energy", vec![1]),
@@ -114,6 +116,7 @@ pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f6
         crane.forward_dynamics(t, q, v),
         crane.solve_mass(q, v),
         implicit_solution(crane, q, v),
+        in_a_lane(crane, t, q, v),
     ] {
         out.extend(vector.iter());
     }
@@ -160,6 +163,18 @@ fn implicit_solution<const N: usize, C: Crane<N>>(
     let resistance = SVector::from_fn(|i, _| h * joints[i][1] + h * h * joints[i][0]);
     let base = crane.base_damping(q) * h + crane.base_stiffness(q) * (h * h);
     crane.solve(&crane.factorise(q, &resistance, &base), v)
+}
+
+/// Accelerations of the crane in the third lane of eight, the others in states of their own.
+fn in_a_lane<const N: usize, C: Crane<N>>(
+    crane: &C,
+    t: f64,
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+) -> SVector<f64, N> {
+    let lanes = |x: &SVector<f64, N>| x.map(|x| f64x8::new(std::array::from_fn(|lane| x * (0.8 + 0.1 * lane as f64))));
+    let accelerations = C::lanes([crane; 8]).forward_dynamics(f64x8::splat(t), &lanes(q), &lanes(v));
+    accelerations.map(|x| x.to_array()[2])
 }
 
 fn push_matrices(out: &mut Vec<f64>, matrices: &[Matrix4<f64>]) {

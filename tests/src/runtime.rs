@@ -35,7 +35,7 @@ impl Scalar for Runtime {
         Runtime(value)
     }
     fn sin_cos(&self) -> (Self, Self) {
-        let [(sin, cos)] = support::sin_cos([self.0]);
+        let ([sin], [cos]) = support::sin_cos([self.0]);
         (Runtime(sin), Runtime(cos))
     }
     fn min(self, other: Self) -> Self {

@@ -9,7 +9,8 @@ use crane_tests::precise::{self, Precise};
 use crane_tests::quantities::State;
 use crane_tests::{random, states, workspace};
 
-const DYNAMICS: Analyses = Analyses { statics: false, dynamics: true, modes: false, derivatives: false };
+const DYNAMICS: Analyses =
+    Analyses { statics: false, dynamics: true, modes: false, derivatives: false, ensemble: false };
 
 /// Of the largest acceleration: rounding of the forces alone, 1e-16 of the stiffest spring, is multiplied by
 /// some hundred along the chain. The dense solve of 64 bits is off by 3e-10 at 103 coordinates.

@@ -26,6 +26,7 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
         "mass_solution" => {
             crane.get("solve_mass", &inputs.clone().with(Argument::Right, inputs.get(Argument::Velocity)), n)
         }
+        "lane_forward_dynamics" => crane.get("forward_dynamics", inputs, n),
         "implicit_solution" => implicit_solution(crane, inputs),
         name => crane.get(name, inputs, quantity.len()),
     }

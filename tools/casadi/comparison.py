@@ -89,7 +89,7 @@ def compare(quantity, derived, generated, groups, tolerance=TOLERANCE):
 
 def negligible_entry(quantity):
     """The share of an array's largest value below which an entry has no size of its own."""
-    if quantity == "forward_dynamics":
+    if quantity.endswith(("forward_dynamics", "_solution")):
         return NEGLIGIBLE_ENTRY_OF_ACCELERATION
     return NEGLIGIBLE_ENTRY_OF_TRANSFORM if quantity.startswith("transform") else NEGLIGIBLE_ENTRY
 

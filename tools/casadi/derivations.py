@@ -181,8 +181,10 @@ def solutions(values, v):
     )
     implicit = mass + IMPLICIT_STEP * damping + IMPLICIT_STEP**2 * stiffness
     del values["impedance_stiffness"]
+    accelerations = solve_scaled(mass, values["bias"] + values["forces"])
     return {
-        "forward_dynamics": solve_scaled(mass, values["bias"] + values["forces"]),
+        "forward_dynamics": accelerations,
+        "lane_forward_dynamics": accelerations,
         "mass_solution": solve_scaled(mass, v),
         "implicit_solution": solve_scaled(implicit, v),
     }

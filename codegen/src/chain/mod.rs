@@ -257,11 +257,14 @@ pub struct Analyses {
     pub modes: bool,
     /// ∂T/∂q and ∂²T/∂q∂q of every body.
     pub derivatives: bool,
+    /// Eight cranes a call, for simulations of many; needs dynamics.
+    pub ensemble: bool,
 }
 
 impl Analyses {
-    /// Everything there is, for checks.
-    pub const ALL: Analyses = Analyses { statics: true, dynamics: true, modes: true, derivatives: true };
+    /// Everything there is about one crane, for checks.
+    pub const ALL: Analyses =
+        Analyses { statics: true, dynamics: true, modes: true, derivatives: true, ensemble: false };
 }
 
 impl Chain {

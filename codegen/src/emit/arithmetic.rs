@@ -13,7 +13,7 @@ pub fn variable(name: &str) -> Expr {
 }
 
 /// A number; its sign is an operator. `{:?}` prints the shortest digits that read back as the same number.
-pub fn number(value: f64) -> Expr {
+pub fn literal(value: f64) -> Expr {
     debug_assert!(value.is_finite(), "{value} in generated code");
     let literal = syn::LitFloat::new(&format!("{:?}", value.abs()), Span::call_site());
     let magnitude = Expr::Lit(syn::ExprLit { attrs: vec![], lit: Lit::Float(literal) });
@@ -166,12 +166,12 @@ mod tests {
         assert_eq!(text(&product(sum(a(), b()), c())), "(a+b)*c");
         assert_eq!(text(&sum(a(), sum(b(), c()))), "a+(b+c)");
         assert_eq!(text(&sum(sum(a(), b()), c())), "a+b+c");
-        assert_eq!(text(&sum(a(), number(-2.0))), "a-2.0");
+        assert_eq!(text(&sum(a(), literal(-2.0))), "a-2.0");
         assert_eq!(text(&difference(a(), difference(b(), c()))), "a-(b-c)");
         assert_eq!(text(&negative(sum(a(), b()))), "-(a+b)");
         assert_eq!(text(&negative(product(a(), b()))), "-(a*b)");
-        assert_eq!(text(&negative(number(-2.0))), "2.0");
-        assert_eq!(text(&negative(product(number(2.0), b()))), "-2.0*b");
+        assert_eq!(text(&negative(literal(-2.0))), "2.0");
+        assert_eq!(text(&negative(product(literal(2.0), b()))), "-2.0*b");
         assert_eq!(text(&quotient(a(), product(b(), c()))), "a/(b*c)");
         assert_eq!(text(&product(negative(a()), b())), "-a*b");
         assert_eq!(text(&method(sum(a(), b()), "min", c())), "(a+b).min(c)");
@@ -180,10 +180,10 @@ mod tests {
     #[test]
     fn numbers_read_back_as_themselves() {
         for value in [0.1, 1e300, 5e-324, 9.81, 1.0 / 3.0, 2.0] {
-            let printed = text(&number(value));
+            let printed = text(&literal(value));
             assert!(printed.len() < 26, "{printed}");
             assert_eq!(printed.parse::<f64>().unwrap().to_bits(), value.to_bits());
         }
-        assert_eq!(text(&number(-2.5)), "-2.5");
+        assert_eq!(text(&literal(-2.5)), "-2.5");
     }
 }

@@ -6,6 +6,7 @@ use syn::{Item, parse_quote};
 
 use super::arithmetic::integer;
 use super::function::argument_name;
+use super::number::Number;
 use super::print::plain;
 use super::shape::Storage;
 use crate::chain::Chain;
@@ -154,7 +155,7 @@ fn method(block: &Block) -> TokenStream {
     let function = block.function;
     let name = format_ident!("{}", function.name);
     let of = |argument: &Argument| {
-        let (name, of) = argument_name(*argument);
+        let (name, of) = argument_name(*argument, Number::Single);
         (format_ident!("{name}"), of)
     };
     let (names, types): (Vec<_>, Vec<_>) = function.arguments.iter().map(of).unzip();
@@ -191,7 +192,7 @@ fn method(block: &Block) -> TokenStream {
             }
         }
         _ => {
-            let result = Storage::of(function).public_type();
+            let result = Storage::of(function, Number::Single).public_type();
             quote! {
                 fn #name(&self, #(#names: #types),*) -> #result {
                     #name(#(#arguments),*)

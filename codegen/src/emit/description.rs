@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{Item, parse_quote};
 
-use super::arithmetic::{integer, number};
+use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{BodyId, Chain, CoordinateKind, Value};
 
@@ -18,9 +18,9 @@ pub fn description(chain: &Chain) -> Vec<Item> {
 
 fn description_constant(chain: &Chain) -> Item {
     let defaults = chain.parameter_defaults();
-    let at_defaults = |value: &Value| number(value.at(&defaults));
+    let at_defaults = |value: &Value| literal(value.at(&defaults));
     let parameters = chain.parameters.iter().map(|p| {
-        let (name, unit, about, default) = (&p.name, &p.unit, &p.about, number(p.default));
+        let (name, unit, about, default) = (&p.name, &p.unit, &p.about, literal(p.default));
         quote!(ParameterInfo { name: #name, unit: #unit, about: #about, default: #default })
     });
     let coordinates = chain.coordinates.iter().enumerate().map(|(i, c)| {
@@ -29,7 +29,7 @@ fn description_constant(chain: &Chain) -> Item {
     });
     let bodies = chain.bodies.iter().enumerate().map(|(p, body)| {
         let (name, link) = (&body.name, &body.link);
-        let mass = number(body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&defaults)));
+        let mass = literal(body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&defaults)));
         let length = at_defaults(&body.length);
         let degrees = integer(chain.degrees_of_freedom(BodyId(p)));
         quote!(BodyInfo { name: #name, link: #link, mass: #mass, length: #length, degrees_of_freedom: #degrees })
@@ -45,9 +45,9 @@ fn description_constant(chain: &Chain) -> Item {
     });
     let points = chain.points.iter().map(|point| &point.name);
     let statics = chain.analyses.statics;
-    let guess = chain.guess.iter().map(|&x| number(x));
+    let guess = chain.guess.iter().map(|&x| literal(x));
     let (name, title, hash) = (&chain.name, &chain.title, &chain.spec_hash);
-    let (duration, step, output) = (number(chain.run.duration), number(chain.run.step), number(chain.run.output));
+    let (duration, step, output) = (literal(chain.run.duration), literal(chain.run.step), literal(chain.run.output));
     parse_quote! {
         #[doc = " Names, units and settings."]
         pub const DESCRIPTION: Description = Description {

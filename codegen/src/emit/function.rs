@@ -7,18 +7,19 @@ use quote::{ToTokens, format_ident, quote};
 use syn::{Expr, Ident, Stmt, parse_quote};
 
 use super::arithmetic::{
-    borrow_mut, call, difference, element, field, integer, method, negative, number, product, quotient, sum, variable,
+    borrow_mut, call, difference, element, field, integer, method, negative, product, quotient, sum, variable,
 };
 use super::labels::Labels;
 use super::names::Names;
+use super::number::Number;
 use super::print::comment;
 use super::shape::{Handover, Storage};
 use crate::lower::{Angle, Block, Blocks, Statement};
 use crate::symbolic::{Argument, ExprId, Op};
 
 /// The items of one function: itself, and its pieces if it is long.
-pub fn function(blocks: &Blocks, block: &Block, labels: &Labels) -> Vec<syn::Item> {
-    let writer = Writer { blocks, block, storage: Storage::of(block.function), labels };
+pub fn function(blocks: &Blocks, block: &Block, labels: &Labels, number: Number) -> Vec<syn::Item> {
+    let writer = Writer { blocks, block, storage: Storage::of(block.function, number), labels, number };
     if block.pieces.len() == 1 { vec![writer.whole()] } else { writer.in_pieces() }
 }
 
@@ -27,6 +28,7 @@ struct Writer<'a> {
     block: &'a Block<'a>,
     storage: Storage<'a>,
     labels: &'a Labels<'a>,
+    number: Number,
 }
 
 impl Writer<'_> {
@@ -77,9 +79,10 @@ impl Writer<'_> {
         let mut item = self.shell();
         let storage = self.storage.storage_type();
         let carried = integer(self.block.carried);
+        let (number, zero) = (self.number.of(), self.number.literal(0.0));
         let mut statements: Vec<Stmt> = vec![self.begin()];
         if self.block.carried > 0 {
-            statements.push(parse_quote!(let mut kept = [0.0; #carried];));
+            statements.push(parse_quote!(let mut kept = [#zero; #carried];));
         }
         let mut items = Vec::new();
         let total = self.block.pieces.len();
@@ -92,7 +95,7 @@ impl Writer<'_> {
             let mut parameters: Vec<TokenStream> = self.inputs(&used);
             let mut arguments: Vec<Expr> = self.input_names(&used).iter().map(|n| variable(n)).collect();
             if keeps {
-                parameters.push(quote!(kept: &mut [f64; #carried]));
+                parameters.push(quote!(kept: &mut [#number; #carried]));
                 arguments.push(borrow_mut(variable("kept")));
             }
             if outputs {
@@ -159,7 +162,7 @@ impl Writer<'_> {
         });
         let mut inputs: Vec<TokenStream> = Vec::new();
         for argument in self.block.function.arguments {
-            let (name, of) = argument_name(*argument);
+            let (name, of) = argument_name(*argument, self.number);
             let name = if used.contains(argument) { format_ident!("{name}") } else { format_ident!("_{name}") };
             inputs.push(quote!(#name: #of));
         }
@@ -173,7 +176,7 @@ impl Writer<'_> {
     fn inputs(&self, used: &Used) -> Vec<TokenStream> {
         let mut inputs: Vec<TokenStream> = Vec::new();
         for argument in self.block.function.arguments.iter().filter(|a| used.contains(a)) {
-            let (name, of) = argument_name(*argument);
+            let (name, of) = argument_name(*argument, self.number);
             let name = format_ident!("{name}");
             inputs.push(quote!(#name: #of));
         }
@@ -185,7 +188,10 @@ impl Writer<'_> {
 
     fn input_names(&self, used: &Used) -> Vec<&'static str> {
         let arguments = self.block.function.arguments.iter().filter(|a| used.contains(a));
-        arguments.map(|a| argument_name(*a).0).chain(used.contains(&Argument::Parameters).then_some("c")).collect()
+        arguments
+            .map(|a| argument_name(*a, self.number).0)
+            .chain(used.contains(&Argument::Parameters).then_some("c"))
+            .collect()
     }
 
     /// Plain arrays behind the vectors: a constant index into an array is checked when it is compiled.
@@ -219,11 +225,13 @@ impl Writer<'_> {
                 Statement::SinCos(angles) => {
                     statements.append(&mut pending);
                     statements.push(comment("Sines and cosines"));
-                    let results = angles.iter().map(|known| pair(known, &mut names));
-                    let results: Vec<TokenStream> = results.collect();
+                    let mut results = |of: fn(&Angle) -> Option<ExprId>| -> Vec<TokenStream> {
+                        angles.iter().map(|known| pattern(of(known), &mut names)).collect()
+                    };
+                    let (sines, cosines) = (results(|known| known.sin), results(|known| known.cos));
                     let angles = angles.iter().map(|known| self.expression(known.angle, &mut names, &mut used));
                     let angles: Vec<Expr> = angles.collect();
-                    statements.push(parse_quote!(let [#(#results),*] = sin_cos([#(#angles),*]);));
+                    statements.push(parse_quote!(let ([#(#sines),*], [#(#cosines),*]) = sin_cos([#(#angles),*]);));
                 }
                 &Statement::Let(id) => {
                     let value = self.operation(id, &mut names, &mut used);
@@ -263,7 +271,7 @@ impl Writer<'_> {
             && self.block.pieces.len() == 1
             && !piece.iter().any(|s| matches!(s, Statement::Output { .. }))
         {
-            statements.push(Stmt::Expr(number(0.0), None));
+            statements.push(Stmt::Expr(self.number.literal(0.0), None));
         }
         (statements, used)
     }
@@ -276,7 +284,7 @@ impl Writer<'_> {
             return field(variable("c"), &self.labels.constant(id));
         }
         match program.op(id) {
-            Op::Constant(c) => number(c.value()),
+            Op::Constant(c) => self.number.literal(c.value()),
             Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Parameters => {
                 used.insert(Argument::Parameters);
                 field(field(variable("c"), "params"), &program.symbol(symbol).name)
@@ -291,7 +299,7 @@ impl Writer<'_> {
         if let Some(product) = self.block.fused[id.index()] {
             return self.fused(id, product, names, used);
         }
-        operation(self.blocks.program.op(id), &mut |operand| self.expression(operand, names, used))
+        operation(self.blocks.program.op(id), self.number, &mut |operand| self.expression(operand, names, used))
     }
 
     /// A sum or difference with a product in it: `fma(a, b, c)`.
@@ -320,13 +328,13 @@ impl Writer<'_> {
                 element(element(columns, symbol.index / 6), symbol.index % 6)
             }
             Argument::Parameters => unreachable!("parameters are read where they are used"),
-            vector => element(variable(argument_name(vector).0), symbol.index),
+            vector => element(variable(argument_name(vector, self.number).0), symbol.index),
         }
     }
 }
 
 /// An operation as Rust.
-pub fn operation(op: Op, of: &mut dyn FnMut(ExprId) -> Expr) -> Expr {
+pub fn operation(op: Op, number: Number, of: &mut dyn FnMut(ExprId) -> Expr) -> Expr {
     match op {
         Op::Neg(a) => negative(of(a)),
         Op::Add(a, b) => sum(of(a), of(b)),
@@ -337,17 +345,15 @@ pub fn operation(op: Op, of: &mut dyn FnMut(ExprId) -> Expr) -> Expr {
         Op::Max(a, b) => method(of(a), "max", of(b)),
         Op::Sin(a) => field_of_pair(&of(a), 0),
         Op::Cos(a) => field_of_pair(&of(a), 1),
-        Op::Constant(c) => number(c.value()),
+        Op::Constant(c) => number.literal(c.value()),
         Op::Symbol(_) => unreachable!("inputs are read, not computed"),
     }
 }
 
-/// `sin_cos([angle])[0].0`
+/// `sin_cos([angle]).0[0]`
 fn field_of_pair(angle: &Expr, index: u32) -> Expr {
     let angles: Expr = parse_quote!([#angle]);
-    let pair = element(call("sin_cos", [angles]), 0);
-    let index = syn::Index { index, span: Span::call_site() };
-    parse_quote!(#pair.#index)
+    element(field(call("sin_cos", [angles]), &index.to_string()), 0)
 }
 
 /// `let name = value;`
@@ -356,13 +362,9 @@ pub fn local(name: &str, value: &Expr) -> Stmt {
     parse_quote!(let #name = #value;)
 }
 
-/// `(sin, cos)`, or `_` for what is not needed.
-fn pair(known: &Angle, names: &mut Names) -> TokenStream {
-    let mut pattern = |id: Option<ExprId>| {
-        id.map_or_else(|| quote!(_), |id| Ident::new(&names.of(id), Span::call_site()).into_token_stream())
-    };
-    let (sin, cos) = (pattern(known.sin), pattern(known.cos));
-    quote!((#sin, #cos))
+/// The name of a value, or `_` where it is not needed.
+fn pattern(id: Option<ExprId>, names: &mut Names) -> TokenStream {
+    id.map_or_else(|| quote!(_), |id| Ident::new(&names.of(id), Span::call_site()).into_token_stream())
 }
 
 /// Which inputs a piece reads.
@@ -377,14 +379,15 @@ const VECTORS: [(Argument, &str); 4] = [
 ];
 
 /// Name and type of an argument, in functions and in the methods that call them.
-pub fn argument_name(argument: Argument) -> (&'static str, TokenStream) {
+pub fn argument_name(argument: Argument, number: Number) -> (&'static str, TokenStream) {
+    let number = number.of();
     match argument {
-        Argument::Time => ("t", quote!(f64)),
-        Argument::Position => ("q", quote!(&SVector<f64, N>)),
-        Argument::Velocity => ("v", quote!(&SVector<f64, N>)),
-        Argument::Right => ("r", quote!(&SVector<f64, N>)),
-        Argument::Resistance => ("resistance", quote!(&SVector<f64, N>)),
-        Argument::BaseResistance => ("base", quote!(&SMatrix<f64, 6, 6>)),
+        Argument::Time => ("t", quote!(#number)),
+        Argument::Position => ("q", quote!(&SVector<#number, N>)),
+        Argument::Velocity => ("v", quote!(&SVector<#number, N>)),
+        Argument::Right => ("r", quote!(&SVector<#number, N>)),
+        Argument::Resistance => ("resistance", quote!(&SVector<#number, N>)),
+        Argument::BaseResistance => ("base", quote!(&SMatrix<#number, 6, 6>)),
         Argument::Factors => ("f", quote!(&Factors)),
         Argument::Parameters => ("c", quote!(&Constants)),
     }

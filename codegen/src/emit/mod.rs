@@ -6,7 +6,9 @@ mod description;
 mod function;
 mod header;
 mod labels;
+mod lanes;
 mod names;
+mod number;
 mod parameters;
 mod print;
 mod shape;
@@ -19,12 +21,13 @@ use quote::ToTokens;
 
 use syn::parse_quote;
 
-use crate::chain::Chain;
+use crate::chain::{Analyses, Chain};
 use crate::lower::Blocks;
 use crate::report::Report;
 use crate::symbolic::Shape;
 use arithmetic::integer;
 use labels::Labels;
+use number::Number;
 
 /// The module of a crane.
 #[derive(Clone, Debug)]
@@ -39,11 +42,11 @@ pub struct GeneratedCode {
 
 /// Writes the module. `spec_file` is the name of the YAML file.
 #[must_use]
-pub fn emit(chain: &Chain, blocks: &Blocks, report: Report, spec_file: &str) -> GeneratedCode {
+pub fn emit(chain: &Chain, analyses: Analyses, blocks: &Blocks, report: Report, spec_file: &str) -> GeneratedCode {
     let labels = Labels::new(chain, blocks);
     let mut items = Vec::new();
     items.extend(description::description(chain));
-    items.extend(parameters::parameters(chain, blocks, &labels));
+    items.extend(parameters::parameters(chain, blocks, &labels, Number::Single));
     items.push(parse_quote!(
         const BLANK: Matrix4<f64> =
             Matrix4::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
@@ -56,9 +59,14 @@ pub fn emit(chain: &Chain, blocks: &Blocks, report: Report, spec_file: &str) -> 
                 pub type Factors = [f64; #count];
             ));
         }
-        items.extend(function::function(blocks, block, &labels));
+        items.extend(function::function(blocks, block, &labels, Number::Single));
     }
     items.extend(crane::crane(chain, blocks));
+    if analyses.ensemble {
+        items.extend(lanes::lanes(chain, blocks, &labels));
+    } else if analyses.dynamics {
+        items.push(lanes::one_by_one());
+    }
     let imports = imports(&items);
     let body = print::file(items);
     let text = format!("{}\n{}\n{body}", header::header(chain, &report, spec_file), imports);
@@ -82,9 +90,11 @@ fn imports(items: &[syn::Item]) -> String {
                 "Description",
                 "DriveInfo",
                 "Dynamics",
+                "Ensemble",
                 "Implicit",
                 "Linearisation",
                 "Linearise",
+                "OneByOne",
                 "ParameterInfo",
                 "Statics",
                 "SupportInfo",

@@ -5,9 +5,10 @@ use std::collections::{HashMap, HashSet};
 use crate::symbolic::{Argument, ExprId, Op, Program};
 
 /// Words that generated functions use themselves.
-const TAKEN: [&str; 18] = [
+const TAKEN: [&str; 19] = [
     "factors",
     "fma",
+    "splat",
     "t",
     "q",
     "v",

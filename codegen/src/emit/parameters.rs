@@ -3,30 +3,32 @@
 use quote::format_ident;
 use syn::{Item, Stmt, parse_quote};
 
-use super::arithmetic::{field, number, variable};
+use super::arithmetic::{field, variable};
 use super::function::{local, operation};
 use super::labels::Labels;
+use super::number::Number;
 use super::print::plain;
 use crate::chain::{Chain, Parameter};
 use crate::lower::Blocks;
 use crate::symbolic::{Argument, ExprId, Op};
 
 /// `Params` with defaults and units, and `Constants`, what functions read; nothing if all numbers are baked in.
-pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
+pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels, number: Number) -> Vec<Item> {
     if chain.parameters.is_empty() {
         return vec![];
     }
     let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
     let docs: Vec<String> = chain.parameters.iter().map(documentation).collect();
-    let defaults = chain.parameters.iter().map(|p| number(p.default));
+    let defaults = chain.parameters.iter().map(|p| number.literal(p.default));
     let stored: Vec<_> = blocks.constants.stored.iter().map(|id| format_ident!("{}", labels.constant(*id))).collect();
-    let body = constants_body(blocks, labels);
+    let body = constants_body(blocks, labels, number);
+    let number = number.of();
     vec![
         parse_quote! {
             #[doc = " Values that stay live at run time."]
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct Params {
-                #(#[doc = #docs] pub #names: f64,)*
+                #(#[doc = #docs] pub #names: #number,)*
             }
         },
         parse_quote! {
@@ -41,7 +43,7 @@ pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> 
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct Constants {
                 params: Params,
-                #(#stored: f64,)*
+                #(#stored: #number,)*
             }
         },
         parse_quote! {
@@ -63,14 +65,14 @@ fn documentation(parameter: &Parameter) -> String {
 }
 
 /// One `let` for each value on the way to the stored constants.
-fn constants_body(blocks: &Blocks, labels: &Labels) -> Vec<Stmt> {
+fn constants_body(blocks: &Blocks, labels: &Labels, number: Number) -> Vec<Stmt> {
     let program = blocks.program;
     let needed = program.needed(blocks.constants.stored.iter().copied());
     let name = |id: ExprId| {
         if blocks.constants.is_stored(id) { labels.constant(id) } else { format!("t{:03}", id.index()) }
     };
     let argument = |id: ExprId| match program.op(id) {
-        Op::Constant(c) => number(c.value()),
+        Op::Constant(c) => number.literal(c.value()),
         Op::Symbol(symbol) => {
             debug_assert_eq!(program.symbol(symbol).argument, Argument::Parameters);
             field(variable("params"), &program.symbol(symbol).name)
@@ -80,6 +82,6 @@ fn constants_body(blocks: &Blocks, labels: &Labels) -> Vec<Stmt> {
     program
         .ids()
         .filter(|id| needed[id.index()] && !program.op(*id).is_leaf())
-        .map(|id| local(&name(id), &operation(program.op(id), &mut |operand| argument(operand))))
+        .map(|id| local(&name(id), &operation(program.op(id), number, &mut |operand| argument(operand))))
         .collect()
 }

@@ -5,6 +5,7 @@ use quote::{format_ident, quote};
 use syn::Expr;
 
 use super::arithmetic::{element, field, integer, variable};
+use super::number::Number;
 use crate::symbolic::{Function, Shape};
 
 /// How a function hands over its result.
@@ -20,11 +21,12 @@ pub enum Handover {
 /// Type, storage and slots of a result.
 pub struct Storage<'f> {
     shape: &'f Shape,
+    number: Number,
 }
 
 impl<'f> Storage<'f> {
-    pub fn of(function: &'f Function) -> Self {
-        Storage { shape: &function.shape }
+    pub fn of(function: &'f Function, number: Number) -> Self {
+        Storage { shape: &function.shape, number }
     }
 
     pub fn handover(&self) -> Handover {
@@ -37,9 +39,10 @@ impl<'f> Storage<'f> {
 
     /// Type that the function returns, or whose reference it takes.
     pub fn public_type(&self) -> TokenStream {
+        let number = self.number.of();
         match self.shape {
             Shape::Scalar => quote!(f64),
-            Shape::Vector(_) => quote!(SVector<f64, N>),
+            Shape::Vector(_) => quote!(SVector<#number, N>),
             Shape::Symmetric(_) => quote!(SMatrix<f64, N, N>),
             Shape::Base => quote!(SMatrix<f64, 6, 6>),
             Shape::Factors(_) => quote!(Factors),
@@ -60,8 +63,9 @@ impl<'f> Storage<'f> {
 
     /// Type of the variable `out` in which the result grows.
     pub fn storage_type(&self) -> TokenStream {
+        let number = self.number.of();
         match self.shape {
-            Shape::Vector(_) => quote!([f64; N]),
+            Shape::Vector(_) => quote!([#number; N]),
             Shape::Symmetric(_) => quote!([[f64; N]; N]),
             Shape::Base => quote!([[f64; 6]; 6]),
             Shape::Record(_, fields) => array(&quote!([[f64; N]; N]), fields.len()),
@@ -75,9 +79,10 @@ impl<'f> Storage<'f> {
 
     /// A storage in which every slot that no statement writes has its value.
     pub fn blank(&self) -> TokenStream {
+        let zero = self.number.literal(0.0);
         match self.shape {
             Shape::Scalar => quote!(0.0),
-            Shape::Vector(_) => quote!([0.0; N]),
+            Shape::Vector(_) => quote!([#zero; N]),
             Shape::Symmetric(_) => quote!([[0.0; N]; N]),
             Shape::Base => quote!([[0.0; 6]; 6]),
             Shape::Factors(n) => array(&quote!(0.0), *n),

@@ -56,7 +56,7 @@ pub struct Block<'p> {
 pub enum Statement {
     /// Reads an input: `let boom_psi = q[6];`
     Input(ExprId),
-    /// Sines and cosines of all angles: `let [(sin_psi, cos_psi), …] = sin_cos([psi, …]);`
+    /// Sines and cosines of all angles: `let ([sin_psi, …], [cos_psi, …]) = sin_cos([psi, …]);`
     SinCos(Vec<Angle>),
     /// Computes a value: `let t017 = …;`
     Let(ExprId),

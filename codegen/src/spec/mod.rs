@@ -86,6 +86,8 @@ pub enum Analysis {
     Modes,
     /// First and second derivatives of every body's transformation.
     Derivatives,
+    /// Accelerations of eight cranes a call, for simulations of many with other parameters; includes `dynamics`.
+    Ensemble,
 }
 
 /// A value that stays live at run time.

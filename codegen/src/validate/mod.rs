@@ -164,7 +164,7 @@ impl<'a> Check<'a> {
     }
 
     fn analyses(&mut self, given: Option<&Given<Vec<Given<Analysis>>>>) -> Analyses {
-        let default = Analyses { statics: true, dynamics: true, modes: true, derivatives: false };
+        let default = Analyses { statics: true, dynamics: true, modes: true, derivatives: false, ensemble: false };
         let Some((list, span)) = given.and_then(|given| Some((given.value.as_ref()?, given.span))) else {
             return default;
         };
@@ -174,9 +174,10 @@ impl<'a> Check<'a> {
         let wants = |analysis| list.iter().any(|item| item.value == Some(analysis));
         Analyses {
             statics: wants(Analysis::Statics),
-            dynamics: wants(Analysis::Dynamics),
+            dynamics: wants(Analysis::Dynamics) || wants(Analysis::Ensemble),
             modes: wants(Analysis::Modes),
             derivatives: wants(Analysis::Derivatives),
+            ensemble: wants(Analysis::Ensemble),
         }
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix4, SVector, Vector3};
 
 use super::{Energies, Rig};
 use crate::{
-    Description, Implicit, Linearise, Statics, TransformDerivatives, dynamics,
+    Description, Ensemble, Implicit, Linearise, Statics, TransformDerivatives, dynamics,
     dynamics::{Run, Sample, Stopped, rk4},
     modes::SmallMotions,
     statics,
@@ -14,9 +14,15 @@ use crate::{
 };
 
 /// A crane compiled with every analysis.
-pub trait Crane<const N: usize>: Implicit<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone {}
+pub trait Crane<const N: usize>:
+    Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone
+{
+}
 
-impl<const N: usize, C: Implicit<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone> Crane<N> for C {}
+impl<const N: usize, C> Crane<N> for C where
+    C: Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone
+{
+}
 
 /// A crane of `N` coordinates behind [`Rig`].
 #[derive(Clone, Copy, Debug, Default)]

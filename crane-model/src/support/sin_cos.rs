@@ -36,21 +36,40 @@ const COS: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// `(sin x, cos x)` of every angle, rad.
+/// Sines and cosines of all angles, rad.
 #[inline]
-pub fn sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
-    let mut results = [(0.0, 0.0); K];
-    for (angles, results) in angles.chunks(8).zip(results.chunks_mut(8)) {
+pub fn sin_cos<const K: usize>(angles: [f64; K]) -> ([f64; K], [f64; K]) {
+    let (mut sines, mut cosines) = ([0.0; K], [0.0; K]);
+    let mut eight_at = |at: usize| {
+        let places = (angles.get(at..), sines.get_mut(at..), cosines.get_mut(at..));
+        let (Some(angles), Some(sines), Some(cosines)) = places else { return };
+        let places = (angles.first_chunk::<8>(), sines.first_chunk_mut(), cosines.first_chunk_mut());
+        if let (Some(angles), Some(sines), Some(cosines)) = places {
+            let (sin, cos) = sin_cos_lanes(f64x8::new(*angles));
+            (*sines, *cosines) = (sin.to_array(), cos.to_array());
+        }
+    };
+    for eight in 0..K / 8 {
+        eight_at(8 * eight);
+    }
+    if K > 8 && !K.is_multiple_of(8) {
+        // The last eight: some of them a second time, which is cheaper than to move fewer.
+        eight_at(K - 8);
+    }
+    if K < 8 {
         let mut eight = [0.0; 8];
         for (place, angle) in eight.iter_mut().zip(angles) {
-            *place = *angle;
+            *place = angle;
         }
         let (sin, cos) = sin_cos_lanes(f64x8::new(eight));
-        for (result, pair) in results.iter_mut().zip(sin.to_array().into_iter().zip(cos.to_array())) {
-            *result = pair;
+        for (place, sine) in sines.iter_mut().zip(sin.to_array()) {
+            *place = sine;
+        }
+        for (place, cosine) in cosines.iter_mut().zip(cos.to_array()) {
+            *place = cosine;
         }
     }
-    results
+    (sines, cosines)
 }
 
 /// `(sin x, cos x)` of eight angles, rad.

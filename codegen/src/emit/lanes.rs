@@ -1,0 +1,94 @@
+//! Eight cranes a call: the same statements over vectors of eight numbers, each crane with its own state and parameters.
+
+use quote::{format_ident, quote};
+use syn::{Item, ItemMod, parse_quote};
+
+use super::function;
+use super::labels::Labels;
+use super::number::Number;
+use super::parameters;
+use crate::chain::Chain;
+use crate::lower::Blocks;
+
+/// Functions that a simulation of many cranes calls in every step.
+const FUNCTIONS: [&str; 1] = ["forward_dynamics"];
+
+/// Eight cranes of a spec that does not ask for them: one after the other.
+pub fn one_by_one() -> Item {
+    parse_quote! {
+        impl Ensemble<N> for Crane {
+            type Lanes = OneByOne<Crane>;
+
+            fn lanes(cranes: [&Self; 8]) -> OneByOne<Crane> {
+                OneByOne(cranes.map(|crane| *crane))
+            }
+        }
+    }
+}
+
+/// The module `lanes`, and what makes eight cranes of one.
+pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
+    let mut items = parameters::parameters(chain, blocks, labels, Number::Lanes);
+    for block in blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.name)) {
+        items.extend(function::function(blocks, block, labels, Number::Lanes));
+    }
+    let live = !chain.parameters.is_empty();
+    let fields = if live { quote!({ constants: Constants }) } else { quote!(;) };
+    let constants = blocks.functions.iter().any(|b| b.function.name == "forward_dynamics" && b.reads_parameters);
+    let constants = constants.then(|| quote!(, &self.constants));
+    let mut module: ItemMod = parse_quote! {
+        #[doc = " Eight cranes a call."]
+        pub mod lanes {
+            use ::crane_model::nalgebra::SVector;
+            use ::crane_model::support::lanes::{f64x8, fma, sin_cos, splat};
+            use ::crane_model::LaneDynamics;
+            use super::N;
+        }
+    };
+    items.push(parse_quote! {
+        #[doc = " Eight cranes with their own parameters."]
+        #[derive(Clone, Copy, Debug)]
+        pub struct Cranes #fields
+    });
+    items.push(parse_quote! {
+        impl LaneDynamics<N> for Cranes {
+            fn forward_dynamics(&self, t: f64x8, q: &SVector<f64x8, N>, v: &SVector<f64x8, N>) -> SVector<f64x8, N> {
+                forward_dynamics(t, q, v #constants)
+            }
+        }
+    });
+    let own = if live {
+        let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
+        items.push(parse_quote! {
+            impl Cranes {
+                #[doc = " Eight cranes with these values of their live parameters."]
+                pub fn new(params: &Params) -> Self {
+                    Cranes { constants: Constants::from(params) }
+                }
+            }
+        });
+        quote! {
+            lanes::Cranes::new(&lanes::Params {
+                #(#names: cranes.map(|crane| crane.constants.params.#names).into()),*
+            })
+        }
+    } else {
+        quote!(lanes::Cranes)
+    };
+    if let Some((_, content)) = &mut module.content {
+        content.append(&mut items);
+    }
+    let cranes = if live { quote!(cranes) } else { quote!(_cranes) };
+    vec![
+        Item::Mod(module),
+        parse_quote! {
+            impl Ensemble<N> for Crane {
+                type Lanes = lanes::Cranes;
+
+                fn lanes(#cranes: [&Self; 8]) -> lanes::Cranes {
+                    #own
+                }
+            }
+        },
+    ]
+}
