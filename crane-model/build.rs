@@ -30,6 +30,16 @@ mod cranes {
         // The command offers every analysis of every crane.
         let compile = |spec: &PathBuf| build::compile_spec_for(spec, Some(Analyses::ALL)).name;
         let names: Vec<String> = specs.iter().map(compile).collect();
-        fs::write(build::out_dir().join("cranes.rs"), format!("crate::cranes! {{ {} }}\n", names.join(", ")))
+        let texts: io::Result<Vec<String>> = names
+            .iter()
+            .zip(&specs)
+            .map(|(name, spec)| Ok(format!("({name:?}, {:?}),", fs::read_to_string(spec)?)))
+            .collect();
+        let module = format!(
+            "crate::cranes! {{ {} }}\n\n/// Names and specs (YAML) of all cranes.\npub const SPECS: &[(&str, &str)] = &[{}];\n",
+            names.join(", "),
+            texts?.concat()
+        );
+        fs::write(build::out_dir().join("cranes.rs"), module)
     }
 }

@@ -97,6 +97,18 @@ pub enum CoordinateRole {
     Element,
 }
 
+impl CoordinateRole {
+    /// The role in a word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            CoordinateRole::Base => "base",
+            CoordinateRole::Driven => "driven",
+            CoordinateRole::Passive => "passive",
+            CoordinateRole::Element => "element",
+        }
+    }
+}
+
 /// A body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyInfo {

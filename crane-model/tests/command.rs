@@ -149,6 +149,7 @@ fn the_comparison_writes_figures() {
     for words in ["Deflection of the load points", "peak torque, boom_psi", "real-time factor", "N m"] {
         assert!(printed.contains(words), "`{words}` not in: {printed}");
     }
+    assert!(fs::metadata(out.join("report.html")).is_ok_and(|page| page.len() > 500_000));
     for figure in ["path", "drives", "deviation"] {
         let svg = fs::read_to_string(out.join(format!("comparison_{figure}.svg"))).expect("a figure");
         assert!(svg.starts_with("<svg width=\"") && svg.trim_end().ends_with("</svg>"));
@@ -231,6 +232,29 @@ fn every_crane_is_listed_described_and_analysed() {
             assert!(output.status.success(), "{command} {name}: {}", text(&output.stderr));
         }
     }
+}
+
+#[test]
+fn a_new_crane_is_a_crate_with_the_comments_of_its_spec() {
+    // The folder stands in one of the test's own; its name is the crane's.
+    let parent = folder("new");
+    let path = parent.join("my-crane");
+    let arguments = ["new", path.to_str().expect("a path"), "--from", "knuckle-boom"];
+    let output = crane(&arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let read = |file: &str| fs::read_to_string(path.join(file)).expect(file);
+    let spec = read("crane.yaml");
+    assert!(spec.contains("\nname: my_crane\n") && spec.contains("# passive"), "{spec}");
+    assert!(read("src/main.rs").contains("use my_crane::my_crane::{Crane, N};"));
+    assert!(read("Cargo.toml").contains("name = \"my-crane\""));
+    let files = ["Cargo.toml", "README.md", "build.rs", "src/lib.rs", "src/main.rs", "tests/identities.rs"];
+    for file in files {
+        assert!(!read(file).contains("{{"), "{file}");
+    }
+    assert!(read("build.rs").lines().count() <= 10);
+    refused(&arguments, &["is there already"]);
+    refused(&["new", "My crane"], &["no name for a crate", "such as my-crane"]);
+    refused(&["new", "other", "--from", "cantilver"], &["no crane `cantilver`", "`cantilever`"]);
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! Everything of a run that is worth a column.
 
-use crate::{CoordinateKind, Description, dynamics::Sample, results::Table, rig::Rig};
+use crate::{CoordinateKind, CoordinateRole, Description, dynamics::Sample, results::Table, rig::Rig};
 
 /// Records the samples of a run of a crane.
 ///
 /// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; of a drive `<coordinate>_prescribed` and
 /// `<coordinate>_drive_torque` or `_drive_force`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
-/// `<support>_reaction_x`, `_y`, `_z`; energies. `energy_balance` is `E(t) − E(0) − drive_work + dissipated_energy`, the
+/// `<support>_reaction_x`, `_y`, `_z`; of a coordinate of an element `<coordinate>_moment`; energies. `energy_balance` is `E(t) − E(0) − drive_work + dissipated_energy`, the
 /// error of the run if it is audited.
 pub struct Recording<'a> {
     rig: &'a dyn Rig,
@@ -45,6 +45,7 @@ impl<'a> Recording<'a> {
         for reaction in rig.support_reactions(q, v) {
             row.extend(&reaction);
         }
+        row.extend(rig.element_moments(q, v));
         row.extend([energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives]);
         row.extend([work, dissipated, energies.total() - self.energy_at_start - work + dissipated]);
         self.table.rows.push(row);
@@ -82,6 +83,9 @@ fn columns(description: &Description) -> Table {
         for axis in ["x", "y", "z"] {
             table.add(format!("{}_reaction_{axis}", support.name), "N");
         }
+    }
+    for coordinate in description.coordinates.iter().filter(|coordinate| coordinate.role == CoordinateRole::Element) {
+        table.add(format!("{}_moment", coordinate.name), coordinate.kind.force_unit());
     }
     for energy in ["kinetic", "gravity", "support", "element", "drive"] {
         table.add(format!("{energy}_energy"), "J");

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix4, SVector, Vector3};
 
 use super::{Energies, Rig};
 use crate::{
-    Description, Ensemble, Implicit, Linearise, Statics, TransformDerivatives, dynamics,
+    CoordinateRole, Description, Ensemble, Implicit, Linearise, Statics, TransformDerivatives, dynamics,
     dynamics::{Run, Sample, Stopped, rk4},
     modes::SmallMotions,
     statics,
@@ -100,6 +100,15 @@ impl<const N: usize, C: Crane<N> + Send + Sync> Rig for Instance<N, C> {
         let mut out = vec![[0.0; 2]; self.description().drives.len()];
         self.0.drive_motions(t, &mut out);
         out
+    }
+
+    fn element_moments(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let forces = self.0.element_forces(&vector(q), &vector(v));
+        let coordinates = self.description().coordinates.iter().zip(&forces);
+        coordinates
+            .filter(|(coordinate, _)| coordinate.role == CoordinateRole::Element)
+            .map(|(_, force)| -force)
+            .collect()
     }
 
     fn support_reactions(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>> {

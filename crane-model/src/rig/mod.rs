@@ -83,6 +83,10 @@ pub trait Rig: Send + Sync {
     /// Prescribed positions and rates of the drives.
     fn drive_motions(&self, t: f64) -> Vec<[f64; 2]>;
 
+    /// Moments that the springs and dampers between rigid elements transmit, `k q + d q̇`, one a coordinate of an element in
+    /// the order of `q`: positive where they resist a positive deformation. N m.
+    fn element_moments(&self, q: &[f64], v: &[f64]) -> Vec<f64>;
+
     /// Forces of the supports on the crane, N.
     fn support_reactions(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>>;
 

@@ -4,8 +4,10 @@
 
 mod equations;
 mod imports;
+mod new_crane;
 mod oracles;
 mod python;
+mod report;
 mod step;
 mod workspace;
 
@@ -16,7 +18,7 @@ use step::Step;
 
 const USAGE: &str = "cargo xtask TASK
 
-  test     every check: lint, unit and whole-system tests, oracles, the example crate, the default run
+  test     every check: lint, unit and whole-system tests, oracles, the example crate, the default run and its report
   lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md
   oracles  generated code against CasADi, Pinocchio and MuJoCo, over all shipped and some random cranes
   performance [--quick]
@@ -90,7 +92,11 @@ fn tests() -> Vec<Step> {
     vec![
         Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench", "--features", CLI]),
         Step::cargo("the default run", &["run", "--release"]),
+        Step::check("packages of the report page", report::prepare),
+        Step::check("the report page is current", report::is_current),
+        Step::check("the report page in a browser", report::in_browser),
         Step::cargo("a crane of one's own", &["run", "--release", "--package", "own-crane"]),
+        Step::check("a new crane", new_crane::check),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.
         Step::cargo(
             "a crane without std and heap",

@@ -43,13 +43,17 @@ impl Step {
         match &self.action {
             Action::Check(check) => check(),
             Action::Cargo { arguments, environment } => {
-                let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
-                let mut command = Command::new(cargo);
+                let mut command = Command::new(cargo());
                 command.args(arguments).envs(environment.iter().copied()).current_dir(workspace::root());
                 finish(&mut command)
             }
         }
     }
+}
+
+/// The cargo that runs this.
+pub fn cargo() -> String {
+    std::env::var("CARGO").unwrap_or_else(|_| "cargo".into())
 }
 
 /// Runs a command; anything but success is an error.

@@ -5,7 +5,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crane_model::{
+use crate::{
     dynamics::{self, Method, Run},
     modes::{self, DampedMode},
     results::{Recording, Table},
@@ -15,7 +15,7 @@ use crane_model::{
 };
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{
+use crate::command::{
     arguments::{Step, Timing},
     problem::{Outcome, Problem},
     statics::Case,
@@ -28,7 +28,7 @@ const MOST_RESULTS: f64 = 1e6;
 const MOST_STEPS: f64 = 1e10;
 
 /// Poses along the manoeuvre at which the step is checked: 2 ms each for 25 coordinates.
-const POSES: u16 = 10;
+pub const POSES: u16 = 10;
 
 /// Start of a crane whose spec asks for statics.
 pub const EQUILIBRIUM: &str = "static equilibrium, at rest";

@@ -2,7 +2,7 @@
 
 use std::{fmt::Write as _, io, path::Path, process::ExitCode};
 
-use crane_model::{dynamics::Stopped, modes::NoModes, statics::Equilibrium};
+use crate::{dynamics::Stopped, modes::NoModes, statics::Equilibrium};
 
 /// Exit code where the computation or a file failed.
 pub const FAILED: u8 = 1;
@@ -17,6 +17,8 @@ pub type Outcome<T> = Result<T, Problem>;
 pub enum Problem {
     /// The reader of our output has gone; nothing to say.
     NobodyListens,
+    /// Another program has told it, and ended with this code.
+    Elsewhere(u8),
     /// Something for the user to read.
     Told {
         /// What is wrong.
@@ -64,6 +66,7 @@ impl Problem {
     pub fn report(&self) -> ExitCode {
         match self {
             Problem::NobodyListens => ExitCode::SUCCESS,
+            Problem::Elsewhere(code) => ExitCode::from(*code),
             Problem::Told { title, help, code } => {
                 let mut text = format!("error: {title}\n");
                 if !help.is_empty() {

@@ -2,14 +2,15 @@
 
 use std::io::Write;
 
-use crane_model::{
+use crate::{
     Description,
     dynamics::Method,
     modes::DampedMode,
     stability::{cause, limit},
 };
 
-use crate::{
+use crate::command::{
+    Fleet,
     arguments::Stability,
     figures::{BLUE, Curve, Mark, Panel, VERMILLION},
     files,
@@ -21,8 +22,8 @@ use crate::{
 };
 
 /// Prints limits and modes, and draws the regions.
-pub fn stability(options: &Stability, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.analysis.crane.open()?;
+pub fn stability(options: &Stability, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.open(fleet)?;
     let rig = rig.as_ref();
     let description = rig.description();
     let start = Start::of(rig)?;
@@ -32,22 +33,7 @@ pub fn stability(options: &Stability, out: &mut dyn Write) -> Outcome<()> {
     let mut report = Report::default();
     report.fact("crane", description.name, "");
     report.fact("start", start.what, "");
-    let headers = ["method", "order", "step s", "safe step s", "at t s", "limited by"];
-    let mut limits = Grid::new("limits", "Largest stable steps", &headers);
-    for method in Method::ALL {
-        let bound = Bound::of(&poses, method);
-        let step = bound.as_ref().map(|bound| bound.limit.step);
-        let why = bound.as_ref().map_or_else(|| "nothing".to_owned(), |bound| cause(description, &bound.limit.mode));
-        limits.row([
-            method.name().into(),
-            method.order().into(),
-            step.into(),
-            step.map(|step| SAFE * step).into(),
-            bound.map(|bound| bound.t).into(),
-            why.into(),
-        ]);
-    }
-    report.grid(limits);
+    report.grid(limits(description, &poses));
     if poses.len() > 1 {
         report.grid(along(description, &poses));
     }
@@ -58,6 +44,26 @@ pub fn stability(options: &Stability, out: &mut dyn Write) -> Outcome<()> {
     write_figure(&options.out.join(&file), &regions(modes, description.step), 1)?;
     report.grid(file_list(&options.out, &[file]));
     report.print(options.analysis.format, out)
+}
+
+/// The largest stable step of every method over some poses, and what limits it.
+pub fn limits(description: &Description, poses: &[Pose]) -> Grid {
+    let headers = ["method", "order", "step s", "safe step s", "at t s", "limited by"];
+    let mut grid = Grid::new("limits", "Largest stable steps", &headers);
+    for method in Method::ALL {
+        let bound = Bound::of(poses, method);
+        let step = bound.as_ref().map(|bound| bound.limit.step);
+        let why = bound.as_ref().map_or_else(|| "nothing".to_owned(), |bound| cause(description, &bound.limit.mode));
+        grid.row([
+            method.name().into(),
+            method.order().into(),
+            step.into(),
+            step.map(|step| SAFE * step).into(),
+            bound.map(|bound| bound.t).into(),
+            why.into(),
+        ]);
+    }
+    grid
 }
 
 /// Limits at every pose, one method after the other.

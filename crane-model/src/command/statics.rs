@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crane_model::{
+use crate::{
     CoordinateInfo,
     rig::Rig,
     statics::{Equilibrium, Settings},
@@ -10,7 +10,8 @@ use crane_model::{
 
 use nalgebra::Vector3;
 
-use crate::{
+use crate::command::{
+    Fleet,
     arguments::{Analysis, Format},
     problem::{Outcome, Problem},
     report::{Cell, Grid, Report},
@@ -64,8 +65,8 @@ impl<'a> Case<'a> {
 }
 
 /// Prints the equilibrium of a crane.
-pub fn statics(options: &Analysis, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open()?;
+pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(fleet)?;
     let case = Case::new("value", rig.as_ref());
     let mut report = tables(std::slice::from_ref(&case));
     if options.format == Format::Json {

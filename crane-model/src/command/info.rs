@@ -2,9 +2,8 @@
 
 use std::io::Write;
 
-use crane_model::{CoordinateRole, cranes};
-
-use crate::{
+use crate::command::{
+    Fleet,
     arguments::{Analysis, Format},
     problem::Outcome,
     report::{Cell, Grid, Report},
@@ -12,9 +11,9 @@ use crate::{
 };
 
 /// Prints the cranes to choose from.
-pub fn list(format: Format, out: &mut dyn Write) -> Outcome<()> {
+pub fn list(format: Format, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let mut grid = Grid::new("cranes", "Cranes", &["name", "coordinates", "title"]);
-    for rig in cranes::all() {
+    for rig in (fleet.all)() {
         let description = rig.description();
         grid.row([description.name.into(), description.coordinates.len().into(), description.title.into()]);
     }
@@ -24,8 +23,8 @@ pub fn list(format: Format, out: &mut dyn Write) -> Outcome<()> {
 }
 
 /// Prints what a crane consists of.
-pub fn info(options: &Analysis, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open()?;
+pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(fleet)?;
     let description = rig.description();
     let mut report = Report::default();
     report.fact("crane", description.name, "");
@@ -53,17 +52,11 @@ pub fn info(options: &Analysis, out: &mut dyn Write) -> Outcome<()> {
     let mut coordinates = Grid::new("q", "Coordinates", &["index", "name", "unit", "role", "guess"]);
     let guess = rig.guess();
     for (index, coordinate) in description.coordinates.iter().enumerate() {
-        let role = match coordinate.role {
-            CoordinateRole::Base => "base",
-            CoordinateRole::Driven => "driven",
-            CoordinateRole::Passive => "passive",
-            CoordinateRole::Element => "element",
-        };
         coordinates.row([
             index.into(),
             coordinate.name.into(),
             coordinate.kind.unit().into(),
-            role.into(),
+            coordinate.role.name().into(),
             guess[index].into(),
         ]);
     }

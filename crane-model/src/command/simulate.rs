@@ -2,13 +2,14 @@
 
 use std::{io::Write, path::Path};
 
-use crane_model::{
+use crate::{
     CoordinateKind, Description, dynamics,
     results::{Table, drive_effort},
     rig::Rig,
 };
 
-use crate::{
+use crate::command::{
+    Fleet,
     arguments::Simulate,
     figures::{Curve, Mark, PALETTE, Panel, svg},
     files,
@@ -28,20 +29,20 @@ pub struct Trace<'a> {
 }
 
 /// Runs a crane and writes its results.
-pub fn simulate(options: &Simulate, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.analysis.crane.open()?;
+pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.open(fleet)?;
     let rig = rig.as_ref();
     let name = rig.description().name;
     let start = Start::of(rig)?;
     let settings = options.timing.settings(rig, &start)?;
-    files::folder(&options.timing.out)?;
+    files::folder(&options.folder.out)?;
     let bar = progress(settings.duration);
     let recorded = record(rig, &start, &settings, &bar)?;
     bar.finish_and_clear();
 
-    let mut written = write_run(&options.timing.out, rig, &settings, &recorded)?;
+    let mut written = write_run(&options.folder.out, rig, &settings, &recorded)?;
     let traces = [Trace { label: name, table: &recorded.table, dashed: false }];
-    written.extend(write_figures(&options.timing.out, &format!("{name}_"), rig.description(), &traces)?);
+    written.extend(write_figures(&options.folder.out, &format!("{name}_"), rig.description(), &traces)?);
 
     let mut report = Report::default();
     report.fact("crane", name, "");
@@ -49,7 +50,7 @@ pub fn simulate(options: &Simulate, out: &mut dyn Write) -> Outcome<()> {
     report.fact("steps", recorded.run.steps, "");
     report.fact("step", recorded.run.step, "s");
     report.grid(summary(rig.description(), &[(name, &recorded)]));
-    report.grid(file_list(&options.timing.out, &written));
+    report.grid(file_list(&options.folder.out, &written));
     report.print(options.analysis.format, out)
 }
 
@@ -72,7 +73,7 @@ pub fn write_run(
     let name = rig.description().name;
     let (csv, json) = (format!("{name}.csv"), format!("{name}.json"));
     files::write_csv(&folder.join(&csv), &recorded.table)?;
-    files::write_record(&folder.join(&json), rig, settings, recorded)?;
+    files::write_text(&folder.join(&json), &format!("{:#}\n", files::record(rig, settings, recorded)))?;
     Ok(vec![csv, json])
 }
 
@@ -147,7 +148,7 @@ fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
 }
 
 fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
-    let panel = |drive: &crane_model::DriveInfo| {
+    let panel = |drive: &crate::DriveInfo| {
         let coordinate = &description.coordinates[drive.coordinate];
         let effort = drive_effort(coordinate.name, coordinate.kind);
         let (symbol, unit) = match coordinate.kind {

@@ -2,9 +2,9 @@
 
 use std::io::Write;
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
-use crate::{arguments::Format, problem::Outcome};
+use crate::command::{arguments::Format, problem::Outcome};
 
 /// One field of a table.
 #[derive(Clone, Debug)]
@@ -121,6 +121,18 @@ impl Grid {
         self.rows.iter().map(object).collect()
     }
 
+    /// Whether a column holds numbers alone.
+    fn numeric(&self, column: usize) -> bool {
+        self.rows.iter().all(|row| !matches!(row.get(column), Some(Cell::Text(_)))) && !self.rows.is_empty()
+    }
+
+    /// Its texts as printed, for a page.
+    fn page(&self) -> Value {
+        let numeric: Vec<bool> = (0..self.headers.len()).map(|column| self.numeric(column)).collect();
+        let rows: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect();
+        json!({"key": self.key, "title": self.title, "headers": self.headers, "numeric": numeric, "rows": rows})
+    }
+
     /// Prints it for people.
     fn print(&self, out: &mut dyn Write) -> Outcome<()> {
         writeln!(out, "{}", self.title)?;
@@ -129,13 +141,10 @@ impl Grid {
             let cells = texts.iter().filter_map(|row| row.get(column)).map(|text| text.chars().count());
             cells.chain([self.headers[column].chars().count()]).max().unwrap_or(0)
         };
-        let right = |column: usize| {
-            self.rows.iter().all(|row| !matches!(row.get(column), Some(Cell::Text(_)))) && !self.rows.is_empty()
-        };
         let mut line = |cells: &mut dyn Iterator<Item = &str>| -> Outcome<()> {
             let padded = cells.enumerate().map(|(column, cell)| {
                 let width = width(column);
-                if right(column) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+                if self.numeric(column) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
             });
             Ok(writeln!(out, "  {}", padded.collect::<Vec<_>>().join("  ").trim_end())?)
         };
@@ -165,6 +174,16 @@ impl Report {
         if !grid.rows.is_empty() {
             self.grids.push(grid);
         }
+    }
+
+    /// Facts and tables as printed, for a page.
+    pub fn page(&self) -> Value {
+        let facts: Vec<_> = self
+            .facts
+            .iter()
+            .map(|(name, value, unit)| [name, value.text().as_str(), unit].map(str::to_owned))
+            .collect();
+        json!({"facts": facts, "grids": self.grids.iter().map(Grid::page).collect::<Vec<_>>()})
     }
 
     /// Prints it in the form asked for.

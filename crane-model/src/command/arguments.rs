@@ -1,6 +1,9 @@
 //! Arguments of the command.
 
-use std::{path::PathBuf, str::FromStr};
+use std::{
+    path::{Path, PathBuf},
+    str::FromStr,
+};
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
@@ -12,8 +15,12 @@ Examples:
                                        the same of another crane, for a program
   crane simulate --set load_mass=0 --out empty
                                        the manoeuvre without the log
+  crane report -o report.html          the crane in 3-D, plots and tables as a page that needs no network
   crane modes                          frequencies and damping about the static pose
   crane stability                      largest stable steps, what limits them, and a figure
+  crane check my.yaml; crane run my.yaml
+                                       a crane of one's own: its mistakes; everything about it
+  crane new my-crane --from cantilever a crate that compiles a crane of one's own
   crane list                           the cranes to choose from
   crane info                           coordinates, parameters, drives of a crane
   source <(crane completions bash)     completion of commands and options
@@ -41,18 +48,30 @@ pub struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Action {
+    /// All of it: statics, motion, figures and the report, into a folder
+    Run(Simulate),
     /// Static equilibrium: pose, drive torques, support reactions
     Statics(Analysis),
     /// Motion from the static pose: results, figures and a record of the run into a folder
     Simulate(Simulate),
     /// Frequencies, damping and dominating coordinates about the static pose, and the largest stable step
     Modes(Analysis),
+    /// Statics, motion and modes as one HTML page: the crane in 3-D, plots, tables
+    Report(Page),
     /// Largest stable step of every method and what limits it, at the static pose and along the manoeuvre
     Stability(Stability),
     /// What a crane consists of: coordinates, bodies, supports, drives, parameters
     Info(Analysis),
     /// T, ∂T/∂q, ∂²T/∂q∂q, A and e at a state, for checks by other programs
     Eval(Eval),
+    /// A crate for a crane of one's own, begun from a shipped one
+    New(New),
+    /// Whether a spec is sound, or every mistake in it
+    Check {
+        /// The crane's YAML file
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        spec: PathBuf,
+    },
     /// The cranes to choose from
     List(List),
     /// Completion script for a shell
@@ -60,6 +79,22 @@ pub enum Action {
         /// Shell to write it for.
         shell: clap_complete::Shell,
     },
+}
+
+impl Action {
+    /// The YAML file that is named in place of a crane.
+    pub fn spec(&self) -> Option<&Path> {
+        let choice = match self {
+            Action::Run(options) | Action::Simulate(options) => &options.analysis.crane,
+            Action::Statics(options) | Action::Modes(options) | Action::Info(options) => &options.crane,
+            Action::Stability(options) => &options.analysis.crane,
+            Action::Report(options) => &options.crane,
+            Action::Eval(options) => &options.crane,
+            Action::New(_) | Action::Check { .. } | Action::List(_) | Action::Completions { .. } => return None,
+        };
+        let path = Path::new(&choice.name);
+        path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml").then_some(path)
+    }
 }
 
 /// Form of what is printed.
@@ -75,7 +110,7 @@ pub enum Format {
 /// A crane with its live parameters.
 #[derive(Debug, Args)]
 pub struct Choice {
-    /// Crane; `crane list` shows all
+    /// Crane, or its YAML file; `crane list` shows all cranes
     #[arg(default_value = "eight_link_flexible", value_name = "CRANE")]
     pub name: String,
     #[command(flatten)]
@@ -135,6 +170,11 @@ pub struct Timing {
     /// Interval of recorded results, s [default: the crane's]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub output: Option<f64>,
+}
+
+/// Folder of results.
+#[derive(Debug, Args)]
+pub struct Folder {
     /// Folder for results; made where it is missing
     #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
@@ -150,6 +190,8 @@ pub struct Compare {
     pub format: Format,
     #[command(flatten)]
     pub timing: Timing,
+    #[command(flatten)]
+    pub folder: Folder,
 }
 
 /// A run of one crane.
@@ -159,6 +201,31 @@ pub struct Simulate {
     pub analysis: Analysis,
     #[command(flatten)]
     pub timing: Timing,
+    #[command(flatten)]
+    pub folder: Folder,
+}
+
+/// A report as one page.
+#[derive(Debug, Args)]
+pub struct Page {
+    #[command(flatten)]
+    pub crane: Choice,
+    #[command(flatten)]
+    pub timing: Timing,
+    /// File to write
+    #[arg(short = 'o', long, value_name = "FILE", default_value = "report.html", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+}
+
+/// A crate of one's own.
+#[derive(Debug, Args)]
+pub struct New {
+    /// Folder to make; its name is the crate's and the crane's
+    #[arg(value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+    /// Shipped crane to begin from
+    #[arg(long, value_name = "CRANE", default_value = "knuckle_boom")]
+    pub from: String,
 }
 
 /// Stability of time steps.

@@ -1,32 +1,55 @@
 //! A crane by its name, with parameters set.
 
-use crane_model::{cranes, rig::Rig};
+use crate::rig::Rig;
 
-use crate::{
+use crate::command::{
     arguments::{Choice, Parameters},
     problem::{Outcome, Problem, nearest},
 };
 
-impl Choice {
-    /// The crane with its parameters.
-    pub fn open(&self) -> Outcome<Box<dyn Rig>> {
-        self.parameters.crane(&self.name)
+/// Cranes that the command can choose from.
+#[derive(Clone, Copy, Debug)]
+pub struct Fleet {
+    /// All of them, with the parameters of their specs.
+    pub all: fn() -> Vec<Box<dyn Rig>>,
+    /// Names and specs (YAML), as far as they are known.
+    pub specs: &'static [(&'static str, &'static str)],
+}
+
+impl Fleet {
+    /// Whether it has cranes of all these names.
+    pub(super) fn has(&self, names: [&str; 2]) -> bool {
+        let all = (self.all)();
+        names.iter().all(|name| all.iter().any(|rig| rig.description().name == *name))
+    }
+
+    /// The spec of a crane.
+    pub(super) fn spec(&self, name: &str) -> Option<&'static str> {
+        self.specs.iter().find(|(known, _)| *known == name).map(|(_, spec)| *spec)
+    }
+
+    /// A crane by its name.
+    pub(super) fn crane(&self, name: &str) -> Outcome<Box<dyn Rig>> {
+        let all = (self.all)();
+        let names: Vec<&str> = all.iter().map(|rig| rig.description().name).collect();
+        match names.iter().position(|&known| known == name) {
+            Some(index) => all.into_iter().nth(index).ok_or_else(|| Problem::failed("no such crane", "")),
+            None => Err(Problem::usage(format!("there is no crane `{name}`"), meant(name, &names, "cranes"))),
+        }
     }
 }
 
-fn crane(name: &str) -> Outcome<Box<dyn Rig>> {
-    let all = cranes::all();
-    let names: Vec<&str> = all.iter().map(|rig| rig.description().name).collect();
-    match names.iter().position(|&known| known == name) {
-        Some(index) => all.into_iter().nth(index).ok_or_else(|| Problem::failed("no such crane", "")),
-        None => Err(Problem::usage(format!("there is no crane `{name}`"), meant(name, &names, "cranes"))),
+impl Choice {
+    /// The crane with its parameters.
+    pub fn open(&self, fleet: &Fleet) -> Outcome<Box<dyn Rig>> {
+        self.parameters.crane(&self.name, fleet)
     }
 }
 
 impl Parameters {
-    /// A shipped crane with these parameters.
-    pub fn crane(&self, name: &str) -> Outcome<Box<dyn Rig>> {
-        let mut rig = crane(name)?;
+    /// A crane with these parameters.
+    pub fn crane(&self, name: &str, fleet: &Fleet) -> Outcome<Box<dyn Rig>> {
+        let mut rig = fleet.crane(name)?;
         self.apply(rig.as_mut())?;
         Ok(rig)
     }

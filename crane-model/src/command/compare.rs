@@ -2,26 +2,27 @@
 
 use std::{io::Write, mem, thread, time::Instant};
 
-use crane_model::{Description, results::Table};
+use crate::{Description, dynamics::Settings, results::Table};
 
-use crate::{
-    arguments::{Compare, Format},
+use crate::command::{
+    Fleet,
+    arguments::{Compare, Format, Timing},
     figures::{Curve, Mark, PALETTE, Panel},
-    files,
+    files, page,
     problem::{Outcome, Problem},
-    run::{Recorded, progress, record},
+    run::{Recorded, Start, progress, record},
     simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
     statics::{Case, deflection, tables},
 };
 
-const RIGID: &str = "eight_link_rigid";
-const FLEXIBLE: &str = "eight_link_flexible";
+/// The rigid and the flexible crane.
+pub const CRANES: [&str; 2] = ["eight_link_rigid", "eight_link_flexible"];
 
 /// Statics and motion of both cranes, figures and data.
-pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
+pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let begin = Instant::now();
-    let (rigid, flexible) = (options.parameters.crane(RIGID)?, options.parameters.crane(FLEXIBLE)?);
-    let folder = &options.timing.out;
+    let (rigid, flexible) = (options.parameters.crane(CRANES[0], fleet)?, options.parameters.crane(CRANES[1], fleet)?);
+    let folder = &options.folder.out;
 
     let cases = [Case::new("rigid", rigid.as_ref()), Case::new("flexible", flexible.as_ref())];
     let format = options.format;
@@ -33,28 +34,9 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
         writeln!(out, "Statics of {}\n", flexible.description().title)?;
         mem::take(&mut report).print(format, out)?;
     }
-    let starts = cases.iter().map(Case::start).collect::<Outcome<Vec<_>>>()?;
 
     files::folder(folder)?;
-    let settings = cases
-        .iter()
-        .zip(&starts)
-        .map(|(case, start)| options.timing.settings(case.rig, start))
-        .collect::<Outcome<Vec<_>>>()?;
-    let bar = progress(settings.iter().map(|settings| settings.duration).sum());
-    bar.set_message("simulating");
-    let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
-        let runs: Vec<_> = cases
-            .iter()
-            .zip(&starts)
-            .zip(&settings)
-            .map(|((case, start), settings)| scope.spawn(|| record(case.rig, start, settings, &bar)))
-            .collect();
-        let broken = |_| Err(Problem::failed("a simulation broke off", "please report it"));
-        runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
-    });
-    bar.finish_and_clear();
-    let runs = results.into_iter().collect::<Outcome<Vec<Recorded>>>()?;
+    let (settings, runs) = runs(&cases, &options.timing)?;
     let [rigid_run, flexible_run] = runs.as_slice() else {
         return Err(Problem::failed("a simulation is missing", "please report it"));
     };
@@ -73,6 +55,10 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
     write_figure(&folder.join(&deviation_file), &deviation(description, &rigid_run.table, &flexible_run.table), 1)?;
     written.push(deviation_file);
 
+    let page = "report.html";
+    page::write(&folder.join(page), fleet, &cases, &settings, &runs)?;
+    written.push(page.to_owned());
+
     report.grid(summary(description, &[("rigid", rigid_run), ("flexible", flexible_run)]));
     report.grid(file_list(folder, &written));
     if format == Format::Table {
@@ -88,6 +74,27 @@ pub fn compare(options: &Compare, out: &mut dyn Write) -> Outcome<()> {
         writeln!(out, "\nAll in {:.1} s", begin.elapsed().as_secs_f64())?;
     }
     Ok(())
+}
+
+/// Runs cranes side by side, each from its own start.
+pub fn runs(cases: &[Case<'_>], timing: &Timing) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
+    let starts = cases.iter().map(|case| Start::of(case.rig)).collect::<Outcome<Vec<_>>>()?;
+    let settings =
+        cases.iter().zip(&starts).map(|(case, start)| timing.settings(case.rig, start)).collect::<Outcome<Vec<_>>>()?;
+    let bar = progress(settings.iter().map(|settings| settings.duration).sum());
+    bar.set_message("simulating");
+    let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
+        let runs: Vec<_> = cases
+            .iter()
+            .zip(&starts)
+            .zip(&settings)
+            .map(|((case, start), settings)| scope.spawn(|| record(case.rig, start, settings, &bar)))
+            .collect();
+        let broken = |_| Err(Problem::failed("a simulation broke off", "please report it"));
+        runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
+    });
+    bar.finish_and_clear();
+    Ok((settings, results.into_iter().collect::<Outcome<_>>()?))
 }
 
 /// How far the flexible crane's points are from the rigid one's over time, along each axis.

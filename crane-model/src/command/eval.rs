@@ -2,11 +2,12 @@
 
 use std::{fs, io::Write};
 
-use crane_model::{Description, rig::Rig};
+use crate::{Description, rig::Rig};
 use nalgebra::Matrix4;
 use serde_json::{Map, Value};
 
-use crate::{
+use crate::command::{
+    Fleet,
     arguments::{Eval, EvalFormat},
     files,
     npz::{Array, npz},
@@ -14,8 +15,8 @@ use crate::{
 };
 
 /// Evaluates and prints or writes.
-pub fn eval(options: &Eval, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open()?;
+pub fn eval(options: &Eval, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(fleet)?;
     let description = rig.description();
     let q = state("q", options.q.as_deref(), description)?.unwrap_or_else(|| rig.guess());
     let v = state("v", options.v.as_deref(), description)?.unwrap_or_else(|| vec![0.0; q.len()]);

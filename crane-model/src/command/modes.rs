@@ -2,14 +2,15 @@
 
 use std::io::Write;
 
-use crane_model::{
+use crate::{
     Description,
     dynamics::Method,
     modes::{DampedMode, damped, undamped},
     stability::limit,
 };
 
-use crate::{
+use crate::command::{
+    Fleet,
     arguments::Analysis,
     problem::Outcome,
     report::{Cell, Grid, Report},
@@ -17,28 +18,30 @@ use crate::{
 };
 
 /// Prints undamped and damped modes and the largest stable step.
-pub fn modes(options: &Analysis, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open()?;
+pub fn modes(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(fleet)?;
     let description = rig.description();
     let case = Case::new(description.name, rig.as_ref());
     case.stable()?;
-    let q = &case.equilibrium.q;
-    let motions = rig.small_motions(q);
-
-    let mut natural = Grid::new("undamped", "Undamped modes", &["mode", "frequency Hz", "omega rad/s", "dominated by"]);
-    for (index, mode) in undamped(&motions)?.iter().enumerate() {
-        let omega = mode.frequency().map(|_| mode.omega_squared.sqrt());
-        let names = names(description, &mode.dominating);
-        natural.row([(index + 1).into(), mode.frequency().into(), omega.into(), names]);
-    }
-    let modes = damped(&motions)?;
+    let modes = damped(&rig.small_motions(&case.equilibrium.q))?;
     let mut report = Report::default();
     report.fact("crane", description.name, "");
     let step = limit(&modes, &Method::Rk4.stability()).map(|limit| limit.step);
     report.fact("largest stable step", Cell::from(step), "s");
-    report.grid(natural);
+    report.grid(undamped_modes(&case)?);
     report.grid(damped_modes(description, &modes));
     report.print(options.format, out)
+}
+
+/// Undamped modes about an equilibrium as a table.
+pub fn undamped_modes(case: &Case<'_>) -> Outcome<Grid> {
+    let mut grid = Grid::new("undamped", "Undamped modes", &["mode", "frequency Hz", "omega rad/s", "dominated by"]);
+    for (index, mode) in undamped(&case.rig.small_motions(&case.equilibrium.q))?.iter().enumerate() {
+        let omega = mode.frequency().map(|_| mode.omega_squared.sqrt());
+        let names = names(case.rig.description(), &mode.dominating);
+        grid.row([(index + 1).into(), mode.frequency().into(), omega.into(), names]);
+    }
+    Ok(grid)
 }
 
 /// Damped modes as a table.

@@ -7,10 +7,10 @@ use std::{
     process,
 };
 
-use crane_model::{dynamics, results::Table, rig::Rig};
+use crate::{dynamics, results::Table, rig::Rig};
 use serde_json::{Map, Value, json};
 
-use crate::{
+use crate::command::{
     problem::{Outcome, Problem},
     run::Recorded,
 };
@@ -56,8 +56,8 @@ pub fn write_csv(path: &Path, table: &Table) -> Outcome<()> {
     })
 }
 
-/// Writes what a run was: enough to repeat it.
-pub fn write_record(path: &Path, rig: &dyn Rig, settings: &dynamics::Settings, recorded: &Recorded) -> Outcome<()> {
+/// What a run was: enough to repeat it.
+pub fn record(rig: &dyn Rig, settings: &dynamics::Settings, recorded: &Recorded) -> Value {
     let description = rig.description();
     let parameters: Map<String, Value> = description
         .parameters
@@ -67,7 +67,7 @@ pub fn write_record(path: &Path, rig: &dyn Rig, settings: &dynamics::Settings, r
             (parameter.name.to_owned(), json!({"value": rig.parameter(index), "unit": parameter.unit}))
         })
         .collect();
-    let record = json!({
+    json!({
         "crane": description.name,
         "title": description.title,
         "spec_hash": description.spec_hash,
@@ -82,6 +82,5 @@ pub fn write_record(path: &Path, rig: &dyn Rig, settings: &dynamics::Settings, r
         "parameters": parameters,
         "wall_time_s": recorded.wall.as_secs_f64(),
         "real_time_factor": recorded.real_time_factor(),
-    });
-    write_text(path, &format!("{record:#}\n"))
+    })
 }

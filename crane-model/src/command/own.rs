@@ -1,0 +1,155 @@
+//! A crane of a YAML file: checked here, compiled by cargo to a program of its own, which is kept and does the rest.
+
+use std::{
+    env,
+    ffi::{OsStr, OsString},
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+    process::Command,
+    time::{Instant, SystemTime},
+};
+
+use crane_codegen::{build, chain::Chain, compile};
+
+use crate::command::{
+    files,
+    problem::{FAILED, Outcome, Problem},
+};
+
+/// Where this program was built from: the runtime that the program of a crane depends on.
+const MODEL: &str = env!("CARGO_MANIFEST_DIR");
+/// The versions of everything that this program was built with.
+const LOCK: &str = include_str!("../../../Cargo.lock");
+/// Files of the program, and what they are made from.
+const FILES: [(&str, &str); 3] = [
+    ("Cargo.toml", include_str!("own/Cargo.toml.template")),
+    ("build.rs", include_str!("own/build.rs.template")),
+    ("src/main.rs", include_str!("own/main.rs.template")),
+];
+/// Variable of the environment with the folder where programs are kept.
+const CACHE: &str = "CRANE_CACHE";
+
+/// Says whether a spec is sound.
+pub fn check(spec: &Path, out: &mut dyn Write) -> Outcome<()> {
+    let Chain { name, bodies, coordinates, spec_hash, .. } = load(spec)?.0;
+    let (bodies, coordinates) = (bodies.len(), coordinates.len());
+    Ok(writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?)
+}
+
+/// Does what the arguments of this process ask for, with the crane of a spec in place of the file's name.
+pub fn run(spec: &Path) -> Outcome<()> {
+    let (chain, text) = load(spec)?;
+    let program = program(&chain, &text)?;
+    let mut named = false;
+    let arguments = env::args_os().skip(1).map(|argument| {
+        if !named && argument == *spec.as_os_str() {
+            named = true;
+            OsString::from(&chain.name)
+        } else {
+            argument
+        }
+    });
+    finish(Command::new(&program).args(arguments))
+}
+
+/// A sound chain and its text, or every mistake.
+fn load(spec: &Path) -> Outcome<(Chain, String)> {
+    let told = |mistakes: String| {
+        // Drawn already; a reader of standard error that has gone misses it.
+        let _ = writeln!(std::io::stderr(), "{}", mistakes.trim_end());
+        Problem::Elsewhere(FAILED)
+    };
+    let source = build::open(spec).map_err(|failure| match failure {
+        build::Failure::File(message) => Problem::failed(message, "name a YAML file that describes a crane"),
+        build::Failure::Mistakes(mistakes) => told(mistakes.to_string()),
+    })?;
+    let chain = compile::load(&source).map_err(|mistakes| told(mistakes.to_string()))?;
+    Ok((chain, source.text))
+}
+
+/// The program of a crane: as kept, or compiled now.
+fn program(chain: &Chain, text: &str) -> Outcome<PathBuf> {
+    let package = format!("crane-{}-{}", chain.name, chain.spec_hash);
+    let cache = cache();
+    let folder = cache.join(&package);
+    let model = Path::new(MODEL);
+    let codegen = model.with_file_name("codegen");
+    let values = [
+        ("{{package}}", package.as_str()),
+        ("{{name}}", &chain.name),
+        ("{{model}}", &model.to_string_lossy()),
+        ("{{codegen}}", &codegen.to_string_lossy()),
+    ];
+    for (file, template) in FILES {
+        let content = values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
+        keep(&folder.join(file), &content)?;
+    }
+    keep(&folder.join("crane.yaml"), text)?;
+    if !folder.join("Cargo.lock").exists() {
+        keep(&folder.join("Cargo.lock"), LOCK)?;
+    }
+
+    let target = target().unwrap_or_else(|| cache.join("target"));
+    let program = target.join("release").join(&package).with_extension(env::consts::EXE_EXTENSION);
+    let begin = Instant::now();
+    let before = modified(&program);
+    if before.is_none() {
+        say(&format!("{}: compiling to a program of its own, kept for later …", chain.name));
+    }
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
+    let mut build = Command::new(cargo);
+    build.args(["build", "--release", "--quiet", "--manifest-path"]).arg(folder.join("Cargo.toml"));
+    build.arg("--target-dir").arg(&target);
+    finish(&mut build)?;
+    let how = if modified(&program) == before { "kept from before, current" } else { "compiled" };
+    say(&format!("{}: {how}, {:.1} s", chain.name, begin.elapsed().as_secs_f64()));
+    Ok(program)
+}
+
+/// Writes a file unless it says so already: what is newer is compiled again.
+fn keep(file: &Path, text: &str) -> Outcome<()> {
+    if fs::read_to_string(file).is_ok_and(|kept| kept == text) {
+        return Ok(());
+    }
+    files::folder(file.parent().unwrap_or(file))?;
+    files::write_text(file, text)
+}
+
+/// Folder where programs are kept.
+fn cache() -> PathBuf {
+    let variable = |name: &str| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    variable(CACHE)
+        .or_else(|| variable("XDG_CACHE_HOME").map(|cache| cache.join("crane")))
+        .or_else(|| variable("HOME").map(|home| home.join(".cache/crane")))
+        .unwrap_or_else(|| env::temp_dir().join("crane"))
+}
+
+/// Cargo's folder that this program stands in: what is built there serves again.
+fn target() -> Option<PathBuf> {
+    let program = env::current_exe().ok()?;
+    let profile = program.parent()?;
+    let target = profile.parent()?;
+    (profile.file_name() == Some(OsStr::new("release")) && target.join("CACHEDIR.TAG").exists())
+        .then(|| target.to_owned())
+}
+
+fn modified(file: &Path) -> Option<SystemTime> {
+    fs::metadata(file).and_then(|metadata| metadata.modified()).ok()
+}
+
+/// Tells the user something beside the results.
+fn say(text: &str) {
+    // Not eprintln: it panics where standard error is closed.
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Runs a program to its end, which is ours too.
+fn finish(command: &mut Command) -> Outcome<()> {
+    let name = command.get_program().display().to_string();
+    let status = command.status().map_err(|error| {
+        Problem::failed(format!("cannot run {name}: {error}"), "install Rust, so that `cargo` is on the path")
+    })?;
+    let code = status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(FAILED);
+    if code == 0 { Ok(()) } else { Err(Problem::Elsewhere(code)) }
+}

@@ -1,0 +1,66 @@
+//! Cranes of YAML files, without a crate of their own.
+
+use std::{
+    env, fs,
+    path::PathBuf,
+    process::{Command, Output},
+};
+
+/// The command, with programs of cranes kept in a folder of this test's own.
+fn crane(arguments: &[&str]) -> Output {
+    let cache = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("own_cranes");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+    command.args(arguments).env("CRANE_CACHE", cache).output().expect("the command starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A shipped spec, changed, as a file.
+fn spec(name: &str, from: &str, to: &str) -> String {
+    let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../specs/knuckle_boom.yaml");
+    let shipped = fs::read_to_string(shipped).expect("a spec");
+    assert!(shipped.contains(from));
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::write(&file, shipped.replacen(from, to, 1)).expect("a file");
+    file.to_str().expect("a path").to_owned()
+}
+
+#[test]
+fn a_sound_spec_is_told_so_and_mistakes_are_drawn() {
+    let sound = crane(&["check", &spec("sound.yaml", "420", "421")]);
+    assert!(sound.status.success(), "{}", text(&sound.stderr));
+    assert!(text(&sound.stdout).starts_with("knuckle_boom: sound; 5 bodies, 4 coordinates"), "{}", text(&sound.stdout));
+    for command in ["check", "statics", "run", "report"] {
+        let wrong = crane(&[command, &spec("wrong.yaml", "mass: 420", "mass: -420")]);
+        let message = text(&wrong.stderr);
+        assert_eq!(wrong.status.code(), Some(1), "{command}: {message}");
+        assert!(message.contains("error[E031]") && message.contains("wrong.yaml:"), "{command}: {message}");
+    }
+    let missing = crane(&["check", "no_such.yaml"]);
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(text(&missing.stderr).contains("no_such.yaml"), "{}", text(&missing.stderr));
+}
+
+#[test]
+fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
+    // Another hash, the same crane.
+    let file = spec("knuckle.yaml", "title: Planar", "title: A planar");
+    let own = crane(&["eval", &file, "--q", "0.1,0.2,0.3,0.4", "--v", "1,2,3,4"]);
+    assert!(own.status.success(), "{}", text(&own.stderr));
+    let shipped = crane(&["eval", "knuckle_boom", "--q", "0.1,0.2,0.3,0.4", "--v", "1,2,3,4"]);
+    let numbers = |output: &Output| -> serde_json::Value {
+        let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        report.as_object_mut().expect("an object").remove("spec_hash").expect("a hash");
+        report
+    };
+    assert_eq!(numbers(&own), numbers(&shipped));
+    // Kept: the second time nothing is compiled; parameters, options and exit codes are passed on.
+    let again = crane(&["statics", &file, "--set", "payload=1", "--format", "json"]);
+    assert!(again.status.success(), "{}", text(&again.stderr));
+    assert!(text(&again.stderr).contains("kept from before"), "{}", text(&again.stderr));
+    assert!(serde_json::from_slice::<serde_json::Value>(&again.stdout).is_ok_and(|report| report["pose"].is_array()));
+    let refused = crane(&["statics", &file, "--set", "payload"]);
+    assert_eq!(refused.status.code(), Some(2));
+}

@@ -1,0 +1,80 @@
+// A box beam along a curve: a flexible link as bent as its elements are.
+import { BufferAttribute, BufferGeometry, Vector3 } from "three";
+
+/** Stations of the drawn curve in each half of an element. */
+const STATIONS = 4;
+/** Faces of the box by direction of its normal, (y, z), with the two corners of each. */
+const FACES = [
+  { normal: [1, 0], corners: [[1, -1], [1, 1]] },
+  { normal: [0, 1], corners: [[1, 1], [-1, 1]] },
+  { normal: [-1, 0], corners: [[-1, 1], [-1, -1]] },
+  { normal: [0, -1], corners: [[-1, -1], [1, -1]] },
+];
+
+/** Geometry of a beam over elements of these lengths. */
+export class BeamGeometry extends BufferGeometry {
+  constructor(lengths, height, width) {
+    super();
+    this.lengths = lengths;
+    this.half = [height / 2, width / 2];
+    const rings = 2 * STATIONS * lengths.length + 1;
+    this.setAttribute("position", new BufferAttribute(new Float32Array(rings * 24), 3));
+    this.setAttribute("normal", new BufferAttribute(new Float32Array(rings * 24), 3));
+    const index = [];
+    for (let ring = 0; ring + 1 < rings; ring += 1) {
+      for (let face = 0; face < 4; face += 1) {
+        const a = ring * 8 + face * 2;
+        index.push(a, a + 1, a + 8, a + 1, a + 9, a + 8);
+      }
+    }
+    this.setIndex(index);
+  }
+
+  /** Follows the frames of the elements: x along the element, y the height, z the width. */
+  follow(frames) {
+    const position = this.attributes.position;
+    const normal = this.attributes.normal;
+    let vertex = 0;
+    const ring = (p, y, z) => {
+      for (const { normal: [ny, nz], corners } of FACES) {
+        for (const [cy, cz] of corners) {
+          const [h, w] = [cy * this.half[0], cz * this.half[1]];
+          position.setXYZ(vertex, p.x + y.x * h + z.x * w, p.y + y.y * h + z.y * w, p.z + y.z * h + z.z * w);
+          normal.setXYZ(vertex, y.x * ny + z.x * nz, y.y * ny + z.y * nz, y.z * ny + z.z * nz);
+          vertex += 1;
+        }
+      }
+    };
+    const middles = frames.map((frame, k) => {
+      const x = new Vector3();
+      const y = new Vector3();
+      const z = new Vector3();
+      frame.extractBasis(x, y, z);
+      return { p: new Vector3(this.lengths[k] / 2, 0, 0).applyMatrix4(frame), x, y, z };
+    });
+    const first = middles[0];
+    const last = middles.at(-1);
+    // Straight to the middle of the first element, Hermite's curve from middle to middle, straight to the tip.
+    for (let s = 0; s < STATIONS; s += 1) {
+      const back = (this.lengths[0] / 2) * (1 - s / STATIONS);
+      ring(first.p.clone().addScaledVector(first.x, -back), first.y, first.z);
+    }
+    for (let k = 0; k + 1 < middles.length; k += 1) {
+      const [a, b] = [middles[k], middles[k + 1]];
+      const span = (this.lengths[k] + this.lengths[k + 1]) / 2;
+      for (let s = 0; s < 2 * STATIONS; s += 1) {
+        const u = s / (2 * STATIONS);
+        const p = a.p.clone().multiplyScalar((1 + 2 * u) * (1 - u) ** 2).addScaledVector(b.p, u * u * (3 - 2 * u));
+        p.addScaledVector(a.x, span * u * (1 - u) ** 2).addScaledVector(b.x, span * u * u * (u - 1));
+        ring(p, a.y.clone().lerp(b.y, u).normalize(), a.z.clone().lerp(b.z, u).normalize());
+      }
+    }
+    for (let s = 0; s <= STATIONS; s += 1) {
+      const on = (this.lengths.at(-1) / 2) * (s / STATIONS);
+      ring(last.p.clone().addScaledVector(last.x, on), last.y, last.z);
+    }
+    position.needsUpdate = true;
+    normal.needsUpdate = true;
+    this.computeBoundingSphere();
+  }
+}

@@ -1,0 +1,30 @@
+// Colours: those of the figures (M. Okabe, K. Ito, 2008), and a scale for forces that colour-blind readers can follow.
+
+/** Curves in order, for paper and for dark screens. */
+export const CURVES = {
+  light: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b37a00", "#3c9ccf", "#5b4ba0", "#3f4750"],
+  dark: ["#5db4ea", "#f08a4b", "#35c79a", "#e2a0c6", "#eabb47", "#9ad6f5", "#a99be8", "#c4ccd4"],
+};
+
+/** Whether the page is dark now. */
+export const isDark = () => document.documentElement.dataset.theme === "dark";
+
+/** Colour of the n-th curve on the page as it is now. */
+export const curve = (n) => CURVES[isDark() ? "dark" : "light"][n % 8];
+
+/** A colour of the style sheet. */
+export const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** viridis (S. van der Walt, N. Smith, 2015), sampled. */
+const VIRIDIS = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
+/** A foot that pulls. */
+export const PULLS = "#e0559b";
+
+/** Colour of a share from 0 to 1; below 0, a support that pulls. */
+export function scale(share) {
+  if (share < 0) return PULLS;
+  return VIRIDIS[Math.min(Math.round(share * (VIRIDIS.length - 1)), VIRIDIS.length - 1)];
+}
+
+/** The scale as a CSS gradient. */
+export const gradient = `linear-gradient(90deg, ${VIRIDIS.join(", ")})`;

@@ -1,0 +1,73 @@
+// The data that the command put into the page.
+
+/** Everything of the page: cranes, tables, spec, command. The crane the page is about comes last. */
+export function read() {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  for (const crane of data.cranes) crane.run = run(crane.run);
+  const crane = data.cranes.at(-1);
+  return { ...data, crane, rigid: data.cranes.length > 1 ? data.cranes[0] : null };
+}
+
+/** A recorded run: columns by name, each `{name, unit, values}`. */
+function run({ columns, rows, every, data }) {
+  const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+  const numbers = new Float32Array(bytes.buffer);
+  const list = columns.map((column, i) => ({ ...column, values: numbers.subarray(i * rows, (i + 1) * rows) }));
+  const byName = new Map(list.map((column) => [column.name, column]));
+  return { list, rows, every, t: list[0].values, column: (name) => byName.get(name) };
+}
+
+/** Place of time `t` among the samples: index before it and part of the way to the next. */
+export function place(times, t) {
+  let low = 0;
+  let high = times.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t) low = middle;
+    else high = middle;
+  }
+  const width = times[high] - times[low];
+  const part = width > 0 ? Math.min(Math.max((t - times[low]) / width, 0), 1) : 0;
+  return { low, high, part };
+}
+
+/** Value of a column between samples. */
+export const at = (values, { low, high, part }) => values[low] + (values[high] - values[low]) * part;
+
+/** Least and greatest of numbers. */
+export function range(values) {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const value of values) {
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return [low, high];
+}
+
+/** Six digits, as the command prints them. */
+export function readable(value) {
+  if (value == null || !Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  if (size < 1e-10) return "0";
+  const text = size >= 1e-3 && size < 1e7 ? value.toPrecision(6) : value.toExponential(4);
+  return text.includes("e") || !text.includes(".") ? text : text.replace(/\.?0+$/, "");
+}
+
+/** Larger units for larger numbers: N to kN, J to kJ, m to mm. */
+export function scaled(unit, values) {
+  const [low, high] = range(values);
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  if (["N", "N m", "J", "W"].includes(unit) && size >= 1e4) return { unit: `k${unit}`, factor: 1e-3 };
+  if (unit === "m" && size > 0 && size < 0.5) return { unit: "mm", factor: 1e3 };
+  return { unit, factor: 1 };
+}
+
+/** A name for a reader: blanks for underscores. */
+export const spoken = (name) => name.replaceAll("_", " ");
+
+/** Text of a tick: without the digits that rounding leaves. */
+export function tickText(value) {
+  const text = Math.abs(value) >= 1e6 || (value !== 0 && Math.abs(value) < 1e-4) ? value.toExponential() : String(+value.toFixed(6));
+  return text.replace("-", "−");
+}

@@ -1,0 +1,299 @@
+// A crane in three dimensions, drawn from its chain: links from frame to frame, as thick as their mass makes likely,
+// flexible links bent, pins where joints turn, legs where it stands.
+import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
+import { BeamGeometry } from "./beam.js";
+import { Kinematics, links } from "./kinematics.js";
+
+/** Mass per volume of what a link fills with its outline, kg/m³: about a third of steel's. */
+const FILLING = 2400;
+/** Least and greatest thickness of a link, of the crane's size. */
+const THICKNESS = [0.012, 0.06];
+/** A length below this part of the crane's size is none. */
+const NOTHING = 1e-3;
+
+/** Room around the axes of the links, of the crane's size. */
+const MARGIN = 0.03;
+
+export const COLOURS = {
+  base: 0x4a5560, link: 0xe2a32b, flexible: 0x1f7fc0, slide: 0xb9c2cb, load: 0xa5784f, pin: 0x2b3138, passive: 0x8d979f,
+  ghost: 0xd55e00,
+};
+
+export class Figure {
+  /** `ghost`: one pale colour, to stand behind another figure. */
+  constructor(crane, size, { ghost = false } = {}) {
+    this.crane = crane;
+    this.size = size;
+    this.ghost = ghost;
+    this.kinematics = new Kinematics(crane);
+    this.group = new Group();
+    this.parts = [];
+    this.beams = [];
+    this.legs = [];
+    this.materials = new Map();
+    this.kinematics.pose(this.kinematics.reference);
+    this.build();
+  }
+
+  material(colour) {
+    const key = this.ghost ? COLOURS.ghost : colour;
+    if (!this.materials.has(key)) {
+      const paint = new MeshStandardMaterial({ color: key, roughness: 0.62, metalness: 0.15 });
+      if (this.ghost) Object.assign(paint, { transparent: true, opacity: 0.3, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 40 });
+      this.materials.set(key, paint);
+    }
+    return this.materials.get(key);
+  }
+
+  mesh(geometry, colour) {
+    const mesh = new Mesh(geometry, this.material(colour));
+    mesh.castShadow = !this.ghost;
+    mesh.receiveShadow = !this.ghost;
+    this.group.add(mesh);
+    return mesh;
+  }
+
+  /** A mesh that moves with a body. */
+  part(body, mesh, local) {
+    mesh.matrixAutoUpdate = false;
+    this.parts.push({ body, mesh, local });
+  }
+
+  /** A box from `a` to `b` in a body's frame. */
+  box(body, a, b, thickness, colour) {
+    if (this.ghost && colour === COLOURS.base) return;
+    const way = b.clone().sub(a);
+    const length = way.length();
+    if (length < NOTHING * this.size) return;
+    const turn = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), way.divideScalar(length));
+    const local = new Matrix4().compose(a.clone().add(b).divideScalar(2), turn, new Vector3(1, 1, 1));
+    this.part(body, this.mesh(new BoxGeometry(length, thickness, thickness), colour), local);
+  }
+
+  thickness(mass, length) {
+    const [least, most] = THICKNESS.map((part) => part * this.size);
+    const side = mass > 0 && length > 0 ? Math.sqrt(mass / (FILLING * length)) : this.usual ?? least;
+    return Math.min(Math.max(side, least), most);
+  }
+
+  build() {
+    const { bodies, frames } = this.kinematics;
+    for (const link of links(this.kinematics)) this.beam(link);
+    bodies.forEach((body, p) => {
+      if (!body.flexible && p + 1 < bodies.length) this.link(p, frames);
+    });
+    this.pins();
+    this.end();
+    this.stand();
+  }
+
+  beam({ bodies: elements }) {
+    const { bodies } = this.kinematics;
+    const lengths = elements.map((p) => bodies[p].length);
+    const total = lengths.reduce((sum, length) => sum + length, 0);
+    const mass = elements.reduce((sum, p) => sum + bodies[p].mass, 0);
+    const side = this.thickness(mass, total);
+    const geometry = new BeamGeometry(lengths, side, 0.8 * side);
+    const mesh = this.mesh(geometry, COLOURS.flexible);
+    mesh.frustumCulled = false;
+    this.beams.push({ geometry, elements });
+    // Rings between the elements show where it bends.
+    elements.slice(1).forEach((p) => {
+      const ring = this.mesh(new BoxGeometry(0.12 * side, 1.12 * side, 0.92 * side), COLOURS.pin);
+      this.part(p, ring, new Matrix4());
+    });
+    this.usual ??= side;
+  }
+
+  /** From a body's origin to where the next one begins; a sliding one comes out of it. */
+  link(p, frames) {
+    const { bodies, coordinates, reference, screws } = this.kinematics;
+    const [body, next] = [bodies[p], bodies[p + 1]];
+    const inverse = frames[p].clone().invert();
+    const origin = new Vector3();
+    const far = new Vector3().setFromMatrixPosition(frames[p + 1]).applyMatrix4(inverse);
+    const slides = [];
+    for (let j = body.moved_by; j < next.moved_by; j += 1) {
+      if (coordinates[j].unit === "m" && coordinates[j].role !== "base") slides.push(j);
+    }
+    const outline = this.thickness(body.mass, far.length());
+    if (body.mass > 0 && far.length() > NOTHING * this.size && coordinates[body.moved_by - 1]?.role !== "base") this.usual ??= outline;
+    if (slides.length !== 1) {
+      const colour = p === 0 && coordinates[0]?.role === "base" ? COLOURS.base : COLOURS.link;
+      this.box(p, origin, far, outline, colour);
+      return;
+    }
+    const [j] = slides;
+    const axis = new Vector3(...screws[j].slice(3)).transformDirection(inverse);
+    const travel = this.travel(j);
+    const home = far.clone().addScaledVector(axis, -reference[j]);
+    const sleeve = home.length() > NOTHING * this.size ? home : home.addScaledVector(axis, travel[0]);
+    const side = this.thickness(body.mass, Math.max(sleeve.length(), far.length() / 2));
+    this.box(p, origin, sleeve, side, COLOURS.link);
+    // Long enough to stay in its sleeve at the far end of its travel.
+    const inside = new Vector3().setFromMatrixPosition(frames[p]).applyMatrix4(frames[p + 1].clone().invert());
+    const back = axis.transformDirection(frames[p]).transformDirection(frames[p + 1].clone().invert()).negate();
+    const reach = Math.min(Math.abs(travel[1]) + 0.5 * side, inside.length() + Math.abs(travel[1] - reference[j]));
+    this.box(p + 1, origin.clone(), back.multiplyScalar(reach), 0.78 * side, COLOURS.slide);
+  }
+
+  /** Least and greatest value of a coordinate over the run. */
+  travel(j) {
+    const values = this.crane.run.column(this.crane.coordinates[j].name).values;
+    return [Math.min(...values), Math.max(...values)];
+  }
+
+  /** A pin where a joint turns, on its axis; dark where a drive turns it. */
+  pins() {
+    const { bodies, coordinates, screws, frames } = this.kinematics;
+    coordinates.forEach(({ role, unit }, j) => {
+      if (unit !== "rad" || !["driven", "passive"].includes(role)) return;
+      const p = bodies.findIndex((body) => body.moved_by > j);
+      const axis = new Vector3(...screws[j].slice(0, 3)).transformDirection(frames[p].clone().invert());
+      const upright = Math.abs(screws[j][2]) > 0.9;
+      const side = this.thickness(bodies[p].mass, 0);
+      const radius = (upright && p <= 1 ? 1.1 : 0.5) * side;
+      const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), axis.normalize());
+      const local = new Matrix4().compose(new Vector3(), turn, new Vector3(1, 1, 1));
+      const height = (upright && p <= 1 ? 0.5 : 1.35) * side;
+      const geometry = new CylinderGeometry(radius, radius, height, 28);
+      this.part(p, this.mesh(geometry, role === "driven" ? COLOURS.pin : COLOURS.passive), local);
+    });
+  }
+
+  /** What the last body carries: a stem to its points, a rod through them, or a block of its mass. */
+  end() {
+    const { bodies, points } = this.kinematics;
+    const p = bodies.length - 1;
+    if (p < 0 || bodies[p].flexible) return;
+    const places = points.filter((point) => point.body === p).map((point) => point.at);
+    const { mass } = bodies[p];
+    const middle = places.reduce((sum, place) => sum.add(place), new Vector3()).divideScalar(Math.max(places.length, 1));
+    let [from, to] = [middle, middle];
+    for (const a of places) for (const b of places) if (a.distanceTo(b) > from.distanceTo(to)) [from, to] = [a, b];
+    const stem = this.thickness(0, 0) * 0.5;
+    this.box(p, new Vector3(), middle, stem, COLOURS.link);
+    if (from.distanceTo(to) > NOTHING * this.size) {
+      const rod = this.thickness(mass, from.distanceTo(to)) / 2;
+      const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), to.clone().sub(from).normalize());
+      const local = new Matrix4().compose(from.clone().add(to).divideScalar(2), turn, new Vector3(1, 1, 1));
+      this.part(p, this.mesh(new CylinderGeometry(rod, rod, from.distanceTo(to), 32), COLOURS.load), local);
+    } else if (mass > 0) {
+      const side = Math.min(Math.cbrt(mass / FILLING), 0.15 * this.size);
+      this.part(p, this.mesh(new BoxGeometry(side, side, side), COLOURS.load), new Matrix4().setPosition(middle));
+    }
+  }
+
+  stand() {
+    // A ghost differs above its base.
+    if (this.ghost) return;
+    const supports = this.crane.scene.supports.map(({ at }) => new Vector3(...at));
+    if (supports.length) this.feet(supports);
+    else if (this.crane.coordinates[0]?.role !== "base") this.pedestal();
+  }
+
+  /** What a crane stands on that stands fixed: a plate at the world's origin, a pillar to where its first body begins. */
+  pedestal() {
+    const { bodies, frames } = this.kinematics;
+    if (!bodies.length) return;
+    const side = this.thickness(bodies[0].mass, 0);
+    const first = new Vector3().setFromMatrixPosition(frames[0]);
+    const slides = this.crane.coordinates.slice(0, bodies[0].moved_by).some(({ unit }) => unit === "m");
+    const plate = this.mesh(new CylinderGeometry(2 * side, 2 * side, 0.5 * side, 40), COLOURS.base);
+    // A beam that begins at the origin is clamped to a wall.
+    const normal = bodies[0].flexible && first.length() < NOTHING * this.size ? new Vector3().setFromMatrixColumn(frames[0], 0) : new Vector3(0, 0, 1);
+    plate.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), normal);
+    plate.position.addScaledVector(normal, -0.25 * side);
+    if (slides || first.length() < NOTHING * this.size) return;
+    const pillar = this.mesh(new BoxGeometry(first.length(), 1.1 * side, 1.1 * side), COLOURS.base);
+    pillar.quaternion.setFromUnitVectors(new Vector3(1, 0, 0), first.clone().normalize());
+    pillar.position.copy(first).divideScalar(2);
+  }
+
+  /** A frame over the supports with a leg to each. */
+  feet(supports) {
+    const spread = (axis) => Math.max(...supports.map((s) => s[axis])) - Math.min(...supports.map((s) => s[axis]));
+    const middle = (axis) => (Math.max(...supports.map((s) => s[axis])) + Math.min(...supports.map((s) => s[axis]))) / 2;
+    const [long, wide] = spread("x") > spread("y") ? ["x", "y"] : ["y", "x"];
+    const top = Math.max(...supports.map((s) => s.z), 0);
+    const depth = Math.max(top - Math.min(...supports.map((s) => s.z)), 0.02 * this.size);
+    const level = top - 0.35 * depth;
+    const beam = new Vector3();
+    beam[long] = spread(long) + 0.6 * depth;
+    beam[wide] = 0.38 * spread(wide);
+    beam.z = 0.55 * depth;
+    const centre = new Vector3(0, 0, level);
+    centre[long] = middle(long);
+    centre[wide] = middle(wide);
+    this.part(0, this.mesh(new BoxGeometry(beam.x, beam.y, beam.z), COLOURS.base), new Matrix4().setPosition(centre));
+    const side = 0.3 * depth;
+    this.legs = supports.map((support) => {
+      const root = centre.clone();
+      root[long] = support[long];
+      const knee = support.clone().setZ(level);
+      this.box(0, root, knee, 1.2 * side, COLOURS.base);
+      const paint = new MeshStandardMaterial({ color: COLOURS.slide, roughness: 0.5 });
+      const leg = new Mesh(new CylinderGeometry(0.55 * side, 0.55 * side, level - support.z, 20), paint);
+      const foot = new Mesh(new CylinderGeometry(1.3 * side, 1.6 * side, 0.35 * side, 28), paint);
+      for (const mesh of [leg, foot]) {
+        mesh.castShadow = true;
+        this.group.add(mesh);
+      }
+      const upright = new Matrix4().makeRotationX(Math.PI / 2);
+      this.part(0, leg, upright.clone().setPosition(support.x, support.y, (support.z + level) / 2));
+      this.part(0, foot, upright.clone().setPosition(support.x, support.y, support.z));
+      return paint;
+    });
+  }
+
+  /** Takes a pose. */
+  pose(q, factor) {
+    const frames = this.kinematics.pose(q, factor);
+    for (const { body, mesh, local } of this.parts) {
+      mesh.matrix.multiplyMatrices(frames[body], local);
+      mesh.matrixWorldNeedsUpdate = true;
+    }
+    for (const { geometry, elements } of this.beams) geometry.follow(elements.map((p) => frames[p]));
+  }
+
+  /** Colours the legs: `colours`, one a support. */
+  paint(colours) {
+    this.legs.forEach((paint, index) => paint.color.set(colours[index]));
+  }
+
+  /** Places that the crane reaches in a pose. */
+  outline() {
+    const { frames, points } = this.kinematics;
+    const origins = frames.map((frame) => new Vector3().setFromMatrixPosition(frame));
+    return origins.concat(points.map((_, index) => this.kinematics.point(index)));
+  }
+}
+
+/** Size of a crane over its run: the diagonal of the box that its frames and points stay in. */
+export function extent(crane) {
+  const kinematics = new Kinematics(crane);
+  const names = crane.coordinates.map((coordinate) => crane.run.column(coordinate.name).values);
+  const low = new Vector3(Infinity, Infinity, Infinity);
+  const high = low.clone().negate();
+  const places = [];
+  const include = (place) => {
+    places.push(place.clone());
+    low.min(place);
+    high.max(place);
+  };
+  const step = Math.max(1, Math.floor(crane.run.rows / 60));
+  for (let row = 0; row < crane.run.rows; row += step) {
+    const frames = kinematics.pose(names.map((values) => values[row]));
+    for (const frame of frames) include(new Vector3().setFromMatrixPosition(frame));
+    kinematics.points.forEach((_, index) => include(kinematics.point(index)));
+    crane.scene.supports.forEach(({ at }) => include(new Vector3(...at).applyMatrix4(frames[0])));
+  }
+  if (crane.coordinates[0]?.role !== "base") include(new Vector3());
+  const last = kinematics.bodies.at(-1);
+  if (last?.flexible) include(new Vector3(last.length, 0, 0).applyMatrix4(kinematics.frames.at(-1)));
+  // Links are thicker than their axes.
+  const margin = MARGIN * low.distanceTo(high);
+  low.addScalar(-margin);
+  high.addScalar(margin);
+  return { low, high, places, size: Math.max(low.distanceTo(high), 1e-3), centre: low.clone().add(high).divideScalar(2) };
+}

@@ -1,0 +1,181 @@
+// The report page: puts viewer, plots and tables together.
+import "uplot/dist/uPlot.min.css";
+import "./style.css";
+import { gradient } from "./colours.js";
+import { at, place, read, readable, scaled, spoken } from "./data.js";
+import { save, table } from "./download.js";
+import { follow, panels } from "./panels.js";
+import { Player } from "./player.js";
+import { modeText, tables } from "./tables.js";
+import { tiles } from "./tiles.js";
+import { Viewer } from "./viewer.js";
+
+/** Way of the arrow keys in time, s. */
+const STEP = 0.1;
+
+const $ = (selector) => document.querySelector(selector);
+const data = read();
+const { crane, rigid } = data;
+const player = new Player(crane.run.t.at(-1) ?? 0);
+
+document.title = `${crane.title} · report`;
+$("h1").textContent = crane.title;
+$("#name").textContent = crane.name;
+tables(data);
+tiles(data);
+document.documentElement.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+const shown = [];
+const { plots, along } = panels(data, player);
+// What this crane does not have.
+for (const section of document.querySelectorAll("section:has(.panels:empty)")) {
+  document.querySelector(`nav [href="#${section.id}"]`).remove();
+  section.remove();
+}
+const viewer = threeD();
+controls();
+now();
+keys();
+
+let waiting = false;
+player.follow((t) => {
+  const here = place(crane.run.t, t);
+  $("#time").value = t;
+  $("#clock").textContent = `${t.toFixed(2)} s`;
+  if (waiting) return;
+  // Plots follow at the pace of the screen, however often time is set.
+  waiting = true;
+  requestAnimationFrame(() => {
+    waiting = false;
+    plotsFollow();
+  });
+  readings(here);
+});
+// What comes into view has missed what time did meanwhile.
+addEventListener("scroll", plotsFollow, { passive: true });
+// For the console of the browser, and for the test.
+globalThis.report = { data, player, plots, viewer };
+document.documentElement.dataset.ready = "yes";
+if (!matchMedia("(prefers-reduced-motion: reduce)").matches && viewer) player.play(true);
+
+/** Brings the plots on the screen to the present time. */
+function plotsFollow() {
+  const here = place(crane.run.t, player.t);
+  for (const plot of plots) if (seen(plot.frame)) plot.now(player.t, here);
+  follow(along.filter(({ plot }) => seen(plot.frame)), here);
+}
+
+/** Whether an element is on the screen. */
+function seen(element) {
+  const { top, bottom } = element.getBoundingClientRect();
+  return bottom > 0 && top < innerHeight;
+}
+
+/** The view in three dimensions; without WebGL, a word in its place. */
+function threeD() {
+  try {
+    return new Viewer($("#view canvas"), data, player);
+  } catch (error) {
+    const text = `This browser shows no 3-D (${error.message}). Plots and tables are complete.`;
+    $("#view canvas").replaceWith(Object.assign(document.createElement("p"), { textContent: text, className: "sorry" }));
+    return null;
+  }
+}
+
+function controls() {
+  const play = $("#play");
+  player.changed = () => {
+    play.textContent = player.playing ? "❚❚" : "▶";
+    play.setAttribute("aria-label", player.playing ? "Pause" : "Play");
+  };
+  play.addEventListener("click", () => player.play(!player.playing));
+  Object.assign($("#time"), { max: player.duration, step: "any" });
+  $("#time").addEventListener("input", ({ target }) => player.seek(Number(target.value)));
+  $("#speed").addEventListener("change", ({ target }) => (player.speed = Number(target.value)));
+  $("#theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+  $("#all").addEventListener("click", () => save(`${crane.name}.csv`, table(crane.run.list), "text/csv"));
+  if (rigid) $("#all_rigid").addEventListener("click", () => save(`${rigid.name}.csv`, table(rigid.run.list), "text/csv"));
+  else $("#all_rigid").remove();
+  if (!viewer) return;
+  const flexible = crane.scene.bodies.some((body) => body.length > 0);
+  const factor = $("#factor");
+  const exaggerate = () => {
+    // 1, 2, 5, 10 … evenly along the slider.
+    const value = 10 ** Number(factor.value);
+    const shown = value < 10 ? Math.round(value * 10) / 10 : Math.round(value);
+    $("#factor_text").textContent = `× ${shown}`;
+    viewer.set({ factor: shown });
+  };
+  factor.addEventListener("input", exaggerate);
+  exaggerate();
+  if (!flexible && !crane.modes.length) factor.closest("label").remove();
+  const check = (id, key, has) => {
+    if (!has) return $(id).closest("label").remove();
+    return $(id).addEventListener("change", ({ target }) => viewer.set({ [key]: target.checked }));
+  };
+  check("#ghost", "ghost", rigid);
+  check("#trace", "trace", crane.scene.points.length);
+  check("#arrows", "arrows", crane.scene.supports.length);
+  document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => viewer.look(button.dataset.view)));
+  const mode = $("#mode");
+  crane.modes.forEach((one, index) => mode.append(new Option(modeText(one, index), index)));
+  mode.addEventListener("change", () => {
+    viewer.vibrate(mode.value === "" ? null : crane.modes[Number(mode.value)]);
+    $("#mode_note").hidden = mode.value === "";
+    if (mode.value !== "") player.play(true);
+  });
+  if (!crane.modes.length) mode.closest("label").remove();
+  if (crane.scene.supports.length) {
+    $("#scale i").style.background = gradient;
+    const { unit, factor: larger } = scaled("N", [viewer.greatest]);
+    $("#scale b").textContent = `${readable(viewer.greatest * larger)} ${unit}`;
+  } else $("#scale").remove();
+}
+
+/** Values beside the view, at the present time. */
+function now() {
+  const list = $("#now dl");
+  const value = (label, name, from = crane) => {
+    const column = from.run.column(name);
+    if (!column) return;
+    const { unit, factor } = scaled(column.unit, column.values);
+    const term = Object.assign(document.createElement("dt"), { textContent: label });
+    const number = document.createElement("dd");
+    list.append(term, number);
+    shown.push((here) => (number.textContent = `${readable(at(column.values, here) * factor)} ${unit}`));
+  };
+  const { points } = crane.scene;
+  const [point] = points.slice(points.length >> 1);
+  if (point) for (const axis of ["x", "y", "z"]) value(`${spoken(point.name)} ${axis}`, `${point.name}_${axis}`);
+  for (const j of crane.drives) {
+    const { name, force_unit: unit } = crane.coordinates[j];
+    value(spoken(name), `${name}_drive_${unit === "N" ? "force" : "torque"}`);
+  }
+  value("kinetic energy", "kinetic_energy");
+}
+
+function readings(here) {
+  for (const show of shown) show(here);
+}
+
+function keys() {
+  addEventListener("keydown", (event) => {
+    const own = event.target.closest("input, select, textarea, button, summary, figure, canvas, a");
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const acts = {
+      " ": () => player.play(!player.playing),
+      ArrowLeft: () => player.seek(player.t - STEP),
+      ArrowRight: () => player.seek(player.t + STEP),
+      Home: () => player.seek(0),
+      End: () => player.seek(player.duration),
+    };
+    if (own || !acts[event.key]) return;
+    event.preventDefault();
+    acts[event.key]();
+  });
+}
+
+function theme(name) {
+  document.documentElement.dataset.theme = name;
+  viewer?.theme();
+  plots.forEach((plot) => plot.theme());
+}

@@ -1,0 +1,189 @@
+// Which plots there are, and what they show.
+import { Matrix4, Vector3 } from "three";
+import { range, scaled, spoken } from "./data.js";
+import { Kinematics, links } from "./kinematics.js";
+import { Plot } from "./plot.js";
+
+/** A point hardly moves along an axis below this part of its way along z. */
+const HARDLY = 0.01;
+/** A shorter way is none, m. */
+const STILL = 1e-6;
+/** Angles of an element and what bends or twists: ψ about z, θ about y, φ about x. */
+const MOMENTS = [
+  { suffix: "_psi", title: "Bending moment about z" },
+  { suffix: "_theta", title: "Bending moment about y" },
+  { suffix: "_phi", title: "Torsion moment" },
+];
+
+/** All plots of the page. */
+export function panels(data, player) {
+  const { crane, rigid } = data;
+  const plots = [];
+  const time = { label: "t", unit: "s", values: crane.run.t };
+  const add = (section, options) => {
+    const host = document.querySelector(`#${section} .panels`);
+    const plot = new Plot(host, { prefix: crane.name, player, x: time, ...options });
+    plots.push(plot);
+    return plot;
+  };
+  /** Curves over time in one unit, shown in kN, kJ or mm where that reads better. */
+  const overTime = (section, id, title, label, unit, curves, height) => {
+    const all = curves.flatMap(({ values }) => range(values));
+    const { unit: shown, factor } = scaled(unit, all);
+    return add(section, { id, title, y: { label, unit: shown, factor }, curves, height });
+  };
+  /** The same column of the flexible and of the rigid crane. */
+  const both = (name) => [crane, rigid].filter((one) => one?.run.column(name)).map((one, index) => ({
+    label: rigid ? one.label : spoken(name), values: one.run.column(name).values, dashed: index === 1, colour: index,
+  }));
+
+  path(add, crane, rigid);
+  deflection(overTime, crane, rigid);
+  for (const j of crane.drives) {
+    const { name, force_unit: unit } = crane.coordinates[j];
+    const effort = unit === "N" ? "force" : "torque";
+    overTime("drives", `drive_${name}`, `${spoken(name)}: ${effort} of the drive`, effort, unit, both(`${name}_drive_${effort}`));
+  }
+  for (const axis of ["z", "x", "y"]) {
+    const curves = crane.scene.supports.map(({ name }, colour) => ({
+      label: name, colour, values: crane.run.column(`${name}_reaction_${axis}`).values, dashed: colour >= 4,
+    }));
+    if (curves.length) overTime("supports", `reaction_${axis}`, `Support reactions along ${axis}`, `F${axis}`, "N", curves, axis === "z" ? 300 : 230);
+  }
+  const along = moments(add, overTime, crane, time);
+  energy(overTime, crane, both);
+  explorer(add, crane, rigid, plots);
+  return { plots, along };
+}
+
+/** Paths of the points of interest, in the plane in which they move most. */
+function path(add, crane, rigid) {
+  const way = (axis) => Math.max(0, ...crane.scene.points.map(({ name }) => {
+    const [low, high] = range(crane.run.column(`${name}_${axis}`).values);
+    return high - low;
+  }));
+  const hardly = HARDLY * way("z");
+  const [x, y] = way("y") < hardly ? ["x", "z"] : way("x") < hardly ? ["y", "z"] : ["x", "y"];
+  const curves = crane.scene.points.flatMap(({ name }, colour) =>
+    [crane, rigid].filter(Boolean).map((one, index) => ({
+      label: rigid ? `${spoken(name)}, ${one.label}` : spoken(name), colour, dashed: index === 1,
+      x: one.run.column(`${name}_${x}`).values, values: one.run.column(`${name}_${y}`).values,
+    })),
+  );
+  // A crane at rest has no path.
+  if (Math.max(way("x"), way("y"), way("z")) < STILL) return;
+  const view = y === "y" ? "seen from above" : "seen from the side";
+  add("motion", { id: "path", kind: "path", title: `Load path, ${view}`, height: 545, curves, x: { label: x, unit: "m" }, y: { label: y, unit: "m" } });
+}
+
+/** How far flexibility moves the points, and how far flexible links are bent. */
+function deflection(overTime, crane, rigid) {
+  if (rigid) {
+    for (const axis of ["z", "x", "y"]) {
+      const curves = crane.scene.points.map(({ name }, colour) => {
+        const [own, other] = [crane, rigid].map((one) => one.run.column(`${name}_${axis}`).values);
+        return { label: spoken(name), colour, values: own.map((value, i) => value - other[i]) };
+      });
+      if (curves.length) overTime("motion", `deflection_${axis}`, `Deflection along ${axis}: flexible − rigid`, `Δ${axis}`, "m", curves);
+    }
+  }
+  const kinematics = new Kinematics(crane);
+  const found = links(kinematics);
+  if (!found.length) return;
+  const q = crane.coordinates.map(({ name }) => crane.run.column(name).values);
+  const tips = found.map(() => ["y", "z"].map(() => new Float32Array(crane.run.rows)));
+  for (let row = 0; row < crane.run.rows; row += 1) {
+    const frames = kinematics.pose(q.map((values) => values[row]));
+    found.forEach(({ bodies }, index) => {
+      const [root, end] = [bodies[0], bodies.at(-1)];
+      const tip = new Vector3(kinematics.bodies[end].length, 0, 0).applyMatrix4(frames[end]);
+      tip.applyMatrix4(new Matrix4().copy(frames[root]).invert());
+      tips[index][0][row] = tip.y;
+      tips[index][1][row] = tip.z;
+    });
+  }
+  found.forEach(({ name }, index) => {
+    const curves = tips[index].map((values, colour) => ({ label: `along its ${"yz"[colour]}`, colour, values }));
+    overTime("boom", `bent_${name}`, `${spoken(name)}: tip off the straight line`, "deflection", "m", curves);
+  });
+}
+
+/** Moments along flexible links now, with the greatest and the least of the run; and over time at the root. */
+function moments(add, overTime, crane, time) {
+  const { bodies } = crane.scene;
+  const along = [];
+  for (const link of links({ bodies: bodies.map((body) => ({ ...body, flexible: body.length > 0 })) })) {
+    for (const { suffix, title } of MOMENTS) {
+      let x = bodies[link.bodies[0]].length;
+      const joints = [];
+      for (const p of link.bodies.slice(1)) {
+        const column = crane.run.column(`${bodies[p].name}${suffix}_moment`);
+        if (column) joints.push({ x, values: column.values });
+        x += bodies[p].length;
+      }
+      if (!joints.length) continue;
+      const ranges = joints.map(({ values }) => range(values));
+      const { unit, factor } = scaled("N m", ranges.flat());
+      const plot = add("boom", {
+        id: `moment_${link.name}${suffix}`, kind: "along", title: `${spoken(link.name)}: ${title.toLowerCase()}`,
+        x: { label: "along the link", unit: "m", values: joints.map((joint) => joint.x) }, y: { label: "moment", unit, factor },
+        curves: [
+          { label: "now", colour: 0, values: joints.map(({ values }) => values[0]) },
+          { label: "greatest", colour: 1, dashed: true, values: ranges.map((r) => r[1]) },
+          { label: "least", colour: 2, dashed: true, values: ranges.map((r) => r[0]) },
+        ],
+      });
+      along.push({ plot, joints });
+    }
+    const root = MOMENTS.map(({ suffix, title }, colour) => ({
+      label: title.toLowerCase(), colour, column: crane.run.column(`${bodies[link.bodies[1]]?.name}${suffix}_moment`),
+    })).filter(({ column }) => column).map(({ column, ...rest }) => ({ ...rest, values: column.values }));
+    if (root.length) overTime("boom", `root_${link.name}`, `${spoken(link.name)}: moments at its first spring`, "moment", "N m", root);
+  }
+  return along;
+}
+
+function energy(overTime, crane, both) {
+  const change = (name) => {
+    const { values } = crane.run.column(name);
+    return values.map((value) => value - values[0]);
+  };
+  const parts = ["kinetic", "gravity", "support", "element", "drive"].map((part) => `${part}_energy`);
+  const curves = [...parts, "drive_work", "dissipated_energy"]
+    .map((name, colour) => ({ label: spoken(name), colour, values: change(name) }))
+    .filter(({ values }) => values.some((value) => value !== 0));
+  overTime("energy", "energies", "Energies, change since the start", "energy", "J", curves, 300);
+  overTime("energy", "balance", "Error of the energy balance", "E − E₀ − W + D", "J", both("energy_balance"), 300);
+}
+
+/** Any column of the run. */
+function explorer(add, crane, rigid, plots) {
+  const host = document.querySelector("#explorer");
+  const choice = host.querySelector("select");
+  for (const { name, unit } of crane.run.list.slice(1)) choice.append(new Option(`${spoken(name)} [${unit}]`, name));
+  const passive = crane.coordinates.find(({ role }) => role === "passive") ?? crane.coordinates[0];
+  choice.value = passive?.name ?? crane.run.list[1].name;
+  let plot = null;
+  const show = () => {
+    if (plot) {
+      plots.splice(plots.indexOf(plot), 1);
+      plot.frame.remove();
+    }
+    const { name, unit } = crane.run.column(choice.value);
+    const curves = [crane, rigid].filter((one) => one?.run.column(name)).map((one, index) => ({
+      label: rigid ? one.label : spoken(name), colour: index, dashed: index === 1, values: one.run.column(name).values,
+    }));
+    const { unit: shown, factor } = scaled(unit, curves.flatMap(({ values }) => range(values)));
+    plot = add("explorer", { id: "column", title: spoken(name), y: { label: spoken(name), unit: shown || "1", factor }, curves, height: 280 });
+  };
+  choice.addEventListener("change", show);
+  show();
+}
+
+/** Shows the moments along flexible links at a place of the run. */
+export function follow(along, { low, high, part }) {
+  for (const { plot, joints } of along) {
+    const now = joints.map(({ values }) => values[low] + (values[high] - values[low]) * part);
+    plot.update([now, ...plot.curves.slice(1).map(({ values }) => values)]);
+  }
+}

@@ -1,0 +1,43 @@
+// Time of the page: what plays, and who follows it.
+
+export class Player {
+  constructor(duration) {
+    this.duration = duration;
+    this.t = 0;
+    this.speed = 1;
+    this.playing = false;
+    this.followers = [];
+    this.last = 0;
+  }
+
+  /** Calls `follower(t)` whenever time moves. */
+  follow(follower) {
+    this.followers.push(follower);
+    follower(this.t);
+  }
+
+  seek(t) {
+    this.t = Math.min(Math.max(t, 0), this.duration);
+    for (const follower of this.followers) follower(this.t);
+  }
+
+  play(playing) {
+    this.playing = playing;
+    this.last = 0;
+    if (playing) {
+      if (this.t >= this.duration) this.seek(0);
+      requestAnimationFrame((now) => this.tick(now));
+    }
+    this.changed?.();
+  }
+
+  tick(now) {
+    if (!this.playing) return;
+    // A page that was away goes on where it was.
+    const passed = this.last ? Math.min((now - this.last) / 1000, 0.1) : 0;
+    this.last = now;
+    const t = this.t + passed * this.speed;
+    this.seek(t > this.duration ? 0 : t);
+    requestAnimationFrame((next) => this.tick(next));
+  }
+}

@@ -1,0 +1,69 @@
+// Tables of the page.
+import { spoken } from "./data.js";
+
+const element = (name, attributes = {}, ...children) => {
+  const made = Object.assign(document.createElement(name), attributes);
+  made.append(...children);
+  return made;
+};
+
+/** Tables of this many rows and more are folded. */
+const LONG = 14;
+
+/** Tables of this many columns and more take two places. */
+const WIDE = 6;
+
+/** A table of the command as it prints it. */
+function grid({ key, title, headers, numeric, rows }) {
+  const cell = (tag) => (text, column) => element(tag, { textContent: text, className: numeric[column] ? "number" : "" });
+  const table = element(
+    "table", {},
+    element("thead", {}, element("tr", {}, ...headers.map(cell("th")))),
+    element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map(cell("td"))))),
+  );
+  const scroll = element("div", { className: "scroll", tabIndex: 0 }, table);
+  scroll.setAttribute("role", "region");
+  scroll.setAttribute("aria-label", title);
+  const heading = `${title}`;
+  const made = rows.length >= LONG
+    ? element("details", { className: "table" }, element("summary", { textContent: `${heading} (${rows.length} rows)` }), scroll)
+    : element("div", { className: "table" }, element("h3", { textContent: heading }), scroll);
+  made.id = `table_${key}`;
+  made.classList.toggle("wide", headers.length >= WIDE);
+  return made;
+}
+
+/** Names and values side by side. */
+function pairs(title, entries, id) {
+  return grid({ key: id, title, headers: ["", ""], numeric: [false, false], rows: entries });
+}
+
+/** What a record says, in words: names with units, nested values flattened. */
+function entries(record) {
+  return Object.entries(record).flatMap(([name, value]) => {
+    if (value !== null && typeof value === "object") {
+      return Object.entries(value).map(([inner, { value: number, unit }]) => [inner, `${number} ${unit}`]);
+    }
+    const unit = name.match(/_(s)$/)?.[1];
+    const text = typeof value === "number" ? String(+value.toPrecision(9)) : String(value);
+    return [[spoken(unit ? name.slice(0, -2) : name), unit ? `${text} ${unit}` : text]];
+  });
+}
+
+/** Fills the tables. */
+export function tables(data) {
+  const host = document.querySelector("#tables .tables");
+  if (data.tables.facts.length) {
+    host.append(pairs("Outcome", data.tables.facts.map(([name, value, unit]) => [spoken(name), `${value} ${unit}`.trim()]), "facts"));
+  }
+  host.append(...data.tables.grids.map(grid));
+  const again = document.querySelector("#repeat .tables");
+  for (const { name, record } of data.cranes) again.append(pairs(spoken(name), entries(record), `record_${name}`));
+  document.querySelector("#command").textContent = data.command;
+  if (data.spec) document.querySelector("#spec pre").textContent = data.spec;
+  else document.querySelector("#spec").remove();
+}
+
+/** A mode in words. */
+export const modeText = ({ frequency, moves }, index) =>
+  `${index + 1}: ${frequency === null ? "unstable" : `${frequency.toPrecision(3)} Hz`}, ${moves.slice(0, 3).map(spoken).join(", ")}`;

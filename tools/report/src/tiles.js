@@ -1,0 +1,64 @@
+// The figures to look at first.
+import { range, readable, scaled, spoken } from "./data.js";
+
+/** Greatest size among columns, where it is, and in which column. */
+function greatest(columns, t) {
+  let best = { size: -1 };
+  for (const { values, ...rest } of columns) {
+    values.forEach((value, row) => {
+      if (Math.abs(value) > best.size) best = { ...rest, size: Math.abs(value), value, t: t[row] };
+    });
+  }
+  return best;
+}
+
+const text = (value, unit) => {
+  const { unit: shown, factor } = scaled(unit, [value]);
+  return `${Number((value * factor).toPrecision(4))} ${shown}`;
+};
+const when = (t) => `at ${Number(t.toPrecision(3))} s`;
+
+/** Fills the tiles. */
+export function tiles({ crane, rigid }) {
+  const host = document.querySelector("#tiles");
+  const { run, scene, coordinates, drives, modes } = crane;
+  const { t } = run;
+  const add = (title, value, note) => {
+    const tile = document.createElement("div");
+    const lines = [["span", title], ["strong", value], ["span", note]];
+    tile.append(...lines.map(([tag, textContent]) => Object.assign(document.createElement(tag), { textContent })));
+    host.append(tile);
+  };
+  if (rigid && scene.points.length) {
+    const ways = scene.points.map(({ name }) => {
+      const axes = ["x", "y", "z"].map((axis) => [crane, rigid].map((one) => one.run.column(`${name}_${axis}`).values));
+      return { name, values: t.map((_, row) => Math.hypot(...axes.map(([own, other]) => own[row] - other[row]))) };
+    });
+    const most = greatest(ways, t);
+    const rest = greatest(ways.map(({ values, ...way }) => ({ ...way, values: values.slice(0, 1) })), t);
+    add("deflection at rest", text(rest.size, "m"), `against the rigid crane; in motion up to ${text(most.size, "m")} (${spoken(most.name)}, ${when(most.t)})`);
+  }
+  for (const [effort, unit] of [["torque", "N m"], ["force", "N"]]) {
+    const columns = drives.map((j) => coordinates[j].name).map((name) => ({ name, values: run.column(`${name}_drive_${effort}`)?.values }));
+    const known = columns.filter(({ values }) => values);
+    if (!known.length) continue;
+    const most = greatest(known, t);
+    add(`greatest ${effort} of a drive`, text(most.value, unit), `${spoken(most.name)}, ${when(most.t)}`);
+  }
+  if (scene.supports.length) {
+    const columns = scene.supports.map(({ name }) => ({ name, values: run.column(`${name}_reaction_z`).values }));
+    const [high, low] = [1, 0].map((end) => {
+      const ends = columns.map(({ values }) => range(values)[end]);
+      const value = end ? Math.max(...ends) : Math.min(...ends);
+      return { value, name: columns[ends.indexOf(value)].name };
+    });
+    const { unit, factor } = scaled("N", [high.value, low.value]);
+    const [from, to] = [low, high].map(({ value }) => Number((value * factor).toPrecision(4)));
+    add("vertical reactions", `${from} … ${to} ${unit}`, low.value < 0 ? `${low.name} is pulled: the foot would lift` : `least ${low.name}, greatest ${high.name}: no foot lifts`);
+  }
+  if (modes.length && modes[0].frequency !== null) {
+    add("lowest frequency", `${readable(Number(modes[0].frequency.toPrecision(4)))} Hz`, modes[0].moves.slice(0, 2).map(spoken).join(", "));
+  }
+  const error = greatest([{ values: run.column("energy_balance").values }], t);
+  add("error of the energy balance", `${error.size.toExponential(1)} J`, `greatest, ${when(error.t)}`);
+}

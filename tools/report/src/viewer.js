@@ -1,0 +1,264 @@
+// The view in three dimensions: cranes, ground, traces, forces, camera.
+import {
+  ACESFilmicToneMapping, ArrowHelper, CircleGeometry, Color, DirectionalLight, Fog, GridHelper, HemisphereLight, Mesh,
+  MeshBasicMaterial, MeshStandardMaterial, PCFShadowMap, PerspectiveCamera, Scene, SphereGeometry, Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { Line2 } from "three/examples/jsm/lines/Line2.js";
+import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
+import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
+import { curve, isDark, scale, style } from "./colours.js";
+import { at, place, range } from "./data.js";
+import { Figure, extent } from "./figure.js";
+
+/** Largest motion of a mode as drawn, of the crane's size. */
+const SWING = 0.012;
+/** Waves a second of a mode as drawn, about. */
+const WAVES = 0.5;
+/** Room around the crane, of what it takes up, and of its size for the thickness of its links. */
+const ROOM = 1.04;
+const MARGIN = 0.03;
+/** Length of the greatest reaction as drawn, of the crane's size. */
+const ARROW = 0.22;
+
+export const VIEWS = {
+  corner: [-1, -1.25, 0.62],
+  side: [-1, 0, 0.06],
+  front: [0, -1, 0.06],
+  top: [0, -0.02, 1],
+};
+
+export class Viewer {
+  constructor(canvas, { crane, rigid }, player) {
+    this.canvas = canvas;
+    this.crane = crane;
+    this.player = player;
+    this.factor = 1;
+    this.mode = null;
+    this.extent = extent(crane);
+    const { size } = this.extent;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.toneMapping = ACESFilmicToneMapping;
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(34, 1, 0.01 * size, 60 * size);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.maxPolarAngle = 0.56 * Math.PI;
+    this.controls.listenToKeyEvents(canvas);
+    this.controls.addEventListener("change", () => this.draw());
+    this.figure = new Figure(crane, size);
+    this.scene.add(this.figure.group);
+    if (rigid) {
+      this.ghost = new Figure(rigid, size, { ghost: true });
+      this.scene.add(this.ghost.group);
+    }
+    this.rigid = rigid;
+    this.runs = new Map([crane, rigid].filter(Boolean).map((one) => [one, one.coordinates.map((c) => one.run.column(c.name).values)]));
+    this.lights();
+    this.ground();
+    this.traces();
+    this.forces();
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.resize();
+    this.look("corner");
+    this.theme();
+    player.follow(() => this.show());
+  }
+
+  lights() {
+    const { size, centre } = this.extent;
+    this.sky = new HemisphereLight(0xffffff, 0x8a8f96, 1.5);
+    const sun = new DirectionalLight(0xffffff, 2.6);
+    sun.position.copy(centre).add(new Vector3(-0.9, -0.7, 1.6).multiplyScalar(size));
+    sun.target.position.copy(centre);
+    sun.castShadow = true;
+    sun.shadow.mapSize.set(2048, 2048);
+    sun.shadow.bias = -0.0004;
+    sun.shadow.normalBias = 0.002 * size;
+    Object.assign(sun.shadow.camera, { left: -size, right: size, top: size, bottom: -size, near: 0.1 * size, far: 4 * size });
+    this.scene.add(this.sky, sun, sun.target);
+  }
+
+  /** Level ground under the lowest foot, with a grid whose squares are a round number of metres. */
+  ground() {
+    const { low, size, centre } = this.extent;
+    const { supports } = this.crane.scene;
+    const level = supports.length ? Math.min(...supports.map(({ at: [, , z] }) => z)) - 0.008 * size : Math.min(low.z, 0);
+    this.floor = new Mesh(new CircleGeometry(6 * size, 64), new MeshStandardMaterial({ roughness: 1 }));
+    this.floor.position.set(centre.x, centre.y, level);
+    this.floor.receiveShadow = true;
+    const square = 10 ** Math.round(Math.log10(size / 12));
+    const count = 2 * Math.ceil((1.6 * size) / square);
+    this.grid = new GridHelper(count * square, count);
+    this.grid.rotation.x = Math.PI / 2;
+    this.grid.position.set(Math.round(centre.x), Math.round(centre.y), level + 0.0015 * size);
+    this.grid.material.transparent = true;
+    this.grid.material.opacity = 0.35;
+    this.scene.add(this.floor, this.grid);
+    this.square = square;
+  }
+
+  /** The way of each point of interest: whole, and as far as it has come. */
+  traces() {
+    const { crane } = this;
+    this.paths = crane.scene.points.map(({ name }, index) => {
+      const [x, y, z] = ["x", "y", "z"].map((axis) => crane.run.column(`${name}_${axis}`).values);
+      const places = [];
+      for (let row = 0; row < crane.run.rows; row += 1) places.push(x[row], y[row], z[row]);
+      const line = (width, opacity) => {
+        const material = new LineMaterial({ linewidth: width, transparent: true, opacity, worldUnits: false });
+        const path = new Line2(new LineGeometry().setPositions(places), material);
+        path.frustumCulled = false;
+        this.scene.add(path);
+        return path;
+      };
+      const dot = new Mesh(new SphereGeometry(0.008 * this.extent.size, 20, 12), new MeshBasicMaterial());
+      this.scene.add(dot);
+      return { index, whole: line(1.2, 0.3), come: line(3, 1), dot };
+    });
+  }
+
+  /** An arrow for the force of each support. */
+  forces() {
+    const { crane, extent: { size } } = this;
+    const column = (name, axis) => crane.run.column(`${name}_reaction_${axis}`).values;
+    this.reactions = crane.scene.supports.map(({ name, at: local }) => {
+      const values = ["x", "y", "z"].map((axis) => column(name, axis));
+      const arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, 0xffffff);
+      this.scene.add(arrow);
+      return { values, local: new Vector3(...local), arrow };
+    });
+    this.greatest = Math.max(...this.reactions.map(({ values: [, , z] }) => Math.max(...range(z).map(Math.abs))), 1e-9);
+    this.arrow = (ARROW * size) / this.greatest;
+  }
+
+  look(view) {
+    const { centre, size } = this.extent;
+    const from = new Vector3(...VIEWS[view]).normalize();
+    this.camera.position.copy(centre).addScaledVector(from, size);
+    this.camera.lookAt(centre);
+    this.camera.updateMatrixWorld();
+    // Aims at the middle of what is seen, as near as leaves every place in view: its way off against the angle of view.
+    const seen = this.extent.places.map((place) => place.clone().applyMatrix4(this.camera.matrixWorldInverse));
+    const [across, up] = ["x", "y"].map((axis) => {
+      const [least, most] = range(seen.map((place) => place[axis]));
+      return (least + most) / 2;
+    });
+    const target = centre.clone();
+    target.addScaledVector(new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), across);
+    target.addScaledVector(new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1), up);
+    const slope = Math.tan(((this.camera.fov / 2) * Math.PI) / 180);
+    const distance = Math.max(...seen.map(({ x, y, z }) => {
+      const off = Math.max(Math.abs(y - up), Math.abs(x - across) / this.camera.aspect);
+      return size + z + (ROOM * off + MARGIN * size) / slope;
+    }));
+    this.camera.position.copy(target).addScaledVector(from, distance);
+    this.controls.target.copy(target);
+    this.controls.update();
+    this.draw();
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas.parentElement;
+    if (!clientWidth || !clientHeight) return;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  theme() {
+    const sky = new Color(style("--sky"));
+    this.scene.background = sky;
+    this.scene.fog = new Fog(sky, 2.2 * this.extent.size, 6 * this.extent.size);
+    this.floor.material.color.set(style("--floor"));
+    this.grid.material.color.set(style("--grid"));
+    this.grid.material.vertexColors = false;
+    this.grid.material.needsUpdate = true;
+    this.sky.intensity = isDark() ? 1.1 : 1.7;
+    this.paths.forEach(({ index, whole, come, dot }) => {
+      for (const { material } of [whole, come, dot]) material.color.set(curve(index));
+    });
+    this.draw();
+  }
+
+  /** Shows a mode instead of the motion; `null`: the motion again. */
+  vibrate(mode) {
+    this.mode = null;
+    if (mode) {
+      const { figure, crane } = this;
+      const rest = crane.scene.pose;
+      figure.pose(rest, 1);
+      const places = figure.outline();
+      // The way per unit of the shape, by a pose nearby: small enough that everything moves in proportion.
+      const small = 1e-4 / Math.max(...mode.shape.map(Math.abs));
+      figure.pose(rest.map((q, i) => q + small * mode.shape[i]), 1);
+      const ways = figure.outline().map((place, i) => place.distanceTo(places[i]));
+      const amplitude = (small * SWING * this.extent.size) / Math.max(...ways, 1e-12);
+      this.mode = { ...mode, amplitude };
+    }
+    for (const { whole, come } of this.paths) whole.visible = come.visible = !mode && this.traced !== false;
+    this.show();
+  }
+
+  set({ ghost, trace, arrows, factor }) {
+    if (ghost !== undefined && this.ghost) this.ghost.group.visible = ghost;
+    if (trace !== undefined) this.traced = trace;
+    if (arrows !== undefined) this.arrows = arrows;
+    if (factor !== undefined) this.factor = factor;
+    for (const { whole, come } of this.paths) whole.visible = come.visible = this.traced !== false && !this.mode;
+    this.show();
+  }
+
+  /** Takes the pose of the present time. */
+  show() {
+    const { t } = this.player;
+    const here = place(this.crane.run.t, t);
+    const motion = (crane) => this.runs.get(crane).map((values) => at(values, here));
+    if (this.mode) {
+      const { shape, amplitude } = this.mode;
+      const waves = Math.max(1, Math.round(WAVES * this.player.duration)) / this.player.duration;
+      const sway = amplitude * this.factor * Math.sin(2 * Math.PI * waves * t);
+      this.figure.pose(this.crane.scene.pose.map((q, i) => q + sway * shape[i]), 1);
+      this.ghost?.pose(this.rigid.scene.pose, 1);
+    } else {
+      this.figure.pose(motion(this.crane), this.factor);
+      this.ghost?.pose(motion(this.rigid), 1);
+    }
+    for (const { index, come, dot } of this.paths) {
+      this.figure.kinematics.point(index, dot.position);
+      come.geometry.instanceCount = Math.max(1, here.low);
+    }
+    this.react(here);
+    this.draw();
+  }
+
+  react(here) {
+    const base = this.figure.kinematics.frames[0];
+    const colours = this.reactions.map(({ values, local, arrow }) => {
+      const force = new Vector3(...values.map((axis) => at(axis, here)));
+      const colour = scale(force.z / this.greatest);
+      const length = force.length() * this.arrow;
+      arrow.visible = !this.mode && this.arrows !== false && length > 0;
+      arrow.position.copy(local).applyMatrix4(base);
+      arrow.setDirection(force.normalize());
+      arrow.setLength(length, Math.min(0.25 * length, 0.03 * this.extent.size), 0.014 * this.extent.size);
+      arrow.setColor(colour);
+      return colour;
+    });
+    if (colours.length) this.figure.paint(colours);
+  }
+
+  /** Draws once, however often it is asked for before the next picture. */
+  draw() {
+    if (this.asked || !this.renderer) return;
+    this.asked = true;
+    requestAnimationFrame(() => {
+      this.asked = false;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
+}

@@ -1,0 +1,229 @@
+// The page as a browser shows it: `node test.js PAGE [CSV …]`. The CSV files are those of the page's runs; without them,
+// values are not compared. Pictures go beside the page.
+import assert from "node:assert/strict";
+import { readFile, stat } from "node:fs/promises";
+import { basename, resolve } from "node:path";
+import { chromium } from "playwright-core";
+
+/** Rounding to 32 bits, and once more to the shortest text that reads back as the same. */
+const ROUNDING = 2 * 2 ** -24;
+/** Least number of 32 bits with all its digits. */
+const LEAST = 2 ** -126;
+/** Rounding to the digits shown. */
+const SHOWN = 0.5e-5;
+/** Most bytes of a page, so that it can be mailed. */
+const MOST_BYTES = 6e6;
+/** Software for what no graphics card does here; nothing of the browser's own that talks to a network. */
+const FLAGS = [
+  "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
+  "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
+];
+
+const [file, ...csvFiles] = process.argv.slice(2).map((path) => resolve(path));
+const picture = (name) => file.replace(/\.html$/, `_${name}.png`);
+const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+
+/** Columns of a CSV text by their header. */
+function columns(text) {
+  const [header, ...rows] = text.trim().split("\n").map((line) => line.split(","));
+  return new Map(header.map((name, i) => [name, rows.map((row) => Number(row[i]))]));
+}
+
+/** Opens the page; `check` looks at it; what it says or asks for besides is an error. */
+async function open(browser, options, check) {
+  const context = await browser.newContext({ offline: true, reducedMotion: "reduce", acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  const said = [];
+  page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => said.push(`error: ${error.stack}`));
+  page.on("request", (request) => {
+    if (!/^(file|data|blob):/.test(request.url())) said.push(`request: ${request.url()}`);
+  });
+  await page.goto(`file://${file}`);
+  await page.waitForFunction(() => document.documentElement.dataset.ready === "yes", null, { timeout: 60_000 });
+  await check(page);
+  await context.close();
+  return said;
+}
+
+const seek = async (page, t) => {
+  await page.evaluate((time) => globalThis.report.player.seek(time), t);
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+};
+
+async function download(page, act) {
+  const [given] = await Promise.all([page.waitForEvent("download"), act()]);
+  return readFile(await given.path(), "utf8");
+}
+
+/** Every panel has curves, and a value with a unit for each. */
+async function panels(page) {
+  const ids = await page.$$eval("figure.panel", (figures) => figures.map(({ id }) => id));
+  assert(ids.length >= 4, `${ids}`);
+  for (const id of ids) {
+    await page.locator(`#${id}`).scrollIntoViewIfNeeded();
+    await page.waitForTimeout(60);
+    const seen = await page.$eval(`#${id}`, (figure) => {
+      const canvas = figure.querySelector("canvas");
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      let coloured = 0;
+      // Axes and text are grey; curves are not.
+      for (let i = 0; i < data.length; i += 4) {
+        if (data[i + 3] > 128 && Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 60) coloured += 1;
+      }
+      const along = figure.classList.contains("along");
+      const values = [...figure.querySelectorAll(".u-series:not(:first-child) .u-value")].map((value) => value.textContent);
+      return { coloured, values: along ? [] : values, title: figure.querySelector("figcaption span").textContent };
+    });
+    assert(seen.coloured > 100, `${id}: no curve (${seen.coloured} pixels)`);
+    for (const value of seen.values) assert.match(value, /^-?[\d.,e\s-]+ \S/, `${id}: ${value}`);
+  }
+  return ids;
+}
+
+/** What is shown at some times is what the CSV files say. */
+async function values(page, files) {
+  const [main] = files;
+  const { t, drives, points, crane } = await page.evaluate(() => {
+    const { crane } = globalThis.report.data;
+    return { t: [...crane.run.t], crane: crane.name, drives: crane.drives.map((j) => crane.coordinates[j]), points: crane.scene.points.map(({ name }) => name) };
+  });
+  assert.equal(basename(csvFiles[0]), `${crane}.csv`);
+  const buttons = ["#all", "#all_rigid"];
+  for (const [index, columnsOfFile] of files.entries()) {
+    const given = columns(await download(page, () => page.click(buttons[index])));
+    assert.deepEqual([...given.keys()], [...columnsOfFile.keys()]);
+    for (const [name, exact] of columnsOfFile) {
+      given.get(name).forEach((value, row) => {
+        assert(Math.abs(value - exact[row]) <= ROUNDING * Math.abs(exact[row]) + LEAST, `${name}, row ${row}: ${value}, ${exact[row]}`);
+      });
+    }
+  }
+  for (const row of [0, 320, Math.floor(t.length / 2), t.length - 1]) {
+    await seek(page, t[row]);
+    for (const { name, force_unit: unit } of drives) {
+      const effort = unit === "N" ? "force" : "torque";
+      const plot = page.locator(`#drive_${name}`);
+      await plot.scrollIntoViewIfNeeded();
+      await page.waitForTimeout(50);
+      const text = await plot.locator(".u-series").nth(1).locator(".u-value").textContent();
+      const [number, ...shown] = text.split(" ");
+      const exact = main.get(`${name}_drive_${effort} [${unit}]`)[row];
+      const value = Number(number) * (shown.join(" ") === `k${unit}` ? 1e3 : 1);
+      // Below 1e-10 of a unit the page says 0.
+      assert(Math.abs(value - exact) <= SHOWN * Math.abs(exact) + 1e-7, `${name} at ${t[row]} s: ${text}, ${exact} ${unit}`);
+    }
+    const drawn = await page.evaluate(() => {
+      const { viewer } = globalThis.report;
+      viewer.set({ factor: 1 });
+      return viewer.figure.kinematics.points.map((_, index) => viewer.figure.kinematics.point(index).toArray());
+    });
+    points.forEach((name, index) => ["x", "y", "z"].forEach((axis, i) => {
+      const exact = main.get(`${name}_${axis} [m]`)[row];
+      // Coordinates of 32 bits on a crane of 10 m: some 1e-6 m.
+      assert(Math.abs(drawn[index][i] - exact) < 5e-6, `${name}_${axis} at ${t[row]} s is drawn at ${drawn[index][i]}, is at ${exact}`);
+    }));
+  }
+}
+
+/** The picture of the crane moves with time, with a mode, with exaggeration. */
+async function moves(page) {
+  await page.evaluate(() => scrollTo(0, 0));
+  const look = async (t) => {
+    await seek(page, t);
+    await page.waitForTimeout(250);
+    return page.locator("#view canvas").screenshot();
+  };
+  const duration = await page.evaluate(() => globalThis.report.player.duration);
+  const moving = await page.evaluate(() => globalThis.report.data.crane.run.column("kinetic_energy").values.some((value) => value > 1e-9));
+  const still = await look(0);
+  if (moving) assert(!still.equals(await look(duration / 2)), "the crane does not move");
+  const modes = await page.locator("#mode option").count();
+  if (modes > 1) {
+    await page.selectOption("#mode", "0");
+    await page.evaluate(() => globalThis.report.player.play(false));
+    const rest = await look(0);
+    assert(!rest.equals(await look(duration / 16 + 0.1)), "the mode does not move");
+    await page.selectOption("#mode", "");
+    await page.evaluate(() => globalThis.report.player.play(false));
+  }
+  await seek(page, 0);
+  await page.click("#play");
+  await page.waitForFunction(() => globalThis.report.player.t > 0.05);
+  await page.keyboard.press("Space");
+  assert.equal(await page.evaluate(() => globalThis.report.player.playing), false, "the play button has the focus: space pauses");
+}
+
+/** Zoom by keys, cursor by keys, SVG with units. */
+async function plots(page) {
+  const figure = page.locator("#balance");
+  await figure.focus();
+  const span = () => page.evaluate(() => {
+    const { min, max } = globalThis.report.plots.find(({ id }) => id === "balance").plot.scales.x;
+    return max - min;
+  });
+  const whole = await span();
+  await page.keyboard.press("+");
+  await page.waitForTimeout(50);
+  assert((await span()) < whole);
+  await page.keyboard.press("0");
+  await page.waitForTimeout(50);
+  assert.equal(await span(), whole);
+  await page.keyboard.press("ArrowRight");
+  await page.waitForTimeout(50);
+  const index = await page.evaluate(() => globalThis.report.plots.find(({ id }) => id === "balance").plot.cursor.idx);
+  assert(index > 0, `${index}`);
+  const svg = await download(page, () => figure.locator("button", { hasText: "SVG" }).click());
+  const sound = await page.evaluate((text) => new DOMParser().parseFromString(text, "image/svg+xml").querySelector("parsererror") === null, svg);
+  assert(sound && svg.includes("t [s]") && svg.includes("[J]") && svg.includes("<polyline"), svg.slice(0, 500));
+  assert(!svg.includes("NaN"));
+  const csv = columns(await download(page, () => figure.locator("button", { hasText: "CSV" }).click()));
+  assert(csv.has("t [s]") && csv.size >= 2);
+}
+
+const begin = Date.now();
+assert((await stat(file)).size < MOST_BYTES);
+const text = await readFile(file, "utf8");
+assert.match(text, /http-equiv="Content-Security-Policy" content="default-src 'none'/);
+const browser = await chromium.launch({ executablePath, args: FLAGS });
+let count = 0;
+const said = await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "light" }, async (page) => {
+  await seek(page, (await page.evaluate(() => globalThis.report.player.duration)) * 0.32);
+  await page.waitForTimeout(300);
+  await page.screenshot({ path: picture("light") });
+  count = (await panels(page)).length;
+  if (csvFiles.length) {
+    const files = await Promise.all(csvFiles.map(async (path) => columns(await readFile(path, "utf8"))));
+    await values(page, files);
+  }
+  await moves(page);
+  await plots(page);
+  assert((await page.$$eval("#tables table", (tables) => tables.filter((table) => table.rows.length > 1).length)) >= 3);
+  assert((await page.locator("#repeat").textContent()).includes("spec hash"));
+  await page.click("#theme");
+  assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
+});
+said.push(...(await open(browser, { viewport: { width: 1440, height: 900 }, colorScheme: "dark" }, async (page) => {
+  assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
+  await page.waitForTimeout(300);
+  await page.screenshot({ path: picture("dark") });
+})));
+const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
+said.push(...(await open(browser, phone, async (page) => {
+  const [width, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+  assert(width <= screen, `the page is ${width} wide on a screen of ${screen}`);
+  await page.waitForTimeout(300);
+  await page.screenshot({ path: picture("phone") });
+})));
+assert.deepEqual(said, [], "the page says or asks for something");
+await browser.close();
+
+// Without 3-D, everything else is there.
+const flat = await chromium.launch({ executablePath, args: [...FLAGS.filter((flag) => !/gl|swift/.test(flag)), "--disable-3d-apis"] });
+const complaints = await open(flat, { viewport: { width: 1000, height: 700 } }, async (page) => {
+  assert.match(await page.locator("#view").textContent(), /no 3-D/);
+  assert.equal((await panels(page)).length, count);
+});
+assert(complaints.every((line) => !/^(error: (?!.*WebGL)|request)/.test(line)), complaints.join("\n"));
+await flat.close();
+console.log(`${basename(file)}: ${count} panels, ${(text.length / 1e6).toFixed(2)} MB, ${((Date.now() - begin) / 1000).toFixed(0)} s`);

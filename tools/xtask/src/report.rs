@@ -1,0 +1,51 @@
+//! The report page, in `tools/report`: whether the command has the newest, and how a browser shows it.
+
+use std::fs;
+use std::process::Command;
+
+use crate::{step, workspace};
+
+const FOLDER: &str = "tools/report";
+/// Pages for the browser besides that of the default run: no elements and no supports; nothing that moves.
+const OTHERS: [&str; 2] = ["knuckle_boom", "cantilever"];
+
+fn in_folder(program: &str) -> Command {
+    let mut command = Command::new(program);
+    command.current_dir(workspace::root().join(FOLDER));
+    command
+}
+
+/// Installs the pinned packages, unless they are there.
+pub fn prepare() -> Result<(), String> {
+    let lock = workspace::read(&format!("{FOLDER}/package-lock.json"))?;
+    let stamp = workspace::root().join(FOLDER).join("node_modules/installed.json");
+    if fs::read_to_string(&stamp).is_ok_and(|installed| installed == lock) {
+        println!("{FOLDER}/package-lock.json is installed");
+        return Ok(());
+    }
+    step::finish(in_folder("npm").arg("ci"))
+        .map_err(|error| format!("{error}; npm is needed (Debian: apt-get install nodejs npm)"))?;
+    fs::write(&stamp, lock).map_err(|error| format!("{}: {error}", stamp.display()))
+}
+
+/// The page that the command includes is what its sources make.
+pub fn is_current() -> Result<(), String> {
+    step::finish(in_folder("node").args(["build.js", "--check"]))
+}
+
+/// Pages of several cranes in headless Chromium; that of the default run is compared with its CSV files.
+pub fn in_browser() -> Result<(), String> {
+    let chromium = std::env::var("CHROMIUM").unwrap_or_else(|_| "/usr/bin/chromium".to_owned());
+    if !std::path::Path::new(&chromium).exists() {
+        return Err(format!("{chromium} is missing (Debian: apt-get install chromium; elsewhere set CHROMIUM)"));
+    }
+    let out = workspace::root().join("out");
+    let files = ["report.html", "eight_link_flexible.csv", "eight_link_rigid.csv"].map(|name| out.join(name));
+    step::finish(in_folder("node").arg("test.js").args(files))?;
+    for crane in OTHERS {
+        let page = out.join(format!("{crane}.html"));
+        step::finish(Command::new(workspace::target().join("release/crane")).args(["report", crane, "-o"]).arg(&page))?;
+        step::finish(in_folder("node").arg("test.js").arg(page))?;
+    }
+    Ok(())
+}
