@@ -99,7 +99,9 @@ class Chain:
             start = end @ link.placement
             for joint in link.joints:
                 frame = joint.frame
-                steps.append(Step(joint.is_rotation, joint.letter, whole(start @ frame), 0.0, np.zeros(3), np.zeros((3, 3))))
+                steps.append(
+                    Step(joint.is_rotation, joint.letter, whole(start @ frame), 0.0, np.zeros(3), np.zeros((3, 3)))
+                )
                 start = end = np.linalg.inv(frame)
             rotation, origin = end[:3, :3], end[:3, 3]
             last = steps[-1]
@@ -153,7 +155,9 @@ def at_zero(crane):
 def evaluate(crane, expressions):
     """Values at q = 0 with the parameters at their defaults."""
     function = ca.Function("at_zero", [crane.q, crane.parameters], expressions)
-    return [value.full() for value in function.call([ca.DM.zeros(crane.q.shape), ca.DM([*crane.spec.defaults.values()])])]
+    return [
+        value.full() for value in function.call([ca.DM.zeros(crane.q.shape), ca.DM([*crane.spec.defaults.values()])])
+    ]
 
 
 def joint(generator):

@@ -22,7 +22,11 @@ def evaluate(function, *arguments):
     results = [np.zeros((states, function.numel_out(k)), dtype=np.longdouble) for k in range(function.n_out())]
     work = [None] * function.sz_w()
     for k in range(function.n_instructions()):
-        operation, inputs, outputs = function.instruction_id(k), function.instruction_input(k), function.instruction_output(k)
+        operation, inputs, outputs = (
+            function.instruction_id(k),
+            function.instruction_input(k),
+            function.instruction_output(k),
+        )
         if operation == ca.OP_CONST:
             work[outputs[0]] = np.full(states, function.instruction_constant(k), dtype=np.longdouble)
         elif operation == ca.OP_INPUT:

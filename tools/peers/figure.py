@@ -1,10 +1,8 @@
 """The figure of docs/performance.md: times over coordinates, both axes logarithmic."""
 
 import matplotlib
-
-matplotlib.use("svg")
-import matplotlib.pyplot as plt  # noqa: E402: the back end is chosen first
-from matplotlib.ticker import FormatStrFormatter, ScalarFormatter  # noqa: E402
+import matplotlib.pyplot as plt
+from matplotlib.ticker import FormatStrFormatter, ScalarFormatter
 
 # Okabe and Ito's colours, which tell apart for all kinds of colour vision; the markers do without colour.
 STYLES = {
@@ -28,6 +26,7 @@ PANELS = {
 def draw(times, path, series):
     """A panel a quantity."""
     # The same file from the same numbers; text stays text.
+    matplotlib.use("svg")
     matplotlib.rcParams.update({"svg.hashsalt": "crane", "svg.fonttype": "none", "font.size": 9})
     drawing, axes = plt.subplots(1, len(PANELS), figsize=(11, 4.2), layout="constrained")
     for panel, (quantity, (title, kernels)) in zip(axes, PANELS.items()):
@@ -38,7 +37,7 @@ def draw(times, path, series):
             points = [(n, time / 1000) for n in times.coordinates if (time := line(n))]
             if points:
                 color, marker = STYLES[name]
-                panel.loglog(*zip(*points), color=color, marker=marker, label=name, markeredgecolor="black", markeredgewidth=0.4)
+                panel.loglog(*zip(*points), color=color, marker=marker, label=name, mec="black", mew=0.4)
         panel.set(title=title, xlabel="coordinates [1]", ylabel="time [µs]")
         panel.set_xticks(times.coordinates, minor=False)
         panel.set_xticks([], minor=True)

@@ -3,6 +3,7 @@
 import os
 import platform
 import subprocess
+from datetime import date
 from importlib.metadata import version
 
 from programs import WORKSPACE
@@ -17,30 +18,35 @@ def describe(compilers):
     """Processor, system, versions, date."""
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         names = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
-    rustc = subprocess.run(["rustc", "--version"], cwd=WORKSPACE, capture_output=True, text=True, check=True).stdout
     return {
         "processor": f"{names[0] if names else platform.machine()}, {os.cpu_count()} cores",
         "system": f"{platform.system()} {platform.machine()}",
         "target": target_cpu(),
         "versions": [
-            " ".join(rustc.split()[:2]),
+            " ".join(output_of("rustc", "--version").split()[:2]),
             *[compiler.version for compiler in compilers],
             *[f"{name} {version(package)}" for name, package in PACKAGES.items()],
         ],
-        "date": subprocess.run(["date", "+%Y-%m-%d"], capture_output=True, text=True, check=True).stdout.strip(),
+        "date": date.today().isoformat(),
     }
+
+
+def output_of(*command):
+    """What a command writes."""
+    words = [str(word) for word in command]
+    return subprocess.run(words, cwd=WORKSPACE, capture_output=True, text=True, check=True).stdout
 
 
 def target_cpu():
     """What rustc takes this processor for."""
-    lines = subprocess.run(["rustc", "--print", "target-cpus"], cwd=WORKSPACE, capture_output=True, text=True, check=True).stdout
-    native = next((line for line in lines.splitlines() if line.strip().startswith("native")), "")
+    lines = output_of("rustc", "--print", "target-cpus").splitlines()
+    native = next((line for line in lines if line.strip().startswith("native")), "")
     return native.split("currently ")[-1].rstrip(").") if "currently" in native else "native"
 
 
 def peak(programs):
     """The most operations a second, 1e9/s, of one core on scalars and on vectors: the best of any compiler."""
-    runs = [subprocess.run([program], capture_output=True, text=True, check=True).stdout.split() for program in programs]
+    runs = [output_of(program).split() for program in programs]
     return {kind: max(float(run[k]) for run in runs) for k, kind in enumerate(("scalar", "vector"))}
 
 
@@ -48,16 +54,14 @@ def operations(builds, coordinates):
     """Floating-point operations of each generated function, as the compiler counts them."""
     command = ["cargo", "run", "--release", "--quiet", "--package", "crane-codegen", "--features", "cli", "--"]
     spec = builds.folder / f"crane_{coordinates}.yaml"
-    table = subprocess.run(
-        [*command, "operations", spec], cwd=WORKSPACE, capture_output=True, text=True, check=True
-    ).stdout
-    rows = [[cell.strip(" `") for cell in line.split("|")[1:-1]] for line in table.splitlines() if line.startswith("| `")]
+    lines = [line for line in output_of(*command, "operations", spec).splitlines() if line.startswith("| `")]
+    rows = [[cell.strip(" `") for cell in line.split("|")[1:-1]] for line in lines]
     return {row[0]: int(row[1]) for row in rows if row[1].isdigit()}
 
 
 def counters(bench, coordinates):
     """Instructions and L1 misses a call of our kernels; empty where the machine does not count them."""
-    kernels = subprocess.run([bench, "kernels", str(coordinates)], capture_output=True, text=True, check=True).stdout
+    kernels = output_of(bench, "kernels", coordinates)
     counted = {}
     for kernel in [line.split()[0] for line in kernels.splitlines()]:
         once, twice = (count(bench, coordinates, kernel, calls) for calls in (COUNTED_CALLS, 2 * COUNTED_CALLS))

@@ -32,7 +32,9 @@ FIRST_LOOK = 0.01
 def main():
     """Builds, compares, measures, writes."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="13 and 25 coordinates, 3 rounds, into the build folder only")
+    parser.add_argument(
+        "--quick", action="store_true", help="13 and 25 coordinates, 3 rounds, into the build folder only"
+    )
     parser.add_argument("--rounds", type=int, help="turns of everybody (11)")
     parser.add_argument("--seconds", type=float, default=0.03, help="length of a turn (0.03)")
     parser.add_argument("--report", action="store_true", help="write the document from the last results")
@@ -41,6 +43,8 @@ def main():
     results = builds.folder / ("quick.json" if options.quick else "results.json")
     if not options.report:
         measure(options, builds, results)
+    elif not results.exists():
+        parser.error(f"{results}: nothing has been measured yet")
     document = builds.folder / "performance.md" if options.quick else WORKSPACE / "docs/performance.md"
     figure = builds.folder / "performance.svg" if options.quick else WORKSPACE / "docs/images/performance.svg"
     report.write(json.loads(results.read_text(encoding="utf-8")), document, figure)

@@ -41,7 +41,9 @@ class Compiler:
 def compilers():
     """gcc, and the newest clang there is."""
     found = [Compiler("gcc", "gcc", "g++")] if shutil.which("g++") else []
-    names = {Path(folder, file).name for folder in os.get_exec_path() if Path(folder).is_dir() for file in os.listdir(folder)}
+    names = {
+        Path(folder, file).name for folder in os.get_exec_path() if Path(folder).is_dir() for file in os.listdir(folder)
+    }
     suffixes = [match[1] for name in names if (match := re.fullmatch(r"clang\+\+(-\d+)?", name))]
     if suffixes:
         newest = max((suffix or "" for suffix in suffixes), key=lambda suffix: int(suffix[1:] or 0))
@@ -83,7 +85,9 @@ class Builds:
 
     def shared_library(self, source, compiler):
         """A C file as a shared library."""
-        return self.compile([source], f"{source.stem}-{compiler.name}", [compiler.c, *FLAGS, "-shared", "-fPIC", source])
+        return self.compile(
+            [source], f"{source.stem}-{compiler.name}", [compiler.c, *FLAGS, "-shared", "-fPIC", source]
+        )
 
 
 def package(name):

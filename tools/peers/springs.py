@@ -49,12 +49,13 @@ def read_springs(crane, time):
     q, size = crane.q, len(crane.coordinates)
     stiffness, damping, rest = np.zeros((3, size))
     elongations = ca.vertcat(*[support.elongation for support in crane.supports])
-    at = [*([spring.motion, spring.stiffness, spring.damping] for spring in crane.elements + crane.drives + crane.hinges)]
+    springs = crane.elements + crane.drives + crane.hinges
+    numbers_of = [ca.vertcat(*map(ca.SX, (s.motion, s.stiffness, s.damping))) for s in springs]
     function = ca.Function(
         "springs",
         [crane.time, q, crane.parameters],
         [
-            ca.vertcat(*[ca.vertcat(*map(ca.SX, three)) for three in at]),
+            ca.vertcat(*numbers_of),
             ca.densify(ca.jacobian(elongations, q)),
             elongations,
             ca.vertcat(*[support.stiffness for support in crane.supports]),
@@ -66,7 +67,6 @@ def read_springs(crane, time):
         value.full() for value in function(time, ca.DM.zeros(size), defaults)
     )
     index = {coordinate.name: i for i, coordinate in enumerate(crane.coordinates)}
-    springs = crane.elements + crane.drives + crane.hinges
     for spring, (motion, spring_stiffness, spring_damping) in zip(springs, numbers.reshape(-1, 3)):
         i = index[spring.coordinate.name]
         if stiffness[i] and spring_stiffness:
