@@ -28,6 +28,7 @@ PINOCCHIO_ALGORITHMS = {
 # Kernels of ours that compute what others do as well.
 SHARED = {
     "forward_dynamics": "forward_dynamics",
+    "forward_dynamics_lanes": "forward_dynamics",
     "dense_forward_dynamics": "forward_dynamics",
     "mass_matrix_and_bias": "mass_matrix_and_bias",
     "triple_sum": "mass_matrix_and_bias",

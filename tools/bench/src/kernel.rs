@@ -3,7 +3,8 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use crane_model::nalgebra::{Dim, Matrix, Matrix4, RawStorage};
+use crane_model::nalgebra::{Dim, Matrix, Matrix4, RawStorage, SVector};
+use crane_model::support::lanes::f64x8;
 
 /// A function of a state with the states that it is called on, one after the other: nothing is known when it is compiled,
 /// and nothing is left over from the call before.
@@ -101,6 +102,13 @@ pub trait Numbers {
 impl<R: Dim, C: Dim, S: RawStorage<f64, R, C>> Numbers for Matrix<f64, R, C, S> {
     fn append_to(&self, numbers: &mut Vec<f64>) {
         numbers.extend(self.iter());
+    }
+}
+
+impl<const N: usize> Numbers for SVector<f64x8, N> {
+    /// Crane by crane.
+    fn append_to(&self, numbers: &mut Vec<f64>) {
+        numbers.extend((0..8).flat_map(|lane| self.iter().map(move |entry| entry.as_array()[lane])));
     }
 }
 

@@ -2,7 +2,8 @@
 
 use crane_model::dynamics::rk4;
 use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
-use crane_model::{Implicit, TransformDerivatives};
+use crane_model::support::lanes::f64x8;
+use crane_model::{Ensemble, Implicit, LaneDynamics, TransformDerivatives};
 
 use crate::kernel::Kernel;
 use crate::states::{self, State};
@@ -13,8 +14,9 @@ pub const STEP: f64 = 1e-6;
 
 /// Kernels of any crane.
 #[must_use]
-pub fn all<const N: usize, C: Implicit<N> + Default + Copy + 'static>(_spec: &str) -> Vec<Kernel> {
+pub fn all<const N: usize, C: Implicit<N> + Ensemble<N> + Default + Copy + 'static>(_spec: &str) -> Vec<Kernel> {
     let crane = C::default();
+    let lanes = C::lanes([&crane; 8]);
     let states = &states::near_guess::<N>(crane.description());
     let poses = vec![Matrix4::zeros(); crane.description().bodies.len()];
     let (vector, square) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros());
@@ -29,6 +31,15 @@ pub fn all<const N: usize, C: Implicit<N> + Default + Copy + 'static>(_spec: &st
         Kernel::new("forward_dynamics", 1, states, vector, move |s, out| {
             *out = crane.forward_dynamics(s.t, &s.q, &s.v);
         }),
+        Kernel::new(
+            "forward_dynamics_lanes",
+            8,
+            &states::by_eight(states),
+            SVector::<f64x8, N>::zeros(),
+            move |s, out| {
+                *out = lanes.forward_dynamics(s.t, &s.q, &s.v);
+            },
+        ),
         Kernel::new("dense_forward_dynamics", 1, states, vector, move |s, out| {
             if let Some(factors) = Cholesky::new(crane.mass_matrix(&s.q)) {
                 *out = factors.solve(&(crane.bias(&s.q, &s.v) + crane.forces(s.t, &s.q, &s.v)));
@@ -51,7 +62,7 @@ pub fn all<const N: usize, C: Implicit<N> + Default + Copy + 'static>(_spec: &st
 #[must_use]
 pub fn all_of_small<const N: usize, C>(spec: &str) -> Vec<Kernel>
 where
-    C: Implicit<N> + TransformDerivatives<N> + Default + Copy + 'static,
+    C: Implicit<N> + Ensemble<N> + TransformDerivatives<N> + Default + Copy + 'static,
 {
     let crane = C::default();
     let states = &states::near_guess::<N>(crane.description());

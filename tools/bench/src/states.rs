@@ -1,6 +1,7 @@
 //! The states at which everything is timed and compared.
 
 use crane_model::nalgebra::SVector;
+use crane_model::support::lanes::f64x8;
 use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Description};
 use fastrand::Rng;
 
@@ -29,6 +30,33 @@ pub fn near_guess<const N: usize>(crane: &Description) -> Vec<State<N>> {
             t: symmetric(0.25) - 0.5,
             q: SVector::from_fn(|i, _| crane.guess[i] + symmetric(reach(crane, i))),
             v: SVector::from_fn(|_, _| symmetric(0.5)),
+        })
+        .collect()
+}
+
+/// Eight states, one a lane.
+#[derive(Clone, Debug)]
+pub struct EightStates<const N: usize> {
+    /// Times, s.
+    pub t: f64x8,
+    /// Coordinates, m and rad.
+    pub q: SVector<f64x8, N>,
+    /// Their rates, m/s and rad/s.
+    pub v: SVector<f64x8, N>,
+}
+
+/// The states eight by eight, in their order.
+#[must_use]
+pub fn by_eight<const N: usize>(states: &[State<N>]) -> Vec<EightStates<N>> {
+    let vector = |eight: &[State<N>; 8], of: fn(&State<N>) -> &SVector<f64, N>| {
+        SVector::from_fn(|i, _| f64x8::new(std::array::from_fn(|lane| of(&eight[lane])[i])))
+    };
+    let eights = states.as_chunks::<8>().0.iter();
+    eights
+        .map(|eight| EightStates {
+            t: f64x8::new(std::array::from_fn(|lane| eight[lane].t)),
+            q: vector(eight, |state| &state.q),
+            v: vector(eight, |state| &state.v),
         })
         .collect()
 }
