@@ -35,7 +35,7 @@ pub fn all<const N: usize, C: Implicit<N> + Ensemble<N> + Default + Copy + 'stat
             "forward_dynamics_lanes",
             8,
             &states::by_eight(states),
-            SVector::<f64x8, N>::zeros(),
+            SVector::<f64x8, N>::repeat(f64x8::splat(0.0)),
             move |s, out| {
                 *out = lanes.forward_dynamics(s.t, &s.q, &s.v);
             },
