@@ -310,3 +310,71 @@ fn stability_names_what_limits_the_step_and_draws_it() {
     let svg = fs::read_to_string(out.join("eight_link_flexible_stability.svg")).expect("a figure");
     assert!(svg.starts_with("<svg") && svg.contains("Re hλ") && svg.matches("<circle").count() > 40);
 }
+
+/// A table for `--ensemble`.
+fn table(name: &str, text: &str) -> String {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::write(&path, text).expect("a file");
+    path.to_str().expect("a path").to_owned()
+}
+
+#[test]
+fn a_table_with_mistakes_is_refused_with_its_place() {
+    for (text, said) in [
+        ("payload,paylod\n1,2\n", &["line 1, column 2", "no live parameter `paylod`", "did you mean `payload`?"][..]),
+        ("payload,payload\n1,2\n", &["line 1, column 2", "a second time"]),
+        ("payload [t]\n1\n", &["line 1, column 1", "in kg, not in t", "`payload [kg]`"]),
+        ("payload\n100\nheavy\n", &["line 3, column 1", "`heavy` is no value for payload", "in kg, such as 800"]),
+        ("payload\ninf\n", &["line 2, column 1", "finite"]),
+        ("payload\n1,2\n", &["line: 2", "2 fields", "1 field"]),
+        ("payload\n", &["has no rows"]),
+        ("", &["line 1, column 1", "payload [kg]"]),
+    ] {
+        refused(&["simulate", "knuckle_boom", "--ensemble", &table("mistakes.csv", text)], said);
+    }
+    refused(&["simulate", "knuckle_boom", "--ensemble", "no_such_table.csv"], &["cannot use no_such_table.csv"]);
+    refused(&["simulate", "knuckle_boom", "--threads", "2"], &["--ensemble"]);
+    refused(&["simulate", "knuckle_boom", "--ensemble", "t.csv", "--threads", "0"], &["--threads"]);
+}
+
+#[test]
+fn an_ensemble_writes_a_row_for_every_crane() {
+    let out = folder("ensemble");
+    let file = out.join("peaks.csv");
+    // Nine cranes: a batch, and one more. The fifth, lifted by its load, has no stable equilibrium.
+    let loads = ["0", "100", "200", "300", "-1e6", "500", "600", "700", "800"];
+    let loads_file = table("loads.csv", &format!("payload [kg]\n{}\n", loads.join("\n")));
+    let arguments = ["simulate", "knuckle_boom", "--ensemble", &loads_file, "--duration", "0.5", "--format", "json"];
+    let report = json(&[&arguments[..], &["-o", file.to_str().expect("a path"), "--threads", "2"]].concat());
+    assert_eq!((&report["cranes"], &report["reached_the_end"]), (&9.into(), &8.into()));
+    assert_eq!(report["step"], 1e-3);
+
+    let mut csv = csv::Reader::from_path(&file).expect("a CSV file");
+    let header = csv.headers().expect("a header").clone();
+    assert!(header.iter().all(|column| column == "status" || column.ends_with(']')), "{header:?}");
+    let rows: Vec<_> = csv.records().map(|row| row.expect("a row")).collect();
+    let column = |name: &str| header.iter().position(|column| column == name).unwrap_or_else(|| panic!("{header:?}"));
+    let (torque, status) = (column("main_boom_theta_drive_torque_peak [N m]"), column("status"));
+    assert_eq!(rows.len(), loads.len());
+    let mut before = 0.0;
+    for (row, load) in rows.iter().zip(loads) {
+        assert_eq!(row[0].parse::<f64>(), load.parse::<f64>());
+        if load == "-1e6" {
+            assert!(row[torque].is_empty() && row[status].contains("stable equilibrium"), "{row:?}");
+        } else {
+            // More load, more torque.
+            let peak: f64 = row[torque].parse().expect("a number");
+            assert!(peak > before && &row[status] == "done", "{row:?}");
+            before = peak;
+        }
+    }
+    // The last row is the spec's crane: as its own run.
+    json(&["simulate", "knuckle_boom", "--duration", "0.5", "--out", out.to_str().expect("a path"), "--format", "json"]);
+    let mut run = csv::Reader::from_path(out.join("knuckle_boom.csv")).expect("a CSV file");
+    let name = "main_boom_theta_drive_torque [N m]";
+    let place = run.headers().expect("a header").iter().position(|column| column == name).expect("a column");
+    let single =
+        run.records().map(|row| row.expect("a row")[place].parse().expect("a number")).fold(0.0_f64, |m, x: f64| m.max(x.abs()));
+    // Cholesky's factors there, articulated bodies here: roundings.
+    assert!((single - before).abs() < 1e-8 * single, "{single} {before}");
+}

@@ -1,6 +1,7 @@
 //! Arguments of the command.
 
 use std::{
+    num::NonZeroUsize,
     path::{Path, PathBuf},
     str::FromStr,
 };
@@ -15,6 +16,8 @@ Examples:
                                        the same of another crane, for a program
   crane simulate --set load_mass=0 --out empty
                                        the manoeuvre without the log
+  crane simulate --ensemble loads.csv -o peaks.csv
+                                       a crane for every row of a table of parameters
   crane report -o report.html          the crane in 3-D, plots and tables as a page that needs no network
   crane modes                          frequencies and damping about the static pose
   crane stability                      largest stable steps, what limits them, and a figure
@@ -156,7 +159,7 @@ impl FromStr for Step {
 }
 
 /// Time and step of a run.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Timing {
     /// Greatest step of the integrator, s; `auto`: the largest safe one [default: the crane's]
     #[arg(long, value_name = "SECONDS|auto", allow_negative_numbers = true)]
@@ -203,6 +206,22 @@ pub struct Simulate {
     pub timing: Timing,
     #[command(flatten)]
     pub folder: Folder,
+    #[command(flatten)]
+    pub ensemble: Ensemble,
+}
+
+/// Runs of many cranes that differ in their parameters.
+#[derive(Debug, Args)]
+pub struct Ensemble {
+    /// Run a crane for every row of a CSV table whose header names live parameters
+    #[arg(long = "ensemble", value_name = "TABLE.csv", value_hint = ValueHint::FilePath)]
+    pub table: Option<PathBuf>,
+    /// File for peaks and final values, a row a crane [default: <CRANE>_ensemble.csv in the folder for results]
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "table")]
+    pub results: Option<PathBuf>,
+    /// Threads that run the cranes of the table, eight at a time each [default: all of the machine]
+    #[arg(long, value_name = "COUNT", requires = "table")]
+    pub threads: Option<NonZeroUsize>,
 }
 
 /// A report as one page.

@@ -45,12 +45,26 @@ pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
 
 /// Writes a table as CSV, units in the header: `boom_psi [rad]`.
 pub fn write_csv(path: &Path, table: &Table) -> Outcome<()> {
+    let header = table.columns.iter().map(ToString::to_string);
+    write_fields(path, header, table.rows.iter().map(|row| row.iter().copied().map(number).collect()))
+}
+
+/// The shortest text that reads back as the same number.
+pub fn number(number: f64) -> String {
+    format!("{number:?}")
+}
+
+/// Writes a header and rows of fields as CSV.
+pub fn write_fields(
+    path: &Path,
+    header: impl Iterator<Item = String>,
+    rows: impl Iterator<Item = Vec<String>>,
+) -> Outcome<()> {
     write(path, |file| {
         let mut csv = csv::Writer::from_writer(file);
-        csv.write_record(table.columns.iter().map(ToString::to_string))?;
-        for row in &table.rows {
-            // The shortest text that reads back as the same number.
-            csv.write_record(row.iter().map(|value| format!("{value:?}")))?;
+        csv.write_record(header)?;
+        for row in rows {
+            csv.write_record(row)?;
         }
         csv.flush()
     })

@@ -13,6 +13,7 @@
 
 mod arguments;
 mod compare;
+mod ensemble;
 mod eval;
 mod figures;
 mod files;
@@ -23,6 +24,7 @@ mod npz;
 mod overall;
 mod own;
 mod page;
+mod parameter_table;
 mod problem;
 mod report;
 mod run;
@@ -64,7 +66,10 @@ fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
         None => Ok(Arguments::command().print_help()?),
         Some(Action::Run(options)) => overall::run(options, fleet, out),
         Some(Action::Statics(options)) => statics::statics(options, fleet, out),
-        Some(Action::Simulate(options)) => simulate::simulate(options, fleet, out),
+        Some(Action::Simulate(options)) => match &options.ensemble.table {
+            Some(table) => ensemble::simulate(options, table, fleet, out),
+            None => simulate::simulate(options, fleet, out),
+        },
         Some(Action::Modes(options)) => modes::modes(options, fleet, out),
         Some(Action::Stability(options)) => stability::stability(options, fleet, out),
         Some(Action::Report(options)) => page::report(options, fleet, out),

@@ -62,6 +62,14 @@ impl Problem {
         )
     }
 
+    /// What is wrong.
+    pub fn title(&self) -> &str {
+        match self {
+            Problem::NobodyListens => "",
+            Problem::Told { title, .. } => title,
+        }
+    }
+
     /// Prints the problem; the exit code it ends with.
     pub fn report(&self) -> ExitCode {
         match self {

@@ -192,6 +192,15 @@ pub fn progress(seconds: f64) -> ProgressBar {
     const MILLISECONDS: f64 = 1e3;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
     let bar = ProgressBar::new((seconds * MILLISECONDS) as u64);
+    styled(bar)
+}
+
+/// A progress bar in batches of cranes.
+pub fn batches(count: usize) -> ProgressBar {
+    styled(ProgressBar::new(count as u64))
+}
+
+fn styled(bar: ProgressBar) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed} (left {eta})");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar

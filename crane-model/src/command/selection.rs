@@ -1,6 +1,6 @@
 //! A crane by its name, with parameters set.
 
-use crate::rig::Rig;
+use crate::{Description, rig::Rig};
 
 use crate::command::{
     arguments::{Choice, Parameters},
@@ -63,16 +63,8 @@ impl Parameters {
                     "write `--set name=value`, such as `--set load_mass=300`",
                 )
             })?;
-            let Some(index) = parameters.iter().position(|parameter| parameter.name == name) else {
-                let names: Vec<String> =
-                    parameters.iter().map(|parameter| format!("{} [{}]", parameter.name, parameter.unit)).collect();
-                let title = format!("{} has no live parameter `{name}`", rig.description().name);
-                if names.is_empty() {
-                    return Err(Problem::usage(title, "it has none; name values under `parameters:` in its spec"));
-                }
-                let guess = nearest(name, parameters.iter().map(|parameter| parameter.name));
-                return Err(Problem::usage(title, hint(guess, &names.join(", "), "parameters")));
-            };
+            let index =
+                parameter(name, rig.description()).map_err(|(title, help)| Problem::usage(title, help))?;
             let unit = parameters[index].unit;
             let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                 Problem::usage(format!("`{value}` is no value for {name}"), format!("write a finite number, in {unit}"))
@@ -81,6 +73,21 @@ impl Parameters {
         }
         Ok(())
     }
+}
+
+/// Place of a live parameter by its name; else what is wrong and what to write.
+pub fn parameter(name: &str, description: &Description) -> Result<usize, (String, String)> {
+    let parameters = description.parameters;
+    parameters.iter().position(|parameter| parameter.name == name).ok_or_else(|| {
+        let names: Vec<String> =
+            parameters.iter().map(|parameter| format!("{} [{}]", parameter.name, parameter.unit)).collect();
+        let title = format!("{} has no live parameter `{name}`", description.name);
+        if names.is_empty() {
+            return (title, "it has none; name values under `parameters:` in its spec".to_owned());
+        }
+        let guess = nearest(name, parameters.iter().map(|parameter| parameter.name));
+        (title, hint(guess, &names.join(", "), "parameters"))
+    })
 }
 
 fn meant(word: &str, known: &[&str], what: &str) -> String {

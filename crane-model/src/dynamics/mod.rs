@@ -1,6 +1,8 @@
 //! Motion by numerical integration.
 
 #[cfg(feature = "std")]
+pub mod ensemble;
+#[cfg(feature = "std")]
 mod method;
 pub mod rk4;
 #[cfg(feature = "std")]

@@ -33,6 +33,11 @@ impl Settings {
         let Description { duration, step, output, .. } = *description;
         Self { duration, step, output, audit: false, bound: BOUND }
     }
+
+    /// The step that a run takes, s: the longest that fits the interval of results a whole number of times.
+    pub fn step_taken(&self) -> f64 {
+        divided(self.output, self.step).1
+    }
 }
 
 /// One moment of a run.
@@ -96,7 +101,7 @@ fn integrate<const N: usize, const M: usize, C: Dynamics<N>>(
     let mut state = start;
     let mut roughness = Roughness::new(&crane.mass_matrix(&state.q));
     let mut sum = SVector::<f64, M>::zeros();
-    let mut run = Run { steps: 0, step: divided(settings.output, settings.step).1, time: 0.0 };
+    let mut run = Run { steps: 0, step: settings.step_taken(), time: 0.0 };
     let intervals = divided(settings.duration, settings.output).0;
 
     for interval in 0..=intervals {
@@ -135,7 +140,7 @@ fn integrate<const N: usize, const M: usize, C: Dynamics<N>>(
 }
 
 /// The least whole number of parts of `length`, none longer than `part`, and their length.
-fn divided(length: f64, part: f64) -> (usize, f64) {
+pub(super) fn divided(length: f64, part: f64) -> (usize, f64) {
     let count = (length / part * (1.0 - WHOLE)).ceil().max(1.0);
     // Saturates where the ratio is no number.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{DMatrix, DVector, Matrix4, SVector, Vector3};
 
-use super::{Energies, Rig};
+use super::{Energies, Member, Rig};
 use crate::{
     CoordinateRole, Description, Ensemble, Implicit, Linearise, Statics, TransformDerivatives, dynamics,
     dynamics::{Run, Sample, Stopped, rk4},
@@ -37,7 +37,7 @@ fn vector<const N: usize>(slice: &[f64]) -> SVector<f64, N> {
     SVector::from_column_slice(slice)
 }
 
-impl<const N: usize, C: Crane<N> + Send + Sync> Rig for Instance<N, C> {
+impl<const N: usize, C: Crane<N> + Send + Sync + 'static> Rig for Instance<N, C> {
     fn description(&self) -> &'static Description {
         self.0.description()
     }
@@ -151,5 +151,26 @@ impl<const N: usize, C: Crane<N> + Send + Sync> Rig for Instance<N, C> {
         observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
     ) -> Result<Run, Stopped> {
         dynamics::simulate(&self.0, rk4::State::at_rest(vector(q)), settings, observe)
+    }
+
+    fn simulate_ensemble(
+        &self,
+        members: &[Member],
+        settings: &dynamics::Settings,
+        observe: &mut dyn FnMut(usize, &Sample<'_>),
+    ) -> Vec<Result<Run, Stopped>> {
+        let member = |member: &Member| {
+            let mut crane = self.0.clone();
+            for (index, value) in member.parameters.iter().enumerate() {
+                crane.set_parameter(index, *value);
+            }
+            (crane, rk4::State::at_rest(vector(&member.start)))
+        };
+        let cranes: Vec<_> = members.iter().map(member).collect();
+        dynamics::ensemble::simulate(&cranes, settings, observe)
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Rig> {
+        Box::new(Self(self.0.clone()))
     }
 }

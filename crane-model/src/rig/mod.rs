@@ -42,10 +42,19 @@ impl Energies {
     }
 }
 
+/// A crane of an ensemble.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Member {
+    /// Values of its live parameters, in the order of the description.
+    pub parameters: Vec<f64>,
+    /// Pose from which it starts, at rest, m and rad.
+    pub start: Vec<f64>,
+}
+
 /// A crane of any number of coordinates: the traits of a generated crane, on slices.
 ///
 /// # Panics
-/// Every method that takes `q` or `v` panics where its length is not the number of coordinates.
+/// Every method that takes `q` or `v` or a start panics where its length is not the number of coordinates.
 pub trait Rig: Send + Sync {
     /// Names, units and settings.
     fn description(&self) -> &'static Description;
@@ -135,4 +144,15 @@ pub trait Rig: Send + Sync {
         settings: &dynamics::Settings,
         observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
     ) -> Result<Run, Stopped>;
+
+    /// Runs of cranes that differ in their parameters, eight at a time: [`dynamics::ensemble::simulate`].
+    fn simulate_ensemble(
+        &self,
+        members: &[Member],
+        settings: &dynamics::Settings,
+        observe: &mut dyn FnMut(usize, &Sample<'_>),
+    ) -> Vec<Result<Run, Stopped>>;
+
+    /// A crane of its own with the same parameters.
+    fn boxed_clone(&self) -> Box<dyn Rig>;
 }
