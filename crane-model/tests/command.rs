@@ -326,7 +326,7 @@ fn a_table_with_mistakes_is_refused_with_its_place() {
         ("payload [t]\n1\n", &["line 1, column 1", "in kg, not in t", "`payload [kg]`"]),
         ("payload\n100\nheavy\n", &["line 3, column 1", "`heavy` is no value for payload", "in kg, such as 800"]),
         ("payload\ninf\n", &["line 2, column 1", "finite"]),
-        ("payload\n1,2\n", &["line: 2", "2 fields", "1 field"]),
+        ("payload\n1,2\n", &["line 2: 2 fields where the header names 1"]),
         ("payload\n", &["has no rows"]),
         ("", &["line 1, column 1", "payload [kg]"]),
     ] {
@@ -369,12 +369,23 @@ fn an_ensemble_writes_a_row_for_every_crane() {
         }
     }
     // The last row is the spec's crane: as its own run.
-    json(&["simulate", "knuckle_boom", "--duration", "0.5", "--out", out.to_str().expect("a path"), "--format", "json"]);
+    json(&[
+        "simulate",
+        "knuckle_boom",
+        "--duration",
+        "0.5",
+        "--out",
+        out.to_str().expect("a path"),
+        "--format",
+        "json",
+    ]);
     let mut run = csv::Reader::from_path(out.join("knuckle_boom.csv")).expect("a CSV file");
     let name = "main_boom_theta_drive_torque [N m]";
     let place = run.headers().expect("a header").iter().position(|column| column == name).expect("a column");
-    let single =
-        run.records().map(|row| row.expect("a row")[place].parse().expect("a number")).fold(0.0_f64, |m, x: f64| m.max(x.abs()));
+    let single = run
+        .records()
+        .map(|row| row.expect("a row")[place].parse().expect("a number"))
+        .fold(0.0_f64, |m, x: f64| m.max(x.abs()));
     // Cholesky's factors there, articulated bodies here: roundings.
     assert!((single - before).abs() < 1e-8 * single, "{single} {before}");
 }

@@ -22,7 +22,13 @@ impl ParameterTable {
     pub fn read(path: &Path, description: &Description) -> Outcome<Self> {
         let csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path);
         let unreadable = |error: csv::Error| {
-            let title = format!("cannot use {}: {error}", path.display());
+            let title = match error.kind() {
+                csv::ErrorKind::UnequalLengths { pos: Some(pos), expected_len, len } => {
+                    let path = path.display();
+                    format!("{path}, line {}: {len} fields where the header names {expected_len}", pos.line())
+                }
+                _ => format!("cannot use {}: {error}", path.display()),
+            };
             Problem::usage(title, "write a CSV table: names of live parameters, then a row of as many numbers a crane")
         };
         let mut csv = csv.map_err(unreadable)?;

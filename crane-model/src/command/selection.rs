@@ -63,8 +63,7 @@ impl Parameters {
                     "write `--set name=value`, such as `--set load_mass=300`",
                 )
             })?;
-            let index =
-                parameter(name, rig.description()).map_err(|(title, help)| Problem::usage(title, help))?;
+            let index = parameter(name, rig.description()).map_err(|(title, help)| Problem::usage(title, help))?;
             let unit = parameters[index].unit;
             let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                 Problem::usage(format!("`{value}` is no value for {name}"), format!("write a finite number, in {unit}"))
