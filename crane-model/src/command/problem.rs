@@ -65,8 +65,8 @@ impl Problem {
     /// What is wrong.
     pub fn title(&self) -> &str {
         match self {
-            Problem::NobodyListens => "",
             Problem::Told { title, .. } => title,
+            _ => "",
         }
     }
 
