@@ -10,7 +10,7 @@ use crate::states::{self, State};
 use crate::triple_sum::TripleSum;
 
 /// Stable for all numbers of sections, so that one step agrees with another library's, s.
-pub const STEP: f64 = 1e-6;
+pub const STEP: f64 = 1e-8;
 
 /// Kernels of any crane.
 #[must_use]
