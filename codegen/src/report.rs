@@ -10,6 +10,8 @@ pub struct Report {
     pub costs: Vec<FunctionCost>,
     /// How many second derivatives of transforms are computed in a loop, if they are.
     pub second_derivative_pairs: Option<usize>,
+    /// How the mass matrix is filled, and why.
+    pub mass_matrix: Option<&'static str>,
     /// What is left out, and why.
     pub left_out: Vec<(&'static str, &'static str)>,
 }
@@ -48,6 +50,11 @@ impl Report {
         let in_a_loop = |shape: &&Shape| matches!(shape, Shape::Turned { .. });
         let mut shapes = blocks.functions.iter().map(|block| &block.function.shape);
         let second_derivative_pairs = shapes.find(in_a_loop).map(Shape::matrices);
-        Report { costs, second_derivative_pairs, left_out }
+        let mass_matrix = blocks.functions.iter().find(|block| block.function.name == "mass_matrix");
+        let mass_matrix = mass_matrix.map(|block| match block.function.shape {
+            Shape::Columns { .. } => "in a loop over rows and columns, which is faster from some 16 coordinates on",
+            _ => "written out, which is faster up to some 16 coordinates",
+        });
+        Report { costs, second_derivative_pairs, mass_matrix, left_out }
     }
 }

@@ -102,6 +102,17 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
     /// Mass matrix A(q), Eq. (5), symmetric positive definite.
     fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N>;
 
+    /// A and e together. Of `mass` only the lower triangle is written, which is what Cholesky's factorisation reads.
+    fn mass_matrix_and_bias(
+        &self,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        mass: &mut SMatrix<f64, N, N>,
+    ) -> SVector<f64, N> {
+        *mass = self.mass_matrix(q);
+        self.bias(q, v)
+    }
+
     /// Bias `e = −(h + g)`, Eq. (9): velocity and gravity forces.
     fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N>;
 

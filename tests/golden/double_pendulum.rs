@@ -19,6 +19,8 @@
 //   linearisation: `analyses` does not ask for modes
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives
 //
+// The mass matrix is written out, which is faster up to some 16 coordinates.
+//
 // Operations of each function, and before simplification:
 //   transforms                          11        47
 //   points                              14        62
@@ -26,15 +28,16 @@
 //   gravity_energy                       9        81
 //   forward_dynamics                    34       342
 //   solve_mass                          16       330
-//   mass_matrix                         55       387
-//   bias                                39       564
+//   mass_matrix                         47       300
+//   mass_matrix_and_bias                70       528
+//   bias                                24       169
 //   kinetic_energy                      65       381
 //   factorise                           21       275
 //   solve                               13        51
 //   joint_impedances                     0         0
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use ::crane_model::support::{fill, fma, sin_cos, symmetric};
+use ::crane_model::support::{MassAndBias, fill, fma, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description,
     Dynamics, Ensemble, Implicit, OneByOne,
@@ -362,7 +365,7 @@ pub fn solve_mass(q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
 /// `a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ)`
 /// [Urbaś 2016, Eq. (5)]
 ///
-/// 55 operations: 21 add, 32 mul, 0 div, 2 sin_cos.
+/// 47 operations: 15 add, 30 mul, 0 div, 2 sin_cos.
 pub fn mass_matrix(q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
     let q = &q.data.0[0];
     let mut out: [[f64; N]; N] = [[0.0; N]; N];
@@ -394,41 +397,116 @@ pub fn mass_matrix(q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
         sin_lower_theta,
         sin_upper_theta * cos_lower_theta,
     );
-    let t002 = 0.4 * lower_axis_z_x;
-    let t003 = fma(
-        2.0,
-        sin_upper_theta * fma(0.5, sin_upper_theta, t002),
-        fma(
-            lower_axis_z_x,
-            0.21275000000000002 * lower_axis_z_x,
-            lower_axis_x_x * (0.0002500000000000002 * lower_axis_x_x),
-        ),
+    let t002 = fma(
+        lower_axis_x_x,
+        0.21275000000000002 * lower_axis_x_x,
+        lower_axis_z_x * (0.0002500000000000002 * lower_axis_z_x),
     );
+    let inertia_from_lower_yy = fma(
+        lower_axis_z_x,
+        0.21275000000000002 * lower_axis_z_x,
+        lower_axis_x_x * (0.0002500000000000002 * lower_axis_x_x),
+    ) + t002;
+    let t003 = 0.4 * lower_axis_z_x;
     let t004 = 0.4 * lower_axis_x_x;
-    let t005 = fma(
-        2.0,
-        cos_upper_theta * fma(0.5, cos_upper_theta, t004),
-        fma(
-            lower_axis_x_x,
-            0.21275000000000002 * lower_axis_x_x,
-            lower_axis_z_x * (0.0002500000000000002 * lower_axis_z_x),
-        ),
-    );
-    let inertia_lower_yy = t003 + t005;
-    let inertia_from_upper_yy = inertia_upper_yy + inertia_lower_yy;
-    out[0][0] = inertia_from_upper_yy;
-    let t006 = cos_upper_theta + t004;
-    let t007 = sin_upper_theta + t002;
-    let t008 = inertia_lower_yy - fma(sin_upper_theta, t007, cos_upper_theta * t006);
-    out[1][0] = t008;
-    // Row of lower_theta
-    out[1][1] = t008
+    let t005 = inertia_from_lower_yy
         + fma(
-            -sin_upper_theta,
-            t007 - sin_upper_theta,
-            cos_upper_theta * (cos_upper_theta - t006),
+            2.0,
+            cos_upper_theta * fma(0.5, cos_upper_theta, t004),
+            2.0 * (sin_upper_theta * fma(0.5, sin_upper_theta, t003)),
         );
+    let inertia_from_upper_yy = inertia_upper_yy + t005;
+    out[0][0] = inertia_from_upper_yy;
+    out[1][0] = inertia_from_lower_yy
+        + fma(sin_upper_theta, t003, cos_upper_theta * t004);
+    // Row of lower_theta
+    out[1][1] = inertia_from_lower_yy;
     symmetric(out)
+}
+
+/// Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m.
+///
+/// `A, e`
+/// [Urbaś 2016, Eqs. (5), (9)]
+///
+/// 70 operations: 25 add, 43 mul, 0 div, 2 sin_cos.
+pub fn mass_matrix_and_bias(
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+    mass: &mut SMatrix<f64, N, N>,
+) -> SVector<f64, N> {
+    let q = &q.data.0[0];
+    let v = &v.data.0[0];
+    let mut out: MassAndBias<N> = MassAndBias::zeros();
+    let upper_theta = q[0];
+    let lower_theta = q[1];
+    // Sines and cosines
+    let ([sin_upper_theta, sin_lower_theta], [cos_upper_theta, cos_lower_theta]) = sin_cos([
+        upper_theta,
+        lower_theta,
+    ]);
+    // Row of upper_theta
+    let t001 = fma(
+        cos_upper_theta,
+        0.6665 * cos_upper_theta,
+        sin_upper_theta * (0.0005000000000000004 * sin_upper_theta),
+    );
+    let inertia_upper_yy = fma(
+        sin_upper_theta,
+        0.6665 * sin_upper_theta,
+        cos_upper_theta * (0.0005000000000000004 * cos_upper_theta),
+    ) + t001;
+    let lower_axis_x_x = fma(
+        -sin_upper_theta,
+        sin_lower_theta,
+        cos_upper_theta * cos_lower_theta,
+    );
+    let lower_axis_z_x = fma(
+        cos_upper_theta,
+        sin_lower_theta,
+        sin_upper_theta * cos_lower_theta,
+    );
+    let t002 = fma(
+        lower_axis_x_x,
+        0.21275000000000002 * lower_axis_x_x,
+        lower_axis_z_x * (0.0002500000000000002 * lower_axis_z_x),
+    );
+    let inertia_from_lower_yy = fma(
+        lower_axis_z_x,
+        0.21275000000000002 * lower_axis_z_x,
+        lower_axis_x_x * (0.0002500000000000002 * lower_axis_x_x),
+    ) + t002;
+    let t003 = 0.4 * lower_axis_z_x;
+    let t004 = 0.4 * lower_axis_x_x;
+    let t005 = inertia_from_lower_yy
+        + fma(
+            2.0,
+            cos_upper_theta * fma(0.5, cos_upper_theta, t004),
+            2.0 * (sin_upper_theta * fma(0.5, sin_upper_theta, t003)),
+        );
+    let inertia_from_upper_yy = inertia_upper_yy + t005;
+    out.mass[0][0] = inertia_from_upper_yy;
+    out.mass[0][1] = inertia_from_lower_yy
+        + fma(sin_upper_theta, t003, cos_upper_theta * t004);
+    // Row of lower_theta
+    out.mass[1][1] = inertia_from_lower_yy;
+    // Bias of upper_theta
+    let upper_theta_dot = v[0];
+    let t006 = fma(upper_theta_dot, upper_theta_dot * cos_upper_theta, 9.81);
+    let t007 = upper_theta_dot * (upper_theta_dot * sin_upper_theta);
+    let t008 = t004 * t007;
+    let lower_theta_dot = v[1];
+    let omega_lower_y = upper_theta_dot + lower_theta_dot;
+    let t009 = fma(
+        sin_upper_theta,
+        fma(omega_lower_y, t004 * omega_lower_y, t006),
+        -(cos_upper_theta * fma(omega_lower_y, t003 * omega_lower_y, t007)),
+    );
+    out.bias[0] = -fma(9.81, sin_upper_theta, fma(t003, t006, -t008) + t009);
+    // Bias of lower_theta
+    out.bias[1] = fma(-t003, t006, t008);
+    mass.data.0 = out.mass;
+    SVector::from(out.bias)
 }
 
 /// Bias e: velocity and gravity forces, N and N m.
@@ -436,7 +514,7 @@ pub fn mass_matrix(q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
 /// `e = −(h + g), h_i + g_i = tr(Ω_i Σ T H B̄ᵀ)`
 /// [Urbaś 2016, Eqs. (5), (7), (9)]
 ///
-/// 39 operations: 16 add, 21 mul, 0 div, 2 sin_cos.
+/// 24 operations: 10 add, 12 mul, 0 div, 2 sin_cos.
 pub fn bias(q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
     let q = &q.data.0[0];
     let v = &v.data.0[0];
@@ -449,41 +527,24 @@ pub fn bias(q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         lower_theta,
     ]);
     // upper_theta
-    let lower_axis_x_x = fma(
-        -sin_upper_theta,
-        sin_lower_theta,
-        cos_upper_theta * cos_lower_theta,
-    );
-    let t001 = fma(0.4, lower_axis_x_x, cos_upper_theta);
+    let t001 = 9.81 * sin_upper_theta;
     let upper_theta_dot = v[0];
+    let t002 = fma(9.81, cos_upper_theta, upper_theta_dot * upper_theta_dot);
+    let t003 = fma(cos_lower_theta, t001, sin_lower_theta * t002);
+    let moment_lower_y = 0.4 * t003;
     let lower_theta_dot = v[1];
-    let t002 = lower_theta_dot * sin_upper_theta;
     let omega_lower_y = upper_theta_dot + lower_theta_dot;
-    let t003 = fma(t002, omega_lower_y, upper_theta_dot * t002);
-    let lower_axis_z_x = fma(
-        cos_upper_theta,
-        sin_lower_theta,
-        sin_upper_theta * cos_lower_theta,
-    );
-    let t004 = fma(0.4, lower_axis_z_x, sin_upper_theta);
-    let upsilon_lower_x = lower_theta_dot * cos_upper_theta;
-    let t005 = fma(
-        -upsilon_lower_x,
+    let force_lower_z = fma(
         omega_lower_y,
-        fma(-upper_theta_dot, upsilon_lower_x, 9.81),
+        0.4 * omega_lower_y,
+        fma(-sin_lower_theta, t001, cos_lower_theta * t002),
     );
-    let moment_from_lower_y = fma(t004, t005, t001 * t003);
-    let moment_from_upper_y = fma(9.81, sin_upper_theta, moment_from_lower_y);
-    out[0] = -moment_from_upper_y;
+    let moment_upper_y = t001
+        + (moment_lower_y
+            + fma(-sin_lower_theta, force_lower_z, cos_lower_theta * t003));
+    out[0] = -moment_upper_y;
     // lower_theta
-    let force_from_lower_x = fma(omega_lower_y, t004 * omega_lower_y, -t003);
-    let force_from_lower_z = fma(omega_lower_y, t001 * omega_lower_y, t005);
-    out[1] = -(moment_from_lower_y
-        + fma(
-            -sin_upper_theta,
-            force_from_lower_z,
-            cos_upper_theta * force_from_lower_x,
-        ));
+    out[1] = -moment_lower_y;
     SVector::from(out)
 }
 
@@ -691,6 +752,14 @@ impl Dynamics<N> for Crane {
     }
     fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
         mass_matrix(q)
+    }
+    fn mass_matrix_and_bias(
+        &self,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        mass: &mut SMatrix<f64, N, N>,
+    ) -> SVector<f64, N> {
+        mass_matrix_and_bias(q, v, mass)
     }
     fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         bias(q, v)

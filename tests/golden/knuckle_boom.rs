@@ -14,6 +14,8 @@
 //   everything out of the crane's plane: all joints turn about one direction, none moves along it
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives
 //
+// The mass matrix is written out, which is faster up to some 16 coordinates.
+//
 // Operations of each function, and before simplification:
 //   transforms                          29        98
 //   points                              30       125
@@ -28,18 +30,19 @@
 //   dissipation                         51        63
 //   forward_dynamics                   244       965
 //   solve_mass                         101       849
-//   mass_matrix                        202       881
-//   bias                               157      1205
+//   mass_matrix                        164       751
+//   mass_matrix_and_bias               251      1328
+//   bias                                81       380
 //   kinetic_energy                     216       837
 //   factorise                           95       711
 //   solve                               61       138
 //   joint_impedances                     0         7
 //   static_residual                     53       392
 //   tangent_stiffness                   51       338
-//   linearise                          209       959
+//   linearise                          195       973
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use ::crane_model::support::{fill, fma, sin_cos, symmetric};
+use ::crane_model::support::{MassAndBias, fill, fma, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description,
     DriveInfo, Dynamics, Ensemble, Implicit, Linearisation, Linearise, ParameterInfo,
@@ -170,6 +173,8 @@ pub struct Constants {
     c016: f64,
     c017: f64,
     c018: f64,
+    c019: f64,
+    c020: f64,
 }
 
 impl From<&Params> for Constants {
@@ -194,14 +199,16 @@ impl From<&Params> for Constants {
         let c010 = 1.0 / c008;
         let c011 = c008 * c010;
         let c012 = c002 * c010;
-        let t617 = c002 * c012;
-        let c013 = c001 - t617;
+        let t576 = c002 * c012;
+        let c013 = c001 - t576;
         let c014 = c001 - c013;
         let c015 = 2.0 * t322;
         let c016 = c009 * c010;
-        let t991 = c009 * c016;
-        let c017 = c001 - t991;
+        let t950 = c009 * c016;
+        let c017 = c001 - t950;
         let c018 = c001 - c017;
+        let c019 = 0.5 * c006;
+        let c020 = 0.5 * c007;
         Constants {
             params: *params,
             c001,
@@ -222,6 +229,8 @@ impl From<&Params> for Constants {
             c016,
             c017,
             c018,
+            c019,
+            c020,
         }
     }
 }
@@ -1338,7 +1347,7 @@ pub fn solve_mass(
 /// `a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ)`
 /// [Urbaś 2016, Eq. (5)]
 ///
-/// 202 operations: 88 add, 111 mul, 0 div, 3 sin_cos.
+/// 164 operations: 65 add, 96 mul, 0 div, 3 sin_cos.
 pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
     let q = &q.data.0[0];
     let mut out: [[f64; N]; N] = [[0.0; N]; N];
@@ -1357,23 +1366,6 @@ pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
         ],
     ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta]);
     // Row of main_boom_theta
-    let t001 = 31.5 * sin_main_boom_theta;
-    let t002 = 31.5 * cos_main_boom_theta;
-    let t003 = fma(21.0, cos_main_boom_theta, -630.0 * sin_main_boom_theta);
-    let t004 = fma(
-        4.0,
-        420.0 + t003,
-        fma(
-            cos_main_boom_theta,
-            fma(6.55, cos_main_boom_theta, -t001),
-            -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t002)),
-        ),
-    );
-    let inertia_main_boom_yy = fma(
-        sin_main_boom_theta,
-        fma(6.55, sin_main_boom_theta, t002),
-        cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t001),
-    ) + t004;
     let knuckle_axis_x_x = fma(
         -sin_main_boom_theta,
         sin_knuckle_theta,
@@ -1384,59 +1376,6 @@ pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
         sin_knuckle_theta,
         sin_main_boom_theta * cos_knuckle_theta,
     );
-    let t005 = 34.1 * knuckle_axis_z_x;
-    let t006 = 34.1 * knuckle_axis_x_x;
-    let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
-    let t007 = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x);
-    let t008 = fma(
-        2.0,
-        upsilon_knuckle_theta_z * fma(496.0, cos_main_boom_theta, t007),
-        fma(
-            knuckle_axis_z_x,
-            fma(7.6, knuckle_axis_z_x, t006),
-            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t005),
-        ),
-    );
-    let knuckle_origin_z = fma(-3.2, sin_main_boom_theta, 2.0);
-    let t009 = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x);
-    let t010 = fma(
-        2.0,
-        knuckle_origin_z * fma(155.0, knuckle_origin_z, t009),
-        fma(
-            knuckle_axis_x_x,
-            fma(7.6, knuckle_axis_x_x, -t005),
-            -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t006)),
-        ),
-    );
-    let inertia_knuckle_yy = t008 + t010;
-    let extension_x = q[2];
-    let extension_origin_x = fma(
-        extension_x,
-        knuckle_axis_x_x,
-        fma(2.6, knuckle_axis_x_x, upsilon_knuckle_theta_z),
-    );
-    let t011 = 150.0 * knuckle_axis_x_x;
-    let t012 = fma(-2.6, knuckle_axis_z_x, knuckle_origin_z);
-    let extension_origin_z = fma(-extension_x, knuckle_axis_z_x, t012);
-    let t013 = 150.0 * knuckle_axis_z_x;
-    let t014 = fma(
-        2.0,
-        extension_origin_z * fma(75.0, extension_origin_z, t013),
-        fma(
-            knuckle_axis_x_x,
-            knuckle_axis_x_x,
-            knuckle_axis_z_x * (211.0 * knuckle_axis_z_x),
-        ),
-    );
-    let inertia_extension_yy = fma(
-        2.0,
-        extension_origin_x * fma(75.0, extension_origin_x, -t011),
-        fma(
-            knuckle_axis_z_x,
-            knuckle_axis_z_x,
-            knuckle_axis_x_x * (211.0 * knuckle_axis_x_x),
-        ),
-    ) + t014;
     let hook_axis_x_x = fma(
         -sin_hook_theta,
         knuckle_axis_z_x,
@@ -1447,87 +1386,342 @@ pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
         knuckle_axis_x_x,
         cos_hook_theta * knuckle_axis_z_x,
     );
-    let t015 = hook_axis_z_x * c.c002;
-    let t016 = fma(
-        2.0,
-        extension_origin_x * fma(extension_origin_x, c.c005, t015),
-        fma(
-            hook_axis_z_x,
-            hook_axis_z_x * c.c004,
-            hook_axis_x_x * (hook_axis_x_x * c.c003),
-        ),
+    let t001 = fma(
+        hook_axis_x_x,
+        hook_axis_x_x * c.c004,
+        hook_axis_z_x * (hook_axis_z_x * c.c003),
     );
-    let t017 = hook_axis_x_x * c.c002;
-    let t018 = fma(
-        2.0,
-        extension_origin_z * fma(extension_origin_z, c.c005, t017),
-        fma(
-            hook_axis_x_x,
-            hook_axis_x_x * c.c004,
-            hook_axis_z_x * (hook_axis_z_x * c.c003),
-        ),
-    );
-    let inertia_hook_yy = t016 + t018;
-    let inertia_from_extension_yy = inertia_extension_yy + inertia_hook_yy;
-    let inertia_from_knuckle_yy = inertia_knuckle_yy + inertia_from_extension_yy;
-    let inertia_from_main_boom_yy = inertia_main_boom_yy + inertia_from_knuckle_yy;
-    let first_main_boom_z = t003 + 840.0;
-    let first_knuckle_z = fma(310.0, knuckle_origin_z, t009);
-    let first_extension_z = fma(150.0, extension_origin_z, t013);
-    let first_hook_z = fma(extension_origin_z, c.c001, t017);
-    let first_from_extension_z = first_extension_z + first_hook_z;
-    let first_from_knuckle_z = first_knuckle_z + first_from_extension_z;
-    let first_from_main_boom_z = first_main_boom_z + first_from_knuckle_z;
-    out[0][0] = fma(
-        -2.0,
-        first_from_main_boom_z - c.c015,
-        fma(-2.0, first_from_main_boom_z, inertia_from_main_boom_yy),
-    );
-    let upsilon_knuckle_theta_x = fma(3.2, sin_main_boom_theta, -2.0);
-    let first_knuckle_x = fma(992.0, cos_main_boom_theta, t007);
-    let first_extension_x = fma(150.0, extension_origin_x, -t011);
-    let first_hook_x = fma(extension_origin_x, c.c001, t015);
-    let first_from_extension_x = first_extension_x + first_hook_x;
-    let first_from_knuckle_x = first_knuckle_x + first_from_extension_x;
-    let t019 = inertia_from_knuckle_yy
-        + fma(
-            -upsilon_knuckle_theta_z,
-            first_from_knuckle_x,
-            upsilon_knuckle_theta_x * first_from_knuckle_z,
-        );
-    let t020 = fma(upsilon_knuckle_theta_x, c.c007, first_from_knuckle_z);
-    out[1][0] = fma(-2.0, t020, t019);
-    let t021 = fma(
+    let inertia_from_hook_yy = fma(
+        hook_axis_z_x,
+        hook_axis_z_x * c.c004,
+        hook_axis_x_x * (hook_axis_x_x * c.c003),
+    ) + t001;
+    let t002 = fma(
         knuckle_axis_z_x,
-        first_from_extension_x,
-        knuckle_axis_x_x * first_from_extension_z,
+        knuckle_axis_z_x,
+        knuckle_axis_x_x * (211.0 * knuckle_axis_x_x),
+    )
+        + fma(
+            knuckle_axis_x_x,
+            knuckle_axis_x_x,
+            knuckle_axis_z_x * (211.0 * knuckle_axis_z_x),
+        );
+    let inertia_from_extension_yy = inertia_from_hook_yy + t002;
+    let extension_x = q[2];
+    let t003 = extension_x * knuckle_axis_x_x;
+    let t004 = hook_axis_z_x * c.c009;
+    let t005 = fma(150.0, knuckle_axis_x_x, t004);
+    let t006 = extension_x * knuckle_axis_z_x;
+    let t007 = hook_axis_x_x * c.c009;
+    let first_from_extension_z = fma(150.0, knuckle_axis_z_x, -t007);
+    let t008 = inertia_from_extension_yy
+        + fma(
+            -2.0,
+            t006 * fma(-t006, c.c019, first_from_extension_z),
+            2.0 * (t003 * fma(t003, c.c019, -t005)),
+        );
+    let t009 = 2.6 * knuckle_axis_x_x;
+    let t010 = fma(t003, c.c006, -t005);
+    let t011 = 2.6 * knuckle_axis_z_x;
+    let t012 = fma(-t006, c.c006, first_from_extension_z);
+    let t013 = t008
+        + fma(
+            -2.0,
+            t011 * fma(-t011, c.c019, t012),
+            2.0 * (t009 * fma(t009, c.c019, t010)),
+        );
+    let t014 = 34.1 * knuckle_axis_z_x;
+    let t015 = 34.1 * knuckle_axis_x_x;
+    let t016 = fma(
+        knuckle_axis_x_x,
+        fma(7.6, knuckle_axis_x_x, -t014),
+        -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t015)),
     );
-    let t022 = knuckle_axis_x_x * c.c006;
-    out[2][0] = fma(-2.0, t022, t021);
-    let upsilon_hook_theta_x = fma(extension_x, knuckle_axis_z_x, -t012);
-    let t023 = inertia_hook_yy
-        + fma(-extension_origin_x, first_hook_x, upsilon_hook_theta_x * first_hook_z);
-    let t024 = fma(upsilon_hook_theta_x, c.c001, first_hook_z);
-    out[3][0] = fma(-2.0, t024, t023);
-    // Row of knuckle_theta
-    out[1][1] = t019
+    let inertia_from_knuckle_yy = t013
+        + (fma(
+            knuckle_axis_z_x,
+            fma(7.6, knuckle_axis_z_x, t015),
+            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t014),
+        ) + t016);
+    let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
+    let first_from_knuckle_x = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x)
+        + fma(t009, c.c006, t010);
+    let t017 = 3.2 * sin_main_boom_theta;
+    let first_from_knuckle_z = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x)
+        + fma(-t011, c.c006, t012);
+    let t018 = inertia_from_knuckle_yy
+        + fma(
+            -2.0,
+            t017 * fma(-t017, c.c020, first_from_knuckle_z),
+            2.0
+                * (upsilon_knuckle_theta_z
+                    * fma(upsilon_knuckle_theta_z, c.c020, first_from_knuckle_x)),
+        );
+    let t019 = 31.5 * sin_main_boom_theta;
+    let t020 = 31.5 * cos_main_boom_theta;
+    let t021 = fma(
+        cos_main_boom_theta,
+        fma(6.55, cos_main_boom_theta, -t019),
+        -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t020)),
+    );
+    let inertia_from_main_boom_yy = t018
+        + (fma(
+            sin_main_boom_theta,
+            fma(6.55, sin_main_boom_theta, t020),
+            cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t019),
+        ) + t021);
+    out[0][0] = inertia_from_main_boom_yy;
+    out[1][0] = inertia_from_knuckle_yy
         + fma(
             upsilon_knuckle_theta_z,
-            fma(upsilon_knuckle_theta_z, c.c007, -first_from_knuckle_x),
-            upsilon_knuckle_theta_x * t020,
+            first_from_knuckle_x,
+            -(t017 * first_from_knuckle_z),
         );
-    let t025 = knuckle_axis_z_x * c.c006;
-    out[2][1] = t021
-        + fma(-upsilon_knuckle_theta_z, t025, upsilon_knuckle_theta_x * t022);
-    let t026 = fma(extension_origin_x, c.c001, -first_hook_x);
-    out[3][1] = t023
-        + fma(upsilon_knuckle_theta_z, t026, upsilon_knuckle_theta_x * t024);
+    let t022 = knuckle_axis_z_x * c.c006;
+    let t023 = t009 + t003;
+    let t024 = knuckle_axis_x_x * c.c006;
+    let t025 = t011 + t006;
+    let t026 = fma(-knuckle_axis_z_x, t005, knuckle_axis_x_x * first_from_extension_z)
+        + fma(t022, t023, -(t024 * t025));
+    out[2][0] = t026 + fma(upsilon_knuckle_theta_z, t022, -(t017 * t024));
+    let t027 = inertia_from_hook_yy + fma(-t004, t023, t007 * t025);
+    out[3][0] = t027 + fma(-upsilon_knuckle_theta_z, t004, t017 * t007);
+    // Row of knuckle_theta
+    out[1][1] = inertia_from_knuckle_yy;
+    out[2][1] = t026;
+    out[3][1] = t027;
     // Row of extension_x
-    out[2][2] = fma(knuckle_axis_z_x, t025, knuckle_axis_x_x * t022);
-    out[3][2] = fma(-knuckle_axis_z_x, t026, knuckle_axis_x_x * t024);
+    out[2][2] = fma(knuckle_axis_z_x, t022, knuckle_axis_x_x * t024);
+    out[3][2] = -fma(knuckle_axis_z_x, t004, knuckle_axis_x_x * t007);
     // Row of hook_theta
-    out[3][3] = t023 + fma(extension_origin_x, t026, upsilon_hook_theta_x * t024);
+    out[3][3] = inertia_from_hook_yy;
     symmetric(out)
+}
+
+/// Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m.
+///
+/// `A, e`
+/// [Urbaś 2016, Eqs. (5), (9)]
+///
+/// 251 operations: 100 add, 148 mul, 0 div, 3 sin_cos.
+pub fn mass_matrix_and_bias(
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+    c: &Constants,
+    mass: &mut SMatrix<f64, N, N>,
+) -> SVector<f64, N> {
+    let q = &q.data.0[0];
+    let v = &v.data.0[0];
+    let mut out: MassAndBias<N> = MassAndBias::zeros();
+    let main_boom_theta = q[0];
+    let knuckle_theta = q[1];
+    let hook_theta = q[3];
+    // Sines and cosines
+    let (
+        [sin_main_boom_theta,
+        sin_knuckle_theta,
+        sin_hook_theta,
+        ],
+        [cos_main_boom_theta,
+        cos_knuckle_theta,
+        cos_hook_theta,
+        ],
+    ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta]);
+    // Row of main_boom_theta
+    let knuckle_axis_x_x = fma(
+        -sin_main_boom_theta,
+        sin_knuckle_theta,
+        cos_main_boom_theta * cos_knuckle_theta,
+    );
+    let knuckle_axis_z_x = fma(
+        cos_main_boom_theta,
+        sin_knuckle_theta,
+        sin_main_boom_theta * cos_knuckle_theta,
+    );
+    let hook_axis_x_x = fma(
+        -sin_hook_theta,
+        knuckle_axis_z_x,
+        cos_hook_theta * knuckle_axis_x_x,
+    );
+    let hook_axis_z_x = fma(
+        sin_hook_theta,
+        knuckle_axis_x_x,
+        cos_hook_theta * knuckle_axis_z_x,
+    );
+    let t001 = fma(
+        hook_axis_x_x,
+        hook_axis_x_x * c.c004,
+        hook_axis_z_x * (hook_axis_z_x * c.c003),
+    );
+    let inertia_from_hook_yy = fma(
+        hook_axis_z_x,
+        hook_axis_z_x * c.c004,
+        hook_axis_x_x * (hook_axis_x_x * c.c003),
+    ) + t001;
+    let t002 = fma(
+        knuckle_axis_z_x,
+        knuckle_axis_z_x,
+        knuckle_axis_x_x * (211.0 * knuckle_axis_x_x),
+    )
+        + fma(
+            knuckle_axis_x_x,
+            knuckle_axis_x_x,
+            knuckle_axis_z_x * (211.0 * knuckle_axis_z_x),
+        );
+    let inertia_from_extension_yy = inertia_from_hook_yy + t002;
+    let extension_x = q[2];
+    let t003 = extension_x * knuckle_axis_x_x;
+    let t004 = 150.0 * knuckle_axis_x_x;
+    let t005 = hook_axis_z_x * c.c009;
+    let t006 = t004 + t005;
+    let t007 = extension_x * knuckle_axis_z_x;
+    let t008 = 150.0 * knuckle_axis_z_x;
+    let t009 = hook_axis_x_x * c.c009;
+    let first_from_extension_z = t008 - t009;
+    let t010 = inertia_from_extension_yy
+        + fma(
+            -2.0,
+            t007 * fma(-t007, c.c019, first_from_extension_z),
+            2.0 * (t003 * fma(t003, c.c019, -t006)),
+        );
+    let t011 = 2.6 * knuckle_axis_x_x;
+    let t012 = fma(t003, c.c006, -t006);
+    let t013 = 2.6 * knuckle_axis_z_x;
+    let t014 = fma(-t007, c.c006, first_from_extension_z);
+    let t015 = t010
+        + fma(
+            -2.0,
+            t013 * fma(-t013, c.c019, t014),
+            2.0 * (t011 * fma(t011, c.c019, t012)),
+        );
+    let t016 = 34.1 * knuckle_axis_z_x;
+    let t017 = 34.1 * knuckle_axis_x_x;
+    let t018 = fma(
+        knuckle_axis_x_x,
+        fma(7.6, knuckle_axis_x_x, -t016),
+        -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t017)),
+    );
+    let inertia_from_knuckle_yy = t015
+        + (fma(
+            knuckle_axis_z_x,
+            fma(7.6, knuckle_axis_z_x, t017),
+            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t016),
+        ) + t018);
+    let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
+    let t019 = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x);
+    let first_from_knuckle_x = t019 + fma(t011, c.c006, t012);
+    let t020 = 3.2 * sin_main_boom_theta;
+    let t021 = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x);
+    let first_from_knuckle_z = t021 + fma(-t013, c.c006, t014);
+    let t022 = inertia_from_knuckle_yy
+        + fma(
+            -2.0,
+            t020 * fma(-t020, c.c020, first_from_knuckle_z),
+            2.0
+                * (upsilon_knuckle_theta_z
+                    * fma(upsilon_knuckle_theta_z, c.c020, first_from_knuckle_x)),
+        );
+    let t023 = 31.5 * sin_main_boom_theta;
+    let t024 = 31.5 * cos_main_boom_theta;
+    let t025 = fma(
+        cos_main_boom_theta,
+        fma(6.55, cos_main_boom_theta, -t023),
+        -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t024)),
+    );
+    let inertia_from_main_boom_yy = t022
+        + (fma(
+            sin_main_boom_theta,
+            fma(6.55, sin_main_boom_theta, t024),
+            cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t023),
+        ) + t025);
+    out.mass[0][0] = inertia_from_main_boom_yy;
+    out.mass[0][1] = inertia_from_knuckle_yy
+        + fma(
+            upsilon_knuckle_theta_z,
+            first_from_knuckle_x,
+            -(t020 * first_from_knuckle_z),
+        );
+    let t026 = knuckle_axis_z_x * c.c006;
+    let t027 = t011 + t003;
+    let t028 = knuckle_axis_x_x * c.c006;
+    let t029 = t013 + t007;
+    let t030 = fma(-knuckle_axis_z_x, t006, knuckle_axis_x_x * first_from_extension_z)
+        + fma(t026, t027, -(t028 * t029));
+    out.mass[0][2] = t030 + fma(upsilon_knuckle_theta_z, t026, -(t020 * t028));
+    let t031 = inertia_from_hook_yy + fma(-t005, t027, t009 * t029);
+    out.mass[0][3] = t031 + fma(-upsilon_knuckle_theta_z, t005, t020 * t009);
+    // Row of knuckle_theta
+    out.mass[1][1] = inertia_from_knuckle_yy;
+    out.mass[1][2] = t030;
+    out.mass[1][3] = t031;
+    // Row of extension_x
+    out.mass[2][2] = fma(knuckle_axis_z_x, t026, knuckle_axis_x_x * t028);
+    out.mass[2][3] = -fma(knuckle_axis_z_x, t005, knuckle_axis_x_x * t009);
+    // Row of hook_theta
+    out.mass[3][3] = inertia_from_hook_yy;
+    // Bias of main_boom_theta
+    let first_main_boom_x = fma(21.0, sin_main_boom_theta, 630.0 * cos_main_boom_theta);
+    let main_boom_theta_dot = v[0];
+    let t032 = main_boom_theta_dot * (main_boom_theta_dot * upsilon_knuckle_theta_z);
+    let knuckle_theta_dot = v[1];
+    let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
+    let extension_x_dot = v[2];
+    let t033 = 2.0 * extension_x_dot;
+    let t034 = fma(
+        omega_knuckle_y,
+        knuckle_axis_z_x * t033,
+        fma(
+            omega_knuckle_y,
+            t003 * omega_knuckle_y,
+            fma(omega_knuckle_y, t011 * omega_knuckle_y, t032),
+        ),
+    );
+    let t035 = fma(main_boom_theta_dot, main_boom_theta_dot * t020, 9.81);
+    let t036 = fma(
+        -omega_knuckle_y,
+        knuckle_axis_x_x * t033,
+        fma(
+            omega_knuckle_y,
+            t007 * omega_knuckle_y,
+            fma(omega_knuckle_y, t013 * omega_knuckle_y, t035),
+        ),
+    );
+    let t037 = fma(t005, t036, t009 * t034);
+    let hook_theta_dot = v[3];
+    let omega_hook_y = hook_theta_dot + omega_knuckle_y;
+    let t038 = fma(
+        omega_knuckle_y,
+        t004 * omega_knuckle_y,
+        fma(-150.0, t034, fma(omega_hook_y, omega_hook_y * t005, -(c.c001 * t034))),
+    );
+    let t039 = fma(
+        -omega_knuckle_y,
+        t008 * omega_knuckle_y,
+        fma(150.0, t036, fma(omega_hook_y, omega_hook_y * t009, c.c001 * t036)),
+    );
+    let t040 = t037 + fma(t004, t036, -(t008 * t034)) - fma(t003, t039, t007 * t038);
+    let t041 = t040 - fma(t011, t039, t013 * t038);
+    let t042 = fma(t019, t035, t021 * t032);
+    let t043 = t020
+        * fma(-omega_knuckle_y, t019 * omega_knuckle_y, fma(-310.0, t032, t038));
+    out.bias[0] = fma(
+        9.81,
+        first_main_boom_x,
+        -(t041 - t042
+            - fma(
+                upsilon_knuckle_theta_z,
+                fma(-omega_knuckle_y, t021 * omega_knuckle_y, fma(310.0, t035, t039)),
+                t043,
+            )),
+    );
+    // Bias of knuckle_theta
+    out.bias[1] = t042 - t041;
+    // Bias of extension_x
+    out.bias[2] = fma(knuckle_axis_z_x, t039, -(knuckle_axis_x_x * t038));
+    // Bias of hook_theta
+    out.bias[3] = -t037;
+    mass.data.0 = out.mass;
+    SVector::from(out.bias)
 }
 
 /// Bias e: velocity and gravity forces, N and N m.
@@ -1535,7 +1729,7 @@ pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
 /// `e = −(h + g), h_i + g_i = tr(Ω_i Σ T H B̄ᵀ)`
 /// [Urbaś 2016, Eqs. (5), (7), (9)]
 ///
-/// 157 operations: 67 add, 87 mul, 0 div, 3 sin_cos.
+/// 81 operations: 32 add, 46 mul, 0 div, 3 sin_cos.
 pub fn bias(q: &SVector<f64, N>, v: &SVector<f64, N>, c: &Constants) -> SVector<f64, N> {
     let q = &q.data.0[0];
     let v = &v.data.0[0];
@@ -1557,153 +1751,85 @@ pub fn bias(q: &SVector<f64, N>, v: &SVector<f64, N>, c: &Constants) -> SVector<
     // main_boom_theta
     let main_boom_theta_dot = v[0];
     let knuckle_theta_dot = v[1];
-    let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
-    let upsilon_knuckle_z = knuckle_theta_dot * upsilon_knuckle_theta_z;
-    let t001 = main_boom_theta_dot * upsilon_knuckle_z;
     let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
-    let extension_x_dot = v[2];
-    let knuckle_axis_z_x = fma(
-        cos_main_boom_theta,
-        sin_knuckle_theta,
-        sin_main_boom_theta * cos_knuckle_theta,
-    );
-    let t002 = extension_x_dot * knuckle_axis_z_x;
-    let t003 = fma(-omega_knuckle_y, t002, t001);
-    let hook_theta_dot = v[3];
-    let knuckle_axis_x_x = fma(
-        -sin_main_boom_theta,
-        sin_knuckle_theta,
-        cos_main_boom_theta * cos_knuckle_theta,
-    );
     let extension_x = q[2];
-    let extension_origin_x = fma(
-        extension_x,
-        knuckle_axis_x_x,
-        fma(2.6, knuckle_axis_x_x, upsilon_knuckle_theta_z),
+    let t001 = fma(
+        9.81,
+        sin_main_boom_theta,
+        main_boom_theta_dot * (3.2 * main_boom_theta_dot),
     );
-    let t004 = hook_theta_dot * extension_origin_x;
-    let upsilon_extension_z = upsilon_knuckle_z - t002;
+    let acceleration_main_boom_z = 9.81 * cos_main_boom_theta;
+    let t002 = fma(
+        sin_knuckle_theta,
+        acceleration_main_boom_z,
+        cos_knuckle_theta * t001,
+    );
+    let t003 = fma(
+        omega_knuckle_y,
+        extension_x * omega_knuckle_y,
+        fma(omega_knuckle_y, 2.6 * omega_knuckle_y, t002),
+    );
+    let t004 = fma(
+        cos_knuckle_theta,
+        acceleration_main_boom_z,
+        -(sin_knuckle_theta * t001),
+    );
+    let extension_x_dot = v[2];
+    let t005 = fma(-omega_knuckle_y, 2.0 * extension_x_dot, t004);
+    let t006 = fma(sin_hook_theta, t005, cos_hook_theta * t003);
+    let moment_hook_y = c.c009 * t006;
+    let moment_extension_y = fma(150.0, t005, moment_hook_y);
+    let hook_theta_dot = v[3];
     let omega_hook_y = hook_theta_dot + omega_knuckle_y;
-    let upsilon_hook_z = upsilon_extension_z + t004;
-    let t005 = fma(
+    let force_hook_z = fma(
         omega_hook_y,
-        upsilon_hook_z,
-        fma(-hook_theta_dot, upsilon_extension_z, fma(omega_knuckle_y, t004, t003)),
+        omega_hook_y * c.c009,
+        c.c001 * fma(-sin_hook_theta, t003, cos_hook_theta * t005),
     );
-    let hook_axis_z_x = fma(
-        sin_hook_theta,
-        knuckle_axis_x_x,
-        cos_hook_theta * knuckle_axis_z_x,
-    );
-    let first_hook_x = fma(extension_origin_x, c.c001, hook_axis_z_x * c.c002);
-    let force_from_hook_x = fma(
-        c.c001,
+    let t007 = c.c001 * t006;
+    let force_extension_z = fma(
+        150.0,
         t005,
-        -(omega_hook_y * (first_hook_x * omega_hook_y)),
+        fma(sin_hook_theta, t007, cos_hook_theta * force_hook_z),
     );
-    let first_extension_x = fma(150.0, extension_origin_x, -150.0 * knuckle_axis_x_x);
-    let t006 = fma(omega_knuckle_y, upsilon_extension_z, t003);
-    let force_from_extension_x = fma(
-        150.0,
-        t006,
-        fma(-omega_knuckle_y, first_extension_x * omega_knuckle_y, force_from_hook_x),
+    let t008 = fma(
+        -2.6,
+        force_extension_z,
+        fma(-extension_x, force_extension_z, moment_extension_y),
     );
-    let first_knuckle_x = fma(
-        992.0,
-        cos_main_boom_theta,
-        fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x),
+    let t009 = fma(341.0, t004, 31.0 * t002);
+    let moment_knuckle_y = t008 - t009;
+    let force_knuckle_z = fma(
+        -omega_knuckle_y,
+        31.0 * omega_knuckle_y,
+        fma(310.0, t004, force_extension_z),
     );
-    let t007 = fma(upsilon_knuckle_z, omega_knuckle_y, t001);
-    let force_from_knuckle_x = fma(
-        310.0,
-        t007,
-        fma(-omega_knuckle_y, first_knuckle_x * omega_knuckle_y, force_from_extension_x),
+    let force_extension_x = fma(
+        omega_knuckle_y,
+        150.0 * omega_knuckle_y,
+        fma(-150.0, t003, fma(sin_hook_theta, force_hook_z, -(cos_hook_theta * t007))),
     );
-    let first_main_boom_x = fma(21.0, sin_main_boom_theta, 630.0 * cos_main_boom_theta);
-    let force_from_main_boom_x = fma(
-        -main_boom_theta_dot,
-        main_boom_theta_dot * first_main_boom_x,
-        force_from_knuckle_x,
+    let force_knuckle_x = fma(
+        -omega_knuckle_y,
+        341.0 * omega_knuckle_y,
+        fma(-310.0, t002, force_extension_x),
     );
-    let hook_axis_x_x = fma(
-        -sin_hook_theta,
-        knuckle_axis_z_x,
-        cos_hook_theta * knuckle_axis_x_x,
-    );
-    let knuckle_origin_z = fma(-3.2, sin_main_boom_theta, 2.0);
-    let t008 = fma(-2.6, knuckle_axis_z_x, knuckle_origin_z);
-    let extension_origin_z = fma(-extension_x, knuckle_axis_z_x, t008);
-    let first_hook_z = fma(extension_origin_z, c.c001, hook_axis_x_x * c.c002);
-    let upsilon_knuckle_theta_x = fma(3.2, sin_main_boom_theta, -2.0);
-    let t009 = knuckle_theta_dot * upsilon_knuckle_theta_x;
-    let t010 = 2.0 * main_boom_theta_dot;
-    let t011 = fma(-knuckle_theta_dot, t010, fma(-main_boom_theta_dot, t009, 9.81));
-    let t012 = extension_x_dot * knuckle_axis_x_x;
-    let t013 = fma(-omega_knuckle_y, t012, t011);
-    let upsilon_hook_theta_x = fma(extension_x, knuckle_axis_z_x, -t008);
-    let t014 = hook_theta_dot * upsilon_hook_theta_x;
-    let upsilon_knuckle_x = t009 - t010;
-    let upsilon_extension_x = upsilon_knuckle_x + t012;
-    let upsilon_hook_x = upsilon_extension_x + t014;
-    let t015 = fma(
-        -omega_hook_y,
-        upsilon_hook_x,
-        fma(hook_theta_dot, upsilon_extension_x, fma(-omega_knuckle_y, t014, t013)),
-    );
-    let moment_from_hook_y = fma(-first_hook_x, t015, first_hook_z * t005);
-    let first_extension_z = fma(150.0, extension_origin_z, 150.0 * knuckle_axis_z_x);
-    let t016 = fma(-omega_knuckle_y, upsilon_extension_x, t013);
-    let moment_from_extension_y = moment_from_hook_y
-        + fma(-first_extension_x, t016, first_extension_z * t006);
-    let first_knuckle_z = fma(
-        310.0,
-        knuckle_origin_z,
-        fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x),
-    );
-    let t017 = fma(-omega_knuckle_y, upsilon_knuckle_x, t011);
-    let moment_from_knuckle_y = moment_from_extension_y
-        + fma(-first_knuckle_x, t017, first_knuckle_z * t007);
-    let moment_from_main_boom_y = fma(
-        -first_main_boom_x,
-        fma(main_boom_theta_dot, t010, 9.81),
-        moment_from_knuckle_y,
-    );
-    out[0] = fma(2.0, force_from_main_boom_x, -moment_from_main_boom_y);
+    out[0] = fma(6180.3, cos_main_boom_theta, 206.01000000000002 * sin_main_boom_theta)
+        - fma(
+            -3.2,
+            fma(
+                -sin_knuckle_theta,
+                force_knuckle_x,
+                cos_knuckle_theta * force_knuckle_z,
+            ),
+            moment_knuckle_y,
+        );
     // knuckle_theta
-    let force_from_hook_z = fma(
-        c.c001,
-        t015,
-        -(omega_hook_y * (first_hook_z * omega_hook_y)),
-    );
-    let force_from_extension_z = fma(
-        150.0,
-        t016,
-        fma(-omega_knuckle_y, first_extension_z * omega_knuckle_y, force_from_hook_z),
-    );
-    let force_from_knuckle_z = fma(
-        310.0,
-        t017,
-        fma(-omega_knuckle_y, first_knuckle_z * omega_knuckle_y, force_from_extension_z),
-    );
-    out[1] = -(moment_from_knuckle_y
-        + fma(
-            upsilon_knuckle_theta_z,
-            force_from_knuckle_z,
-            upsilon_knuckle_theta_x * force_from_knuckle_x,
-        ));
+    out[1] = t009 - t008;
     // extension_x
-    out[2] = fma(
-        knuckle_axis_z_x,
-        force_from_extension_z,
-        -(knuckle_axis_x_x * force_from_extension_x),
-    );
+    out[2] = -force_extension_x;
     // hook_theta
-    out[3] = -(moment_from_hook_y
-        + fma(
-            extension_origin_x,
-            force_from_hook_z,
-            upsilon_hook_theta_x * force_from_hook_x,
-        ));
+    out[3] = -moment_hook_y;
     SVector::from(out)
 }
 
@@ -2302,7 +2428,7 @@ pub fn tangent_stiffness(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, 
 ///
 /// `A δq̈ + D δq̇ + K δq = 0`
 ///
-/// 209 operations: 91 add, 115 mul, 0 div, 3 sin_cos.
+/// 195 operations: 84 add, 108 mul, 0 div, 3 sin_cos.
 pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
     let q = &q.data.0[0];
     let mut out: [[[f64; N]; N]; 3] = [[[0.0; N]; N]; 3];
@@ -2321,23 +2447,6 @@ pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
         ],
     ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta]);
     // Mass, row of main_boom_theta
-    let t001 = 31.5 * sin_main_boom_theta;
-    let t002 = 31.5 * cos_main_boom_theta;
-    let t003 = fma(21.0, cos_main_boom_theta, -630.0 * sin_main_boom_theta);
-    let t004 = fma(
-        4.0,
-        420.0 + t003,
-        fma(
-            cos_main_boom_theta,
-            fma(6.55, cos_main_boom_theta, -t001),
-            -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t002)),
-        ),
-    );
-    let inertia_main_boom_yy = fma(
-        sin_main_boom_theta,
-        fma(6.55, sin_main_boom_theta, t002),
-        cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t001),
-    ) + t004;
     let knuckle_axis_x_x = fma(
         -sin_main_boom_theta,
         sin_knuckle_theta,
@@ -2348,59 +2457,6 @@ pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
         sin_knuckle_theta,
         sin_main_boom_theta * cos_knuckle_theta,
     );
-    let t005 = 34.1 * knuckle_axis_z_x;
-    let t006 = 34.1 * knuckle_axis_x_x;
-    let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
-    let t007 = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x);
-    let t008 = fma(
-        2.0,
-        upsilon_knuckle_theta_z * fma(496.0, cos_main_boom_theta, t007),
-        fma(
-            knuckle_axis_z_x,
-            fma(7.6, knuckle_axis_z_x, t006),
-            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t005),
-        ),
-    );
-    let knuckle_origin_z = fma(-3.2, sin_main_boom_theta, 2.0);
-    let t009 = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x);
-    let t010 = fma(
-        2.0,
-        knuckle_origin_z * fma(155.0, knuckle_origin_z, t009),
-        fma(
-            knuckle_axis_x_x,
-            fma(7.6, knuckle_axis_x_x, -t005),
-            -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t006)),
-        ),
-    );
-    let inertia_knuckle_yy = t008 + t010;
-    let extension_x = q[2];
-    let extension_origin_x = fma(
-        extension_x,
-        knuckle_axis_x_x,
-        fma(2.6, knuckle_axis_x_x, upsilon_knuckle_theta_z),
-    );
-    let t011 = 150.0 * knuckle_axis_x_x;
-    let t012 = fma(-2.6, knuckle_axis_z_x, knuckle_origin_z);
-    let extension_origin_z = fma(-extension_x, knuckle_axis_z_x, t012);
-    let t013 = 150.0 * knuckle_axis_z_x;
-    let t014 = fma(
-        2.0,
-        extension_origin_z * fma(75.0, extension_origin_z, t013),
-        fma(
-            knuckle_axis_x_x,
-            knuckle_axis_x_x,
-            knuckle_axis_z_x * (211.0 * knuckle_axis_z_x),
-        ),
-    );
-    let inertia_extension_yy = fma(
-        2.0,
-        extension_origin_x * fma(75.0, extension_origin_x, -t011),
-        fma(
-            knuckle_axis_z_x,
-            knuckle_axis_z_x,
-            knuckle_axis_x_x * (211.0 * knuckle_axis_x_x),
-        ),
-    ) + t014;
     let hook_axis_x_x = fma(
         -sin_hook_theta,
         knuckle_axis_z_x,
@@ -2411,103 +2467,145 @@ pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
         knuckle_axis_x_x,
         cos_hook_theta * knuckle_axis_z_x,
     );
-    let t015 = hook_axis_z_x * c.c002;
-    let t016 = fma(
-        2.0,
-        extension_origin_x * fma(extension_origin_x, c.c005, t015),
-        fma(
-            hook_axis_z_x,
-            hook_axis_z_x * c.c004,
-            hook_axis_x_x * (hook_axis_x_x * c.c003),
-        ),
+    let t001 = fma(
+        hook_axis_x_x,
+        hook_axis_x_x * c.c004,
+        hook_axis_z_x * (hook_axis_z_x * c.c003),
     );
-    let t017 = hook_axis_x_x * c.c002;
-    let t018 = fma(
-        2.0,
-        extension_origin_z * fma(extension_origin_z, c.c005, t017),
-        fma(
-            hook_axis_x_x,
-            hook_axis_x_x * c.c004,
-            hook_axis_z_x * (hook_axis_z_x * c.c003),
-        ),
+    let inertia_from_hook_yy = fma(
+        hook_axis_z_x,
+        hook_axis_z_x * c.c004,
+        hook_axis_x_x * (hook_axis_x_x * c.c003),
+    ) + t001;
+    let t002 = fma(
+        knuckle_axis_z_x,
+        knuckle_axis_z_x,
+        knuckle_axis_x_x * (211.0 * knuckle_axis_x_x),
+    )
+        + fma(
+            knuckle_axis_x_x,
+            knuckle_axis_x_x,
+            knuckle_axis_z_x * (211.0 * knuckle_axis_z_x),
+        );
+    let inertia_from_extension_yy = inertia_from_hook_yy + t002;
+    let extension_x = q[2];
+    let t003 = extension_x * knuckle_axis_x_x;
+    let t004 = hook_axis_z_x * c.c009;
+    let t005 = fma(150.0, knuckle_axis_x_x, t004);
+    let t006 = extension_x * knuckle_axis_z_x;
+    let t007 = 150.0 * knuckle_axis_z_x;
+    let t008 = hook_axis_x_x * c.c009;
+    let first_from_extension_z = t007 - t008;
+    let t009 = inertia_from_extension_yy
+        + fma(
+            -2.0,
+            t006 * fma(-t006, c.c019, first_from_extension_z),
+            2.0 * (t003 * fma(t003, c.c019, -t005)),
+        );
+    let t010 = 2.6 * knuckle_axis_x_x;
+    let t011 = fma(t003, c.c006, -t005);
+    let t012 = 2.6 * knuckle_axis_z_x;
+    let t013 = fma(-t006, c.c006, first_from_extension_z);
+    let t014 = t009
+        + fma(
+            -2.0,
+            t012 * fma(-t012, c.c019, t013),
+            2.0 * (t010 * fma(t010, c.c019, t011)),
+        );
+    let t015 = 34.1 * knuckle_axis_z_x;
+    let t016 = 34.1 * knuckle_axis_x_x;
+    let t017 = fma(
+        knuckle_axis_x_x,
+        fma(7.6, knuckle_axis_x_x, -t015),
+        -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t016)),
     );
-    let inertia_hook_yy = t016 + t018;
-    let inertia_from_extension_yy = inertia_extension_yy + inertia_hook_yy;
-    let inertia_from_knuckle_yy = inertia_knuckle_yy + inertia_from_extension_yy;
-    let inertia_from_main_boom_yy = inertia_main_boom_yy + inertia_from_knuckle_yy;
-    let first_main_boom_z = t003 + 840.0;
-    let first_knuckle_z = fma(310.0, knuckle_origin_z, t009);
-    let first_extension_z = fma(150.0, extension_origin_z, t013);
-    let first_hook_z = fma(extension_origin_z, c.c001, t017);
-    let first_from_extension_z = first_extension_z + first_hook_z;
-    let first_from_knuckle_z = first_knuckle_z + first_from_extension_z;
-    let first_from_main_boom_z = first_main_boom_z + first_from_knuckle_z;
-    let t019 = first_from_main_boom_z - c.c015;
-    out[0][0][0] = fma(
-        -2.0,
-        t019,
-        fma(-2.0, first_from_main_boom_z, inertia_from_main_boom_yy),
-    );
-    let upsilon_knuckle_theta_x = fma(3.2, sin_main_boom_theta, -2.0);
-    let first_knuckle_x = fma(992.0, cos_main_boom_theta, t007);
-    let first_extension_x = fma(150.0, extension_origin_x, -t011);
-    let first_hook_x = fma(extension_origin_x, c.c001, t015);
-    let first_from_extension_x = first_extension_x + first_hook_x;
-    let first_from_knuckle_x = first_knuckle_x + first_from_extension_x;
+    let inertia_from_knuckle_yy = t014
+        + (fma(
+            knuckle_axis_z_x,
+            fma(7.6, knuckle_axis_z_x, t016),
+            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t015),
+        ) + t017);
+    let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
+    let first_from_knuckle_x = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x)
+        + fma(t010, c.c006, t011);
+    let t018 = 3.2 * sin_main_boom_theta;
+    let t019 = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x);
+    let first_from_knuckle_z = t019 + fma(-t012, c.c006, t013);
     let t020 = inertia_from_knuckle_yy
         + fma(
-            -upsilon_knuckle_theta_z,
-            first_from_knuckle_x,
-            upsilon_knuckle_theta_x * first_from_knuckle_z,
+            -2.0,
+            t018 * fma(-t018, c.c020, first_from_knuckle_z),
+            2.0
+                * (upsilon_knuckle_theta_z
+                    * fma(upsilon_knuckle_theta_z, c.c020, first_from_knuckle_x)),
         );
-    let t021 = fma(upsilon_knuckle_theta_x, c.c007, first_from_knuckle_z);
-    out[0][1][0] = fma(-2.0, t021, t020);
-    let t022 = fma(
-        knuckle_axis_z_x,
-        first_from_extension_x,
-        knuckle_axis_x_x * first_from_extension_z,
+    let t021 = 31.5 * sin_main_boom_theta;
+    let t022 = 31.5 * cos_main_boom_theta;
+    let t023 = fma(
+        cos_main_boom_theta,
+        fma(6.55, cos_main_boom_theta, -t021),
+        -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t022)),
     );
-    let t023 = knuckle_axis_x_x * c.c006;
-    out[0][2][0] = fma(-2.0, t023, t022);
-    let upsilon_hook_theta_x = fma(extension_x, knuckle_axis_z_x, -t012);
-    let t024 = inertia_hook_yy
-        + fma(-extension_origin_x, first_hook_x, upsilon_hook_theta_x * first_hook_z);
-    let t025 = fma(upsilon_hook_theta_x, c.c001, first_hook_z);
-    out[0][3][0] = fma(-2.0, t025, t024);
-    // Mass, row of knuckle_theta
-    out[0][1][1] = t020
+    let inertia_from_main_boom_yy = t020
+        + (fma(
+            sin_main_boom_theta,
+            fma(6.55, sin_main_boom_theta, t022),
+            cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t021),
+        ) + t023);
+    out[0][0][0] = inertia_from_main_boom_yy;
+    out[0][1][0] = inertia_from_knuckle_yy
         + fma(
             upsilon_knuckle_theta_z,
-            fma(upsilon_knuckle_theta_z, c.c007, -first_from_knuckle_x),
-            upsilon_knuckle_theta_x * t021,
+            first_from_knuckle_x,
+            -(t018 * first_from_knuckle_z),
         );
-    let t026 = knuckle_axis_z_x * c.c006;
-    out[0][2][1] = t022
-        + fma(-upsilon_knuckle_theta_z, t026, upsilon_knuckle_theta_x * t023);
-    let t027 = fma(extension_origin_x, c.c001, -first_hook_x);
-    out[0][3][1] = t024
-        + fma(upsilon_knuckle_theta_z, t027, upsilon_knuckle_theta_x * t025);
+    let t024 = knuckle_axis_z_x * c.c006;
+    let t025 = t010 + t003;
+    let t026 = knuckle_axis_x_x * c.c006;
+    let t027 = t012 + t006;
+    let t028 = fma(-knuckle_axis_z_x, t005, knuckle_axis_x_x * first_from_extension_z)
+        + fma(t024, t025, -(t026 * t027));
+    out[0][2][0] = t028 + fma(upsilon_knuckle_theta_z, t024, -(t018 * t026));
+    let t029 = inertia_from_hook_yy + fma(-t004, t025, t008 * t027);
+    out[0][3][0] = t029 + fma(-upsilon_knuckle_theta_z, t004, t018 * t008);
+    // Mass, row of knuckle_theta
+    out[0][1][1] = inertia_from_knuckle_yy;
+    out[0][2][1] = t028;
+    out[0][3][1] = t029;
     // Mass, row of extension_x
-    out[0][2][2] = fma(knuckle_axis_z_x, t026, knuckle_axis_x_x * t023);
-    out[0][3][2] = fma(-knuckle_axis_z_x, t027, knuckle_axis_x_x * t025);
+    out[0][2][2] = fma(knuckle_axis_z_x, t024, knuckle_axis_x_x * t026);
+    out[0][3][2] = -fma(knuckle_axis_z_x, t004, knuckle_axis_x_x * t008);
     // Mass, row of hook_theta
-    out[0][3][3] = t024 + fma(extension_origin_x, t027, upsilon_hook_theta_x * t025);
+    out[0][3][3] = inertia_from_hook_yy;
     // Stiffness, row of main_boom_theta
-    out[1][0][0] = fma(-9.81, t019, 4000000.0);
-    let t028 = 9.81 * t021;
-    out[1][1][0] = -t028;
-    let t029 = -9.81 * t023;
-    out[1][2][0] = t029;
-    let t030 = -9.81 * t025;
-    out[1][3][0] = t030;
+    let first_main_boom_z = fma(21.0, cos_main_boom_theta, -630.0 * sin_main_boom_theta)
+        + 840.0;
+    let knuckle_origin_z = 2.0 - t018;
+    let first_knuckle_z = fma(310.0, knuckle_origin_z, t019);
+    let t030 = knuckle_origin_z - t012;
+    let extension_origin_z = t030 - t006;
+    let first_extension_z = fma(150.0, extension_origin_z, t007);
+    let first_hook_z = fma(extension_origin_z, c.c001, hook_axis_x_x * c.c002);
+    let first_from_extension_z_2 = first_extension_z + first_hook_z;
+    let first_from_knuckle_z_2 = first_knuckle_z + first_from_extension_z_2;
+    let first_from_main_boom_z = first_main_boom_z + first_from_knuckle_z_2;
+    out[1][0][0] = fma(-9.81, first_from_main_boom_z - c.c015, 4000000.0);
+    let upsilon_knuckle_theta_x = t018 - 2.0;
+    let t031 = 9.81 * fma(upsilon_knuckle_theta_x, c.c007, first_from_knuckle_z_2);
+    out[1][1][0] = -t031;
+    let t032 = -9.81 * t026;
+    out[1][2][0] = t032;
+    let upsilon_hook_theta_x = t006 - t030;
+    let t033 = -9.81 * fma(upsilon_hook_theta_x, c.c001, first_hook_z);
+    out[1][3][0] = t033;
     // Stiffness, row of knuckle_theta
-    out[1][1][1] = 2000000.0 - t028;
-    out[1][2][1] = t029;
-    out[1][3][1] = t030;
+    out[1][1][1] = 2000000.0 - t031;
+    out[1][2][1] = t032;
+    out[1][3][1] = t033;
     // Stiffness, row of extension_x
     out[1][2][2] = 8000000.0;
     // Stiffness, row of hook_theta
-    out[1][3][3] = t030;
+    out[1][3][3] = t033;
     // Damping, row of main_boom_theta
     out[2][0][0] = 60000.0;
     // Damping, row of knuckle_theta
@@ -2633,6 +2731,14 @@ impl Dynamics<N> for Crane {
     fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
         mass_matrix(q, &self.constants)
     }
+    fn mass_matrix_and_bias(
+        &self,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        mass: &mut SMatrix<f64, N, N>,
+    ) -> SVector<f64, N> {
+        mass_matrix_and_bias(q, v, &self.constants, mass)
+    }
     fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         bias(q, v, &self.constants)
     }
@@ -2713,6 +2819,8 @@ pub mod lanes {
         c016: f64x8,
         c017: f64x8,
         c018: f64x8,
+        c019: f64x8,
+        c020: f64x8,
     }
     impl From<&Params> for Constants {
         fn from(params: &Params) -> Self {
@@ -2736,14 +2844,16 @@ pub mod lanes {
             let c010 = splat(1.0) / c008;
             let c011 = c008 * c010;
             let c012 = c002 * c010;
-            let t617 = c002 * c012;
-            let c013 = c001 - t617;
+            let t576 = c002 * c012;
+            let c013 = c001 - t576;
             let c014 = c001 - c013;
             let c015 = splat(2.0) * t322;
             let c016 = c009 * c010;
-            let t991 = c009 * c016;
-            let c017 = c001 - t991;
+            let t950 = c009 * c016;
+            let c017 = c001 - t950;
             let c018 = c001 - c017;
+            let c019 = splat(0.5) * c006;
+            let c020 = splat(0.5) * c007;
             Constants {
                 params: *params,
                 c001,
@@ -2764,6 +2874,8 @@ pub mod lanes {
                 c016,
                 c017,
                 c018,
+                c019,
+                c020,
             }
         }
     }

@@ -41,6 +41,8 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("transform_second_derivatives", vec![second, 4, 4]),
         ("mass_matrix", vec![n, n]),
         ("bias", vec![n]),
+        ("mass_matrix_lower", vec![n, n]),
+        ("bias_with_mass_matrix", vec![n]),
         ("forces", vec![n]),
         ("support_forces", vec![n]),
         ("element_forces", vec![n]),
@@ -106,8 +108,13 @@ pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f6
     push_matrices(&mut out, &derivatives);
 
     push_matrix(&mut out, &crane.mass_matrix(q));
+    let bias = crane.bias(q, v);
+    let mut lower = SMatrix::zeros();
+    let with_mass_matrix = crane.mass_matrix_and_bias(q, v, &mut lower);
+    out.extend(bias.iter());
+    push_matrix(&mut out, &lower.lower_triangle());
     for vector in [
-        crane.bias(q, v),
+        with_mass_matrix,
         crane.forces(t, q, v),
         crane.support_forces(q, v),
         crane.element_forces(q, v),

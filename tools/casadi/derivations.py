@@ -76,9 +76,12 @@ class Derivations:
         kinetic, gravity = self.kinetic_energy(), self.gravity_energy()
         mass_matrix, momentum = ca.hessian(kinetic, v)
         inertia_force = ca.jtimes(momentum, q, v) - ca.gradient(kinetic, q)
+        bias = -(inertia_force + ca.gradient(gravity, q))
         return {
             "mass_matrix": row_major(ca.densify(mass_matrix)),
-            "bias": -(inertia_force + ca.gradient(gravity, q)),
+            "mass_matrix_lower": row_major(ca.densify(ca.tril(mass_matrix))),
+            "bias": bias,
+            "bias_with_mass_matrix": bias,
             "kinetic_energy": kinetic,
             "linearised_mass": row_major(ca.densify(mass_matrix)),
         }

@@ -36,7 +36,7 @@ const TRAITS: [(&str, &[&str]); 6] = [
             "dissipation",
         ],
     ),
-    ("Dynamics", &["forward_dynamics", "solve_mass", "mass_matrix", "bias", "kinetic_energy"]),
+    ("Dynamics", &["forward_dynamics", "solve_mass", "mass_matrix", "mass_matrix_and_bias", "bias", "kinetic_energy"]),
     ("Implicit", &["factorise", "solve", "joint_impedances", "base_stiffness", "base_damping"]),
     ("Statics", &["static_residual", "tangent_stiffness"]),
     ("Linearise", &["linearise"]),
@@ -162,6 +162,13 @@ fn method(block: &Block) -> TokenStream {
     let constants = block.reads_parameters.then(|| quote!(&self.constants));
     let arguments: Vec<_> = names.iter().map(|name| quote!(#name)).chain(constants).collect();
     match &function.shape {
+        Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => {
+            quote! {
+                fn #name(&self, #(#names: #types,)* mass: &mut SMatrix<f64, N, N>) -> SVector<f64, N> {
+                    #name(#(#arguments,)* mass)
+                }
+            }
+        }
         Shape::Factors(_) => {
             quote! {
                 fn #name(&self, #(#names: #types),*) -> Factors {

@@ -104,7 +104,7 @@ impl Writer<'_> {
                 let storage = variable(self.storage.storage_name());
                 arguments.push(match self.storage.handover() {
                     Handover::OutArgument => storage,
-                    Handover::Return | Handover::FromFactors => borrow_mut(storage),
+                    Handover::Return | Handover::FromFactors | Handover::Both => borrow_mut(storage),
                 });
             }
             let called = call(&name.to_string(), arguments);
@@ -141,6 +141,10 @@ impl Writer<'_> {
         let output = self.storage.public_type();
         let signature = match self.storage.handover() {
             Handover::Return => quote!(pub fn #name(#(#parameters),*) -> #output),
+            Handover::Both => {
+                parameters.push(quote!(mass: &mut SMatrix<f64, N, N>));
+                quote!(pub fn #name(#(#parameters),*) -> #output)
+            }
             Handover::OutArgument | Handover::FromFactors => {
                 parameters.push(quote!(out: &mut #output));
                 quote!(pub fn #name(#(#parameters),*))

@@ -29,6 +29,10 @@ pub fn header(chain: &Chain, report: &Report, spec_file: &str) -> String {
         lines.push("Left out:".into());
         lines.extend(report.left_out.iter().map(|(what, why)| format!("  {what}: {why}")));
     }
+    if let Some(how) = report.mass_matrix {
+        lines.push(String::new());
+        lines.push(format!("The mass matrix is {how}."));
+    }
     if let Some(pairs) = report.second_derivative_pairs {
         lines.push(String::new());
         lines.push(format!(

@@ -39,6 +39,16 @@ impl<'a> Labels<'a> {
                 coordinates.skip(row_of_triangle(6, slot).0).map(|name| format!("Row of {name}")).next()
             }
             Shape::Vector(_) => Some(coordinate(slot).to_owned()),
+            Shape::MassAndBias(n) => Some(match slot.checked_sub(n * (n + 1) / 2) {
+                Some(row) => format!("Bias of {}", coordinate(row)),
+                None => format!("Row of {}", coordinate(row_of_triangle(*n, slot).0)),
+            }),
+            Shape::Columns { turns, .. } => Some(match slot.checked_sub(12 * turns.len()) {
+                Some(row) => format!("Bias of {}", coordinate(row)),
+                None => ["Axes", "Linear momenta", "Angular momenta", "Ways to the next point"]
+                    [slot / (3 * turns.len())]
+                .to_owned(),
+            }),
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
             Shape::Vectors(_) if function.name == "support_reactions" => Some(chain.supports[slot / 3].name.clone()),
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),

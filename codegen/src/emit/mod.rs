@@ -78,7 +78,10 @@ pub fn emit(chain: &Chain, analyses: Analyses, blocks: &Blocks, report: Report, 
 fn imports(items: &[syn::Item]) -> String {
     const SOURCES: [(&str, &[&str]); 3] = [
         ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),
-        ("::crane_model::support", &["TransformFactors", "fill", "fma", "sin_cos", "symmetric"]),
+        (
+            "::crane_model::support",
+            &["MassAndBias", "MassColumns", "TransformFactors", "fill", "fma", "sin_cos", "symmetric"],
+        ),
         (
             "::crane_model",
             &[

@@ -5,9 +5,11 @@ use std::collections::{HashMap, HashSet};
 use crate::symbolic::{Argument, ExprId, Op, Program};
 
 /// Words that generated functions use themselves.
-const TAKEN: [&str; 19] = [
+const TAKEN: &[&str] = &[
     "factors",
     "fma",
+    "columns",
+    "mass",
     "splat",
     "t",
     "q",

@@ -16,6 +16,8 @@ pub enum Handover {
     OutArgument,
     /// Made from factors into the caller's array.
     FromFactors,
+    /// A vector returned by value, a matrix in the caller's place.
+    Both,
 }
 
 /// Type, storage and slots of a result.
@@ -33,6 +35,7 @@ impl<'f> Storage<'f> {
         match self.shape {
             Shape::Transforms { corner: 0, .. } => Handover::OutArgument,
             Shape::Turned { .. } => Handover::FromFactors,
+            Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => Handover::Both,
             _ => Handover::Return,
         }
     }
@@ -42,8 +45,8 @@ impl<'f> Storage<'f> {
         let number = self.number.of();
         match self.shape {
             Shape::Scalar => quote!(f64),
-            Shape::Vector(_) => quote!(SVector<#number, N>),
-            Shape::Symmetric(_) => quote!(SMatrix<f64, N, N>),
+            Shape::Vector(_) | Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => quote!(SVector<#number, N>),
+            Shape::Symmetric(_) | Shape::Columns { bias: false, .. } => quote!(SMatrix<f64, N, N>),
             Shape::Base => quote!(SMatrix<f64, 6, 6>),
             Shape::Factors(_) => quote!(Factors),
             Shape::Vectors(n) => array(&quote!(Vector3<f64>), *n),
@@ -58,7 +61,11 @@ impl<'f> Storage<'f> {
 
     /// Name of the variable in which the result grows.
     pub fn storage_name(&self) -> &'static str {
-        if matches!(self.shape, Shape::Turned { .. }) { "factors" } else { "out" }
+        match self.shape {
+            Shape::Turned { .. } => "factors",
+            Shape::Columns { .. } => "columns",
+            _ => "out",
+        }
     }
 
     /// Type of the variable `out` in which the result grows.
@@ -68,6 +75,8 @@ impl<'f> Storage<'f> {
             Shape::Vector(_) => quote!([#number; N]),
             Shape::Symmetric(_) => quote!([[f64; N]; N]),
             Shape::Base => quote!([[f64; 6]; 6]),
+            Shape::Columns { .. } => quote!(MassColumns<N>),
+            Shape::MassAndBias(_) => quote!(MassAndBias<N>),
             Shape::Record(_, fields) => array(&quote!([[f64; N]; N]), fields.len()),
             Shape::Turned { degrees, .. } => {
                 let total = integer(degrees.iter().sum());
@@ -85,6 +94,8 @@ impl<'f> Storage<'f> {
             Shape::Vector(_) => quote!([#zero; N]),
             Shape::Symmetric(_) => quote!([[0.0; N]; N]),
             Shape::Base => quote!([[0.0; 6]; 6]),
+            Shape::Columns { .. } => quote!(MassColumns::zeros()),
+            Shape::MassAndBias(_) => quote!(MassAndBias::zeros()),
             Shape::Factors(n) => array(&quote!(0.0), *n),
             Shape::Vectors(n) => array(&quote!(Vector3::zeros()), *n),
             Shape::Pairs(n) => array(&quote!([0.0; 2]), *n),
@@ -102,6 +113,15 @@ impl<'f> Storage<'f> {
         match self.shape {
             Shape::Vector(_) => quote!(SVector::from(out)),
             Shape::Symmetric(_) | Shape::Base => quote!(symmetric(out)),
+            Shape::Columns { turns, bias: false } => quote!(columns.mass_matrix(&[#(#turns),*])),
+            Shape::Columns { turns, bias: true } => quote! {
+                columns.fill(&[#(#turns),*], &mut mass.data.0);
+                SVector::from(columns.bias)
+            },
+            Shape::MassAndBias(_) => quote! {
+                mass.data.0 = out.mass;
+                SVector::from(out.bias)
+            },
             Shape::Record(name, fields) => {
                 let name = format_ident!("{name}");
                 let names: Vec<_> = fields.iter().map(|(field, _)| format_ident!("{field}")).collect();
@@ -129,7 +149,10 @@ impl<'f> Storage<'f> {
             Shape::Scalar | Shape::Factors(_) => 0,
             Shape::Vector(_) => slot,
             Shape::Base => row_of_triangle(6, slot).0,
-            Shape::Symmetric(n) => row_of_triangle(*n, slot).0,
+            Shape::MassAndBias(n) if slot >= n * (n + 1) / 2 => slot,
+            Shape::Columns { turns, .. } if slot >= 12 * turns.len() => slot,
+            Shape::Columns { turns, .. } => slot / (3 * turns.len()),
+            Shape::Symmetric(n) | Shape::MassAndBias(n) => row_of_triangle(*n, slot).0,
             Shape::Vectors(_) => slot / 3,
             Shape::Pairs(_) => slot / 2,
             Shape::Transforms { .. } => slot / 12,
@@ -163,6 +186,24 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
         Shape::Scalar => out,
         Shape::Vector(_) | Shape::Factors(_) => element(out, slot),
         Shape::Base => slot_of(&Shape::Symmetric(6), slot, out),
+        Shape::MassAndBias(n) => {
+            if let Some(row) = slot.checked_sub(n * (n + 1) / 2) {
+                element(field(out, "bias"), row)
+            } else {
+                let (row, column) = row_of_triangle(*n, slot);
+                element(element(field(out, "mass"), row), column)
+            }
+        }
+        Shape::Columns { turns, .. } => {
+            let (kind, rest) = (slot / (3 * turns.len()), slot % (3 * turns.len()));
+            match kind {
+                0 => element(element(field(out, "axes"), rest / 3), rest % 3),
+                1 => element(element(field(out, "linear"), rest % 3), rest / 3),
+                2 => element(element(field(out, "angular"), rest % 3), rest / 3),
+                3 => element(element(field(out, "ways"), rest / 3), rest % 3),
+                _ => element(field(out, "bias"), slot - 12 * turns.len()),
+            }
+        }
         Shape::Symmetric(n) => {
             let (row, column) = row_of_triangle(*n, slot);
             element(element(out, column), row)

@@ -1,10 +1,11 @@
 //! Which functions a crane gets: signatures, documentation, and what is left out.
 
-use crate::chain::{Analyses, BodyId, Chain};
+use crate::chain::{Analyses, BodyId, Chain, CoordinateKind};
 use crate::symbolic::Argument::{self, BaseResistance, Factors, Position, Resistance, Right, Time, Velocity};
 use crate::symbolic::{Expr, Function, Graph, Program, Shape, Stages, Symbol, SymbolId};
 
 use super::articulated::Effort;
+use super::columns::Places;
 use super::factors::{Factor, factors};
 use super::forward::{self, Loads};
 use super::inertia::Inertias;
@@ -12,7 +13,11 @@ use super::kinematics::Kinematics;
 use super::model::Model;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
-use super::{drives, dynamics, gravity, points, resisted, springs, supports, transforms};
+use super::{drives, energy, gravity, newton_euler, points, resisted, springs, supports, transforms};
+
+/// Mass matrices of more coordinates are filled in a loop over rows and columns: written out they grow with the square, and
+/// so does rustc's time. Measured: the loop is as fast at 13 coordinates and 3 times as fast at 25 (docs/performance.md).
+const LARGEST_UNROLLED: usize = 16;
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
@@ -249,7 +254,20 @@ impl<'g> Derivation<'g> {
         let gravity = model.vector(&model.chain.gravity);
         let accelerations = self.accelerations(&model.v, &self.all_forces(model.t, &model.v), gravity);
         let solution = self.accelerations(&model.zeros(), &model.right, Vec3::zero(model.graph));
-        let matrix = dynamics::mass_matrix(model, &self.kinematics, &self.inertias);
+        let places = Places::new(model, &self.factors);
+        let columns = places.columns(model);
+        let bias = places.bias(model);
+        let looped = model.size() > LARGEST_UNROLLED;
+        let turns = || model.chain.coordinates.iter().map(|c| c.kind == CoordinateKind::Rotation).collect();
+        let (mass_shape, both_shape, mass, mut both) = if looped {
+            let slots = columns.slots();
+            let shape = |bias| Shape::Columns { turns: turns(), bias };
+            (shape(false), shape(true), slots.clone(), slots)
+        } else {
+            let upper = columns.mass_matrix(model).into_upper();
+            (Shape::Symmetric(model.size()), Shape::MassAndBias(model.size()), upper.clone(), upper)
+        };
+        both.extend(bias);
         vec![
             function(
                 "forward_dynamics",
@@ -272,8 +290,16 @@ impl<'g> Derivation<'g> {
                 "Mass matrix A; kg, kg m and kg m².",
                 "a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ) [Urbaś 2016, Eq. (5)]",
                 &[Position],
-                Shape::Symmetric(model.size()),
-                matrix.into_upper(),
+                mass_shape,
+                mass,
+            ),
+            function(
+                "mass_matrix_and_bias",
+                "Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m.",
+                "A, e [Urbaś 2016, Eqs. (5), (9)]",
+                &[Position, Velocity],
+                both_shape,
+                both,
             ),
             function(
                 "bias",
@@ -281,7 +307,7 @@ impl<'g> Derivation<'g> {
                 "e = −(h + g), h_i + g_i = tr(Ω_i Σ T H B̄ᵀ) [Urbaś 2016, Eqs. (5), (7), (9)]",
                 &[Position, Velocity],
                 Shape::Vector(model.size()),
-                dynamics::bias(model, &self.kinematics, &self.inertias, &self.twists),
+                newton_euler::bias(model, &self.factors),
             ),
             function(
                 "kinetic_energy",
@@ -289,7 +315,7 @@ impl<'g> Derivation<'g> {
                 "E_k = ½ Σ tr(Ṫ H Ṫᵀ) [Urbaś 2016, Eq. (4)]",
                 &[Position, Velocity],
                 Shape::Scalar,
-                vec![dynamics::kinetic_energy(model, &self.inertias, &self.twists)],
+                vec![energy::kinetic_energy(model, &self.inertias, &self.twists)],
             ),
         ]
     }
@@ -432,7 +458,8 @@ impl<'g> Derivation<'g> {
     fn linearise(&self) -> Function {
         let model = &self.model;
         let damping = self.impedances().1;
-        let mut outputs = dynamics::mass_matrix(model, &self.kinematics, &self.inertias).into_upper();
+        let columns = Places::new(model, &self.factors).columns(model);
+        let mut outputs = columns.mass_matrix(model).into_upper();
         outputs.extend(self.stiffness().into_upper().iter().chain(&damping.into_upper()));
         let matrix = || Shape::Symmetric(model.size());
         let shape =

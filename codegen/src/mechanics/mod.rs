@@ -5,8 +5,9 @@
 //! Mathematical Modelling, 2016; where we depart from the print, `docs/EQUATIONS.md` says why.
 
 mod articulated;
+mod columns;
 mod drives;
-mod dynamics;
+mod energy;
 mod factors;
 mod forward;
 mod functions;
@@ -14,6 +15,7 @@ mod gravity;
 mod inertia;
 mod kinematics;
 mod model;
+mod newton_euler;
 mod omissions;
 mod outward;
 mod points;

@@ -100,6 +100,16 @@ pub enum Shape {
         /// Whether each coordinate is a rotation.
         rotations: Vec<bool>,
     },
+    /// A mass matrix by its factors: axes, linear and angular momenta and ways to the next point of all coordinates, three
+    /// slots each; then, with `bias`, a vector. The result is the upper triangle, row by row, and the vector.
+    Columns {
+        /// Whether each coordinate is a rotation.
+        turns: Vec<bool>,
+        /// Whether the bias comes with it.
+        bias: bool,
+    },
+    /// The upper triangle of a symmetric matrix, row by row, and a vector.
+    MassAndBias(usize),
     /// A symmetric 6×6 matrix over the base's coordinates, slots as in [`Shape::Symmetric`].
     Base,
     /// Numbers for another function, in no order that means anything.
@@ -116,6 +126,8 @@ impl Shape {
             Shape::Scalar => 1,
             Shape::Vector(n) | Shape::Factors(n) => *n,
             Shape::Base => 21,
+            Shape::MassAndBias(n) => n * (n + 1) / 2 + n,
+            Shape::Columns { turns, bias } => 12 * turns.len() + if *bias { turns.len() } else { 0 },
             Shape::Symmetric(n) => n * (n + 1) / 2,
             Shape::Vectors(n) => 3 * n,
             Shape::Pairs(n) => 2 * n,
@@ -137,30 +149,39 @@ impl Shape {
 
     /// The result from its slots: themselves, unless they are factors.
     pub fn close<S: Scalar>(&self, slots: Vec<S>) -> Vec<S> {
-        let Shape::Turned { degrees, rotations } = self else { return slots };
-        let (axes, derivatives) = slots.split_at(3 * rotations.len());
-        let mut closed = Vec::new();
-        let mut start = 0;
-        for &count in degrees {
-            for m in 0..count {
-                let axis = &axes[3 * m..3 * m + 3];
-                for n in m..count {
-                    let first = &derivatives[12 * (start + n)..12 * (start + n) + 12];
-                    closed.extend(turned(axis, first));
-                }
+        match self {
+            Shape::Turned { degrees, rotations } => turned_pairs(degrees, rotations.len(), &slots),
+            Shape::Columns { turns, .. } => {
+                let (columns, bias) = slots.split_at(12 * turns.len());
+                let mut closed = mass_matrix(turns, columns);
+                closed.extend_from_slice(bias);
+                closed
             }
-            start += count;
+            _ => slots,
         }
-        closed
     }
 
     /// Operations of [`Shape::close`]; translations cost none.
     #[must_use]
     pub fn closing_count(&self) -> OperationCount {
-        let Shape::Turned { degrees, rotations } = self else { return OperationCount::default() };
-        let pairs: usize =
-            degrees.iter().map(|&count| (0..count).filter(|&m| rotations[m]).map(|m| count - m).sum::<usize>()).sum();
-        OperationCount { additions: 12 * pairs, multiplications: 24 * pairs, ..OperationCount::default() }
+        match self {
+            Shape::Turned { degrees, rotations } => {
+                let of = |&count: &usize| (0..count).filter(|&m| rotations[m]).map(|m| count - m).sum::<usize>();
+                let pairs: usize = degrees.iter().map(of).sum();
+                OperationCount { additions: 12 * pairs, multiplications: 24 * pairs, ..OperationCount::default() }
+            }
+            Shape::Columns { turns, .. } => {
+                let n = turns.len();
+                // An inner product for every entry, and a cross product for every one beside the diagonal.
+                let (entries, moved) = (n * (n + 1) / 2, n * (n - 1) / 2);
+                OperationCount {
+                    additions: 2 * entries + 6 * moved,
+                    multiplications: 3 * entries + 6 * moved,
+                    ..OperationCount::default()
+                }
+            }
+            _ => OperationCount::default(),
+        }
     }
 
     /// Whether it has no slots.
@@ -168,6 +189,50 @@ impl Shape {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+}
+
+/// Pairs of second derivatives, body by body, from axes and first derivatives.
+fn turned_pairs<S: Scalar>(degrees: &[usize], coordinates: usize, slots: &[S]) -> Vec<S> {
+    let (axes, derivatives) = slots.split_at(3 * coordinates);
+    let mut closed = Vec::new();
+    let mut start = 0;
+    for &count in degrees {
+        for m in 0..count {
+            let axis = &axes[3 * m..3 * m + 3];
+            for n in m..count {
+                let first = &derivatives[12 * (start + n)..12 * (start + n) + 12];
+                closed.extend(turned(axis, first));
+            }
+        }
+        start += count;
+    }
+    closed
+}
+
+/// Upper triangle of a mass matrix, row by row: `a_ij = n_i · L_j` or `n_i · P_j`, with L_j taken about the point of i.
+fn mass_matrix<S: Scalar>(turns: &[bool], slots: &[S]) -> Vec<S> {
+    let n = turns.len();
+    let vector = |kind: usize, j: usize| -> [S; 3] { std::array::from_fn(|k| slots[3 * (kind * n + j) + k].clone()) };
+    let mut angular: Vec<[S; 3]> = (0..n).map(|j| vector(2, j)).collect();
+    let mut rows = Vec::new();
+    for i in (0..n).rev() {
+        let (axis, way) = (vector(0, i), vector(3, i));
+        for (j, angular) in angular.iter_mut().enumerate().skip(i + 1) {
+            let linear = vector(1, j);
+            let moved = |k: usize| {
+                let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+                way[a].clone() * linear[b].clone() + (angular[k].clone() - way[b].clone() * linear[a].clone())
+            };
+            *angular = [moved(0), moved(1), moved(2)];
+        }
+        let entry = |j: usize| {
+            let momentum = if turns[i] { angular[j].clone() } else { vector(1, j) };
+            let [x, y, z] = [0, 1, 2].map(|k| axis[k].clone() * momentum[k].clone());
+            x + (y + z)
+        };
+        rows.push((i..n).map(entry).collect::<Vec<S>>());
+    }
+    rows.into_iter().rev().flatten().collect()
 }
 
 /// `ω × column` of the four columns of a 3×4 matrix stored row by row.

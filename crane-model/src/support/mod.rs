@@ -1,9 +1,11 @@
 //! What generated code calls besides nalgebra.
 
 pub mod lanes;
+mod mass_matrix;
 mod sin_cos;
 
 pub use lanes::fma;
+pub use mass_matrix::{MassAndBias, MassColumns};
 pub use sin_cos::{sin_cos, sin_cos_lanes};
 
 use nalgebra::{Matrix4, SMatrix, Vector3};
