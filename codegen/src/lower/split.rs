@@ -6,9 +6,10 @@ use super::{Constants, Statement, variables_of};
 use crate::symbolic::{ExprId, Op, Program};
 
 /// A piece has at least this many statements before it is cut …
-const SHORTEST_PIECE: usize = 1000;
-/// … and at most this many; in between the cut that carries the fewest values is taken.
-const LONGEST_PIECE: usize = 2000;
+const SHORTEST_PIECE: usize = 500;
+/// … and at most this many; in between the cut that carries the fewest values is taken. Every `let` opens a scope in the one
+/// before, and rustc's stack overflows over the debug information of some 2,000 of them.
+const LONGEST_PIECE: usize = 1500;
 
 /// The pieces, and how many values are carried between them.
 pub(super) fn split(

@@ -26,7 +26,7 @@ pub fn all<const N: usize, C: Implicit<N> + Ensemble<N> + Default + Copy + 'stat
         Kernel::new("bias", 1, states, vector, move |s, out| *out = crane.bias(&s.q, &s.v)),
         Kernel::new("forces", 1, states, vector, move |s, out| *out = crane.forces(s.t, &s.q, &s.v)),
         Kernel::new("mass_matrix_and_bias", 1, states, (square, vector), move |s, out| {
-            (out.0, out.1) = (crane.mass_matrix(&s.q), crane.bias(&s.q, &s.v));
+            out.1 = crane.mass_matrix_and_bias(&s.q, &s.v, &mut out.0);
         }),
         Kernel::new("forward_dynamics", 1, states, vector, move |s, out| {
             *out = crane.forward_dynamics(s.t, &s.q, &s.v);
