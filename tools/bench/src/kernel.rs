@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use crane_model::nalgebra::{Dim, Matrix, Matrix4, RawStorage, SVector};
+use crane_model::nalgebra::{Dim, Matrix, Matrix4, RawStorage, SMatrix, SVector};
 use crane_model::support::lanes::f64x8;
 
 /// A function of a state with the states that it is called on, one after the other: nothing is known when it is compiled,
@@ -102,6 +102,16 @@ pub trait Numbers {
 impl<R: Dim, C: Dim, S: RawStorage<f64, R, C>> Numbers for Matrix<f64, R, C, S> {
     fn append_to(&self, numbers: &mut Vec<f64>) {
         numbers.extend(self.iter());
+    }
+}
+
+/// A symmetric matrix of which only the lower triangle is written.
+pub struct Lower<const N: usize>(pub SMatrix<f64, N, N>);
+
+impl<const N: usize> Numbers for Lower<N> {
+    fn append_to(&self, numbers: &mut Vec<f64>) {
+        let pairs = (0..N).flat_map(|i| (0..N).map(move |j| (i.max(j), i.min(j))));
+        numbers.extend(pairs.map(|entry| self.0[entry]));
     }
 }
 

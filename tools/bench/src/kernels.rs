@@ -5,7 +5,7 @@ use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
 use crane_model::support::lanes::f64x8;
 use crane_model::{Ensemble, Implicit, LaneDynamics, TransformDerivatives};
 
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, Lower};
 use crate::states::{self, State};
 use crate::triple_sum::TripleSum;
 
@@ -25,8 +25,8 @@ pub fn all<const N: usize, C: Implicit<N> + Ensemble<N> + Default + Copy + 'stat
         Kernel::new("mass_matrix", 1, states, square, move |s, out| *out = crane.mass_matrix(&s.q)),
         Kernel::new("bias", 1, states, vector, move |s, out| *out = crane.bias(&s.q, &s.v)),
         Kernel::new("forces", 1, states, vector, move |s, out| *out = crane.forces(s.t, &s.q, &s.v)),
-        Kernel::new("mass_matrix_and_bias", 1, states, (square, vector), move |s, out| {
-            out.1 = crane.mass_matrix_and_bias(&s.q, &s.v, &mut out.0);
+        Kernel::new("mass_matrix_and_bias", 1, states, (Lower(square), vector), move |s, out| {
+            out.1 = crane.mass_matrix_and_bias(&s.q, &s.v, &mut out.0.0);
         }),
         Kernel::new("forward_dynamics", 1, states, vector, move |s, out| {
             *out = crane.forward_dynamics(s.t, &s.q, &s.v);
