@@ -18,6 +18,7 @@ mod expand;
 pub mod explain;
 pub mod lower;
 pub mod mechanics;
+pub mod picture;
 mod read;
 pub mod report;
 pub mod spec;

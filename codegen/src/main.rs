@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use crane_codegen::chain::{Analyses, Chain};
-use crane_codegen::{GeneratedCode, build, compile, explain, json_schema};
+use crane_codegen::{GeneratedCode, build, compile, explain, json_schema, picture};
 
 /// Compiles a crane described in YAML to specialised Rust.
 #[derive(Parser)]
@@ -49,6 +49,9 @@ enum Command {
         /// Count everything there is, also what the spec's `analyses` do not ask for
         #[arg(long)]
         all: bool,
+        /// Also draw the chain into this SVG file
+        #[arg(long)]
+        svg: Option<PathBuf>,
     },
     /// Print a Markdown table of operations: one row a function, one column a spec
     Operations {
@@ -88,8 +91,12 @@ fn run(command: &Command) -> Result<String, String> {
             let (bodies, coordinates) = (chain.bodies.len(), chain.coordinates.len());
             Ok(format!("{}: sound; {bodies} bodies, {coordinates} coordinates\n", spec.display()))
         }
-        Command::Explain { spec, all } => {
+        Command::Explain { spec, all, svg } => {
             let chain = loaded(spec)?;
+            if let Some(target) = svg {
+                let drawn = build::write(target, &picture::picture(&chain));
+                drawn.map_err(|error| format!("{}: {error}", target.display()))?;
+            }
             let analyses = if *all { Analyses::ALL } else { chain.analyses };
             Ok(explain::explain(&chain, &compile::report(&chain, analyses)))
         }

@@ -38,6 +38,11 @@ fn a_sound_spec_is_told_so_and_mistakes_are_drawn() {
         assert_eq!(wrong.status.code(), Some(1), "{command}: {message}");
         assert!(message.contains("error[E031]") && message.contains("wrong.yaml:"), "{command}: {message}");
     }
+    let picture = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("explained.svg");
+    let explained =
+        crane(&["explain", &spec("explained.yaml", "420", "421"), "--svg", picture.to_str().expect("a path")]);
+    assert!(text(&explained.stdout).contains("main_boom") && text(&explained.stdout).contains("left out"));
+    assert!(fs::read_to_string(picture).is_ok_and(|svg| svg.starts_with("<svg") && svg.contains(">extension_x<")));
     let missing = crane(&["check", "no_such.yaml"]);
     assert_eq!(missing.status.code(), Some(1));
     assert!(text(&missing.stderr).contains("no_such.yaml"), "{}", text(&missing.stderr));

@@ -23,6 +23,7 @@ Examples:
   crane stability                      largest stable steps, what limits them, and a figure
   crane check my.yaml; crane run my.yaml
                                        a crane of one's own: its mistakes; everything about it
+  crane explain my.yaml --svg my.svg   its chain, in words and as a picture
   crane new my-crane --from cantilever a crate that compiles a crane of one's own
   crane list                           the cranes to choose from
   crane info                           coordinates, parameters, drives of a crane
@@ -75,6 +76,15 @@ pub enum Action {
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
         spec: PathBuf,
     },
+    /// The chain of a spec: bodies, coordinates, what is left out and why, what each function costs
+    Explain {
+        /// The crane's YAML file
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        spec: PathBuf,
+        /// Also draw the chain into this file
+        #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        svg: Option<PathBuf>,
+    },
     /// The cranes to choose from
     List(List),
     /// Completion script for a shell
@@ -93,7 +103,11 @@ impl Action {
             Action::Stability(options) => &options.analysis.crane,
             Action::Report(options) => &options.crane,
             Action::Eval(options) => &options.crane,
-            Action::New(_) | Action::Check { .. } | Action::List(_) | Action::Completions { .. } => return None,
+            Action::New(_)
+            | Action::Check { .. }
+            | Action::Explain { .. }
+            | Action::List(_)
+            | Action::Completions { .. } => return None,
         };
         let path = Path::new(&choice.name);
         path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml").then_some(path)

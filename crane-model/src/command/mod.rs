@@ -77,6 +77,7 @@ fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
         Some(Action::Eval(options)) => eval::eval(options, fleet, out),
         Some(Action::New(options)) => new::new(options, fleet, out),
         Some(Action::Check { spec }) => own::check(spec, out),
+        Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), out),
         Some(Action::List(options)) => info::list(options.format, fleet, out),
         Some(Action::Completions { shell }) => {
             // Into memory first: the generator panics where the other end of a pipe is gone.

@@ -10,7 +10,7 @@ use std::{
     time::{Instant, SystemTime},
 };
 
-use crane_codegen::{build, chain::Chain, compile};
+use crane_codegen::{build, chain::Chain, compile, explain, picture::picture};
 
 use crate::command::{
     files,
@@ -35,6 +35,16 @@ pub fn check(spec: &Path, out: &mut dyn Write) -> Outcome<()> {
     let Chain { name, bodies, coordinates, spec_hash, .. } = load(spec)?.0;
     let (bodies, coordinates) = (bodies.len(), coordinates.len());
     Ok(writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?)
+}
+
+/// Prints the chain of a spec, and draws it where that is asked for.
+pub fn explain(spec: &Path, svg: Option<&Path>, out: &mut dyn Write) -> Outcome<()> {
+    let (chain, _) = load(spec)?;
+    if let Some(file) = svg {
+        files::write_text(file, &picture(&chain))?;
+    }
+    let report = compile::report(&chain, chain.analyses);
+    Ok(out.write_all(explain::explain(&chain, &report).as_bytes())?)
 }
 
 /// Does what the arguments of this process ask for, with the crane of a spec in place of the file's name.
