@@ -5,6 +5,7 @@
 //! |---|---|---|
 //! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Implicit`], [`Ensemble`], [`Statics`], [`Linearise`], [`TransformDerivatives`] | nothing |
 //! | one step in time | [`dynamics::rk4`] | nothing |
+//! | adaptive steps, explicit and implicit | `dynamics::dormand_prince`, `dynamics::rosenbrock` | `std` |
 //! | equilibrium | `statics` | `std` |
 //! | a run with recorded results | `dynamics::simulate` | `std` |
 //! | frequencies, damping | `modes` | `std` |

@@ -58,6 +58,10 @@ fn wrong_arguments_are_refused_with_the_nearest_right_one() {
     refused(&["simulate", "--step", "1e-300"], &["more than ten billion", "longer step"]);
     refused(&["eval", "--q", "1,2"], &["`--q` has 2 numbers", "25 coordinates", "truck_x [m]"]);
     refused(&["eval", "--q", "no_such_file"], &["neither a list of numbers nor a file"]);
+    refused(&["simulate", "--method", "rk5"], &["there is no method `rk5`", "rk4, dopri5, rosw4"]);
+    refused(&["simulate", "--method", "rosw4", "--step", "1e-3"], &["`--step` means nothing to rosw4", "--tolerance"]);
+    refused(&["simulate", "--method", "rk4", "--tolerance", "1e-3"], &["`--tolerance` means nothing to rk4", "--step"]);
+    refused(&["simulate", "--tolerance", "1e-20"], &["below what rounding leaves", "1e-12"]);
     refused(&["dance"], &["unrecognized subcommand"]);
 }
 
@@ -114,7 +118,8 @@ fn a_run_writes_columns_with_units_and_a_record() {
 fn a_crane_without_statics_swings_from_its_guess() {
     let out = folder("swing");
     let path = out.to_str().expect("a path");
-    let report = json(&["simulate", "double_pendulum", "--duration", "2", "--out", path, "--format", "json"]);
+    let report =
+        json(&["simulate", "double_pendulum", "--method", "rk4", "--duration", "2", "--out", path, "--format", "json"]);
     let csv = fs::read_to_string(out.join("double_pendulum.csv")).expect("a CSV file");
     let column = csv.lines().next().and_then(|header| header.split(',').position(|name| name == "upper_theta [rad]"));
     let angles: Vec<f64> = csv
@@ -372,6 +377,8 @@ fn an_ensemble_writes_a_row_for_every_crane() {
     json(&[
         "simulate",
         "knuckle_boom",
+        "--method",
+        "rk4",
         "--duration",
         "0.5",
         "--out",
@@ -386,6 +393,6 @@ fn an_ensemble_writes_a_row_for_every_crane() {
         .records()
         .map(|row| row.expect("a row")[place].parse().expect("a number"))
         .fold(0.0_f64, |m, x: f64| m.max(x.abs()));
-    // Cholesky's factors there, articulated bodies here: roundings.
+    // One crane and eight lanes by the same method: roundings.
     assert!((single - before).abs() < 1e-8 * single, "{single} {before}");
 }

@@ -6,13 +6,13 @@ use std::ops::ControlFlow;
 
 use common::{DoublePendulum, Lift};
 use crane_model::{
-    Dynamics,
+    Implicit,
     dynamics::{Cause, Settings, rk4, simulate},
 };
 use nalgebra::{SVector, Vector1, Vector2};
 
 /// First coordinate every 0.1 s for 1 s, in steps of `step`, s.
-fn motion<const N: usize, C: Dynamics<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> Vec<(f64, f64)> {
+fn motion<const N: usize, C: Implicit<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> Vec<(f64, f64)> {
     let mut motion = Vec::new();
     let settings = Settings { duration: 1.0, step, output: 0.1, ..Settings::of(crane.description()) };
     simulate(crane, rk4::State::at_rest(start), &settings, |sample| {
@@ -48,7 +48,7 @@ fn order_of_rk4_on_a_double_pendulum() {
 }
 
 /// Greatest size of `E(t) − E(0) − W + D` over a run, J.
-fn energy_error<const N: usize, C: Dynamics<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> f64 {
+fn energy_error<const N: usize, C: Implicit<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> f64 {
     let settings = Settings { duration: 4.0, step, output: 0.1, audit: true, ..Settings::of(crane.description()) };
     let mut first = None;
     let mut worst = 0.0_f64;
@@ -95,7 +95,7 @@ fn results_come_at_their_own_interval() {
     assert_eq!(times.len(), expected.len());
     assert!(times.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{times:?}");
     // 30 ms in 5 steps of 6 ms, three times, and 10 ms in 2.
-    assert_eq!(run.steps, 17);
+    assert_eq!(run.statistics.steps, 17);
     assert!((run.step - 6e-3).abs() < 1e-15);
 }
 

@@ -21,5 +21,5 @@ fn a_crane_without_coordinates_rests_and_does_not_vibrate() {
     assert_eq!(rig.weight(&[]), [None; 3]);
     let settings = dynamics::Settings { duration: 0.01, ..dynamics::Settings::of(rig.description()) };
     let run = rig.simulate(&[], &settings, &mut |_| ControlFlow::Continue(())).expect("a run");
-    assert_eq!(run.steps, 10);
+    assert_eq!(run.statistics.steps, 10);
 }

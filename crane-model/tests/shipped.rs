@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 
 use crane_model::{
     cranes,
-    dynamics::{Method, Settings, rk4, simulate},
+    dynamics::{Method, Settings, Statistics, rk4, simulate},
     modes, rig,
     stability::limit,
     statics,
 };
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector3};
 
 #[test]
 fn every_crane_rests_in_a_stable_equilibrium_within_five_steps() {
@@ -41,9 +41,47 @@ fn a_run_of_the_reference_crane_allocates_nothing() {
     let equilibrium = statics::solve(&crane, &statics::Settings::default());
     let start = rk4::State::at_rest(SVector::<f64, N>::from_column_slice(&equilibrium.q));
     let rig = rig::boxed::<N, Crane>();
-    let settings = Settings { duration: 0.01, audit: true, ..Settings::of(rig.description()) };
-    let info = allocation_counter::measure(|| {
-        simulate(&crane, start, &settings, |_| ControlFlow::Continue(())).expect("a stable run");
-    });
-    assert_eq!(info.count_total, 0);
+    for method in Method::ALL {
+        let settings = Settings { method, duration: 0.01, audit: true, ..Settings::of(rig.description()) };
+        let info = allocation_counter::measure(|| {
+            simulate(&crane, start, &settings, |_| ControlFlow::Continue(())).expect("a stable run");
+        });
+        assert_eq!(info.count_total, 0, "{method}");
+    }
+}
+
+/// Path of the points of a run, m, point by point, and its statistics.
+fn path(rig: &dyn rig::Rig, method: Method, tolerance: f64) -> (Vec<Vec<Vector3<f64>>>, Statistics) {
+    let start = rig.equilibrium(&statics::Settings::default()).q;
+    let settings = Settings { method, tolerance, step: 1e-4, ..Settings::of(rig.description()) };
+    let mut path = Vec::new();
+    let run = rig
+        .simulate(&start, &settings, &mut |sample| {
+            path.push(rig.points(sample.q));
+            ControlFlow::Continue(())
+        })
+        .expect("a stable run");
+    (path, run.statistics)
+}
+
+#[test]
+fn the_implicit_method_holds_its_tolerance_on_the_reference_crane() {
+    use cranes::eight_link_flexible::{Crane, N};
+    let rig = rig::boxed::<N, Crane>();
+    // Its error is 1e-13 of the path.
+    let (reference, constant) = path(rig.as_ref(), Method::Rk4, f64::NAN);
+    // Diagonal of the box around the paths, m.
+    let all = || reference.iter().flatten();
+    let [low, high] = [f64::min, f64::max]
+        .map(|extreme| Vector3::from_fn(|axis, _| all().map(|point| point[axis]).reduce(extreme).expect("points")));
+    let size = (high - low).norm();
+    for tolerance in [1e-4, 1e-5, 1e-6] {
+        let (path, statistics) = path(rig.as_ref(), Method::Rosenbrock, tolerance);
+        let distances = reference.iter().flatten().zip(path.iter().flatten()).map(|(a, b)| (a - b).norm());
+        let error = distances.fold(0.0, f64::max) / size;
+        println!("{tolerance:e}: {error:.2e} of {size:.1} m, {statistics:?}");
+        assert!(error < 10.0 * tolerance && error > 0.1 * tolerance, "{tolerance:e}: {error:e}");
+        // Its steps are those of the motion, not of its stiffest spring.
+        assert!(tolerance < 1e-4 || 20 * statistics.evaluations < constant.evaluations, "{statistics:?}");
+    }
 }

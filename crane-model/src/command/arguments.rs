@@ -8,6 +8,8 @@ use std::{
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
+use crate::dynamics::Method;
+
 const EXAMPLES: &str = "\
 Examples:
   crane                                the eight-link crane, rigid against flexible
@@ -16,6 +18,8 @@ Examples:
                                        the same of another crane, for a program
   crane simulate --set load_mass=0 --out empty
                                        the manoeuvre without the log
+  crane simulate --method rk4 --step 1e-4
+                                       the manoeuvre as the paper integrates it
   crane simulate --ensemble loads.csv -o peaks.csv
                                        a crane for every row of a table of parameters
   crane report -o report.html          the crane in 3-D, plots and tables as a page that needs no network
@@ -175,7 +179,14 @@ impl FromStr for Step {
 /// Time and step of a run.
 #[derive(Clone, Debug, Args)]
 pub struct Timing {
-    /// Greatest step of the integrator, s; `auto`: the largest safe one [default: the crane's]
+    /// Method: `rosw4` implicit and adaptive, for stiff cranes; `dopri5` explicit and adaptive; `rk4` with constant step, the
+    /// paper's [default: rk4 with --step and for the comparison, otherwise rosw4]
+    #[arg(long, value_name = "NAME")]
+    pub method: Option<Method>,
+    /// Error that an adaptive method allows, m and rad [default: 1e-4]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    pub tolerance: Option<f64>,
+    /// Greatest step of rk4, s; `auto`: the largest safe one [default: the crane's]
     #[arg(long, value_name = "SECONDS|auto", allow_negative_numbers = true)]
     pub step: Option<Step>,
     /// Run even where the step is beyond the largest stable one

@@ -2,7 +2,11 @@
 
 use std::{io::Write, mem, thread, time::Instant};
 
-use crate::{Description, dynamics::Settings, results::Table};
+use crate::{
+    Description,
+    dynamics::{Method, Settings},
+    results::Table,
+};
 
 use crate::command::{
     Fleet,
@@ -62,12 +66,8 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     report.grid(summary(description, &[("rigid", rigid_run), ("flexible", flexible_run)]));
     report.grid(file_list(folder, &written));
     if format == Format::Table {
-        let (duration, step) = (settings[1].duration, flexible_run.run.step);
-        writeln!(
-            out,
-            "\nMotion over {duration} s from the {}, classical Runge-Kutta, step {step} s\n",
-            flexible_run.start
-        )?;
+        let (duration, method, step) = (settings[1].duration, settings[1].method.title(), flexible_run.run.step);
+        writeln!(out, "\nMotion over {duration} s from the {}, {method}, step {step} s\n", flexible_run.start)?;
     }
     report.print(format, out)?;
     if format == Format::Table {
@@ -79,8 +79,11 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
 /// Runs cranes side by side, each from its own start.
 pub fn runs(cases: &[Case<'_>], timing: &Timing) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
     let starts = cases.iter().map(|case| Start::of(case.rig)).collect::<Outcome<Vec<_>>>()?;
-    let settings =
-        cases.iter().zip(&starts).map(|(case, start)| timing.settings(case.rig, start)).collect::<Outcome<Vec<_>>>()?;
+    let settings = cases
+        .iter()
+        .zip(&starts)
+        .map(|(case, start)| timing.settings(case.rig, start, Method::Rk4))
+        .collect::<Outcome<Vec<_>>>()?;
     let bar = progress(settings.iter().map(|settings| settings.duration).sum());
     bar.set_message("simulating");
     let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {

@@ -10,7 +10,7 @@ use std::{
 };
 
 use crate::{
-    dynamics::{self, ensemble::LANES},
+    dynamics::{self, Method, ensemble::LANES},
     results::{Column, Peaks},
     rig::{Member, Rig},
 };
@@ -84,11 +84,15 @@ fn settings(timing: &Timing, rig: &dyn Rig, table: &ParameterTable) -> Outcome<(
         return Err(table.rows.first().and_then(|row| startable(row).err()).unwrap_or(Problem::NobodyListens));
     };
     let last = table.rows.iter().rev().find_map(rests);
+    if let Some(method) = timing.method.filter(|method| *method != Method::Rk4) {
+        let title = format!("`--method {method}` moves one crane alone; eight in lanes share the steps of rk4");
+        return Err(Problem::usage(title, "leave `--method` out with `--ensemble`"));
+    }
     let own = rig.description().step;
     let safe = Timing { step: Some(timing.step.unwrap_or(Step::Auto)), ..timing.clone() };
     let mut least: Option<dynamics::Settings> = None;
     for (crane, start) in [Some(first), last].into_iter().flatten() {
-        let settings = safe.settings(crane.as_ref(), &start)?;
+        let settings = safe.settings(crane.as_ref(), &start, Method::Rk4)?;
         if least.is_none_or(|least| settings.step < least.step) {
             least = Some(settings);
         }

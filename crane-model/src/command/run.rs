@@ -75,29 +75,50 @@ impl Recorded {
     }
 }
 
+/// Least tolerance: rounding errors of coordinates of some metres and of their stiff springs.
+const LEAST_TOLERANCE: f64 = 1e-12;
+
 /// Part of the largest stable step that `--step auto` takes: swinging moves the limit by some per cent.
 pub const SAFE: f64 = 0.9;
 
 impl Timing {
     /// Settings of a run from `start`: the crane's own unless given here, with a stable step unless forced.
-    pub fn settings(&self, rig: &dyn Rig, start: &Start) -> Outcome<dynamics::Settings> {
-        let mut settings = dynamics::Settings { audit: true, ..dynamics::Settings::of(rig.description()) };
-        let limit = step_limit(rig, start);
+    pub fn settings(&self, rig: &dyn Rig, start: &Start, default: Method) -> Outcome<dynamics::Settings> {
+        let own = dynamics::Settings::of(rig.description());
+        let method = self.method.unwrap_or(if self.step.is_some() { Method::Rk4 } else { default });
+        let mut settings = dynamics::Settings { method, audit: true, ..own };
+        let given = [("step", self.step.is_some(), false), ("tolerance", self.tolerance.is_some(), true)];
+        if let Some((name, ..)) = given.into_iter().find(|&(_, given, of)| given && of != method.is_adaptive()) {
+            let title = format!("`--{name}` means nothing to {method}, {}", method.title());
+            let other =
+                if method.is_adaptive() { "--tolerance` or `--method rk4" } else { "--step` or `--method rosw4" };
+            return Err(Problem::usage(title, format!("write `{other}`")));
+        }
+        let limit = if method.is_adaptive() { None } else { step_limit(rig, start) };
         let step = match self.step {
             None => None,
             Some(Step::Seconds(step)) => Some(step),
             Some(Step::Auto) => limit.as_ref().map(|bound| SAFE * bound.limit.step),
         };
-        for (name, given, value) in [
-            ("step", step, &mut settings.step),
-            ("duration", self.duration, &mut settings.duration),
-            ("output", self.output, &mut settings.output),
+        for (name, given, value, what) in [
+            ("step", step, &mut settings.step, "length of time"),
+            ("duration", self.duration, &mut settings.duration, "length of time"),
+            ("output", self.output, &mut settings.output, "length of time"),
+            ("tolerance", self.tolerance, &mut settings.tolerance, "tolerance"),
         ] {
             *value = given.unwrap_or(*value);
             if !(value.is_finite() && *value > 0.0) {
-                let title = format!("`--{name} {value}` is no length of time");
-                return Err(Problem::usage(title, "write a positive number of seconds, such as 0.001"));
+                let help =
+                    if what == "tolerance" { "number, such as 1e-4" } else { "number of seconds, such as 0.001" };
+                return Err(Problem::usage(
+                    format!("`--{name} {value}` is no {what}"),
+                    format!("write a positive {help}"),
+                ));
             }
+        }
+        if settings.tolerance < LEAST_TOLERANCE {
+            let title = format!("a tolerance of {:e} is below what rounding leaves", settings.tolerance);
+            return Err(Problem::usage(title, format!("write {LEAST_TOLERANCE:e} or more, such as 1e-4")));
         }
         if settings.duration / settings.output > MOST_RESULTS {
             return Err(Problem::usage(
@@ -105,7 +126,7 @@ impl Timing {
                 "write a longer interval with `--output`, in s",
             ));
         }
-        if settings.duration / settings.step > MOST_STEPS {
+        if !method.is_adaptive() && settings.duration / settings.step > MOST_STEPS {
             return Err(Problem::usage(
                 format!("steps of {:e} s for {} s are more than ten billion", settings.step, settings.duration),
                 "write a longer step with `--step`, in s",
@@ -132,7 +153,11 @@ fn unstable(rig: &dyn Rig, step: f64, t: f64, limit: &Limit) -> Problem {
             limit.step,
             cause(description, &limit.mode)
         ),
-        format!("`--step auto` takes {:.2e} s; `--force` runs all the same", SAFE * limit.step),
+        format!(
+            "`--step auto` takes {:.2e} s; `--method {}` needs no such steps; `--force` runs all the same",
+            SAFE * limit.step,
+            Method::Rosenbrock
+        ),
     )
 }
 
@@ -222,7 +247,8 @@ pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: 
             ControlFlow::Continue(())
         })
         .map_err(|stopped| {
-            let limit = step_limit(rig, start).map_or_else(String::new, |Bound { t, limit }| {
+            let limit = if settings.method.is_adaptive() { None } else { step_limit(rig, start) };
+            let limit = limit.map_or_else(String::new, |Bound { t, limit }| {
                 let cause = cause(rig.description(), &limit.mode);
                 format!("; the largest stable step is {:.3e} s, limited at t = {t} s by {cause}", limit.step)
             });

@@ -4,6 +4,7 @@ use std::{io::Write, path::Path};
 
 use crate::{
     CoordinateKind, Description, dynamics,
+    dynamics::Method,
     results::{Table, drive_effort},
     rig::Rig,
 };
@@ -34,7 +35,7 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     let rig = rig.as_ref();
     let name = rig.description().name;
     let start = Start::of(rig)?;
-    let settings = options.timing.settings(rig, &start)?;
+    let settings = options.timing.settings(rig, &start, Method::Rosenbrock)?;
     files::folder(&options.folder.out)?;
     let bar = progress(settings.duration);
     let recorded = record(rig, &start, &settings, &bar)?;
@@ -47,8 +48,16 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     let mut report = Report::default();
     report.fact("crane", name, "");
     report.fact("start", recorded.start, "");
-    report.fact("steps", recorded.run.steps, "");
+    report.fact("method", settings.method.title(), "");
+    if settings.method.is_adaptive() {
+        report.fact("tolerance", settings.tolerance, "m, rad");
+    }
+    let statistics = recorded.run.statistics;
+    report.fact("steps", statistics.steps, "");
     report.fact("step", recorded.run.step, "s");
+    report.fact("rejected steps", statistics.rejections, "");
+    report.fact("evaluations", statistics.evaluations, "");
+    report.fact("factorisations", statistics.factorisations, "");
     report.grid(summary(rig.description(), &[(name, &recorded)]));
     report.grid(file_list(&options.folder.out, &written));
     report.print(options.analysis.format, out)

@@ -5,7 +5,7 @@
 
 use nalgebra::SVector;
 
-use super::{Run, Sample, Settings, Stopped, rk4, simulation::divided};
+use super::{Run, Sample, Settings, Statistics, Stopped, rk4, simulation::divided};
 use crate::{Ensemble, LaneDynamics, support::lanes::f64x8};
 
 /// Cranes a batch.
@@ -101,7 +101,7 @@ fn batch<const N: usize, C: Ensemble<N>>(
     let members: [_; LANES] = std::array::from_fn(|lane| &cranes[lane.min(cranes.len() - 1)]);
     let lanes = C::lanes(members.map(|(crane, _)| crane));
     let mut states = States::of(members.map(|(_, start)| start));
-    let run = Run { steps: 0, step: settings.step_taken(), time: 0.0 };
+    let run = Run { statistics: Statistics::default(), step: settings.step_taken(), time: 0.0 };
     let mut results = vec![Ok(run); cranes.len()];
     let intervals = divided(settings.duration, settings.output).0;
 
@@ -129,7 +129,8 @@ fn batch<const N: usize, C: Ensemble<N>>(
             }
         }
         for run in results.iter_mut().flatten() {
-            run.steps += steps;
+            run.statistics.steps += steps;
+            run.statistics.evaluations += rk4::STAGES * steps;
             run.time = end;
         }
         begin = end;

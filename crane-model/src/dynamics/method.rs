@@ -2,25 +2,31 @@
 
 use std::{fmt, str::FromStr};
 
-use super::rk4;
+use super::{dormand_prince, rk4, rosenbrock};
 use crate::stability::StabilityFunction;
 
 /// A method of integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// The classical Runge–Kutta method: [`rk4`].
+    /// The classical Runge–Kutta method, constant step: [`rk4`].
     #[default]
     Rk4,
+    /// The explicit pair of Dormand and Prince, adaptive: [`dormand_prince`].
+    DormandPrince,
+    /// A linearly implicit W-method for stiff motions, adaptive: [`rosenbrock`].
+    Rosenbrock,
 }
 
 impl Method {
     /// All methods.
-    pub const ALL: [Method; 1] = [Method::Rk4];
+    pub const ALL: [Method; 3] = [Method::Rk4, Method::DormandPrince, Method::Rosenbrock];
 
     /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Method::Rk4 => "rk4",
+            Method::DormandPrince => "dopri5",
+            Method::Rosenbrock => "rosw4",
         }
     }
 
@@ -28,20 +34,32 @@ impl Method {
     pub const fn title(self) -> &'static str {
         match self {
             Method::Rk4 => "classical Runge-Kutta, order 4, constant step",
+            Method::DormandPrince => "Dormand-Prince, orders 5 and 4, explicit, adaptive",
+            Method::Rosenbrock => "Rosenbrock W-method, orders 4 and 3, linearly implicit, adaptive",
         }
     }
 
     /// Order of consistency.
     pub const fn order(self) -> usize {
         match self {
-            Method::Rk4 => 4,
+            Method::Rk4 | Method::Rosenbrock => 4,
+            Method::DormandPrince => 5,
         }
     }
 
-    /// R(z), by which a step multiplies a small motion.
+    /// Whether it chooses its steps for a tolerance.
+    pub const fn is_adaptive(self) -> bool {
+        !matches!(self, Method::Rk4)
+    }
+
+    /// R(z), by which a step multiplies a small motion; of an implicit method with the exact Jacobian.
     pub const fn stability(self) -> StabilityFunction {
         match self {
             Method::Rk4 => StabilityFunction { numerator: &rk4::STABILITY, denominator: &[1.0] },
+            Method::DormandPrince => StabilityFunction { numerator: &dormand_prince::STABILITY, denominator: &[1.0] },
+            Method::Rosenbrock => {
+                StabilityFunction { numerator: &rosenbrock::NUMERATOR, denominator: &rosenbrock::DENOMINATOR }
+            }
         }
     }
 }

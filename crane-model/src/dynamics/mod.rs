@@ -1,10 +1,18 @@
 //! Motion by numerical integration.
 
 #[cfg(feature = "std")]
+mod adaptive;
+#[cfg(feature = "std")]
+pub mod dormand_prince;
+#[cfg(feature = "std")]
 pub mod ensemble;
 #[cfg(feature = "std")]
 mod method;
+#[cfg(feature = "std")]
+mod motion;
 pub mod rk4;
+#[cfg(feature = "std")]
+pub mod rosenbrock;
 #[cfg(feature = "std")]
 mod roughness;
 #[cfg(feature = "std")]
@@ -15,6 +23,6 @@ mod stopped;
 #[cfg(feature = "std")]
 pub use method::{Method, UnknownMethod};
 #[cfg(feature = "std")]
-pub use simulation::{Run, Sample, Settings, simulate};
+pub use simulation::{Run, Sample, Settings, Statistics, simulate};
 #[cfg(feature = "std")]
 pub use stopped::{Cause, Stopped};

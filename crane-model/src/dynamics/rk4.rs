@@ -15,7 +15,7 @@
 //! As a rule of thumb for modes of frequency ω (rad/s), damped by β (s) times stiffness:
 //! `h < min(2.83/ω, 2.785/(βω²))`. The first is the region's end on the imaginary axis, 2√2; the second that on the real one.
 
-use nalgebra::{Cholesky, SVector};
+use nalgebra::SVector;
 
 use crate::Dynamics;
 
@@ -23,12 +23,14 @@ use crate::Dynamics;
 pub const IMAGINARY_LIMIT: f64 = 2.0 * core::f64::consts::SQRT_2;
 /// End of the stability region on the negative real axis.
 pub const REAL_LIMIT: f64 = 2.785_293_563_405_282;
+/// Stages.
+pub const STAGES: usize = 4;
 /// Coefficients of `R(z) = 1 + z + z²/2 + z³/6 + z⁴/24`.
 pub const STABILITY: [f64; 5] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0];
 
-/// The mass matrix is not positive definite: a body without inertia, or a pose that is not finite any more.
+/// An acceleration is not finite: a body without inertia, or a pose that is no number any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NotPositiveDefinite;
+pub struct NotFinite;
 
 /// Pose and velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,29 +51,23 @@ impl<const N: usize> State<N> {
 /// Acceleration `q̈ = A⁻¹(e + f)`, Eq. (23), m/s² and rad/s².
 ///
 /// # Errors
-/// The mass matrix is not positive definite.
+/// It is not finite.
 #[inline]
 pub fn acceleration<const N: usize, C: Dynamics<N>>(
     crane: &C,
     t: f64,
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
-) -> Result<SVector<f64, N>, NotPositiveDefinite> {
-    let mut a = crane.bias(q, v) + crane.forces(t, q, v);
-    Cholesky::new(crane.mass_matrix(q)).ok_or(NotPositiveDefinite)?.solve_mut(&mut a);
-    Ok(a)
+) -> Result<SVector<f64, N>, NotFinite> {
+    let a = crane.forward_dynamics(t, q, v);
+    if a.iter().all(|x| x.is_finite()) { Ok(a) } else { Err(NotFinite) }
 }
 
 /// Moves `state` from `t` to `t + h`. No allocation.
 ///
 /// # Errors
-/// The mass matrix is not positive definite at a stage; `state` is unchanged.
-pub fn step<const N: usize, C: Dynamics<N>>(
-    crane: &C,
-    t: f64,
-    h: f64,
-    state: &mut State<N>,
-) -> Result<(), NotPositiveDefinite> {
+/// An acceleration is not finite; `state` is unchanged.
+pub fn step<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, h: f64, state: &mut State<N>) -> Result<(), NotFinite> {
     step_with(crane, t, h, state, |_, _, _| SVector::<f64, 0>::zeros()).map(|_| ())
 }
 
@@ -79,14 +75,14 @@ pub fn step<const N: usize, C: Dynamics<N>>(
 /// method's own stages and weights serve them as further components of the state.
 ///
 /// # Errors
-/// The mass matrix is not positive definite at a stage; `state` is unchanged.
+/// An acceleration is not finite; `state` is unchanged.
 pub fn step_with<const N: usize, const M: usize, C: Dynamics<N>>(
     crane: &C,
     t: f64,
     h: f64,
     state: &mut State<N>,
     integrand: impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-) -> Result<SVector<f64, M>, NotPositiveDefinite> {
+) -> Result<SVector<f64, M>, NotFinite> {
     advance(crane, t, h, state, integrand).map(|(_, increments)| increments)
 }
 
@@ -97,7 +93,7 @@ pub(super) fn advance<const N: usize, const M: usize, C: Dynamics<N>>(
     h: f64,
     state: &mut State<N>,
     integrand: impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-) -> Result<(SVector<f64, N>, SVector<f64, M>), NotPositiveDefinite> {
+) -> Result<(SVector<f64, N>, SVector<f64, M>), NotFinite> {
     let State { q, v } = &*state;
     let middle = t + 0.5 * h;
     let end = t + h;

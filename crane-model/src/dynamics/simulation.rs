@@ -2,23 +2,30 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::{SVector, Vector2};
+use nalgebra::{Cholesky, SVector, Vector2};
 
-use super::{Stopped, rk4, roughness::Roughness};
-use crate::{Description, Dynamics};
+use super::{Method, Stopped, adaptive::Adaptive, motion::Motion, rk4, roughness::Roughness};
+use crate::{Description, Dynamics, Implicit};
 
 /// No crane is 1 km long and no joint of one turns 160 times: beyond this, m or rad, a run has blown up.
 const BOUND: f64 = 1e3;
 /// Whole numbers of steps are recognised to this relative accuracy: 0.01/1e-4 is not 100 in binary.
 const WHOLE: f64 = 1e-9;
+/// Error of a run that engineers do not see: a tenth of a millimetre a metre.
+const TOLERANCE: f64 = 1e-4;
 
 /// How to run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Simulated time, s.
     pub duration: f64,
-    /// Greatest step, s. The step is the next smaller one that fits the interval of results a whole number of times.
+    /// Method of integration.
+    pub method: Method,
+    /// Greatest step of a method with constant step, s. The step is the next smaller one that fits the interval of results a
+    /// whole number of times.
     pub step: f64,
+    /// Error that an adaptive method allows a step, m and rad; that of a whole run is of the same size.
+    pub tolerance: f64,
     /// Interval between results, s.
     pub output: f64,
     /// Whether to integrate the work of the drives and of the dampers along with the motion.
@@ -28,10 +35,10 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The run that the crane's spec asks for, without audit.
+    /// The run that the crane's spec asks for, by the classical Runge–Kutta method, without audit.
     pub fn of(description: &Description) -> Self {
         let Description { duration, step, output, .. } = *description;
-        Self { duration, step, output, audit: false, bound: BOUND }
+        Self { duration, method: Method::Rk4, step, tolerance: TOLERANCE, output, audit: false, bound: BOUND }
     }
 
     /// The step that a run takes, s: the longest that fits the interval of results a whole number of times.
@@ -55,12 +62,25 @@ pub struct Sample<'a> {
     pub dissipated: f64,
 }
 
+/// What a run did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Steps done.
+    pub steps: usize,
+    /// Steps tried in vain: their error was above the tolerance.
+    pub rejections: usize,
+    /// Evaluations of the accelerations.
+    pub evaluations: usize,
+    /// Factorisations of the system of an implicit step.
+    pub factorisations: usize,
+}
+
 /// What a run took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {
-    /// Steps done.
-    pub steps: usize,
-    /// Step, s.
+    /// What it did.
+    pub statistics: Statistics,
+    /// Step, s; the mean of an adaptive method.
     pub step: f64,
     /// Time reached, s.
     pub time: f64,
@@ -73,8 +93,9 @@ pub struct Run {
 /// `E(t) − E(0) − W + D`, zero for the exact motion, measures the error of the run.
 ///
 /// # Errors
-/// [`Stopped`] where the motion grows beyond the bound or the mass matrix is not positive definite.
-pub fn simulate<const N: usize, C: Dynamics<N>>(
+/// [`Stopped`] where the motion grows from step to step or beyond the bound, where no step meets the tolerance, or where the
+/// mass matrix is not positive definite.
+pub fn simulate<const N: usize, C: Implicit<N>>(
     crane: &C,
     start: rk4::State<N>,
     settings: &Settings,
@@ -90,7 +111,7 @@ pub fn simulate<const N: usize, C: Dynamics<N>>(
     }
 }
 
-fn integrate<const N: usize, const M: usize, C: Dynamics<N>>(
+fn integrate<const N: usize, const M: usize, C: Implicit<N>>(
     crane: &C,
     start: rk4::State<N>,
     settings: &Settings,
@@ -98,45 +119,79 @@ fn integrate<const N: usize, const M: usize, C: Dynamics<N>>(
     audit: impl Fn(&SVector<f64, M>) -> [f64; 2],
     mut observe: impl FnMut(&Sample<'_>) -> ControlFlow<()>,
 ) -> Result<Run, Stopped> {
-    let mut state = start;
-    let mut roughness = Roughness::new(&crane.mass_matrix(&state.q));
-    let mut sum = SVector::<f64, M>::zeros();
-    let mut run = Run { steps: 0, step: settings.step_taken(), time: 0.0 };
+    let mut motion = Motion::<N, M>::starting(&start);
+    let mass = crane.mass_matrix(&motion.q);
+    // The recursion of O(n) divides by inertias one by one and would go on with negative ones.
+    if N > 0 && Cholesky::new(mass).is_none() {
+        return Err(Stopped::mass_matrix(0.0, settings.step, motion.q.as_slice(), &mass, crane.description()));
+    }
+    let mut roughness = Roughness::new(&mass);
+    let mut adaptive = Adaptive::new(settings);
+    let mut statistics = Statistics::default();
+    let mut time = 0.0;
     let intervals = divided(settings.duration, settings.output).0;
 
     for interval in 0..=intervals {
-        let [work, dissipated] = audit(&sum);
-        let sample = Sample { t: run.time, q: state.q.as_slice(), v: state.v.as_slice(), work, dissipated };
+        let [work, dissipated] = audit(&motion.sum);
+        let sample = Sample { t: time, q: motion.q.as_slice(), v: motion.v.as_slice(), work, dissipated };
         if observe(&sample).is_break() || interval == intervals {
             break;
         }
-        let begin = run.time;
         let end = (settings.output * (interval + 1) as f64).min(settings.duration);
-        let (steps, h) = divided(end - begin, settings.step);
-        for k in 0..steps {
-            let t = begin + h * k as f64;
-            let v = state.v;
-            let step = rk4::advance(crane, t, h, &mut state, &integrand);
-            let q = state.q.as_slice();
-            let rough = |roughness: &Roughness<N>| {
-                roughness.roughest().map(|coordinate| Stopped::rough(coordinate, t, h, q, crane.description()))
-            };
-            let (acceleration, increments) = step.map_err(|rk4::NotPositiveDefinite| {
-                let mass = || Stopped::mass_matrix(t, h, q, &crane.mass_matrix(&state.q), crane.description());
-                rough(&roughness).unwrap_or_else(mass)
-            })?;
-            sum += increments;
-            let grows = roughness.grows(&(v + acceleration * h), &state.v);
-            // Written so that NaN fails.
-            let bounded = state.q.iter().all(|x| x.abs() <= settings.bound);
-            if grows || !bounded {
-                return Err(rough(&roughness).unwrap_or_else(|| Stopped::growth(t, h, q, crane.description())));
+        if settings.method.is_adaptive() {
+            adaptive.advance(crane, &integrand, [time, end], &mut motion, &mut statistics)?;
+            if !bounded(&motion, settings) {
+                return Err(Stopped::growth(end, settings.output, motion.q.as_slice(), crane.description()));
             }
+        } else {
+            let (steps, h) = divided(end - time, settings.step);
+            for k in 0..steps {
+                let t = time + h * k as f64;
+                constant(crane, &integrand, [t, h], &mut motion, &mut roughness, settings)?;
+            }
+            statistics.steps += steps;
+            statistics.evaluations += rk4::STAGES * steps;
         }
-        run.steps += steps;
-        run.time = end;
+        time = end;
     }
-    Ok(run)
+    let step = match (settings.method.is_adaptive(), statistics.steps) {
+        (true, 1..) => time / statistics.steps as f64,
+        _ => settings.step_taken(),
+    };
+    Ok(Run { statistics, step, time })
+}
+
+/// A step of the classical Runge–Kutta method from `t` to `t + h`.
+fn constant<const N: usize, const M: usize, C: Dynamics<N>>(
+    crane: &C,
+    integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
+    [t, h]: [f64; 2],
+    motion: &mut Motion<N, M>,
+    roughness: &mut Roughness<N>,
+    settings: &Settings,
+) -> Result<(), Stopped> {
+    let mut state = rk4::State { q: motion.q, v: motion.v };
+    let step = rk4::advance(crane, t, h, &mut state, integrand);
+    let rough = |roughness: &Roughness<N>| {
+        let stopped = |coordinate| Stopped::rough(coordinate, t, h, state.q.as_slice(), crane.description());
+        roughness.roughest().map(stopped)
+    };
+    let (acceleration, increments) = step.map_err(|rk4::NotFinite| {
+        let mass = || Stopped::mass_matrix(t, h, state.q.as_slice(), &crane.mass_matrix(&state.q), crane.description());
+        rough(roughness).unwrap_or_else(mass)
+    })?;
+    let grows = roughness.grows(&(motion.v + acceleration * h), &state.v);
+    *motion = Motion { q: state.q, v: state.v, sum: motion.sum + increments };
+    if grows || !bounded(motion, settings) {
+        let growth = || Stopped::growth(t, h, state.q.as_slice(), crane.description());
+        return Err(rough(roughness).unwrap_or_else(growth));
+    }
+    Ok(())
+}
+
+/// Whether all coordinates are within bounds, and numbers.
+fn bounded<const N: usize, const M: usize>(motion: &Motion<N, M>, settings: &Settings) -> bool {
+    motion.q.iter().all(|x| x.abs() <= settings.bound)
 }
 
 /// The least whole number of parts of `length`, none longer than `part`, and their length.

@@ -13,6 +13,8 @@ pub enum Cause {
     Growth,
     /// The motion grows from step to step against its own acceleration: the step is beyond the limit of stability.
     Step,
+    /// No step, however short, meets the tolerance of an adaptive method.
+    Tolerance,
     /// The mass matrix is not positive definite: a coordinate moves nothing that has inertia.
     MassMatrix,
 }
@@ -47,6 +49,21 @@ impl Stopped {
         Self::at(coordinate, Cause::Step, time, step, q, description)
     }
 
+    /// No step is short enough: for want of inertia at the beginning `q` of the step, or else of smoothness.
+    pub(super) fn tolerance<const N: usize>(
+        time: f64,
+        step: f64,
+        q: &[f64],
+        mass: &SMatrix<f64, N, N>,
+        description: &Description,
+    ) -> Self {
+        let stopped = Self::mass_matrix(time, step, q, mass, description);
+        match stopped.cause {
+            Cause::MassMatrix => stopped,
+            _ => Self { cause: Cause::Tolerance, ..stopped },
+        }
+    }
+
     /// A step that met a mass matrix not positive definite: for want of inertia where `mass`, the matrix at its beginning
     /// `q`, is not either, else because the step leads out of all bounds.
     pub(super) fn mass_matrix<const N: usize>(
@@ -79,6 +96,11 @@ impl Stopped {
                  (ω in rad/s, damping β in s)",
                 self.step
             ),
+            Cause::Tolerance => {
+                "allow a greater tolerance, 1e-4 is usual; motions and forces must be bounded, and the \
+                                 start must be no overflow"
+                    .to_owned()
+            }
             Cause::MassMatrix => format!(
                 "give what {} moves a `mass` above zero, in kg, and where it only turns an `inertia`, in kg m², or hold \
                  it by `joint: fixed`; a parameter set to zero may have taken it away",
@@ -96,6 +118,9 @@ impl fmt::Display for Stopped {
                 write!(f, "the run grew without bound: at t = {time:.6} s {coordinate} is {value:.3e} {unit}")
             }
             Cause::Step => write!(f, "the run is unstable: at t = {time:.6} s {coordinate} grows from step to step"),
+            Cause::Tolerance => {
+                write!(f, "no step from t = {time:.6} s meets the tolerance; {coordinate} is {value:.3e} {unit}")
+            }
             Cause::MassMatrix => write!(
                 f,
                 "the mass matrix is not positive definite at t = {time:.6} s: nothing that {coordinate} \

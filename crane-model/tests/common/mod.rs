@@ -2,6 +2,7 @@
 #![allow(dead_code, unused_imports, reason = "every test file uses its own part")]
 
 mod fixed;
+pub mod implicit;
 mod lift;
 mod pendulum;
 mod sledge;

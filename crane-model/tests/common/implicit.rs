@@ -1,0 +1,62 @@
+//! Implicit systems of cranes written by hand, by dense factors; eight of them, one by one.
+
+use crane_model::{Dynamics, Ensemble, Implicit, OneByOne};
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
+
+use super::{DoublePendulum, Fixed, Lift, Sledge};
+
+/// Factors of `A + D̂`.
+pub type Factors<const N: usize> = Option<Cholesky<f64, Const<N>>>;
+
+/// Factors of `A + D̂` for resistances of single coordinates.
+pub fn factorise<const N: usize, C: Dynamics<N>>(
+    crane: &C,
+    q: &SVector<f64, N>,
+    resistance: &SVector<f64, N>,
+) -> Factors<N> {
+    Cholesky::new(crane.mass_matrix(q) + SMatrix::from_diagonal(resistance))
+}
+
+/// x of `(A + D̂) x = r`; no number where A is not positive definite.
+pub fn solve<const N: usize>(factors: &Factors<N>, r: &SVector<f64, N>) -> SVector<f64, N> {
+    factors.as_ref().map_or(SVector::repeat(f64::NAN), |factors| factors.solve(r))
+}
+
+macro_rules! implicit {
+    ($crane:ty, $size:literal, $impedances:expr) => {
+        impl Implicit<$size> for $crane {
+            type Factors = Factors<$size>;
+
+            fn factorise(
+                &self,
+                q: &SVector<f64, $size>,
+                resistance: &SVector<f64, $size>,
+                _: &SMatrix<f64, 6, 6>,
+            ) -> Self::Factors {
+                factorise(self, q, resistance)
+            }
+
+            fn solve(&self, factors: &Self::Factors, r: &SVector<f64, $size>) -> SVector<f64, $size> {
+                solve(factors, r)
+            }
+
+            fn joint_impedances(&self, out: &mut [[f64; 2]]) {
+                let impedances: fn(&Self) -> [[f64; 2]; $size] = $impedances;
+                out.copy_from_slice(&impedances(self));
+            }
+        }
+
+        impl Ensemble<$size> for $crane {
+            type Lanes = OneByOne<Self>;
+
+            fn lanes(cranes: [&Self; 8]) -> Self::Lanes {
+                OneByOne(cranes.map(Clone::clone))
+            }
+        }
+    };
+}
+
+implicit!(Lift, 1, |lift| [[lift.stiffness, lift.damping]]);
+implicit!(DoublePendulum, 2, |_| [[0.0; 2]; 2]);
+implicit!(Sledge, 2, |_| [[0.0; 2]; 2]);
+implicit!(Fixed, 0, |_| []);

@@ -1,0 +1,304 @@
+//! Orders, stability and error control of the methods, on cranes written by hand.
+
+mod common;
+
+use std::ops::ControlFlow;
+
+use common::{
+    DoublePendulum, Lift,
+    implicit::{Factors, factorise, solve},
+};
+use crane_model::{
+    CraneModel, Description, Dynamics, Implicit,
+    dynamics::{Method, Settings, dormand_prince, rk4::State, rosenbrock, simulate},
+};
+use nalgebra::{Complex, Matrix4, SMatrix, SVector, Vector1, Vector2};
+
+/// A crane that tells the integrator a Jacobian of its own: stiffness and damping of every coordinate.
+#[derive(Clone)]
+struct Misled<C> {
+    crane: C,
+    impedance: [f64; 2],
+}
+
+impl<const N: usize, C: CraneModel<N>> CraneModel<N> for Misled<C> {
+    fn description(&self) -> &'static Description {
+        self.crane.description()
+    }
+    fn parameter(&self, index: usize) -> f64 {
+        self.crane.parameter(index)
+    }
+    fn set_parameter(&mut self, index: usize, value: f64) {
+        self.crane.set_parameter(index, value);
+    }
+    fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
+        self.crane.transforms(q, out);
+    }
+    fn forces(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+        self.crane.forces(t, q, v)
+    }
+    fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
+        self.crane.gravity_energy(q)
+    }
+}
+
+impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Misled<C> {
+    fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        self.crane.mass_matrix(q)
+    }
+    fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+        self.crane.bias(q, v)
+    }
+    fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
+        self.crane.kinetic_energy(q, v)
+    }
+}
+
+impl<const N: usize, C: Dynamics<N>> Implicit<N> for Misled<C> {
+    type Factors = Factors<N>;
+    fn factorise(&self, q: &SVector<f64, N>, resistance: &SVector<f64, N>, _: &SMatrix<f64, 6, 6>) -> Factors<N> {
+        factorise(&self.crane, q, resistance)
+    }
+    fn solve(&self, factors: &Factors<N>, r: &SVector<f64, N>) -> SVector<f64, N> {
+        solve(factors, r)
+    }
+    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
+        out.fill(self.impedance);
+    }
+}
+
+/// End of a second from `start` in equal steps of a method, and of its embedded formula, which starts every step anew.
+fn run<const N: usize>(
+    steps: i32,
+    start: State<N>,
+    step: impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>),
+    embedded: bool,
+) -> State<N> {
+    let h = f64::from(steps).recip();
+    (0..steps).fold(start, |state, k| {
+        let (end, error) = step(h * f64::from(k), h, &state);
+        if embedded { State { q: end.q - error.q, v: end.v - error.v } } else { end }
+    })
+}
+
+/// Order from the differences between three halved steps, over several starts: in a single one, terms of two orders may cancel.
+fn order<const N: usize>(coarse: i32, starts: &[State<N>], run: impl Fn(i32, State<N>) -> State<N>) -> f64 {
+    let ends = [1, 2, 4].map(|factor| starts.iter().map(|start| run(coarse * factor, *start)).collect::<Vec<_>>());
+    let distance = |a: &[State<N>], b: &[State<N>]| {
+        a.iter().zip(b).map(|(a, b)| (a.q - b.q).norm() + (a.v - b.v).norm()).sum::<f64>()
+    };
+    (distance(&ends[0], &ends[1]) / distance(&ends[1], &ends[2])).log2()
+}
+
+/// Starts of a double pendulum that swings without turning over.
+fn starts() -> Vec<State<2>> {
+    let start = |k: f64| State { q: Vector2::new(1.2 - 0.3 * k, 0.4 * k - 0.5), v: Vector2::new(0.3, 1.0 - 0.2 * k) };
+    (1..5).map(|k| start(f64::from(k))).collect()
+}
+
+fn implicit<const N: usize, C: Implicit<N>>(crane: &C) -> impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>) {
+    move |t, h, state| rosenbrock::step(crane, t, h, state).expect("inertia")
+}
+
+fn explicit<const N: usize, C: Dynamics<N>>(crane: &C) -> impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>) {
+    move |t, h, state| dormand_prince::step(crane, t, h, state).expect("inertia")
+}
+
+/// How far a measured order may be from the true one: the next term of the error is h as large.
+const ORDER: f64 = 0.25;
+
+#[test]
+fn orders_on_swinging_double_pendulums() {
+    let pendulum = DoublePendulum::hanging();
+    for (name, expected, measured) in [
+        ("dopri5", 5.0, order(160, &starts(), |n, start| run(n, start, explicit(&pendulum), false))),
+        ("dopri5, embedded", 4.0, order(160, &starts(), |n, start| run(n, start, explicit(&pendulum), true))),
+        ("rosw4", 4.0, order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), false))),
+        ("rosw4, embedded", 3.0, order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), true))),
+    ] {
+        println!("{name}: {measured:.3}");
+        assert!((measured - expected).abs() < ORDER, "{name}: order {measured}");
+    }
+}
+
+#[test]
+fn the_implicit_method_keeps_its_orders_with_any_jacobian() {
+    // None at all, and others that have nothing to do with the crane's; the lift's is [4000, 40].
+    for impedance in [[0.0, 0.0], [20.0, 0.0], [3.0, 7.0]] {
+        let pendulum = Misled { crane: DoublePendulum::hanging(), impedance };
+        let measured = order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), false));
+        assert!((measured - 4.0).abs() < ORDER, "{impedance:?}: order {measured}");
+        let measured = order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), true));
+        assert!((measured - 3.0).abs() < ORDER, "{impedance:?}, embedded: order {measured}");
+        // A drive depends on time besides.
+        let lift = Misled { crane: Lift::default(), impedance };
+        let rest = [State::at_rest(Vector1::new(lift.crane.sag()))];
+        let measured = order(160, &rest, |n, start| run(n, start, implicit(&lift), false));
+        assert!((measured - 4.0).abs() < ORDER, "{impedance:?}, driven: order {measured}");
+    }
+}
+
+#[test]
+fn the_implicit_method_meets_its_stability_function() {
+    // z̈ + 2ζω ż + ω² z = 0 about the equilibrium: an eigenvector of λ is multiplied by R(hλ) in one step.
+    let lift = Lift { amplitude: 0.0, ..Lift::default() };
+    let decay = lift.damping / (2.0 * lift.mass);
+    let lambda = Complex::new(-decay, (lift.stiffness / lift.mass - decay * decay).sqrt());
+    for h in [1e-3, 0.03, 0.2, 1.0, 50.0] {
+        let real = |part: fn(&Complex<f64>) -> f64| {
+            let start =
+                State { q: Vector1::new(lift.sag() + part(&Complex::new(1.0, 0.0))), v: Vector1::new(part(&lambda)) };
+            let (end, _) = rosenbrock::step(&lift, 0.0, h, &start).expect("mass");
+            Complex::new(end.q.x - lift.sag(), end.v.x)
+        };
+        let (re, im) = (real(|z| z.re), real(|z| z.im));
+        let factor = Method::Rosenbrock.stability().value(lambda * h);
+        let (q, v) = (Complex::new(re.re, im.re), Complex::new(re.im, im.im));
+        // Coefficients have 15 digits, and (hω)² = 1e6 amplifies them for the longest step.
+        assert!((q - factor).norm() < 1e-9 && (v / lambda - factor).norm() < 1e-9, "h {h}: {q} {v} {factor}");
+    }
+}
+
+#[test]
+fn the_implicit_method_is_stable_up_to_a_sector() {
+    let function = Method::Rosenbrock.stability();
+    let most = |ratio: f64| {
+        let direction = Complex::new(-ratio, (1.0 - ratio * ratio).sqrt());
+        (0..200_000).map(|k| function.value(direction * (f64::from(k) * 1e-2)).norm()).fold(0.0, f64::max)
+    };
+    // Undamped modes grow by 0.644 % a step at most, at hω = 3.5; a damping ratio of 0.0035 suffices: sin(90° − 89.8°).
+    assert!((most(0.0) - 1.006_44).abs() < 1e-5, "{}", most(0.0));
+    for ratio in [0.0035, 0.01, 0.1, 0.5, 1.0] {
+        assert!(most(ratio) <= 1.0 + 1e-12, "{ratio}: {}", most(ratio));
+    }
+    assert!(function.value(Complex::new(-1e9, 0.0)).norm() < 1e-7);
+    // R agrees with the exponential up to order 4.
+    let z = Complex::new(0.01, 0.02);
+    assert!((function.value(z) - z.exp()).norm() < 1e-2 * z.norm().powi(5));
+}
+
+#[test]
+fn order_is_reduced_where_a_stiff_spring_is_forced() {
+    // ω = 2e5 rad/s, far beyond what the steps resolve: the mass follows its drive, z ≈ sag + 0.1 m sin 7t.
+    let lift = Lift { stiffness: 4e11, damping: 4e5, ..Lift::default() };
+    let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(lift.amplitude * lift.frequency) };
+    let exact = (lift.sag() + lift.amplitude * lift.frequency.sin(), 0.7 * lift.frequency.cos());
+    let errors = [50, 100, 200].map(|n| {
+        let end = run(n, start, implicit(&lift), false);
+        [(end.q.x - exact.0).abs(), (end.v.x - exact.1).abs()]
+    });
+    // Classical order 4 is met only where h resolves the spring; here the rates lose three orders, the position two.
+    let orders = [0, 1].map(|of| (errors[0][of] / errors[2][of]).log2() / 2.0);
+    assert!((orders[0] - 2.0).abs() < ORDER && (orders[1] - 1.0).abs() < ORDER, "{orders:?}, {errors:?}");
+    assert!(errors[0][0] < 1e-3, "{errors:?}");
+}
+
+/// Greatest error of a run of the lift at its results, m, and the run's statistics.
+fn lift_error(method: Method, tolerance: f64, output: f64) -> (f64, crane_model::dynamics::Run) {
+    let lift = Lift::default();
+    let settings =
+        Settings { method, tolerance, output, duration: 3.0, ..Settings::of(&common::description("", &[], &[])) };
+    let mut worst = 0.0_f64;
+    let run = simulate(&lift, State::at_rest(Vector1::new(lift.sag())), &settings, |sample| {
+        worst = worst.max((sample.q[0] - lift.exact(sample.t)).abs());
+        ControlFlow::Continue(())
+    })
+    .expect("a run");
+    (worst, run)
+}
+
+#[test]
+fn errors_are_within_a_factor_of_ten_of_the_tolerance() {
+    for method in [Method::DormandPrince, Method::Rosenbrock] {
+        for tolerance in [1e-4, 1e-6, 1e-8] {
+            let (error, run) = lift_error(method, tolerance, 0.5);
+            assert!(error < 10.0 * tolerance && error > 0.1 * tolerance, "{method} {tolerance:e}: {error:e}, {run:?}");
+        }
+    }
+}
+
+#[test]
+fn dense_output_does_not_shorten_steps() {
+    let (coarse, fine) = (lift_error(Method::DormandPrince, 1e-6, 0.5), lift_error(Method::DormandPrince, 1e-6, 1e-3));
+    // The last step of the run may end beyond the last result.
+    assert!(fine.1.statistics.steps.abs_diff(coarse.1.statistics.steps) <= 1, "{coarse:?} {fine:?}");
+    assert!(fine.0 < 10.0 * 1e-6, "{fine:?}");
+}
+
+#[test]
+fn statistics_count_what_was_done() {
+    let (_, run) = lift_error(Method::Rosenbrock, 1e-6, 0.5);
+    let tried = run.statistics.steps + run.statistics.rejections;
+    assert_eq!(run.statistics.evaluations, 6 * tried);
+    assert_eq!(run.statistics.factorisations, tried);
+    let (_, run) = lift_error(Method::DormandPrince, 1e-6, 0.5);
+    assert_eq!(run.statistics.evaluations, 6 * (run.statistics.steps + run.statistics.rejections));
+    assert_eq!(run.statistics.factorisations, 0);
+}
+
+#[test]
+fn energy_is_audited_by_every_method() {
+    for method in [Method::DormandPrince, Method::Rosenbrock] {
+        let error = |tolerance: f64| {
+            let lift = Lift::default();
+            let settings = Settings {
+                method,
+                tolerance,
+                audit: true,
+                output: 0.1,
+                ..Settings::of(&common::description("", &[], &[]))
+            };
+            let (mut first, mut worst) = (None, 0.0_f64);
+            simulate(&lift, State::at_rest(Vector1::new(lift.sag())), &settings, |sample| {
+                let (q, v) = (Vector1::new(sample.q[0]), Vector1::new(sample.v[0]));
+                let energy = lift.kinetic_energy(&q, &v) + lift.potential_energy(sample.t, &q);
+                let start = *first.get_or_insert(energy);
+                worst = worst.max((energy - start - sample.work + sample.dissipated).abs());
+                ControlFlow::Continue(())
+            })
+            .expect("a run");
+            worst
+        };
+        // A rate error of 4 1/s times the tolerance, in forces of 400 N over a run of 10 s.
+        assert!(error(1e-6) < 1e4 * 1e-6, "{method}: {:e} J", error(1e-6));
+        assert!(error(1e-9) < 1e-2 * error(1e-6), "{method}");
+    }
+}
+
+#[test]
+fn adaptive_runs_allocate_nothing() {
+    let lift = Lift::default();
+    for method in [Method::DormandPrince, Method::Rosenbrock] {
+        let settings = Settings { method, audit: true, ..Settings::of(&common::description("", &[], &[])) };
+        let info = allocation_counter::measure(|| {
+            simulate(&lift, State::at_rest(Vector1::zeros()), &settings, |_| ControlFlow::Continue(())).expect("a run");
+        });
+        assert_eq!(info.count_total, 0, "{method}");
+    }
+}
+
+#[test]
+fn an_adaptive_run_without_inertia_or_bounds_stops() {
+    use crane_model::dynamics::Cause;
+    for method in [Method::DormandPrince, Method::Rosenbrock] {
+        let settings = Settings { method, ..Settings::of(&common::description("", &[], &[])) };
+        let massless = Lift { mass: 0.0, ..Lift::default() };
+        let start = State::at_rest(Vector1::zeros());
+        let stopped = simulate(&massless, start, &settings, |_| ControlFlow::Continue(())).expect_err("no mass");
+        assert_eq!((stopped.cause, stopped.coordinate), (Cause::MassMatrix, "lift_z"), "{method}");
+        let pendulum = DoublePendulum { gravity: 1e300, ..DoublePendulum::hanging() };
+        let start = State::at_rest(Vector2::new(0.4, -0.3));
+        let stopped = simulate(&pendulum, start, &settings, |_| ControlFlow::Continue(())).expect_err("no number");
+        assert_ne!(stopped.cause, Cause::MassMatrix, "{method}: {stopped:?}");
+        assert!(!stopped.advice().is_empty());
+    }
+}
+
+#[test]
+fn methods_have_names() {
+    for method in Method::ALL {
+        assert_eq!(method.name().parse(), Ok(method));
+    }
+    let message = "rk5".parse::<Method>().expect_err("no such method").to_string();
+    assert!(message.contains("`rk5`") && message.contains("rk4, dopri5, rosw4"), "{message}");
+}
