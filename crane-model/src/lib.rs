@@ -8,6 +8,7 @@
 //! | adaptive steps, explicit and implicit | `dynamics::dormand_prince`, `dynamics::rosenbrock` | `std` |
 //! | equilibrium | `statics` | `std` |
 //! | a run with recorded results | `dynamics::simulate` | `std` |
+//! | runs of many cranes, eight at a time | `dynamics::ensemble` | `std` |
 //! | frequencies, damping | `modes` | `std` |
 //! | largest stable step | `stability` | `std` |
 //! | any crane through one pointer | `rig::Rig` | `std` |

@@ -79,25 +79,19 @@ fn settings(timing: &Timing, rig: &dyn Rig, table: &ParameterTable) -> Outcome<(
         Start::of(crane.as_ref()).map(|start| (crane, start))
     };
     let rests = |row: &Vec<f64>| startable(row).ok();
-    let Some(first) = table.rows.iter().find_map(rests) else {
-        // No crane rests; the first tells why.
-        return Err(table.rows.first().and_then(|row| startable(row).err()).unwrap_or(Problem::NobodyListens));
-    };
-    let last = table.rows.iter().rev().find_map(rests);
     if let Some(method) = timing.method.filter(|method| *method != Method::Rk4) {
         let title = format!("`--method {method}` moves one crane alone; eight in lanes share the steps of rk4");
         return Err(Problem::usage(title, "leave `--method` out with `--ensemble`"));
     }
-    let own = rig.description().step;
+    // Where no crane rests, the first tells why.
+    let (crane, start) =
+        startable(&table.rows[0]).or_else(|problem| table.rows.iter().find_map(rests).ok_or(problem))?;
     let safe = Timing { step: Some(timing.step.unwrap_or(Step::Auto)), ..timing.clone() };
-    let mut least: Option<dynamics::Settings> = None;
-    for (crane, start) in [Some(first), last].into_iter().flatten() {
-        let settings = safe.settings(crane.as_ref(), &start, Method::Rk4)?;
-        if least.is_none_or(|least| settings.step < least.step) {
-            least = Some(settings);
-        }
+    let mut settings = safe.settings(crane.as_ref(), &start, Method::Rk4)?;
+    if let Some((crane, start)) = table.rows.iter().rev().find_map(rests) {
+        settings.step = settings.step.min(safe.settings(crane.as_ref(), &start, Method::Rk4)?.step);
     }
-    let settings = least.unwrap_or(dynamics::Settings::of(rig.description()));
+    let own = rig.description().step;
     let (step, from) = match timing.step {
         Some(Step::Seconds(step)) => (step, "`--step`"),
         None if own <= settings.step => (own, "the spec, safe for the first and last row"),

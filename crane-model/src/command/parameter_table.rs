@@ -13,7 +13,7 @@ use crate::command::{
 pub struct ParameterTable {
     /// Places of the columns' parameters in the description.
     pub columns: Vec<usize>,
-    /// Values, a row a crane.
+    /// Values, a row a crane; at least one.
     pub rows: Vec<Vec<f64>>,
 }
 
