@@ -136,7 +136,7 @@ fn batch(rig: &dyn Rig, table: &ParameterTable, rows: &[Vec<f64>], settings: &dy
                 cranes.push(crane);
                 places.push(place);
             }
-            Err(problem) => told[place].status = problem.title().to_owned(),
+            Err(problem) => problem.title().clone_into(&mut told[place].status),
         }
     }
     let mut peaks = vec![Peaks::default(); members.len()];

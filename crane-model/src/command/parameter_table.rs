@@ -37,7 +37,7 @@ impl ParameterTable {
             let at = Place { path, line: 1, column: place + 1 };
             let index = at.parameter(header, description)?;
             if columns.contains(&index) {
-                return Err(at.problem(format!("`{header}` a second time"), "give every parameter one column"));
+                return Err(at.problem(&format!("`{header}` a second time"), "give every parameter one column"));
             }
             columns.push(index);
         }
@@ -50,7 +50,7 @@ impl ParameterTable {
                 text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                     let help = format!("write a finite number, in {}, such as {}", info.unit, info.default);
                     Place { path, line, column: place + 1 }
-                        .problem(format!("`{text}` is no value for {}", info.name), help)
+                        .problem(&format!("`{text}` is no value for {}", info.name), help)
                 })
             };
             rows.push(record.iter().zip(&columns).enumerate().map(value).collect::<Outcome<_>>()?);
@@ -82,7 +82,7 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    fn problem(&self, what: String, help: impl Into<String>) -> Problem {
+    fn problem(&self, what: &str, help: impl Into<String>) -> Problem {
         let Self { path, line, column } = self;
         Problem::usage(format!("{}, line {line}, column {column}: {what}", path.display()), help)
     }
@@ -93,11 +93,12 @@ impl Place<'_> {
             Some((name, unit)) => (name.trim_end(), Some(unit)),
             None => (header, None),
         };
-        let index = parameter(name, description).map_err(|(title, help)| self.problem(title, help))?;
+        let index = parameter(name, description).map_err(|(title, help)| self.problem(&title, help))?;
         let wanted = description.parameters[index].unit;
         match unit {
             Some(unit) if unit != wanted => {
-                Err(self.problem(format!("{name} is in {wanted}, not in {unit}"), format!("write `{name} [{wanted}]`")))
+                Err(self
+                    .problem(&format!("{name} is in {wanted}, not in {unit}"), format!("write `{name} [{wanted}]`")))
             }
             _ => Ok(index),
         }

@@ -16,7 +16,7 @@ use crate::{
 pub struct Peaks {
     highest: Vec<f64>,
     last: Vec<f64>,
-    peaks: Vec<f64>,
+    largest: Vec<f64>,
 }
 
 impl Peaks {
@@ -52,12 +52,12 @@ impl Peaks {
         let reactions = rig.support_reactions(q, v);
         let forces = rig.drive_efforts(t, q, v).into_iter().chain(reactions.iter().flatten().copied());
         raise(&mut self.highest, self.last.iter().copied());
-        raise(&mut self.peaks, forces.map(f64::abs));
+        raise(&mut self.largest, forces.map(f64::abs));
     }
 
     /// Values in the order of [`Peaks::columns`]; none without samples.
     pub fn values(&self) -> impl Iterator<Item = f64> {
-        self.highest.iter().chain(&self.last).chain(&self.peaks).copied()
+        self.highest.iter().chain(&self.last).chain(&self.largest).copied()
     }
 }
 
