@@ -155,7 +155,7 @@ pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f6
     out
 }
 
-/// Step of [`implicit_solution`], s.
+/// Step of the implicit solution among the quantities, s.
 pub const IMPLICIT_STEP: f64 = 0.01;
 
 /// x of `(A + h D + h² K) x = v`, D and K without gravity.
