@@ -113,7 +113,7 @@ def describe_differences(crane, derivations, layout):
         f"{key}: {layout[key]}, from the YAML {value}" for key, value in expected.items() if layout[key] != value
     ]
     offered = {quantity["name"]: quantity["length"] for quantity in layout["quantities"]}
-    wanted = {name: expression.numel() for name, expression in derivations.quantities.items()}
+    wanted = derivations.sizes()
     for name in sorted(offered.keys() | wanted.keys()):
         if offered.get(name) != wanted.get(name):
             differences.append(f"quantity {name}: size {offered.get(name)}, derived {wanted.get(name)}")

@@ -143,7 +143,7 @@ class Derivations:
             "static_residual": residual,
             "tangent_stiffness": stiffness,
             "linearised_stiffness": stiffness,
-            "impedance_stiffness": row_major(ca.densify(springs)),
+            SPRINGS: row_major(ca.densify(springs)),
         }
 
     def motions(self):
@@ -162,6 +162,11 @@ class Derivations:
             "drive_power": ca.dot(self.driving_forces(), rates),
         }
 
+    def sizes(self):
+        """How many numbers each quantity has."""
+        own = {name: expression.numel() for name, expression in self.quantities.items() if name != SPRINGS}
+        return own | dict.fromkeys(SOLUTIONS, self.crane.q.numel())
+
     def evaluate(self, states):
         """All quantities at all states: name -> array with a row a state."""
         columns = [states.time[None, :], states.q.T, states.v.T, states.parameters.T]
@@ -174,23 +179,23 @@ class Derivations:
 
 # Step of `implicit_solution`, s; that of the program that evaluates.
 IMPLICIT_STEP = 0.01
+# Found from the other quantities at each state.
+SOLUTIONS = ["forward_dynamics", "lane_forward_dynamics", "mass_solution", "implicit_solution"]
+# The stiffness of all springs, for these alone: nothing generated has it by itself.
+SPRINGS = "impedance_stiffness"
 
 
 def solutions(values, v):
     """Accelerations and solutions of linear systems, by dense factors of the derived matrices."""
     count = v.shape[1]
     mass, damping, stiffness = (
-        values[name].reshape(-1, count, count) for name in ("mass_matrix", "linearised_damping", "impedance_stiffness")
+        values[name].reshape(-1, count, count) for name in ("mass_matrix", "linearised_damping", SPRINGS)
     )
     implicit = mass + IMPLICIT_STEP * damping + IMPLICIT_STEP**2 * stiffness
-    del values["impedance_stiffness"]
+    del values[SPRINGS]
     accelerations = solve_scaled(mass, values["bias"] + values["forces"])
-    return {
-        "forward_dynamics": accelerations,
-        "lane_forward_dynamics": accelerations,
-        "mass_solution": solve_scaled(mass, v),
-        "implicit_solution": solve_scaled(implicit, v),
-    }
+    found = [accelerations, accelerations, solve_scaled(mass, v), solve_scaled(implicit, v)]
+    return dict(zip(SOLUTIONS, found))
 
 
 def solve_scaled(matrices, right):
