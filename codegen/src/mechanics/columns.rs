@@ -155,7 +155,7 @@ impl<'g> Places<'g> {
 /// Mass, first moments and inertia of a body about its frame's origin, in the world's axes.
 fn body<'g>(model: &Model<'g>, index: usize, rotation: &Rotation<'g>) -> Option<(Expr<'g>, Vec3<'g>, Symmetric3<'g>)> {
     let inertia = model.chain.bodies[index].inertia.as_ref()?;
-    let second = Symmetric3([0, 1, 2, 3, 4, 5].map(|i| model.number(&inertia.second[i])));
+    let second = model.second_moments(inertia);
     let first = rotation.apply(model.vector(&inertia.first));
     Some((model.number(&inertia.mass), first, second.rotated(*rotation).tensor()))
 }

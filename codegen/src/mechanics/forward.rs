@@ -55,7 +55,7 @@ pub(super) fn inward<'g>(
             (Factor::Body(index), Velocities::Body { omega }) => {
                 let body = &model.chain.bodies[*index];
                 if let Some(inertia) = &body.inertia {
-                    let second = Symmetric3([0, 1, 2, 3, 4, 5].map(|i| model.number(&inertia.second[i])));
+                    let second = model.second_moments(inertia);
                     let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
                     articulated.add_body(mass, first, second.tensor(), *omega);
                     articulated.named(&body.name);

@@ -76,7 +76,7 @@ impl<'g> Inertias<'g> {
 fn world_inertia<'g>(model: &Model<'g>, inertia: &Inertia, pose: &Pose<'g>, name: &str) -> WorldInertia<'g> {
     let mass = model.number(&inertia.mass);
     let first = pose.rotation.apply(model.vector(&inertia.first));
-    let second = Symmetric3([0, 1, 2, 3, 4, 5].map(|i| model.number(&inertia.second[i])));
+    let second = model.second_moments(inertia);
     let lever = (0.5 * mass) * pose.origin;
     let second = second.rotated(pose.rotation) + Symmetric3::outer(first + lever, pose.origin);
     let tensor = second.tensor().named(&format!("inertia_{name}"));

@@ -1,10 +1,10 @@
 //! The chain's numbers and inputs as expressions.
 
-use crate::chain::{Chain, ParameterId, Value};
+use crate::chain::{Chain, Inertia, ParameterId, Value};
 use crate::symbolic::{Argument, Expr, Graph, Symbol, SymbolId};
 
 use super::turn::Turn;
-use super::vector::Vec3;
+use super::vector::{Symmetric3, Vec3};
 
 /// A chain whose inputs and numbers are expressions of one graph.
 pub struct Model<'g> {
@@ -105,6 +105,11 @@ impl<'g> Model<'g> {
             Value::Sin(a) => self.number(a).sin(),
             Value::Cos(a) => self.number(a).cos(),
         }
+    }
+
+    /// Second moments `∫ r rᵀ dm` of a body about its frame's origin.
+    pub fn second_moments(&self, inertia: &Inertia) -> Symmetric3<'g> {
+        Symmetric3([0, 1, 2, 3, 4, 5].map(|i| self.number(&inertia.second[i])))
     }
 
     /// Three numbers of the chain.

@@ -5,7 +5,7 @@
 use super::factors::Factor;
 use super::model::Model;
 use super::outward::{Velocities, velocities};
-use super::vector::{Symmetric3, Vec3};
+use super::vector::Vec3;
 use crate::symbolic::Expr;
 
 /// `e = −(h + g)` [Urbaś 2016, Eqs. (5), (7), (9), by recursion]; the base is accelerated against gravity.
@@ -40,7 +40,7 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
                 let body = &model.chain.bodies[*index];
                 if let Some(inertia) = &body.inertia {
                     let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
-                    let tensor = Symmetric3([0, 1, 2, 3, 4, 5].map(|i| model.number(&inertia.second[i]))).tensor();
+                    let tensor = model.second_moments(inertia).tensor();
                     force = force + mass * a + alpha.cross(first) + omega.cross(omega.cross(first));
                     moment = moment + tensor.apply(alpha) + omega.cross(tensor.apply(*omega)) + first.cross(a);
                     force.named(&format!("force_{}", body.name));

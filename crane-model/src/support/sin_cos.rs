@@ -76,8 +76,9 @@ pub fn sin_cos<const K: usize>(angles: [f64; K]) -> ([f64; K], [f64; K]) {
 #[inline]
 pub fn sin_cos_lanes(x: f64x8) -> (f64x8, f64x8) {
     // False for what is no number.
-    if !x.abs().simd_lt(f64x8::splat(LARGEST)).all() {
-        return one_by_one(x);
+    let small = x.abs().simd_lt(f64x8::splat(LARGEST));
+    if !small.all() {
+        return with_large(x, small);
     }
     let shifted = fma(x, f64x8::splat(core::f64::consts::FRAC_2_PI), f64x8::splat(ROUND));
     let (y, tail) = reduced(x, shifted - ROUND);
@@ -132,11 +133,15 @@ fn polynomial<const K: usize>(z: f64x8, coefficients: [f64; K]) -> f64x8 {
     coefficients.iter().rev().fold(f64x8::splat(0.0), |sum, c| fma(sum, z, f64x8::splat(*c)))
 }
 
+/// Large angles, and those that are no number, by the standard library: a result does not depend on the angles beside it.
 #[cold]
-fn one_by_one(x: f64x8) -> (f64x8, f64x8) {
-    let mut pairs = (x.to_array(), x.to_array());
-    for (sin, cos) in pairs.0.iter_mut().zip(&mut pairs.1) {
-        (*sin, *cos) = nalgebra::ComplexField::sin_cos(*sin);
+fn with_large(x: f64x8, small: f64x8) -> (f64x8, f64x8) {
+    let (sines, cosines) = sin_cos_lanes(x & small);
+    let (mut sines, mut cosines) = (sines.to_array(), cosines.to_array());
+    for (angle, (sin, cos)) in x.to_array().into_iter().zip(sines.iter_mut().zip(&mut cosines)) {
+        if !(angle.abs() < LARGEST) {
+            (*sin, *cos) = nalgebra::ComplexField::sin_cos(angle);
+        }
     }
-    (f64x8::new(pairs.0), f64x8::new(pairs.1))
+    (f64x8::new(sines), f64x8::new(cosines))
 }
