@@ -37,6 +37,9 @@ pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> G
     let code = open(spec)
         .and_then(|source| compile::compile(&source, analyses).map_err(Failure::Mistakes))
         .unwrap_or_else(|error| error.fail());
+    if let Some(warning) = code.report.warning(&code.name) {
+        println!("cargo::warning={warning}");
+    }
     let target = out_dir().join(format!("{}.rs", code.name));
     write(&target, &code.text).unwrap_or_else(|error| fail(&format!("{}: {error}", target.display()), ""));
     code

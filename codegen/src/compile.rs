@@ -37,16 +37,16 @@ pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
 #[must_use]
 pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> GeneratedCode {
     let program = derive(chain, analyses);
-    let blocks = lower(&program);
+    let blocks = lower(&program, chain.loops.least_rounds());
     emit(chain, analyses, &blocks, report_on(&blocks, chain, analyses), spec_file)
 }
 
 /// What the functions of a chain cost and what is left out, without writing them.
 #[must_use]
 pub fn report(chain: &Chain, analyses: Analyses) -> Report {
-    report_on(&lower(&derive(chain, analyses)), chain, analyses)
+    report_on(&lower(&derive(chain, analyses), chain.loops.least_rounds()), chain, analyses)
 }
 
 fn report_on(blocks: &Blocks, chain: &Chain, analyses: Analyses) -> Report {
-    Report::new(blocks, &derive_verbatim(chain, analyses), left_out(chain, analyses))
+    Report::new(blocks, &derive_verbatim(chain, analyses), chain.loops, left_out(chain, analyses))
 }

@@ -81,6 +81,9 @@ fn run(command: &Command) -> Result<String, String> {
     match command {
         Command::Generate { spec, output, all } => {
             let code = compiled(spec, *all)?;
+            if let Some(warning) = code.report.warning(&code.name) {
+                eprintln!("warning: {warning}");
+            }
             let Some(target) = output else { return Ok(code.text) };
             build::write(target, &code.text).map_err(|error| format!("{}: {error}", target.display()))?;
             let functions = code.report.costs.len();

@@ -1,5 +1,6 @@
 //! What a crane's functions cost, and what its scene does not need.
 
+use crate::chain::Loops;
 use crate::lower::Blocks;
 use crate::symbolic::{OperationCount, Program, Shape};
 
@@ -10,8 +11,12 @@ pub struct Report {
     pub costs: Vec<FunctionCost>,
     /// How many second derivatives of transforms are computed in a loop, if they are.
     pub second_derivative_pairs: Option<usize>,
-    /// How the mass matrix is filled, and why.
-    pub mass_matrix: Option<&'static str>,
+    /// Functions with loops over bodies that do the same, and how many bodies each loop goes over.
+    pub loops: Vec<(String, Vec<usize>)>,
+    /// Why what repeats is a loop, or is written out.
+    pub loops_because: &'static str,
+    /// Whether the mass matrix is filled in a loop, if there is one.
+    pub mass_matrix_in_a_loop: Option<bool>,
     /// What is left out, and why.
     pub left_out: Vec<(&'static str, &'static str)>,
 }
@@ -25,12 +30,19 @@ pub struct FunctionCost {
     pub operations: OperationCount,
     /// What it would execute without simplification.
     pub verbatim: OperationCount,
+    /// How many statements rustc has to compile.
+    pub statements: usize,
 }
+
+/// rustc's time for a statement at level 2, s: 2.8 s for the dynamics of 25 coordinates, 4.7 s for those of 103.
+const COMPILE_TIME: f64 = 3.5e-4;
+/// Longer than this, s, nobody should wait unwarned.
+const COMPILE_BUDGET: f64 = 60.0;
 
 impl Report {
     /// Counts the operations of every function, as lowered and without simplification.
     #[must_use]
-    pub fn new(blocks: &Blocks, verbatim: &Program, left_out: Vec<(&'static str, &'static str)>) -> Self {
+    pub fn new(blocks: &Blocks, verbatim: &Program, loops: Loops, left_out: Vec<(&'static str, &'static str)>) -> Self {
         let costs = blocks
             .functions
             .iter()
@@ -45,16 +57,70 @@ impl Report {
                         count
                     })
                     .unwrap_or_default(),
+                statements: block.statements(),
             })
             .collect();
         let in_a_loop = |shape: &&Shape| matches!(shape, Shape::Turned { .. });
         let mut shapes = blocks.functions.iter().map(|block| &block.function.shape);
         let second_derivative_pairs = shapes.find(in_a_loop).map(Shape::matrices);
         let mass_matrix = blocks.functions.iter().find(|block| block.function.name == "mass_matrix");
-        let mass_matrix = mass_matrix.map(|block| match block.function.shape {
-            Shape::Columns { .. } => "in a loop over rows and columns, which is faster from some 16 coordinates on",
-            _ => "written out, which is faster up to some 16 coordinates",
-        });
-        Report { costs, second_derivative_pairs, mass_matrix, left_out }
+        let mass_matrix_in_a_loop = mass_matrix.map(|block| matches!(block.function.shape, Shape::Columns { .. }));
+        let rolled = blocks.functions.iter().filter(|block| !block.rolled.loops.is_empty());
+        let rounds = rolled
+            .map(|block| (block.function.name.to_owned(), block.rolled.loops.iter().map(|of| of.rounds).collect()));
+        let loops_because = loops.reason();
+        Report {
+            costs,
+            second_derivative_pairs,
+            loops: rounds.collect(),
+            loops_because,
+            mass_matrix_in_a_loop,
+            left_out,
+        }
+    }
+
+    /// A warning where rustc will take long, and what would help.
+    #[must_use]
+    pub fn warning(&self, crane: &str) -> Option<String> {
+        let statements: usize = self.costs.iter().map(|cost| cost.statements).sum();
+        #[expect(clippy::cast_precision_loss, reason = "far fewer statements than a float has digits for")]
+        let seconds = COMPILE_TIME * statements as f64;
+        let longest = self.costs.iter().max_by_key(|cost| cost.statements).filter(|_| seconds > COMPILE_BUDGET)?;
+        Some(format!(
+            "`{crane}` is {statements} statements, about {seconds:.0} s of rustc, {} of them in `{}`: list fewer `analyses`, \
+             take fewer sections, or say `loops: auto` where it says `never`",
+            longest.statements, longest.function
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(statements: usize) -> Report {
+        let cost = |function: &str, statements| FunctionCost {
+            function: function.to_owned(),
+            operations: OperationCount::default(),
+            verbatim: OperationCount::default(),
+            statements,
+        };
+        Report {
+            costs: vec![cost("linearise", statements), cost("bias", 1)],
+            second_derivative_pairs: None,
+            loops: vec![],
+            loops_because: "",
+            mass_matrix_in_a_loop: None,
+            left_out: vec![],
+        }
+    }
+
+    #[test]
+    fn a_warning_names_what_takes_longest() {
+        assert_eq!(report(1000).warning("crane"), None);
+        let warning = report(399_999).warning("crane").expect("140 s");
+        assert!(
+            warning.starts_with("`crane` is 400000 statements, about 140 s of rustc, 399999 of them in `linearise`")
+        );
     }
 }

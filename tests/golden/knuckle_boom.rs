@@ -14,7 +14,7 @@
 //   everything out of the crane's plane: all joints turn about one direction, none moves along it
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives
 //
-// The mass matrix is written out, which is faster up to some 16 coordinates.
+// The mass matrix is written out, which is faster for a crane of this size.
 //
 // Operations of each function, and before simplification:
 //   transforms                          29        98
@@ -31,7 +31,7 @@
 //   forward_dynamics                   244       965
 //   solve_mass                         101       849
 //   mass_matrix                        164       751
-//   mass_matrix_and_bias               251      1328
+//   mass_matrix_and_bias               242      1111
 //   bias                                81       380
 //   kinetic_energy                     216       837
 //   factorise                           95       711
@@ -1503,7 +1503,7 @@ pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
 /// `A, e`
 /// [Urbaś 2016, Eqs. (5), (9)]
 ///
-/// 251 operations: 100 add, 148 mul, 0 div, 3 sin_cos.
+/// 242 operations: 97 add, 142 mul, 0 div, 3 sin_cos.
 pub fn mass_matrix_and_bias(
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
@@ -1571,155 +1571,177 @@ pub fn mass_matrix_and_bias(
     let inertia_from_extension_yy = inertia_from_hook_yy + t002;
     let extension_x = q[2];
     let t003 = extension_x * knuckle_axis_x_x;
-    let t004 = 150.0 * knuckle_axis_x_x;
-    let t005 = hook_axis_z_x * c.c009;
-    let t006 = t004 + t005;
-    let t007 = extension_x * knuckle_axis_z_x;
-    let t008 = 150.0 * knuckle_axis_z_x;
-    let t009 = hook_axis_x_x * c.c009;
-    let first_from_extension_z = t008 - t009;
-    let t010 = inertia_from_extension_yy
+    let t004 = hook_axis_z_x * c.c009;
+    let t005 = fma(150.0, knuckle_axis_x_x, t004);
+    let t006 = extension_x * knuckle_axis_z_x;
+    let t007 = hook_axis_x_x * c.c009;
+    let first_from_extension_z = fma(150.0, knuckle_axis_z_x, -t007);
+    let t008 = inertia_from_extension_yy
         + fma(
             -2.0,
-            t007 * fma(-t007, c.c019, first_from_extension_z),
-            2.0 * (t003 * fma(t003, c.c019, -t006)),
+            t006 * fma(-t006, c.c019, first_from_extension_z),
+            2.0 * (t003 * fma(t003, c.c019, -t005)),
         );
-    let t011 = 2.6 * knuckle_axis_x_x;
-    let t012 = fma(t003, c.c006, -t006);
-    let t013 = 2.6 * knuckle_axis_z_x;
-    let t014 = fma(-t007, c.c006, first_from_extension_z);
-    let t015 = t010
+    let t009 = 2.6 * knuckle_axis_x_x;
+    let t010 = fma(t003, c.c006, -t005);
+    let t011 = 2.6 * knuckle_axis_z_x;
+    let t012 = fma(-t006, c.c006, first_from_extension_z);
+    let t013 = t008
         + fma(
             -2.0,
-            t013 * fma(-t013, c.c019, t014),
-            2.0 * (t011 * fma(t011, c.c019, t012)),
+            t011 * fma(-t011, c.c019, t012),
+            2.0 * (t009 * fma(t009, c.c019, t010)),
         );
-    let t016 = 34.1 * knuckle_axis_z_x;
-    let t017 = 34.1 * knuckle_axis_x_x;
-    let t018 = fma(
+    let t014 = 34.1 * knuckle_axis_z_x;
+    let t015 = 34.1 * knuckle_axis_x_x;
+    let t016 = fma(
         knuckle_axis_x_x,
-        fma(7.6, knuckle_axis_x_x, -t016),
-        -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t017)),
+        fma(7.6, knuckle_axis_x_x, -t014),
+        -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t015)),
     );
-    let inertia_from_knuckle_yy = t015
+    let inertia_from_knuckle_yy = t013
         + (fma(
             knuckle_axis_z_x,
-            fma(7.6, knuckle_axis_z_x, t017),
-            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t016),
-        ) + t018);
+            fma(7.6, knuckle_axis_z_x, t015),
+            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t014),
+        ) + t016);
     let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
-    let t019 = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x);
-    let first_from_knuckle_x = t019 + fma(t011, c.c006, t012);
-    let t020 = 3.2 * sin_main_boom_theta;
-    let t021 = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x);
-    let first_from_knuckle_z = t021 + fma(-t013, c.c006, t014);
-    let t022 = inertia_from_knuckle_yy
+    let first_from_knuckle_x = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x)
+        + fma(t009, c.c006, t010);
+    let t017 = 3.2 * sin_main_boom_theta;
+    let first_from_knuckle_z = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x)
+        + fma(-t011, c.c006, t012);
+    let t018 = inertia_from_knuckle_yy
         + fma(
             -2.0,
-            t020 * fma(-t020, c.c020, first_from_knuckle_z),
+            t017 * fma(-t017, c.c020, first_from_knuckle_z),
             2.0
                 * (upsilon_knuckle_theta_z
                     * fma(upsilon_knuckle_theta_z, c.c020, first_from_knuckle_x)),
         );
-    let t023 = 31.5 * sin_main_boom_theta;
-    let t024 = 31.5 * cos_main_boom_theta;
-    let t025 = fma(
+    let t019 = 31.5 * sin_main_boom_theta;
+    let t020 = 31.5 * cos_main_boom_theta;
+    let t021 = fma(
         cos_main_boom_theta,
-        fma(6.55, cos_main_boom_theta, -t023),
-        -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t024)),
+        fma(6.55, cos_main_boom_theta, -t019),
+        -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t020)),
     );
-    let inertia_from_main_boom_yy = t022
+    let inertia_from_main_boom_yy = t018
         + (fma(
             sin_main_boom_theta,
-            fma(6.55, sin_main_boom_theta, t024),
-            cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t023),
-        ) + t025);
+            fma(6.55, sin_main_boom_theta, t020),
+            cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t019),
+        ) + t021);
     out.mass[0][0] = inertia_from_main_boom_yy;
     out.mass[0][1] = inertia_from_knuckle_yy
         + fma(
             upsilon_knuckle_theta_z,
             first_from_knuckle_x,
-            -(t020 * first_from_knuckle_z),
+            -(t017 * first_from_knuckle_z),
         );
-    let t026 = knuckle_axis_z_x * c.c006;
-    let t027 = t011 + t003;
-    let t028 = knuckle_axis_x_x * c.c006;
-    let t029 = t013 + t007;
-    let t030 = fma(-knuckle_axis_z_x, t006, knuckle_axis_x_x * first_from_extension_z)
-        + fma(t026, t027, -(t028 * t029));
-    out.mass[0][2] = t030 + fma(upsilon_knuckle_theta_z, t026, -(t020 * t028));
-    let t031 = inertia_from_hook_yy + fma(-t005, t027, t009 * t029);
-    out.mass[0][3] = t031 + fma(-upsilon_knuckle_theta_z, t005, t020 * t009);
+    let t022 = knuckle_axis_z_x * c.c006;
+    let t023 = t009 + t003;
+    let t024 = knuckle_axis_x_x * c.c006;
+    let t025 = t011 + t006;
+    let t026 = fma(-knuckle_axis_z_x, t005, knuckle_axis_x_x * first_from_extension_z)
+        + fma(t022, t023, -(t024 * t025));
+    out.mass[0][2] = t026 + fma(upsilon_knuckle_theta_z, t022, -(t017 * t024));
+    let t027 = inertia_from_hook_yy + fma(-t004, t023, t007 * t025);
+    out.mass[0][3] = t027 + fma(-upsilon_knuckle_theta_z, t004, t017 * t007);
     // Row of knuckle_theta
     out.mass[1][1] = inertia_from_knuckle_yy;
-    out.mass[1][2] = t030;
-    out.mass[1][3] = t031;
+    out.mass[1][2] = t026;
+    out.mass[1][3] = t027;
     // Row of extension_x
-    out.mass[2][2] = fma(knuckle_axis_z_x, t026, knuckle_axis_x_x * t028);
-    out.mass[2][3] = -fma(knuckle_axis_z_x, t005, knuckle_axis_x_x * t009);
+    out.mass[2][2] = fma(knuckle_axis_z_x, t022, knuckle_axis_x_x * t024);
+    out.mass[2][3] = -fma(knuckle_axis_z_x, t004, knuckle_axis_x_x * t007);
     // Row of hook_theta
     out.mass[3][3] = inertia_from_hook_yy;
     // Bias of main_boom_theta
-    let first_main_boom_x = fma(21.0, sin_main_boom_theta, 630.0 * cos_main_boom_theta);
     let main_boom_theta_dot = v[0];
-    let t032 = main_boom_theta_dot * (main_boom_theta_dot * upsilon_knuckle_theta_z);
     let knuckle_theta_dot = v[1];
     let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
-    let extension_x_dot = v[2];
-    let t033 = 2.0 * extension_x_dot;
-    let t034 = fma(
+    let t028 = fma(
+        9.81,
+        sin_main_boom_theta,
+        main_boom_theta_dot * (3.2 * main_boom_theta_dot),
+    );
+    let acceleration_main_boom_z = 9.81 * cos_main_boom_theta;
+    let t029 = fma(
+        sin_knuckle_theta,
+        acceleration_main_boom_z,
+        cos_knuckle_theta * t028,
+    );
+    let t030 = fma(
         omega_knuckle_y,
-        knuckle_axis_z_x * t033,
-        fma(
-            omega_knuckle_y,
-            t003 * omega_knuckle_y,
-            fma(omega_knuckle_y, t011 * omega_knuckle_y, t032),
-        ),
+        extension_x * omega_knuckle_y,
+        fma(omega_knuckle_y, 2.6 * omega_knuckle_y, t029),
     );
-    let t035 = fma(main_boom_theta_dot, main_boom_theta_dot * t020, 9.81);
-    let t036 = fma(
-        -omega_knuckle_y,
-        knuckle_axis_x_x * t033,
-        fma(
-            omega_knuckle_y,
-            t007 * omega_knuckle_y,
-            fma(omega_knuckle_y, t013 * omega_knuckle_y, t035),
-        ),
+    let t031 = fma(
+        cos_knuckle_theta,
+        acceleration_main_boom_z,
+        -(sin_knuckle_theta * t028),
     );
-    let t037 = fma(t005, t036, t009 * t034);
+    let extension_x_dot = v[2];
+    let t032 = fma(-omega_knuckle_y, 2.0 * extension_x_dot, t031);
+    let t033 = fma(sin_hook_theta, t032, cos_hook_theta * t030);
+    let moment_hook_y = c.c009 * t033;
+    let moment_extension_y = fma(150.0, t032, moment_hook_y);
     let hook_theta_dot = v[3];
     let omega_hook_y = hook_theta_dot + omega_knuckle_y;
-    let t038 = fma(
-        omega_knuckle_y,
-        t004 * omega_knuckle_y,
-        fma(-150.0, t034, fma(omega_hook_y, omega_hook_y * t005, -(c.c001 * t034))),
+    let force_hook_z = fma(
+        omega_hook_y,
+        omega_hook_y * c.c009,
+        c.c001 * fma(-sin_hook_theta, t030, cos_hook_theta * t032),
     );
-    let t039 = fma(
+    let t034 = c.c001 * t033;
+    let force_extension_z = fma(
+        150.0,
+        t032,
+        fma(sin_hook_theta, t034, cos_hook_theta * force_hook_z),
+    );
+    let t035 = fma(
+        -2.6,
+        force_extension_z,
+        fma(-extension_x, force_extension_z, moment_extension_y),
+    );
+    let t036 = fma(341.0, t031, 31.0 * t029);
+    let moment_knuckle_y = t035 - t036;
+    let force_knuckle_z = fma(
         -omega_knuckle_y,
-        t008 * omega_knuckle_y,
-        fma(150.0, t036, fma(omega_hook_y, omega_hook_y * t009, c.c001 * t036)),
+        31.0 * omega_knuckle_y,
+        fma(310.0, t031, force_extension_z),
     );
-    let t040 = t037 + fma(t004, t036, -(t008 * t034)) - fma(t003, t039, t007 * t038);
-    let t041 = t040 - fma(t011, t039, t013 * t038);
-    let t042 = fma(t019, t035, t021 * t032);
-    let t043 = t020
-        * fma(-omega_knuckle_y, t019 * omega_knuckle_y, fma(-310.0, t032, t038));
+    let force_extension_x = fma(
+        omega_knuckle_y,
+        150.0 * omega_knuckle_y,
+        fma(-150.0, t030, fma(sin_hook_theta, force_hook_z, -(cos_hook_theta * t034))),
+    );
+    let force_knuckle_x = fma(
+        -omega_knuckle_y,
+        341.0 * omega_knuckle_y,
+        fma(-310.0, t029, force_extension_x),
+    );
     out.bias[0] = fma(
-        9.81,
-        first_main_boom_x,
-        -(t041 - t042
-            - fma(
-                upsilon_knuckle_theta_z,
-                fma(-omega_knuckle_y, t021 * omega_knuckle_y, fma(310.0, t035, t039)),
-                t043,
-            )),
-    );
+        6180.3,
+        cos_main_boom_theta,
+        206.01000000000002 * sin_main_boom_theta,
+    )
+        - fma(
+            -3.2,
+            fma(
+                -sin_knuckle_theta,
+                force_knuckle_x,
+                cos_knuckle_theta * force_knuckle_z,
+            ),
+            moment_knuckle_y,
+        );
     // Bias of knuckle_theta
-    out.bias[1] = t042 - t041;
+    out.bias[1] = t036 - t035;
     // Bias of extension_x
-    out.bias[2] = fma(knuckle_axis_z_x, t039, -(knuckle_axis_x_x * t038));
+    out.bias[2] = -force_extension_x;
     // Bias of hook_theta
-    out.bias[3] = -t037;
+    out.bias[3] = -moment_hook_y;
     mass.data.0 = out.mass;
     SVector::from(out.bias)
 }

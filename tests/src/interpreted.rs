@@ -101,7 +101,7 @@ impl Interpreted {
 fn expand<S: Scalar>(shape: &Shape, slots: Vec<S>) -> Vec<S> {
     match shape {
         Shape::Symmetric(n) => symmetric(*n, &slots),
-        Shape::Columns { turns, bias: false } => symmetric(turns.len(), &slots),
+        Shape::Columns { n, bias: false, .. } => symmetric(*n, &slots),
         Shape::Base => symmetric(6, &slots),
         Shape::Transforms { corner, .. } => homogeneous(&slots, *corner),
         Shape::Turned { .. } => homogeneous(&slots, 0),

@@ -2,9 +2,11 @@
 //!
 //! // AFTER THIS POINT: nobody knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
+mod loops;
 mod profile;
 mod value;
 
+pub use loops::Loops;
 pub use profile::{Profile, Ramp, Segment};
 pub use value::{ParameterId, Value};
 
@@ -51,6 +53,8 @@ pub struct Chain {
     pub run: Run,
     /// What the user wants to compute; the rest is left out.
     pub analyses: Analyses,
+    /// When what repeats is a loop.
+    pub loops: Loops,
 }
 
 /// A live parameter.

@@ -13,8 +13,9 @@ use super::labels::Labels;
 use super::names::Names;
 use super::number::Number;
 use super::print::comment;
+use super::rounds;
 use super::shape::{Handover, Storage};
-use crate::lower::{Angle, Block, Blocks, Statement};
+use crate::lower::{Block, Blocks, Statement};
 use crate::symbolic::{Argument, ExprId, Op};
 
 /// The items of one function: itself, and its pieces if it is long.
@@ -23,12 +24,13 @@ pub fn function(blocks: &Blocks, block: &Block, labels: &Labels, number: Number)
     if block.pieces.len() == 1 { vec![writer.whole()] } else { writer.in_pieces() }
 }
 
-struct Writer<'a> {
-    blocks: &'a Blocks<'a>,
-    block: &'a Block<'a>,
-    storage: Storage<'a>,
-    labels: &'a Labels<'a>,
-    number: Number,
+/// Writes one function.
+pub struct Writer<'a> {
+    pub(super) blocks: &'a Blocks<'a>,
+    pub(super) block: &'a Block<'a>,
+    pub(super) storage: Storage<'a>,
+    pub(super) labels: &'a Labels<'a>,
+    pub(super) number: Number,
 }
 
 impl Writer<'_> {
@@ -158,12 +160,8 @@ impl Writer<'_> {
 
     /// Arguments of the function itself: always the same for a function, used or not.
     fn all_inputs(&self) -> Vec<TokenStream> {
-        let used = self.block.pieces.iter().flatten().fold(Used::new(), |mut used, statement| {
-            if let Statement::Input(id) = statement {
-                self.input(*id, &mut used);
-            }
-            used
-        });
+        let mut used = Used::new();
+        self.block.pieces.iter().for_each(|piece| self.use_inputs(piece, &mut used));
         let mut inputs: Vec<TokenStream> = Vec::new();
         for argument in self.block.function.arguments {
             let (name, of) = argument_name(*argument, self.number);
@@ -174,6 +172,17 @@ impl Writer<'_> {
             inputs.push(quote!(c: &Constants));
         }
         inputs
+    }
+
+    /// What statements and loops among them read.
+    fn use_inputs(&self, statements: &[Statement], used: &mut Used) {
+        for statement in statements {
+            match statement {
+                Statement::Input(id) => drop(self.input(*id, used)),
+                Statement::Loop { body, .. } => self.use_inputs(body, used),
+                _ => {}
+            }
+        }
     }
 
     /// Arguments of a piece: what it uses.
@@ -212,15 +221,27 @@ impl Writer<'_> {
 
     /// Statements of a piece, and what they use.
     fn piece(&self, piece: &[Statement]) -> (Vec<Stmt>, Used) {
-        let mut names = Names::new(self.blocks.program);
+        let mut names = Names::new(&self.blocks.program, self.block.rolled.loops.len());
         let mut used = Used::new();
+        let mut statements = self.statements(piece, &mut names, &mut used);
+        if self.is_scalar()
+            && self.block.pieces.len() == 1
+            && !piece.iter().any(|s| matches!(s, Statement::Output { .. }))
+        {
+            statements.push(Stmt::Expr(self.number.literal(0.0), None));
+        }
+        (statements, used)
+    }
+
+    /// Statements one by one.
+    pub(super) fn statements(&self, piece: &[Statement], names: &mut Names, used: &mut Used) -> Vec<Stmt> {
         let mut statements = Vec::new();
         let mut group = None;
         let mut pending: Vec<Stmt> = Vec::new();
         for statement in piece {
             match statement {
                 &Statement::Input(id) => {
-                    let source = self.input(id, &mut used);
+                    let source = self.input(id, used);
                     let name = names.of(id);
                     if !matches!(&source, Expr::Path(path) if path.path.is_ident(&name)) {
                         pending.push(local(&name, &source));
@@ -229,16 +250,26 @@ impl Writer<'_> {
                 Statement::SinCos(angles) => {
                     statements.append(&mut pending);
                     statements.push(comment("Sines and cosines"));
-                    let mut results = |of: fn(&Angle) -> Option<ExprId>| -> Vec<TokenStream> {
-                        angles.iter().map(|known| pattern(of(known), &mut names)).collect()
-                    };
-                    let (sines, cosines) = (results(|known| known.sin), results(|known| known.cos));
-                    let angles = angles.iter().map(|known| self.expression(known.angle, &mut names, &mut used));
+                    let (sines, cosines): (Vec<_>, Vec<_>) = angles.iter().map(|known| (known.sin, known.cos)).unzip();
+                    let angles = angles.iter().map(|known| self.expression(known.angle, names, used));
                     let angles: Vec<Expr> = angles.collect();
-                    statements.push(parse_quote!(let ([#(#sines),*], [#(#cosines),*]) = sin_cos([#(#angles),*]);));
+                    if self.block.rolled.loops.is_empty() {
+                        let sines: Vec<_> = sines.into_iter().map(|sin| pattern(sin, names)).collect();
+                        let cosines: Vec<_> = cosines.into_iter().map(|cos| pattern(cos, names)).collect();
+                        statements.push(parse_quote!(let ([#(#sines),*], [#(#cosines),*]) = sin_cos([#(#angles),*]);));
+                    } else {
+                        statements.push(parse_quote!(let (sines, cosines) = sin_cos([#(#angles),*]);));
+                        statements.extend(rounds::patterns("sines", &sines, names));
+                        statements.extend(rounds::patterns("cosines", &cosines, names));
+                    }
+                }
+                Statement::Loop { of, body } => {
+                    statements.append(&mut pending);
+                    group = None;
+                    statements.extend(self.rounds(*of, body, names, used));
                 }
                 &Statement::Let(id) => {
-                    let value = self.operation(id, &mut names, &mut used);
+                    let value = self.operation(id, names, used);
                     pending.push(local(&names.of(id), &value));
                 }
                 &Statement::Output { slot, value } => {
@@ -248,7 +279,7 @@ impl Writer<'_> {
                             statements.push(comment(&label));
                         }
                     }
-                    let value = self.expression(value, &mut names, &mut used);
+                    let value = self.expression(value, names, used);
                     let alone = self.is_scalar() && self.block.pieces.len() == 1;
                     if alone {
                         pending.push(Stmt::Expr(value, None));
@@ -271,18 +302,12 @@ impl Writer<'_> {
             }
         }
         statements.append(&mut pending);
-        if self.is_scalar()
-            && self.block.pieces.len() == 1
-            && !piece.iter().any(|s| matches!(s, Statement::Output { .. }))
-        {
-            statements.push(Stmt::Expr(self.number.literal(0.0), None));
-        }
-        (statements, used)
+        statements
     }
 
     /// An argument of a statement: a variable, a number, a constant, or an inlined operation.
-    fn expression(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
-        let program = self.blocks.program;
+    pub(super) fn expression(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
+        let program = &self.blocks.program;
         if self.blocks.constants.is_stored(id) {
             used.insert(Argument::Parameters);
             return field(variable("c"), &self.labels.constant(id));
@@ -308,7 +333,7 @@ impl Writer<'_> {
 
     /// A sum or difference with a product in it: `fma(a, b, c)`.
     fn fused(&self, id: ExprId, product: ExprId, names: &mut Names, used: &mut Used) -> Expr {
-        let program = self.blocks.program;
+        let program = &self.blocks.program;
         let Op::Mul(a, b) = program.op(product) else { unreachable!("only products are fused") };
         let mut of = |operand: ExprId| self.expression(operand, names, used);
         let (a, b) = (of(a), of(b));
@@ -324,7 +349,11 @@ impl Writer<'_> {
     fn input(&self, id: ExprId, used: &mut Used) -> Expr {
         let Op::Symbol(symbol) = self.blocks.program.op(id) else { unreachable!("inputs are symbols") };
         let symbol = self.blocks.program.symbol(symbol);
-        used.insert(symbol.argument);
+        match symbol.argument {
+            Argument::Round => return self.source(symbol.index, used),
+            Argument::Loop => return self.taking(symbol.index),
+            _ => used.insert(symbol.argument),
+        };
         match symbol.argument {
             Argument::Time => variable("t"),
             Argument::BaseResistance => {
@@ -332,8 +361,14 @@ impl Writer<'_> {
                 element(element(columns, symbol.index / 6), symbol.index % 6)
             }
             Argument::Parameters => unreachable!("parameters are read where they are used"),
-            vector => element(variable(argument_name(vector, self.number).0), symbol.index),
+            vector => element(self.argument(vector, used), symbol.index),
         }
+    }
+
+    /// An argument by its name.
+    pub(super) fn argument(&self, argument: Argument, used: &mut Used) -> Expr {
+        used.insert(argument);
+        variable(argument_name(argument, self.number).0)
     }
 }
 
@@ -367,12 +402,12 @@ pub fn local(name: &str, value: &Expr) -> Stmt {
 }
 
 /// The name of a value, or `_` where it is not needed.
-fn pattern(id: Option<ExprId>, names: &mut Names) -> TokenStream {
+pub fn pattern(id: Option<ExprId>, names: &mut Names) -> TokenStream {
     id.map_or_else(|| quote!(_), |id| Ident::new(&names.of(id), Span::call_site()).into_token_stream())
 }
 
 /// Which inputs a piece reads.
-type Used = BTreeSet<Argument>;
+pub type Used = BTreeSet<Argument>;
 
 /// Arguments that are vectors, and their names.
 const VECTORS: [(Argument, &str); 4] = [
@@ -394,5 +429,6 @@ pub fn argument_name(argument: Argument, number: Number) -> (&'static str, Token
         Argument::BaseResistance => ("base", quote!(&SMatrix<#number, 6, 6>)),
         Argument::Factors => ("f", quote!(&Factors)),
         Argument::Parameters => ("c", quote!(&Constants)),
+        Argument::Round | Argument::Loop => unreachable!("loops take from themselves"),
     }
 }

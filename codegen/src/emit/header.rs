@@ -29,9 +29,18 @@ pub fn header(chain: &Chain, report: &Report, spec_file: &str) -> String {
         lines.push("Left out:".into());
         lines.extend(report.left_out.iter().map(|(what, why)| format!("  {what}: {why}")));
     }
-    if let Some(how) = report.mass_matrix {
+    if let Some(in_a_loop) = report.mass_matrix_in_a_loop {
+        let how = if in_a_loop { "filled in a loop over rows and columns" } else { "written out" };
         lines.push(String::new());
-        lines.push(format!("The mass matrix is {how}."));
+        lines.push(format!("The mass matrix is {how}, {}.", report.loops_because));
+    }
+    if !report.loops.is_empty() {
+        lines.push(String::new());
+        lines.push(format!("In loops over bodies that do the same, {}; bodies of each loop:", report.loops_because));
+        for (function, rounds) in &report.loops {
+            let rounds: Vec<String> = rounds.iter().map(ToString::to_string).collect();
+            lines.push(format!("  {function:<30} {}", rounds.join(", ")));
+        }
     }
     if let Some(pairs) = report.second_derivative_pairs {
         lines.push(String::new());

@@ -43,11 +43,11 @@ impl<'a> Labels<'a> {
                 Some(row) => format!("Bias of {}", coordinate(row)),
                 None => format!("Row of {}", coordinate(row_of_triangle(*n, slot).0)),
             }),
-            Shape::Columns { turns, .. } => Some(match slot.checked_sub(12 * turns.len()) {
+            Shape::Columns { n, .. } => Some(match slot.checked_sub(12 * n) {
                 Some(row) => format!("Bias of {}", coordinate(row)),
-                None => ["Axes", "Linear momenta", "Angular momenta", "Ways to the next point"]
-                    [slot / (3 * turns.len())]
-                .to_owned(),
+                None => {
+                    ["Axes", "Linear momenta", "Angular momenta", "Ways to the next point"][slot / (3 * n)].to_owned()
+                }
             }),
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
             Shape::Vectors(_) if function.name == "support_reactions" => Some(chain.supports[slot / 3].name.clone()),

@@ -11,6 +11,7 @@ mod names;
 mod number;
 mod parameters;
 mod print;
+mod rounds;
 mod shape;
 
 use std::collections::HashSet;
@@ -80,7 +81,7 @@ fn imports(items: &[syn::Item]) -> String {
         ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),
         (
             "::crane_model::support",
-            &["MassAndBias", "MassColumns", "TransformFactors", "fill", "fma", "sin_cos", "symmetric"],
+            &["MassAndBias", "MassColumns", "Point", "TransformFactors", "fill", "fma", "sin_cos", "symmetric"],
         ),
         (
             "::crane_model",

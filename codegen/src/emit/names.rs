@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::rounds;
 use crate::symbolic::{Argument, ExprId, Op, Program};
 
 /// Words that generated functions use themselves.
@@ -21,6 +22,9 @@ const TAKEN: &[&str] = &[
     "c",
     "out",
     "kept",
+    "k",
+    "sines",
+    "cosines",
     "sin_cos",
     "symmetric",
     "max",
@@ -38,8 +42,11 @@ pub struct Names<'p> {
 }
 
 impl<'p> Names<'p> {
-    pub fn new(program: &'p Program) -> Self {
-        Names { program, given: HashMap::new(), taken: TAKEN.iter().map(ToString::to_string).collect(), next: 0 }
+    /// For a function with so many loops.
+    pub fn new(program: &'p Program, loops: usize) -> Self {
+        let of_loops = (0..loops).flat_map(|of| rounds::NAMES.map(|name| rounds::owned_name(name, of)));
+        let taken = TAKEN.iter().map(ToString::to_string).chain(of_loops).collect();
+        Names { program, given: HashMap::new(), taken, next: 0 }
     }
 
     /// The name of a value.

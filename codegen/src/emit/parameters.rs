@@ -66,7 +66,7 @@ fn documentation(parameter: &Parameter) -> String {
 
 /// One `let` for each value on the way to the stored constants.
 fn constants_body(blocks: &Blocks, labels: &Labels, number: Number) -> Vec<Stmt> {
-    let program = blocks.program;
+    let program = &blocks.program;
     let needed = program.needed(blocks.constants.stored.iter().copied());
     let name = |id: ExprId| {
         if blocks.constants.is_stored(id) { labels.constant(id) } else { format!("t{:03}", id.index()) }

@@ -2,11 +2,13 @@
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
-use syn::Expr;
+use syn::{Expr, parse_quote};
 
 use super::arithmetic::{element, field, integer, variable};
 use super::number::Number;
-use crate::symbolic::{Function, Shape};
+use super::rounds::{at, place};
+use crate::lower::Progression;
+use crate::symbolic::{Function, Point, Shape};
 
 /// How a function hands over its result.
 pub enum Handover {
@@ -75,7 +77,10 @@ impl<'f> Storage<'f> {
             Shape::Vector(_) => quote!([#number; N]),
             Shape::Symmetric(_) => quote!([[f64; N]; N]),
             Shape::Base => quote!([[f64; 6]; 6]),
-            Shape::Columns { .. } => quote!(MassColumns<N>),
+            Shape::Columns { n, .. } => {
+                let eights = integer(n.div_ceil(8));
+                quote!(MassColumns<N, #eights>)
+            }
             Shape::MassAndBias(_) => quote!(MassAndBias<N>),
             Shape::Record(_, fields) => array(&quote!([[f64; N]; N]), fields.len()),
             Shape::Turned { degrees, .. } => {
@@ -113,11 +118,17 @@ impl<'f> Storage<'f> {
         match self.shape {
             Shape::Vector(_) => quote!(SVector::from(out)),
             Shape::Symmetric(_) | Shape::Base => quote!(symmetric(out)),
-            Shape::Columns { turns, bias: false } => quote!(columns.mass_matrix(&[#(#turns),*])),
-            Shape::Columns { turns, bias: true } => quote! {
-                columns.fill(&[#(#turns),*], &mut mass.data.0);
-                SVector::from(columns.bias)
-            },
+            Shape::Columns { points, bias: false, .. } => {
+                let points = points.iter().map(point);
+                quote!(columns.mass_matrix(&[#(#points),*]))
+            }
+            Shape::Columns { points, bias: true, .. } => {
+                let points = points.iter().map(point);
+                quote! {
+                    columns.fill(&[#(#points),*], &mut mass.data.0);
+                    SVector::from(columns.bias)
+                }
+            }
             Shape::MassAndBias(_) => quote! {
                 mass.data.0 = out.mass;
                 SVector::from(out.bias)
@@ -143,6 +154,26 @@ impl<'f> Storage<'f> {
         slot_of(self.shape, slot, variable(self.storage_name()))
     }
 
+    /// The place of slots in a loop.
+    pub fn place_at(&self, slots: Progression) -> Expr {
+        let out = variable(self.storage_name());
+        let Shape::Columns { n, .. } = self.shape else { return place(out, &at(slots)) };
+        let Progression { first, step } = slots;
+        if let Some(first) = first.checked_sub(12 * n) {
+            return place(field(out, "bias"), &at(Progression { first, step }));
+        }
+        let (kind, component) = (first / (3 * n), first % 3);
+        let j = at(Progression { first: first % (3 * n) / 3, step: step / 3 });
+        match kind {
+            0 => element(place(field(out, "axes"), &j), component),
+            3 => element(place(field(out, "ways"), &j), component),
+            _ => {
+                let columns = element(field(out, if kind == 1 { "linear" } else { "angular" }), component);
+                parse_quote!(#columns[(#j) / 8][(#j) % 8])
+            }
+        }
+    }
+
     /// The group of slots that a slot belongs to, for a comment before it.
     pub fn group(&self, slot: usize) -> usize {
         match self.shape {
@@ -150,8 +181,8 @@ impl<'f> Storage<'f> {
             Shape::Vector(_) => slot,
             Shape::Base => row_of_triangle(6, slot).0,
             Shape::MassAndBias(n) if slot >= n * (n + 1) / 2 => slot,
-            Shape::Columns { turns, .. } if slot >= 12 * turns.len() => slot,
-            Shape::Columns { turns, .. } => slot / (3 * turns.len()),
+            Shape::Columns { n, .. } if slot >= 12 * n => slot,
+            Shape::Columns { n, .. } => slot / (3 * n),
             Shape::Symmetric(n) | Shape::MassAndBias(n) => row_of_triangle(*n, slot).0,
             Shape::Vectors(_) => slot / 3,
             Shape::Pairs(_) => slot / 2,
@@ -167,6 +198,12 @@ impl<'f> Storage<'f> {
             }
         }
     }
+}
+
+/// `Point { coordinates: 3, turns: true }`
+fn point(point: &Point) -> TokenStream {
+    let (coordinates, turns) = (integer(point.coordinates), point.turns);
+    quote!(Point { coordinates: #coordinates, turns: #turns })
 }
 
 /// Entry of a matrix in an array of matrices.
@@ -194,14 +231,15 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
                 element(element(field(out, "mass"), row), column)
             }
         }
-        Shape::Columns { turns, .. } => {
-            let (kind, rest) = (slot / (3 * turns.len()), slot % (3 * turns.len()));
+        Shape::Columns { n, .. } => {
+            let (kind, j, k) = (slot / (3 * n), slot % (3 * n) / 3, slot % 3);
+            let eights = |of: &str| element(element(element(field(out.clone(), of), k), j / 8), j % 8);
             match kind {
-                0 => element(element(field(out, "axes"), rest / 3), rest % 3),
-                1 => element(element(field(out, "linear"), rest % 3), rest / 3),
-                2 => element(element(field(out, "angular"), rest % 3), rest / 3),
-                3 => element(element(field(out, "ways"), rest / 3), rest % 3),
-                _ => element(field(out, "bias"), slot - 12 * turns.len()),
+                0 => element(element(field(out, "axes"), j), k),
+                1 => eights("linear"),
+                2 => eights("angular"),
+                3 => element(element(field(out, "ways"), j), k),
+                _ => element(field(out, "bias"), slot - 12 * n),
             }
         }
         Shape::Symmetric(n) => {

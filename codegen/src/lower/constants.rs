@@ -33,7 +33,8 @@ impl Constants {
     /// Whether functions read this value instead of computing it.
     #[must_use]
     pub fn is_stored(&self, id: ExprId) -> bool {
-        self.is_stored[id.index()]
+        // What loops add comes after.
+        self.is_stored.get(id.index()).is_some_and(|stored| *stored)
     }
 
     /// Whether the value needs no variable: a number, a live parameter or a stored constant.

@@ -3,6 +3,7 @@
 //!
 //! | pass | file | after it |
 //! |---|---|---|
+//! | roll, matching | `roll` | what repeats from body to body is a loop over the operations of one |
 //! | constants | `constants` | what depends on live parameters alone is computed once, outside of all functions |
 //! | fuse | `fuse` | a product that only sums use is part of them, `a b + c` |
 //! | bundle | `bundle` | a value used once stands where it is used, as long as the expression stays bounded |
@@ -14,18 +15,21 @@
 mod bundle;
 mod constants;
 mod fuse;
+mod matching;
 mod order;
+mod roll;
 mod split;
 
 use crate::symbolic::{ExprId, Function, Op, OperationCount, Program};
 
 pub use constants::Constants;
+pub use roll::{Loop, Progression, Rolled, Source, Taking};
 
 /// A program as straight lines.
 #[derive(Debug)]
 pub struct Blocks<'p> {
-    /// The program it came from.
-    pub program: &'p Program,
+    /// The program it came from, and the bodies of loops.
+    pub program: Program,
     /// Values that depend on live parameters alone, and the statements that compute them.
     pub constants: Constants,
     /// One block a function, in the program's order.
@@ -43,12 +47,26 @@ pub struct Block<'p> {
     pub pieces: Vec<Vec<Statement>>,
     /// How many values are carried from piece to piece.
     pub carried: usize,
+    /// Its loops; their statements stand in the pieces.
+    pub rolled: Rolled,
     /// Its operations, without those of the constants.
     pub count: OperationCount,
     /// For every node of the graph, whether it stands inside the expressions that use it.
     pub inlined: Vec<bool>,
     /// For every sum or difference, the product that is fused into it.
     pub fused: Vec<Option<ExprId>>,
+}
+
+impl Block<'_> {
+    /// How many statements it has, those of a loop once.
+    #[must_use]
+    pub fn statements(&self) -> usize {
+        let within = |statement: &Statement| match statement {
+            Statement::Loop { body, .. } => body.len(),
+            _ => 0,
+        };
+        self.pieces.iter().flatten().map(|statement| 1 + within(statement)).sum()
+    }
 }
 
 /// One statement of a straight line.
@@ -60,6 +78,13 @@ pub enum Statement {
     SinCos(Vec<Angle>),
     /// Computes a value: `let t017 = …;`
     Let(ExprId),
+    /// A loop and the statements of a round.
+    Loop {
+        /// Which loop.
+        of: usize,
+        /// Its statements.
+        body: Vec<Statement>,
+    },
     /// Writes a slot of the result.
     Output {
         /// Which slot, in the order of the function's shape.
@@ -94,19 +119,31 @@ pub struct Angle {
     pub cos: Option<ExprId>,
 }
 
-/// Lowers a program.
+/// Lowers a program; equal work at `least_rounds` bodies in a row becomes a loop.
 #[must_use]
-pub fn lower(program: &Program) -> Blocks<'_> {
+pub fn lower(program: &Program, least_rounds: Option<usize>) -> Blocks<'_> {
     let constants = Constants::of(program);
-    let functions = program.functions.iter().map(|function| block(program, &constants, function)).collect();
+    let mut extended = program.clone();
+    let mut block = |function| block(&mut extended, &constants, function, least_rounds);
+    let functions = program.functions.iter().map(&mut block).collect();
     // AFTER THIS POINT: every statement is bounded, every value is computed before it is used, in its own piece.
-    Blocks { program, constants, functions }
+    Blocks { program: extended, constants, functions }
 }
 
-fn block<'p>(program: &'p Program, constants: &Constants, function: &'p Function) -> Block<'p> {
-    let fused = fuse::fuse(program, constants, &function.outputs);
-    let inlined = bundle::bundle(program, constants, &fused, &function.outputs);
-    let line = order::order(program, constants, &inlined, function);
+fn block<'p>(
+    program: &mut Program,
+    constants: &Constants,
+    function: &'p Function,
+    least_rounds: Option<usize>,
+) -> Block<'p> {
+    let rolled = least_rounds.and_then(|least| roll::roll(program, constants, function, least));
+    let in_line = || Rolled::in_line(function);
+    let (line, rolled, inlined, fused) = match rolled.map(|rolled| line(program, constants, function, rolled)) {
+        // Loops and what they leave stay in one piece.
+        Some(loops) if !split::is_long(&loops.0) => loops,
+        _ => line(program, constants, function, in_line()),
+    };
+    let program = &*program;
     let (pieces, carried) = split::split(program, constants, &inlined, line);
     let mut count = program.count(&function.outputs, |id| constants.is_stored(id));
     count += function.shape.closing_count();
@@ -121,8 +158,19 @@ fn block<'p>(program: &'p Program, constants: &Constants, function: &'p Function
     let needed = program.needed(function.outputs.iter().copied());
     count.additions -= program.ids().filter(|id| needed[id.index()]).filter(folded).count();
     let reads_parameters = constants.read_by(program, &function.outputs);
-    Block { function, reads_parameters, pieces, carried, count, inlined, fused }
+    Block { function, reads_parameters, pieces, carried, rolled, count, inlined, fused }
 }
+
+/// Statements in order, with what stands inside of others and what is fused.
+fn line(program: &Program, constants: &Constants, function: &Function, rolled: Rolled) -> Line {
+    let roots = rolled.roots();
+    let fused = fuse::fuse(program, constants, &roots);
+    let inlined = bundle::bundle(program, constants, &fused, &roots);
+    let line = order::order(program, constants, &inlined, function, &rolled);
+    (line, rolled, inlined, fused)
+}
+
+type Line = (Vec<Statement>, Rolled, Vec<bool>, Vec<Option<ExprId>>);
 
 /// The values that must stand in variables of their own before `id` can be written down: its operands, or, where an
 /// operand is inlined, what that needs in turn.

@@ -1,25 +1,52 @@
 //! Order of statements: all angles first, then depth first from each output, so that a value stands near its use.
 
-use super::{Angle, Constants, Statement, variables_of};
-use crate::symbolic::{ExprId, Function, Op, Program};
+use super::{Angle, Constants, Rolled, Source, Statement, Taking, variables_of};
+use crate::symbolic::{Argument, ExprId, Function, Op, Program};
 
-/// One straight line for a function.
-pub(super) fn order(program: &Program, constants: &Constants, inlined: &[bool], function: &Function) -> Vec<Statement> {
-    let mut line =
-        Line { program, constants, inlined, done: vec![false; program.operations.len()], statements: vec![] };
-    let needed = needed_here(program, constants, &function.outputs);
-    line.angles(&needed);
-    for (slot, &value) in function.outputs.iter().enumerate() {
-        if program.op(value) != Op::ZERO {
+/// One straight line for a function, its loops in it as statements.
+pub(super) fn order(
+    program: &Program,
+    constants: &Constants,
+    inlined: &[bool],
+    function: &Function,
+    rolled: &Rolled,
+) -> Vec<Statement> {
+    let mut line = Line {
+        program,
+        constants,
+        inlined,
+        rolled,
+        done: vec![false; program.operations.len()],
+        run: vec![false; rolled.loops.len()],
+        statements: vec![],
+    };
+    line.angles(&function.outputs);
+    for (slot, value) in rolled.outputs.iter().enumerate() {
+        if let Some(value) = value.filter(|value| program.op(*value) != Op::ZERO) {
             line.compute_variables(value);
             line.statements.push(Statement::Output { slot, value });
         }
     }
+    (0..rolled.loops.len()).for_each(|of| line.run(of));
     line.statements
 }
 
+/// All angles whose sines or cosines are needed, in order of construction.
+pub(super) fn angles(program: &Program, needed: &[bool]) -> Vec<Angle> {
+    let find = |op: Op| program.find(op).filter(|id| needed[id.index()]);
+    let mut angles: Vec<Angle> = Vec::new();
+    for id in program.ids().take(needed.len()).filter(|id| needed[id.index()]) {
+        if let Op::Sin(angle) | Op::Cos(angle) = program.op(id)
+            && !angles.iter().any(|known| known.angle == angle)
+        {
+            angles.push(Angle { angle, sin: find(Op::Sin(angle)), cos: find(Op::Cos(angle)) });
+        }
+    }
+    angles
+}
+
 /// What the function itself computes or reads: not what stored constants are made of.
-fn needed_here(program: &Program, constants: &Constants, roots: &[ExprId]) -> Vec<bool> {
+pub(super) fn needed_here(program: &Program, constants: &Constants, roots: &[ExprId]) -> Vec<bool> {
     let mut needed = vec![false; program.operations.len()];
     let mut stack = roots.to_vec();
     while let Some(id) = stack.pop() {
@@ -34,31 +61,54 @@ struct Line<'a> {
     program: &'a Program,
     constants: &'a Constants,
     inlined: &'a [bool],
+    rolled: &'a Rolled,
     done: Vec<bool>,
+    /// Which loops are written.
+    run: Vec<bool>,
     statements: Vec<Statement>,
 }
 
 impl Line<'_> {
     /// Sines and cosines of all angles, in one pass. No angle is made of another's sine.
-    fn angles(&mut self, needed: &[bool]) {
-        let find = |op: Op| self.program.find(op).filter(|id| needed[id.index()]);
-        let mut angles: Vec<Angle> = Vec::new();
-        for id in self.program.ids().filter(|id| needed[id.index()]) {
-            if let Op::Sin(angle) | Op::Cos(angle) = self.program.op(id)
-                && !angles.iter().any(|known| known.angle == angle)
-            {
-                angles.push(Angle { angle, sin: find(Op::Sin(angle)), cos: find(Op::Cos(angle)) });
-            }
-        }
+    fn angles(&mut self, outputs: &[ExprId]) {
+        let mut angles = angles(self.program, &needed_here(self.program, self.constants, outputs));
         for known in &angles {
             self.compute_variables(known.angle);
         }
         for id in angles.iter().flat_map(|known| [known.sin, known.cos]).flatten() {
             self.done[id.index()] = true;
         }
+        // Loops take theirs by place.
+        let outside = needed_here(self.program, self.constants, &self.rolled.roots());
+        let named = |id: &ExprId| self.rolled.loops.is_empty() || outside[id.index()];
+        for known in &mut angles {
+            (known.sin, known.cos) = (known.sin.filter(named), known.cos.filter(named));
+        }
         if !angles.is_empty() {
             self.statements.push(Statement::SinCos(angles));
         }
+    }
+
+    /// The statement of a loop, after everything it takes from outside.
+    fn run(&mut self, of: usize) {
+        if std::mem::replace(&mut self.run[of], true) {
+            return;
+        }
+        let rolled = self.rolled;
+        for (_, source) in rolled.sources.iter().filter(|(user, _)| *user == of) {
+            if let Source::Kept { of, .. } = source {
+                self.run(*of);
+            }
+        }
+        let own = &rolled.loops[of];
+        let initial = own.carried.iter().map(|(initial, _)| initial);
+        for value in initial.chain(own.gathered.iter().flatten()).chain(&own.same) {
+            self.compute_variables(*value);
+        }
+        let before = std::mem::take(&mut self.statements);
+        own.roots().into_iter().for_each(|value| self.compute_variables(value));
+        let body = std::mem::replace(&mut self.statements, before);
+        self.statements.push(Statement::Loop { of, body });
     }
 
     /// What has to stand in variables before `id` can be an argument.
@@ -79,7 +129,12 @@ impl Line<'_> {
             if self.done[id.index()] || self.constants.is_free(self.program, id) {
                 continue;
             }
-            if matches!(self.program.op(id), Op::Symbol(_)) {
+            if let Op::Symbol(symbol) = self.program.op(id) {
+                let symbol = self.program.symbol(symbol);
+                if symbol.argument == Argument::Loop {
+                    let (Taking::Carried { of, .. } | Taking::Kept { of, .. }) = self.rolled.takings[symbol.index];
+                    self.run(of);
+                }
                 self.done[id.index()] = true;
                 self.statements.push(Statement::Input(id));
             } else if ready {

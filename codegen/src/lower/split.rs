@@ -11,6 +11,15 @@ const SHORTEST_PIECE: usize = 500;
 /// before, and rustc's stack overflows over the debug information of some 2,000 of them.
 const LONGEST_PIECE: usize = 1500;
 
+/// Whether a line has to be cut: by the scopes that are open at most, those of a loop in those before it.
+pub(super) fn is_long(line: &[Statement]) -> bool {
+    let round = |statement: &Statement| match statement {
+        Statement::Loop { body, .. } => body.len(),
+        _ => 0,
+    };
+    line.len() + line.iter().map(round).max().unwrap_or(0) > LONGEST_PIECE
+}
+
 /// The pieces, and how many values are carried between them.
 pub(super) fn split(
     program: &Program,
@@ -18,7 +27,7 @@ pub(super) fn split(
     inlined: &[bool],
     line: Vec<Statement>,
 ) -> (Vec<Vec<Statement>>, usize) {
-    if line.len() <= LONGEST_PIECE {
+    if !is_long(&line) {
         return (vec![line], 0);
     }
     let lives = Lives::of(program, constants, inlined, &line);
@@ -54,7 +63,9 @@ impl Lives {
                 }
                 Statement::Let(id) => variables_of(program, constants, inlined, *id),
                 Statement::Output { value, .. } => operands(program, constants, inlined, *value),
-                Statement::Input(_) | Statement::Keep { .. } | Statement::Fetch { .. } => vec![],
+                Statement::Input(_) | Statement::Keep { .. } | Statement::Fetch { .. } | Statement::Loop { .. } => {
+                    vec![]
+                }
             };
             for id in &read {
                 last_read.insert(*id, at);
@@ -142,6 +153,6 @@ fn defines(statement: &Statement) -> Vec<ExprId> {
     match statement {
         Statement::Input(id) | Statement::Let(id) | Statement::Fetch { value: id, .. } => vec![*id],
         Statement::SinCos(angles) => angles.iter().flat_map(|known| [known.sin, known.cos]).flatten().collect(),
-        Statement::Output { .. } | Statement::Keep { .. } => vec![],
+        Statement::Output { .. } | Statement::Keep { .. } | Statement::Loop { .. } => vec![],
     }
 }

@@ -1,4 +1,4 @@
-//! Mass matrix and bias in the world's axes about local points.
+//! Mass matrix in the world's axes about local points.
 //!
 //! Notation
 //! : by components in the world's axes. At each joint, the axis `n_j`; the composite of all that hangs on it about the
@@ -6,7 +6,7 @@
 //!
 //! Output
 //! : `a_ij = n_i · L_j` where i turns and `n_i · P_j` where it slides, i ≤ j, with L_j taken about the point of i
-//!   [Urbaś 2016, Eq. (5)]; the bias by Newton's and Euler's equations of every body [Urbaś 2016, Eqs. (5), (7), (9)].
+//!   [Urbaś 2016, Eq. (5)].
 //!
 //! About local points nothing large is subtracted: the torsional inertia of a slender element keeps its digits beside the
 //! inertia of a whole crane about the world's origin.
@@ -16,7 +16,7 @@ use super::model::Model;
 use super::turn::Turn;
 use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};
 use crate::chain::CoordinateKind;
-use crate::symbolic::Expr;
+use crate::symbolic::{Expr, Point};
 
 /// One factor of the chain in the world's axes.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +50,8 @@ impl<'g> Places<'g> {
             *rotation = rotation.turned(turn.axis, turn.sin, turn.cos);
             Place::Turning { j, axis }
         };
+        let sweep = model.graph.sweep();
+        sweep.visit();
         for factor in factors {
             match factor {
                 Factor::Translate(by) => places.push(Place::Moving { by: rotation.apply(*by), sliding: None }),
@@ -64,7 +66,10 @@ impl<'g> Places<'g> {
                     let axis: Vec3<'g> = rotation.axis(*axis);
                     places.push(Place::Moving { by: model.q[*j] * axis, sliding: Some((*j, axis)) });
                 }
-                Factor::Body(index) => places.push(Place::Body { index: *index, rotation }),
+                Factor::Body(index) => {
+                    places.push(Place::Body { index: *index, rotation });
+                    sweep.visit();
+                }
             }
         }
         Places(places)
@@ -77,9 +82,11 @@ impl<'g> Places<'g> {
         let mut columns = Columns { axes: empty.clone(), linear: empty.clone(), angular: empty.clone(), shifts: empty };
         let (mut mass, mut first, mut inertia) = (model.zero(), zero, Symmetric3::zero(model.graph));
         let mut way = zero;
+        let sweep = model.graph.sweep();
         for place in self.0.iter().rev() {
             match place {
                 Place::Body { index, rotation } => {
+                    sweep.visit();
                     if let Some((m, s, i)) = body(model, *index, rotation) {
                         (mass, first, inertia) = (mass + m, first + s, inertia + i);
                         let name = &model.chain.bodies[*index].name;
@@ -105,50 +112,6 @@ impl<'g> Places<'g> {
             }
         }
         columns
-    }
-
-    /// `e = −(h + g)`
-    pub fn bias(&self, model: &Model<'g>) -> Vec<Expr<'g>> {
-        let zero = Vec3::zero(model.graph);
-        let (mut omega, mut alpha, mut a) = (zero, zero, -model.vector(&model.chain.gravity));
-        let mut motions = Vec::new();
-        for place in &self.0 {
-            match place {
-                Place::Turning { j, axis } => {
-                    let spin = model.v[*j] * *axis;
-                    alpha = alpha + omega.cross(spin);
-                    omega = omega + spin;
-                }
-                Place::Moving { by, sliding } => {
-                    a = a + alpha.cross(*by) + omega.cross(omega.cross(*by));
-                    if let Some((j, axis)) = sliding {
-                        a = a + omega.cross((2.0 * model.v[*j]) * *axis);
-                    }
-                }
-                Place::Body { .. } => {}
-            }
-            motions.push((omega, alpha, a));
-        }
-        let (mut force, mut moment) = (zero, zero);
-        let mut bias = model.zeros();
-        for (place, (omega, alpha, a)) in self.0.iter().zip(motions).rev() {
-            match place {
-                Place::Body { index, rotation } => {
-                    if let Some((m, s, i)) = body(model, *index, rotation) {
-                        force = force + m * a + alpha.cross(s) + omega.cross(omega.cross(s));
-                        moment = moment + i.apply(alpha) + omega.cross(i.apply(omega)) + s.cross(a);
-                    }
-                }
-                Place::Turning { j, axis } => bias[*j] = -axis.dot(moment),
-                Place::Moving { by, sliding } => {
-                    if let Some((j, axis)) = sliding {
-                        bias[*j] = -axis.dot(force);
-                    }
-                    moment = moment + by.cross(force);
-                }
-            }
-        }
-        bias
     }
 }
 
@@ -178,6 +141,22 @@ impl<'g> Columns<'g> {
             }
         }
         matrix
+    }
+
+    /// The points that the coordinates act at, in order.
+    pub fn points(&self, model: &Model<'g>) -> Vec<Point> {
+        let mut points: Vec<Point> = Vec::new();
+        // The way from the coordinate before; there is none before the first.
+        let mut apart = true;
+        for (coordinate, way) in model.chain.coordinates.iter().zip(&self.shifts) {
+            let turns = coordinate.kind == CoordinateKind::Rotation;
+            match points.last_mut() {
+                Some(point) if !apart && point.turns == turns && point.coordinates < 3 => point.coordinates += 1,
+                _ => points.push(Point { coordinates: 1, turns }),
+            }
+            apart = !way.0.iter().all(|x| x.is_zero());
+        }
+        points
     }
 
     /// All numbers, for a loop: axes, P, L and shifts, coordinate by coordinate.

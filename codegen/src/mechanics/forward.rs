@@ -47,12 +47,14 @@ pub(super) fn inward<'g>(
     efforts: &[Effort<'g>],
 ) -> (Vec<Joint<'g>>, Articulated<'g>) {
     let mut articulated = Articulated::zero(model.graph);
+    let sweep = model.graph.sweep();
     let mut joints: Vec<Joint<'g>> = factors
         .iter()
         .zip(velocities)
         .rev()
         .map(|(factor, velocity)| match (factor, velocity) {
             (Factor::Body(index), Velocities::Body { omega }) => {
+                sweep.visit();
                 let body = &model.chain.bodies[*index];
                 if let Some(inertia) = &body.inertia {
                     let second = model.second_moments(inertia);
@@ -102,6 +104,8 @@ pub(super) fn outward<'g>(
 ) -> Vec<Expr<'g>> {
     let (mut angular, mut linear) = start;
     let mut accelerations = model.zeros();
+    let sweep = model.graph.sweep();
+    sweep.visit();
     for ((factor, velocity), joint) in factors.iter().zip(velocities).zip(joints) {
         if let Velocities::Translation { by, acceleration } = velocity {
             linear = linear + angular.cross(*by) + *acceleration;
@@ -126,6 +130,7 @@ pub(super) fn outward<'g>(
                 let name = &model.chain.bodies[*index].name;
                 angular.named(&format!("alpha_{name}"));
                 linear.named(&format!("acceleration_{name}"));
+                sweep.visit();
             }
             _ => {}
         }

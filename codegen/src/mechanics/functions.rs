@@ -1,8 +1,8 @@
 //! Which functions a crane gets: signatures, documentation, and what is left out.
 
-use crate::chain::{Analyses, BodyId, Chain, CoordinateKind};
+use crate::chain::{Analyses, BodyId, Chain};
 use crate::symbolic::Argument::{self, BaseResistance, Factors, Position, Resistance, Right, Time, Velocity};
-use crate::symbolic::{Expr, Function, Graph, Program, Shape, Stages, Symbol, SymbolId};
+use crate::symbolic::{Expr, Function, Graph, Program, Shape, Stages, Symbol, SymbolId, Tape};
 
 use super::articulated::Effort;
 use super::columns::Places;
@@ -14,11 +14,6 @@ use super::model::Model;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
 use super::{drives, energy, gravity, newton_euler, points, resisted, springs, supports, transforms};
-
-/// Mass matrices of more coordinates are filled in a loop over rows and columns: written out they grow with the square, and
-/// so does rustc's time. Measured on the reference crane with 0, 1, 2 and 4 sections, A and e written out against the loop:
-/// 0.47 and 0.59 µs at 13 coordinates, 0.53 and 0.56 at 16, 1.07 and 0.76 at 19, 1.75 and 1.39 at 25.
-const LARGEST_UNROLLED: usize = 16;
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
@@ -253,22 +248,23 @@ impl<'g> Derivation<'g> {
     fn dynamics(&self) -> Vec<Function> {
         let model = &self.model;
         let gravity = model.vector(&model.chain.gravity);
-        let accelerations = self.accelerations(&model.v, &self.all_forces(model.t, &model.v), gravity);
-        let solution = self.accelerations(&model.zeros(), &model.right, Vec3::zero(model.graph));
-        let places = Places::new(model, &self.factors);
-        let columns = places.columns(model);
-        let bias = places.bias(model);
-        let looped = model.size() > LARGEST_UNROLLED;
-        let turns = || model.chain.coordinates.iter().map(|c| c.kind == CoordinateKind::Rotation).collect();
+        let forces = self.all_forces(model.t, &model.v);
+        let (accelerations, tape) = model.graph.recorded(|| self.accelerations(&model.v, &forces, gravity));
+        let rest = model.zeros();
+        let nothing = Vec3::zero(model.graph);
+        let (solution, solution_tape) = model.graph.recorded(|| self.accelerations(&rest, &model.right, nothing));
+        let (columns, mass_tape) = model.graph.recorded(|| Places::new(model, &self.factors).columns(model));
+        let (bias, bias_tape) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
+        let looped = model.chain.loops.fill_mass_matrix(model.size());
         let (mass_shape, both_shape, mass, mut both) = if looped {
             let slots = columns.slots();
-            let shape = |bias| Shape::Columns { turns: turns(), bias };
+            let shape = |bias| Shape::Columns { n: model.size(), points: columns.points(model), bias };
             (shape(false), shape(true), slots.clone(), slots)
         } else {
             let upper = columns.mass_matrix(model).into_upper();
             (Shape::Symmetric(model.size()), Shape::MassAndBias(model.size()), upper.clone(), upper)
         };
-        both.extend(bias);
+        both.extend(&bias);
         vec![
             function(
                 "forward_dynamics",
@@ -277,7 +273,8 @@ impl<'g> Derivation<'g> {
                 &[Time, Position, Velocity],
                 Shape::Vector(model.size()),
                 accelerations,
-            ),
+            )
+            .by(tape),
             function(
                 "solve_mass",
                 "Solution x of `A x = r`; r in N and N m, x in m/s² and rad/s².",
@@ -285,7 +282,8 @@ impl<'g> Derivation<'g> {
                 &[Position, Right],
                 Shape::Vector(model.size()),
                 solution,
-            ),
+            )
+            .by(solution_tape),
             function(
                 "mass_matrix",
                 "Mass matrix A; kg, kg m and kg m².",
@@ -293,7 +291,8 @@ impl<'g> Derivation<'g> {
                 &[Position],
                 mass_shape,
                 mass,
-            ),
+            )
+            .by(mass_tape.clone()),
             function(
                 "mass_matrix_and_bias",
                 "Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m.",
@@ -301,15 +300,17 @@ impl<'g> Derivation<'g> {
                 &[Position, Velocity],
                 both_shape,
                 both,
-            ),
+            )
+            .by(mass_tape.then(bias_tape.clone())),
             function(
                 "bias",
                 "Bias e: velocity and gravity forces, N and N m.",
                 "e = −(h + g), h_i + g_i = tr(Ω_i Σ T H B̄ᵀ) [Urbaś 2016, Eqs. (5), (7), (9)]",
                 &[Position, Velocity],
                 Shape::Vector(model.size()),
-                newton_euler::bias(model, &self.factors),
-            ),
+                bias,
+            )
+            .by(bias_tape),
             function(
                 "kinetic_energy",
                 "Kinetic energy, J.",
@@ -331,10 +332,11 @@ impl<'g> Derivation<'g> {
     /// What implicit integration needs: structured stiffness and damping, and systems with them.
     fn implicit(&self, symbols: &mut Vec<Symbol>) -> Vec<Function> {
         let model = &self.model;
-        let solution = resisted::solution(model, &self.kinematics, &self.factors);
+        let solve = || resisted::solution(model, &self.kinematics, &self.factors);
+        let (solution, tape) = model.graph.recorded(solve);
         let first = SymbolId(u32::try_from(symbols.len()).expect("fewer than 2^32 inputs"));
         let late = |SymbolId(id): SymbolId| symbols.get(id as usize).is_some_and(|symbol| symbol.argument == Right);
-        let Stages { factors, results } = model.graph.stages(&solution, late, first);
+        let Stages { factors, results, tape: late_tape } = model.graph.stages(&solution, &tape, late, first);
         symbols.extend((0..factors.len()).map(|index| Symbol {
             name: format!("f{index:03}"),
             argument: Factors,
@@ -348,7 +350,8 @@ impl<'g> Derivation<'g> {
                 &[Position, Resistance, BaseResistance],
                 Shape::Factors(factors.len()),
                 factors,
-            ),
+            )
+            .by(tape),
             function(
                 "solve",
                 "Solution x of `(A + D̂) x = r` from the factors of `A + D̂`.",
@@ -356,7 +359,8 @@ impl<'g> Derivation<'g> {
                 &[Factors, Right],
                 Shape::Vector(model.size()),
                 results,
-            ),
+            )
+            .by(late_tape),
         ];
         let (stiffness, damping) = self.impedances();
         let base: Vec<usize> = model.chain.base.iter().flatten().map(|id| id.0).collect();
@@ -514,5 +518,6 @@ fn function(
     outputs: Vec<Expr<'_>>,
 ) -> Function {
     debug_assert_eq!(shape.len(), outputs.len(), "{name}");
-    Function { name, doc, equation, arguments, shape, outputs: outputs.into_iter().map(Expr::id).collect() }
+    let outputs = outputs.into_iter().map(Expr::id).collect();
+    Function { name, doc, equation, arguments, shape, outputs, tape: Tape::default() }
 }

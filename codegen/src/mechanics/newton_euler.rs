@@ -15,6 +15,8 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     // Outward: α and a of each frame.
     let (mut alpha, mut a) = (zero, -model.vector(&model.chain.gravity));
     let mut accelerations = Vec::new();
+    let sweep = model.graph.sweep();
+    sweep.visit();
     for (factor, velocity) in factors.iter().zip(&along) {
         match (factor, velocity) {
             (Factor::Turn(turn), _) => (alpha, a) = (turn.inward(alpha), turn.inward(a)),
@@ -27,6 +29,7 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
                 }
             }
             (_, Velocities::Translation { by, acceleration }) => a = a + alpha.cross(*by) + *acceleration,
+            (Factor::Body(_), _) => sweep.visit(),
             _ => {}
         }
         accelerations.push((alpha, a));
@@ -34,9 +37,11 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     // Inward: force and moment that each frame takes.
     let (mut force, mut moment) = (zero, zero);
     let mut bias = model.zeros();
+    let sweep = model.graph.sweep();
     for ((factor, velocity), (alpha, a)) in factors.iter().zip(&along).zip(accelerations).rev() {
         match (factor, velocity) {
             (Factor::Body(index), Velocities::Body { omega }) => {
+                sweep.visit();
                 let body = &model.chain.bodies[*index];
                 if let Some(inertia) = &body.inertia {
                     let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));

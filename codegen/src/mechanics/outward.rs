@@ -39,6 +39,8 @@ pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>])
         omega.cross(spin)
     };
     let mut along = Vec::new();
+    let sweep = model.graph.sweep();
+    sweep.visit();
     for factor in factors {
         along.push(match factor {
             Factor::Translate(by) => Velocities::Translation { by: *by, acceleration: centripetal(omega, *by) },
@@ -58,6 +60,7 @@ pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>])
             }
             Factor::Body(index) => {
                 omega.named(&format!("omega_{}", model.chain.bodies[*index].name));
+                sweep.visit();
                 Velocities::Body { omega }
             }
         });

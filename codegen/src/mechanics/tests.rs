@@ -1,7 +1,8 @@
 //! The model on a crane small enough for a textbook: a double pendulum of two rods in the x–z plane, turning about y.
 
 use crate::chain::{
-    Analyses, Axis, Body, BodyId, Chain, Coordinate, CoordinateId, CoordinateKind, Inertia, Point, Run, Step, Value,
+    Analyses, Axis, Body, BodyId, Chain, Coordinate, CoordinateId, CoordinateKind, Inertia, Loops, Point, Run, Step,
+    Value,
 };
 use crate::mechanics::derive;
 use crate::symbolic::{Inputs, Program};
@@ -54,6 +55,7 @@ fn double_pendulum() -> Chain {
         guess: vec![0.0; 2],
         run: Run { duration: 1.0, step: 1e-3, output: 1e-2 },
         analyses: Analyses::ALL,
+        loops: Loops::Auto,
     }
 }
 

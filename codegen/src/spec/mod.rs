@@ -53,6 +53,8 @@ pub struct Crane {
     pub gravity: Option<Given<Vector>>,
     /// What is to be computed; the rest is left out of the generated code. Default `[statics, dynamics, modes]`.
     pub analyses: Option<Given<Vec<Given<Analysis>>>>,
+    /// Whether generated code writes out what repeats from element to element, or loops over it. Default `auto`.
+    pub loops: Option<Given<Loops>>,
     /// Values that stay live at run time, by name.
     pub parameters: Option<Given<Entries<Parameter>>>,
     /// Materials of beams, by name.
@@ -88,6 +90,18 @@ pub enum Analysis {
     Derivatives,
     /// Accelerations of eight cranes a call, for simulations of many with other parameters; includes `dynamics`.
     Ensemble,
+}
+
+/// When what repeats is a loop in generated code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Loops {
+    /// Where it was measured to be faster.
+    Auto,
+    /// Wherever it can be.
+    Always,
+    /// Nowhere.
+    Never,
 }
 
 /// A value that stays live at run time.

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use super::op::{Constant, ExprId, Op, SymbolId};
 use super::program::{Function, Program, Symbol};
+use super::tape::Recorder;
 use super::{Expr, rules};
 
 /// A growing graph of expressions. Equal expressions are the same node.
@@ -14,6 +15,7 @@ use super::{Expr, rules};
 #[derive(Debug)]
 pub struct Graph {
     nodes: RefCell<Nodes>,
+    pub(super) recorder: RefCell<Recorder>,
     simplify: bool,
 }
 
@@ -28,13 +30,13 @@ impl Graph {
     /// A graph that simplifies by local rules: 0, 1, constants, signs, order of commutative operands, `x + x`.
     #[must_use]
     pub fn simplifying() -> Self {
-        Graph { nodes: RefCell::default(), simplify: true }
+        Graph { nodes: RefCell::default(), recorder: RefCell::default(), simplify: true }
     }
 
     /// A graph that keeps every operation as written; it tells what simplification is worth.
     #[must_use]
     pub fn verbatim() -> Self {
-        Graph { nodes: RefCell::default(), simplify: false }
+        Graph { nodes: RefCell::default(), recorder: RefCell::default(), simplify: false }
     }
 
     /// The number `value`.
@@ -55,13 +57,14 @@ impl Graph {
 
     /// The node of exactly this operation, new or known.
     pub(super) fn intern(&self, op: Op) -> ExprId {
-        let mut nodes = self.nodes.borrow_mut();
-        if let Some(&known) = nodes.index.get(&op) {
-            return known;
+        let Nodes { operations, index, .. } = &mut *self.nodes.borrow_mut();
+        let id = *index.entry(op).or_insert_with(|| {
+            operations.push(op);
+            ExprId(u32::try_from(operations.len() - 1).expect("fewer than 2^32 expressions"))
+        });
+        if !op.is_leaf() {
+            self.recorder.borrow_mut().ask(id);
         }
-        let id = ExprId(u32::try_from(nodes.operations.len()).expect("fewer than 2^32 expressions"));
-        nodes.operations.push(op);
-        nodes.index.insert(op, id);
         id
     }
 

@@ -7,7 +7,9 @@ mod interpret;
 mod op;
 mod program;
 mod rules;
+mod shape;
 mod stage;
+mod tape;
 #[cfg(test)]
 mod tests;
 
@@ -16,5 +18,7 @@ pub use expr::Expr;
 pub use graph::Graph;
 pub use interpret::{Inputs, Scalar};
 pub use op::{Constant, ExprId, Op, SymbolId};
-pub use program::{Argument, Function, Program, Shape, Symbol};
+pub use program::{Argument, Function, Program, Symbol};
+pub use shape::{Point, Shape};
 pub use stage::Stages;
+pub use tape::{Sweep, Tape, Visit};

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::count::OperationCount;
-use super::interpret::Scalar;
 use super::op::{ExprId, Op, SymbolId};
+use super::shape::Shape;
+use super::tape::Tape;
 
 /// Functions that share one graph of expressions.
 #[derive(Clone, Debug)]
@@ -49,6 +49,10 @@ pub enum Argument {
     BaseResistance,
     /// What an earlier function left for this one.
     Factors,
+    /// What differs from one round of a loop to the next, in order of the loop's sources.
+    Round,
+    /// What a loop leaves, in order of the function's takings.
+    Loop,
     /// Live parameters.
     Parameters,
 }
@@ -68,181 +72,16 @@ pub struct Function {
     pub shape: Shape,
     /// Expressions of the result's slots, as many as [`Shape::len`], in its order.
     pub outputs: Vec<ExprId>,
+    /// Where they come from, if by sweeps over the bodies.
+    pub tape: Tape,
 }
 
-/// Shape of a result.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// One number.
-    Scalar,
-    /// A column of numbers.
-    Vector(usize),
-    /// Symmetric matrix; slots are the upper triangle, row by row.
-    Symmetric(usize),
-    /// Several 3-vectors.
-    Vectors(usize),
-    /// Several pairs.
-    Pairs(usize),
-    /// Homogeneous transformations or their derivatives, grouped by body; slots are the upper three rows of each, row
-    /// by row. `corner` is the corner of the constant fourth row: 1 for a transformation, 0 for a derivative.
-    Transforms {
-        /// How many matrices each body has.
-        counts: Vec<usize>,
-        /// Lower right corner.
-        corner: u8,
-    },
-    /// Second derivatives of transformations, left as factors because they are too many to be written out: slots are
-    /// the axes ω_m of all coordinates (zero for a translation), then the columns of the first derivatives T_n, body by
-    /// body, each as in [`Shape::Transforms`]. The result is `T_mn = ω_m × T_n` for m ≤ n.
-    Turned {
-        /// How many coordinates move each body.
-        degrees: Vec<usize>,
-        /// Whether each coordinate is a rotation.
-        rotations: Vec<bool>,
-    },
-    /// A mass matrix by its factors: axes, linear and angular momenta and ways to the next point of all coordinates, three
-    /// slots each; then, with `bias`, a vector. The result is the upper triangle, row by row, and the vector.
-    Columns {
-        /// Whether each coordinate is a rotation.
-        turns: Vec<bool>,
-        /// Whether the bias comes with it.
-        bias: bool,
-    },
-    /// The upper triangle of a symmetric matrix, row by row, and a vector.
-    MassAndBias(usize),
-    /// A symmetric 6×6 matrix over the base's coordinates, slots as in [`Shape::Symmetric`].
-    Base,
-    /// Numbers for another function, in no order that means anything.
-    Factors(usize),
-    /// Named results.
-    Record(&'static str, Vec<(&'static str, Shape)>),
-}
-
-impl Shape {
-    /// Number of slots.
+impl Function {
+    /// The function with the sweeps that derived it.
     #[must_use]
-    pub fn len(&self) -> usize {
-        match self {
-            Shape::Scalar => 1,
-            Shape::Vector(n) | Shape::Factors(n) => *n,
-            Shape::Base => 21,
-            Shape::MassAndBias(n) => n * (n + 1) / 2 + n,
-            Shape::Columns { turns, bias } => 12 * turns.len() + if *bias { turns.len() } else { 0 },
-            Shape::Symmetric(n) => n * (n + 1) / 2,
-            Shape::Vectors(n) => 3 * n,
-            Shape::Pairs(n) => 2 * n,
-            Shape::Transforms { counts, .. } => 12 * counts.iter().sum::<usize>(),
-            Shape::Turned { degrees, rotations } => 3 * rotations.len() + 12 * degrees.iter().sum::<usize>(),
-            Shape::Record(_, fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
-        }
+    pub fn by(self, tape: Tape) -> Self {
+        Function { tape, ..self }
     }
-
-    /// How many homogeneous matrices the result has.
-    #[must_use]
-    pub fn matrices(&self) -> usize {
-        match self {
-            Shape::Transforms { counts, .. } => counts.iter().sum(),
-            Shape::Turned { degrees, .. } => degrees.iter().map(|n| n * (n + 1) / 2).sum(),
-            _ => 0,
-        }
-    }
-
-    /// The result from its slots: themselves, unless they are factors.
-    pub fn close<S: Scalar>(&self, slots: Vec<S>) -> Vec<S> {
-        match self {
-            Shape::Turned { degrees, rotations } => turned_pairs(degrees, rotations.len(), &slots),
-            Shape::Columns { turns, .. } => {
-                let (columns, bias) = slots.split_at(12 * turns.len());
-                let mut closed = mass_matrix(turns, columns);
-                closed.extend_from_slice(bias);
-                closed
-            }
-            _ => slots,
-        }
-    }
-
-    /// Operations of [`Shape::close`]; translations cost none.
-    #[must_use]
-    pub fn closing_count(&self) -> OperationCount {
-        match self {
-            Shape::Turned { degrees, rotations } => {
-                let of = |&count: &usize| (0..count).filter(|&m| rotations[m]).map(|m| count - m).sum::<usize>();
-                let pairs: usize = degrees.iter().map(of).sum();
-                OperationCount { additions: 12 * pairs, multiplications: 24 * pairs, ..OperationCount::default() }
-            }
-            Shape::Columns { turns, .. } => {
-                let n = turns.len();
-                // An inner product for every entry, and a cross product for every one beside the diagonal.
-                let (entries, moved) = (n * (n + 1) / 2, n * (n - 1) / 2);
-                OperationCount {
-                    additions: 2 * entries + 6 * moved,
-                    multiplications: 3 * entries + 6 * moved,
-                    ..OperationCount::default()
-                }
-            }
-            _ => OperationCount::default(),
-        }
-    }
-
-    /// Whether it has no slots.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-}
-
-/// Pairs of second derivatives, body by body, from axes and first derivatives.
-fn turned_pairs<S: Scalar>(degrees: &[usize], coordinates: usize, slots: &[S]) -> Vec<S> {
-    let (axes, derivatives) = slots.split_at(3 * coordinates);
-    let mut closed = Vec::new();
-    let mut start = 0;
-    for &count in degrees {
-        for m in 0..count {
-            let axis = &axes[3 * m..3 * m + 3];
-            for n in m..count {
-                let first = &derivatives[12 * (start + n)..12 * (start + n) + 12];
-                closed.extend(turned(axis, first));
-            }
-        }
-        start += count;
-    }
-    closed
-}
-
-/// Upper triangle of a mass matrix, row by row: `a_ij = n_i · L_j` or `n_i · P_j`, with L_j taken about the point of i.
-fn mass_matrix<S: Scalar>(turns: &[bool], slots: &[S]) -> Vec<S> {
-    let n = turns.len();
-    let vector = |kind: usize, j: usize| -> [S; 3] { std::array::from_fn(|k| slots[3 * (kind * n + j) + k].clone()) };
-    let mut angular: Vec<[S; 3]> = (0..n).map(|j| vector(2, j)).collect();
-    let mut rows = Vec::new();
-    for i in (0..n).rev() {
-        let (axis, way) = (vector(0, i), vector(3, i));
-        for (j, angular) in angular.iter_mut().enumerate().skip(i + 1) {
-            let linear = vector(1, j);
-            let moved = |k: usize| {
-                let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-                way[a].clone() * linear[b].clone() + (angular[k].clone() - way[b].clone() * linear[a].clone())
-            };
-            *angular = [moved(0), moved(1), moved(2)];
-        }
-        let entry = |j: usize| {
-            let momentum = if turns[i] { angular[j].clone() } else { vector(1, j) };
-            let [x, y, z] = [0, 1, 2].map(|k| axis[k].clone() * momentum[k].clone());
-            x + (y + z)
-        };
-        rows.push((i..n).map(entry).collect::<Vec<S>>());
-    }
-    rows.into_iter().rev().flatten().collect()
-}
-
-/// `ω × column` of the four columns of a 3×4 matrix stored row by row.
-fn turned<S: Scalar>(axis: &[S], rows: &[S]) -> impl Iterator<Item = S> {
-    let at = |row: usize, column: usize| rows[4 * row + column].clone();
-    let entry = move |row: usize, column: usize| {
-        let (a, b) = ((row + 1) % 3, (row + 2) % 3);
-        axis[a].clone() * at(b, column) - axis[b].clone() * at(a, column)
-    };
-    (0..12).map(move |slot| entry(slot / 4, slot % 4))
 }
 
 impl Program {
@@ -264,6 +103,25 @@ impl Program {
     /// If there are 2^32 expressions or more, which no graph can hold.
     pub fn ids(&self) -> impl DoubleEndedIterator<Item = ExprId> + use<> {
         (0..u32::try_from(self.operations.len()).expect("fewer than 2^32 expressions")).map(ExprId)
+    }
+
+    /// Adds an operation of its own, whether or not there is one like it.
+    ///
+    /// # Panics
+    /// If there are 2^32 expressions or more, which no graph can hold.
+    pub fn append(&mut self, op: Op) -> ExprId {
+        self.operations.push(op);
+        ExprId(u32::try_from(self.operations.len() - 1).expect("fewer than 2^32 expressions"))
+    }
+
+    /// Adds an input.
+    ///
+    /// # Panics
+    /// If there are 2^32 inputs or more.
+    pub fn append_symbol(&mut self, symbol: Symbol) -> ExprId {
+        let id = SymbolId(u32::try_from(self.symbols.len()).expect("fewer than 2^32 inputs"));
+        self.symbols.push(symbol);
+        self.append(Op::Symbol(id))
     }
 
     /// The expression of an operation, if the program has it.

@@ -3,6 +3,7 @@
 use super::Expr;
 use super::graph::Graph;
 use super::op::{ExprId, Op, SymbolId};
+use super::tape::{Tape, Visit};
 
 /// A computation cut in two.
 #[derive(Debug)]
@@ -11,11 +12,20 @@ pub struct Stages<'g> {
     pub factors: Vec<Expr<'g>>,
     /// The results, in terms of the factors' symbols and the late inputs alone.
     pub results: Vec<Expr<'g>>,
+    /// What of the sweeps is left for the second stage.
+    pub tape: Tape,
 }
 
 impl Graph {
-    /// Cuts the computation of `results` where it first meets a `late` symbol. The factors get the symbols from `first` on.
-    pub fn stages<'g>(&'g self, results: &[Expr<'g>], late: impl Fn(SymbolId) -> bool, first: SymbolId) -> Stages<'g> {
+    /// Cuts the computation of `results` by the sweeps of `tape` where it first meets a `late` symbol. The factors get the
+    /// symbols from `first` on.
+    pub fn stages<'g>(
+        &'g self,
+        results: &[Expr<'g>],
+        tape: &Tape,
+        late: impl Fn(SymbolId) -> bool,
+        first: SymbolId,
+    ) -> Stages<'g> {
         let last = results.iter().map(|result| result.id().0).max();
         let ids: Vec<ExprId> = last.map_or(vec![], |last| (0..=last).map(ExprId).collect());
         let is_result = |id: ExprId| results.iter().any(|result| result.id() == id);
@@ -45,6 +55,12 @@ impl Graph {
                 moved[id.index()] = next.next().map_or(id, |symbol| self.symbol(symbol).id());
             }
         }
-        Stages { factors, results: results.iter().map(|result| self.expr(moved[result.id().index()])).collect() }
+        let is_moved = |id: &&ExprId| is_late.get(id.index()).is_some_and(|late| *late) && needed[id.index()];
+        let visits = tape.visits.iter().map(|Visit { sweep, nodes }| Visit {
+            sweep: *sweep,
+            nodes: nodes.iter().filter(is_moved).map(|id| moved[id.index()]).collect(),
+        });
+        let tape = Tape { visits: visits.collect() };
+        Stages { factors, results: results.iter().map(|result| self.expr(moved[result.id().index()])).collect(), tape }
     }
 }

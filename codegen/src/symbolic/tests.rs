@@ -1,6 +1,6 @@
 //! Every rule keeps the value, and does what it is for.
 
-use super::{Argument, Expr, Function, Graph, Inputs, Op, Program, Shape, Symbol, SymbolId};
+use super::{Argument, Expr, Function, Graph, Inputs, Op, Program, Shape, Symbol, SymbolId, Tape};
 
 fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>>, graph: Graph) -> Program {
     let outputs: Vec<_> = {
@@ -9,7 +9,15 @@ fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>
     };
     let symbol = |name: &str, index| Symbol { name: name.into(), argument: Argument::Position, index };
     let shape = Shape::Vector(outputs.len());
-    let function = Function { name: "f", doc: "", equation: "", arguments: &[Argument::Position], shape, outputs };
+    let function = Function {
+        name: "f",
+        doc: "",
+        equation: "",
+        arguments: &[Argument::Position],
+        shape,
+        outputs,
+        tape: Tape::default(),
+    };
     graph.into_program(vec![symbol("x", 0), symbol("y", 1)], vec![function])
 }
 

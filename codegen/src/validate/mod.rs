@@ -17,9 +17,9 @@ mod section;
 
 use std::collections::BTreeMap;
 
-use crate::chain::{Analyses, Body, Chain, Coordinate, CoordinateId, ElementSpring, Parameter, Value};
+use crate::chain::{Analyses, Body, Chain, Coordinate, CoordinateId, ElementSpring, Loops, Parameter, Value};
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
-use crate::spec::{Analysis, Crane, CraneSpec, Given};
+use crate::spec::{self, Analysis, Crane, CraneSpec, Given};
 use names::Names;
 use numbers::Limit;
 
@@ -131,6 +131,7 @@ impl<'a> Check<'a> {
             guess,
             run,
             analyses,
+            loops: loops(crane.loops.as_ref()),
         }
     }
 
@@ -179,5 +180,13 @@ impl<'a> Check<'a> {
             derivatives: wants(Analysis::Derivatives),
             ensemble: wants(Analysis::Ensemble),
         }
+    }
+}
+
+fn loops(given: Option<&Given<spec::Loops>>) -> Loops {
+    match given.and_then(|given| given.value) {
+        None | Some(spec::Loops::Auto) => Loops::Auto,
+        Some(spec::Loops::Always) => Loops::Always,
+        Some(spec::Loops::Never) => Loops::Never,
     }
 }

@@ -2,22 +2,12 @@
 
 pub use wide::f64x8;
 
-use super::sin_cos::sin_cos_lanes;
+pub use super::sin_cos::sin_cos_lanes as sin_cos;
 
 /// A number in all lanes.
 #[inline]
 pub const fn splat(x: f64) -> f64x8 {
     f64x8::splat(x)
-}
-
-/// Sines and cosines of every angle in every lane, rad.
-#[inline]
-pub fn sin_cos<const K: usize>(angles: [f64x8; K]) -> ([f64x8; K], [f64x8; K]) {
-    let (mut sines, mut cosines) = ([splat(0.0); K], [splat(0.0); K]);
-    for ((sin, cos), angle) in sines.iter_mut().zip(&mut cosines).zip(angles) {
-        (*sin, *cos) = sin_cos_lanes(angle);
-    }
-    (sines, cosines)
 }
 
 /// Numbers with a fused multiply-add where the target has one.

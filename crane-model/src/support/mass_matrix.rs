@@ -2,32 +2,42 @@
 
 use nalgebra::SMatrix;
 
-use super::lanes::{Fused, f64x8, fma};
+use super::lanes::{f64x8, fma};
 
 /// What a mass matrix is made of, coordinate by coordinate, in the world's axes: `a_ij = n_i · L_j` where coordinate i turns
-/// and `n_i · P_j` where it slides, i ≤ j, with L_j taken about the point of i.
+/// and `n_i · P_j` where it slides, i ≤ j, with L_j taken about the point of i. `E` eights hold `N` columns.
 #[derive(Clone, Copy, Debug)]
-pub struct MassColumns<const N: usize> {
+#[repr(C, align(64))]
+pub struct MassColumns<const N: usize, const E: usize> {
+    /// Linear momenta P of all that the coordinate moves, at unit rate; x, y and z of all coordinates, eight by eight.
+    pub linear: [[[f64; 8]; E]; 3],
+    /// Angular momenta L about the coordinate's own point.
+    pub angular: [[[f64; 8]; E]; 3],
     /// Axes n.
     pub axes: [[f64; 3]; N],
-    /// Linear momenta P of all that the coordinate moves, at unit rate; x, y and z of all coordinates.
-    pub linear: [[f64; N]; 3],
-    /// Angular momenta L about the coordinate's own point.
-    pub angular: [[f64; N]; 3],
     /// Ways from the coordinate's point to that of the next.
     pub ways: [[f64; 3]; N],
     /// Bias e, if it is computed along with it.
     pub bias: [f64; N],
 }
 
-impl<const N: usize> MassColumns<N> {
+/// Coordinates that follow each other and act at one point: at most three, and all of them turn or all slide.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// How many.
+    pub coordinates: usize,
+    /// Whether they turn.
+    pub turns: bool,
+}
+
+impl<const N: usize, const E: usize> MassColumns<N, E> {
     /// All zero.
     #[inline]
     pub fn zeros() -> Self {
         MassColumns {
+            linear: [[[0.0; 8]; E]; 3],
+            angular: [[[0.0; 8]; E]; 3],
             axes: [[0.0; 3]; N],
-            linear: [[0.0; N]; 3],
-            angular: [[0.0; N]; 3],
             ways: [[0.0; 3]; N],
             bias: [0.0; N],
         }
@@ -35,99 +45,113 @@ impl<const N: usize> MassColumns<N> {
 
     /// The matrix.
     #[inline]
-    pub fn mass_matrix(mut self, turns: &[bool; N]) -> SMatrix<f64, N, N> {
-        let mut lower = [[0.0; N]; N];
-        self.fill(turns, &mut lower);
+    pub fn mass_matrix(mut self, points: &[Point]) -> SMatrix<f64, N, N> {
+        let mut matrix = SMatrix::zeros();
+        let columns: &mut [[f64; N]; N] = &mut matrix.data.0;
+        self.fill(points, columns);
         for column in 0..N {
             for row in 0..column {
-                lower[column][row] = lower[row][column];
+                columns[column][row] = columns[row][column];
             }
         }
-        SMatrix::from(lower)
+        matrix
     }
 
     /// The lower triangle, column by column: row i of the upper triangle is column i of the lower one. What stands above the
     /// diagonal is no result.
     #[inline]
-    pub fn fill(&mut self, turns: &[bool; N], lower: &mut [[f64; N]; N]) {
-        let [px, py, pz] = self.linear.each_ref().map(|p| p.as_chunks::<8>());
-        let [lx, ly, lz] = self.angular.each_mut().map(|l| l.as_chunks_mut::<8>());
-        let rows = self.axes.iter().zip(&self.ways).zip(turns).zip(lower).enumerate().rev();
-        for (i, (((axis, way), turns), column)) in rows {
-            let (eights, rest) = column.as_chunks_mut::<8>();
-            let row = Row { i, axis, way, turns: *turns };
-            // Eight columns at a time from the one that holds the diagonal, then those that are left.
-            let linear = px.0.iter().zip(py.0).zip(pz.0);
-            let angular = lx.0.iter_mut().zip(ly.0.iter_mut()).zip(lz.0.iter_mut());
-            let blocks = linear.zip(angular).zip(eights).enumerate().skip(i / 8);
-            for (block, ((((px, py), pz), ((lx, ly), lz)), out)) in blocks {
-                let p = [px, py, pz].map(|p| f64x8::new(*p));
-                let mut l = [&*lx, &*ly, &*lz].map(|l| f64x8::new(*l));
-                *out = row.eight(8 * block, p, &mut l).to_array();
-                [*lx, *ly, *lz] = l.map(f64x8::to_array);
-            }
-            let linear = px.1.iter().zip(py.1).zip(pz.1);
-            let angular = lx.1.iter_mut().zip(ly.1.iter_mut()).zip(lz.1.iter_mut());
-            let single = linear.zip(angular).zip(rest).enumerate();
-            for (k, ((((px, py), pz), ((lx, ly), lz)), out)) in single {
-                let mut l = [*lx, *ly, *lz];
-                *out = row.single(N / 8 * 8 + k, [*px, *py, *pz], &mut l);
-                [*lx, *ly, *lz] = l;
+    pub fn fill(&mut self, points: &[Point], lower: &mut [[f64; N]; N]) {
+        let momenta = &mut Momenta { linear: &self.linear, angular: &mut self.angular };
+        let mut rows = Rows { axes: &self.axes, ways: &self.ways, lower };
+        for point in points.iter().rev() {
+            match point.coordinates {
+                1 => rows.last::<1, E>(point.turns, momenta),
+                2 => rows.last::<2, E>(point.turns, momenta),
+                _ => rows.last::<3, E>(point.turns, momenta),
             }
         }
     }
 }
 
-/// What row i makes of the momenta of a column j: moves L to the point of i, if j comes after i, and returns `a_ij`.
-struct Row<'a> {
-    i: usize,
-    axis: &'a [f64; 3],
-    way: &'a [f64; 3],
-    turns: bool,
+/// Momenta of all columns, the angular ones about the point of the row at hand.
+struct Momenta<'a, const E: usize> {
+    linear: &'a [[[f64; 8]; E]; 3],
+    angular: &'a mut [[[f64; 8]; E]; 3],
 }
 
-/// Lanes after a lane.
-const AFTER: [[f64; 8]; 8] = {
-    let mut after = [[0.0; 8]; 8];
-    let mut lane = 0;
-    while lane < 64 {
-        after[lane / 8][lane % 8] = if lane % 8 > lane / 8 { 1.0 } else { 0.0 };
-        lane += 1;
-    }
-    after
-};
+/// Rows not yet filled.
+struct Rows<'a, const N: usize> {
+    axes: &'a [[f64; 3]],
+    ways: &'a [[f64; 3]],
+    lower: &'a mut [[f64; N]],
+}
 
-impl Row<'_> {
-    /// Columns `first` to `first + 7`.
+impl<const N: usize> Rows<'_, N> {
+    /// Fills the last `K` rows, whose coordinates act at one point.
     #[inline]
-    fn eight(&self, first: usize, p: [f64x8; 3], l: &mut [f64x8; 3]) -> f64x8 {
-        let here = f64x8::new(if first <= self.i { AFTER[self.i % 8] } else { [1.0; 8] });
-        if self.way != &[0.0; 3] {
-            moved(self.way.map(|x| here * x), p, l);
+    fn last<const K: usize, const E: usize>(&mut self, turns: bool, momenta: &mut Momenta<'_, E>) {
+        let lower = core::mem::take(&mut self.lower);
+        let last = (self.axes.split_last_chunk::<K>(), self.ways.split_last_chunk::<K>(), lower.split_last_chunk_mut());
+        let (Some((axes, own)), Some((ways, after)), Some((lower, rows))) = last else { return };
+        let way = after.last().unwrap_or(&[0.0; 3]);
+        let first = axes.len();
+        (self.axes, self.ways, self.lower) = (axes, ways, lower);
+        let axes = own.map(|axis| axis.map(f64x8::splat));
+        if turns {
+            fill(first, way, rows, momenta, |_, l| axes.map(|n| along(n, l)));
+        } else {
+            fill(first, way, rows, momenta, |p, _| axes.map(|n| along(n, p)));
         }
-        along(self.axis.map(f64x8::splat), if self.turns { *l } else { p })
-    }
-
-    /// Column `j`.
-    #[inline]
-    fn single(&self, j: usize, p: [f64; 3], l: &mut [f64; 3]) -> f64 {
-        if j > self.i {
-            moved(*self.way, p, l);
-        }
-        along(*self.axis, if self.turns { *l } else { p })
     }
 }
 
-/// `L += way × P`
+/// The lanes of eight columns.
+const LANES: f64x8 = f64x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+
+/// Rows from `first` on: `entries` of the momenta of eight columns at a time, those after the rows moved along `way` before.
 #[inline]
-fn moved<T: Fused + core::ops::Neg<Output = T>>(way: [T; 3], p: [T; 3], l: &mut [T; 3]) {
-    let ([wx, wy, wz], [px, py, pz], [lx, ly, lz]) = (way, p, *l);
-    *l = [fma(wy, pz, fma(-wz, py, lx)), fma(wz, px, fma(-wx, pz, ly)), fma(wx, py, fma(-wy, px, lz))];
+fn fill<const K: usize, const N: usize, const E: usize>(
+    first: usize,
+    way: &[f64; 3],
+    rows: &mut [[f64; N]; K],
+    Momenta { linear: [px, py, pz], angular: [lx, ly, lz] }: &mut Momenta<'_, E>,
+    entries: impl Fn([f64x8; 3], [f64x8; 3]) -> [f64x8; K],
+) {
+    let way = way.map(f64x8::splat);
+    let linear = px.iter().zip(py).zip(pz);
+    let angular = lx.iter_mut().zip(ly).zip(lz);
+    for (eight, (((px, py), pz), ((lx, ly), lz))) in linear.zip(angular).enumerate().skip(first / 8) {
+        let p = [px, py, pz].map(|p| f64x8::new(*p));
+        let l = [&*lx, &*ly, &*lz].map(|l| f64x8::new(*l));
+        let after = (LANES + number(8 * eight)).simd_ge(number(first + K));
+        let l = moved(way.map(|w| w & after), p, l);
+        [*lx, *ly, *lz] = l.map(f64x8::to_array);
+        for (row, entries) in rows.iter_mut().zip(entries(p, l)) {
+            let (eights, rest) = row.as_chunks_mut::<8>();
+            match eights.get_mut(eight) {
+                Some(place) => *place = entries.to_array(),
+                None => rest.iter_mut().zip(entries.to_array()).for_each(|(place, entry)| *place = entry),
+            }
+        }
+    }
+}
+
+/// An index in all lanes.
+#[inline]
+#[expect(clippy::cast_precision_loss, reason = "indices of columns are small")]
+fn number(index: usize) -> f64x8 {
+    f64x8::splat(index as f64)
+}
+
+/// `L + way × P`
+#[inline]
+fn moved([wx, wy, wz]: [f64x8; 3], [px, py, pz]: [f64x8; 3], [lx, ly, lz]: [f64x8; 3]) -> [f64x8; 3] {
+    [fma(wy, pz, fma(-wz, py, lx)), fma(wz, px, fma(-wx, pz, ly)), fma(wx, py, fma(-wy, px, lz))]
 }
 
 /// `n · x`
 #[inline]
-fn along<T: Fused + core::ops::Mul<Output = T>>(n: [T; 3], x: [T; 3]) -> T {
+fn along(n: [f64x8; 3], x: [f64x8; 3]) -> f64x8 {
     fma(n[0], x[0], fma(n[1], x[1], n[2] * x[2]))
 }
 

@@ -5,7 +5,7 @@ mod mass_matrix;
 mod sin_cos;
 
 pub use lanes::fma;
-pub use mass_matrix::{MassAndBias, MassColumns};
+pub use mass_matrix::{MassAndBias, MassColumns, Point};
 pub use sin_cos::{sin_cos, sin_cos_lanes};
 
 use nalgebra::{Matrix4, SMatrix, Vector3};

@@ -40,46 +40,77 @@ const COS: [f64; 6] = [
 #[inline]
 pub fn sin_cos<const K: usize>(angles: [f64; K]) -> ([f64; K], [f64; K]) {
     let (mut sines, mut cosines) = ([0.0; K], [0.0; K]);
-    let mut eight_at = |at: usize| {
-        let places = (angles.get(at..), sines.get_mut(at..), cosines.get_mut(at..));
-        let (Some(angles), Some(sines), Some(cosines)) = places else { return };
-        let places = (angles.first_chunk::<8>(), sines.first_chunk_mut(), cosines.first_chunk_mut());
-        if let (Some(angles), Some(sines), Some(cosines)) = places {
-            let (sin, cos) = sin_cos_lanes(f64x8::new(*angles));
-            (*sines, *cosines) = (sin.to_array(), cos.to_array());
-        }
+    let mut small = true;
+    let mut eight = |angles: &[f64; 8], sines: &mut [f64; 8], cosines: &mut [f64; 8]| {
+        let x = f64x8::new(*angles);
+        let (sin, cos) = sin_cos_of_small(x);
+        *sines = sin.to_array();
+        *cosines = cos.to_array();
+        small &= is_small(x);
     };
-    for eight in 0..K / 8 {
-        eight_at(8 * eight);
+    let eights = angles.as_chunks::<8>().0.iter().zip(sines.as_chunks_mut().0).zip(cosines.as_chunks_mut().0);
+    for ((angles, sines), cosines) in eights {
+        eight(angles, sines, cosines);
     }
-    if K > 8 && !K.is_multiple_of(8) {
-        // The last eight: some of them a second time, which is cheaper than to move fewer.
-        eight_at(K - 8);
+    if !K.is_multiple_of(8) {
+        if let (Some(angles), Some(sines), Some(cosines)) =
+            (angles.last_chunk(), sines.last_chunk_mut(), cosines.last_chunk_mut())
+        {
+            // The last eight: some of them a second time, which is cheaper than to move fewer.
+            eight(angles, sines, cosines);
+        } else {
+            let (mut padded, mut sin, mut cos) = ([0.0; 8], [0.0; 8], [0.0; 8]);
+            padded.iter_mut().zip(angles).for_each(|(place, angle)| *place = angle);
+            eight(&padded, &mut sin, &mut cos);
+            sines.iter_mut().zip(sin).for_each(|(place, sin)| *place = sin);
+            cosines.iter_mut().zip(cos).for_each(|(place, cos)| *place = cos);
+        }
     }
-    if K < 8 {
-        let mut eight = [0.0; 8];
-        for (place, angle) in eight.iter_mut().zip(angles) {
-            *place = angle;
-        }
-        let (sin, cos) = sin_cos_lanes(f64x8::new(eight));
-        for (place, sine) in sines.iter_mut().zip(sin.to_array()) {
-            *place = sine;
-        }
-        for (place, cosine) in cosines.iter_mut().zip(cos.to_array()) {
-            *place = cosine;
+    if !small {
+        replace_large(&angles, &mut sines, &mut cosines);
+    }
+    (sines, cosines)
+}
+
+/// Sines and cosines of every angle in every lane, rad.
+#[inline]
+pub fn sin_cos_lanes<const K: usize>(angles: [f64x8; K]) -> ([f64x8; K], [f64x8; K]) {
+    let (mut sines, mut cosines) = ([f64x8::splat(0.0); K], [f64x8::splat(0.0); K]);
+    let mut small = true;
+    for ((angle, sin), cos) in angles.iter().zip(&mut sines).zip(&mut cosines) {
+        (*sin, *cos) = sin_cos_of_small(*angle);
+        small &= is_small(*angle);
+    }
+    if !small {
+        for ((angle, sin), cos) in angles.iter().zip(&mut sines).zip(&mut cosines) {
+            let (mut sines, mut cosines) = (sin.to_array(), cos.to_array());
+            replace_large(&angle.to_array(), &mut sines, &mut cosines);
+            (*sin, *cos) = (f64x8::new(sines), f64x8::new(cosines));
         }
     }
     (sines, cosines)
 }
 
-/// `(sin x, cos x)` of eight angles, rad.
+/// False too for what is no number.
 #[inline]
-pub fn sin_cos_lanes(x: f64x8) -> (f64x8, f64x8) {
-    // False for what is no number.
-    let small = x.abs().simd_lt(f64x8::splat(LARGEST));
-    if !small.all() {
-        return with_large(x, small);
+fn is_small(x: f64x8) -> bool {
+    x.abs().simd_lt(f64x8::splat(LARGEST)).all()
+}
+
+/// Large angles, and those that are no number, by the standard library: a result does not depend on the angles beside it.
+#[cold]
+#[inline(never)]
+fn replace_large(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
+    for (angle, (sin, cos)) in angles.iter().zip(sines.iter_mut().zip(cosines)) {
+        if !(angle.abs() < LARGEST) {
+            (*sin, *cos) = nalgebra::ComplexField::sin_cos(*angle);
+        }
     }
+}
+
+/// `(sin x, cos x)` of eight angles below [`LARGEST`], rad.
+#[inline]
+fn sin_cos_of_small(x: f64x8) -> (f64x8, f64x8) {
     let shifted = fma(x, f64x8::splat(core::f64::consts::FRAC_2_PI), f64x8::splat(ROUND));
     let (y, tail) = reduced(x, shifted - ROUND);
     let (sin, cos) = (sine(y, tail), cosine(y, tail));
@@ -92,17 +123,15 @@ pub fn sin_cos_lanes(x: f64x8) -> (f64x8, f64x8) {
     (odd.bitselect(cos, sin) ^ minus_sin, odd.bitselect(sin, cos) ^ minus_cos)
 }
 
-/// `x − n π/2` and what its rounding lost.
+/// `x − n π/2` and what its rounding lost. Products with the first three parts are exact, fused or not.
 #[inline]
 fn reduced(x: f64x8, n: f64x8) -> (f64x8, f64x8) {
-    let [first, second, third, rest] = HALF_PI;
-    let y = x - n * first;
-    let (part, y_before) = (n * second, y);
-    let y = y_before - part;
-    let lost = (y_before - y) - part;
-    let (part, y_before) = (n * third, y);
-    let y = y_before - part;
-    let lost = lost + ((y_before - y) - part) - n * rest;
+    let [first, second, third, rest] = HALF_PI.map(|part| f64x8::splat(-part));
+    let y = fma(n, first, x);
+    let (before, y) = (y, fma(n, second, y));
+    let lost = fma(n, second, before - y);
+    let (before, y) = (y, fma(n, third, y));
+    let lost = fma(n, rest, lost + fma(n, third, before - y));
     let sum = y + lost;
     (sum, (y - sum) + lost)
 }
@@ -130,18 +159,7 @@ fn cosine(y: f64x8, tail: f64x8) -> f64x8 {
 /// `c₀ + c₁ z + …` by Horner's rule.
 #[inline]
 fn polynomial<const K: usize>(z: f64x8, coefficients: [f64; K]) -> f64x8 {
-    coefficients.iter().rev().fold(f64x8::splat(0.0), |sum, c| fma(sum, z, f64x8::splat(*c)))
-}
-
-/// Large angles, and those that are no number, by the standard library: a result does not depend on the angles beside it.
-#[cold]
-fn with_large(x: f64x8, small: f64x8) -> (f64x8, f64x8) {
-    let (sines, cosines) = sin_cos_lanes(x & small);
-    let (mut sines, mut cosines) = (sines.to_array(), cosines.to_array());
-    for (angle, (sin, cos)) in x.to_array().into_iter().zip(sines.iter_mut().zip(&mut cosines)) {
-        if !(angle.abs() < LARGEST) {
-            (*sin, *cos) = nalgebra::ComplexField::sin_cos(angle);
-        }
-    }
-    (f64x8::new(sines), f64x8::new(cosines))
+    let mut coefficients = coefficients.iter().rev().map(|c| f64x8::splat(*c));
+    let highest = coefficients.next().unwrap_or_default();
+    coefficients.fold(highest, |sum, c| fma(sum, z, c))
 }

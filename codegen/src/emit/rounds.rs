@@ -1,0 +1,133 @@
+//! A loop as Rust.
+
+use proc_macro2::{Span, TokenStream};
+use quote::quote;
+use syn::{Expr, Ident, Stmt, parse_quote};
+
+use super::arithmetic::{element, integer, variable};
+use super::function::{Used, Writer, pattern};
+use super::names::Names;
+use super::number::Number;
+use super::print::comment;
+use crate::lower::{Progression, Source, Statement, Taking};
+use crate::symbolic::ExprId;
+
+/// Names of what belongs to a loop.
+pub const NAMES: [&str; 4] = ["numbers", "gathered", "carried", "kept"];
+
+impl Writer<'_> {
+    /// What a loop starts from, and the loop.
+    pub(super) fn rounds(&self, of: usize, body: &[Statement], names: &mut Names, used: &mut Used) -> Vec<Stmt> {
+        let own = &self.block.rolled.loops[of];
+        let [numbers, gathered, carried, kept] = NAMES.map(|name| owned(name, of));
+        let (number, rounds) = (self.number.of(), integer(own.rounds));
+        let mut statements = vec![comment(&format!("{} rounds of the same", own.rounds))];
+        if !own.numbers.is_empty() {
+            let rows = (0..own.rounds).map(|k| row(own.numbers.iter().map(|column| Number::Single.literal(column[k]))));
+            let width = integer(own.numbers.len());
+            statements.push(parse_quote!(static #numbers: [[f64; #width]; #rounds] = [#(#rows),*];));
+        }
+        if !own.gathered.is_empty() {
+            let rows: Vec<TokenStream> = (0..own.rounds)
+                .map(|k| row(own.gathered.iter().map(|column| self.expression(column[k], names, used))))
+                .collect();
+            statements.push(parse_quote!(let #gathered = [#(#rows),*];));
+        }
+        if !own.carried.is_empty() {
+            let initial = row(own.carried.iter().map(|(initial, _)| self.expression(*initial, names, used)));
+            statements.push(parse_quote!(let mut #carried = #initial;));
+        }
+        if !own.kept.is_empty() {
+            let (width, zero) = (integer(own.kept.len()), self.number.literal(0.0));
+            statements.push(parse_quote!(let mut #kept: [[#number; #width]; #rounds] = [[#zero; #width]; #rounds];));
+        }
+        let mut round = self.statements(body, names, used);
+        for (slots, value) in &own.results {
+            let (place, value) = (self.storage.place_at(*slots), self.expression(*value, names, used));
+            round.push(parse_quote!(#place = #value;));
+        }
+        if !own.kept.is_empty() {
+            let values = row(own.kept.iter().map(|value| self.expression(*value, names, used)));
+            round.push(parse_quote!(#kept[k] = #values;));
+        }
+        if !own.carried.is_empty() {
+            let values = row(own.carried.iter().map(|(_, next)| self.expression(*next, names, used)));
+            round.push(parse_quote!(#carried = #values;));
+        }
+        statements.push(parse_quote!(for k in 0..#rounds { #(#round)* }));
+        statements
+    }
+
+    /// What differs from round to round.
+    pub(super) fn source(&self, index: usize, used: &mut Used) -> Expr {
+        let (of, source) = &self.block.rolled.sources[index];
+        match source {
+            Source::Number(column) => {
+                let number = element(place(owned("numbers", *of), &variable("k")), *column);
+                match self.number {
+                    Number::Single => number,
+                    Number::Lanes => parse_quote!(splat(#number)),
+                }
+            }
+            Source::Input(argument, slots) => place(self.argument(*argument, used), &at(*slots)),
+            Source::Sine(places) => place(variable("sines"), &at(*places)),
+            Source::Cosine(places) => place(variable("cosines"), &at(*places)),
+            Source::Carried(place) => element(owned("carried", *of), *place),
+            Source::Kept { of, slot, round } => element(place(owned("kept", *of), &at(*round)), *slot),
+            Source::Gathered(column) => element(place(owned("gathered", *of), &variable("k")), *column),
+        }
+    }
+
+    /// What a loop leaves.
+    pub(super) fn taking(&self, index: usize) -> Expr {
+        match self.block.rolled.takings[index] {
+            Taking::Carried { of, place } => element(owned("carried", of), place),
+            Taking::Kept { of, slot, round } => element(element(owned("kept", of), round), slot),
+        }
+    }
+}
+
+/// Names for those elements of an array that need one: `let [_, sin_psi] = sines;`
+pub fn patterns(array: &str, ids: &[Option<ExprId>], names: &mut Names) -> Option<Stmt> {
+    let array = variable(array);
+    let patterns: Vec<TokenStream> = ids.iter().map(|id| pattern(*id, names)).collect();
+    ids.iter().any(Option::is_some).then(|| parse_quote!(let [#(#patterns),*] = #array;))
+}
+
+/// `kept_1` of the first loop.
+fn owned(name: &str, of: usize) -> Expr {
+    variable(&owned_name(name, of))
+}
+
+/// Name of what belongs to a loop.
+pub fn owned_name(name: &str, of: usize) -> String {
+    let name = format!("{name}_{}", of + 1);
+    // Tables are statics.
+    if name.starts_with("numbers") { name.to_uppercase() } else { name }
+}
+
+/// `[a, b, c]`
+fn row(values: impl Iterator<Item = Expr>) -> TokenStream {
+    quote!([#(#values),*])
+}
+
+/// `array[index]`
+#[expect(clippy::needless_pass_by_value, reason = "as `element`, which a constant index goes to")]
+pub fn place(array: Expr, index: &Expr) -> Expr {
+    parse_quote!(#array[#index])
+}
+
+/// `8 + 3 * k`
+pub fn at(Progression { first, step }: Progression) -> Expr {
+    let k = Ident::new("k", Span::call_site());
+    let way: Expr = match integer(step.unsigned_abs()) {
+        _ if step.unsigned_abs() == 1 => parse_quote!(#k),
+        stride => parse_quote!(#stride * #k),
+    };
+    let start = integer(first);
+    match (first, step) {
+        (0, 0..) => way,
+        (_, 0..) => parse_quote!(#start + #way),
+        _ => parse_quote!(#start - #way),
+    }
+}

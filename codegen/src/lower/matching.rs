@@ -1,0 +1,102 @@
+//! Whether two visits do the same, operation by operation.
+
+use std::collections::HashMap;
+
+use crate::symbolic::{ExprId, Op, Program};
+
+/// A visit that does what the first of its loop does.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Match {
+    /// Its expression for each of the first visit's.
+    pub nodes: HashMap<ExprId, ExprId>,
+    /// Its operands from outside, by the first visit's expression and the place among its operands.
+    pub outside: HashMap<(ExprId, usize), ExprId>,
+    templates: HashMap<ExprId, ExprId>,
+}
+
+impl Match {
+    /// The expression of the first visit that one of this visit stands for.
+    pub fn template_of(&self, id: ExprId) -> Option<ExprId> {
+        self.templates.get(&id).copied()
+    }
+}
+
+/// Pairs the expressions of two visits, from those that each asked for itself down to what only it needs.
+pub(super) fn matched(
+    program: &Program,
+    rank: &[usize],
+    (first, own): (usize, &[ExprId]),
+    (second, others): (usize, &[ExprId]),
+) -> Option<Match> {
+    if own.len() != others.len() {
+        return None;
+    }
+    let mut found = Match::default();
+    // What an operand from outside was paired with before.
+    let mut known: HashMap<ExprId, ExprId> = HashMap::new();
+    let mut stack: Vec<(ExprId, ExprId)> = own.iter().copied().zip(others.iter().copied()).rev().collect();
+    let asked: HashMap<ExprId, ExprId> = stack.iter().copied().collect();
+    while let Some((a, b)) = stack.pop() {
+        if let Some(paired) = found.nodes.get(&a) {
+            if *paired != b {
+                return None;
+            }
+            continue;
+        }
+        if found.templates.insert(b, a).is_some() {
+            return None;
+        }
+        found.nodes.insert(a, b);
+        let (op, other) = (program.op(a), program.op(b));
+        if std::mem::discriminant(&op) != std::mem::discriminant(&other) {
+            return None;
+        }
+        let inside = |x: ExprId, y: ExprId| match (rank[x.index()] == first, rank[y.index()] == second) {
+            (true, true) => {
+                let paired = found.nodes.get(&x).or_else(|| asked.get(&x));
+                let alike = std::mem::discriminant(&program.op(x)) == std::mem::discriminant(&program.op(y));
+                Some(2 * usize::from(alike && paired.is_none_or(|z| *z == y)))
+            }
+            (false, false) => Some(match known.get(&x) {
+                Some(z) => 2 * usize::from(*z == y),
+                None => usize::from(class(program, x) == class(program, y)),
+            }),
+            _ => None,
+        };
+        let pairs: Vec<(ExprId, ExprId)> = op.operands().zip(other.operands()).collect();
+        let order = match (op, pairs.as_slice()) {
+            (Op::Add(..) | Op::Mul(..), &[(x1, y1), (x2, y2)]) => {
+                let straight = inside(x1, y1).zip(inside(x2, y2)).map(|(a, b)| a + b);
+                let swapped = inside(x1, y2).zip(inside(x2, y1)).map(|(a, b)| a + b);
+                match (straight, swapped) {
+                    (None, None) => return None,
+                    (straight, swapped) if straight >= swapped => pairs,
+                    _ => vec![(x1, y2), (x2, y1)],
+                }
+            }
+            _ => pairs,
+        };
+        for (place, (x, y)) in order.into_iter().enumerate() {
+            match (rank[x.index()] == first, rank[y.index()] == second) {
+                (true, true) => stack.push((x, y)),
+                (false, false) => {
+                    known.entry(x).or_insert(y);
+                    found.outside.insert((a, place), y);
+                }
+                _ => return None,
+            }
+        }
+    }
+    Some(found)
+}
+
+/// What kind of operand something from outside is.
+fn class(program: &Program, id: ExprId) -> usize {
+    match program.op(id) {
+        Op::Constant(_) => 0,
+        Op::Symbol(symbol) => 1 + program.symbol(symbol).argument as usize,
+        Op::Sin(_) => 100,
+        Op::Cos(_) => 101,
+        _ => 102,
+    }
+}

@@ -1,0 +1,532 @@
+//! Work that repeats from body to body, as loops.
+//!
+//! The sweeps of a recursion do the same at every rigid element of a flexible link. Visits of one sweep that follow each
+//! other, and whose operations are the same one by one, become a loop over the operations of the first. Its operands from
+//! outside differ from round to round as [`Source`] tells; what is needed outside of the loop is kept, round by round.
+
+use std::collections::HashMap;
+
+use super::matching::{Match, matched};
+use super::{Angle, Constants, order};
+use crate::symbolic::{Argument, ExprId, Function, Op, Program, Shape, Symbol, Visit};
+
+/// Where a loop takes what differs from round to round; `k` counts the rounds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A column of the loop's table of numbers.
+    Number(usize),
+    /// `argument[first + k step]`
+    Input(Argument, Progression),
+    /// The sine of the angle at `first + k step`.
+    Sine(Progression),
+    /// The cosine of the angle at `first + k step`.
+    Cosine(Progression),
+    /// What the round before hands over.
+    Carried(usize),
+    /// What another loop kept in its round `first + k step`.
+    Kept {
+        /// Which loop.
+        of: usize,
+        /// Which of the values it kept.
+        slot: usize,
+        /// In which of its rounds.
+        round: Progression,
+    },
+    /// A value computed before the loop, one a round.
+    Gathered(usize),
+}
+
+/// `first + k step`
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progression {
+    /// In round 0.
+    pub first: usize,
+    /// From round to round.
+    pub step: isize,
+}
+
+/// What is taken from a loop after its last round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taking {
+    /// What the last round hands over.
+    Carried {
+        /// By which loop.
+        of: usize,
+        /// Which value.
+        place: usize,
+    },
+    /// What was kept in a round.
+    Kept {
+        /// By which loop.
+        of: usize,
+        /// Which value.
+        slot: usize,
+        /// In which round.
+        round: usize,
+    },
+}
+
+/// One loop.
+#[derive(Clone, Debug, Default)]
+pub struct Loop {
+    /// How many rounds.
+    pub rounds: usize,
+    /// Numbers, column by column.
+    pub numbers: Vec<Vec<f64>>,
+    /// Values computed before the loop, one a round.
+    pub gathered: Vec<Vec<ExprId>>,
+    /// What a round hands to the next: the value before the first round, and the one computed in each.
+    pub carried: Vec<(ExprId, ExprId)>,
+    /// Values that are the same in every round.
+    pub same: Vec<ExprId>,
+    /// Values kept, round by round.
+    pub kept: Vec<ExprId>,
+    /// Slots of the result, and their values.
+    pub results: Vec<(Progression, ExprId)>,
+    /// Where each expression of the first visit stands in the loop.
+    body: HashMap<ExprId, ExprId>,
+}
+
+/// A function with loops.
+#[derive(Debug, Default)]
+pub struct Rolled {
+    /// The loops, each after those it takes from.
+    pub loops: Vec<Loop>,
+    /// What differs from round to round, by the place of its [`Argument::Round`] symbol, and whose loop it is.
+    pub sources: Vec<(usize, Source)>,
+    /// What is taken from loops, by the place of its [`Argument::Loop`] symbol.
+    pub takings: Vec<Taking>,
+    /// The slots that no loop writes.
+    pub outputs: Vec<Option<ExprId>>,
+}
+
+impl Rolled {
+    /// A function without loops.
+    pub(super) fn in_line(function: &Function) -> Self {
+        Rolled { outputs: function.outputs.iter().copied().map(Some).collect(), ..Rolled::default() }
+    }
+
+    /// Everything that is computed outside of loops, then what the loops compute.
+    pub fn roots(&self) -> Vec<ExprId> {
+        let before = |l: &Loop| -> Vec<ExprId> {
+            let initial = l.carried.iter().map(|(initial, _)| *initial);
+            initial.chain(l.gathered.iter().flatten().copied()).chain(l.same.iter().copied()).collect()
+        };
+        let outputs = self.outputs.iter().flatten().copied();
+        outputs.chain(self.loops.iter().flat_map(|l| [before(l), l.roots()].concat())).collect()
+    }
+}
+
+impl Loop {
+    /// What a round computes for others.
+    pub fn roots(&self) -> Vec<ExprId> {
+        let next = self.carried.iter().map(|(_, next)| *next);
+        let results = self.results.iter().map(|(_, value)| *value);
+        self.kept.iter().copied().chain(results).chain(next).collect()
+    }
+}
+
+/// Where the operands of all rounds at one place come from.
+#[derive(Clone, Debug)]
+enum Operands {
+    /// They are the same in every round.
+    Same,
+    /// From this source.
+    From(Source),
+    /// Another loop keeps them, once it is told to.
+    Kept { of: usize, template: ExprId, round: Progression },
+}
+
+/// A loop before it is written.
+#[derive(Debug, Default)]
+struct Plan {
+    /// The expressions of the first visit, operands before their users.
+    own: Vec<ExprId>,
+    /// Its rounds, and what their operands need.
+    making: Loop,
+    /// Where operands come from, by what they are in each round.
+    sources: HashMap<Vec<ExprId>, Operands>,
+    /// Operands from outside, by the expression that uses them and the place among its operands.
+    sites: Vec<((ExprId, usize), Vec<ExprId>)>,
+}
+
+/// Loops of at least `least` rounds, if the function has any.
+pub(super) fn roll(program: &mut Program, constants: &Constants, function: &Function, least: usize) -> Option<Rolled> {
+    let needed = order::needed_here(program, constants, &function.outputs);
+    let rank = ranks(program, function, &needed);
+    let angles = order::angles(program, &needed);
+    let mut rolling = Rolling {
+        program,
+        constants,
+        rank,
+        angles,
+        places: HashMap::new(),
+        moved: HashMap::new(),
+        rolled: Rolled::default(),
+    };
+    let visits = &function.tape.visits;
+    let mut start = 0;
+    while start < visits.len() {
+        let matches = rolling.run(visits, start);
+        // A round more may cost values that have to be gathered, because another loop has a round less.
+        let shorter = matches.split_last().map_or(&[][..], |(_, rest)| rest);
+        let later = if shorter.len() >= least { rolling.run(visits, start + 1) } else { vec![] };
+        let candidates = [(0, &matches[..]), (0, shorter), (1, &later)];
+        let plans = candidates.into_iter().filter(|(_, rounds)| rounds.len() >= least).filter_map(|(skip, rounds)| {
+            let plan = rolling.plan(rounds)?;
+            Some((plan.making.gathered.len(), skip, rounds, plan))
+        });
+        let best = plans.min_by_key(|(gathered, skip, rounds, _)| (*gathered, *skip, std::cmp::Reverse(rounds.len())));
+        start += match best {
+            Some((_, skip, rounds, plan)) => {
+                rolling.write(plan, rounds);
+                skip + rounds.len()
+            }
+            None => 1,
+        };
+    }
+    if rolling.rolled.loops.is_empty() {
+        return None;
+    }
+    rolling.hand_over(function);
+    Some(rolling.rolled)
+}
+
+/// The visit in which each expression is computed: the first that asks for it or needs it.
+fn ranks(program: &Program, function: &Function, needed: &[bool]) -> Vec<usize> {
+    let mut rank = vec![usize::MAX; needed.len()];
+    for (visit, id) in function.tape.visits.iter().enumerate().flat_map(|(i, v)| v.nodes.iter().map(move |id| (i, id)))
+    {
+        rank[id.index()] = rank[id.index()].min(visit);
+    }
+    for index in (0..needed.len()).rev() {
+        let op = program.operations[index];
+        if !needed[index] || op.is_leaf() || matches!(op, Op::Sin(_) | Op::Cos(_)) {
+            // Inputs, and sines and cosines, are there before every visit.
+            rank[index] = usize::MAX;
+            continue;
+        }
+        for operand in op.operands() {
+            rank[operand.index()] = rank[operand.index()].min(rank[index]);
+        }
+    }
+    rank
+}
+
+/// Loops as they are made.
+struct Rolling<'a> {
+    program: &'a mut Program,
+    constants: &'a Constants,
+    rank: Vec<usize>,
+    angles: Vec<Angle>,
+    /// Expressions that loops compute: which loop, as which expression of its first visit, in which round.
+    places: HashMap<ExprId, (usize, ExprId, usize)>,
+    /// Expressions outside of loops in terms of what the loops leave.
+    moved: HashMap<ExprId, ExprId>,
+    rolled: Rolled,
+}
+
+impl Rolling<'_> {
+    /// What a visit asked for itself.
+    fn anchors(&self, visit: &Visit, at: usize) -> Vec<ExprId> {
+        visit.nodes.iter().copied().filter(|id| self.rank[id.index()] == at).collect()
+    }
+
+    /// The visits from `start` on that do the same.
+    fn run(&self, visits: &[Visit], start: usize) -> Vec<Match> {
+        let Some(visit) = visits.get(start) else { return vec![] };
+        let first = self.anchors(visit, start);
+        if first.is_empty() {
+            return vec![];
+        }
+        let others = visits.iter().enumerate().skip(start).take_while(|(_, other)| other.sweep == visit.sweep);
+        let rounds = others.map_while(|(at, other)| {
+            matched(self.program, &self.rank, (start, &first), (at, &self.anchors(other, at)))
+        });
+        rounds.collect()
+    }
+
+    /// The loop of these rounds, if all its operands from outside have a source.
+    fn plan(&self, matches: &[Match]) -> Option<Plan> {
+        let mut own: Vec<ExprId> = matches[0].nodes.keys().copied().collect();
+        own.sort();
+        let mut plan = Plan { own, making: Loop { rounds: matches.len(), ..Loop::default() }, ..Plan::default() };
+        for &id in &plan.own {
+            for (place, _) in self.program.op(id).operands().enumerate() {
+                if matches[0].outside.contains_key(&(id, place)) {
+                    let operands: Vec<ExprId> = matches.iter().map(|m| m.outside[&(id, place)]).collect();
+                    if !plan.sources.contains_key(&operands) {
+                        let source = self.source(&operands, matches, &mut plan.making)?;
+                        plan.sources.insert(operands.clone(), source);
+                    }
+                    plan.sites.push(((id, place), operands));
+                }
+            }
+        }
+        Some(plan)
+    }
+
+    /// Where operands come from.
+    fn source(&self, operands: &[ExprId], matches: &[Match], making: &mut Loop) -> Option<Operands> {
+        let program = &*self.program;
+        let first = operands[0];
+        if operands.iter().all(|id| *id == first) {
+            return Some(Operands::Same);
+        }
+        let ops: Vec<Op> = operands.iter().map(|id| program.op(*id)).collect();
+        if let Some(numbers) = ops.iter().map(|op| number(*op)).collect::<Option<Vec<f64>>>() {
+            making.numbers.push(numbers);
+            return Some(Operands::From(Source::Number(making.numbers.len() - 1)));
+        }
+        if let Op::Symbol(symbol) = ops[0] {
+            let argument = program.symbol(symbol).argument;
+            let index = |op: &Op| match op {
+                Op::Symbol(id) if program.symbol(*id).argument == argument => Some(program.symbol(*id).index),
+                _ => None,
+            };
+            let in_order = matches!(
+                argument,
+                Argument::Position | Argument::Velocity | Argument::Right | Argument::Resistance | Argument::Factors
+            );
+            if let Some(places) = progression(ops.iter().map(index)).filter(|_| in_order) {
+                return Some(Operands::From(Source::Input(argument, places)));
+            }
+        }
+        let angle = |of: fn(&Angle) -> Option<ExprId>| {
+            progression(operands.iter().map(|id| self.angles.iter().position(|angle| of(angle) == Some(*id))))
+        };
+        if let Some(places) = angle(|angle| angle.sin) {
+            return Some(Operands::From(Source::Sine(places)));
+        }
+        if let Some(places) = angle(|angle| angle.cos) {
+            return Some(Operands::From(Source::Cosine(places)));
+        }
+        // The same expression of the round before, and anything from before the loop in the first.
+        let before = |k: usize| matches[k - 1].template_of(operands[k]);
+        if let Some(next) = before(1)
+            && (1..operands.len()).all(|k| before(k) == Some(next))
+        {
+            making.carried.push((first, next));
+            return Some(Operands::From(Source::Carried(making.carried.len() - 1)));
+        }
+        if let Some(&(of, template, _)) = self.places.get(&first) {
+            let round = |id: &ExprId| {
+                self.places.get(id).filter(|(l, t, _)| (*l, *t) == (of, template)).map(|(_, _, round)| *round)
+            };
+            if let Some(round) = progression(operands.iter().map(round)) {
+                return Some(Operands::Kept { of, template, round });
+            }
+        }
+        let is_within = |id: &ExprId| matches.iter().any(|m| m.template_of(*id).is_some());
+        if operands.iter().any(is_within) {
+            return None;
+        }
+        making.gathered.push(operands.to_vec());
+        Some(Operands::From(Source::Gathered(making.gathered.len() - 1)))
+    }
+
+    /// Writes the loop's body as expressions of their own.
+    fn write(&mut self, Plan { own, mut making, sources, sites }: Plan, matches: &[Match]) {
+        let number = self.rolled.loops.len();
+        let mut symbols: HashMap<&[ExprId], ExprId> = HashMap::new();
+        let mut outside: HashMap<(ExprId, usize), ExprId> = HashMap::new();
+        for (site, operands) in &sites {
+            let id = match (symbols.get(operands.as_slice()), &sources[operands]) {
+                (Some(known), _) => *known,
+                (None, Operands::Same) => {
+                    let same = self.straight(operands[0]);
+                    if !self.constants.is_free(self.program, same) {
+                        making.same.push(same);
+                    }
+                    same
+                }
+                (None, found) => {
+                    let source = match found {
+                        Operands::From(source) => source.clone(),
+                        Operands::Kept { of, template, round } => {
+                            Source::Kept { of: *of, slot: self.keep(*of, *template), round: *round }
+                        }
+                        Operands::Same => unreachable!("matched above"),
+                    };
+                    let name = self.name_of(operands, &source);
+                    let index = self.rolled.sources.len();
+                    self.rolled.sources.push((number, source));
+                    self.program.append_symbol(Symbol { name, argument: Argument::Round, index })
+                }
+            };
+            symbols.insert(operands, id);
+            outside.insert(*site, id);
+        }
+        for id in own {
+            let mut place = 0..;
+            let op = self.program.op(id).map(|operand| {
+                let site = (id, place.next().unwrap_or_default());
+                outside.get(&site).copied().unwrap_or_else(|| making.body[&operand])
+            });
+            let inside = self.program.append(op);
+            making.body.insert(id, inside);
+            let names: Vec<Option<&String>> = matches.iter().map(|m| self.program.names.get(&m.nodes[&id])).collect();
+            if let Some(name) = common_name(&names) {
+                self.program.names.insert(inside, name);
+            }
+        }
+        for (round, m) in matches.iter().enumerate() {
+            for (template, id) in &m.nodes {
+                self.places.insert(*id, (number, *template, round));
+            }
+        }
+        for gathered in &mut making.gathered {
+            for id in gathered {
+                *id = self.straight(*id);
+            }
+        }
+        for (initial, next) in &mut making.carried {
+            *initial = self.straight(*initial);
+            *next = making.body[next];
+        }
+        self.rolled.loops.push(making);
+    }
+
+    /// What the model calls a value in all rounds.
+    fn name_of(&self, operands: &[ExprId], source: &Source) -> String {
+        let of = |id: &ExprId| match self.program.op(*id) {
+            Op::Symbol(symbol) => Some(self.program.symbol(symbol).name.clone()),
+            Op::Sin(angle) => self.program.names.get(id).cloned().or_else(|| Some(format!("sin_{}", angle.index()))),
+            _ => self.program.names.get(id).cloned(),
+        };
+        let names: Vec<Option<String>> = operands.iter().map(of).collect();
+        let common = common_name(&names.iter().map(Option::as_ref).collect::<Vec<_>>());
+        match source {
+            Source::Number(_) => "number".into(),
+            Source::Carried(_) => {
+                let rounds: Vec<Option<&String>> = names.iter().skip(1).map(Option::as_ref).collect();
+                common.or_else(|| common_name(&rounds)).map_or("before".into(), |name| format!("{name}_before"))
+            }
+            _ => common.unwrap_or("taken".into()),
+        }
+    }
+
+    /// The slot in which a loop keeps the values of an expression of its first visit.
+    fn keep(&mut self, of: usize, template: ExprId) -> usize {
+        let Loop { kept, body, .. } = &mut self.rolled.loops[of];
+        let value = body[&template];
+        kept.iter().position(|known| *known == value).unwrap_or_else(|| {
+            kept.push(value);
+            kept.len() - 1
+        })
+    }
+
+    /// An expression outside of loops, in terms of what the loops leave.
+    fn straight(&mut self, root: ExprId) -> ExprId {
+        let mut stack = vec![root];
+        while let Some(&id) = stack.last() {
+            let op = self.program.op(id);
+            let moved = if self.moved.contains_key(&id) {
+                None
+            } else if let Some(&(of, template, round)) = self.places.get(&id) {
+                Some(self.taken(id, of, template, round))
+            } else if self.constants.is_free(self.program, id) || op.is_leaf() || matches!(op, Op::Sin(_) | Op::Cos(_))
+            {
+                Some(id)
+            } else {
+                let waiting: Vec<ExprId> = op.operands().filter(|operand| !self.moved.contains_key(operand)).collect();
+                if !waiting.is_empty() {
+                    stack.extend(waiting);
+                    continue;
+                }
+                let same = op.operands().all(|operand| self.moved[&operand] == operand);
+                Some(if same { id } else { self.rewritten(id, op) })
+            };
+            if let Some(moved) = moved {
+                self.moved.insert(id, moved);
+            }
+            stack.pop();
+        }
+        self.moved[&root]
+    }
+
+    fn rewritten(&mut self, id: ExprId, op: Op) -> ExprId {
+        let new = self.program.append(op.map(|operand| self.moved[&operand]));
+        if let Some(name) = self.program.names.get(&id).cloned() {
+            self.program.names.insert(new, name);
+        }
+        new
+    }
+
+    /// The symbol of a value that a loop leaves.
+    fn taken(&mut self, id: ExprId, of: usize, template: ExprId, round: usize) -> ExprId {
+        let Loop { rounds, carried, body, .. } = &self.rolled.loops[of];
+        let value = body[&template];
+        let carried = carried.iter().position(|(_, next)| *next == value).filter(|_| round + 1 == *rounds);
+        let taking = match carried {
+            Some(place) => Taking::Carried { of, place },
+            None => Taking::Kept { of, slot: self.keep(of, template), round },
+        };
+        let index = self.rolled.takings.len();
+        self.rolled.takings.push(taking);
+        let name = self.program.names.get(&id).cloned().unwrap_or("taken".into());
+        self.program.append_symbol(Symbol { name, argument: Argument::Loop, index })
+    }
+
+    /// The slots of the result: written in a loop where they follow each other, else outside.
+    fn hand_over(&mut self, function: &Function) {
+        let mut rows: HashMap<(usize, ExprId), Vec<(usize, usize)>> = HashMap::new();
+        if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. }) {
+            for (slot, value) in function.outputs.iter().enumerate() {
+                if let Some(&(of, template, round)) = self.places.get(value) {
+                    rows.entry((of, template)).or_default().push((round, slot));
+                }
+            }
+        }
+        let mut in_loops = vec![false; function.outputs.len()];
+        let mut rows: Vec<_> = rows.into_iter().collect();
+        rows.sort();
+        for ((of, template), mut slots) in rows {
+            slots.sort_unstable();
+            let rounds = self.rolled.loops[of].rounds;
+            let complete = slots.iter().map(|(round, _)| *round).eq(0..rounds);
+            if let Some(places) = progression(slots.iter().map(|(_, slot)| Some(*slot))).filter(|_| complete) {
+                for (_, slot) in &slots {
+                    in_loops[*slot] = true;
+                }
+                let value = self.rolled.loops[of].body[&template];
+                self.rolled.loops[of].results.push((places, value));
+            }
+        }
+        self.rolled.outputs = function
+            .outputs
+            .iter()
+            .zip(in_loops)
+            .map(|(value, in_loop)| (!in_loop).then(|| self.straight(*value)))
+            .collect();
+    }
+}
+
+fn number(op: Op) -> Option<f64> {
+    match op {
+        Op::Constant(c) => Some(c.value()),
+        _ => None,
+    }
+}
+
+/// The arithmetic progression that all of at least two places make.
+fn progression(places: impl Iterator<Item = Option<usize>>) -> Option<Progression> {
+    let places: Vec<isize> =
+        places.map(|place| place.and_then(|place| isize::try_from(place).ok())).collect::<Option<_>>()?;
+    let (first, step) = (*places.first()?, places.get(1)? - places[0]);
+    let fits = places.windows(2).all(|pair| pair[1] - pair[0] == step);
+    fits.then_some(Progression { first: usize::try_from(first).ok()?, step })
+}
+
+/// What names have in common: `omega_boom_1_x` and `omega_boom_2_x` are `omega_boom_x`.
+fn common_name(names: &[Option<&String>]) -> Option<String> {
+    let words: Vec<Vec<&str>> =
+        names.iter().map(|name| name.map(|name| name.split('_').collect())).collect::<Option<_>>()?;
+    let first = words.first()?;
+    if words.iter().any(|other| other.len() != first.len()) {
+        return None;
+    }
+    let common = (0..first.len()).filter(|i| words.iter().all(|other| other[*i] == first[*i])).map(|i| first[i]);
+    let common: Vec<&str> = common.collect();
+    (!common.is_empty()).then(|| common.join("_"))
+}
