@@ -21,7 +21,7 @@ impl Writer<'_> {
         let own = &self.block.rolled.loops[of];
         let [numbers, gathered, carried, kept] = NAMES.map(|name| owned(name, of));
         let (number, rounds) = (self.number.of(), integer(own.rounds));
-        let mut statements = vec![comment(&format!("{} rounds of the same", own.rounds))];
+        let mut statements = vec![comment(&format!("{} to {}", own.bodies[0], own.bodies[1]))];
         if !own.numbers.is_empty() {
             let rows = (0..own.rounds).map(|k| row(own.numbers.iter().map(|column| Number::Single.literal(column[k]))));
             let width = integer(own.numbers.len());

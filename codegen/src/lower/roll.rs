@@ -71,6 +71,8 @@ pub enum Taking {
 pub struct Loop {
     /// How many rounds.
     pub rounds: usize,
+    /// Bodies of the first and the last round.
+    pub bodies: [String; 2],
     /// Numbers, column by column.
     pub numbers: Vec<Vec<f64>>,
     /// Values computed before the loop, one a round.
@@ -179,7 +181,9 @@ pub(super) fn roll(program: &mut Program, constants: &Constants, function: &Func
         let best = plans.min_by_key(|(gathered, skip, rounds, _)| (*gathered, *skip, std::cmp::Reverse(rounds.len())));
         start += match best {
             Some((_, skip, rounds, plan)) => {
-                rolling.write(plan, rounds);
+                let of = |round: usize| visits[start + skip + round].body.clone();
+                let bodies = [of(0), of(rounds.len() - 1)];
+                rolling.write(plan, bodies, rounds);
                 skip + rounds.len()
             }
             None => 1,
@@ -326,7 +330,8 @@ impl Rolling<'_> {
     }
 
     /// Writes the loop's body as expressions of their own.
-    fn write(&mut self, Plan { own, mut making, sources, sites }: Plan, matches: &[Match]) {
+    fn write(&mut self, Plan { own, mut making, sources, sites }: Plan, bodies: [String; 2], matches: &[Match]) {
+        making.bodies = bodies;
         let number = self.rolled.loops.len();
         let mut symbols: HashMap<&[ExprId], ExprId> = HashMap::new();
         let mut outside: HashMap<(ExprId, usize), ExprId> = HashMap::new();

@@ -51,7 +51,6 @@ impl<'g> Places<'g> {
             Place::Turning { j, axis }
         };
         let sweep = model.graph.sweep();
-        sweep.visit();
         for factor in factors {
             match factor {
                 Factor::Translate(by) => places.push(Place::Moving { by: rotation.apply(*by), sliding: None }),
@@ -68,7 +67,7 @@ impl<'g> Places<'g> {
                 }
                 Factor::Body(index) => {
                     places.push(Place::Body { index: *index, rotation });
-                    sweep.visit();
+                    sweep.leave(&model.chain.bodies[*index].name);
                 }
             }
         }
@@ -86,7 +85,7 @@ impl<'g> Places<'g> {
         for place in self.0.iter().rev() {
             match place {
                 Place::Body { index, rotation } => {
-                    sweep.visit();
+                    sweep.visit(&model.chain.bodies[*index].name);
                     if let Some((m, s, i)) = body(model, *index, rotation) {
                         (mass, first, inertia) = (mass + m, first + s, inertia + i);
                         let name = &model.chain.bodies[*index].name;

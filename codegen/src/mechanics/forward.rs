@@ -54,8 +54,8 @@ pub(super) fn inward<'g>(
         .rev()
         .map(|(factor, velocity)| match (factor, velocity) {
             (Factor::Body(index), Velocities::Body { omega }) => {
-                sweep.visit();
                 let body = &model.chain.bodies[*index];
+                sweep.visit(&body.name);
                 if let Some(inertia) = &body.inertia {
                     let second = model.second_moments(inertia);
                     let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
@@ -105,7 +105,6 @@ pub(super) fn outward<'g>(
     let (mut angular, mut linear) = start;
     let mut accelerations = model.zeros();
     let sweep = model.graph.sweep();
-    sweep.visit();
     for ((factor, velocity), joint) in factors.iter().zip(velocities).zip(joints) {
         if let Velocities::Translation { by, acceleration } = velocity {
             linear = linear + angular.cross(*by) + *acceleration;
@@ -130,7 +129,7 @@ pub(super) fn outward<'g>(
                 let name = &model.chain.bodies[*index].name;
                 angular.named(&format!("alpha_{name}"));
                 linear.named(&format!("acceleration_{name}"));
-                sweep.visit();
+                sweep.leave(name);
             }
             _ => {}
         }

@@ -16,7 +16,6 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let (mut alpha, mut a) = (zero, -model.vector(&model.chain.gravity));
     let mut accelerations = Vec::new();
     let sweep = model.graph.sweep();
-    sweep.visit();
     for (factor, velocity) in factors.iter().zip(&along) {
         match (factor, velocity) {
             (Factor::Turn(turn), _) => (alpha, a) = (turn.inward(alpha), turn.inward(a)),
@@ -29,7 +28,7 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
                 }
             }
             (_, Velocities::Translation { by, acceleration }) => a = a + alpha.cross(*by) + *acceleration,
-            (Factor::Body(_), _) => sweep.visit(),
+            (Factor::Body(index), _) => sweep.leave(&model.chain.bodies[*index].name),
             _ => {}
         }
         accelerations.push((alpha, a));
@@ -41,8 +40,8 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     for ((factor, velocity), (alpha, a)) in factors.iter().zip(&along).zip(accelerations).rev() {
         match (factor, velocity) {
             (Factor::Body(index), Velocities::Body { omega }) => {
-                sweep.visit();
                 let body = &model.chain.bodies[*index];
+                sweep.visit(&body.name);
                 if let Some(inertia) = &body.inertia {
                     let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
                     let tensor = model.second_moments(inertia).tensor();

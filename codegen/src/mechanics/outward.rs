@@ -40,7 +40,6 @@ pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>])
     };
     let mut along = Vec::new();
     let sweep = model.graph.sweep();
-    sweep.visit();
     for factor in factors {
         along.push(match factor {
             Factor::Translate(by) => Velocities::Translation { by: *by, acceleration: centripetal(omega, *by) },
@@ -60,7 +59,7 @@ pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>])
             }
             Factor::Body(index) => {
                 omega.named(&format!("omega_{}", model.chain.bodies[*index].name));
-                sweep.visit();
+                sweep.leave(&model.chain.bodies[*index].name);
                 Velocities::Body { omega }
             }
         });

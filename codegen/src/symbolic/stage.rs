@@ -56,8 +56,9 @@ impl Graph {
             }
         }
         let is_moved = |id: &&ExprId| is_late.get(id.index()).is_some_and(|late| *late) && needed[id.index()];
-        let visits = tape.visits.iter().map(|Visit { sweep, nodes }| Visit {
+        let visits = tape.visits.iter().map(|Visit { sweep, body, nodes }| Visit {
             sweep: *sweep,
+            body: body.clone(),
             nodes: nodes.iter().filter(is_moved).map(|id| moved[id.index()]).collect(),
         });
         let tape = Tape { visits: visits.collect() };

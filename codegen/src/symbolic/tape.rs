@@ -27,6 +27,8 @@ impl Tape {
 pub struct Visit {
     /// Number of the sweep.
     pub sweep: usize,
+    /// Name of the body.
+    pub body: String,
     /// What the sweep asked for at this body for the first time in this function, in the order in which it did.
     pub nodes: Vec<ExprId>,
 }
@@ -59,10 +61,12 @@ pub struct Sweep<'g> {
 }
 
 impl Graph {
-    /// Begins a sweep over bodies.
+    /// Begins a sweep over bodies, on the way to the first.
     pub fn sweep(&self) -> Sweep<'_> {
         self.recorder.borrow_mut().sweeps += 1;
-        Sweep { graph: self }
+        let sweep = Sweep { graph: self };
+        sweep.visit("");
+        sweep
     }
 
     /// What `derive` derives, and the sweeps it makes.
@@ -74,12 +78,20 @@ impl Graph {
 }
 
 impl Sweep<'_> {
-    /// The sweep comes to the next body.
-    pub fn visit(&self) {
+    /// The sweep comes to a body, and to the joints between it and the one before.
+    pub fn visit(&self, body: &str) {
         let mut recorder = self.graph.recorder.borrow_mut();
         let sweep = recorder.sweeps;
         recorder.at_a_body = true;
-        recorder.tape.visits.push(Visit { sweep, nodes: vec![] });
+        recorder.tape.visits.push(Visit { sweep, body: body.to_owned(), nodes: vec![] });
+    }
+
+    /// The sweep has come to a body by its joints, and goes on from it.
+    pub fn leave(&self, body: &str) {
+        if let Some(visit) = self.graph.recorder.borrow_mut().tape.visits.last_mut() {
+            body.clone_into(&mut visit.body);
+        }
+        self.visit("");
     }
 }
 
