@@ -14,6 +14,8 @@ pub mod chain;
 pub mod compile;
 pub mod diagnostic;
 pub mod emit;
+#[cfg(feature = "exchange")]
+pub mod exchange;
 mod expand;
 pub mod explain;
 pub mod lower;

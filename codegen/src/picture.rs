@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use crate::chain::{Axis, Body, BodyId, Chain, CoordinateId, CoordinateKind, Step};
+use crate::chain::{Body, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Step, Vector};
 
 const BLUE: &str = "#0072b2";
 const VERMILLION: &str = "#d55e00";
@@ -22,33 +22,6 @@ const MARGIN: f64 = 75.0;
 const FRAME: f64 = 26.0;
 const JOINT: f64 = 6.0;
 const ROW: f64 = 19.0;
-
-type Vector = [f64; 3];
-
-/// A place and three directions.
-#[derive(Clone, Copy)]
-struct Frame {
-    axes: [Vector; 3],
-    origin: Vector,
-}
-
-impl Frame {
-    const WORLD: Frame = Frame { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
-
-    /// A place given in this frame.
-    fn place(&self, local: Vector) -> Vector {
-        [0, 1, 2].map(|row| self.origin[row] + (0..3).map(|i| self.axes[i][row] * local[i]).sum::<f64>())
-    }
-
-    /// Turned about one of its axes.
-    fn turned(mut self, axis: Axis, sin: f64, cos: f64) -> Frame {
-        let (a, b) = ((axis.index() + 1) % 3, (axis.index() + 2) % 3);
-        let (u, v) = (self.axes[a], self.axes[b]);
-        self.axes[a] = [0, 1, 2].map(|i| cos * u[i] + sin * v[i]);
-        self.axes[b] = [0, 1, 2].map(|i| cos * v[i] - sin * u[i]);
-        self
-    }
-}
 
 /// A joint's coordinate and where it acts.
 struct Joint {
@@ -101,22 +74,10 @@ fn poses(chain: &Chain) -> (Vec<Frame>, Vec<Joint>) {
     let mut joints = Vec::new();
     let frames = chain.bodies.iter().map(|body| {
         for step in &body.path {
-            frame = match step {
-                Step::Translate(by) => Frame { origin: frame.place([0, 1, 2].map(|i| by[i].at(&defaults))), ..frame },
-                Step::Rotate { axis, sin, cos } => frame.turned(*axis, sin.at(&defaults), cos.at(&defaults)),
-                Step::Move(id) => {
-                    joints.push(Joint { coordinate: *id, at: frame.origin });
-                    let (coordinate, q) = (&chain.coordinates[id.0], chain.guess[id.0]);
-                    match coordinate.kind {
-                        CoordinateKind::Rotation => frame.turned(coordinate.axis, libm::sin(q), libm::cos(q)),
-                        CoordinateKind::Translation => {
-                            let mut way = [0.0; 3];
-                            way[coordinate.axis.index()] = q;
-                            Frame { origin: frame.place(way), ..frame }
-                        }
-                    }
-                }
-            };
+            if let Step::Move(id) = step {
+                joints.push(Joint { coordinate: *id, at: frame.origin });
+            }
+            frame = frame.after(step, chain, &chain.guess, &defaults);
         }
         frame
     });

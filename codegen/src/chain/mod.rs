@@ -2,10 +2,12 @@
 //!
 //! // AFTER THIS POINT: nobody knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
+mod frame;
 mod loops;
 mod profile;
 mod value;
 
+pub use frame::{Frame, Vector};
 pub use loops::Loops;
 pub use profile::{Profile, Ramp, Segment};
 pub use value::{ParameterId, Value};

@@ -1,9 +1,5 @@
 //! The rules of the spec language: each has a code, a title, a label and a remedy.
 
-use std::fmt::Display;
-
-use super::{Mistake, Span};
-
 /// A rule, for documentation and for the test that each has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rule {
@@ -14,7 +10,7 @@ pub struct Rule {
 }
 
 /// A message on one line of bearable length, whatever the user's names are made of.
-fn printable(message: &str) -> String {
+pub(crate) fn printable(message: &str) -> String {
     /// A list of the longest names of the language fits.
     const LONGEST: usize = 400;
     let visible = message.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c });
@@ -25,16 +21,18 @@ fn printable(message: &str) -> String {
     line
 }
 
-/// Turns the table below into one constructor a rule and into [`CATALOGUE`].
+/// Turns a table of rules into one constructor a rule, in the module `rule`, and into `CATALOGUE`.
 macro_rules! catalogue {
     ($($(#[doc = $about:literal])+ $code:ident $name:ident($($word:ident),*) $title:literal, $label:literal, $help:literal;)+) => {
         /// Every rule, by code.
-        pub const CATALOGUE: &[Rule] =
-            &[$(Rule { code: stringify!($code), about: concat!($($about),+) }),+];
+        pub const CATALOGUE: &[$crate::diagnostic::Rule] =
+            &[$($crate::diagnostic::Rule { code: stringify!($code), about: concat!($($about),+) }),+];
 
         /// One function a rule, that says how it was broken.
         pub(crate) mod rule {
-            use super::{Display, Mistake, Span, printable};
+            use std::fmt::Display;
+
+            use $crate::diagnostic::{Mistake, Span, printable};
             $(
                 $(#[doc = $about])+
                 pub(crate) fn $name(span: Span, $($word: impl Display),*) -> Mistake {
@@ -50,6 +48,8 @@ macro_rules! catalogue {
         }
     };
 }
+
+pub(crate) use catalogue;
 
 catalogue! {
     // The file.

@@ -5,8 +5,8 @@ mod draw;
 mod nearest;
 mod source;
 
-pub(crate) use catalogue::rule;
 pub use catalogue::{CATALOGUE, Rule};
+pub(crate) use catalogue::{catalogue, printable, rule};
 pub(crate) use nearest::{list, suggest};
 pub use source::{MAX_BYTES, SourceFile, Span};
 

@@ -29,6 +29,9 @@ Examples:
                                        a crane of one's own: its mistakes; everything about it
   crane explain my.yaml --svg my.svg   its chain, in words and as a picture
   crane new my-crane --from cantilever a crate that compiles a crane of one's own
+  crane export my.yaml --format urdf -o my.urdf
+                                       the chain for other programs, its springs in my.springs.yaml beside it
+  crane import robot.urdf -o my.yaml   a spec from a robot of others
   crane list                           the cranes to choose from
   crane info                           coordinates, parameters, drives of a crane
   source <(crane completions bash)     completion of commands and options
@@ -89,6 +92,10 @@ pub enum Action {
         #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
         svg: Option<PathBuf>,
     },
+    /// A crane as URDF, its springs beside it, or as MJCF, for Pinocchio, `MuJoCo`, ROS and others
+    Export(Export),
+    /// A spec from URDF: a chain of joints of one axis each
+    Import(Import),
     /// The cranes to choose from
     List(List),
     /// Completion script for a shell
@@ -110,6 +117,8 @@ impl Action {
             Action::New(_)
             | Action::Check { .. }
             | Action::Explain { .. }
+            | Action::Export(_)
+            | Action::Import(_)
             | Action::List(_)
             | Action::Completions { .. } => return None,
         };
@@ -283,6 +292,42 @@ pub struct Stability {
     /// Folder for the figure; made where it is missing
     #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
+}
+
+/// Language of other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Language {
+    /// Kinematics and masses; springs, dampers and supports in a file beside it.
+    Urdf,
+    /// `MuJoCo`'s, with stiffness, damping and spring references of joints; linear supports as tendons.
+    Mjcf,
+}
+
+/// A crane for other programs.
+#[derive(Debug, Args)]
+pub struct Export {
+    #[command(flatten)]
+    pub crane: Choice,
+    /// Language to write
+    #[arg(long, value_enum)]
+    pub format: Language,
+    /// File to write [default: the crane's name with .urdf or .xml]
+    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+}
+
+/// A spec from another program's file.
+#[derive(Debug, Args)]
+pub struct Import {
+    /// URDF file
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub urdf: PathBuf,
+    /// Spec to write [default: standard output]
+    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub spec: Option<PathBuf>,
+    /// Joint to hold at zero, such as a finger's; may be given several times
+    #[arg(long = "fix", value_name = "JOINT")]
+    pub fixed: Vec<String>,
 }
 
 /// A list of the cranes.

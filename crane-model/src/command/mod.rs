@@ -15,6 +15,7 @@ mod arguments;
 mod compare;
 mod ensemble;
 mod eval;
+mod exchange;
 mod figures;
 mod files;
 mod info;
@@ -78,6 +79,8 @@ fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
         Some(Action::New(options)) => new::new(options, fleet, out),
         Some(Action::Check { spec }) => own::check(spec, out),
         Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), out),
+        Some(Action::Export(options)) => exchange::export(options, fleet, out),
+        Some(Action::Import(options)) => exchange::import(options, out),
         Some(Action::List(options)) => info::list(options.format, fleet, out),
         Some(Action::Completions { shell }) => {
             // Into memory first: the generator panics where the other end of a pipe is gone.

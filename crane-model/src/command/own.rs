@@ -10,7 +10,7 @@ use std::{
     time::{Instant, SystemTime},
 };
 
-use crane_codegen::{build, chain::Chain, compile, explain, picture::picture};
+use crane_codegen::{Diagnostics, SourceFile, build, chain::Chain, compile, explain, picture::picture};
 
 use crate::command::{
     files,
@@ -64,18 +64,25 @@ pub fn run(spec: &Path) -> Outcome<()> {
 }
 
 /// A sound chain and its text, or every mistake.
-fn load(spec: &Path) -> Outcome<(Chain, String)> {
-    let told = |mistakes: String| {
-        // Drawn already; a reader of standard error that has gone misses it.
-        let _ = writeln!(std::io::stderr(), "{}", mistakes.trim_end());
-        Problem::Elsewhere(FAILED)
-    };
-    let source = build::open(spec).map_err(|failure| match failure {
-        build::Failure::File(message) => Problem::failed(message, "name a YAML file that describes a crane"),
-        build::Failure::Mistakes(mistakes) => told(mistakes.to_string()),
-    })?;
-    let chain = compile::load(&source).map_err(|mistakes| told(mistakes.to_string()))?;
+pub(super) fn load(spec: &Path) -> Outcome<(Chain, String)> {
+    let source = open(spec, "name a YAML file that describes a crane")?;
+    let chain = compile::load(&source).map_err(|mistakes| drawn(&mistakes))?;
     Ok((chain, source.text))
+}
+
+/// A file of text; `help`: what kind of file to name.
+pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
+    build::open(file).map_err(|failure| match failure {
+        build::Failure::File(message) => Problem::failed(message, help),
+        build::Failure::Mistakes(mistakes) => drawn(&mistakes),
+    })
+}
+
+/// Draws mistakes on standard error.
+pub(super) fn drawn(mistakes: &Diagnostics) -> Problem {
+    // Drawn already; a reader of standard error that has gone misses it.
+    let _ = writeln!(std::io::stderr(), "{}", mistakes.to_string().trim_end());
+    Problem::Elsewhere(FAILED)
 }
 
 /// The program of a crane: as kept, or compiled now.

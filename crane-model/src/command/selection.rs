@@ -55,36 +55,51 @@ impl Parameters {
     }
 
     fn apply(&self, rig: &mut dyn Rig) -> Outcome<()> {
-        let parameters = rig.description().parameters;
-        for setting in &self.settings {
+        let description = rig.description();
+        for (index, number) in self.read(description.name, &known(description))? {
+            rig.set_parameter(index, number);
+        }
+        Ok(())
+    }
+
+    /// Places of the parameters that are set, and their values; `known`: names and units of those that the crane has.
+    pub fn read(&self, crane: &str, known: &[(&str, &str)]) -> Outcome<Vec<(usize, f64)>> {
+        let read = |setting: &String| {
             let (name, value) = setting.split_once('=').ok_or_else(|| {
                 Problem::usage(
                     format!("`--set {setting}` has no value"),
                     "write `--set name=value`, such as `--set load_mass=300`",
                 )
             })?;
-            let index = parameter(name, rig.description()).map_err(|(title, help)| Problem::usage(title, help))?;
-            let unit = parameters[index].unit;
+            let index = place(name, crane, known).map_err(|(title, help)| Problem::usage(title, help))?;
+            let unit = known[index].1;
             let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                 Problem::usage(format!("`{value}` is no value for {name}"), format!("write a finite number, in {unit}"))
             })?;
-            rig.set_parameter(index, number);
-        }
-        Ok(())
+            Ok((index, number))
+        };
+        self.settings.iter().map(read).collect()
     }
+}
+
+/// Names and units of a crane's live parameters.
+fn known(description: &Description) -> Vec<(&'static str, &'static str)> {
+    description.parameters.iter().map(|parameter| (parameter.name, parameter.unit)).collect()
 }
 
 /// Place of a live parameter by its name; else what is wrong and what to write.
 pub fn parameter(name: &str, description: &Description) -> Result<usize, (String, String)> {
-    let parameters = description.parameters;
-    parameters.iter().position(|parameter| parameter.name == name).ok_or_else(|| {
-        let names: Vec<String> =
-            parameters.iter().map(|parameter| format!("{} [{}]", parameter.name, parameter.unit)).collect();
-        let title = format!("{} has no live parameter `{name}`", description.name);
+    place(name, description.name, &known(description))
+}
+
+fn place(name: &str, crane: &str, known: &[(&str, &str)]) -> Result<usize, (String, String)> {
+    known.iter().position(|(known, _)| *known == name).ok_or_else(|| {
+        let names: Vec<String> = known.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
+        let title = format!("{crane} has no live parameter `{name}`");
         if names.is_empty() {
             return (title, "it has none; name values under `parameters:` in its spec".to_owned());
         }
-        let guess = nearest(name, parameters.iter().map(|parameter| parameter.name));
+        let guess = nearest(name, known.iter().map(|(name, _)| *name));
         (title, hint(guess, &names.join(", "), "parameters"))
     })
 }

@@ -1,12 +1,18 @@
 //! Evaluates generated cranes for checks in other languages.
 //!
-//! `evaluate list` prints the cranes, one a line. `evaluate layout CRANE` describes one as JSON.
+//! `evaluate list` prints the cranes, one a line. `evaluate layout CRANE` describes one as JSON. A YAML file in place of a
+//! crane's name is run by the interpreter, which has A, e, forces and accelerations.
 //! `evaluate values CRANE` reads records `t, q[N], v[N], parameters[P]` from standard input until its end, and writes for
 //! each all quantities in the order of the layout: 64-bit little-endian numbers, matrices row by row.
 
 use std::io::{self, BufReader, BufWriter, Read, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
+use crane_codegen::chain::Chain;
+use crane_codegen::symbolic::Inputs;
+use crane_codegen::{build, compile};
+use crane_tests::interpreted::Interpreted;
 use crane_tests::quantities::{State, quantities};
 use crane_tests::registry::{self, Entry};
 use serde_json::json;
@@ -31,11 +37,25 @@ fn run(words: &[&str]) -> Result<(), String> {
             }
             Ok(())
         }
+        ["layout", file] if is_spec(file) => {
+            println!("{:#}", layout_of_interpreted(&interpreted(file)?, file));
+            Ok(())
+        }
+        ["values", file] if is_spec(file) => {
+            let crane = interpreted(file)?;
+            let parameters = crane.chain.parameters.len();
+            let values = values(crane.size(), parameters, |state, parameters| evaluate(&crane, state, parameters));
+            values.map_err(|error| error.to_string())
+        }
         ["layout", name] => {
             println!("{:#}", layout(&find(name)?));
             Ok(())
         }
-        ["values", name] => values(&find(name)?).map_err(|error| error.to_string()),
+        ["values", name] => {
+            let Entry { description, evaluate, .. } = find(name)?;
+            let values = values(description.coordinates.len(), description.parameters.len(), evaluate);
+            values.map_err(|error| error.to_string())
+        }
         _ => Err("write `list`, `layout CRANE` or `values CRANE`".into()),
     }
 }
@@ -65,9 +85,9 @@ fn layout(entry: &Entry) -> serde_json::Value {
     })
 }
 
-fn values(entry: &Entry) -> io::Result<()> {
-    let n = entry.description.coordinates.len();
-    let length = 1 + 2 * n + entry.description.parameters.len();
+/// Reads states of `n` coordinates and writes what is computed of them.
+fn values(n: usize, parameters: usize, evaluate: impl Fn(&State, &[f64]) -> Vec<f64>) -> io::Result<()> {
+    let length = 1 + 2 * n + parameters;
     let mut input = BufReader::new(io::stdin().lock());
     let mut output = BufWriter::new(io::stdout().lock());
     let mut bytes = vec![0; 8 * length];
@@ -79,8 +99,46 @@ fn values(entry: &Entry) -> io::Result<()> {
         }
         let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
         let state = State { t: numbers[0], q: numbers[1..=n].to_vec(), v: numbers[n + 1..=2 * n].to_vec() };
-        for value in (entry.evaluate)(&state, &numbers[2 * n + 1..]) {
+        for value in evaluate(&state, &numbers[2 * n + 1..]) {
             output.write_all(&value.to_le_bytes())?;
         }
     }
+}
+
+fn is_spec(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension == "yaml")
+}
+
+/// The crane of a YAML file.
+fn interpreted(file: &str) -> Result<Interpreted, String> {
+    let source = build::open(Path::new(file)).map_err(|error| error.to_string())?;
+    Ok(Interpreted::new(compile::load(&source).map_err(|mistakes| mistakes.to_string())?))
+}
+
+/// Functions of an interpreted crane, in order: A is square, the others have a number a coordinate.
+const INTERPRETED: [&str; 4] = ["mass_matrix", "bias", "forces", "forward_dynamics"];
+
+fn layout_of_interpreted(crane: &Interpreted, file: &str) -> serde_json::Value {
+    let Chain { name, coordinates, parameters, .. } = &crane.chain;
+    let n = coordinates.len();
+    let shape = |quantity: &str| if quantity == INTERPRETED[0] { vec![n, n] } else { vec![n] };
+    let quantity = |name: &str| {
+        let shape = shape(name);
+        json!({"name": name, "length": shape.iter().product::<usize>(), "shape": shape})
+    };
+    json!({
+        "name": file,
+        "crane": name,
+        "spec": file,
+        "coordinates": coordinates.iter().map(|c| &c.name).collect::<Vec<_>>(),
+        "parameters": parameters.iter().map(|p| json!({"name": p.name, "default": p.default})).collect::<Vec<_>>(),
+        "quantities": INTERPRETED.map(quantity),
+    })
+}
+
+fn evaluate(crane: &Interpreted, state: &State, parameters: &[f64]) -> Vec<f64> {
+    let inputs = Inputs::state(state.t, state.q.clone(), state.v.clone(), parameters.to_vec());
+    let n = crane.size();
+    let length = |quantity| if quantity == INTERPRETED[0] { n * n } else { n };
+    INTERPRETED.iter().flat_map(|quantity| crane.get(quantity, &inputs, length(*quantity))).collect()
 }

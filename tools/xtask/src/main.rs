@@ -125,6 +125,7 @@ fn oracles() -> Vec<Step> {
         Step::check("generated code against CasADi", oracles::check),
         Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::peers_self_test),
         Step::check("generated code against Pinocchio and MuJoCo", oracles::peers),
+        Step::check("URDF and MJCF there and back", oracles::exchange),
     ]
 }
 

@@ -38,6 +38,13 @@ pub fn peers() -> Result<(), String> {
     on_generated_code(AGREE)
 }
 
+/// Exported cranes in Pinocchio and MuJoCo, imported robots in the compiler.
+pub fn exchange() -> Result<(), String> {
+    let program = |name: &str| workspace::target().join("release").join(name);
+    let mut command = script(&CHECKS, "tools/peers/exchange.py");
+    step::finish(command.arg("--crane").arg(program("crane")).arg("--evaluate").arg(program("evaluate")))
+}
+
 /// The environment of the checks.
 pub fn prepare() -> Result<(), String> {
     CHECKS.prepare()

@@ -1,0 +1,106 @@
+//! Frames in numbers: where bodies are at given coordinates.
+
+use super::{Axis, Chain, CoordinateKind, Step};
+
+/// A point or a direction: x, y, z.
+pub type Vector = [f64; 3];
+
+/// A frame, given in another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Directions of its axes x, y, z.
+    pub axes: [Vector; 3],
+    /// Its origin, m.
+    pub origin: Vector,
+}
+
+impl Frame {
+    /// The frame in which all are given.
+    pub const WORLD: Frame = Frame { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
+
+    /// A direction of this frame, outside of it.
+    #[must_use]
+    pub fn direction(&self, local: Vector) -> Vector {
+        [0, 1, 2].map(|row| (0..3).map(|i| self.axes[i][row] * local[i]).sum())
+    }
+
+    /// A place in this frame, outside of it.
+    #[must_use]
+    pub fn place(&self, local: Vector) -> Vector {
+        let along = self.direction(local);
+        [0, 1, 2].map(|row| self.origin[row] + along[row])
+    }
+
+    /// A direction from outside, in this frame.
+    #[must_use]
+    pub fn local_direction(&self, outer: Vector) -> Vector {
+        self.axes.map(|axis| (0..3).map(|i| axis[i] * outer[i]).sum())
+    }
+
+    /// A frame from outside, in this frame.
+    #[must_use]
+    pub fn local(&self, outer: &Frame) -> Frame {
+        let way = [0, 1, 2].map(|i| outer.origin[i] - self.origin[i]);
+        Frame { axes: outer.axes.map(|axis| self.local_direction(axis)), origin: self.local_direction(way) }
+    }
+
+    /// A frame that is given in this one, outside of it.
+    #[must_use]
+    pub fn outer(&self, local: &Frame) -> Frame {
+        Frame { axes: local.axes.map(|axis| self.direction(axis)), origin: self.place(local.origin) }
+    }
+
+    /// Turned about one of its axes.
+    #[must_use]
+    pub fn turned(mut self, axis: Axis, sin: f64, cos: f64) -> Frame {
+        let (a, b) = ((axis.index() + 1) % 3, (axis.index() + 2) % 3);
+        let (u, v) = (self.axes[a], self.axes[b]);
+        self.axes[a] = [0, 1, 2].map(|i| cos * u[i] + sin * v[i]);
+        self.axes[b] = [0, 1, 2].map(|i| cos * v[i] - sin * u[i]);
+        self
+    }
+
+    /// Carried along by a step of a path, at coordinates `q` and with the given parameter values.
+    ///
+    /// # Panics
+    /// If `q` or `parameters` are shorter than the chain's lists of them.
+    #[must_use]
+    pub fn after(self, step: &Step, chain: &Chain, q: &[f64], parameters: &[f64]) -> Frame {
+        match step {
+            Step::Translate(by) => Frame { origin: self.place(by.each_ref().map(|v| v.at(parameters))), ..self },
+            Step::Rotate { axis, sin, cos } => self.turned(*axis, sin.at(parameters), cos.at(parameters)),
+            Step::Move(id) => {
+                let coordinate = &chain.coordinates[id.0];
+                match coordinate.kind {
+                    CoordinateKind::Rotation => self.turned(coordinate.axis, libm::sin(q[id.0]), libm::cos(q[id.0])),
+                    CoordinateKind::Translation => {
+                        let mut way = [0.0; 3];
+                        way[coordinate.axis.index()] = q[id.0];
+                        Frame { origin: self.place(way), ..self }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_seen_from_itself_is_the_world() {
+        let (sin, cos) = (0.6, 0.8);
+        let frame =
+            Frame { origin: [1.0, -2.0, 3.0], ..Frame::WORLD }.turned(Axis::Y, sin, cos).turned(Axis::X, 0.8, 0.6);
+        let own = frame.local(&frame);
+        let back = frame.outer(&Frame { origin: [4.0, 5.0, 6.0], ..Frame::WORLD });
+        for (i, k) in (0..3).flat_map(|i| (0..3).map(move |k| (i, k))) {
+            // A few roundings of numbers of order 1.
+            assert!((own.axes[i][k] - Frame::WORLD.axes[i][k]).abs() < 1e-15 && own.origin[k] == 0.0, "{own:?}");
+            assert!((frame.local(&back).origin[k] - [4.0, 5.0, 6.0][k]).abs() < 1e-14);
+        }
+        // About y from z to x.
+        assert_eq!(Frame::WORLD.turned(Axis::Y, 1.0, 0.0).axes[2], [1.0, 0.0, 0.0]);
+    }
+}

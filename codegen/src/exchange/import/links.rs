@@ -1,0 +1,235 @@
+//! Groups of a robot's links as links of a spec.
+
+use std::collections::BTreeSet;
+
+use super::robot::{Joint, Motion};
+use super::serial::Group;
+use super::tensor::Lump;
+use crate::chain::{Axis, Frame, Vector};
+use crate::exchange::rotation::along_z;
+
+/// A link of a spec.
+pub(super) struct SpecLink<'r> {
+    pub(super) name: String,
+    /// Name of the robot's link, and of the joint that moves it.
+    pub(super) was: &'r str,
+    pub(super) joint: Option<&'r Joint>,
+    /// In the frame of the link before.
+    pub(super) placement: Frame,
+    pub(super) motion: SpecMotion,
+    pub(super) bodies: Vec<(String, Lump)>,
+    /// Frames without mass at the ends of the group.
+    pub(super) points: Vec<(String, Vector)>,
+    pub(super) held: Vec<&'r str>,
+}
+
+/// How it moves.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum SpecMotion {
+    Fixed,
+    Revolute(Axis),
+    Prismatic(Axis),
+    /// A base that moves along and about these, in the order of the language.
+    Free(Vec<(bool, Axis)>),
+}
+
+impl SpecMotion {
+    /// Names of the coordinates that it gives a link.
+    pub(super) fn coordinates(&self, link: &str) -> Vec<String> {
+        let letter = |turns: bool, axis: Axis| {
+            let letters = if turns { ["phi", "theta", "psi"] } else { ["x", "y", "z"] };
+            format!("{link}_{}", letters[axis.index()])
+        };
+        match self {
+            SpecMotion::Fixed => Vec::new(),
+            SpecMotion::Revolute(axis) => vec![letter(true, *axis)],
+            SpecMotion::Prismatic(axis) => vec![letter(false, *axis)],
+            SpecMotion::Free(motions) => motions.iter().map(|(turns, axis)| letter(*turns, *axis)).collect(),
+        }
+    }
+}
+
+/// The links of a spec, a group each; what stands still is left out if it carries nothing.
+pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
+    let mut names = Names::default();
+    let mut links: Vec<SpecLink> = Vec::new();
+    // The frame of the spec's link in that of the robot's.
+    let mut turned = Frame::WORLD;
+    for group in groups {
+        let Some((carrier, _)) = group.links.first() else { continue };
+        let before = turned;
+        let (mut placement, mut motion) = (Frame::WORLD, SpecMotion::Fixed);
+        turned = Frame::WORLD;
+        if let Some((joint, at)) = &group.joint {
+            let (axis, frame) = onto_an_axis(joint.axis);
+            turned = frame;
+            placement = before.local(&at.outer(&turned));
+            motion = if matches!(joint.motion, Motion::Revolute) {
+                SpecMotion::Revolute(axis)
+            } else {
+                SpecMotion::Prismatic(axis)
+            };
+        }
+        let mut link = SpecLink {
+            name: String::new(),
+            was: &carrier.name,
+            joint: group.joint.map(|(joint, _)| joint),
+            placement,
+            motion,
+            bodies: Vec::new(),
+            points: Vec::new(),
+            held: group.held.iter().map(|joint| joint.name.as_str()).collect(),
+        };
+        let mut bodies = Names::default();
+        let ends = group.links.len() > 1 && link.joint.is_some();
+        for (index, (member, frame)) in group.links.iter().enumerate() {
+            let own = turned.local(frame);
+            match &member.lump {
+                Some(lump) => link.bodies.push((bodies.unique(&member.name), lump.seen_through(&own))),
+                None if ends && index > 0 => link.points.push((member.name.clone(), super::tensor::clean(own.origin))),
+                None => {}
+            }
+        }
+        if link.joint.is_some() || !link.bodies.is_empty() {
+            // What stands still is known by what it carries, not by `world`.
+            let heavy = group.links.iter().find(|(member, _)| member.lump.is_some() && link.joint.is_none());
+            link.was = &heavy.map_or(carrier, |(heavy, _)| heavy).name;
+            link.name = names.unique(link.was);
+            links.push(link);
+        }
+    }
+    free_base(&mut links);
+    let mut points = Names(links.iter().flat_map(|link| link.motion.coordinates(&link.name)).collect());
+    for (name, _) in links.iter_mut().flat_map(|link| &mut link.points) {
+        *name = points.unique_point(name);
+    }
+    links
+}
+
+/// Makes one free base of joints along x, y, z and about z, y, x at the beginning that carry nothing but the next.
+fn free_base(links: &mut Vec<SpecLink>) {
+    /// x, y, z, psi, theta, phi.
+    const ORDER: [(bool, Axis); 6] =
+        [(false, Axis::X), (false, Axis::Y), (false, Axis::Z), (true, Axis::Z), (true, Axis::Y), (true, Axis::X)];
+    let mut motions: Vec<(bool, Axis)> = Vec::new();
+    let mut place = 0;
+    for (index, link) in links.iter().enumerate() {
+        let motion = match link.motion {
+            SpecMotion::Prismatic(axis) => (false, axis),
+            SpecMotion::Revolute(axis) => (true, axis),
+            _ => return,
+        };
+        let Some(found) = ORDER[place..].iter().position(|other| *other == motion) else { return };
+        if index > 0 && link.placement != Frame::WORLD {
+            return;
+        }
+        place += found + 1;
+        motions.push(motion);
+        if !link.bodies.is_empty() || !link.points.is_empty() {
+            break;
+        }
+    }
+    // One motion is a joint like any other.
+    if motions.len() > 1 && links.get(motions.len() - 1).is_some_and(|base| !base.bodies.is_empty()) {
+        let placement = links[0].placement;
+        links.drain(..motions.len() - 1);
+        links[0].placement = placement;
+        links[0].motion = SpecMotion::Free(motions);
+    }
+}
+
+/// The axis x, y or z of a frame that lies along a direction, and the frame, in that of the direction: the same one where
+/// it can be.
+fn onto_an_axis(direction: Vector) -> (Axis, Frame) {
+    for (index, axis) in [Axis::X, Axis::Y, Axis::Z].into_iter().enumerate() {
+        // Half a turn about another axis makes a negative one positive.
+        let other = if axis == Axis::Z { Axis::X } else { Axis::Z };
+        if direction[index] == 1.0 {
+            return (axis, Frame::WORLD);
+        } else if direction[index] == -1.0 {
+            return (axis, Frame::WORLD.turned(other, 0.0, -1.0));
+        }
+    }
+    (Axis::Z, along_z(direction))
+}
+
+/// Names that are taken.
+#[derive(Default)]
+struct Names(BTreeSet<String>);
+
+impl Names {
+    /// An identifier like a name, not taken yet.
+    fn unique(&mut self, name: &str) -> String {
+        self.free(identifier(name), |_, _| true)
+    }
+
+    /// The same for a point, whose columns of results, `<point>_x` …, must not be those of a coordinate.
+    fn unique_point(&mut self, name: &str) -> String {
+        let fits = |taken: &BTreeSet<String>, name: &str| {
+            ["x", "y", "z"].iter().all(|letter| !taken.contains(&format!("{name}_{letter}")))
+        };
+        self.free(identifier(name), fits)
+    }
+
+    fn free(&mut self, name: String, fits: impl Fn(&BTreeSet<String>, &str) -> bool) -> String {
+        let numbered = (2..).map(|number| format!("{name}_{number}"));
+        let mut candidates = std::iter::once(name.clone()).chain(numbered);
+        let free = candidates.find(|name| !self.0.contains(name) && fits(&self.0, name)).unwrap_or(name);
+        self.0.insert(free.clone());
+        free
+    }
+}
+
+/// A `snake_case` identifier that is no keyword.
+pub(super) fn identifier(name: &str) -> String {
+    let mut text = String::new();
+    let mut lower = false;
+    for c in name.chars() {
+        if c.is_ascii_uppercase() && lower {
+            text.push('_');
+        }
+        lower = c.is_ascii_lowercase() || c.is_ascii_digit();
+        text.push(if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' });
+    }
+    let text = text.trim_matches('_');
+    let is_keyword = text == "gen" || syn::parse_str::<syn::Ident>(text).is_err();
+    match text.chars().next() {
+        None => "link".to_owned(),
+        Some(first) if !first.is_ascii_lowercase() => format!("link_{text}"),
+        Some(_) if is_keyword => format!("{text}_1"),
+        Some(_) => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_identifiers() {
+        for (name, expected) in [
+            ("panda_link0", "panda_link0"),
+            ("LeftArm", "left_arm"),
+            ("wrist-3 link", "wrist_3_link"),
+            ("3rd", "link_3rd"),
+            ("move", "move_1"),
+            ("gen", "gen_1"),
+            ("__", "link"),
+            ("Größe", "gr__e"),
+        ] {
+            assert_eq!(identifier(name), expected);
+        }
+        let mut names = Names::default();
+        assert_eq!([names.unique("a"), names.unique("A"), names.unique("a")], ["a", "a_2", "a_3"]);
+    }
+
+    #[test]
+    fn a_frame_is_turned_onto_the_axis_of_its_joint() {
+        for direction in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [0.6, 0.0, -0.8]] {
+            let (axis, frame) = onto_an_axis(direction);
+            for k in 0..3 {
+                assert!((frame.axes[axis.index()][k] - direction[k]).abs() < 1e-15, "{direction:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! A robot as a chain: groups of links that move as one, each on a joint.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::mistakes::rule;
+use super::robot::{Joint, Link, Motion, Robot};
+use crate::chain::Frame;
+use crate::diagnostic::{Mistake, Span, suggest};
+
+/// Links that move as one.
+pub(super) struct Group<'r> {
+    /// The joint that moves it, and where its frame at zero is in that of the group before; none for what stands still.
+    pub(super) joint: Option<(&'r Joint, Frame)>,
+    /// Its links, each in the frame of the first.
+    pub(super) links: Vec<(&'r Link, Frame)>,
+    /// Joints in it that are held at zero because that was asked for.
+    pub(super) held: Vec<&'r Joint>,
+}
+
+/// The chain of a robot with some of its joints held at zero; the first group stands still.
+pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<'r>>, Vec<Mistake>> {
+    let mut mistakes = Vec::new();
+    names(robot, fixed, &mut mistakes);
+    let root = root(robot, &mut mistakes);
+    let (Some(root), true) = (root, mistakes.is_empty()) else { return Err(mistakes) };
+
+    let mut children: BTreeMap<&str, Vec<&Joint>> = BTreeMap::new();
+    for joint in &robot.joints {
+        children.entry(&joint.parent.name).or_default().push(joint);
+    }
+    let link = |name: &str| robot.links.iter().find(|link| link.name == name);
+    let mut groups = Vec::new();
+    let mut next = Some((None, root));
+    while let Some((joint, carrier)) = next.take() {
+        let mut group = Group { joint, links: Vec::new(), held: Vec::new() };
+        let mut moving: Vec<(&Joint, Frame)> = Vec::new();
+        let mut open = vec![(carrier, Frame::WORLD)];
+        while let Some((member, frame)) = open.pop() {
+            group.links.push((member, frame));
+            for joint in children.get(member.name.as_str()).into_iter().flatten().rev() {
+                let placed = frame.outer(&joint.placement);
+                let held = fixed.contains(&joint.name);
+                if held || matches!(joint.motion, Motion::Fixed) {
+                    open.extend(link(&joint.child.name).map(|link| (link, placed)));
+                    group.held.extend(held.then_some(*joint));
+                } else {
+                    cannot_move(joint, &mut mistakes);
+                    moving.push((joint, placed));
+                }
+            }
+        }
+        // The first of the file goes on.
+        moving.sort_by_key(|(joint, _)| joint.span.start);
+        if let [(first, _), others @ ..] = moving.as_slice() {
+            let branch =
+                |(other, _): &(&Joint, Frame)| rule::branches(other.span, &carrier.name, &first.name, &other.name);
+            mistakes.extend(others.iter().map(branch));
+        }
+        next = moving.first().and_then(|(joint, frame)| Some((Some((*joint, *frame)), link(&joint.child.name)?)));
+        groups.push(group);
+    }
+    if groups.len() == 1 && mistakes.is_empty() {
+        mistakes.push(rule::nothing_moves(Span::START));
+    }
+    if mistakes.is_empty() { Ok(groups) } else { Err(mistakes) }
+}
+
+/// Names are unique and known.
+fn names(robot: &Robot, fixed: &[String], mistakes: &mut Vec<Mistake>) {
+    let mut links = BTreeSet::new();
+    for link in &robot.links {
+        if !links.insert(link.name.as_str()) {
+            mistakes.push(rule::duplicate(link.span, "link", &link.name));
+        }
+    }
+    let mut joints = BTreeSet::new();
+    let mut hangs: BTreeMap<&str, &str> = BTreeMap::new();
+    for joint in &robot.joints {
+        if !joints.insert(joint.name.as_str()) {
+            mistakes.push(rule::duplicate(joint.span, "joint", &joint.name));
+        }
+        for end in [&joint.parent, &joint.child] {
+            if !links.contains(end.name.as_str()) {
+                let help = suggest(&end.name, links.iter().copied());
+                mistakes.push(rule::unknown_link(end.span, &joint.name, &end.name, help));
+            }
+        }
+        if let Some(other) = hangs.insert(&joint.child.name, &joint.name) {
+            mistakes.push(rule::two_parents(joint.child.span, &joint.child.name, other));
+        }
+    }
+    for name in fixed.iter().filter(|name| !joints.contains(name.as_str())) {
+        mistakes.push(rule::unknown_joint(Span::START, name, suggest(name, joints.iter().copied())));
+    }
+}
+
+/// The link that hangs on none, if all others hang on it.
+fn root<'r>(robot: &'r Robot, mistakes: &mut Vec<Mistake>) -> Option<&'r Link> {
+    let children: BTreeSet<&str> = robot.joints.iter().map(|joint| joint.child.name.as_str()).collect();
+    let roots: Vec<&Link> = robot.links.iter().filter(|link| !children.contains(link.name.as_str())).collect();
+    let problem = match roots.as_slice() {
+        [root] => match unreachable(robot, root) {
+            None => return Some(root),
+            Some(link) => (link.span, format!("`{}` does not hang on `{}`", link.name, root.name)),
+        },
+        [] => (
+            Span::START,
+            if robot.links.is_empty() { "there are none" } else { "they hang on each other in a ring" }.into(),
+        ),
+        [first, other, ..] => {
+            (other.span, format!("neither `{}` nor `{}` hangs on another link", first.name, other.name))
+        }
+    };
+    // A name that is wrong tears a tree apart: that is told already.
+    if mistakes.is_empty() {
+        mistakes.push(rule::not_a_tree(problem.0, problem.1));
+    }
+    None
+}
+
+/// A link that does not hang on the root: part of a ring.
+fn unreachable<'r>(robot: &'r Robot, root: &Link) -> Option<&'r Link> {
+    let mut reached = BTreeSet::from([root.name.as_str()]);
+    loop {
+        let before = reached.len();
+        let further = robot.joints.iter().filter(|joint| reached.contains(joint.parent.name.as_str()));
+        let further: Vec<&str> = further.map(|joint| joint.child.name.as_str()).collect();
+        reached.extend(further);
+        if reached.len() == before {
+            return robot.links.iter().find(|link| !reached.contains(link.name.as_str()));
+        }
+    }
+}
+
+/// Notes a joint that moves as no joint of a crane does.
+fn cannot_move(joint: &Joint, mistakes: &mut Vec<Mistake>) {
+    if let Motion::Other(kind) = &joint.motion {
+        mistakes.push(rule::unsupported(kind.span, &joint.name, &kind.name));
+    }
+    if let Some(leader) = &joint.follows {
+        mistakes.push(rule::mimic(leader.span, &joint.name, &leader.name));
+    }
+}

@@ -1,0 +1,198 @@
+//! A spec as a person would write it.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::links::{SpecLink, SpecMotion, identifier};
+use super::robot::{Joint, Motion, Robot};
+use super::tensor::{Lump, clean, without_rounding};
+use crate::chain::{Axis, Frame, Vector};
+use crate::diagnostic::{SourceFile, printable};
+use crate::exchange::rotation::roll_pitch_yaw;
+use crate::exchange::urdf::NO_LIMIT;
+use crate::exchange::xml::number_text;
+
+/// The text of a spec.
+pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> String {
+    let file = Path::new(&source.name).file_name().unwrap_or_default().to_string_lossy();
+    let (file, robot_name) = (plain(&file), plain(&robot.name));
+    let mut text =
+        format!("# The robot {robot_name}, from {file}. Units: SI; angles in rad, or written as `90 deg`.\n");
+    text += "# Positions and velocities of joints are those of the robot; zero is where its zero is.\n";
+    let friction: Vec<String> =
+        robot.joints.iter().filter(|joint| joint.friction > 0.0).map(|j| plain(&j.name)).collect();
+    if !friction.is_empty() {
+        let _ = writeln!(
+            text,
+            "# Left out, since a crane has viscous friction only: Coulomb friction of {}.",
+            friction.join(", ")
+        );
+    }
+    let _ =
+        write!(text, "format: 1\nname: {}\ntitle: \"{robot_name}, from {file}\"\n\nlinks:\n", identifier(&robot.name));
+    for link in links {
+        text += &link_text(link);
+    }
+
+    let damped: Vec<(String, f64)> = links
+        .iter()
+        .filter_map(|link| link.joint.filter(|joint| joint.damping > 0.0).map(|joint| (link, joint.damping)))
+        .flat_map(|(link, damping)| link.motion.coordinates(&link.name).into_iter().map(move |name| (name, damping)))
+        .collect();
+    if !damped.is_empty() {
+        text += "damping:                        # N m s/rad, N s/m; leave a joint out that gets a drive\n";
+        for (name, damping) in damped {
+            let _ = writeln!(text, "  {name}: {}", decimal(damping));
+        }
+        text.push('\n');
+    }
+    let points: Vec<_> = links.iter().flat_map(|link| link.points.iter().map(move |point| (link, point))).collect();
+    if !points.is_empty() {
+        text += "points:                         # frames without mass\n";
+        for (link, (name, at)) in points {
+            let _ = writeln!(text, "  - {{name: {name}, link: {}, at: {}}}", link.name, list(*at));
+        }
+        text.push('\n');
+    }
+    if let Some(name) = links.iter().find_map(|link| link.motion.coordinates(&link.name).into_iter().next()) {
+        let _ = write!(
+            text,
+            "# URDF knows no drives: every joint swings freely. A spring and a damper hold or move one:\n\
+             # drives:\n\
+             #   - {{coordinate: {name}, stiffness: 1e6, damping: 1e4, motion: {{quintic: {{from: 0, to: 0.5, duration: 2}}}}}}\n"
+        );
+    }
+    text
+}
+
+fn link_text(link: &SpecLink) -> String {
+    let mut comments = Vec::new();
+    match (link.joint, &link.motion) {
+        (_, SpecMotion::Free(_)) => comments.push("the base, free".to_owned()),
+        (Some(joint), _) => comments.push(format!("joint {}", plain(&joint.name))),
+        (None, _) => comments.push("stands still".to_owned()),
+    }
+    if link.name != link.was {
+        comments.push(format!("link {}", plain(link.was)));
+    }
+    let limits = |joint: &Joint| joint.limits.filter(|limits| limits.iter().all(|limit| limit.abs() < NO_LIMIT[0]));
+    if let Some((joint, [lower, upper])) = link.joint.and_then(|joint| Some((joint, limits(joint)?))) {
+        let unit = if matches!(joint.motion, Motion::Prismatic) { "m" } else { "rad" };
+        comments.push(format!("from {} to {} {unit}", decimal(lower), decimal(upper)));
+    }
+    if !link.held.is_empty() {
+        comments
+            .push(format!("held at zero: {}", link.held.iter().map(|name| plain(name)).collect::<Vec<_>>().join(", ")));
+    }
+    let mut text = format!("  - {:<27} # {}\n", format!("name: {}", link.name), comments.join("; "));
+    if let Some(placement) = placement(&link.placement) {
+        let _ = writeln!(text, "    placement: {{transform: {{{placement}}}}}");
+    }
+    if let Some(motion) = motion(&link.motion) {
+        let _ = writeln!(text, "    joint: {motion}");
+    }
+    match link.bodies.as_slice() {
+        [] => {}
+        [(_, lump)] => text += &mass(lump).into_iter().map(|line| format!("    {line}\n")).collect::<String>(),
+        several => {
+            text += "    bodies:\n";
+            for (name, lump) in several {
+                let _ = writeln!(text, "      - {{name: {name}, {}}}", mass(lump).join(", "));
+            }
+        }
+    }
+    text.push('\n');
+    text
+}
+
+/// Translation and rotation, as far as there are.
+fn placement(frame: &Frame) -> Option<String> {
+    let mut parts = Vec::new();
+    let at = clean(frame.origin);
+    if at != [0.0; 3] {
+        parts.push(format!("translation: {}", list(at)));
+    }
+    let [roll, pitch, yaw] = roll_pitch_yaw(frame).map(|angle| without_rounding(angle, 1.0));
+    let turns = [("z", yaw), ("y", pitch), ("x", roll)].into_iter().filter(|(_, angle)| *angle != 0.0);
+    let turns: Vec<String> = turns.map(|(axis, turn)| format!("{{{axis}: {}}}", angle(turn))).collect();
+    match turns.as_slice() {
+        [] => {}
+        [one] => parts.push(format!("rotation: {one}")),
+        several => parts.push(format!("rotation: [{}]", several.join(", "))),
+    }
+    (!parts.is_empty()).then(|| parts.join(", "))
+}
+
+fn motion(motion: &SpecMotion) -> Option<String> {
+    let of = |kind: &str, axis: &Axis| match axis {
+        Axis::Z => kind.to_owned(),
+        Axis::X => format!("{{{kind}: {{axis: x}}}}"),
+        Axis::Y => format!("{{{kind}: {{axis: y}}}}"),
+    };
+    match motion {
+        SpecMotion::Fixed => None,
+        SpecMotion::Revolute(axis) => Some(of("revolute", axis)),
+        SpecMotion::Prismatic(axis) => Some(of("prismatic", axis)),
+        SpecMotion::Free(motions) if motions.len() == 6 => Some("free".to_owned()),
+        SpecMotion::Free(_) => {
+            let names = motion.coordinates("").join(", ").replace('_', "");
+            Some(format!("{{free: [{names}]}}"))
+        }
+    }
+}
+
+/// Mass, centre of mass, inertia: a key each.
+fn mass(Lump { mass, com, tensor }: &Lump) -> Vec<String> {
+    let mut lines = vec![format!("mass: {}", decimal(*mass)), format!("com: {}", list(*com))];
+    if *tensor != [0.0; 6] {
+        let keys = ["Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"].into_iter().zip(tensor).enumerate();
+        let given = keys.filter(|(index, (_, entry))| *index < 3 || **entry != 0.0);
+        let given: Vec<String> = given.map(|(_, (key, entry))| format!("{key}: {}", decimal(*entry))).collect();
+        lines.push(format!("inertia: {{{}}}", given.join(", ")));
+    }
+    lines
+}
+
+fn list(vector: Vector) -> String {
+    format!("[{}]", vector.map(decimal).join(", "))
+}
+
+/// An angle: in degrees where these are a multiple of 5, else in rad.
+fn angle(angle: f64) -> String {
+    let degrees = angle.to_degrees();
+    let round = (degrees / 5.0).round() * 5.0;
+    // Some roundings of matrices between the file and here.
+    if (degrees - round).abs() <= 1e-15 * 180.0 { format!("{} deg", number_text(round)) } else { decimal(angle) }
+}
+
+/// The shortest decimal that is the same but for some roundings of what was computed: 0.3 for 0.30000000000000004.
+fn decimal(number: f64) -> String {
+    /// Some five roundings.
+    const ROUNDING: f64 = 1e-15;
+    let rounded = (0..17).map(|digits| format!("{number:.digits$e}").parse().unwrap_or(number));
+    let short = rounded.into_iter().find(|short: &f64| (short - number).abs() <= ROUNDING * number.abs());
+    number_text(short.unwrap_or(number))
+}
+
+/// A name on one line, without what would end a comment or a text.
+fn plain(name: &str) -> String {
+    printable(name).replace(['"', '\\'], "'")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn numbers_are_as_short_as_they_may_be() {
+        for (number, text) in
+            [(0.1 + 0.2, "0.3"), (1.0 / 3.0, "0.333333333333333"), (-2.0, "-2"), (0.0, "0"), (1.57, "1.57")]
+        {
+            assert_eq!(decimal(number), text);
+        }
+        for (turn, text) in [(FRAC_PI_2, "90 deg"), (-PI, "-180 deg"), (PI / 12.0, "15 deg"), (1.570_796, "1.570796")] {
+            assert_eq!(angle(turn), text);
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! A crane as MJCF: kinematics, masses, springs, dampers and supports.
+
+use std::fmt;
+
+use super::mass::Mass;
+use super::rotation::quaternion;
+use super::springs::{JointSpring, linear_rows, on};
+use super::xml::{Xml, number_text, numbers};
+use super::{RADIUS, bars, origin, placements};
+use crate::chain::{Chain, CoordinateId, CoordinateKind, Frame, Step, Support, SupportKinematics};
+
+/// `MuJoCo` refuses what moves without mass or inertia: a massless frame, a point, gets this much, kg or kg m². That is
+/// below the rounding of any sum that it enters.
+const LEAST: f64 = 1e-14;
+
+/// What of a crane MJCF cannot express.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Inexpressible {
+    /// What, in the user's own names, and why.
+    pub title: String,
+    /// What to do instead.
+    pub help: String,
+}
+
+impl fmt::Display for Inexpressible {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}; {}", self.title, self.help)
+    }
+}
+
+impl std::error::Error for Inexpressible {}
+
+/// The MJCF text of a crane with the given parameter values.
+///
+/// A joint a coordinate, of its name. Springs of elements, drives, held where they stand at t = 0, and passive damping become
+/// stiffness, damping and spring reference of joints; a linear support becomes three tendons, whose lengths are linear in the
+/// base's coordinates. The guess is the key frame `start`.
+///
+/// # Errors
+/// A support with exact kinematics.
+///
+/// # Panics
+/// If `parameters` is shorter than the chain's list of parameters.
+pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> {
+    if let Some(support) = chain.supports.iter().find(|support| support.kinematics == SupportKinematics::Exact) {
+        return Err(Inexpressible {
+            title: format!("MJCF has no springs along the world's axes, as support `{}` has them", support.name),
+            help: "write `kinematics: linear` for small rotations of the base, or export URDF with its file of springs"
+                .into(),
+        });
+    }
+    let mut xml = Xml::new(&origin(chain, parameters));
+    xml.open("mujoco", &[("model", chain.name.clone())]);
+    xml.leaf("compiler", &[("angle", "radian".into()), ("inertiafromgeom", "false".into())]);
+    let gravity = chain.gravity.each_ref().map(|value| value.at(parameters));
+    let step = [("timestep", number_text(chain.run.step)), ("integrator", "implicitfast".into())];
+    let [timestep, integrator] = step;
+    xml.leaf("option", &[("gravity", numbers(&gravity)), timestep, integrator]);
+    xml.open("default", &[]);
+    let seen = [("contype", "0".into()), ("conaffinity", "0".into()), ("mass", "0".into())];
+    let [contype, conaffinity, mass] = seen;
+    xml.leaf("geom", &[("type", "capsule".into()), ("size", number_text(RADIUS)), contype, conaffinity, mass]);
+    xml.close();
+
+    xml.open("worldbody", &[]);
+    bodies(&mut xml, chain, parameters);
+    for _ in &chain.bodies {
+        xml.close();
+    }
+    xml.close();
+
+    if !chain.supports.is_empty() {
+        xml.open("tendon", &[]);
+        for support in &chain.supports {
+            tendons(&mut xml, chain, support, parameters);
+        }
+        xml.close();
+    }
+    xml.open("keyframe", &[]);
+    xml.leaf("key", &[("name", "start".into()), ("qpos", numbers(&chain.guess))]);
+    Ok(xml.finish())
+}
+
+/// All bodies, each within the one before, left open.
+fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
+    let placements = placements(chain, parameters);
+    let bars = bars(chain, &placements, parameters);
+    let rest = vec![0.0; chain.coordinates.len()];
+    for (index, (body, placement)) in chain.bodies.iter().zip(&placements).enumerate() {
+        let attributes = [
+            ("name", body.name.clone()),
+            ("pos", numbers(&placement.origin)),
+            ("quat", numbers(&quaternion(placement))),
+        ];
+        xml.open("body", &attributes);
+        let mut frame = Frame::WORLD;
+        for step in &body.path {
+            if let Step::Move(id) = step {
+                joint(xml, chain, *id, &placement.local(&frame), parameters);
+            }
+            frame = frame.after(step, chain, &rest, parameters);
+        }
+        let moves = body.path.iter().any(|step| matches!(step, Step::Move(_)));
+        match &body.inertia {
+            Some(inertia) => inertial(xml, &Mass::of(inertia, parameters)),
+            None if moves => inertial(xml, &Mass { mass: LEAST, com: [0.0; 3], tensor: [0.0; 6] }),
+            None => {}
+        }
+        if let Some(end) = bars[index] {
+            xml.leaf("geom", &[("fromto", numbers(&[[0.0; 3], end].concat()))]);
+        }
+        for point in chain.points.iter().filter(|point| point.body.0 == index) {
+            let at = point.position.each_ref().map(|value| value.at(parameters));
+            xml.leaf("site", &[("name", point.name.clone()), ("pos", numbers(&at))]);
+        }
+    }
+}
+
+/// A joint with its spring and damper; `frame`: where it acts, in the frame of its body at `q = 0`.
+fn joint(xml: &mut Xml, chain: &Chain, id: CoordinateId, frame: &Frame, parameters: &[f64]) {
+    let coordinate = &chain.coordinates[id.0];
+    let kind = if coordinate.kind == CoordinateKind::Rotation { "hinge" } else { "slide" };
+    let mut attributes = vec![("name", coordinate.name.clone()), ("type", kind.to_owned())];
+    if frame.origin != [0.0; 3] {
+        attributes.push(("pos", numbers(&frame.origin)));
+    }
+    attributes.push(("axis", numbers(&frame.axes[coordinate.axis.index()])));
+    let JointSpring { stiffness, damping, rest } = on(chain, id, parameters);
+    let spring = [("stiffness", stiffness), ("damping", damping), ("springref", rest)];
+    attributes.extend(spring.iter().filter(|(_, value)| *value != 0.0).map(|(key, value)| (*key, number_text(*value))));
+    xml.leaf("joint", &attributes);
+}
+
+fn inertial(xml: &mut Xml, Mass { mass, com, tensor }: &Mass) {
+    let [xx, yy, zz, xy, xz, yz] = tensor;
+    let inertia = if [xy, xz, yz] == [&0.0; 3] {
+        ("diaginertia", numbers(&[*xx, *yy, *zz].map(|moment| moment.max(LEAST))))
+    } else {
+        ("fullinertia", numbers(tensor))
+    };
+    xml.leaf("inertial", &[("pos", numbers(com)), ("mass", number_text(*mass)), inertia]);
+}
+
+/// The three tendons of a linear support.
+fn tendons(xml: &mut Xml, chain: &Chain, support: &Support, parameters: &[f64]) {
+    let at = |values: &[crate::chain::Value; 3]| values.each_ref().map(|value| value.at(parameters));
+    let (stiffness, damping, free_play) = (at(&support.stiffness), at(&support.damping), at(&support.free_play));
+    for (axis, row) in linear_rows(at(&support.position)).iter().enumerate() {
+        let moved: Vec<(CoordinateId, f64)> = chain
+            .base
+            .iter()
+            .zip(row)
+            .filter_map(|(id, share)| Some(((*id)?, *share)))
+            .filter(|(_, s)| *s != 0.0)
+            .collect();
+        if moved.is_empty() || (stiffness[axis] == 0.0 && damping[axis] == 0.0) {
+            continue;
+        }
+        let attributes = [
+            ("name", format!("{}_{}", support.name, ["x", "y", "z"][axis])),
+            ("stiffness", number_text(stiffness[axis])),
+            ("damping", number_text(damping[axis])),
+            ("springlength", number_text(free_play[axis])),
+        ];
+        xml.open("fixed", &attributes);
+        for (id, share) in moved {
+            let name = chain.coordinates[id.0].name.clone();
+            xml.leaf("joint", &[("joint", name), ("coef", number_text(share))]);
+        }
+        xml.close();
+    }
+}

@@ -1,0 +1,91 @@
+//! Springs and dampers of a crane, joint by joint and support by support.
+
+use std::fmt::Write;
+
+use super::xml::{number_text, numbers};
+use crate::chain::{Chain, CoordinateId, SupportKinematics, Vector};
+use crate::expand::profile;
+
+/// A spring and a damper on a coordinate: its force is `stiffness (rest − q) − damping q̇`.
+#[derive(Default)]
+pub(super) struct JointSpring {
+    /// N m/rad or N/m.
+    pub(super) stiffness: f64,
+    /// N m s/rad or N s/m.
+    pub(super) damping: f64,
+    /// Where the spring is at rest, rad or m: of a drive, where it stands at t = 0.
+    pub(super) rest: f64,
+}
+
+/// What acts on a coordinate: the spring of an element, a drive held where it begins, passive damping, or nothing.
+///
+/// The language lets one of these act on a coordinate at most.
+pub(super) fn on(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> JointSpring {
+    let number = |value: &crate::chain::Value| value.at(parameters);
+    if let Some(spring) = chain.elements.iter().find(|spring| spring.coordinate == id) {
+        JointSpring { stiffness: number(&spring.stiffness), damping: number(&spring.damping), rest: 0.0 }
+    } else if let Some(drive) = chain.drives.iter().find(|drive| drive.coordinate == id) {
+        let rest = profile::start(&drive.profile, parameters);
+        JointSpring { stiffness: number(&drive.stiffness), damping: number(&drive.damping), rest }
+    } else if let Some(hinge) = chain.hinges.iter().find(|hinge| hinge.coordinate == id) {
+        JointSpring { damping: number(&hinge.damping), ..JointSpring::default() }
+    } else {
+        JointSpring::default()
+    }
+}
+
+/// Rows of `U` in the elongation `e = U q̃ − δ` of a linear support at `(x, y, z)`, by x, y, z, ψ, θ, φ of the base, Eq. (16).
+pub(super) fn linear_rows([x, y, z]: Vector) -> [[f64; 6]; 3] {
+    [[1.0, 0.0, 0.0, -y, z, 0.0], [0.0, 1.0, 0.0, x, 0.0, -z], [0.0, 0.0, 1.0, 0.0, -x, y]]
+}
+
+/// The springs and dampers of a crane as YAML, to stand beside a URDF file, which knows none; with gravity and the guess.
+#[must_use]
+pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
+    let at = |values: &[crate::chain::Value; 3]| values.each_ref().map(|value| value.at(parameters));
+    let list = |values: &[crate::chain::Value; 3]| format!("[{}]", numbers(&at(values)).replace(' ', ", "));
+    let mut text = format!("# Springs and dampers of {}\n", super::origin(chain, parameters));
+    text += "# URDF knows none; A and e follow from the URDF file beside this one, the forces from here.\n";
+    let _ = writeln!(text, "gravity: {}   # m/s^2", list(&chain.gravity));
+
+    text += "\n# Force on a joint: stiffness * (rest - q) - damping * v. Drives are held where they stand at t = 0.\n";
+    text += "# Revolute: N m/rad, N m s/rad, rad; prismatic: N/m, N s/m, m.\njoints:\n";
+    for (index, coordinate) in chain.coordinates.iter().enumerate() {
+        let JointSpring { stiffness, damping, rest } = on(chain, CoordinateId(index), parameters);
+        if stiffness != 0.0 || damping != 0.0 {
+            let [stiffness, damping, rest] = [stiffness, damping, rest].map(number_text);
+            let _ =
+                writeln!(text, "  {}: {{stiffness: {stiffness}, damping: {damping}, rest: {rest}}}", coordinate.name);
+        }
+    }
+
+    if let Some(base) = chain.bodies.first().filter(|_| !chain.supports.is_empty()) {
+        let _ = write!(
+            text,
+            "\n# Springs and dampers along x, y, z of the world between the ground and points of `{}`, N/m, N s/m, m:\n\
+             # force on the point: -stiffness * elongation - damping * rate of elongation, each axis by itself.\n\
+             # linear: elongation = U q - free_play, with the base's coordinates q = (x, y, z, psi, theta, phi) and rows of U\n\
+             #   (1, 0, 0, -y, z, 0), (0, 1, 0, x, 0, -z), (0, 0, 1, 0, -x, y) for a point at (x, y, z).\n\
+             # exact: elongation = way of the point from where it is at q = 0, less free_play.\nsupports:\n",
+            base.name
+        );
+        for support in &chain.supports {
+            let kinematics = if support.kinematics == SupportKinematics::Linear { "linear" } else { "exact" };
+            let _ = writeln!(
+                text,
+                "  - {{name: {}, kinematics: {kinematics}, at: {}, stiffness: {}, damping: {}, free_play: {}}}",
+                support.name,
+                list(&support.position),
+                list(&support.stiffness),
+                list(&support.damping),
+                list(&support.free_play)
+            );
+        }
+    }
+
+    text += "\n# Where the static solution starts, rad and m.\nguess:\n";
+    for (coordinate, guess) in chain.coordinates.iter().zip(&chain.guess) {
+        let _ = writeln!(text, "  {}: {}", coordinate.name, number_text(*guess));
+    }
+    text
+}

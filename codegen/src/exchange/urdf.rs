@@ -1,0 +1,115 @@
+//! A crane as URDF: kinematics and masses; springs and dampers stand beside it.
+
+use super::mass::Mass;
+use super::rotation::{along_z, length, roll_pitch_yaw};
+use super::xml::{Xml, number_text, numbers};
+use super::{RADIUS, bars, origin, placements};
+use crate::chain::{Chain, CoordinateKind, Frame, Step, Vector};
+
+/// URDF asks for limits of a joint that is not `continuous`, which would be two coordinates in Pinocchio. The crane has none:
+/// so far, rad or m; as fast, rad/s or m/s; as strong, N m or N.
+pub(super) const NO_LIMIT: [f64; 3] = [1e3, 1e3, 1e9];
+
+/// The URDF text of a crane with the given parameter values.
+///
+/// A joint a coordinate, of its name; a body that moves by several coordinates hangs on massless links between them. Joints
+/// that do not move end in `_mount`, points of interest are massless links.
+///
+/// # Panics
+/// If `parameters` is shorter than the chain's list of parameters.
+#[must_use]
+pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
+    let mut xml = Xml::new(&origin(chain, parameters));
+    xml.open("robot", &[("name", chain.name.clone())]);
+    xml.comment("Joints have no stiffness and no damping here: the file of springs beside this one has them.");
+    xml.leaf("link", &[("name", WORLD.to_owned())]);
+    let bars = bars(chain, &placements(chain, parameters), parameters);
+    let mut parent = WORLD.to_owned();
+    for (body, bar) in chain.bodies.iter().zip(bars) {
+        let mut placement = Frame::WORLD;
+        for (index, step) in body.path.iter().enumerate() {
+            let Step::Move(id) = step else {
+                placement = placement.after(step, chain, &[], parameters);
+                continue;
+            };
+            let coordinate = &chain.coordinates[id.0];
+            let kind = if coordinate.kind == CoordinateKind::Rotation { "revolute" } else { "prismatic" };
+            let is_last = index + 1 == body.path.len();
+            let child = if is_last { body.name.clone() } else { format!("{}_frame", coordinate.name) };
+            let mut axis = [0.0; 3];
+            axis[coordinate.axis.index()] = 1.0;
+            joint(&mut xml, &coordinate.name, (&parent, &child), &placement, Some((kind, axis)));
+            if !is_last {
+                xml.leaf("link", &[("name", child.clone())]);
+            }
+            (parent, placement) = (child, Frame::WORLD);
+        }
+        if parent != body.name {
+            joint(&mut xml, &format!("{}_mount", body.name), (&parent, &body.name), &placement, None);
+            parent.clone_from(&body.name);
+        }
+        let mass = body.inertia.as_ref().map(|inertia| Mass::of(inertia, parameters));
+        link(&mut xml, &body.name, mass.as_ref(), bar);
+    }
+    for point in &chain.points {
+        let at = point.position.each_ref().map(|value| value.at(parameters));
+        let placement = Frame { origin: at, ..Frame::WORLD };
+        let carrier = &chain.bodies[point.body.0].name;
+        let name = format!("{}_point", point.name);
+        joint(&mut xml, &format!("{name}_mount"), (carrier, &name), &placement, None);
+        xml.leaf("link", &[("name", name)]);
+    }
+    xml.finish()
+}
+
+/// The link that does not move.
+const WORLD: &str = "world";
+
+/// A joint that moves by one coordinate, its kind and axis given, or one that does not.
+fn joint(xml: &mut Xml, name: &str, (parent, child): (&str, &str), placement: &Frame, moves: Option<(&str, Vector)>) {
+    let kind = moves.map_or("fixed", |(kind, _)| kind);
+    xml.open("joint", &[("name", name.to_owned()), ("type", kind.to_owned())]);
+    xml.leaf("parent", &[("link", parent.to_owned())]);
+    xml.leaf("child", &[("link", child.to_owned())]);
+    if *placement != Frame::WORLD {
+        xml.leaf("origin", &pose(placement));
+    }
+    if let Some((_, axis)) = moves {
+        let [far, fast, strong] = NO_LIMIT.map(number_text);
+        xml.leaf("axis", &[("xyz", numbers(&axis))]);
+        let limits = [("lower", format!("-{far}")), ("upper", far), ("velocity", fast), ("effort", strong)];
+        xml.leaf("limit", &limits);
+    }
+    xml.close();
+}
+
+/// A body: its mass, and the bar by which it is drawn.
+fn link(xml: &mut Xml, name: &str, mass: Option<&Mass>, bar: Option<Vector>) {
+    let named = [("name", name.to_owned())];
+    if mass.is_none() && bar.is_none() {
+        return xml.leaf("link", &named);
+    }
+    xml.open("link", &named);
+    if let Some(Mass { mass, com, tensor }) = mass {
+        xml.open("inertial", &[]);
+        xml.leaf("origin", &[("xyz", numbers(com))]);
+        xml.leaf("mass", &[("value", number_text(*mass))]);
+        let entries = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"].into_iter().zip(tensor.map(number_text));
+        xml.leaf("inertia", &entries.collect::<Vec<_>>());
+        xml.close();
+    }
+    if let Some(end) = bar {
+        xml.open("visual", &[]);
+        let middle = end.map(|component| component / 2.0);
+        xml.leaf("origin", &pose(&Frame { origin: middle, ..along_z(end) }));
+        xml.open("geometry", &[]);
+        xml.leaf("cylinder", &[("radius", number_text(RADIUS)), ("length", number_text(length(end)))]);
+        xml.close();
+        xml.close();
+    }
+    xml.close();
+}
+
+fn pose(frame: &Frame) -> [(&'static str, String); 2] {
+    [("xyz", numbers(&frame.origin)), ("rpy", numbers(&roll_pitch_yaw(frame)))]
+}

@@ -1,0 +1,111 @@
+//! URDF and MJCF: what is written of the shipped cranes, what is read of robots, and what is said of files that are no crane.
+//!
+//! That other programs compute the same of these files is checked by `tools/peers/exchange.py`.
+
+#![cfg(feature = "exchange")]
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crane_codegen::chain::Chain;
+use crane_codegen::{SourceFile, compile, exchange};
+
+/// Files of a folder of this package, in order.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder).expect("the folder").map(|entry| entry.expect("an entry").path()).collect();
+    files.sort();
+    files
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().expect("a name").to_string_lossy().into_owned()
+}
+
+fn chain(name: &str, text: String) -> Chain {
+    compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+/// The shipped cranes.
+fn shipped() -> Vec<Chain> {
+    let specs = files("../specs").into_iter().filter(|path| path.extension().is_some_and(|found| found == "yaml"));
+    specs.map(|path| chain(&stem(&path), std::fs::read_to_string(&path).expect("a spec"))).collect()
+}
+
+fn snapshot(name: &str, text: &str) {
+    insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "exchange", omit_expression => true }, {
+        insta::assert_snapshot!(name, text);
+    });
+}
+
+#[test]
+fn a_robot_that_is_no_crane_is_told_why() {
+    let mut shown = BTreeSet::new();
+    for path in files("tests/bad_urdf") {
+        let name = stem(&path);
+        let source = SourceFile::new(format!("{name}.urdf"), std::fs::read_to_string(&path).expect("a file"));
+        let fixed: &[String] = if name.starts_with("U013") { &["sholder".to_owned()] } else { &[] };
+        let found = exchange::import(&source, fixed).expect_err(&name);
+        snapshot(&name, &found.to_string());
+        let code = name.split('_').next().expect("a code").to_owned();
+        assert_eq!(found.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(), [&code], "{name}: {found}");
+        shown.insert(code);
+    }
+    for rule in exchange::CATALOGUE {
+        assert!(shown.contains(rule.code), "no bad file for {}: {}", rule.code, rule.about);
+    }
+}
+
+#[test]
+fn a_crane_comes_back_from_urdf() {
+    for crane in shipped() {
+        let urdf = exchange::urdf(&crane, &crane.parameter_defaults());
+        let spec = exchange::import(&SourceFile::new(format!("{}.urdf", crane.name), urdf), &[]).expect("a robot");
+        let back = chain(&crane.name, spec);
+        assert_eq!(back.coordinates.len(), crane.coordinates.len());
+        for (old, new) in crane.coordinates.iter().zip(&back.coordinates) {
+            assert_eq!((old.kind, old.axis), (new.kind, new.axis), "{}: {}", crane.name, old.name);
+        }
+        let mass = |chain: &Chain| -> f64 {
+            let defaults = chain.parameter_defaults();
+            chain.bodies.iter().filter_map(|body| Some(body.inertia.as_ref()?.mass.at(&defaults))).sum()
+        };
+        // Masses are written to their last digit; their sum rounds.
+        assert!((mass(&back) / mass(&crane) - 1.0).abs() < 1e-15, "{}", crane.name);
+        assert_eq!(back.points.len(), crane.points.len());
+    }
+}
+
+#[test]
+fn what_is_written_is_for_people_to_read() {
+    let cranes = shipped();
+    let named = |name: &str| cranes.iter().find(|crane| crane.name == name).expect("a shipped crane");
+    let (planar, rigid) = (named("knuckle_boom"), named("eight_link_rigid"));
+    let urdf = exchange::urdf(planar, &planar.parameter_defaults());
+    snapshot("knuckle_boom.urdf", &urdf);
+    snapshot("knuckle_boom.springs.yaml", &exchange::springs(planar, &planar.parameter_defaults()));
+    snapshot("knuckle_boom.xml", &exchange::mjcf(planar, &planar.parameter_defaults()).expect("expressible"));
+    snapshot(
+        "knuckle_boom.yaml",
+        &exchange::import(&SourceFile::new("knuckle_boom.urdf", urdf), &[]).expect("a robot"),
+    );
+    // A live parameter is written as it is set.
+    let heavy = exchange::urdf(rigid, &[800.0]);
+    assert!(heavy.contains("load_mass = 800 kg") && heavy.contains("<mass value=\"1076\"/>"));
+    snapshot("eight_link_rigid.xml", &exchange::mjcf(rigid, &rigid.parameter_defaults()).expect("expressible"));
+}
+
+#[test]
+fn any_bytes_get_an_answer() {
+    let urdf = std::fs::read_to_string(files("tests/bad_urdf").pop().expect("a file")).expect("text");
+    for (at, _) in urdf.char_indices() {
+        let cut = SourceFile::new(
+            "cut.urdf",
+            format!("{}{}", &urdf[..at], &urdf[at..].replacen(['"', '<', 'l', '0'], "é", 1)),
+        );
+        if let Ok(text) = exchange::import(&cut, &[]) {
+            let _ = compile::load(&SourceFile::new("cut.yaml", text));
+        }
+    }
+}

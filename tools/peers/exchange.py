@@ -1,0 +1,208 @@
+"""Loads exported cranes in Pinocchio and MuJoCo, and imported robots in the compiler, and compares A, e and q̈.
+
+    python exchange.py --crane target/release/crane --evaluate target/release/evaluate [--states 20] [--seed 1]
+
+Every compiled crane is exported as URDF, which Pinocchio reads, with its springs from the file beside it, and as MJCF, which
+MuJoCo reads, springs included. Robots of example-robot-data are imported from URDF and evaluated by the compiler's
+interpreter, against what Pinocchio reads of the same file.
+Exit code 0 if all agrees, 1 if something does not.
+"""
+
+import argparse
+import subprocess
+import sys
+import tempfile
+from importlib.metadata import files
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+from ruamel.yaml import YAML
+
+from agree import compare_all, computed, dense_solution, seeded_states
+from chain import TOOLS
+from comparison import HEADER, compare
+from crane_model import read_crane
+from evaluate import Evaluate
+from mujoco_peer import MuJoCo
+from pinocchio_peer import Pinocchio
+from states import States
+
+# What has been written as text and read back: the last digits of angles.
+TOLERANCE = 1e-9
+# Serial arms of example-robot-data, and their joints that are held at zero: fingers, which would be branches.
+ROBOTS = {
+    "panda.urdf": ["panda_finger_joint1", "panda_finger_joint2"],
+    "ur5_robot.urdf": [],
+    "ur10_robot.urdf": [],
+    "xarm7.urdf": [],
+    "z1.urdf": [],
+    "kinova.urdf": [],
+    "bravo7_no_ee.urdf": [],
+    "talos_left_arm.urdf": [],
+}
+
+
+class Urdf(Pinocchio):
+    """What Pinocchio makes of a URDF file; joints of `fixed` stand still at 0."""
+
+    def __init__(self, path, gravity, fixed=()):
+        self.model = pin.buildModelFromUrdf(str(path))
+        if fixed:
+            locked = [self.model.getJointId(name) for name in fixed]
+            self.model = pin.buildReducedModel(self.model, locked, pin.neutral(self.model))
+        self.model.gravity.linear = np.array(gravity)
+        self.data = self.model.createData()
+
+    def evaluate(self, q, v, force):
+        """A, e and q̈ at a state with generalized forces; a continuous joint is a point of a circle to Pinocchio."""
+        return super().evaluate(pin.integrate(self.model, pin.neutral(self.model), q), v, force)
+
+
+class Mjcf(MuJoCo):
+    """What MuJoCo makes of an MJCF file, with its own springs and dampers."""
+
+    def __init__(self, path):
+        self.model = mujoco.MjModel.from_xml_path(str(path))
+        self.data = mujoco.MjData(self.model)
+
+    def passive(self, q, v):
+        """Forces of springs and dampers."""
+        self.data.qpos, self.data.qvel = q, v
+        mujoco.mj_forward(self.model, self.data)
+        return self.data.qfrc_passive.copy()
+
+
+class Springs:
+    """The file of springs beside a URDF file."""
+
+    def __init__(self, path, names):
+        content = YAML(typ="safe").load(path)
+        self.gravity, self.supports = content["gravity"], content.get("supports") or []
+        joints = content["joints"] or {}
+        numbers = [joints.get(name, {"stiffness": 0, "damping": 0, "rest": 0}) for name in names]
+        self.stiffness, self.damping, self.rest = (
+            np.array([joint[key] for joint in numbers], float) for key in ("stiffness", "damping", "rest")
+        )
+        letters = ("x", "y", "z", "psi", "theta", "phi")
+        base = names[0].rpartition("_")[0]
+        self.base = [(i, letters.index(n.rpartition("_")[2])) for i, n in enumerate(names) if n.rpartition("_")[0] == base]
+
+    def force(self, q, v):
+        """Generalized forces, as the comments in the file tell."""
+        force = self.stiffness * (self.rest - q) - self.damping * v
+        for support in self.supports:
+            x, y, z = support["at"]
+            rows = np.array([[1, 0, 0, -y, z, 0], [0, 1, 0, x, 0, -z], [0, 0, 1, 0, -x, y]], float)
+            jacobian = np.zeros((3, q.size))
+            for index, place in self.base:
+                jacobian[:, index] = rows[:, place]
+            stretch = jacobian @ q - support["free_play"]
+            force -= jacobian.T @ (np.array(support["stiffness"]) * stretch)
+            force -= jacobian.T @ (np.array(support["damping"]) * (jacobian @ v))
+        return force
+
+
+def main():
+    """Runs both comparisons and returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--crane", metavar="PROGRAM", required=True, help="the built program `crane`")
+    parser.add_argument("--evaluate", metavar="PROGRAM", required=True, help="the built program `evaluate`")
+    parser.add_argument("--states", type=int, default=20, help="random states a crane, half near the guess, half far")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the random states")
+    options = parser.parse_args()
+    evaluate = Evaluate(options.evaluate)
+    print(HEADER)
+    with tempfile.TemporaryDirectory() as folder:
+        cranes = [Exported(name, evaluate, Path(folder), options).agrees() for name in evaluate.names()]
+        robots = [robot_agrees(name, fixed, evaluate, Path(folder), options) for name, fixed in ROBOTS.items()]
+    print(f"{sum(cranes)} of {len(cranes)} cranes agree as exported, {sum(robots)} of {len(robots)} robots as imported")
+    return 0 if all(cranes + robots) and cranes else 1
+
+
+class Exported:
+    """A compiled crane, and its files for others in a folder."""
+
+    def __init__(self, name, evaluate, folder, options):
+        self.name, self.evaluate, self.folder, self.options = name, evaluate, folder, options
+        self.layout = evaluate.layout(name)
+        self.spec = TOOLS.parent / self.layout["spec"]
+        self.states = seeded_states(read_crane(self.spec), options)
+        self.states.time[:] = 0
+        self.ours = evaluate.values(self.layout, self.states)
+        if "forward_dynamics" not in self.ours:
+            self.ours["forward_dynamics"] = dense_solution(self.ours)
+
+    def agrees(self):
+        """Exports both ways, imports again, and compares all."""
+        urdf, mjcf = (self.folder / f"{self.name}.{suffix}" for suffix in ("urdf", "xml"))
+        crane(self.options, "export", self.spec, "--format", "urdf", "-o", urdf)
+        springs = Springs(urdf.with_suffix(".springs.yaml"), self.layout["coordinates"])
+        library = Urdf(urdf, springs.gravity)
+        if list(library.model.names)[1:] != self.layout["coordinates"]:
+            print(f"{self.name}: joints are {list(library.model.names)[1:]}")
+            return False
+        forces = np.array([springs.force(q, v) for q, v in zip(self.states.q, self.states.v)])
+        expressible = all(support["kinematics"] == "linear" for support in springs.supports)
+        passed = self.compare(library, forces if expressible else self.ours["forces"], applied=True)
+        passed &= self.again(urdf, springs.gravity)
+        written = crane(self.options, "export", self.spec, "--format", "mjcf", "-o", mjcf, check=False)
+        if not expressible:
+            return passed and written.returncode == 1 and b"kinematics: linear" in written.stderr
+        library = Mjcf(mjcf)
+        forces = np.array([library.passive(q, v) for q, v in zip(self.states.q, self.states.v)])
+        return self.compare(library, forces, applied=False) and passed
+
+    def compare(self, library, forces, applied):
+        """Compares A, e, the forces and q̈ of a library, the forces applied to it or its own."""
+        theirs = computed(library, self.states, forces if applied else np.zeros_like(forces))
+        comparisons = compare_all(theirs, self.ours, self.states)
+        comparisons.append(compare("forces", forces, self.ours["forces"], self.states.groups))
+        return told(f"{self.name}, {type(library).__name__}", comparisons)
+
+    def again(self, urdf, gravity):
+        """Compares A and e of the spec that comes of its own URDF file; gravity URDF does not know."""
+        spec = self.folder / f"{self.name}_again.yaml"
+        crane(self.options, "import", urdf, "-o", spec)
+        with spec.open("a", encoding="utf-8") as text:
+            text.write(f"gravity: {list(gravity)}\n")
+        layout = self.evaluate.layout(str(spec))
+        states = States(self.states.time, self.states.q, self.states.v, np.empty((len(self.states.time), 0)))
+        again = self.evaluate.values(layout, states)
+        comparisons = [compare(name, self.ours[name], again[name], states.groups) for name in ("mass_matrix", "bias")]
+        return told(f"{self.name}, spec of URDF", comparisons)
+
+
+def robot_agrees(name, fixed, evaluate, folder, options):
+    """Imports a robot and compares what the interpreter makes of the spec with what Pinocchio makes of the URDF file."""
+    urdf = next(path for path in files("example-robot-data") if path.name == name).locate()
+    spec = folder / f"{Path(name).stem}.yaml"
+    crane(options, "import", urdf, "-o", spec, *[word for joint in fixed for word in ("--fix", joint)])
+    layout = evaluate.layout(str(spec))
+    rng, shape = np.random.default_rng(options.seed), (options.states, len(layout["coordinates"]))
+    q, v = rng.uniform(-np.pi, np.pi, shape), rng.uniform(-2, 2, shape)
+    states = States(np.zeros(options.states), q, v, np.empty((options.states, 0)))
+    ours = evaluate.values(layout, states)
+    theirs = computed(Urdf(urdf, [0, 0, -9.81], fixed), states, ours["forces"])
+    return told(name, compare_all(theirs, ours, states))
+
+
+def told(subject, comparisons):
+    """Prints the worst of some comparisons, and all that failed; whether none did."""
+    for comparison in comparisons:
+        comparison.tolerance = TOLERANCE
+    worst = max(comparisons, key=lambda comparison: comparison.by_entry)
+    for comparison in [worst, *(c for c in comparisons if not c.passed and c is not worst)]:
+        comparison.quantity = f"{subject}: {comparison.quantity}"
+        print(comparison.row(), flush=True)
+    return all(comparison.passed for comparison in comparisons)
+
+
+def crane(options, *arguments, check=True):
+    """Runs the command."""
+    return subprocess.run([options.crane, *map(str, arguments)], check=check, capture_output=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
