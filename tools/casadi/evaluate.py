@@ -24,14 +24,14 @@ class Evaluate:
         return self.run("list").decode().split()
 
     def layout(self, name):
-        """What a crane says about itself, and the order and shape of its quantities."""
+        """What a crane, or that of a YAML file, says about itself, and the order and shape of its quantities."""
         return json.loads(self.run("layout", name))
 
     def values(self, layout, states):
         """All quantities at all states: name -> array with a row a state."""
         records = np.ascontiguousarray(states.records(), dtype="<f8")
         lengths = [quantity["length"] for quantity in layout["quantities"]]
-        numbers = np.frombuffer(self.run("values", layout["name"], records=records.tobytes()), dtype="<f8")
+        numbers = np.frombuffer(self.run("values", layout.get("file", layout["name"]), records=records.tobytes()), dtype="<f8")
         if numbers.size != len(records) * sum(lengths):
             raise RuntimeError(f"{layout['name']}: {numbers.size} numbers for {len(records)} records of {sum(lengths)}")
         columns = np.split(numbers.reshape(len(records), -1), np.cumsum(lengths)[:-1], axis=1)

@@ -6,7 +6,6 @@
 Exit code 0 if every quantity of every crane agrees, 1 if one does not.
 """
 
-import argparse
 import sys
 import time
 import zlib
@@ -14,6 +13,7 @@ import zlib
 import numpy as np
 
 from chain import TOOLS, read_chain
+from command_line import parser, run
 from comparison import HEADER, TOLERANCE, compare
 from crane_model import read_crane
 from evaluate import Evaluate
@@ -30,18 +30,7 @@ PERTURBATION = 1e-7
 
 def main():
     """Runs the comparison or the self-test and returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--evaluate", metavar="PROGRAM", help="the built program `evaluate`")
-    parser.add_argument("--crane", metavar="NAME", action="append", help="compare this crane only (may be repeated)")
-    parser.add_argument("--states", type=int, default=100, help="random states a crane, half near the guess, half far")
-    parser.add_argument("--seed", type=int, default=1, help="seed of the random states")
-    parser.add_argument("--self-test", metavar="SPEC", nargs="*", help="check the comparison, without Rust")
-    options = parser.parse_args()
-    if options.self_test is not None:
-        return self_test(options)
-    if not options.evaluate:
-        parser.error("--evaluate or --self-test is needed")
-    return agree(options)
+    return run(parser(__doc__), agree, self_test)
 
 
 def agree(options):

@@ -40,7 +40,7 @@ ROBOTS = {
     "z1.urdf": [],
     "kinova.urdf": [],
     "bravo7_no_ee.urdf": [],
-    "talos_left_arm.urdf": [],
+    "ur3_robot.urdf": [],
 }
 
 

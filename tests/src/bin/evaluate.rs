@@ -1,7 +1,8 @@
 //! Evaluates generated cranes for checks in other languages.
 //!
 //! `evaluate list` prints the cranes, one a line. `evaluate layout CRANE` describes one as JSON. A YAML file in place of a
-//! crane's name is run by the interpreter, which has A, e, forces and accelerations.
+//! crane's name is run by the interpreter, which has T, A, e, forces, accelerations and what
+//! statics need.
 //! `evaluate values CRANE` reads records `t, q[N], v[N], parameters[P]` from standard input until its end, and writes for
 //! each all quantities in the order of the layout: 64-bit little-endian numbers, matrices row by row.
 
@@ -115,30 +116,35 @@ fn interpreted(file: &str) -> Result<Interpreted, String> {
     Ok(Interpreted::new(compile::load(&source).map_err(|mistakes| mistakes.to_string())?))
 }
 
-/// Functions of an interpreted crane, in order: A is square, the others have a number a coordinate.
-const INTERPRETED: [&str; 4] = ["mass_matrix", "bias", "forces", "forward_dynamics"];
+/// Functions of an interpreted crane, in order, and what they are of: bodies, coordinates, pairs of coordinates.
+fn functions(chain: &Chain) -> [(&'static str, Vec<usize>); 7] {
+    let (n, bodies) = (chain.coordinates.len(), chain.bodies.len());
+    [
+        ("transforms", vec![bodies, 4, 4]),
+        ("mass_matrix", vec![n, n]),
+        ("bias", vec![n]),
+        ("forces", vec![n]),
+        ("forward_dynamics", vec![n]),
+        ("static_residual", vec![n]),
+        ("tangent_stiffness", vec![n, n]),
+    ]
+}
 
 fn layout_of_interpreted(crane: &Interpreted, file: &str) -> serde_json::Value {
     let Chain { name, coordinates, parameters, .. } = &crane.chain;
-    let n = coordinates.len();
-    let shape = |quantity: &str| if quantity == INTERPRETED[0] { vec![n, n] } else { vec![n] };
-    let quantity = |name: &str| {
-        let shape = shape(name);
-        json!({"name": name, "length": shape.iter().product::<usize>(), "shape": shape})
-    };
+    let quantity = |(name, shape): (&str, Vec<usize>)| json!({"name": name, "length": shape.iter().product::<usize>(), "shape": shape});
     json!({
-        "name": file,
-        "crane": name,
+        "name": name,
+        "file": file,
         "spec": file,
         "coordinates": coordinates.iter().map(|c| &c.name).collect::<Vec<_>>(),
         "parameters": parameters.iter().map(|p| json!({"name": p.name, "default": p.default})).collect::<Vec<_>>(),
-        "quantities": INTERPRETED.map(quantity),
+        "quantities": functions(&crane.chain).map(quantity),
     })
 }
 
 fn evaluate(crane: &Interpreted, state: &State, parameters: &[f64]) -> Vec<f64> {
     let inputs = Inputs::state(state.t, state.q.clone(), state.v.clone(), parameters.to_vec());
-    let n = crane.size();
-    let length = |quantity| if quantity == INTERPRETED[0] { n * n } else { n };
-    INTERPRETED.iter().flat_map(|quantity| crane.get(quantity, &inputs, length(*quantity))).collect()
+    let values = |(name, shape): (&str, Vec<usize>)| crane.get(name, &inputs, shape.iter().product());
+    functions(&crane.chain).into_iter().flat_map(values).collect()
 }

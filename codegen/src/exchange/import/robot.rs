@@ -212,7 +212,8 @@ impl Reader {
             given.name.split_whitespace().map(|word| word.parse().ok().filter(|n: &f64| n.is_finite())).collect();
         let found = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
         if found.is_none() {
-            let expected = if N == 1 { "a finite number".to_owned() } else { format!("{N} finite numbers with blanks between") };
+            let expected =
+                if N == 1 { "a finite number".to_owned() } else { format!("{N} finite numbers with blanks between") };
             self.mistakes.push(rule::wrong_numbers(given.span, place, &given.name, expected));
         }
         found
