@@ -1,14 +1,26 @@
-//! docs/SPEC.md tells of every key and every rule, and its example is a crane.
+//! docs/SPEC.md tells of every key and every rule; specs in the documentation are cranes; links lead somewhere.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crane_codegen::diagnostic::CATALOGUE;
 use crane_codegen::{SourceFile, json_schema, read, validate};
 use serde_json::Value;
 
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
 fn page() -> String {
-    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/SPEC.md")).expect("docs/SPEC.md")
+    std::fs::read_to_string(root().join("docs/SPEC.md")).expect("docs/SPEC.md")
+}
+
+/// All pages for readers, and their text.
+fn pages() -> Vec<(PathBuf, String)> {
+    let folders = [".", "docs", "docs/manual"].map(|folder| std::fs::read_dir(root().join(folder)).expect("a folder"));
+    let files = folders.into_iter().flatten().map(|entry| entry.expect("an entry").path());
+    let pages = files.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
+    pages.map(|path| (path.clone(), std::fs::read_to_string(path).expect("a page"))).collect()
 }
 
 /// Keys of mappings and words of choices in a schema.
@@ -82,4 +94,40 @@ fn what_the_schema_requires_the_reader_requires() {
         required += 1;
     }
     assert_eq!(found.matches("error[E012]").count(), required - 1, "all but `links`, which are there:\n{found}");
+}
+
+#[test]
+fn specs_of_the_manual_are_cranes() {
+    let mut specs = 0;
+    for (path, text) in pages().iter().filter(|(path, _)| path.parent().is_some_and(|p| p.ends_with("manual"))) {
+        for block in text.split("```yaml\n").skip(1).filter_map(|rest| rest.split("```").next()) {
+            let source = SourceFile::new(path.display().to_string(), block);
+            read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+            specs += 1;
+        }
+    }
+    assert!(specs > 0, "the manual was searched");
+}
+
+#[test]
+fn links_between_pages_lead_somewhere() {
+    for (path, text) in pages() {
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+        for link in links.filter(|link| !link.is_empty() && !link.contains("://")) {
+            let target = path.parent().expect("a folder").join(link);
+            assert!(target.exists(), "{}: no {link}", path.display());
+        }
+    }
+}
+
+#[cfg(feature = "exchange")]
+#[test]
+fn every_rule_of_imports_is_documented() {
+    let page = std::fs::read_to_string(root().join("docs/manual/exchange.md")).expect("a page");
+    let rules = crane_codegen::exchange::CATALOGUE;
+    for rule in rules {
+        let row = format!("| {} | {} |", rule.code, rule.about.trim());
+        assert!(page.contains(&row), "docs/manual/exchange.md lacks the row\n{row}");
+    }
+    assert_eq!(page.matches("\n| U0").count(), rules.len(), "rows of rules that are gone");
 }

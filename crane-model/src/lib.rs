@@ -30,6 +30,8 @@ pub mod command;
 #[cfg(feature = "cranes")]
 pub mod cranes;
 pub mod dynamics;
+#[cfg(all(doctest, feature = "cranes"))]
+mod manual;
 #[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]

@@ -40,7 +40,7 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     }
 
     files::folder(folder)?;
-    let (settings, runs) = runs(&cases, &options.timing)?;
+    let (settings, runs) = runs(&cases, &options.timing, Method::Rk4)?;
     let [rigid_run, flexible_run] = runs.as_slice() else {
         return Err(Problem::failed("a simulation is missing", "please report it"));
     };
@@ -76,13 +76,13 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     Ok(())
 }
 
-/// Runs cranes side by side, each from its own start.
-pub fn runs(cases: &[Case<'_>], timing: &Timing) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
+/// Runs cranes side by side, each from its own start; `default`: the method unless one is asked for.
+pub fn runs(cases: &[Case<'_>], timing: &Timing, default: Method) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
     let starts = cases.iter().map(|case| Start::of(case.rig)).collect::<Outcome<Vec<_>>>()?;
     let settings = cases
         .iter()
         .zip(&starts)
-        .map(|(case, start)| timing.settings(case.rig, start, Method::Rk4))
+        .map(|(case, start)| timing.settings(case.rig, start, default))
         .collect::<Outcome<Vec<_>>>()?;
     let bar = progress(settings.iter().map(|settings| settings.duration).sum());
     bar.set_message("simulating");

@@ -2,6 +2,8 @@
 
 use std::io::Write;
 
+use crate::dynamics::Method;
+
 use crate::command::{
     Fleet,
     arguments::Simulate,
@@ -22,7 +24,7 @@ pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()
     if let [rigid, flexible] = cases.as_slice() {
         report.grid(deflection(rigid, flexible));
     }
-    let (settings, runs) = runs(&cases, &options.timing)?;
+    let (settings, runs) = runs(&cases, &options.timing, Method::Rosenbrock)?;
     let labels = cases.iter().map(|case| case.label);
 
     let folder = &options.folder.out;

@@ -4,6 +4,7 @@
 
 mod equations;
 mod imports;
+mod manual;
 mod new_crane;
 mod oracles;
 mod python;
@@ -97,6 +98,7 @@ fn tests() -> Vec<Step> {
         Step::check("the report page in a browser", report::in_browser),
         Step::cargo("a crane of one's own", &["run", "--release", "--package", "own-crane"]),
         Step::check("a new crane", new_crane::check),
+        Step::check("commands of the manual", manual::check),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.
         Step::cargo(
             "a crane without std and heap",
