@@ -20,6 +20,7 @@ mod expand;
 pub mod explain;
 pub mod lower;
 pub mod mechanics;
+pub mod outline;
 pub mod picture;
 mod read;
 pub mod report;

@@ -196,6 +196,13 @@ const said = await open(browser, { viewport: { width: 1440, height: 900 }, color
     const files = await Promise.all(csvFiles.map(async (path) => columns(await readFile(path, "utf8"))));
     await values(page, files);
   }
+  const { every, outlines } = await page.evaluate(() => {
+    const { data, viewer } = globalThis.report;
+    const drawn = viewer.figure.beams.map(({ name, geometry }) => ({ drawn: geometry.half, spec: data.crane.outlines[name]?.size }));
+    return { every: data.crane.run.every, outlines: drawn.filter(({ spec }) => spec) };
+  });
+  assert.equal(await page.locator("#thinned").isVisible(), every > 1, "a thinned run says so");
+  for (const { drawn, spec } of outlines) assert.deepEqual(drawn, spec.map((side) => side / 2), "beams have the size of the spec");
   await moves(page);
   await plots(page);
   assert((await page.$$eval("#tables table", (tables) => tables.filter((table) => table.rows.length > 1).length)) >= 3);

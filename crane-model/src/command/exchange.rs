@@ -1,11 +1,18 @@
-//! `crane export` and `crane import`: cranes for other programs, and from them.
+//! `crane export` and `crane import`: cranes for other programs, and from them; and outlines for the page.
 
 use std::{
     io::Write,
     path::{Path, PathBuf},
 };
 
-use crane_codegen::{SourceFile, chain::Chain, compile, exchange};
+use crane_codegen::{
+    SourceFile,
+    chain::Chain,
+    compile, exchange,
+    outline::{self, Outline},
+    read,
+};
+use serde_json::{Value, json};
 
 use crate::command::{
     arguments::{Export, Import, Language},
@@ -54,6 +61,13 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
         out,
         "{file} written: {name} with {bodies} bodies, {coordinates} coordinates; `crane run {file}` runs it"
     )?)
+}
+
+/// Outlines of the beams of a spec, by link: height and width, m, and whether they are round.
+pub fn outlines(spec: Option<&str>) -> Value {
+    let read = spec.and_then(|text| read(&SourceFile::new("spec", text)).ok());
+    let found = read.map_or_else(Vec::new, |spec| outline::outlines(&spec.crane));
+    found.into_iter().map(|Outline { link, size, round }| (link, json!({"size": size, "round": round}))).collect()
 }
 
 /// The chain of a shipped crane, or of a YAML file.

@@ -1,30 +1,38 @@
-// A box beam along a curve: a flexible link as bent as its elements are.
+// A beam along a curve, boxed or round: a flexible link as bent as its elements are.
 import { BufferAttribute, BufferGeometry, Vector3 } from "three";
 
 /** Stations of the drawn curve in each half of an element. */
 const STATIONS = 4;
-/** Faces of the box by direction of its normal, (y, z), with the two corners of each. */
-const FACES = [
+/** Faces of a box by direction of its normal, (y, z), with the two corners of each. */
+const BOX = [
   { normal: [1, 0], corners: [[1, -1], [1, 1]] },
   { normal: [0, 1], corners: [[1, 1], [-1, 1]] },
   { normal: [-1, 0], corners: [[-1, 1], [-1, -1]] },
   { normal: [0, -1], corners: [[-1, -1], [1, -1]] },
 ];
+/** Faces of a round outline, likewise. */
+const ROUND = Array.from({ length: 24 }, (_, face) => {
+  const towards = (turn) => [Math.cos((turn * Math.PI) / 12), Math.sin((turn * Math.PI) / 12)];
+  return { normal: towards(face), corners: [towards(face - 0.5), towards(face + 0.5)] };
+});
 
 /** Geometry of a beam over elements of these lengths. */
 export class BeamGeometry extends BufferGeometry {
-  constructor(lengths, height, width) {
+  constructor(lengths, height, width, round = false) {
     super();
     this.lengths = lengths;
     this.half = [height / 2, width / 2];
+    this.faces = round ? ROUND : BOX;
+    const vertices = 2 * this.faces.length;
     const rings = 2 * STATIONS * lengths.length + 1;
-    this.setAttribute("position", new BufferAttribute(new Float32Array(rings * 24), 3));
-    this.setAttribute("normal", new BufferAttribute(new Float32Array(rings * 24), 3));
+    this.setAttribute("position", new BufferAttribute(new Float32Array(rings * 3 * vertices), 3));
+    this.setAttribute("normal", new BufferAttribute(new Float32Array(rings * 3 * vertices), 3));
     const index = [];
     for (let ring = 0; ring + 1 < rings; ring += 1) {
-      for (let face = 0; face < 4; face += 1) {
-        const a = ring * 8 + face * 2;
-        index.push(a, a + 1, a + 8, a + 1, a + 9, a + 8);
+      for (let face = 0; face < this.faces.length; face += 1) {
+        const a = ring * vertices + face * 2;
+        const b = a + vertices;
+        index.push(a, a + 1, b, a + 1, b + 1, b);
       }
     }
     this.setIndex(index);
@@ -36,7 +44,7 @@ export class BeamGeometry extends BufferGeometry {
     const normal = this.attributes.normal;
     let vertex = 0;
     const ring = (p, y, z) => {
-      for (const { normal: [ny, nz], corners } of FACES) {
+      for (const { normal: [ny, nz], corners } of this.faces) {
         for (const [cy, cz] of corners) {
           const [h, w] = [cy * this.half[0], cz * this.half[1]];
           position.setXYZ(vertex, p.x + y.x * h + z.x * w, p.y + y.y * h + z.y * w, p.z + y.z * h + z.z * w);

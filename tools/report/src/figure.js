@@ -1,5 +1,5 @@
 // A crane in three dimensions, drawn from its chain: links from frame to frame, as thick as their mass makes likely,
-// flexible links bent, pins where joints turn, legs where it stands.
+// flexible links bent, in the outline of their section where the spec gives one, pins where joints turn, legs where it stands.
 import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
 import { BeamGeometry } from "./beam.js";
 import { Kinematics, links } from "./kinematics.js";
@@ -87,20 +87,24 @@ export class Figure {
     this.stand();
   }
 
-  beam({ bodies: elements }) {
+  beam({ name, bodies: elements }) {
     const { bodies } = this.kinematics;
     const lengths = elements.map((p) => bodies[p].length);
     const total = lengths.reduce((sum, length) => sum + length, 0);
     const mass = elements.reduce((sum, p) => sum + bodies[p].mass, 0);
-    const side = this.thickness(mass, total);
-    const geometry = new BeamGeometry(lengths, side, 0.8 * side);
+    const outline = this.crane.outlines[name];
+    const likely = this.thickness(mass, total);
+    const [height, width] = outline?.size ?? [likely, 0.8 * likely];
+    const side = Math.max(height, width);
+    const geometry = new BeamGeometry(lengths, height, width, outline?.round);
     const mesh = this.mesh(geometry, COLOURS.flexible);
     mesh.frustumCulled = false;
-    this.beams.push({ geometry, elements });
+    this.beams.push({ name, geometry, elements });
     // Rings between the elements show where it bends.
     elements.slice(1).forEach((p) => {
-      const ring = this.mesh(new BoxGeometry(0.12 * side, 1.12 * side, 0.92 * side), COLOURS.pin);
-      this.part(p, ring, new Matrix4());
+      const ring = this.mesh(outline?.round ? new CylinderGeometry(0.56 * side, 0.56 * side, 0.12 * side, 32) : new BoxGeometry(0.12 * side, height + 0.12 * side, width + 0.12 * side), COLOURS.pin);
+      // A cylinder stands along y.
+      this.part(p, ring, outline?.round ? new Matrix4().makeRotationZ(Math.PI / 2) : new Matrix4());
     });
     this.usual ??= side;
   }

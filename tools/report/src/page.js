@@ -21,6 +21,7 @@ const player = new Player(crane.run.t.at(-1) ?? 0);
 document.title = `${crane.title} · report`;
 $("h1").textContent = crane.title;
 $("#name").textContent = crane.name;
+thinned();
 tables(data);
 tiles(data);
 document.documentElement.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
@@ -56,6 +57,14 @@ addEventListener("scroll", plotsFollow, { passive: true });
 globalThis.report = { data, player, plots, viewer };
 document.documentElement.dataset.ready = "yes";
 if (!matchMedia("(prefers-reduced-motion: reduce)").matches && viewer) player.play(true);
+
+/** Says so where a run has more samples than the page. */
+function thinned() {
+  const { every, rows } = crane.run;
+  if (every === 1) return;
+  const text = `A long run: of every ${every} recorded samples this page shows one, ${rows} in all. Tables, and the CSV files that crane run writes, are of all.`;
+  Object.assign($("#thinned"), { textContent: text, hidden: false });
+}
 
 /** Brings the plots on the screen to the present time. */
 function plotsFollow() {

@@ -6,8 +6,10 @@ use std::process::Command;
 use crate::{step, workspace};
 
 const FOLDER: &str = "tools/report";
-/// Pages for the browser besides that of the default run: no elements and no supports; nothing that moves.
-const OTHERS: [&str; 2] = ["knuckle_boom", "cantilever"];
+/// Pages for the browser besides that of the default run: no elements and no supports; nothing that moves; more samples than a
+/// page holds.
+const OTHERS: [(&str, &[&str]); 3] =
+    [("knuckle_boom", &[]), ("cantilever", &[]), ("double_pendulum", &["--duration", "50", "--output", "0.01"])];
 
 fn in_folder(program: &str) -> Command {
     let mut command = Command::new(program);
@@ -42,9 +44,10 @@ pub fn in_browser() -> Result<(), String> {
     let out = workspace::root().join("out");
     let files = ["report.html", "eight_link_flexible.csv", "eight_link_rigid.csv"].map(|name| out.join(name));
     step::finish(in_folder("node").arg("test.js").args(files))?;
-    for crane in OTHERS {
+    for (crane, options) in OTHERS {
         let page = out.join(format!("{crane}.html"));
-        step::finish(Command::new(workspace::target().join("release/crane")).args(["report", crane, "-o"]).arg(&page))?;
+        let mut command = Command::new(workspace::target().join("release/crane"));
+        step::finish(command.args(["report", crane]).args(options).arg("-o").arg(&page))?;
         step::finish(in_folder("node").arg("test.js").arg(page))?;
     }
     Ok(())

@@ -18,7 +18,7 @@ use crate::command::{
     Fleet,
     arguments::Page,
     compare::runs,
-    files, modes,
+    exchange, files, modes,
     problem::Outcome,
     report::Report,
     run::{POSES, Recorded, Start, manoeuvre},
@@ -62,6 +62,7 @@ fn data(fleet: &Fleet, cases: &[Case<'_>], settings: &[Settings], runs: &[Record
     let mut cranes = Vec::new();
     for ((case, settings), run) in cases.iter().zip(settings).zip(runs) {
         let mut crane = crane::data(case, run)?;
+        crane["outlines"] = exchange::outlines(fleet.spec(case.rig.description().name));
         crane["record"] = files::record(case.rig, settings, run);
         cranes.push(crane);
     }
