@@ -1,22 +1,19 @@
-//! Mass properties as other programs take them: mass, centre of mass, tensor about it.
+//! Mass properties as other programs have them: mass, centre of mass, tensor about it.
 
-use crate::chain::{Inertia, Vector};
+use crate::chain::{Frame, Inertia, Vector};
 
-/// Mass properties in numbers.
-pub(super) struct Mass {
+/// A mass in a frame.
+#[derive(Clone, Debug)]
+pub(super) struct Lump {
     /// Mass, kg.
     pub(super) mass: f64,
-    /// Centre of mass in the body's frame, m.
+    /// Centre of mass in the frame, m.
     pub(super) com: Vector,
-    /// `[Ixx, Iyy, Izz, Ixy, Ixz, Iyz]` about the centre of mass in the body's axes, `Ixy = −∫ x y dm`, kg m².
+    /// `[Ixx, Iyy, Izz, Ixy, Ixz, Iyz]` about the centre of mass in its axes, `Ixy = −∫ x y dm`, kg m².
     pub(super) tensor: [f64; 6],
 }
 
-/// A moment about the centre of mass below this share of that about the origin is what rounding has left of parallel axes:
-/// some ten roundings of 1.1e-16.
-const ROUNDING: f64 = 2e-15;
-
-impl Mass {
+impl Lump {
     /// Of a pseudo-inertia: with `S = ∫ r rᵀ dm − m c cᵀ`, the tensor is `tr(S) 1 − S`.
     pub(super) fn of(inertia: &Inertia, parameters: &[f64]) -> Self {
         let mass = inertia.mass.at(parameters);
@@ -33,21 +30,57 @@ impl Mass {
             central(5, 1, 2),
         ];
         let tensor = [yy + zz, xx + zz, xx + yy, -xy, -xz, -yz];
-        Mass { mass, com, tensor: tensor.map(|entry| if entry.abs() <= ROUNDING * size { 0.0 } else { entry }) }
+        Lump { mass, com, tensor: tensor.map(|entry| without_rounding(entry, size)) }
     }
+
+    /// The same in the frame in which this one's frame is given: `c' = p + R c`, `I' = R I Rᵀ`.
+    pub(super) fn seen_through(&self, frame: &Frame) -> Lump {
+        let [xx, yy, zz, xy, xz, yz] = self.tensor;
+        let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+        // Row i of R: what the axes of the frame have along i.
+        let along = |i: usize| frame.axes.map(|axis| axis[i]);
+        let entry = |i: usize, j: usize| -> f64 {
+            let (left, right) = (along(i), along(j));
+            (0..3).map(|k| left[k] * (0..3).map(|l| rows[k][l] * right[l]).sum::<f64>()).sum()
+        };
+        let size = xx.abs() + yy.abs() + zz.abs();
+        let tensor = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j)| without_rounding(entry(i, j), size));
+        Lump { mass: self.mass, com: clean(frame.place(self.com)), tensor }
+    }
+}
+
+/// Zero where a number is what rounding has left of numbers of a size: some twenty roundings of 1.1e-16.
+pub(super) fn without_rounding(number: f64, size: f64) -> f64 {
+    if number.abs() <= 2e-15 * size { 0.0 } else { number }
+}
+
+/// A vector without what rounding has left in some of its components.
+pub(super) fn clean(vector: Vector) -> Vector {
+    let size = vector.iter().map(|component| component.abs()).sum();
+    vector.map(|component| without_rounding(component, size))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::chain::Axis;
     use crate::expand::inertia::{about_com, point};
 
     #[test]
     fn parallel_axes_there_and_back() {
         let (mass, com, tensor) = (12.0, [1.0, -2.0, 3.0], [52.0, 40.0, 20.0, -1.0, 2.0, -3.0]);
-        let back = Mass::of(&about_com(mass.into(), &com.map(Into::into), &tensor.map(Into::into)), &[]);
+        let back = Lump::of(&about_com(mass.into(), &com.map(Into::into), &tensor.map(Into::into)), &[]);
         assert_eq!((back.mass, back.com, back.tensor), (mass, com, tensor));
         // A point has no inertia of its own, not even by rounding.
-        assert_eq!(Mass::of(&point(0.3.into(), &[0.1.into(), 0.7.into(), 1.3.into()]), &[]).tensor, [0.0; 6]);
+        assert_eq!(Lump::of(&point(0.3.into(), &[0.1.into(), 0.7.into(), 1.3.into()]), &[]).tensor, [0.0; 6]);
+    }
+
+    #[test]
+    fn a_quarter_turn_swaps_moments_and_signs_of_products() {
+        let lump = Lump { mass: 2.0, com: [1.0, 2.0, 3.0], tensor: [10.0, 20.0, 25.0, 1.0, 2.0, 3.0] };
+        let turned = lump.seen_through(&Frame { origin: [0.0, 0.0, 5.0], ..Frame::WORLD }.turned(Axis::Z, 1.0, 0.0));
+        // x' = −y, y' = x, z' = z: products with one factor x' change their sign.
+        assert_eq!(turned.com, [-2.0, 1.0, 8.0]);
+        assert_eq!(turned.tensor, [20.0, 10.0, 25.0, -1.0, -3.0, 2.0]);
     }
 }

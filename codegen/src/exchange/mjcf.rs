@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::mass::Mass;
+use super::mass::Lump;
 use super::rotation::quaternion;
 use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
@@ -102,8 +102,8 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
         }
         let moves = body.path.iter().any(|step| matches!(step, Step::Move(_)));
         match &body.inertia {
-            Some(inertia) => inertial(xml, &Mass::of(inertia, parameters)),
-            None if moves => inertial(xml, &Mass { mass: LEAST, com: [0.0; 3], tensor: [0.0; 6] }),
+            Some(inertia) => inertial(xml, &Lump::of(inertia, parameters)),
+            None if moves => inertial(xml, &Lump { mass: LEAST, com: [0.0; 3], tensor: [0.0; 6] }),
             None => {}
         }
         if let Some(end) = bars[index] {
@@ -131,7 +131,7 @@ fn joint(xml: &mut Xml, chain: &Chain, id: CoordinateId, frame: &Frame, paramete
     xml.leaf("joint", &attributes);
 }
 
-fn inertial(xml: &mut Xml, Mass { mass, com, tensor }: &Mass) {
+fn inertial(xml: &mut Xml, Lump { mass, com, tensor }: &Lump) {
     let [xx, yy, zz, xy, xz, yz] = tensor;
     let inertia = if [xy, xz, yz] == [&0.0; 3] {
         ("diaginertia", numbers(&[*xx, *yy, *zz].map(|moment| moment.max(LEAST))))

@@ -16,13 +16,15 @@ pub use mjcf::{Inexpressible, mjcf};
 pub use springs::springs;
 pub use urdf::urdf;
 
+use std::fmt::Write;
+
 use crate::chain::{Body, Chain, Frame, Step, Vector};
 
 /// Where a crane came from, and with which values of its parameters it was written.
 fn origin(chain: &Chain, parameters: &[f64]) -> String {
     let mut text = format!("{}, spec hash {}. Units: SI, rad.", chain.title, chain.spec_hash);
     for (parameter, value) in chain.parameters.iter().zip(parameters) {
-        text += &format!(" {} = {value} {}.", parameter.name, parameter.unit);
+        let _ = write!(text, " {} = {value} {}.", parameter.name, parameter.unit);
     }
     text
 }
@@ -39,7 +41,7 @@ fn placements(chain: &Chain, parameters: &[f64]) -> Vec<Frame> {
 fn bars(chain: &Chain, placements: &[Frame], parameters: &[f64]) -> Vec<Option<Vector>> {
     let end = |(index, body): (usize, &Body)| {
         let next = placements.get(index + 1).map(|next| next.origin);
-        let com = body.inertia.as_ref().map(|inertia| mass::Mass::of(inertia, parameters).com);
+        let com = body.inertia.as_ref().map(|inertia| mass::Lump::of(inertia, parameters).com);
         [next, com].into_iter().flatten().find(|end| rotation::length(*end) > SHORTEST_BAR)
     };
     chain.bodies.iter().enumerate().map(end).collect()

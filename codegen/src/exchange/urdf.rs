@@ -1,6 +1,6 @@
 //! A crane as URDF: kinematics and masses; springs and dampers stand beside it.
 
-use super::mass::Mass;
+use super::mass::Lump;
 use super::rotation::{along_z, length, roll_pitch_yaw};
 use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, bars, origin, placements};
@@ -48,7 +48,7 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
             joint(&mut xml, &format!("{}_mount", body.name), (&parent, &body.name), &placement, None);
             parent.clone_from(&body.name);
         }
-        let mass = body.inertia.as_ref().map(|inertia| Mass::of(inertia, parameters));
+        let mass = body.inertia.as_ref().map(|inertia| Lump::of(inertia, parameters));
         link(&mut xml, &body.name, mass.as_ref(), bar);
     }
     for point in &chain.points {
@@ -84,13 +84,13 @@ fn joint(xml: &mut Xml, name: &str, (parent, child): (&str, &str), placement: &F
 }
 
 /// A body: its mass, and the bar by which it is drawn.
-fn link(xml: &mut Xml, name: &str, mass: Option<&Mass>, bar: Option<Vector>) {
+fn link(xml: &mut Xml, name: &str, mass: Option<&Lump>, bar: Option<Vector>) {
     let named = [("name", name.to_owned())];
     if mass.is_none() && bar.is_none() {
         return xml.leaf("link", &named);
     }
     xml.open("link", &named);
-    if let Some(Mass { mass, com, tensor }) = mass {
+    if let Some(Lump { mass, com, tensor }) = mass {
         xml.open("inertial", &[]);
         xml.leaf("origin", &[("xyz", numbers(com))]);
         xml.leaf("mass", &[("value", number_text(*mass))]);

@@ -60,5 +60,5 @@ export function tiles({ crane, rigid }) {
     add("lowest frequency", `${readable(Number(modes[0].frequency.toPrecision(4)))} Hz`, modes[0].moves.slice(0, 2).map(spoken).join(", "));
   }
   const error = greatest([{ values: run.column("energy_balance").values }], t);
-  add("error of the energy balance", `${error.size.toExponential(1)} J`, `greatest, ${when(error.t)}`);
+  add("error of the energy balance", `${readable(Number(error.size.toPrecision(2)))} J`, `greatest, ${when(error.t)}`);
 }

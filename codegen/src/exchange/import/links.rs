@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use super::robot::{Joint, Motion};
 use super::serial::Group;
-use super::tensor::Lump;
 use crate::chain::{Axis, Frame, Vector};
+use crate::exchange::mass::{Lump, clean};
 use crate::exchange::rotation::along_z;
 
 /// A link of a spec.
@@ -86,7 +86,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
             let own = turned.local(frame);
             match &member.lump {
                 Some(lump) => link.bodies.push((bodies.unique(&member.name), lump.seen_through(&own))),
-                None if ends && index > 0 => link.points.push((member.name.clone(), super::tensor::clean(own.origin))),
+                None if ends && index > 0 => link.points.push((member.name.clone(), clean(own.origin))),
                 None => {}
             }
         }

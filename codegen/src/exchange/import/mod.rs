@@ -11,7 +11,6 @@ mod links;
 mod mistakes;
 mod robot;
 mod serial;
-mod tensor;
 mod yaml;
 
 pub use mistakes::CATALOGUE;

@@ -3,9 +3,9 @@
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
 
 use super::mistakes::rule;
-use super::tensor::Lump;
 use crate::chain::{Axis, Frame, Value, Vector};
 use crate::diagnostic::{Mistake, SourceFile, Span};
+use crate::exchange::mass::Lump;
 use crate::exchange::rotation::length;
 
 /// A robot.
@@ -181,9 +181,9 @@ impl Reader {
     /// `<origin xyz="…" rpy="…"/>`: translation, then `Rz(yaw) Ry(pitch) Rx(roll)`.
     fn placement(&mut self, node: Node, owner: &str) -> Frame {
         let Some(origin) = child(node, "origin") else { return Frame::WORLD };
-        let mut vector = |key: &str| match origin.has_attribute(key) {
-            true => self.numbers(origin, key, &format!("`{key}` of {owner}")).unwrap_or([0.0; 3]),
-            false => [0.0; 3],
+        let mut vector = |key: &str| {
+            let given = origin.has_attribute(key).then(|| self.numbers(origin, key, &format!("`{key}` of {owner}")));
+            given.flatten().unwrap_or([0.0; 3])
         };
         let (at, [roll, pitch, yaw]) = (vector("xyz"), vector("rpy"));
         let turns = [(Axis::Z, yaw), (Axis::Y, pitch), (Axis::X, roll)];
@@ -196,13 +196,11 @@ impl Reader {
 
     /// An attribute that must be there.
     fn required(&mut self, node: Node, key: &str, owner: &str) -> Option<Named> {
-        match node.attribute_node(key) {
-            Some(attribute) => Some(Named { name: attribute.value().to_owned(), span: value_span(attribute) }),
-            None => {
-                self.mistakes.push(rule::missing(tag(node), owner, format!("`{key}=\"…\"`")));
-                None
-            }
-        }
+        let Some(attribute) = node.attribute_node(key) else {
+            self.mistakes.push(rule::missing(tag(node), owner, format!("`{key}=\"…\"`")));
+            return None;
+        };
+        Some(Named { name: attribute.value().to_owned(), span: value_span(attribute) })
     }
 
     /// So many finite numbers of an attribute, or a mistake.

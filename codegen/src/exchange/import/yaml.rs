@@ -5,9 +5,9 @@ use std::path::Path;
 
 use super::links::{SpecLink, SpecMotion, identifier};
 use super::robot::{Joint, Motion, Robot};
-use super::tensor::{Lump, clean, without_rounding};
 use crate::chain::{Axis, Frame, Vector};
 use crate::diagnostic::{SourceFile, printable};
+use crate::exchange::mass::{Lump, clean, without_rounding};
 use crate::exchange::rotation::roll_pitch_yaw;
 use crate::exchange::urdf::NO_LIMIT;
 use crate::exchange::xml::number_text;
@@ -93,7 +93,7 @@ fn link_text(link: &SpecLink) -> String {
     }
     match link.bodies.as_slice() {
         [] => {}
-        [(_, lump)] => text += &mass(lump).into_iter().map(|line| format!("    {line}\n")).collect::<String>(),
+        [(_, lump)] => mass(lump).iter().for_each(|line| text += &["    ", line, "\n"].concat()),
         several => {
             text += "    bodies:\n";
             for (name, lump) in several {
