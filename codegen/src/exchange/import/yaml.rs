@@ -191,7 +191,7 @@ mod tests {
         {
             assert_eq!(decimal(number), text);
         }
-        for (turn, text) in [(FRAC_PI_2, "90 deg"), (-PI, "-180 deg"), (PI / 12.0, "15 deg"), (1.570_796, "1.570796")] {
+        for (turn, text) in [(FRAC_PI_2, "90 deg"), (-PI, "-180 deg"), (PI / 12.0, "15 deg"), (1.2345, "1.2345")] {
             assert_eq!(angle(turn), text);
         }
     }
