@@ -219,20 +219,35 @@ fn errors_are_within_a_factor_of_ten_of_the_tolerance() {
 
 #[test]
 fn dense_output_does_not_shorten_steps() {
-    let (coarse, fine) = (lift_error(Method::DormandPrince, 1e-6, 0.5), lift_error(Method::DormandPrince, 1e-6, 1e-3));
-    // The last step of the run may end beyond the last result.
-    assert!(fine.1.statistics.steps.abs_diff(coarse.1.statistics.steps) <= 1, "{coarse:?} {fine:?}");
-    assert!(fine.0 < 10.0 * 1e-6, "{fine:?}");
+    for method in [Method::DormandPrince, Method::Rosenbrock] {
+        let (coarse, fine) = (lift_error(method, 1e-6, 0.5), lift_error(method, 1e-6, 1e-3));
+        // The last step of the run may end beyond the last result.
+        assert!(fine.1.statistics.steps.abs_diff(coarse.1.statistics.steps) <= 1, "{coarse:?} {fine:?}");
+        assert!(fine.0 < 10.0 * 1e-6, "{fine:?}");
+    }
+}
+
+#[test]
+fn a_rest_is_not_stepped_over() {
+    // Nothing moves, so any step meets the tolerance; a drive that moves late and shortly must be met all the same.
+    let lift = Lift { amplitude: 0.0, ..Lift::default() };
+    let settings =
+        Settings { method: Method::Rosenbrock, output: 10.0, ..Settings::of(&common::description("", &[], &[])) };
+    let rest = State::at_rest(Vector1::new(lift.sag()));
+    let run = simulate(&lift, rest, &settings, |_| ControlFlow::Continue(())).expect("a run");
+    // The longest step is 0.1 s, and the first ones are shorter.
+    assert!((100..=110).contains(&run.statistics.steps), "{run:?}");
 }
 
 #[test]
 fn statistics_count_what_was_done() {
     let (_, run) = lift_error(Method::Rosenbrock, 1e-6, 0.5);
     let tried = run.statistics.steps + run.statistics.rejections;
-    assert_eq!(run.statistics.evaluations, 6 * tried);
+    // The slope at the end of a step is the first of the next.
+    assert_eq!(run.statistics.evaluations, 1 + 6 * tried);
     assert_eq!(run.statistics.factorisations, tried);
     let (_, run) = lift_error(Method::DormandPrince, 1e-6, 0.5);
-    assert_eq!(run.statistics.evaluations, 6 * (run.statistics.steps + run.statistics.rejections));
+    assert_eq!(run.statistics.evaluations, 1 + 6 * (run.statistics.steps + run.statistics.rejections));
     assert_eq!(run.statistics.factorisations, 0);
 }
 

@@ -22,12 +22,13 @@ use nalgebra::SVector;
 use super::{
     motion::{Motion, slope},
     rk4::{NotFinite, State},
+    step::{Step, bare},
 };
 use crate::Dynamics;
 
 /// Stages.
 const STAGES: usize = 7;
-/// Stages that a step computes after another.
+/// Evaluations that a step needs after the one before.
 pub(super) const EVALUATIONS: usize = STAGES - 1;
 /// Coefficients of R(z).
 pub const STABILITY: [f64; 7] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 600.0];
@@ -44,7 +45,7 @@ const A: [&[f64]; STAGES] = [
 ];
 const ERROR: [f64; STAGES] =
     [71.0 / 57_600.0, 0.0, -71.0 / 16_695.0, 71.0 / 1_920.0, -17_253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];
-/// Weights of the last term of the interpolation.
+/// Weights of what the interpolation of order 4 adds to Hermite's cubic.
 const DENSE: [f64; STAGES] = [
     -12_715_105_075.0 / 11_282_082_432.0,
     0.0,
@@ -54,43 +55,6 @@ const DENSE: [f64; STAGES] = [
     -1_453_857_185.0 / 822_651_844.0,
     69_997_945.0 / 29_380_423.0,
 ];
-
-/// A step that was done.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Step<const N: usize, const M: usize> {
-    start: Motion<N, M>,
-    /// Motion at the end.
-    pub end: Motion<N, M>,
-    /// Difference to the embedded formula.
-    pub error: Motion<N, M>,
-    slopes: [Motion<N, M>; STAGES],
-    /// Its length, s.
-    pub length: f64,
-}
-
-impl<const N: usize, const M: usize> Step<N, M> {
-    /// Slope at the end, the first of the next step.
-    pub fn last_slope(&self) -> Motion<N, M> {
-        self.slopes[STAGES - 1]
-    }
-
-    /// Motion at the part `theta` of the step, to order 4.
-    pub fn at(&self, theta: f64) -> Motion<N, M> {
-        let rest = 1.0 - theta;
-        let difference = self.end.plus(&[-1.0], &[self.start], 1.0);
-        let first = self.slopes[0];
-        let last = self.last_slope();
-        // θ (Δ + (1−θ) (h k₁ − Δ + θ (2Δ − h k₁ − h k₇ + (1−θ) h Σ dᵢ kᵢ)))
-        let of_difference = theta * (1.0 - rest * (1.0 - 2.0 * theta));
-        let of_first = theta * rest * (1.0 - theta) * self.length;
-        let of_last = -theta * rest * theta * self.length;
-        self.start.plus(&[of_difference, of_first, of_last], &[difference, first, last], 1.0).plus(
-            &DENSE,
-            &self.slopes,
-            theta * theta * rest * rest * self.length,
-        )
-    }
-}
 
 /// A step from `t` to `t + h`: the state there, and the difference to the embedded formula. No allocation.
 ///
@@ -102,11 +66,7 @@ pub fn step<const N: usize, C: Dynamics<N>>(
     h: f64,
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
-    let rest = |_: f64, _: &SVector<f64, N>, _: &SVector<f64, N>| SVector::<f64, 0>::zeros();
-    let start = Motion::starting(state);
-    let first = slope(crane, &rest, t, &start)?;
-    let Step { end, error, .. } = advance(crane, t, h, &start, &first, &rest)?;
-    Ok((State { q: end.q, v: end.v }, State { q: error.q, v: error.v }))
+    bare(crane, t, state, |start, first, nothing| advance(crane, t, h, start, first, nothing))
 }
 
 /// As [`step`], with integrals along the motion and the slope at the start given.
@@ -124,5 +84,6 @@ pub(super) fn advance<const N: usize, const M: usize, C: Dynamics<N>>(
         place = start.plus(A[i], &slopes, h);
         slopes[i] = slope(crane, integrand, t + NODES[i] * h, &place)?;
     }
-    Ok(Step { start: *start, end: place, error: Motion::zeros().plus(&ERROR, &slopes, h), slopes, length: h })
+    let [error, bulge] = [ERROR, DENSE].map(|weights| Motion::zeros().plus(&weights, &slopes, h));
+    Ok(Step { start: *start, end: place, error, slopes: [*first, slopes[STAGES - 1]], bulge, length: h })
 }

@@ -18,6 +18,8 @@ mod roughness;
 #[cfg(feature = "std")]
 mod simulation;
 #[cfg(feature = "std")]
+mod step;
+#[cfg(feature = "std")]
 mod stopped;
 
 #[cfg(feature = "std")]

@@ -6,8 +6,9 @@
 //! (I/(hγ) − J) uᵢ = f(t + αᵢh, y + Σⱼ aᵢⱼ uⱼ) + Σⱼ (cᵢⱼ/h) uⱼ + γᵢ h ḟ      j < i
 //! ```
 //!
-//! The order does not depend on J: an inexact Jacobian costs accuracy in the stiff parts alone. Six stages, γ = 1/4, order 4, R(∞) = 0, and with `J = ∂f/∂y` A(α)-stable
-//! with α = 89.8°: only modes damped by less than 0.35 % can grow, by less than 0.65 % a step, in steps that do not resolve them.
+//! The order does not depend on J: an inexact Jacobian costs accuracy in the stiff parts alone. Six stages, γ = 1/4, order 4,
+//! R(∞) = 0, and with `J = ∂f/∂y` A(α)-stable with α = 89.8°: only modes damped by less than 0.35 % can grow, by less than 0.65 %
+//! a step, in steps that do not resolve them.
 //! A. Rahunanthan, D. Stanescu, High-order W-methods, J. Comput. Appl. Math. 233 (2010) 1798; the form
 //! of the stages: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.7.
 //!
@@ -27,10 +28,11 @@ use nalgebra::{SMatrix, SVector};
 use super::{
     motion::{Motion, slope},
     rk4::{NotFinite, State},
+    step::{Step, bare},
 };
 use crate::Implicit;
 
-/// Stages.
+/// Stages, as many as evaluations a step: the slope at its end is the first of the next.
 pub const STAGES: usize = 6;
 /// Coefficients of the numerator of R(z); the denominator is `(1 − z/4)⁶`.
 pub const NUMERATOR: [f64; 6] = [1.0, -0.5, -0.0625, 1.0 / 24.0, 0.006_510_416_666_666_667, -0.002_430_737_286_220_53];
@@ -112,30 +114,33 @@ pub fn step<const N: usize, C: Implicit<N>>(
     h: f64,
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
-    let rest = |_: f64, _: &SVector<f64, N>, _: &SVector<f64, N>| SVector::<f64, 0>::zeros();
-    let (end, error) = advance(crane, t, h, &Motion::starting(state), &rest)?;
-    Ok((State { q: end.q, v: end.v }, State { q: error.q, v: error.v }))
+    bare(crane, t, state, |start, first, nothing| advance(crane, t, h, start, first, nothing))
 }
 
-/// As [`step`], with integrals along the motion, for which J is zero.
+/// As [`step`], with integrals along the motion, for which J is zero, and the slope at the start given.
 pub(super) fn advance<const N: usize, const M: usize, C: Implicit<N>>(
     crane: &C,
     t: f64,
     h: f64,
     start: &Motion<N, M>,
+    first: &Motion<N, M>,
     integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-) -> Result<(Motion<N, M>, Motion<N, M>), NotFinite> {
+) -> Result<Step<N, M>, NotFinite> {
     let system = System::new(crane, &start.q, h * GAMMA);
     let forces = |t: f64| crane.forces(t, &start.q, &start.v);
     // h ∂f/∂t
     let drift = (forces(t + h * DIFFERENCE) - forces(t - h * DIFFERENCE)) / (2.0 * DIFFERENCE);
     let mut stages = [Motion::zeros(); STAGES];
-    for i in 0..STAGES {
+    stages[0] = system.solve(crane, first, &(drift * GAMMAS[0]));
+    for i in 1..STAGES {
         let place = start.plus(A[i], &stages, 1.0);
         let rhs = slope(crane, integrand, t + NODES[i] * h, &place)?.plus(C[i], &stages, h.recip());
         stages[i] = system.solve(crane, &rhs, &(drift * GAMMAS[i]));
     }
-    Ok((start.plus(&WEIGHTS, &stages, 1.0), Motion::zeros().plus(&ERROR, &stages, 1.0)))
+    let end = start.plus(&WEIGHTS, &stages, 1.0);
+    let last = slope(crane, integrand, t + h, &end)?;
+    let error = Motion::zeros().plus(&ERROR, &stages, 1.0);
+    Ok(Step { start: *start, end, error, slopes: [*first, last], bulge: Motion::zeros(), length: h })
 }
 
 /// A diagonal matrix, but for the block of the base's coordinates.

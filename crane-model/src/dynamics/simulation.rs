@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Cholesky, SVector, Vector2};
 
-use super::{Method, Stopped, adaptive::Adaptive, motion::Motion, rk4, roughness::Roughness};
+use super::{
+    Method, Stopped, adaptive::Adaptive, dormand_prince, motion::Motion, rk4, rosenbrock, roughness::Roughness,
+};
 use crate::{Description, Dynamics, Implicit};
 
 /// No crane is 1 km long and no joint of one turns 160 times: beyond this, m or rad, a run has blown up.
@@ -73,6 +75,18 @@ pub struct Statistics {
     pub evaluations: usize,
     /// Factorisations of the system of an implicit step.
     pub factorisations: usize,
+}
+
+impl Statistics {
+    /// Counts what an adaptive method spends on a step, done or in vain.
+    pub(super) fn count(&mut self, method: Method) {
+        let (evaluations, factorisations) = match method {
+            Method::DormandPrince => (dormand_prince::EVALUATIONS, 0),
+            _ => (rosenbrock::STAGES, 1),
+        };
+        self.evaluations += evaluations;
+        self.factorisations += factorisations;
+    }
 }
 
 /// What a run took.
