@@ -396,3 +396,58 @@ fn an_ensemble_writes_a_row_for_every_crane() {
     // One crane and eight lanes by the same method: roundings.
     assert!((single - before).abs() < 1e-8 * single, "{single} {before}");
 }
+
+#[test]
+fn work_precision_of_every_method() {
+    let (out, page) = (folder("work_precision"), folder("work_precision_page"));
+    let page = page.join("error.md");
+    let arguments = ["work-precision", "knuckle_boom", "--quick", "--duration", "1", "--format", "json"];
+    let [out, page] = [&out, &page].map(|path| path.to_str().expect("a path"));
+    let report = json(&[&arguments[..], &["--out", out, "--page", page]].concat());
+    // Two methods agree to 1e-11 of the load path, so errors of the others are their own.
+    let rows = report["methods"].as_array().expect("rows");
+    let error = |method: &str, what: &str| -> Vec<f64> {
+        let of = rows.iter().filter(|row| row["method"] == method);
+        of.map(|row| row[what].as_f64().expect("a number")).collect()
+    };
+    for method in ["rk4", "dopri5", "rosw4"] {
+        for what in ["load_path", "torques", "energy"] {
+            let errors = error(method, what);
+            assert!(!errors.is_empty() && errors.iter().all(|error| error.is_finite()), "{method} {what}: {errors:?}");
+        }
+        assert!(error(method, "wall_ms").iter().all(|wall| *wall > 0.0));
+    }
+    // A hundredth of the tolerance, in steps of order 4: a tenth of the error would be a weak method.
+    let [coarse, fine] = error("rosw4", "load_path")[..] else { panic!("two tolerances: {rows:?}") };
+    assert!(fine < 0.1 * coarse && fine < 1e-4, "{coarse:e} {fine:e}");
+    // Each error that users ask for has a cheapest run, not cheaper for a smaller error.
+    let least: Vec<f64> = report["least"]
+        .as_array()
+        .expect("rows")
+        .iter()
+        .filter(|row| row["method"] == "rosw4")
+        .map(|row| row["wall_ms"].as_f64().expect("a number"))
+        .collect();
+    assert!(least.len() == 3 && least.is_sorted(), "{least:?}");
+    let written = fs::read_to_string(page).expect("a page");
+    assert!(written.starts_with("# Error against run time") && written.contains("(images/error_work_precision.svg)"));
+    for file in ["knuckle_boom_methods.csv", "knuckle_boom_least.csv", "knuckle_boom_work_precision.svg"] {
+        assert!(PathBuf::from(out).join(file).exists(), "{file}");
+    }
+}
+
+#[test]
+fn work_precision_refuses_what_makes_no_sense() {
+    refused(&["work-precision", "--sections", "3"], &["two or more different numbers", "`none`"]);
+    refused(&["work-precision", "--sections", "many"], &["2,4,8"]);
+    refused(&["work-precision", "--sections", "none", "--duration", "0"], &["`--duration 0`", "positive"]);
+    refused(&["work-precision", "knuckle_bom"], &["there is no crane `knuckle_bom`", "`knuckle_boom`"]);
+}
+
+#[test]
+fn a_chaotic_motion_has_no_reference_for_long() {
+    let output = crane(&["work-precision", "double_pendulum", "--quick", "--duration", "60"]);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("differ by") && message.contains("`--duration "), "{message}");
+}

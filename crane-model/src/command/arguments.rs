@@ -25,6 +25,7 @@ Examples:
   crane report -o report.html          the crane in 3-D, plots and tables as a page that needs no network
   crane modes                          frequencies and damping about the static pose
   crane stability                      largest stable steps, what limits them, and a figure
+  crane work-precision                 what accuracy costs: methods, steps, tolerances, numbers of sections
   crane check my.yaml; crane run my.yaml
                                        a crane of one's own: its mistakes; everything about it
   crane explain my.yaml --svg my.svg   its chain, in words and as a picture
@@ -71,6 +72,8 @@ pub enum Action {
     Report(Page),
     /// Largest stable step of every method and what limits it, at the static pose and along the manoeuvre
     Stability(Stability),
+    /// Error against run time of every method and number of sections, and which of them are cheapest for an error
+    WorkPrecision(WorkPrecision),
     /// What a crane consists of: coordinates, bodies, supports, drives, parameters
     Info(Analysis),
     /// T, ∂T/∂q, ∂²T/∂q∂q, A and e at a state, for checks by other programs
@@ -114,7 +117,9 @@ impl Action {
             Action::Stability(options) => &options.analysis.crane,
             Action::Report(options) => &options.crane,
             Action::Eval(options) => &options.crane,
-            Action::New(_)
+            // Compiles the crane with other numbers of sections along.
+            Action::WorkPrecision(_)
+            | Action::New(_)
             | Action::Check { .. }
             | Action::Explain { .. }
             | Action::Export(_)
@@ -122,8 +127,7 @@ impl Action {
             | Action::List(_)
             | Action::Completions { .. } => return None,
         };
-        let path = Path::new(&choice.name);
-        path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml").then_some(path)
+        choice.file()
     }
 }
 
@@ -145,6 +149,14 @@ pub struct Choice {
     pub name: String,
     #[command(flatten)]
     pub parameters: Parameters,
+}
+
+impl Choice {
+    /// The YAML file that is named in place of a crane.
+    pub fn file(&self) -> Option<&Path> {
+        let path = Path::new(&self.name);
+        path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml").then_some(path)
+    }
 }
 
 /// Values of live parameters.
@@ -192,7 +204,7 @@ pub struct Timing {
     /// paper's [default: rk4 with --step and for the comparison, otherwise rosw4]
     #[arg(long, value_name = "NAME")]
     pub method: Option<Method>,
-    /// Error that an adaptive method allows, m and rad [default: 1e-4]
+    /// Error that an adaptive method allows a step, m and rad [default: 5e-5]
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
     /// Greatest step of rk4, s; `auto`: the largest safe one [default: the crane's]
@@ -328,6 +340,50 @@ pub struct Import {
     /// Joint to hold at zero, such as a finger's; may be given several times
     #[arg(long = "fix", value_name = "JOINT")]
     pub fixed: Vec<String>,
+}
+
+/// Error against run time.
+#[derive(Debug, Args)]
+pub struct WorkPrecision {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Numbers of sections of every flexible link to compare, two or more; `none` compares the methods alone
+    #[arg(long, value_name = "COUNTS|none", default_value = "1,2,3,4,6,8,12,20,30")]
+    pub sections: Counts,
+    /// Simulated time, s [default: the crane's]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub duration: Option<f64>,
+    /// Fewer steps and tolerances, each run once: to look whether it works
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for tables (CSV) and figures (SVG); made where it is missing
+    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// Also write all of it as a Markdown page, with its figures in `images` beside it
+    #[arg(long, value_name = "FILE.md", value_hint = ValueHint::FilePath)]
+    pub page: Option<PathBuf>,
+}
+
+/// Numbers of sections, ascending; none or at least two.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counts(pub Vec<usize>);
+
+impl FromStr for Counts {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "none" {
+            return Ok(Counts(Vec::new()));
+        }
+        let counts: Result<Vec<usize>, _> = text.split(',').map(|count| count.trim().parse()).collect();
+        let mut counts = counts.map_err(|_| "write whole numbers such as 2,4,8, or `none`".to_owned())?;
+        counts.sort_unstable();
+        counts.dedup();
+        if counts.len() < 2 || counts[0] == 0 {
+            return Err("write two or more different numbers from 1 on, such as 2,4,8, or `none`".to_owned());
+        }
+        Ok(Counts(counts))
+    }
 }
 
 /// A list of the cranes.

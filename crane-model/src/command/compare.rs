@@ -113,6 +113,7 @@ fn deviation(description: &Description, rigid: &Table, flexible: &Table) -> Vec<
             x: "t [s]".to_owned(),
             y: format!("Δ{axis}, flexible − rigid [mm]"),
             equal: false,
+            logarithmic: false,
             curves: curves.collect(),
         }
     };

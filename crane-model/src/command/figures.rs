@@ -53,6 +53,8 @@ pub enum Mark {
     Dashed,
     /// Its points alone.
     Dots,
+    /// Its points and a line through them.
+    Both,
 }
 
 /// A curve.
@@ -77,6 +79,8 @@ pub struct Panel {
     pub y: String,
     /// One metre along x is as long as one along y: for paths. Such a panel is twice as wide and high.
     pub equal: bool,
+    /// Both axes are logarithmic; what is not above zero is left out.
+    pub logarithmic: bool,
     /// Curves, the legend in their order.
     pub curves: Vec<Curve>,
 }
@@ -139,11 +143,11 @@ fn draw_legend<'a>(area: &Area<'a>, legend: &[Curve]) -> Drawn<'a> {
         let x = (f64::from(AXES.0) * 0.5 + entry * (index % a_row) as f64) as i32;
         let y = (f64::from(LEGEND) * (0.6 + (index / a_row) as f64)) as i32;
         let dashes: &[(i32, i32)] = match curve.mark {
-            Mark::Solid => &[(0, 32)],
+            Mark::Solid | Mark::Both => &[(0, 32)],
             Mark::Dashed => &[(0, 8), (12, 20), (24, 32)],
             Mark::Dots => &[],
         };
-        if curve.mark == Mark::Dots {
+        if matches!(curve.mark, Mark::Dots | Mark::Both) {
             area.draw(&Circle::new((x + 16 * PIXEL as i32, y), DOT, curve.colour.filled()))?;
         }
         for (from, to) in dashes.iter().map(|&(from, to)| (x + from * PIXEL as i32, x + to * PIXEL as i32)) {
@@ -156,8 +160,10 @@ fn draw_legend<'a>(area: &Area<'a>, legend: &[Curve]) -> Drawn<'a> {
 }
 
 fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<'a> {
-    let points = || panel.curves.iter().flat_map(|curve| &curve.points);
-    let mut x = padded(points().map(|point| point.0), if panel.equal { MARGIN } else { 0.0 });
+    let scaled = |&(x, y): &(f64, f64)| if panel.logarithmic { (x.log10(), y.log10()) } else { (x, y) };
+    let points = || panel.curves.iter().flat_map(|curve| &curve.points).map(scaled);
+    let label = |value: &f64| if panel.logarithmic { power(*value) } else { tick(*value) };
+    let mut x = padded(points().map(|point| point.0), if panel.equal || panel.logarithmic { MARGIN } else { 0.0 });
     let mut y = padded(points().map(|point| point.1), MARGIN);
     let (width, height) = area.dim_in_pixel();
     let inner = (f64::from(width - AXES.0 - 2 * SPACE), f64::from(height - AXES.1 - 2 * SPACE));
@@ -181,21 +187,32 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<'a> {
         .y_desc(&panel.y)
         .x_labels(7)
         .y_labels(7)
-        .x_label_formatter(&|value| tick(*value))
-        .y_label_formatter(&|value| tick(*value))
+        .x_label_formatter(&label)
+        .y_label_formatter(&label)
         .label_style(font(0.87 * FONT))
         .axis_desc_style(font(FONT))
         .draw()?;
     for curve in &panel.curves {
-        let points = curve.points.iter().copied().filter(|point| point.0.is_finite() && point.1.is_finite());
+        let points = curve.points.iter().map(scaled).filter(|point| point.0.is_finite() && point.1.is_finite());
+        let dots = |(x, y)| Circle::new((x, y), DOT, curve.colour.filled());
+        if curve.mark == Mark::Both {
+            chart.draw_series(points.clone().map(dots))?;
+        }
         let style = curve.colour.stroke_width(STROKE);
         match curve.mark {
-            Mark::Solid => chart.draw_series(LineSeries::new(points, style))?,
+            Mark::Solid | Mark::Both => chart.draw_series(LineSeries::new(points, style))?,
             Mark::Dashed => chart.draw_series(DashedLineSeries::new(points, 7 * PIXEL, 5 * PIXEL, style))?,
-            Mark::Dots => chart.draw_series(points.map(|point| Circle::new(point, DOT, curve.colour.filled())))?,
+            Mark::Dots => chart.draw_series(points.map(dots))?,
         };
     }
     Ok(())
+}
+
+/// Text at a tick of a logarithmic axis: 1e−4, and what lies between powers as a number.
+fn power(exponent: f64) -> String {
+    let text =
+        if exponent == exponent.round() { format!("1e{exponent}") } else { format!("{:.1e}", 10_f64.powf(exponent)) };
+    text.replace('-', "−")
 }
 
 /// Text at a tick: without the digits that rounding leaves.

@@ -33,6 +33,7 @@ mod selection;
 mod simulate;
 mod stability;
 mod statics;
+mod work_precision;
 
 use std::{io, io::Write, process::ExitCode};
 
@@ -73,6 +74,7 @@ fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
         },
         Some(Action::Modes(options)) => modes::modes(options, fleet, out),
         Some(Action::Stability(options)) => stability::stability(options, fleet, out),
+        Some(Action::WorkPrecision(options)) => work_precision::work_precision(options, fleet, out),
         Some(Action::Report(options)) => page::report(options, fleet, out),
         Some(Action::Info(options)) => info::info(options, fleet, out),
         Some(Action::Eval(options)) => eval::eval(options, fleet, out),

@@ -49,16 +49,18 @@ pub fn explain(spec: &Path, svg: Option<&Path>, out: &mut dyn Write) -> Outcome<
 
 /// Does what the arguments of this process ask for, with the crane of a spec in place of the file's name.
 pub fn run(spec: &Path) -> Outcome<()> {
-    let (chain, text) = load(spec)?;
-    let program = program(&chain, &text)?;
-    let mut named = false;
-    let arguments = env::args_os().skip(1).map(|argument| {
-        if !named && argument == *spec.as_os_str() {
-            named = true;
-            OsString::from(&chain.name)
-        } else {
-            argument
-        }
+    let (Chain { name, spec_hash, .. }, text) = load(spec)?;
+    let package = format!("crane-{name}-{spec_hash}");
+    run_with(&package, spec.as_os_str(), &[(name, text)])
+}
+
+/// The same with the program of several cranes, names and specs; the first one stands in place of `named`.
+pub fn run_with(package: &str, named: &OsStr, cranes: &[(String, String)]) -> Outcome<()> {
+    let program = program(package, cranes)?;
+    let mut place = cranes.first().map(|(name, _)| OsString::from(name));
+    let arguments = env::args_os().skip(1).map(|argument| match place.take_if(|_| argument == *named) {
+        Some(name) => name,
+        None => argument,
     });
     finish(Command::new(&program).args(arguments))
 }
@@ -85,16 +87,20 @@ pub(super) fn drawn(mistakes: &Diagnostics) -> Problem {
     Problem::Elsewhere(FAILED)
 }
 
-/// The program of a crane: as kept, or compiled now.
-fn program(chain: &Chain, text: &str) -> Outcome<PathBuf> {
-    let package = format!("crane-{}-{}", chain.name, chain.spec_hash);
+/// The program of some cranes: as kept, or compiled now.
+fn program(package: &str, cranes: &[(String, String)]) -> Outcome<PathBuf> {
     let cache = cache();
-    let folder = cache.join(&package);
+    let folder = cache.join(package);
     let model = Path::new(MODEL);
     let codegen = model.with_file_name("codegen");
+    let joined = |of: &dyn Fn(&str) -> String| cranes.iter().map(|(name, _)| of(name)).collect::<Vec<_>>().join(", ");
+    let names = joined(&str::to_owned);
     let values = [
-        ("{{package}}", package.as_str()),
-        ("{{name}}", &chain.name),
+        ("{{package}}", package),
+        ("{{names}}", &names),
+        ("{{files}}", &joined(&|name| format!("\"{name}.yaml\""))),
+        ("{{specs}}", &joined(&|name| format!("(\"{name}\", include_str!(\"../{name}.yaml\"))"))),
+        ("{{feature}}", if cfg!(feature = "yardstick") { "yardstick" } else { "command" }),
         ("{{model}}", &model.to_string_lossy()),
         ("{{codegen}}", &codegen.to_string_lossy()),
     ];
@@ -102,17 +108,19 @@ fn program(chain: &Chain, text: &str) -> Outcome<PathBuf> {
         let content = values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
         keep(&folder.join(file), &content)?;
     }
-    keep(&folder.join("crane.yaml"), text)?;
+    for (name, text) in cranes {
+        keep(&folder.join(name).with_extension("yaml"), text)?;
+    }
     if !folder.join("Cargo.lock").exists() {
         keep(&folder.join("Cargo.lock"), LOCK)?;
     }
 
     let target = target().unwrap_or_else(|| cache.join("target"));
-    let program = target.join("release").join(&package).with_extension(env::consts::EXE_EXTENSION);
+    let program = target.join("release").join(package).with_extension(env::consts::EXE_EXTENSION);
     let begin = Instant::now();
     let before = modified(&program);
     if before.is_none() {
-        say(&format!("{}: compiling to a program of its own, kept for later …", chain.name));
+        say(&format!("{names}: compiling to a program of its own, kept for later …"));
     }
     let cargo = env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut build = Command::new(cargo);
@@ -120,7 +128,7 @@ fn program(chain: &Chain, text: &str) -> Outcome<PathBuf> {
     build.arg("--target-dir").arg(&target);
     finish(&mut build)?;
     let how = if modified(&program) == before { "kept from before, current" } else { "compiled" };
-    say(&format!("{}: {how}, {:.1} s", chain.name, begin.elapsed().as_secs_f64()));
+    say(&format!("{names}: {how}, {:.1} s", begin.elapsed().as_secs_f64()));
     Ok(program)
 }
 

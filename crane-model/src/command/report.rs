@@ -4,7 +4,7 @@ use std::io::Write;
 
 use serde_json::{Map, Value, json};
 
-use crate::command::{arguments::Format, problem::Outcome};
+use crate::command::{arguments::Format, files, problem::Outcome};
 
 /// One field of a table.
 #[derive(Clone, Debug)]
@@ -13,6 +13,8 @@ pub enum Cell {
     Text(String),
     /// A number.
     Number(f64),
+    /// A relative error: its size is what matters.
+    Error(f64),
     /// A count.
     Count(usize),
     /// Nothing to say.
@@ -54,6 +56,7 @@ impl Cell {
         match self {
             Cell::Text(text) => text.clone(),
             Cell::Number(number) => readable(*number),
+            Cell::Error(error) => format!("{error:.1e}"),
             Cell::Count(count) => count.to_string(),
             Cell::Empty => "–".to_owned(),
         }
@@ -62,7 +65,7 @@ impl Cell {
     fn json(&self) -> Value {
         match self {
             Cell::Text(text) => text.as_str().into(),
-            Cell::Number(number) => (*number).into(),
+            Cell::Number(number) | Cell::Error(number) => (*number).into(),
             Cell::Count(count) => (*count).into(),
             Cell::Empty => Value::Null,
         }
@@ -113,6 +116,11 @@ impl Grid {
         self.rows.push(cells.into());
     }
 
+    /// Its name in JSON.
+    pub fn key(&self) -> &'static str {
+        self.key
+    }
+
     fn json(&self) -> Value {
         let object = |row: &Vec<Cell>| -> Value {
             let keys = self.headers.iter().map(|header| header.replace(' ', "_"));
@@ -131,6 +139,24 @@ impl Grid {
         let numeric: Vec<bool> = (0..self.headers.len()).map(|column| self.numeric(column)).collect();
         let rows: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect();
         json!({"key": self.key, "title": self.title, "headers": self.headers, "numeric": numeric, "rows": rows})
+    }
+
+    /// Names of the columns, and rows of fields with all digits, for a CSV file.
+    pub fn fields(&self) -> (impl Iterator<Item = String>, impl Iterator<Item = Vec<String>>) {
+        let field = |cell: &Cell| match cell {
+            Cell::Number(number) | Cell::Error(number) => files::number(*number),
+            Cell::Empty => String::new(),
+            other => other.text(),
+        };
+        (self.headers.iter().cloned(), self.rows.iter().map(move |row| row.iter().map(field).collect()))
+    }
+
+    /// The table in Markdown.
+    pub fn markdown(&self) -> String {
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let sides = (0..self.headers.len()).map(|column| if self.numeric(column) { "---:" } else { "---" }.to_owned());
+        let rows = self.rows.iter().map(|row| line(row.iter().map(Cell::text).collect()));
+        [line(self.headers.clone()), line(sides.collect())].into_iter().chain(rows).collect()
     }
 
     /// Prints it for people.
@@ -174,6 +200,14 @@ impl Report {
         if !grid.rows.is_empty() {
             self.grids.push(grid);
         }
+    }
+
+    /// The facts as a list in Markdown.
+    pub fn markdown(&self) -> String {
+        self.facts
+            .iter()
+            .map(|(name, value, unit)| format!("* {name}: {} {unit}", value.text()).trim_end().to_owned() + "\n")
+            .collect()
     }
 
     /// Facts and tables as printed, for a page.

@@ -153,7 +153,7 @@ fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
             })
         })
         .collect();
-    Panel { x: format!("{x} [m]"), y: format!("{y} [m]"), equal: true, curves }
+    Panel { x: format!("{x} [m]"), y: format!("{y} [m]"), equal: true, logarithmic: false, curves }
 }
 
 fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
@@ -178,6 +178,7 @@ fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
             x: "t [s]".to_owned(),
             y: format!("{}, {symbol} [{unit}]", spoken(coordinate.name)),
             equal: false,
+            logarithmic: false,
             curves,
         }
     };

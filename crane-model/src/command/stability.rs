@@ -99,6 +99,7 @@ fn regions(modes: &[DampedMode], own: f64) -> Vec<Panel> {
             x: "Re hλ".to_owned(),
             y: "Im hλ".to_owned(),
             equal: true,
+            logarithmic: false,
             curves: vec![
                 curve(format!("|R(hλ)| = 1 of {method}"), BLUE, boundary, Mark::Solid),
                 curve(format!("hλ at h = {largest:.3e} s"), VERMILLION, marks(largest), Mark::Dots),

@@ -91,6 +91,10 @@ impl<const N: usize, C: Crane<N> + Send + Sync + 'static> Rig for Instance<N, C>
         DVector::from_column_slice(self.0.bias(&vector(q), &vector(v)).as_slice())
     }
 
+    fn accelerations(&self, t: f64, q: &[f64], v: &[f64]) -> DVector<f64> {
+        DVector::from_column_slice(self.0.forward_dynamics(t, &vector(q), &vector(v)).as_slice())
+    }
+
     fn drive_efforts(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
         let forces = self.0.drive_forces(t, &vector(q), &vector(v));
         self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()

@@ -86,6 +86,9 @@ pub trait Rig: Send + Sync {
     /// Velocity and gravity forces e.
     fn bias(&self, q: &[f64], v: &[f64]) -> DVector<f64>;
 
+    /// Accelerations q̈, m/s² and rad/s².
+    fn accelerations(&self, t: f64, q: &[f64], v: &[f64]) -> DVector<f64>;
+
     /// Torques and forces of the drives, in their order: N m and N.
     fn drive_efforts(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64>;
 

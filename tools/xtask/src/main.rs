@@ -24,6 +24,8 @@ const USAGE: &str = "cargo xtask TASK
   oracles  generated code against CasADi, Pinocchio and MuJoCo, over all shipped and some random cranes
   performance [--quick]
            time the generated functions and other libraries in turns, write docs/performance.md; g++ or clang needed
+  error-vs-runtime
+           time methods and numbers of sections of the reference crane, write docs/error-vs-runtime.md
   bless    write anew what tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md";
 
 fn main() -> ExitCode {
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         "performance" => {
             vec![Step::check("times of the generated functions and of other libraries", oracles::performance)]
         }
+        "error-vs-runtime" => vec![Step::cargo("error against run time", &ERROR_VS_RUNTIME)],
         "bless" => bless(),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");
@@ -48,6 +51,20 @@ fn main() -> ExitCode {
     };
     run(&steps)
 }
+
+/// With diffsol beside our methods.
+const ERROR_VS_RUNTIME: [&str; 10] = [
+    "run",
+    "--release",
+    "--features",
+    "cli,yardstick",
+    "--",
+    "work-precision",
+    "--page",
+    "docs/error-vs-runtime.md",
+    "--out",
+    "target/error-vs-runtime",
+];
 
 /// Runs steps in order; the first that fails ends it.
 fn run(steps: &[Step]) -> ExitCode {
@@ -125,6 +142,7 @@ fn oracles() -> Vec<Step> {
         ),
         Step::check("CasADi's own checks notice errors", oracles::self_test),
         Step::check("generated code against CasADi", oracles::check),
+        Step::check("runs against SciPy's Radau", oracles::motion),
         Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::peers_self_test),
         Step::check("generated code against Pinocchio and MuJoCo", oracles::peers),
         Step::check("URDF and MJCF there and back", oracles::exchange),

@@ -16,6 +16,7 @@ fn on_generated_code(path: &str) -> Result<(), String> {
 }
 
 const CHECK: &str = "tools/casadi/check.py";
+const MOTION: &str = "tools/casadi/motion.py";
 const AGREE: &str = "tools/peers/agree.py";
 
 /// CasADi's derivations obey the laws of mechanics, and an error of 1e-8 in any quantity is noticed.
@@ -43,6 +44,11 @@ pub fn exchange() -> Result<(), String> {
     let program = |name: &str| workspace::target().join("release").join(name);
     let mut command = script(&CHECKS, "tools/peers/exchange.py");
     step::finish(command.arg("--crane").arg(program("crane")).arg("--evaluate").arg(program("evaluate")))
+}
+
+/// Runs of shipped cranes beside SciPy's Radau on CasADi's equations of motion.
+pub fn motion() -> Result<(), String> {
+    step::finish(script(&CHECKS, MOTION).arg("--command").arg(workspace::target().join("release/crane")))
 }
 
 /// The environment of the checks.

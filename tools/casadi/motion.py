@@ -1,0 +1,108 @@
+"""Runs of cranes compared with SciPy's Radau (Radau IIA, order 5) on equations of motion that CasADi derives.
+
+    python motion.py --command target/release/crane [--crane NAME]... [--duration 0.5]
+
+Neither the model nor the method is shared with the generated code and its integrators: only the YAML file, and the pose and
+results that `crane simulate` writes. Exit code 0 if every method agrees on every crane, 1 if one does not.
+"""
+
+import argparse
+import csv
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from crane_model import read_crane
+from derivations import Derivations
+
+WORKSPACE = Path(__file__).resolve().parents[2]
+CRANES = ["double_pendulum", "eight_link_flexible", "knuckle_boom"]
+# Of Radau and of the adaptive methods: an error per step, m and rad.
+TOLERANCE = 1e-9
+# Both sides add up the errors of some hundred steps, relative to the greatest coordinate, at least 1 m or rad.
+AGREEMENT = 1e-8
+
+
+def main():
+    """Compares all cranes and returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--command", metavar="PROGRAM", required=True, help="the built program `crane`")
+    parser.add_argument("--crane", metavar="NAME", action="append", help="compare this crane only (may be repeated)")
+    parser.add_argument("--duration", type=float, default=0.5, help="simulated time, s")
+    options = parser.parse_args()
+    agree = [compare(name, options) for name in options.crane or CRANES]
+    return 0 if all(agree) else 1
+
+
+def compare(name, options):
+    """Runs a crane by its own methods and by Radau from the same pose at rest."""
+    crane = read_crane(WORKSPACE / "specs" / f"{name}.yaml")
+    slope, jacobian = equations(crane)
+    names = [coordinate.name for coordinate in crane.coordinates]
+    agree = True
+    exact = None
+    for method in ("rosw4", "dopri5"):
+        times, poses = simulate(name, method, names, options)
+        if exact is None:
+            start = np.concatenate([poses[0], np.zeros(len(names))])
+            span = (times[0], times[-1])
+            # An error of a rate counts less than one of a coordinate, as it lasts.
+            exact = solve_ivp(slope, span, start, "Radau", times, jac=jacobian, rtol=TOLERANCE, atol=TOLERANCE)
+        error = np.abs(poses - exact.y[: len(names)].T).max() / max(1.0, np.abs(poses).max())
+        moved = np.abs(poses - poses[0]).max()
+        good = bool(exact.success) and error < AGREEMENT
+        verdict = "ok" if good else "FAILED"
+        print(f"{name:24} {method:8} moved {moved:8.1e}  off by {error:8.1e}  tolerance {AGREEMENT:.0e}  {verdict}")
+        agree &= good
+    return agree
+
+
+def equations(crane):
+    """Slopes of (q, v) and their Jacobian as functions of t and (q, v)."""
+    derivations = Derivations(crane)
+    quantities = derivations.quantities
+    count = crane.q.numel()
+    mass = ca.reshape(quantities["mass_matrix"], count, count)
+    state = ca.vertcat(crane.q, crane.v)
+    forces = quantities["bias"] + quantities["forces"]
+    defaults = ca.DM(list(crane.spec.defaults.values()))
+    at = [crane.time, crane.q, crane.v, crane.parameters]
+    function = ca.Function("forces", at, [mass, forces, ca.jacobian(forces, state)])
+
+    def values(t, y):
+        mass, forces, slopes = function(t, y[:count], y[count:], defaults)
+        return mass.full(), forces.full()[:, 0], slopes.full()
+
+    def slope(t, y):
+        mass, forces, _ = values(t, y)
+        return np.concatenate([y[count:], np.linalg.solve(mass, forces)])
+
+    def jacobian(t, y):
+        """Without the change of the mass matrix: Newton's iteration needs no more, and its result does not depend on it."""
+        mass, _, slopes = values(t, y)
+        upper = np.hstack([np.zeros((count, count)), np.eye(count)])
+        return np.vstack([upper, np.linalg.solve(mass, slopes)])
+
+    return slope, jacobian
+
+
+def simulate(name, method, coordinates, options):
+    """Times and poses that `crane simulate` writes."""
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = ["simulate", name, "--method", method, "--tolerance", str(TOLERANCE), "--out", folder]
+        arguments += ["--duration", str(options.duration), "--output", str(options.duration / 50)]
+        subprocess.run([options.command, *arguments], check=True, stdout=subprocess.DEVNULL)
+        with open(Path(folder) / f"{name}.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+    columns = [title.split(" ")[0] for title in rows[0]]
+    table = np.array(rows[1:], dtype=float)
+    return table[:, columns.index("t")], table[:, [columns.index(coordinate) for coordinate in coordinates]]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
