@@ -168,8 +168,9 @@ impl<'f> Storage<'f> {
             0 => element(place(field(out, "axes"), &j), component),
             3 => element(place(field(out, "ways"), &j), component),
             _ => {
-                let columns = element(field(out, if kind == 1 { "linear" } else { "angular" }), component);
-                parse_quote!(#columns[(#j) / 8][(#j) % 8])
+                let eight: Expr = parse_quote!(#out.eights[(#j) / 8]);
+                let momenta = element(field(eight, if kind == 1 { "linear" } else { "angular" }), component);
+                parse_quote!(#momenta[(#j) % 8])
             }
         }
     }
@@ -233,7 +234,10 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
         }
         Shape::Columns { n, .. } => {
             let (kind, j, k) = (slot / (3 * n), slot % (3 * n) / 3, slot % 3);
-            let eights = |of: &str| element(element(element(field(out.clone(), of), k), j / 8), j % 8);
+            let eights = |of: &str| {
+                let eight = element(field(out.clone(), "eights"), j / 8);
+                element(element(field(eight, of), k), j % 8)
+            };
             match kind {
                 0 => element(element(field(out, "axes"), j), k),
                 1 => eights("linear"),

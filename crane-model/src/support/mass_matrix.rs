@@ -9,16 +9,24 @@ use super::lanes::{f64x8, fma};
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct MassColumns<const N: usize, const E: usize> {
-    /// Linear momenta P of all that the coordinate moves, at unit rate; x, y and z of all coordinates, eight by eight.
-    pub linear: [[[f64; 8]; E]; 3],
-    /// Angular momenta L about the coordinate's own point.
-    pub angular: [[[f64; 8]; E]; 3],
+    /// Momenta of the coordinates, eight by eight.
+    pub eights: [Momenta; E],
     /// Axes n.
     pub axes: [[f64; 3]; N],
     /// Ways from the coordinate's point to that of the next.
     pub ways: [[f64; 3]; N],
     /// Bias e, if it is computed along with it.
     pub bias: [f64; N],
+}
+
+/// What eight coordinates move, at unit rate; x, y and z of all eight.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Momenta {
+    /// Linear momenta P.
+    pub linear: [[f64; 8]; 3],
+    /// Angular momenta L about the coordinate's own point.
+    pub angular: [[f64; 8]; 3],
 }
 
 /// Coordinates that follow each other and act at one point: at most three, and all of them turn or all slide.
@@ -35,8 +43,7 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
     #[inline]
     pub fn zeros() -> Self {
         MassColumns {
-            linear: [[[0.0; 8]; E]; 3],
-            angular: [[[0.0; 8]; E]; 3],
+            eights: [Momenta { linear: [[0.0; 8]; 3], angular: [[0.0; 8]; 3] }; E],
             axes: [[0.0; 3]; N],
             ways: [[0.0; 3]; N],
             bias: [0.0; N],
@@ -61,22 +68,16 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
     /// diagonal is no result.
     #[inline]
     pub fn fill(&mut self, points: &[Point], lower: &mut [[f64; N]; N]) {
-        let momenta = &mut Momenta { linear: &self.linear, angular: &mut self.angular };
+        let eights = &mut self.eights;
         let mut rows = Rows { axes: &self.axes, ways: &self.ways, lower };
         for point in points.iter().rev() {
             match point.coordinates {
-                1 => rows.last::<1, E>(point.turns, momenta),
-                2 => rows.last::<2, E>(point.turns, momenta),
-                _ => rows.last::<3, E>(point.turns, momenta),
+                1 => rows.last::<1>(point.turns, eights),
+                2 => rows.last::<2>(point.turns, eights),
+                _ => rows.last::<3>(point.turns, eights),
             }
         }
     }
-}
-
-/// Momenta of all columns, the angular ones about the point of the row at hand.
-struct Momenta<'a, const E: usize> {
-    linear: &'a [[[f64; 8]; E]; 3],
-    angular: &'a mut [[[f64; 8]; E]; 3],
 }
 
 /// Rows not yet filled.
@@ -89,7 +90,7 @@ struct Rows<'a, const N: usize> {
 impl<const N: usize> Rows<'_, N> {
     /// Fills the last `K` rows, whose coordinates act at one point.
     #[inline]
-    fn last<const K: usize, const E: usize>(&mut self, turns: bool, momenta: &mut Momenta<'_, E>) {
+    fn last<const K: usize>(&mut self, turns: bool, eights: &mut [Momenta]) {
         let lower = core::mem::take(&mut self.lower);
         let last = (self.axes.split_last_chunk::<K>(), self.ways.split_last_chunk::<K>(), lower.split_last_chunk_mut());
         let (Some((axes, own)), Some((ways, after)), Some((lower, rows))) = last else { return };
@@ -98,9 +99,9 @@ impl<const N: usize> Rows<'_, N> {
         (self.axes, self.ways, self.lower) = (axes, ways, lower);
         let axes = own.map(|axis| axis.map(f64x8::splat));
         if turns {
-            fill(first, way, rows, momenta, |_, l| axes.map(|n| along(n, l)));
+            fill(first, way, rows, eights, |_, l| axes.map(|n| along(n, l)));
         } else {
-            fill(first, way, rows, momenta, |p, _| axes.map(|n| along(n, p)));
+            fill(first, way, rows, eights, |p, _| axes.map(|n| along(n, p)));
         }
     }
 }
@@ -110,22 +111,19 @@ const LANES: f64x8 = f64x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
 /// Rows from `first` on: `entries` of the momenta of eight columns at a time, those after the rows moved along `way` before.
 #[inline]
-fn fill<const K: usize, const N: usize, const E: usize>(
+fn fill<const K: usize, const N: usize>(
     first: usize,
     way: &[f64; 3],
     rows: &mut [[f64; N]; K],
-    Momenta { linear: [px, py, pz], angular: [lx, ly, lz] }: &mut Momenta<'_, E>,
+    eights: &mut [Momenta],
     entries: impl Fn([f64x8; 3], [f64x8; 3]) -> [f64x8; K],
 ) {
     let way = way.map(f64x8::splat);
-    let linear = px.iter().zip(py).zip(pz);
-    let angular = lx.iter_mut().zip(ly).zip(lz);
-    for (eight, (((px, py), pz), ((lx, ly), lz))) in linear.zip(angular).enumerate().skip(first / 8) {
-        let p = [px, py, pz].map(|p| f64x8::new(*p));
-        let l = [&*lx, &*ly, &*lz].map(|l| f64x8::new(*l));
+    for (eight, momenta) in eights.iter_mut().enumerate().skip(first / 8) {
+        let p = momenta.linear.map(f64x8::new);
         let after = (LANES + number(8 * eight)).simd_ge(number(first + K));
-        let l = moved(way.map(|w| w & after), p, l);
-        [*lx, *ly, *lz] = l.map(f64x8::to_array);
+        let l = moved(way.map(|w| w & after), p, momenta.angular.map(f64x8::new));
+        momenta.angular = l.map(f64x8::to_array);
         for (row, entries) in rows.iter_mut().zip(entries(p, l)) {
             let (eights, rest) = row.as_chunks_mut::<8>();
             match eights.get_mut(eight) {
