@@ -3,6 +3,7 @@
 //! `cargo xtask test` runs every check there is; the others are its parts, for the time in between.
 
 mod equations;
+mod fused;
 mod imports;
 mod manual;
 mod new_crane;
@@ -109,6 +110,7 @@ const SECTIONS: &str = "CRANE_BENCH_SECTIONS";
 fn tests() -> Vec<Step> {
     vec![
         Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench", "--features", CLI]),
+        Step::check("tests with fused multiply-adds", fused::check),
         Step::cargo("the default run", &["run", "--release"]),
         Step::check("packages of the report page", report::prepare),
         Step::check("the report page is current", report::is_current),

@@ -61,7 +61,7 @@ fn blocks(page: &str) -> Vec<Block> {
     for line in page.lines() {
         match (&mut open, line.strip_prefix("```")) {
             (None, Some(language)) => {
-                open = Some(Block { language: language.into(), file: file.take(), ..Block::default() })
+                open = Some(Block { language: language.into(), file: file.take(), ..Block::default() });
             }
             (Some(_), Some(_)) => blocks.extend(open.take()),
             (Some(block), None) => {
