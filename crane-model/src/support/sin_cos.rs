@@ -102,7 +102,8 @@ fn is_small(x: f64x8) -> bool {
 #[inline(never)]
 fn replace_large(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
     for (angle, (sin, cos)) in angles.iter().zip(sines.iter_mut().zip(cosines)) {
-        if !(angle.abs() < LARGEST) {
+        let small = angle.abs() < LARGEST;
+        if !small {
             (*sin, *cos) = nalgebra::ComplexField::sin_cos(*angle);
         }
     }
