@@ -16,8 +16,8 @@
 //! there is a line of weights of order 3: m + s n. Taken is the one without the last stage.
 //!
 //! On the second-order form `A q̈ = e + f`, J holds stiffness and damping of springs and dampers alone,
-//! `J = [[0, I], [−A⁻¹K̂, −A⁻¹D̂]]`: gravity, velocity forces and the change of A are left out. A stage then needs one system of half
-//! the size, which the O(n) recursion solves. With `uᵢ = (p, w)`, `P = v̂ + Σ(cᵢⱼ/h)pⱼ` and `G = q̈ + Σ(cᵢⱼ/h)wⱼ`:
+//! `J = [[0, I], [−A⁻¹K̂, −A⁻¹D̂]]`: gravity, velocity forces and the change of A are left out. A stage then needs one system
+//! of half the size, which the O(n) recursion solves. With `uᵢ = (p, w)`, `P = v̂ + Σ(cᵢⱼ/h)pⱼ` and `G = q̈ + Σ(cᵢⱼ/h)wⱼ`:
 //!
 //! ```text
 //! (A + hγD̂ + h²γ²K̂) z = −h²γ² ((D̂ + hγK̂) G + K̂ P) + hγ·γᵢh ∂f/∂t,     w = hγ G + z,     p = hγ (w + P)
