@@ -100,8 +100,7 @@ impl Interpreted {
 /// Slots of a result as full arrays: symmetric matrices with both halves, transformations with their last row.
 fn expand<S: Scalar>(shape: &Shape, slots: Vec<S>) -> Vec<S> {
     match shape {
-        Shape::Symmetric(n) => symmetric(*n, &slots),
-        Shape::Columns { n, bias: false, .. } => symmetric(*n, &slots),
+        Shape::Symmetric(n) | Shape::Columns { n, bias: false, .. } => symmetric(*n, &slots),
         Shape::Base => symmetric(6, &slots),
         Shape::Transforms { corner, .. } => homogeneous(&slots, *corner),
         Shape::Turned { .. } => homogeneous(&slots, 0),
