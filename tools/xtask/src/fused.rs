@@ -1,0 +1,32 @@
+//! Generated code where the target has fused multiply-adds: other bits, to be compared within a tolerance.
+
+use std::process::Command;
+
+use crate::step::{cargo, finish};
+use crate::workspace;
+
+/// Tests that compare numbers of generated code with those of another making.
+const TESTS: [&str; 3] = ["interpreter", "accuracy", "sin_cos"];
+
+/// Builds and runs them with AVX2 and fused multiply-adds, which no build for any machine of the kind may use.
+pub fn check() -> Result<(), String> {
+    if !has_fma() {
+        println!("this machine has no AVX2 with fused multiply-adds");
+        return Ok(());
+    }
+    let mut command = Command::new(cargo());
+    command.args(["test", "--release", "--package", "crane-tests", "--features", crate::CLI]).current_dir(workspace::root());
+    command.args(TESTS.iter().flat_map(|test| ["--test", test]));
+    command.env("RUSTFLAGS", "-C target-cpu=x86-64-v3").env("CARGO_TARGET_DIR", workspace::target().join("fused"));
+    finish(&mut command)
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_fma() -> bool {
+    std::arch::is_x86_feature_detected!("fma") && std::arch::is_x86_feature_detected!("avx2")
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn has_fma() -> bool {
+    false
+}
