@@ -33,6 +33,44 @@ pub struct Description {
     pub output: f64,
 }
 
+/// Angle from ±90° below which θ of a base or an element is near its singularity, rad: ψ and φ then turn about axes that are
+/// hardly different, and three digits or more are lost.
+pub const NEAR_SINGULAR: f64 = 0.03;
+/// Rotation of a base beyond which linear supports are no longer true, rad: they are off by half a percent of it.
+pub const LARGE_TILT: f64 = 0.1;
+
+#[cfg(feature = "std")]
+impl Description {
+    /// What to say of a pose in which θ of a base or an element is near ±90°, where ψ and φ turn about one axis: the equations
+    /// are singular there.
+    pub fn near_singular(&self, q: &[f64]) -> Option<String> {
+        let turns = |name: &str, role| {
+            self.coordinates.iter().any(|coordinate| coordinate.name == name && coordinate.role == role)
+        };
+        self.coordinates.iter().zip(q).find_map(|(coordinate, angle)| {
+            let CoordinateInfo { name, role, .. } = *coordinate;
+            let body = name.strip_suffix("_theta")?;
+            let all = matches!(role, CoordinateRole::Base | CoordinateRole::Element)
+                && ["psi", "phi"].iter().all(|other| turns(&format!("{body}_{other}"), role));
+            (all && angle.cos().abs() < NEAR_SINGULAR.sin()).then(|| {
+                let degrees = angle.to_degrees();
+                format!("{name} is {degrees:.2}°: near ±90° {body}_psi and {body}_phi turn about one axis, and digits are lost")
+            })
+        })
+    }
+
+    /// What to say of a pose in which a base on supports is turned too far for linear ones.
+    pub fn large_tilt(&self, q: &[f64]) -> Option<String> {
+        self.coordinates.iter().zip(q).filter(|_| !self.supports.is_empty()).find_map(|(coordinate, angle)| {
+            let CoordinateInfo { name, role, kind } = *coordinate;
+            let turned = (role, kind) == (CoordinateRole::Base, CoordinateKind::Rotation) && angle.abs() > LARGE_TILT;
+            turned.then(|| {
+                format!("{name} is {angle:.3} rad: supports with `kinematics: linear` hold up to about {LARGE_TILT} rad only")
+            })
+        })
+    }
+}
+
 /// A live parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterInfo {

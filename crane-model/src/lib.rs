@@ -45,7 +45,8 @@ pub mod statics;
 pub mod support;
 
 pub use description::{
-    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, SupportInfo,
+    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, LARGE_TILT, NEAR_SINGULAR,
+    ParameterInfo, SupportInfo,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, LaneDynamics, Linearisation, Linearise, OneByOne, Statics,

@@ -43,7 +43,7 @@ fn the_guess_of_a_driven_coordinate_follows_its_drive() {
 fn newton_converges_quadratically() {
     // A spring at rest at 1 rad against gravity: the second derivative of the residual does not vanish.
     let pendulum = DoublePendulum { stiffness: 40.0, rest: 1.0, ..DoublePendulum::hanging() };
-    let equilibrium = solve(&pendulum, &Settings { tolerance: 1e-15, iterations: 50 });
+    let equilibrium = solve(&pendulum, &Settings { tolerance: 1e-15, ..Settings::default() });
     let residuals: Vec<f64> = equilibrium.history.iter().map(|i| i.residual).collect();
     assert!(equilibrium.history[1..].iter().all(|i| (i.fraction - 1.0).abs() < f64::EPSILON), "{residuals:?}");
     // log r_{k+1} / log r_k tends to 2 while r is between the first steps' range and rounding.
@@ -94,8 +94,55 @@ fn a_guess_with_vanishing_stiffness_is_left_behind() {
 
 #[test]
 fn too_few_steps_do_not_converge() {
-    let equilibrium = solve(&DoublePendulum::hanging(), &Settings { tolerance: 1e-10, iterations: 1 });
+    let equilibrium =
+        solve(&DoublePendulum::hanging(), &Settings { iterations: 1, load_steps: 0, ..Settings::default() });
     assert_eq!(equilibrium.status, Status::NotConverged);
     assert_eq!(equilibrium.steps(), 1);
     assert!(equilibrium.history[1].residual < equilibrium.history[0].residual);
+}
+
+#[test]
+fn continuation_finds_what_newton_misses() {
+    // From level rods, where K = 0, Newton goes up or down as it happens; under growing load they sink.
+    let equilibrium = solve(&DoublePendulum::horizontal(), &Settings::default());
+    assert_eq!(equilibrium.status, Status::Converged, "{equilibrium}");
+    // A tolerance of 1e-10 of moments that grow by the angle.
+    assert!(equilibrium.q.iter().all(|angle| angle.abs() < 1e-9), "{:?}", equilibrium.q);
+    let without = solve(&DoublePendulum::horizontal(), &Settings { load_steps: 0, ..Settings::default() });
+    assert!(!without.is_stable() && without.load_steps.is_none(), "{without}");
+    let words = equilibrium.to_string();
+    let steps = equilibrium.load_steps.expect("load steps");
+    assert!(words.contains(&format!("after continuation in {steps} load steps")), "{words}");
+}
+
+#[test]
+fn a_guess_upside_down_stays_what_it_is() {
+    // 0.14 rad off: near enough to be meant.
+    let equilibrium = solve(&DoublePendulum::upside_down(), &Settings::default());
+    assert!(matches!(equilibrium.status, Status::Unstable { .. }) && equilibrium.load_steps.is_none(), "{equilibrium}");
+}
+
+#[test]
+fn forces_are_measured_against_one_another() {
+    // A lift of 1e-30 kg on a spring as weak: what is left over is small against nothing but its own weight.
+    let lift = Lift { mass: 1e-30, stiffness: 4e-28, ..Lift::default() };
+    let equilibrium = solve(&lift, &Settings::default());
+    assert_eq!(equilibrium.status, Status::Converged);
+    // One division and one subtraction of rounding.
+    assert!((equilibrium.q[0] - lift.sag()).abs() < 1e-15, "{:?}", equilibrium.q);
+}
+
+#[test]
+fn stiffness_that_rounding_fills_is_no_obstacle() {
+    // 1e20 N/m times a rounded position of 1 m is 2e4 N, against 98 N of weight.
+    let lift = Lift { stiffness: 1e20, height: 1.1, ..Lift::default() };
+    assert_eq!(solve(&lift, &Settings::default()).status, Status::Converged);
+}
+
+#[test]
+fn forces_that_overflow_are_said_to() {
+    let lift = Lift { mass: f64::MAX, ..Lift::default() };
+    let equilibrium = solve(&lift, &Settings::default());
+    assert_eq!(equilibrium.status, Status::Overflow);
+    assert!(equilibrium.to_string().contains("beyond all numbers"), "{equilibrium}");
 }

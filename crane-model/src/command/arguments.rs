@@ -26,6 +26,7 @@ Examples:
   crane modes                          frequencies and damping about the static pose
   crane stability                      largest stable steps, what limits them, and a figure
   crane work-precision                 what accuracy costs: methods, steps, tolerances, numbers of sections
+  crane stress --quick                 stiff and extreme cranes, as expected or not
   crane check my.yaml; crane run my.yaml
                                        a crane of one's own: its mistakes; everything about it
   crane explain my.yaml --svg my.svg   its chain, in words and as a picture
@@ -74,6 +75,8 @@ pub enum Action {
     Stability(Stability),
     /// Error against run time of every method and number of sections, and which of them are cheapest for an error
     WorkPrecision(WorkPrecision),
+    /// Stiff and extreme cranes: what is expected of each, and what happens
+    Stress(Stress),
     /// What a crane consists of: coordinates, bodies, supports, drives, parameters
     Info(Analysis),
     /// T, ∂T/∂q, ∂²T/∂q∂q, A and e at a state, for checks by other programs
@@ -120,6 +123,7 @@ impl Action {
             // Compiles the crane with other numbers of sections along.
             Action::WorkPrecision(_)
             | Action::New(_)
+            | Action::Stress(_)
             | Action::Check { .. }
             | Action::Explain { .. }
             | Action::Export(_)
@@ -384,6 +388,23 @@ impl FromStr for Counts {
         }
         Ok(Counts(counts))
     }
+}
+
+/// The suite of extreme cases.
+#[derive(Debug, Args)]
+pub struct Stress {
+    /// Only the cases that take so little that every build can do them
+    #[arg(long)]
+    pub quick: bool,
+    /// Only the cases with this word in their name or group
+    #[arg(long, value_name = "WORD")]
+    pub only: Option<String>,
+    /// Form of what is printed
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+    /// Folder for the tables stress.csv and stress.md; made where it is missing
+    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
 }
 
 /// A list of the cranes.

@@ -43,8 +43,13 @@ pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
     write(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// Writes a table as CSV, units in the header: `boom_psi [rad]`.
+/// Writes a table as CSV, units in the header: `boom_psi [rad]`. Only numbers: what is none is told instead.
 pub fn write_csv(path: &Path, table: &Table) -> Outcome<()> {
+    if let Some((row, column)) = table.not_finite() {
+        let what = &table.columns[column].name;
+        let title = format!("{what} in row {} is no number: {} is not written", row + 1, path.display());
+        return Err(Problem::failed(title, "make masses, stiffnesses and positions of a size that a crane has"));
+    }
     let header = table.columns.iter().map(ToString::to_string);
     write_fields(path, header, table.rows.iter().map(|row| row.iter().copied().map(number).collect()))
 }

@@ -19,6 +19,7 @@ mod exchange;
 mod figures;
 mod files;
 mod info;
+mod interpreted;
 mod modes;
 mod new;
 mod npz;
@@ -33,6 +34,7 @@ mod selection;
 mod simulate;
 mod stability;
 mod statics;
+mod stress;
 mod work_precision;
 
 use std::{io, io::Write, process::ExitCode};
@@ -74,6 +76,7 @@ fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
         },
         Some(Action::Modes(options)) => modes::modes(options, fleet, out),
         Some(Action::Stability(options)) => stability::stability(options, fleet, out),
+        Some(Action::Stress(options)) => stress::stress(options, fleet, out),
         Some(Action::WorkPrecision(options)) => work_precision::work_precision(options, fleet, out),
         Some(Action::Report(options)) => page::report(options, fleet, out),
         Some(Action::Info(options)) => info::info(options, fleet, out),

@@ -37,6 +37,9 @@ pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()
     let traces: Vec<Trace<'_>> = traces
         .map(|(index, (label, run))| Trace { label, table: &run.table, dashed: index + 1 < cases.len() })
         .collect();
+    for (label, caution) in labels.clone().zip(&runs).flat_map(|(l, run)| run.cautions.iter().map(move |c| (l, c))) {
+        report.caution(Some(format!("{label}: {caution}")));
+    }
     let description = rig.description();
     written.extend(write_figures(folder, &format!("{}_", description.name), description, &traces)?);
     let page = format!("{}.html", description.name);

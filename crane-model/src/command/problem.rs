@@ -51,13 +51,10 @@ impl Problem {
 
     /// No stable equilibrium to start from.
     pub fn equilibrium(name: &str, equilibrium: &Equilibrium) -> Self {
-        let steps = equilibrium.steps();
-        let residual = equilibrium.history.last().map_or(f64::NAN, |last| last.residual);
+        let residual = equilibrium.residual();
+        let left = if residual.is_finite() { format!(", residual {residual:.1e}") } else { String::new() };
         Self::failed(
-            format!(
-                "{name}: statics did not find a stable equilibrium ({}); {steps} Newton steps, residual {residual:.1e}",
-                equilibrium.status
-            ),
+            format!("{name}: statics did not find a stable equilibrium ({equilibrium}{left})"),
             "change `guess:` in its spec to a pose near a stable equilibrium, or drive or spring the coordinates named",
         )
     }
@@ -67,6 +64,14 @@ impl Problem {
         match self {
             Problem::Told { title, .. } => title,
             _ => "",
+        }
+    }
+
+    /// What is wrong and what to do about it, in one line.
+    pub fn message(&self) -> String {
+        match self {
+            Problem::Told { title, help, .. } if !help.is_empty() => format!("{title}; {help}"),
+            _ => self.title().to_owned(),
         }
     }
 

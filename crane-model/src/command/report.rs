@@ -195,6 +195,13 @@ impl Report {
         self.facts.push((name, value.into(), unit));
     }
 
+    /// Adds a warning, if there is one.
+    pub fn caution(&mut self, words: Option<impl Into<Cell>>) {
+        if let Some(words) = words {
+            self.fact("caution", words, "");
+        }
+    }
+
     /// Adds a table, unless it has no rows.
     pub fn grid(&mut self, grid: Grid) {
         if !grid.rows.is_empty() {

@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    dynamics::{self, Method, Run},
+    dynamics::{self, Cause, Method, Run},
     modes::{self, DampedMode},
     results::{Recording, Table},
     rig::Rig,
@@ -66,6 +66,8 @@ pub struct Recorded {
     pub table: Table,
     /// Time it took.
     pub wall: Duration,
+    /// What to say of poses that it went through.
+    pub cautions: Vec<String>,
 }
 
 impl Recorded {
@@ -73,6 +75,25 @@ impl Recorded {
     pub fn real_time_factor(&self) -> f64 {
         self.run.time / self.wall.as_secs_f64()
     }
+}
+
+/// Part of the energy turned over by which a run may be off before that is said: a hundred times what usual steps and
+/// tolerances leave.
+const IMBALANCE: f64 = 0.01;
+/// Energy turned over counts at least as this part of the energy there is: that of a crane at rest is rounding.
+const LEAST_TURNED: f64 = 1e-9;
+
+/// Greatest error of the energy balance over the greatest energy that was turned over.
+pub fn imbalance(table: &Table) -> f64 {
+    let column = |name: &str| table.values(name).map_or_else(Vec::new, Iterator::collect::<Vec<f64>>);
+    let parts = ["kinetic", "gravity", "support", "element", "drive"].map(|part| format!("{part}_energy"));
+    let turned = parts.iter().map(String::as_str).chain(["drive_work", "dissipated_energy"]).map(|name| {
+        let values = column(name);
+        let first = values.first().copied().unwrap_or(0.0);
+        values.iter().map(|x| (x - first).abs().max(LEAST_TURNED * x.abs())).fold(0.0, f64::max)
+    });
+    let error = column("energy_balance").iter().map(|x| x.abs()).fold(0.0, f64::max);
+    error / turned.fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// Least tolerance: rounding errors of coordinates of some metres and of their stiff springs.
@@ -225,7 +246,8 @@ pub fn batches(count: usize) -> ProgressBar {
     styled(ProgressBar::new(count as u64))
 }
 
-fn styled(bar: ProgressBar) -> ProgressBar {
+/// A progress bar with times.
+pub fn styled(bar: ProgressBar) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed} (left {eta})");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar
@@ -235,11 +257,15 @@ fn styled(bar: ProgressBar) -> ProgressBar {
 pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: &ProgressBar) -> Outcome<Recorded> {
     let name = rig.description().name;
     let begin = Instant::now();
+    let description = rig.description();
     let mut recording = Recording::new(rig);
     let mut shown = 0;
+    let (mut singular, mut tilted) = (None, None);
     let run = rig
         .simulate(&start.q, settings, &mut |sample| {
             recording.push(sample);
+            singular = singular.take().or_else(|| description.near_singular(sample.q));
+            tilted = tilted.take().or_else(|| description.large_tilt(sample.q));
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
             let reached = (sample.t * 1e3) as u64;
             bar.inc(reached - shown);
@@ -252,7 +278,28 @@ pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: 
                 let cause = cause(rig.description(), &limit.mode);
                 format!("; the largest stable step is {:.3e} s, limited at t = {t} s by {cause}", limit.step)
             });
-            Problem::failed(format!("{name}: {stopped}"), stopped.advice() + &limit)
+            let other = match settings.method {
+                Method::Rosenbrock => "",
+                _ => "; `--method rosw4` copes with stiff cranes",
+            };
+            let light = match stopped.cause {
+                Cause::Tolerance => {
+                    "; a link of hardly any mass beside a heavy one swings faster than any step: give it the mass it has"
+                }
+                _ => "",
+            };
+            let near = singular.as_ref().map_or_else(String::new, |said| format!("; {said}"));
+            Problem::failed(format!("{name}: {stopped}{near}"), stopped.advice() + light + other + &limit)
         })?;
-    Ok(Recorded { start: start.what, run, table: recording.into_table(), wall: begin.elapsed() })
+    let table = recording.into_table();
+    let off = imbalance(&table);
+    let unbalanced = (settings.audit && off > IMBALANCE).then(|| {
+        format!(
+            "energy is off by {:.0} % of what was turned over: steps miss something, a motion shorter than they are or an \
+             angle near ±90°; make tolerance or step smaller, results closer",
+            100.0 * off
+        )
+    });
+    let cautions = singular.into_iter().chain(tilted).chain(unbalanced).collect();
+    Ok(Recorded { start: start.what, run, table, wall: begin.elapsed(), cautions })
 }

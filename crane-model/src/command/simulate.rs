@@ -58,6 +58,9 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     report.fact("rejected steps", statistics.rejections, "");
     report.fact("evaluations", statistics.evaluations, "");
     report.fact("factorisations", statistics.factorisations, "");
+    for caution in &recorded.cautions {
+        report.caution(Some(caution.as_str()));
+    }
     report.grid(summary(rig.description(), &[(name, &recorded)]));
     report.grid(file_list(&options.folder.out, &written));
     report.print(options.analysis.format, out)

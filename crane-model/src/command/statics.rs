@@ -80,14 +80,13 @@ pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcom
 pub fn tables(cases: &[Case<'_>]) -> Report {
     let mut report = Report::default();
     for case in cases {
-        let Equilibrium { status, history, .. } = &case.equilibrium;
-        let steps = case.equilibrium.steps();
-        let residual = history.last().map_or(f64::NAN, |last| last.residual);
-        report.fact(
-            case.rig.description().name,
-            format!("{status}; {steps} Newton steps, {residual:.1e} of the forces left over"),
-            "",
-        );
+        let Case { equilibrium, .. } = case;
+        let residual = equilibrium.residual();
+        report.fact(case.rig.description().name, format!("{equilibrium}, {residual:.1e} of the forces left over"), "");
+        let description = case.rig.description();
+        for caution in [description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q)] {
+            report.caution(caution);
+        }
     }
     report.grid(pose(cases));
     report.grid(drives(cases));

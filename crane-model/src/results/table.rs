@@ -28,6 +28,11 @@ pub struct Table {
 }
 
 impl Table {
+    /// Row and column of the first value that is not finite.
+    pub fn not_finite(&self) -> Option<(usize, usize)> {
+        self.rows.iter().enumerate().find_map(|(index, row)| Some((index, row.iter().position(|x| !x.is_finite())?)))
+    }
+
     /// Adds a column; for a table without rows.
     pub fn add(&mut self, name: impl Into<String>, unit: impl Into<String>) {
         self.columns.push(Column { name: name.into(), unit: unit.into() });

@@ -1,11 +1,12 @@
 //! How far a pose is from equilibrium, in one number.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use crate::{CoordinateKind, Statics};
 
-/// Smallest force scale, 1 N and 1 N m: without gravity and springs there is nothing to compare with.
-const LEAST_FORCE: f64 = 1.0;
+/// Least scale of the forces against that of the moments, 1/m, and the other way about, m: where all moments cancel, forces
+/// at levers of some metres leave their rounding.
+const LEAST: f64 = 1e-5;
 
 /// Size of the forces that balance, by which the residual is measured.
 ///
@@ -26,9 +27,12 @@ impl<const N: usize> Balance<N> {
             (0..N)
                 .filter(|&i| coordinates[i].kind == kind)
                 .map(|i| springs[i].abs().max(gravity[i].abs()))
-                .fold(LEAST_FORCE, f64::max)
+                .fold(0.0, f64::max)
         };
         let (force, moment) = (greatest(CoordinateKind::Translation), greatest(CoordinateKind::Rotation));
+        // Without gravity and springs there is nothing to compare with.
+        let least = |other: f64| if force.max(moment) > 0.0 { LEAST * other } else { 1.0 };
+        let (force, moment) = (force.max(least(moment)), moment.max(least(force)));
         let scale = SVector::from_fn(|i, _| match coordinates[i].kind {
             CoordinateKind::Translation => force,
             CoordinateKind::Rotation => moment,
@@ -38,6 +42,30 @@ impl<const N: usize> Balance<N> {
 
     /// `‖r/scale‖`, dimensionless: 0 in equilibrium, about 1 where springs do not carry the weight yet.
     pub(super) fn norm(&self, residual: &SVector<f64, N>) -> f64 {
-        residual.component_div(&self.scale).norm()
+        self.scaled(residual).norm()
+    }
+
+    /// `r/scale`.
+    pub(super) fn scaled(&self, residual: &SVector<f64, N>) -> SVector<f64, N> {
+        residual.component_div(&self.scale)
+    }
+
+    /// A number of row i over that row's scale.
+    pub(super) fn row(&self, i: usize, number: f64) -> f64 {
+        number / self.scale[i]
+    }
+
+    /// The least scaled residual that poses in double precision have: coordinates are rounded, and stiff springs make forces
+    /// of that.
+    pub(super) fn rounding(&self, stiffness: &SMatrix<f64, N, N>, q: &SVector<f64, N>) -> f64 {
+        /// Roundings of a coordinate and of the sums that it goes through.
+        const ROUNDINGS: f64 = 4.0;
+        ROUNDINGS * f64::EPSILON * self.norm(&(stiffness.abs() * q.abs()))
+    }
+
+    /// Springs that hold the crane against all that balances here within about 1 rad and 1 m, and no coordinate by less than
+    /// its own stiffness. N m/rad and N/m.
+    pub(super) fn springs(&self, stiffness: &SMatrix<f64, N, N>) -> SVector<f64, N> {
+        SVector::from_fn(|i, _| self.scale[i] + stiffness[(i, i)].abs())
     }
 }

@@ -18,6 +18,8 @@ pub enum Status {
         /// Coordinates that move in that direction.
         coordinates: Vec<&'static str>,
     },
+    /// Forces or stiffnesses at the guess are no finite numbers.
+    Overflow,
     /// No equilibrium found within the allowed iterations, or no step made the residual smaller.
     NotConverged,
 }
@@ -31,6 +33,9 @@ impl fmt::Display for Status {
             }
             Status::Singular { coordinates } => {
                 write!(f, "singular: nothing holds {}", coordinates.join(", "))
+            }
+            Status::Overflow => {
+                f.write_str("forces beyond all numbers: a mass, a stiffness or a position is out of proportion")
             }
             Status::NotConverged => f.write_str("not converged: no equilibrium found from this guess"),
         }

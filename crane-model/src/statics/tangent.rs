@@ -6,8 +6,8 @@ use super::Status;
 use crate::{CoordinateKind, Description};
 
 /// A diagonal entry below this part of the greatest of its kind (N/m or N m/rad) counts as no stiffness of its own. Real
-/// cranes span about 1e9 (a chassis against a hinge), rounding leaves about 1e-16.
-const LEAST_STIFFNESS: f64 = 1e-9;
+/// cranes span about 1e9 (a chassis against a hinge), those with drives made rigid 1e12; rounding leaves about 1e-16.
+const LEAST_STIFFNESS: f64 = 1e-13;
 /// A direction is free below this part of the greatest scaled stiffness. Scaling brings joints and springs to about 1.
 const FREE: f64 = 1e-7;
 /// A coordinate belongs to a direction from this part of its greatest component.

@@ -1,0 +1,99 @@
+//! Numbers at the limits of double precision and of the spec language, in specs, parameters and options.
+
+use super::{
+    Specs,
+    case::{Case, expect},
+    spec::Spec,
+    subject::{Subject, timing},
+};
+use crate::dynamics::Method;
+
+pub fn cases(specs: &Specs) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (number, code) in [
+        ("1e300", "E033"),
+        ("1.7976931348623157e308", "E033"),
+        ("2e308", "E030"),
+        ("5e-324", "E033"),
+        ("1e-31", "E033"),
+        (".inf", "E030"),
+        ("-.inf", "E030"),
+        (".nan", "E030"),
+        ("0", "E031"),
+        ("-1", "E031"),
+    ] {
+        cases.push(refused(number, code));
+    }
+    for number in ["1e18", "1e-30", "-1e18"] {
+        cases.push(accepted(number));
+    }
+    for mass in [1e18, 1e-30] {
+        cases.push(heavy(mass));
+    }
+    for load in [f64::MAX, f64::MIN_POSITIVE, 5e-324, 1e300, 1e150, 1e30, -1e30, 0.0] {
+        cases.push(parameter(specs.shipped("knuckle_boom"), load));
+    }
+    cases
+}
+
+/// A rod on a pin.
+fn rod(mass: &str, com: &str) -> Spec {
+    Spec::new(format!(
+        "format: 1
+name: rod
+links:
+  - {{name: rod, joint: {{revolute: {{axis: y}}}}, mass: {mass}, com: [0, 0, {com}]}}
+run: {{duration: 0.1}}
+"
+    ))
+}
+
+fn refused(number: &'static str, code: &'static str) -> Case {
+    let expected = format!("refused by rule {code}, the number shown");
+    Case::new("limits of numbers", format!("spec with a mass of {number}"), expected, move || {
+        match Subject::new(&rod(number, "-1")) {
+            Ok(_) => Err("accepted".to_owned()),
+            Err(said) => expect(said.contains(code), said),
+        }
+    })
+}
+
+/// A centre of mass as far away as the language allows.
+fn accepted(number: &'static str) -> Case {
+    let expected = "a stable pose or a clear word, a run or a clear word; nothing that is not finite";
+    Case::new("limits of numbers", format!("spec with a centre of mass at {number} m"), expected, move || {
+        let subject = Subject::new(&rod("1", number))?;
+        let equilibrium = subject.equilibrium();
+        let run = subject.run(&timing(Method::Rosenbrock, 1e-4, 0.1));
+        sound(&equilibrium.to_string(), equilibrium.q.iter().all(|x| x.is_finite()), run.err())
+    })
+}
+
+/// A mass as great or small as the language allows swings as any.
+fn heavy(mass: f64) -> Case {
+    let expected = "stable, hanging; 0.1 s to the end";
+    Case::new("limits of numbers", format!("spec with a mass of {mass:e}"), expected, move || {
+        let subject = Subject::new(&rod(&format!("{mass:e}"), "-1").with("run:", "guess: {rod_theta: 0.1}\nrun:"))?;
+        let rest = subject.rest()?;
+        subject.run(&timing(Method::Rosenbrock, 1e-4, 0.1))?;
+        expect(rest.q[0].abs() < 1e-9, rest.to_string())
+    })
+}
+
+/// A payload as `--set` takes it.
+fn parameter(spec: Spec, load: f64) -> Case {
+    let expected = "a stable pose or a clear word, a run or a clear word; nothing that is not finite";
+    Case::new("limits of numbers", format!("knuckle_boom with payload={load:e}"), expected, move || {
+        let subject = Subject::new(&spec)?.set("payload", load)?;
+        let equilibrium = subject.equilibrium();
+        let run = subject.run(&timing(Method::Rosenbrock, 1e-4, 0.1));
+        sound(&equilibrium.to_string(), equilibrium.q.iter().all(|x| x.is_finite()), run.err())
+    })
+}
+
+/// As expected unless a number is not finite, in the pose or in the message of a run.
+fn sound(statics: &str, finite: bool, run: Option<String>) -> super::case::Finding {
+    let told = run.as_deref().unwrap_or("ran to the end");
+    let clear = !told.contains("NaN") && !told.contains("in the results") && !told.contains("inf ");
+    expect(finite && clear, format!("{statics}; {told}"))
+}
