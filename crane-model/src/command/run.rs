@@ -99,6 +99,13 @@ pub fn imbalance(table: &Table) -> f64 {
 /// Least tolerance: rounding errors of coordinates of some metres and of their stiff springs.
 const LEAST_TOLERANCE: f64 = 1e-12;
 
+/// Greatest tolerance, m and rad: beyond it nothing is held any more.
+const GREATEST_TOLERANCE: f64 = 1.0;
+
+/// Shortest and longest run and interval of results, s: below a nanosecond steps are lost in rounding, and nobody waits for four
+/// months of a crane.
+const TIMES: (f64, f64) = (1e-9, 1e7);
+
 /// Part of the largest stable step that `--step auto` takes: swinging moves the limit by some per cent.
 pub const SAFE: f64 = 0.9;
 
@@ -140,6 +147,20 @@ impl Timing {
         if settings.tolerance < LEAST_TOLERANCE {
             let title = format!("a tolerance of {:e} is below what rounding leaves", settings.tolerance);
             return Err(Problem::usage(title, format!("write {LEAST_TOLERANCE:e} or more, such as 1e-4")));
+        }
+        if settings.tolerance > GREATEST_TOLERANCE {
+            let title =
+                format!("a tolerance of {:e} holds nothing: no coordinate may be that far off", settings.tolerance);
+            return Err(Problem::usage(title, format!("write {GREATEST_TOLERANCE} or less, such as 1e-4")));
+        }
+        for (name, value) in [("duration", settings.duration), ("output", settings.output)] {
+            let (least, greatest) = TIMES;
+            if !(least..=greatest).contains(&value) {
+                return Err(Problem::usage(
+                    format!("`--{name} {value:e}` is no time of a crane"),
+                    format!("write seconds from {least:e} to {greatest:e}"),
+                ));
+            }
         }
         if settings.duration / settings.output > MOST_RESULTS {
             return Err(Problem::usage(

@@ -1,5 +1,6 @@
 //! `crane stress`: stiff and extreme cranes, what is expected of each and what happens.
 
+mod angles;
 mod beams;
 mod case;
 mod loads;
@@ -65,6 +66,7 @@ pub fn stress(options: &Stress, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     cases.extend(beams::cases(&specs));
     cases.extend(loads::cases(&specs));
     cases.extend(supports::cases());
+    cases.extend(angles::cases());
     cases.extend(poses::cases(&specs));
     cases.extend(motions::cases(&specs));
     cases.extend(numbers::cases(&specs));

@@ -6,7 +6,10 @@ use super::{
     spec::Spec,
     subject::{Subject, timing},
 };
-use crate::dynamics::Method;
+use crate::{
+    command::arguments::{Step, Timing},
+    dynamics::Method,
+};
 
 pub fn cases(specs: &Specs) -> Vec<Case> {
     let mut cases = Vec::new();
@@ -33,7 +36,37 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     for load in [f64::MAX, f64::MIN_POSITIVE, 5e-324, 1e300, 1e150, 1e30, -1e30, 0.0] {
         cases.push(parameter(specs.shipped("knuckle_boom"), load));
     }
+    for (name, of) in OPTIONS {
+        for value in [f64::NAN, f64::INFINITY, -1.0, 0.0, 5e-324, 1e-300, 1e300, f64::MAX] {
+            cases.push(option(specs.shipped("knuckle_boom"), name, of, value));
+        }
+    }
     cases
+}
+
+/// Names of options of a run, and how to set them.
+const OPTIONS: [(&str, fn(&mut Timing, f64)); 4] = [
+    ("step", |timing, value| {
+        timing.method = Some(Method::Rk4);
+        timing.tolerance = None;
+        timing.step = Some(Step::Seconds(value));
+    }),
+    ("tolerance", |timing, value| timing.tolerance = Some(value)),
+    ("duration", |timing, value| timing.duration = Some(value)),
+    ("output", |timing, value| timing.output = Some(value)),
+];
+
+/// An option of a run that means nothing: refused at once, or harmless.
+fn option(spec: Spec, name: &'static str, set: fn(&mut Timing, f64), value: f64) -> Case {
+    let expected = "refused by its name or its matter, or a run of sound numbers; in no case endless";
+    Case::new("limits of numbers", format!("knuckle_boom with --{name} {value:e}"), expected, move || {
+        let mut timing = timing(Method::Rosenbrock, 1e-4, 0.1);
+        set(&mut timing, value);
+        match Subject::new(&spec)?.run(&timing) {
+            Ok(recorded) => Ok(format!("ran in {} steps", recorded.run.statistics.steps)),
+            Err(said) => expect(said.contains(name) && !said.contains("in row"), said),
+        }
+    })
 }
 
 /// A rod on a pin.
