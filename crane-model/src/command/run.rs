@@ -316,8 +316,9 @@ pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: 
     let off = imbalance(&table);
     let unbalanced = (settings.audit && off > IMBALANCE).then(|| {
         format!(
-            "energy is off by {:.0} % of what was turned over: steps miss something, a motion shorter than they are or an \
-             angle near ±90°; make tolerance or step smaller, results closer",
+            "energy is off by {:.0} % of what was turned over: steps miss something, such as a motion shorter than they are \
+             or an angle near ±90°, or rounding moves springs that are too stiff; make step or tolerance smaller, the \
+             interval of results shorter, springs softer",
             100.0 * off
         )
     });

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::{
     case::{Case, expect},
     spec::Spec,
-    subject::{Subject, imbalance, timing},
+    subject::{Subject, cautions, imbalance, timing},
 };
 use crate::{LARGE_TILT, NEAR_SINGULAR, dynamics::Method};
 
@@ -84,9 +84,9 @@ run: {{duration: 1}}
             Err(said) => expect(said.contains("block_theta"), said),
             Ok(recorded) => {
                 let last = recorded.table.rows.last().map_or(f64::NAN, |row| row[5]);
-                let named = recorded.cautions.join("; ");
+                let said = cautions(&recorded);
                 let right = angle != FRAC_PI_2 && (last - angle).abs() < 1e-9;
-                expect(right, format!("θ = {last:.6} rad at the end; {named}"))
+                expect(right, format!("θ = {last:.6} rad at the end{said}"))
             }
         }
     })
@@ -110,9 +110,9 @@ run: {duration: 3}
         match subject.run(&timing(Method::Rosenbrock, 1e-6, 3.0)) {
             Err(said) => expect(said.contains("block_theta") && said.contains("90°"), said),
             Ok(recorded) => {
-                let named = recorded.cautions.join("; ");
+                let said = cautions(&recorded);
                 let off = imbalance(&recorded);
-                expect(named.contains("block_theta") && off < 1e-3, format!("energy off by {off:.1e}; {named}"))
+                expect(said.contains("block_theta") && off < 1e-3, format!("energy off by {off:.1e}{said}"))
             }
         }
     })

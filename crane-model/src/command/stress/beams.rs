@@ -6,7 +6,7 @@ use super::{
     GRAVITY, Specs,
     case::{Case, expect},
     spec::Spec,
-    subject::{Subject, imbalance, timing},
+    subject::{Subject, balanced, timing},
 };
 use crate::{dynamics::Method, statics::Status};
 
@@ -50,8 +50,7 @@ fn motion(spec: Spec, sections: usize) -> Case {
     let case =
         Case::new("number of sections", format!("eight_link_flexible of {sections}, motion"), expected, move || {
             let recorded = Subject::new(&spec)?.run(&timing(Method::Rosenbrock, 1e-4, 1.0))?;
-            let (steps, off) = (recorded.run.statistics.steps, imbalance(&recorded));
-            expect(off < 1e-3, format!("{steps} steps, energy off by {off:.1e}"))
+            balanced(&recorded, 1e-3)
         });
     if sections < 16 { case } else { case.long() }
 }

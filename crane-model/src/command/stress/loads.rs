@@ -4,7 +4,7 @@ use super::{
     GRAVITY, Specs,
     case::{Case, expect},
     spec::Spec,
-    subject::{Subject, imbalance, timing},
+    subject::{Subject, balanced, timing},
 };
 use crate::{dynamics::Method, modes::undamped, statics::Status};
 
@@ -44,8 +44,7 @@ fn motion(spec: Spec, load: f64) -> Case {
     let expected = "1 s by rosw4 to the end, energy balanced to 0.1 %";
     Case::new("load", format!("eight_link_flexible with {load:e} kg, motion"), expected, move || {
         let recorded = Subject::new(&spec)?.set("load_mass", load)?.run(&timing(Method::Rosenbrock, 1e-4, 1.0))?;
-        let (steps, off) = (recorded.run.statistics.steps, imbalance(&recorded));
-        expect(off < 1e-3, format!("{steps} steps, energy off by {off:.1e}"))
+        balanced(&recorded, 1e-3)
     })
 }
 
@@ -130,8 +129,7 @@ fn swing(upper: f64, lower: f64) -> Case {
     Case::new("mass ratio", format!("pendulum of {upper:e} and {lower:e} kg, motion"), expected, move || {
         let spec = rods(upper, lower, [1.0, 0.5]).with("links:", "analyses: [dynamics]\nlinks:");
         let recorded = Subject::new(&spec)?.run(&timing(Method::DormandPrince, 1e-9, 2.0))?;
-        let (steps, off) = (recorded.run.statistics.steps, imbalance(&recorded));
-        expect(off < 1e-5, format!("{steps} steps, energy off by {off:.1e}"))
+        balanced(&recorded, 1e-5)
     })
 }
 

@@ -4,7 +4,7 @@ use super::{
     Specs,
     case::{Case, expect},
     spec::Spec,
-    subject::{Subject, imbalance, timing},
+    subject::{Subject, balanced, cautions, imbalance, timing},
 };
 use crate::dynamics::Method;
 
@@ -60,11 +60,11 @@ drives:
         let recorded = Subject::new(&spec)?.run(&timing(method, accuracy, end))?;
         let last = recorded.table.rows.last().map_or(f64::NAN, |row| row[1]);
         let (off, steps) = (imbalance(&recorded), recorded.run.statistics.steps);
-        let said = recorded.cautions.join("; ");
+        let said = cautions(&recorded);
         let right = if sharp { (last - exact).abs() < 1e-4 } else { off < 1e-5 };
         expect(
             right || missed && !said.is_empty(),
-            format!("x = {last:.6} m, energy off by {off:.1e}, {steps} steps; {said}"),
+            format!("x = {last:.6} m, energy off by {off:.1e}, {steps} steps{said}"),
         )
     })
 }
@@ -74,8 +74,8 @@ fn sagging() -> Case {
     let expected = "said that the beam passed ±90° or that energy is off";
     Case::new("angles near ±90°", "soft beam falling through 90°, rk4 with 5e-4 s", expected, move || {
         let recorded = Subject::new(&soft_beam(2.1e8))?.run(&timing(Method::Rk4, 5e-4, 20.0))?;
-        let (said, off) = (recorded.cautions.join("; "), imbalance(&recorded));
-        expect(!said.is_empty() || off < 1e-3, format!("energy off by {off:.1e}; {said}"))
+        let (said, off) = (cautions(&recorded), imbalance(&recorded));
+        expect(!said.is_empty() || off < 1e-3, format!("energy off by {off:.1e}{said}"))
     })
 }
 
@@ -105,8 +105,7 @@ fn sudden(spec: Spec, duration: f64) -> Case {
     Case::new("short motions", format!("eight_link_flexible, manoeuvre of {duration} s"), expected, move || {
         let spec = spec.with("duration: 5}", &format!("duration: {duration:e}}}"));
         let recorded = Subject::new(&spec)?.run(&timing(Method::Rosenbrock, 1e-4, 1.0))?;
-        let (steps, off) = (recorded.run.statistics.steps, imbalance(&recorded));
-        expect(off < 0.01, format!("{steps} steps, energy off by {off:.1e}"))
+        balanced(&recorded, 0.01)
     })
 }
 
@@ -121,8 +120,7 @@ fn tumble(spec: Spec, method: Method) -> Case {
     let name = format!("double_pendulum by {method}, {accuracy:e}");
     Case::new("600 s without drift", name, expected, move || {
         let recorded = Subject::new(&spec)?.run(&timing(method, accuracy, 600.0))?;
-        let (steps, off) = (recorded.run.statistics.steps, imbalance(&recorded));
-        expect(off < kept, format!("{steps} steps, energy off by {off:.1e}"))
+        balanced(&recorded, kept)
     })
 }
 
@@ -136,8 +134,7 @@ fn vibration(method: Method) -> Case {
     let expected = format!("600 s to the end, energy kept to {kept:e} of what swings");
     let case = Case::new("600 s without drift", format!("soft beam by {method}, {accuracy:e}"), expected, move || {
         let recorded = Subject::new(&soft_beam(2.1e9))?.run(&timing(method, accuracy, 600.0))?;
-        let (steps, off) = (recorded.run.statistics.steps, imbalance(&recorded));
-        expect(off < kept, format!("{steps} steps, energy off by {off:.1e}"))
+        balanced(&recorded, kept)
     });
     if method == Method::Rosenbrock { case } else { case.long() }
 }

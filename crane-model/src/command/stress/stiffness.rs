@@ -6,7 +6,7 @@ use super::{
     GRAVITY, Specs,
     case::{Case, expect},
     spec::Spec,
-    subject::{Subject, imbalance, timing},
+    subject::{Subject, cautions, imbalance, timing},
 };
 use crate::{
     dynamics::Method,
@@ -59,13 +59,22 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
 /// A run as the command does it by default.
 fn run(group: &'static str, spec: Spec, factor: f64) -> Case {
     // Of drives, stiff and hardly damped, every vibration is followed.
-    let duration = if group == DRIVES && factor >= 1e4 { DURATION / 20.0 } else { DURATION };
+    let duration = match factor {
+        1e4 if group == DRIVES => DURATION / 2.0,
+        1e6 if group == DRIVES => DURATION / 20.0,
+        _ => DURATION,
+    };
+    // Positions are rounded to 2e-16 rad, which 1e13 N m/rad make some kN m of.
+    let rounded = group == DRIVES && factor == 1e6;
+    let or_said = if rounded { ", or said that rounding spoils it" } else { "" };
     let what = if group.starts_with("damping") { "β = " } else { "× " };
-    let expected = format!("{duration} s by rosw4 to the end, energy balanced to {:.1} %", BALANCE * 100.0);
+    let expected = format!("{duration} s by rosw4 to the end, energy balanced to {:.1} %{or_said}", BALANCE * 100.0);
     let case = Case::new(group, format!("eight_link_flexible {what}{factor:e}, motion"), expected, move || {
         let recorded = Subject::new(&spec)?.run(&timing(Method::Rosenbrock, 1e-4, duration))?;
         let (off, steps) = (imbalance(&recorded), recorded.run.statistics.steps);
-        expect(recorded.run.time == duration && off < BALANCE, format!("{steps} steps, energy off by {off:.1e}"))
+        let said = cautions(&recorded);
+        let sound = off < BALANCE || rounded && said.contains("rounding");
+        expect(recorded.run.time == duration && sound, format!("{steps} steps, energy off by {off:.1e}{said}"))
     });
     if factor == 1e-4 || factor == 1e6 && group != DRIVES { case } else { case.long() }
 }

@@ -3,7 +3,10 @@
 use crane_codegen::{SourceFile, compile};
 use indicatif::ProgressBar;
 
-use super::spec::Spec;
+use super::{
+    case::{Finding, expect},
+    spec::Spec,
+};
 use crate::{
     command::{
         arguments::Timing,
@@ -94,4 +97,15 @@ pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
 /// Greatest error of the energy balance over the greatest energy that was turned over.
 pub fn imbalance(recorded: &Recorded) -> f64 {
     run::imbalance(&recorded.table)
+}
+
+/// What the command says of a run besides its results, after a semicolon each.
+pub fn cautions(recorded: &Recorded) -> String {
+    recorded.cautions.iter().map(|caution| format!("; {caution}")).collect()
+}
+
+/// As expected if a run kept its energy to a part of what it turned over.
+pub fn balanced(recorded: &Recorded, part: f64) -> Finding {
+    let (off, steps) = (imbalance(recorded), recorded.run.statistics.steps);
+    expect(off < part, format!("{steps} steps, energy off by {off:.1e}{}", cautions(recorded)))
 }
