@@ -117,7 +117,7 @@ impl Crane {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// `A q̈ = e + f` and `½ vᵀ A v = E_k`, A symmetric positive definite: the recursion and the matrix share nothing.
     #[test]

@@ -41,7 +41,7 @@ where
 
     for step in 1..=steps {
         let (next, corrections) = loop {
-            if !(length >= SHORTEST) {
+            if length < SHORTEST {
                 return None;
             }
             // Not beyond the whole load.
@@ -109,7 +109,7 @@ impl<const N: usize, C: Statics<N>, R: FnMut(&SVector<f64, N>) -> SVector<f64, N
                 return Some((point, correction));
             }
             let step = matrix.lu().solve(&value)?;
-            if !(step.amax() <= LONGEST) {
+            if !step.iter().all(|change| change.abs() <= LONGEST) {
                 return None;
             }
             point -= step;

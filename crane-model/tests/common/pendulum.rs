@@ -16,6 +16,8 @@ static UPSIDE_DOWN: Description = description("upside_down", COORDINATES, &[0.1,
 static HORIZONTAL: Description =
     description("horizontal", COORDINATES, &[std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2]);
 
+static TOPPLING: Description = description("toppling", COORDINATES, &[1.8, 0.1]);
+
 /// Two point masses on massless rods.
 #[derive(Clone, Copy)]
 pub struct DoublePendulum {
@@ -49,6 +51,11 @@ impl DoublePendulum {
     /// Starts with the second mass above its joint.
     pub fn upside_down() -> Self {
         Self { description: &UPSIDE_DOWN, ..Self::hanging() }
+    }
+
+    /// Starts with the first mass somewhat above its joint, far from either equilibrium.
+    pub fn toppling() -> Self {
+        Self { description: &TOPPLING, ..Self::hanging() }
     }
 
     /// Starts where the tangent stiffness vanishes.

@@ -42,7 +42,7 @@ pub struct Inputs<'a> {
 
 impl Inputs<'_> {
     /// The arguments by their places in [`ARGUMENTS`].
-    fn slices<'b>(&'b self) -> [&'b [f64]; 8] {
+    fn slices(&self) -> [&[f64]; 8] {
         let t = std::slice::from_ref(&self.t);
         [t, self.q, self.v, self.right, self.resistance, self.base, self.factors, self.parameters]
     }

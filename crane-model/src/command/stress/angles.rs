@@ -1,11 +1,11 @@
 //! Angles θ of a base near ±90°, where ψ and φ turn about one axis.
 
-use std::f64::consts::FRAC_PI_2;
+use std::{f64::consts::FRAC_PI_2, fmt::Write};
 
 use super::{
     case::{Case, expect},
     spec::Spec,
-    subject::{Subject, balanced, cautions, timing},
+    subject::{Subject, appended, balanced, cautions, timing},
 };
 use crate::{LARGE_TILT, NEAR_SINGULAR, dynamics::Method};
 
@@ -42,9 +42,10 @@ supports:
         let (sin, cos) = angle.sin_cos();
         for (index, (x, y)) in [(0.5, 0.5), (0.5, -0.5), (-0.5, 0.5), (-0.5, -0.5)].into_iter().enumerate() {
             let play = if exact { [x * cos - x, 0.0, -x * sin] } else { [0.0, 0.0, -x * angle] };
-            text += &format!(
+            let _ = writeln!(
+                text,
                 "  - {{name: s{index}, at: [{x}, {y}, 0], stiffness: [1e5, 1e5, 1e5], free_play: [{:e}, {:e}, {:e}], \
-                 kinematics: {kinematics}}}\n",
+                 kinematics: {kinematics}}}",
                 play[0], play[1], play[2]
             );
         }
@@ -55,7 +56,7 @@ supports:
         let (singular, tilted) = (description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q));
         let right =
             if near { singular.is_some() } else { singular.is_none() && (exact || tilted.is_some() || angle == 0.0) };
-        let said = [singular, tilted].into_iter().flatten().map(|said| format!("; {said}")).collect::<String>();
+        let said = appended(singular.iter().chain(&tilted));
         expect(finite && right, format!("{equilibrium}; θ = {:.6} rad{said}", equilibrium.q[4]))
     })
 }

@@ -29,7 +29,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
 
 fn statics(spec: Spec, load: f64) -> Case {
     let weight = GRAVITY * (15000.0 + 515.5 + 408.1 + 335.0 + 224.0 + 346.0 + load);
-    let expected = format!("stable; reactions carry {:.6e} N, the weight", weight);
+    let expected = format!("stable; reactions carry {weight:.6e} N, the weight");
     Case::new("load", format!("eight_link_flexible with {load:e} kg, statics"), expected, move || {
         let subject = Subject::new(&spec)?.set("load_mass", load)?;
         let rest = subject.rest()?;

@@ -13,6 +13,7 @@ mod subject;
 mod supports;
 
 use std::{
+    fmt::Write as _,
     io::Write,
     path::Path,
     sync::{Mutex, PoisonError},
@@ -162,14 +163,15 @@ fn write(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
     for verdict in verdicts {
         if verdict.group != group {
             group = verdict.group;
-            page += &format!(
+            let _ = write!(
+                page,
                 "\n## {}{}\n\n| case | expected | happened | |\n|---|---|---|---|\n",
                 group[..1].to_uppercase(),
                 &group[1..]
             );
         }
         let row = fields(verdict)[1..].iter().map(|cell| cell.replace('|', "\\|")).collect::<Vec<_>>();
-        page += &format!("| {} |\n", row.join(" | "));
+        let _ = writeln!(page, "| {} |", row.join(" | "));
     }
     files::write_text(&folder.join("stress.md"), &page)
 }

@@ -44,8 +44,11 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     cases
 }
 
+/// Sets an option of a run.
+type Set = fn(&mut Timing, f64);
+
 /// Names of options of a run, and how to set them.
-const OPTIONS: [(&str, fn(&mut Timing, f64)); 4] = [
+const OPTIONS: [(&str, Set); 4] = [
     ("step", |timing, value| {
         timing.method = Some(Method::Rk4);
         timing.tolerance = None;
@@ -57,7 +60,7 @@ const OPTIONS: [(&str, fn(&mut Timing, f64)); 4] = [
 ];
 
 /// An option of a run that means nothing: refused at once, or harmless.
-fn option(spec: Spec, name: &'static str, set: fn(&mut Timing, f64), value: f64) -> Case {
+fn option(spec: Spec, name: &'static str, set: Set, value: f64) -> Case {
     let expected = "refused by its name or its matter, or a run of sound numbers; in no case endless";
     Case::new("limits of numbers", format!("knuckle_boom with --{name} {value:e}"), expected, move || {
         let mut timing = timing(Method::Rosenbrock, 1e-4, 0.1);
@@ -98,7 +101,7 @@ fn accepted(number: &'static str) -> Case {
         let subject = Subject::new(&rod("1", number))?;
         let equilibrium = subject.equilibrium();
         let run = subject.run(&timing(Method::Rosenbrock, 1e-4, 0.1));
-        sound(&equilibrium.to_string(), equilibrium.q.iter().all(|x| x.is_finite()), run.err())
+        sound(&equilibrium.to_string(), equilibrium.q.iter().all(|x| x.is_finite()), run.err().as_deref())
     })
 }
 
@@ -120,13 +123,13 @@ fn parameter(spec: Spec, load: f64) -> Case {
         let subject = Subject::new(&spec)?.set("payload", load)?;
         let equilibrium = subject.equilibrium();
         let run = subject.run(&timing(Method::Rosenbrock, 1e-4, 0.1));
-        sound(&equilibrium.to_string(), equilibrium.q.iter().all(|x| x.is_finite()), run.err())
+        sound(&equilibrium.to_string(), equilibrium.q.iter().all(|x| x.is_finite()), run.err().as_deref())
     })
 }
 
 /// As expected unless a number is not finite, in the pose or in the message of a run.
-fn sound(statics: &str, finite: bool, run: Option<String>) -> super::case::Finding {
-    let told = run.as_deref().unwrap_or("ran to the end");
+fn sound(statics: &str, finite: bool, run: Option<&str>) -> super::case::Finding {
+    let told = run.unwrap_or("ran to the end");
     let clear = !told.contains("NaN") && !told.contains("in the results") && !told.contains("inf ");
     expect(finite && clear, format!("{statics}; {told}"))
 }

@@ -136,7 +136,7 @@ fn supports(spec: Spec, factor: f64) -> Case {
     let small = tilt < SMALL;
     let sunk = WEIGHT / (factor * GROUND);
     let expected = if small {
-        format!("stable; supports pressed by {:.4e} m on average, weight over stiffness", sunk)
+        format!("stable; supports pressed by {sunk:.4e} m on average, weight over stiffness")
     } else {
         format!("base turns by some {tilt:.2} rad: too much for linear supports, said")
     };

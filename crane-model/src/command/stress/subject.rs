@@ -101,7 +101,12 @@ pub fn imbalance(recorded: &Recorded) -> f64 {
 
 /// What the command says of a run besides its results, after a semicolon each.
 pub fn cautions(recorded: &Recorded) -> String {
-    recorded.cautions.iter().map(|caution| format!("; {caution}")).collect()
+    appended(&recorded.cautions)
+}
+
+/// Sentences, each after a semicolon.
+pub fn appended<'a>(sentences: impl IntoIterator<Item = &'a String>) -> String {
+    sentences.into_iter().fold(String::new(), |text, sentence| text + "; " + sentence)
 }
 
 /// As expected if a run kept its energy to a part of what it turned over.

@@ -1,5 +1,7 @@
 //! Supports with preload and free play.
 
+use std::fmt::Write;
+
 use super::{
     GRAVITY,
     case::{Case, expect},
@@ -34,9 +36,10 @@ supports:
     );
     let corners = [(1.0, 0.7), (1.0, -0.7), (-1.0, 0.7), (-1.0, -0.7)];
     for (index, ((x, y), play)) in corners.into_iter().zip(plays).enumerate() {
-        text += &format!(
+        let _ = writeln!(
+            text,
             "  - {{name: s{index}, at: [{x}, {y}, 0], stiffness: [1e6, 1e6, {STIFFNESS:e}], damping: \
-             [{damping}, {damping}, {damping}], free_play: [0, 0, {play:e}], kinematics: {kinematics}}}\n"
+             [{damping}, {damping}, {damping}], free_play: [0, 0, {play:e}], kinematics: {kinematics}}}"
         );
     }
     Spec::new(text)
