@@ -10,7 +10,7 @@ use nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 
 use super::{
     describe::describe,
-    tape::{Inputs, Tape},
+    routine::{Inputs, Routine},
 };
 use crate::{
     CraneModel, Description, Dynamics, Ensemble, Implicit, Linearisation, Linearise, OneByOne, Statics,
@@ -21,7 +21,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Interpreted<const N: usize> {
     description: &'static Description,
-    tapes: Arc<HashMap<&'static str, Tape>>,
+    routines: Arc<HashMap<&'static str, Routine>>,
     parameters: Vec<f64>,
 }
 
@@ -29,13 +29,14 @@ impl<const N: usize> Interpreted<N> {
     /// The crane of a chain with `N` coordinates.
     pub fn new(chain: &Chain) -> Self {
         let program = mechanics::derive(chain, Analyses::ALL);
-        let tapes = program.functions.iter().map(|function| (function.name, Tape::new(&program, function))).collect();
-        Self { description: describe(chain), tapes: Arc::new(tapes), parameters: chain.parameter_defaults() }
+        let routines =
+            program.functions.iter().map(|function| (function.name, Routine::new(&program, function))).collect();
+        Self { description: describe(chain), routines: Arc::new(routines), parameters: chain.parameter_defaults() }
     }
 
     /// The result of a function; `None` where the crane does not need it.
     fn run(&self, function: &str, inputs: Inputs<'_>) -> Option<Vec<f64>> {
-        Some(self.tapes.get(function)?.run(&Inputs { parameters: &self.parameters, ..inputs }))
+        Some(self.routines.get(function)?.run(&Inputs { parameters: &self.parameters, ..inputs }))
     }
 
     fn vector(&self, function: &str, inputs: Inputs<'_>) -> SVector<f64, N> {

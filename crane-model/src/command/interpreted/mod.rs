@@ -4,7 +4,7 @@
 
 mod crane;
 mod describe;
-mod tape;
+mod routine;
 
 use crane_codegen::chain::Chain;
 

@@ -61,13 +61,13 @@ const ARGUMENTS: [Argument; 8] = [
 
 /// A function without those parts of its program that it does not need.
 #[derive(Clone, Debug)]
-pub struct Tape {
+pub struct Routine {
     operations: Vec<Operation>,
     outputs: Vec<usize>,
     shape: Shape,
 }
 
-impl Tape {
+impl Routine {
     /// A function of a program.
     pub fn new(program: &Program, function: &Function) -> Self {
         let needed = program.needed(function.outputs.iter().copied());
