@@ -186,6 +186,7 @@ impl Grid {
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     facts: Vec<(&'static str, Cell, &'static str)>,
+    cautions: Vec<String>,
     grids: Vec<Grid>,
 }
 
@@ -196,10 +197,8 @@ impl Report {
     }
 
     /// Adds a warning, if there is one.
-    pub fn caution(&mut self, words: Option<impl Into<Cell>>) {
-        if let Some(words) = words {
-            self.fact("caution", words, "");
-        }
+    pub fn caution(&mut self, words: Option<impl Into<String>>) {
+        self.cautions.extend(words.map(Into::into));
     }
 
     /// Adds a table, unless it has no rows.
@@ -223,6 +222,7 @@ impl Report {
             .facts
             .iter()
             .map(|(name, value, unit)| [name, value.text().as_str(), unit].map(str::to_owned))
+            .chain(self.cautions.iter().map(|words| ["caution", words, ""].map(str::to_owned)))
             .collect();
         json!({"facts": facts, "grids": self.grids.iter().map(Grid::page).collect::<Vec<_>>()})
     }
@@ -236,8 +236,11 @@ impl Report {
                 for (name, value, unit) in &self.facts {
                     writeln!(out, "{}", format!("{name:<width$}  {} {unit}", value.text()).trim_end())?;
                 }
+                for words in &self.cautions {
+                    writeln!(out, "caution: {words}")?;
+                }
                 for (index, grid) in self.grids.iter().enumerate() {
-                    if index > 0 || !self.facts.is_empty() {
+                    if index > 0 || !self.facts.is_empty() || !self.cautions.is_empty() {
                         writeln!(out)?;
                     }
                     grid.print(out)?;
@@ -256,6 +259,9 @@ impl Report {
                 object.insert(format!("{key}_unit"), (*unit).into());
             }
             object.insert(key, value.json());
+        }
+        if !self.cautions.is_empty() {
+            object.insert("cautions".to_owned(), self.cautions.as_slice().into());
         }
         for grid in &self.grids {
             object.insert(grid.key.to_owned(), grid.json());
