@@ -115,6 +115,38 @@ fn a_run_writes_columns_with_units_and_a_record() {
 }
 
 #[test]
+fn a_crane_goes_to_other_programs_and_comes_back() {
+    let out = folder("exchange");
+    fs::create_dir_all(&out).expect("a folder");
+    let file = |name: &str| out.join(name).to_str().expect("a path").to_owned();
+    let (urdf, mjcf, spec) = (file("boom.urdf"), file("boom.xml"), file("boom.yaml"));
+    let set = ["--set", "payload=900"];
+    for (format, target) in [("urdf", &urdf), ("mjcf", &mjcf)] {
+        let output = crane(&[&["export", "knuckle_boom", "--format", format, "-o", target][..], &set].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        // The hook's block weighs 25 kg.
+        assert!(fs::read_to_string(target).expect("a file").contains("\"925\""), "{target}");
+    }
+    assert!(
+        fs::read_to_string(file("boom.springs.yaml"))
+            .expect("springs")
+            .contains("hook_theta: {stiffness: 0, damping: 40")
+    );
+    let output = crane(&["import", &urdf, "-o", &spec]);
+    assert!(text(&output.stdout).contains("knuckle_boom: sound; 4 bodies, 4 coordinates"), "{}", text(&output.stderr));
+    let output = crane(&["import", &mjcf]);
+    assert!(
+        text(&output.stderr).contains("error[U002]") && output.status.code() == Some(1) && output.stdout.is_empty()
+    );
+    assert_eq!(fs::read_dir(&out).expect("a folder").count(), 4, "nothing half-written is left behind");
+    refused(&["export", "knuckle_bom", "--format", "urdf"], &["there is no crane `knuckle_bom`", "`knuckle_boom`"]);
+    refused(
+        &["export", "knuckle_boom", "--format", "mjcf", "--set", "load=1"],
+        &["no live parameter `load`", "payload"],
+    );
+}
+
+#[test]
 fn a_crane_without_statics_swings_from_its_guess() {
     let out = folder("swing");
     let path = out.to_str().expect("a path");

@@ -37,7 +37,7 @@ impl std::error::Error for Inexpressible {}
 /// base's coordinates. The guess is the key frame `start`.
 ///
 /// # Errors
-/// A support with exact kinematics.
+/// A support with exact kinematics; a body that is called as the ground is.
 ///
 /// # Panics
 /// If `parameters` is shorter than the chain's list of parameters.
@@ -47,6 +47,12 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
             title: format!("MJCF has no springs along the world's axes, as support `{}` has them", support.name),
             help: "write `kinematics: linear` for small rotations of the base, or export URDF with its file of springs"
                 .into(),
+        });
+    }
+    if chain.bodies.iter().any(|body| body.name == "world") {
+        return Err(Inexpressible {
+            title: "MuJoCo calls the ground `world`, as a link of this crane is called".into(),
+            help: "give the link another name".into(),
         });
     }
     let mut xml = Xml::new(&origin(chain, parameters));

@@ -22,9 +22,12 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
     let mut xml = Xml::new(&origin(chain, parameters));
     xml.open("robot", &[("name", chain.name.clone())]);
     xml.comment("Joints have no stiffness and no damping here: the file of springs beside this one has them.");
-    xml.leaf("link", &[("name", WORLD.to_owned())]);
+    // A crane may have a link of the world's name.
+    let taken = chain.bodies.iter().any(|body| body.name == WORLD);
+    let ground = if taken { format!("{WORLD}_0") } else { WORLD.to_owned() };
+    xml.leaf("link", &[("name", ground.clone())]);
     let bars = bars(chain, &placements(chain, parameters), parameters);
-    let mut parent = WORLD.to_owned();
+    let mut parent = ground;
     for (body, bar) in chain.bodies.iter().zip(bars) {
         let mut placement = Frame::WORLD;
         for (index, step) in body.path.iter().enumerate() {

@@ -54,13 +54,11 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     let text = exchange::import(&source, &options.fixed).map_err(|mistakes| own::drawn(&mistakes))?;
     let Some(file) = &options.spec else { return Ok(out.write_all(text.as_bytes())?) };
     files::write_text(file, &text)?;
+    writeln!(out, "{} written", file.display())?;
     // What the robot's own numbers get wrong is to be mended there.
     let (Chain { name, bodies, coordinates, .. }, _) = own::load(file)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
-    Ok(writeln!(
-        out,
-        "{file} written: {name} with {bodies} bodies, {coordinates} coordinates; `crane run {file}` runs it"
-    )?)
+    Ok(writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates; `crane run {file}` runs it")?)
 }
 
 /// Outlines of the beams of a spec, by link: height and width, m, and whether they are round.
