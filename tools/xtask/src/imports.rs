@@ -23,7 +23,7 @@ const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 5] = [
         "crane-model/src",
         "rs",
         &["crane_codegen"],
-        "the runtime uses the compiler in its build script, to check specs, to exchange and to interpret them",
+        "the runtime uses the compiler in its build script, to check, exchange, interpret and vary specs",
     ),
     (
         "tests/golden",
@@ -36,12 +36,13 @@ const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 5] = [
     ("codegen/src", "rs", &["unsafe "], "no unsafe code"),
 ];
 
-/// The modules of the runtime that check, exchange and interpret specs.
-const MAY_USE_THE_COMPILER: [&str; 4] = [
+/// The modules of the runtime that check, exchange, interpret and vary specs.
+const MAY_USE_THE_COMPILER: [&str; 5] = [
     "crane-model/src/command/exchange.rs",
     "crane-model/src/command/interpreted/",
     "crane-model/src/command/own.rs",
     "crane-model/src/command/stress/",
+    "crane-model/src/command/work_precision/",
 ];
 
 /// Modules of the compiler that alone may touch files, the environment or the process.
