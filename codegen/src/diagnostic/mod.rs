@@ -5,8 +5,10 @@ mod draw;
 mod nearest;
 mod source;
 
+#[cfg(feature = "exchange")]
+pub(crate) use catalogue::catalogue;
 pub use catalogue::{CATALOGUE, Rule};
-pub(crate) use catalogue::{catalogue, printable, rule};
+pub(crate) use catalogue::{printable, rule};
 pub(crate) use nearest::{list, suggest};
 pub use source::{MAX_BYTES, SourceFile, Span};
 
