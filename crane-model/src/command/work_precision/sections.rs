@@ -186,9 +186,9 @@ impl Limit {
                     (duration / run.wall).into(),
                 ]);
             } else {
-                let none =
-                    format!("none of these; take more than {} sections", variants.last().map_or(0, |v| v.sections));
-                grid.row([Cell::Error(target), none.into()]);
+                let more = format!("more than {}", variants.last().map_or(0, |variant| variant.sections));
+                let [method, option, error, wall, ratio] = [const { Cell::Empty }; 5];
+                grid.row([Cell::Error(target), more.into(), method, option, error, wall, ratio]);
             }
         }
         grid
