@@ -138,7 +138,9 @@ impl Limit {
             format!("Errors of the model over the number of sections, relative; frequencies: the first {FREQUENCIES}");
         let mut grid = Grid::new("sections", title, &headers);
         for variant in variants {
-            let errors = self.errors(variant).map(Cell::Error);
+            // A crane that does not settle has no deflection to be off.
+            let errors =
+                self.errors(variant).map(|error| if error.is_finite() { Cell::Error(error) } else { Cell::Empty });
             grid.row([vec![variant.sections.into(), variant.coordinates.into()], errors.to_vec()].concat());
         }
         grid
