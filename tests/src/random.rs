@@ -164,7 +164,7 @@ impl Writer {
             "{circle: {diameter: 0.06}}",
             "{numbers: {area: 1.1e-3, Jy: 8.0e-7, Jz: 1.2e-6, Jo: 1.5e-6}}",
         ][self.rng.usize(0..5)];
-        self.line("      sections: 3");
+        self.line("      sections: 2");
         self.line("      material: soft");
         self.line(&format!("      section: {section}"));
         self.line("      extra_mass: 0.8");

@@ -114,9 +114,9 @@ fn energy_drift_falls_as_h4() {
             let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy"];
             parts.iter().map(|part| crane.scalar(part, state)).sum()
         };
-        // The largest step is well inside the region of stability, and so small that the leading term decides.
+        // The stiffest springs turn about 500 rad/s, so the largest step is well inside the region of stability.
         let drift = |steps: u32| (energy(&after(&crane, &start, 0.02, steps)) - energy(&start)).abs();
-        let drifts = [80, 160, 320].map(drift);
+        let drifts = [40, 80, 160].map(drift);
         for pair in drifts.windows(2) {
             let order = (pair[0] / pair[1]).log2();
             // The leading term may nearly vanish, never grow.
