@@ -71,7 +71,7 @@ fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
 }
 
 #[test]
-fn work_precision_goes_over_the_sections_of_a_crane_of_ones_own() {
+fn the_error_of_sections_obeys_the_law_of_a_cantilever() {
     let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../specs/cantilever.yaml");
     let shipped = fs::read_to_string(shipped).expect("a spec");
     // At the tip alone: a point on an element follows another law.
@@ -84,6 +84,15 @@ fn work_precision_goes_over_the_sections_of_a_crane_of_ones_own() {
     let output = crane(&[&["work-precision", &file][..], &arguments].concat());
     assert!(output.status.success(), "{}", text(&output.stderr));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    // A tip force P bends it by 1 − 1/(4n²) of the beam's PL³/3EI, its own weight W by 1 − 1/(2n²) of WL³/8EI.
+    let (tip, own) = (20.0, 2.0 * 0.06 * 0.04 * 7850.0);
+    let (by_tip, by_own) = (tip / 3.0, own / 8.0);
+    for (row, n) in report["sections"].as_array().expect("rows").iter().zip([1.0, 2.0]) {
+        let error = row["static_deflection"].as_f64().expect("a number");
+        let law = (by_tip / 4.0 + by_own / 2.0) / (by_tip + by_own) / (n * n);
+        // Deflections are 1 % of the length, so their squares count 1e-4.
+        assert!((error / law - 1.0).abs() < 1e-2, "{n} sections: {error} {law}");
+    }
     // The limit is extrapolated from these two, so one is off four times as far as the other.
     let off = |row: usize| report["sections"][row]["frequencies"].as_f64().expect("a number");
     assert!((off(0) / off(1) - 4.0).abs() < 1e-9, "{} {}", off(0), off(1));

@@ -54,18 +54,19 @@ pub struct Candidate {
     trace: Trace,
 }
 
-/// Statics, modes and runs of a crane.
+/// Statics, modes and runs of a crane. A run may start elsewhere than where the crane rests.
 pub fn variant(rig: &dyn Rig, start: &Start, base: &Settings, sections: usize, repeats: usize) -> Outcome<Variant> {
-    let small = rig.small_motions(&start.q);
+    let equilibrium = Start::of(rig)?;
+    let small = rig.small_motions(&equilibrium.q);
     let modes = undamped(&small).map_err(|error: NoModes| Problem::from(error))?;
     let frequencies = modes.iter().filter_map(crate::modes::Mode::frequency).take(FREQUENCIES).collect();
-    let rest = Trace::points(rig, &start.q);
+    let rest = Trace::points(rig, &equilibrium.q);
     let guess = Trace::points(rig, &rig.guess());
     let deflection = rest.iter().zip(&guess).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
 
     let tight = timed(rig, &start.q, &with(base, Method::Rosenbrock, Setting::Tolerance(TIGHT)), 1)?;
     let evaluation = tight.wall / tight.run.statistics.evaluations as f64;
-    let damped = damped(&small)?;
+    let damped = damped(&rig.small_motions(&start.q))?;
     let mut runs = Vec::new();
     for method in Method::ALL {
         let limit = limit(&damped, &method.stability()).map_or(base.output, |limit| limit.step);
@@ -138,7 +139,7 @@ impl Limit {
             format!("Errors of the model over the number of sections, relative; frequencies: the first {FREQUENCIES}");
         let mut grid = Grid::new("sections", title, &headers);
         for variant in variants {
-            // A crane that does not settle has no deflection to be off.
+            // A crane that does not settle, or whose statics nobody asked for, has no deflection to be off.
             let errors =
                 self.errors(variant).map(|error| if error.is_finite() { Cell::Error(error) } else { Cell::Empty });
             grid.row([vec![variant.sections.into(), variant.coordinates.into()], errors.to_vec()].concat());
