@@ -10,7 +10,7 @@ use common::{
 };
 use crane_model::{
     CraneModel, Description, Dynamics, Implicit,
-    dynamics::{Method, Settings, dormand_prince, rk4::State, rosenbrock, simulate},
+    dynamics::{Method, Settings, bdf, dormand_prince, rk4::State, rosenbrock, simulate},
 };
 use nalgebra::{Complex, Matrix4, SMatrix, SVector, Vector1, Vector2};
 
@@ -177,6 +177,132 @@ fn the_implicit_method_is_stable_up_to_a_sector() {
     assert!((function.value(z) - z.exp()).norm() < 1e-2 * z.norm().powi(5));
 }
 
+/// Steps of backward differences over a second, from as many exact states as the order: a step of the pair hardly errs.
+fn differences<const N: usize, C: Implicit<N>>(crane: &C, order: usize, steps: i32, start: State<N>) -> State<N> {
+    /// Steps of the pair in a step.
+    const FINE: i32 = 8;
+    let h = f64::from(steps).recip();
+    let fine = |from: i32, state: State<N>| {
+        (0..FINE).fold(state, |state, k| {
+            let part = h / f64::from(FINE);
+            explicit(crane)(h * f64::from(from) + part * f64::from(k), part, &state).0
+        })
+    };
+    // The last first.
+    let mut past = vec![start];
+    for k in 0..steps {
+        let next = if past.len() < order {
+            fine(k, past[0])
+        } else {
+            bdf::step(crane, h * f64::from(k), h, &past[..order]).expect("inertia")
+        };
+        past.insert(0, next);
+    }
+    past[0]
+}
+
+#[test]
+fn backward_differences_have_their_orders_with_any_jacobian() {
+    // Both converge to the same state, so a Jacobian that slows the iteration down does not count.
+    for impedance in [[0.0, 0.0], [3.0, 7.0]] {
+        let pendulum = Misled { crane: DoublePendulum::hanging(), impedance };
+        for expected in 1..=bdf::ORDER {
+            let measured = order(320, &starts(), |n, start| differences(&pendulum, expected, n, start));
+            println!("{impedance:?} bdf{expected}: {measured:.3}");
+            assert!((measured - expected as f64).abs() < ORDER, "{impedance:?}, order {expected}: {measured}");
+        }
+    }
+}
+
+/// A lift without drive, swinging freely with the circular frequency 20 rad/s and a damping ratio.
+fn swinging(ratio: f64) -> (Lift, Complex<f64>) {
+    let lift = Lift { amplitude: 0.0, ..Lift::default() };
+    let omega = (lift.stiffness / lift.mass).sqrt();
+    let lift = Lift { damping: 2.0 * ratio * omega * lift.mass, ..lift };
+    (lift, Complex::new(-ratio, (1.0 - ratio * ratio).sqrt()) * omega)
+}
+
+#[test]
+fn backward_differences_meet_their_stability_function() {
+    // Past states on an eigenvector of λ that is multiplied by R a step: so is the next.
+    for ratio in [0.0, 0.1, 0.9] {
+        let (lift, lambda) = swinging(ratio);
+        for h in [1e-3, 0.03, 0.2, 1.0, 50.0] {
+            let factor = Method::Bdf.stability().value(lambda * h);
+            let part = |part: fn(&Complex<f64>) -> f64| {
+                let past = [Complex::new(1.0, 0.0), factor.inv()]
+                    .map(|z| State { q: Vector1::new(lift.sag() + part(&z)), v: Vector1::new(part(&(lambda * z))) });
+                let end = bdf::step(&lift, 0.0, h, &past).expect("mass");
+                (end.q.x - lift.sag(), end.v.x)
+            };
+            let (re, im) = (part(|z| z.re), part(|z| z.im));
+            let (q, v) = (Complex::new(re.0, im.0), Complex::new(re.1, im.1));
+            let scale = factor.inv().norm();
+            // Of the past states as large as 1/R, (hω)² = 1e6 amplifies rounding for the longest step.
+            assert!((q - factor).norm() < 1e-9 * scale, "{ratio}, h {h}: {q} {factor}");
+            assert!((v / lambda - factor).norm() < 1e-9 * scale, "{ratio}, h {h}: {v} {factor}");
+        }
+    }
+}
+
+#[test]
+fn backward_differences_are_stable_up_to_a_sector() {
+    /// Steps of a run: what grows by 2 % a step is a thousand times as large in the end.
+    const STEPS: usize = 400;
+    /// Greatest growth, over steps from a hundredth of what a mode asks for to a hundred times that.
+    fn growth(order: usize, ratio: f64) -> f64 {
+        let (lift, lambda) = swinging(ratio);
+        let run = |z: f64| {
+            let mut past = vec![State { q: Vector1::new(lift.sag() + 1.0), v: Vector1::new(0.0) }; order];
+            for _ in 0..STEPS {
+                let next = bdf::step(&lift, 0.0, z / lambda.norm(), &past).expect("mass");
+                past.insert(0, next);
+                past.truncate(order);
+            }
+            (past[0].q.x - lift.sag()).hypot(past[0].v.x / lambda.norm())
+        };
+        (-40..=40).map(|power| run(10_f64.powf(f64::from(power) / 20.0))).fold(0.0, f64::max)
+    }
+    // Orders 1 and 2 are stable for every damped mode, orders 3 and 4 from the damping ratios sin(90° − 86.0°) = 0.07 and
+    // sin(90° − 73.4°) = 0.29 on.
+    for (order, ratio) in [(1, 0.0), (2, 0.0), (3, 0.075), (4, 0.3)] {
+        assert!(growth(order, ratio) < 2.0, "order {order}, {ratio}: {:e}", growth(order, ratio));
+    }
+    for (order, ratio) in [(3, 0.03), (4, 0.2)] {
+        assert!(growth(order, ratio) > 10.0, "order {order}, {ratio}: {:e}", growth(order, ratio));
+    }
+    // Stiff motions die out at once.
+    let (lift, lambda) = swinging(0.5);
+    for order in 1..=bdf::ORDER {
+        let past = vec![State { q: Vector1::new(lift.sag()), v: Vector1::new(0.0) }; order];
+        let away = State { q: Vector1::new(lift.sag() + 1.0), v: Vector1::new(0.0) };
+        let past: Vec<_> = std::iter::once(away).chain(past).take(order).collect();
+        let end = bdf::step(&lift, 0.0, 1e4 / lambda.norm(), &past).expect("mass");
+        assert!((end.q.x - lift.sag()).abs() < 1e-3, "order {order}: {end:?}");
+    }
+}
+
+#[test]
+fn unresolved_undamped_modes_do_not_grow_in_adaptive_runs() {
+    // 20 rad/s, and a tolerance that steps of half a swing meet once the swinging is small.
+    let (lift, _) = swinging(0.0);
+    let settings = Settings {
+        method: Method::Bdf,
+        tolerance: 0.1,
+        duration: 600.0,
+        ..Settings::of(&common::description("", &[], &[]))
+    };
+    let mut most = 0.0_f64;
+    let start = State::at_rest(Vector1::new(lift.sag() + 1e-3));
+    simulate(&lift, start, &settings, |sample| {
+        most = most.max((sample.q[0] - lift.sag()).abs());
+        ControlFlow::Continue(())
+    })
+    .expect("a run");
+    // What grows is noticed at the tolerance of a step.
+    assert!(most < 0.1, "{most}");
+}
+
 #[test]
 fn order_is_reduced_where_a_stiff_spring_is_forced() {
     // ω = 2e5 rad/s, far beyond what the steps resolve: the mass follows its drive, z ≈ sag + 0.1 m sin 7t.
@@ -209,7 +335,7 @@ fn lift_error(method: Method, tolerance: f64, output: f64) -> (f64, crane_model:
 
 #[test]
 fn errors_are_within_a_factor_of_ten_of_the_tolerance() {
-    for method in [Method::DormandPrince, Method::Rosenbrock] {
+    for method in [Method::DormandPrince, Method::Rosenbrock, Method::Bdf] {
         for tolerance in [1e-4, 1e-6, 1e-8] {
             let (error, run) = lift_error(method, tolerance, 0.5);
             assert!(error < 10.0 * tolerance && error > 0.1 * tolerance, "{method} {tolerance:e}: {error:e}, {run:?}");
@@ -219,7 +345,7 @@ fn errors_are_within_a_factor_of_ten_of_the_tolerance() {
 
 #[test]
 fn dense_output_does_not_shorten_steps() {
-    for method in [Method::DormandPrince, Method::Rosenbrock] {
+    for method in [Method::DormandPrince, Method::Rosenbrock, Method::Bdf] {
         let (coarse, fine) = (lift_error(method, 1e-6, 0.5), lift_error(method, 1e-6, 1e-3));
         // The last step of the run may end beyond the last result.
         assert!(fine.1.statistics.steps.abs_diff(coarse.1.statistics.steps) <= 1, "{coarse:?} {fine:?}");
@@ -249,11 +375,16 @@ fn statistics_count_what_was_done() {
     let (_, run) = lift_error(Method::DormandPrince, 1e-6, 0.5);
     assert_eq!(run.statistics.evaluations, 1 + 6 * (run.statistics.steps + run.statistics.rejections));
     assert_eq!(run.statistics.factorisations, 0);
+    let (_, run) = lift_error(Method::Bdf, 1e-6, 0.5);
+    // One iterate does for most steps of a linear crane.
+    let tried = run.statistics.steps + run.statistics.rejections;
+    assert_eq!(run.statistics.factorisations, tried);
+    assert!((tried + 1..2 * tried).contains(&run.statistics.evaluations), "{run:?}");
 }
 
 #[test]
 fn energy_is_audited_by_every_method() {
-    for method in [Method::DormandPrince, Method::Rosenbrock] {
+    for method in [Method::DormandPrince, Method::Rosenbrock, Method::Bdf] {
         let error = |tolerance: f64| {
             let lift = Lift::default();
             let settings = Settings {
@@ -283,7 +414,7 @@ fn energy_is_audited_by_every_method() {
 #[test]
 fn adaptive_runs_allocate_nothing() {
     let lift = Lift::default();
-    for method in [Method::DormandPrince, Method::Rosenbrock] {
+    for method in [Method::DormandPrince, Method::Rosenbrock, Method::Bdf] {
         let settings = Settings { method, audit: true, ..Settings::of(&common::description("", &[], &[])) };
         let info = allocation_counter::measure(|| {
             simulate(&lift, State::at_rest(Vector1::zeros()), &settings, |_| ControlFlow::Continue(())).expect("a run");
@@ -295,7 +426,7 @@ fn adaptive_runs_allocate_nothing() {
 #[test]
 fn an_adaptive_run_without_inertia_or_bounds_stops() {
     use crane_model::dynamics::Cause;
-    for method in [Method::DormandPrince, Method::Rosenbrock] {
+    for method in [Method::DormandPrince, Method::Rosenbrock, Method::Bdf] {
         let settings = Settings { method, ..Settings::of(&common::description("", &[], &[])) };
         let massless = Lift { mass: 0.0, ..Lift::default() };
         let start = State::at_rest(Vector1::zeros());
@@ -315,5 +446,5 @@ fn methods_have_names() {
         assert_eq!(method.name().parse(), Ok(method));
     }
     let message = "rk5".parse::<Method>().expect_err("no such method").to_string();
-    assert!(message.contains("`rk5`") && message.contains("rk4, dopri5, rosw4"), "{message}");
+    assert!(message.contains("`rk5`") && message.contains("rk4, dopri5, rosw4, bdf"), "{message}");
 }

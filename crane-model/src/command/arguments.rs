@@ -204,8 +204,8 @@ impl FromStr for Step {
 /// Time and step of a run.
 #[derive(Clone, Debug, Args)]
 pub struct Timing {
-    /// Method: `rosw4` implicit and adaptive, for stiff cranes; `dopri5` explicit and adaptive; `rk4` with constant step, the
-    /// paper's [default: rk4 with --step and for the comparison, otherwise rosw4]
+    /// Method: `bdf` and `rosw4` implicit and adaptive, for stiff cranes; `dopri5` explicit and adaptive; `rk4` with constant
+    /// step, the paper's [default: rk4 with --step and for the comparison, otherwise bdf]
     #[arg(long, value_name = "NAME")]
     pub method: Option<Method>,
     /// Error that an adaptive method allows a step, m and rad [default: 5e-5]

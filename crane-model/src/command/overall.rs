@@ -24,7 +24,7 @@ pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()
     if let [rigid, flexible] = cases.as_slice() {
         report.grid(deflection(rigid, flexible));
     }
-    let (settings, runs) = runs(&cases, &options.timing, Method::Rosenbrock)?;
+    let (settings, runs) = runs(&cases, &options.timing, Method::RECOMMENDED)?;
     let labels = cases.iter().map(|case| case.label);
 
     let folder = &options.folder.out;

@@ -118,9 +118,9 @@ impl Timing {
         let given = [("step", self.step.is_some(), false), ("tolerance", self.tolerance.is_some(), true)];
         if let Some((name, ..)) = given.into_iter().find(|&(_, given, of)| given && of != method.is_adaptive()) {
             let title = format!("`--{name}` means nothing to {method}, {}", method.title());
-            let other =
-                if method.is_adaptive() { "--tolerance` or `--method rk4" } else { "--step` or `--method rosw4" };
-            return Err(Problem::usage(title, format!("write `{other}`")));
+            let (option, other) =
+                if method.is_adaptive() { ("tolerance", Method::Rk4) } else { ("step", Method::RECOMMENDED) };
+            return Err(Problem::usage(title, format!("write `--{option}` or `--method {other}`")));
         }
         let limit = if method.is_adaptive() { None } else { step_limit(rig, start) };
         let step = match self.step {
@@ -198,7 +198,7 @@ fn unstable(rig: &dyn Rig, step: f64, t: f64, limit: &Limit) -> Problem {
         format!(
             "`--step auto` takes {:.2e} s; `--method {}` needs no such steps; `--force` runs all the same",
             SAFE * limit.step,
-            Method::Rosenbrock
+            Method::RECOMMENDED
         ),
     )
 }
@@ -299,9 +299,10 @@ pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: 
                 let cause = cause(rig.description(), &limit.mode);
                 format!("; the largest stable step is {:.3e} s, limited at t = {t} s by {cause}", limit.step)
             });
-            let other = match settings.method {
-                Method::Rosenbrock => "",
-                _ => "; `--method rosw4` copes with stiff cranes",
+            let other = if settings.method.is_explicit() {
+                format!("; `--method {}` copes with stiff cranes", Method::RECOMMENDED)
+            } else {
+                String::new()
             };
             let light = match stopped.cause {
                 Cause::Tolerance => {
@@ -310,7 +311,7 @@ pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: 
                 _ => "",
             };
             let near = singular.as_ref().map_or_else(String::new, |said| format!("; {said}"));
-            Problem::failed(format!("{name}: {stopped}{near}"), stopped.advice() + light + other + &limit)
+            Problem::failed(format!("{name}: {stopped}{near}"), stopped.advice() + light + &other + &limit)
         })?;
     let table = recording.into_table();
     let off = imbalance(&table);

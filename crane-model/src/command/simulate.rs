@@ -35,7 +35,7 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     let rig = rig.as_ref();
     let name = rig.description().name;
     let start = Start::of(rig)?;
-    let settings = options.timing.settings(rig, &start, Method::Rosenbrock)?;
+    let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;
     files::folder(&options.folder.out)?;
     let bar = progress(settings.duration);
     let recorded = record(rig, &start, &settings, &bar)?;

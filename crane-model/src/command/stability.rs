@@ -106,5 +106,5 @@ fn regions(modes: &[DampedMode], own: f64) -> Vec<Panel> {
             ],
         }
     };
-    Method::ALL.into_iter().filter(|method| method.stability().denominator.len() == 1).map(panel).collect()
+    Method::ALL.into_iter().filter(|method| method.is_explicit()).map(panel).collect()
 }

@@ -12,16 +12,16 @@ use super::{
 use crate::Implicit;
 
 /// First step tried, s: a crane starts gently, and steps may grow threefold.
-const FIRST: f64 = 1e-4;
+pub(super) const FIRST: f64 = 1e-4;
 /// Longest step, s: an implicit method at rest would step over a motion of its drives. So a stage falls into each that takes
 /// 25 ms, and a load that swings once a second has ten steps for it anyway.
-const LONGEST: f64 = 0.1;
+pub(super) const LONGEST: f64 = 0.1;
 /// Part of the step at which the error would just be the tolerance.
-const SAFETY: f64 = 0.9;
+pub(super) const SAFETY: f64 = 0.9;
 /// Least and greatest ratio of a step to the one before.
 const RATIO: (f64, f64) = (0.2, 3.0);
 /// A step as short as this, of the time simulated, goes nowhere.
-const LEAST: f64 = 1e-13;
+pub(super) const LEAST: f64 = 1e-13;
 
 /// A motion that proceeds in steps of its own length: they go beyond the results, which are interpolated.
 pub(super) struct Adaptive<const N: usize, const M: usize> {

@@ -3,6 +3,8 @@
 #[cfg(feature = "std")]
 mod adaptive;
 #[cfg(feature = "std")]
+pub mod bdf;
+#[cfg(feature = "std")]
 pub mod dormand_prince;
 #[cfg(feature = "std")]
 pub mod ensemble;
@@ -21,6 +23,8 @@ mod simulation;
 mod step;
 #[cfg(feature = "std")]
 mod stopped;
+#[cfg(feature = "std")]
+mod system;
 
 #[cfg(feature = "std")]
 pub use method::{Method, UnknownMethod};

@@ -17,18 +17,15 @@
 //!
 //! On the second-order form `A q̈ = e + f`, J holds stiffness and damping of springs and dampers alone,
 //! `J = [[0, I], [−A⁻¹K̂, −A⁻¹D̂]]`: gravity, velocity forces and the change of A are left out. A stage then needs one system
-//! of half the size, which the O(n) recursion solves. With `uᵢ = (p, w)`, `P = v̂ + Σ(cᵢⱼ/h)pⱼ` and `G = q̈ + Σ(cᵢⱼ/h)wⱼ`:
-//!
-//! ```text
-//! (A + hγD̂ + h²γ²K̂) z = −h²γ² ((D̂ + hγK̂) G + K̂ P) + hγ·γᵢh ∂f/∂t,     w = hγ G + z,     p = hγ (w + P)
-//! ```
+//! of half the size, which the O(n) recursion solves (`system.rs`).
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use super::{
     motion::{Motion, slope},
     rk4::{NotFinite, State},
     step::{Step, bare},
+    system::System,
 };
 use crate::Implicit;
 
@@ -141,54 +138,4 @@ pub(super) fn advance<const N: usize, const M: usize, C: Implicit<N>>(
     let last = slope(crane, integrand, t + h, &end)?;
     let error = Motion::zeros().plus(&ERROR, &stages, 1.0);
     Ok(Step { start: *start, end, error, slopes: [*first, last], bulge: Motion::zeros(), length: h })
-}
-
-/// A diagonal matrix, but for the block of the base's coordinates.
-struct Structured<const N: usize> {
-    diagonal: SVector<f64, N>,
-    base: SMatrix<f64, 6, 6>,
-}
-
-impl<const N: usize> Structured<N> {
-    fn times(&self, x: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut product = self.diagonal.component_mul(x);
-        let [column] = &mut product.data.0;
-        for (base, x) in self.base.data.0.iter().zip(&x.data.0[0]) {
-            for (product, base) in column.iter_mut().zip(base) {
-                *product += base * x;
-            }
-        }
-        product
-    }
-}
-
-/// `A + hγD̂ + h²γ²K̂`, factorised.
-struct System<const N: usize, C: Implicit<N>> {
-    factors: C::Factors,
-    stiffness: Structured<N>,
-    damping: Structured<N>,
-    /// hγ.
-    step: f64,
-}
-
-impl<const N: usize, C: Implicit<N>> System<N, C> {
-    fn new(crane: &C, q: &SVector<f64, N>, step: f64) -> Self {
-        let mut joints = [[0.0; 2]; N];
-        crane.joint_impedances(&mut joints);
-        let diagonal = |of: usize| SVector::from_fn(|i, _| joints[i][of]);
-        let stiffness = Structured { diagonal: diagonal(0), base: crane.base_stiffness(q) };
-        let damping = Structured { diagonal: diagonal(1), base: crane.base_damping(q) };
-        let resistance = damping.diagonal * step + stiffness.diagonal * (step * step);
-        let base = damping.base * step + stiffness.base * (step * step);
-        Self { factors: crane.factorise(q, &resistance, &base), stiffness, damping, step }
-    }
-
-    /// uᵢ for a right-hand side `(P, G, ·)` and the change of force `γᵢh ∂f/∂t`.
-    fn solve<const M: usize>(&self, crane: &C, rhs: &Motion<N, M>, drift: &SVector<f64, N>) -> Motion<N, M> {
-        let Motion { q: p, v: g, sum } = rhs;
-        let h = self.step;
-        let right = (self.damping.times(g) + self.stiffness.times(&(g * h + p))) * (-h * h) + drift * h;
-        let w = g * h + crane.solve(&self.factors, &right);
-        Motion { q: (w + p) * h, v: w, sum: sum * h }
-    }
 }

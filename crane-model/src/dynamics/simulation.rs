@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use nalgebra::{Cholesky, SVector, Vector2};
 
 use super::{
-    Method, Stopped, adaptive::Adaptive, dormand_prince, motion::Motion, rk4, rosenbrock, roughness::Roughness,
+    Method, Stopped, adaptive::Adaptive, bdf::Backward, dormand_prince, motion::Motion, rk4, rosenbrock,
+    roughness::Roughness,
 };
 use crate::{Description, Dynamics, Implicit};
 
@@ -149,6 +150,7 @@ fn integrate<const N: usize, const M: usize, C: Implicit<N>>(
     }
     let mut roughness = Roughness::new(&mass);
     let mut adaptive = Adaptive::new(settings);
+    let mut backward = Backward::new(settings);
     let mut statistics = Statistics::default();
     let mut time = 0.0;
     let intervals = divided(settings.duration, settings.output).0;
@@ -161,7 +163,10 @@ fn integrate<const N: usize, const M: usize, C: Implicit<N>>(
         }
         let end = (settings.output * (interval + 1) as f64).min(settings.duration);
         if settings.method.is_adaptive() {
-            adaptive.advance(crane, &integrand, [time, end], &mut motion, &mut statistics)?;
+            match settings.method {
+                Method::Bdf => backward.advance(crane, &integrand, [time, end], &mut motion, &mut statistics)?,
+                _ => adaptive.advance(crane, &integrand, [time, end], &mut motion, &mut statistics)?,
+            }
             if !bounded(&motion, settings) {
                 return Err(Stopped::growth(end, settings.output, motion.q.as_slice(), crane.description()));
             }

@@ -16,7 +16,7 @@ impl StabilityFunction {
     pub fn boundary(&self) -> Vec<Complex<f64>> {
         let mut z = Complex::new(0.0, 0.0);
         // R takes every value as often as its degree says: after that many turns of R the curve is closed.
-        let turns = self.numerator.len().max(self.denominator.len()) - 1;
+        let turns = self.degree();
         let follow = |step: usize| {
             let target = Complex::from_polar(1.0, TAU * step as f64 / POINTS as f64);
             for _ in 0..NEWTON {

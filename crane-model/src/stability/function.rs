@@ -13,25 +13,50 @@ const FAR: f64 = 1e12;
 /// Halvings of [`SCAN`], or of a ratio, to the last bit.
 const HALVINGS: usize = 60;
 
-/// `R(z)`, the factor of a step for `ẏ = λy`, z = hλ: a ratio of polynomials, constant terms first.
+/// `R(z)`, the factor of a step for `ẏ = λy`, z = hλ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StabilityFunction {
-    /// Coefficients of the numerator.
-    pub numerator: &'static [f64],
-    /// Coefficients of the denominator; `[1]` for an explicit method.
-    pub denominator: &'static [f64],
+pub enum StabilityFunction {
+    /// Of a one-step method: a ratio of polynomials, constant terms first.
+    Rational {
+        /// Coefficients of the numerator.
+        numerator: &'static [f64],
+        /// Coefficients of the denominator; `[1]` for an explicit method.
+        denominator: &'static [f64],
+    },
+    /// Of backward differences of order 2: the greater root ζ of `(3/2 − z) ζ² − 2ζ + 1/2 = 0`.
+    Backward,
 }
 
 impl StabilityFunction {
     /// R(z).
     pub fn value(&self, z: Complex<f64>) -> Complex<f64> {
-        horner(self.numerator, z) / horner(self.denominator, z)
+        match self {
+            Self::Rational { numerator, denominator } => horner(numerator, z) / horner(denominator, z),
+            Self::Backward => {
+                let root = (z * 2.0 + 1.0).sqrt();
+                let greater = if root.re < 0.0 { -root } else { root };
+                (greater + 2.0) / (-z * 2.0 + 3.0)
+            }
+        }
     }
 
     /// `dR/dz`.
     pub fn derivative(&self, z: Complex<f64>) -> Complex<f64> {
-        let denominator = horner(self.denominator, z);
-        (slope(self.numerator, z) - self.value(z) * slope(self.denominator, z)) / denominator
+        let value = self.value(z);
+        match self {
+            Self::Rational { numerator, denominator } => {
+                (slope(numerator, z) - value * slope(denominator, z)) / horner(denominator, z)
+            }
+            Self::Backward => value * value / ((-z * 2.0 + 3.0) * value - 2.0),
+        }
+    }
+
+    /// How often R takes a value.
+    pub(super) fn degree(&self) -> usize {
+        match self {
+            Self::Rational { numerator, denominator } => numerator.len().max(denominator.len()) - 1,
+            Self::Backward => 1,
+        }
     }
 
     /// Largest stable step for an eigenvalue λ of the linearised motion, 1/s: where `|R(hλ)| = 1` first, s.

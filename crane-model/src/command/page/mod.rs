@@ -37,7 +37,7 @@ pub fn report(options: &Page, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
     let rig = options.crane.open(fleet)?;
     let twin = twin::rigid(rig.as_ref(), fleet);
     let cases = cases(rig.as_ref(), twin.as_deref());
-    let (settings, runs) = runs(&cases, &options.timing, Method::Rosenbrock)?;
+    let (settings, runs) = runs(&cases, &options.timing, Method::RECOMMENDED)?;
     write(&options.file, fleet, &cases, &settings, &runs)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())

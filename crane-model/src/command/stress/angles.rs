@@ -81,7 +81,7 @@ run: {{duration: 1}}
 "
         );
         let subject = Subject::new(&Spec::new(text))?;
-        match subject.run(&timing(Method::Rosenbrock, 1e-6, 1.0)) {
+        match subject.run(&timing(Method::RECOMMENDED, 1e-6, 1.0)) {
             Err(said) => expect(said.contains("block_theta"), said),
             Ok(recorded) => {
                 let last = recorded.table.rows.last().map_or(f64::NAN, |row| row[5]);
@@ -108,7 +108,7 @@ analyses: [dynamics]
 run: {duration: 3}
 ";
         let subject = Subject::new(&Spec::new(text))?;
-        match subject.run(&timing(Method::Rosenbrock, 1e-6, 3.0)) {
+        match subject.run(&timing(Method::RECOMMENDED, 1e-6, 3.0)) {
             Err(said) => expect(said.contains("block_theta") && said.contains("90°"), said),
             Ok(recorded) => balanced(&recorded, 1e-3),
         }

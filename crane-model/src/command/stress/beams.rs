@@ -46,10 +46,10 @@ fn deflection(spec: Spec, sections: usize) -> Case {
 }
 
 fn motion(spec: Spec, sections: usize) -> Case {
-    let expected = "1 s by rosw4 to the end, energy balanced to 0.1 %";
+    let expected = "1 s to the end, energy balanced to 0.1 %";
     let case =
         Case::new("number of sections", format!("eight_link_flexible of {sections}, motion"), expected, move || {
-            let recorded = Subject::new(&spec)?.run(&timing(Method::Rosenbrock, 1e-4, 1.0))?;
+            let recorded = Subject::new(&spec)?.run(&timing(Method::RECOMMENDED, 1e-4, 1.0))?;
             balanced(&recorded, 1e-3)
         });
     if sections < 16 { case } else { case.long() }

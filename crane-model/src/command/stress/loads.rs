@@ -41,9 +41,9 @@ fn statics(spec: Spec, load: f64) -> Case {
 }
 
 fn motion(spec: Spec, load: f64) -> Case {
-    let expected = "1 s by rosw4 to the end, energy balanced to 0.1 %";
+    let expected = "1 s to the end, energy balanced to 0.1 %";
     Case::new("load", format!("eight_link_flexible with {load:e} kg, motion"), expected, move || {
-        let recorded = Subject::new(&spec)?.set("load_mass", load)?.run(&timing(Method::Rosenbrock, 1e-4, 1.0))?;
+        let recorded = Subject::new(&spec)?.set("load_mass", load)?.run(&timing(Method::RECOMMENDED, 1e-4, 1.0))?;
         balanced(&recorded, 1e-3)
     })
 }
@@ -53,7 +53,7 @@ fn senseless(spec: Spec, mass: f64) -> Case {
     let expected = "refused, and said why; no number that is not finite";
     Case::new("load", format!("eight_link_flexible with {mass:e} kg"), expected, move || {
         let subject = Subject::new(&spec)?.set("load_mass", mass)?;
-        match subject.run(&timing(Method::Rosenbrock, 1e-4, 0.1)) {
+        match subject.run(&timing(Method::RECOMMENDED, 1e-4, 0.1)) {
             Ok(_) => Err("it ran".to_owned()),
             Err(said) => expect(!said.contains("NaN") && !said.contains("in the results"), said),
         }
@@ -114,7 +114,7 @@ fn swing(upper: f64, lower: f64) -> Case {
                 let subject =
                     Subject::new(&rods(upper, lower, [1.0, 0.5]).with("links:", "analyses: [dynamics]\nlinks:"))?;
                 let mut told = String::new();
-                for (method, accuracy) in [(Method::DormandPrince, 1e-9), (Method::Rosenbrock, 1e-6)] {
+                for (method, accuracy) in [(Method::DormandPrince, 1e-9), (Method::RECOMMENDED, 1e-6)] {
                     match subject.run(&timing(method, accuracy, 2.0)) {
                         Err(said) if said.contains("hardly any mass") => told = said,
                         Err(said) => return Err(said),

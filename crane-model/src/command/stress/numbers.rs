@@ -63,7 +63,7 @@ const OPTIONS: [(&str, Set); 4] = [
 fn option(spec: Spec, name: &'static str, set: Set, value: f64) -> Case {
     let expected = "refused by its name or its matter, or a run of sound numbers; in no case endless";
     Case::new("limits of numbers", format!("knuckle_boom with --{name} {value:e}"), expected, move || {
-        let mut timing = timing(Method::Rosenbrock, 1e-4, 0.1);
+        let mut timing = timing(Method::RECOMMENDED, 1e-4, 0.1);
         set(&mut timing, value);
         match Subject::new(&spec)?.run(&timing) {
             Ok(recorded) => Ok(format!("ran in {} steps", recorded.run.statistics.steps)),
@@ -100,7 +100,7 @@ fn accepted(number: &'static str) -> Case {
     Case::new("limits of numbers", format!("spec with a centre of mass at {number} m"), expected, move || {
         let subject = Subject::new(&rod("1", number))?;
         let equilibrium = subject.equilibrium();
-        let run = subject.run(&timing(Method::Rosenbrock, 1e-4, 0.1));
+        let run = subject.run(&timing(Method::RECOMMENDED, 1e-4, 0.1));
         sound(&equilibrium.to_string(), equilibrium.q.iter().all(|x| x.is_finite()), run.err().as_deref())
     })
 }
@@ -111,7 +111,7 @@ fn heavy(mass: f64) -> Case {
     Case::new("limits of numbers", format!("spec with a mass of {mass:e}"), expected, move || {
         let subject = Subject::new(&rod(&format!("{mass:e}"), "-1").with("run:", "guess: {rod_theta: 0.1}\nrun:"))?;
         let rest = subject.rest()?;
-        subject.run(&timing(Method::Rosenbrock, 1e-4, 0.1))?;
+        subject.run(&timing(Method::RECOMMENDED, 1e-4, 0.1))?;
         expect(rest.q[0].abs() < 1e-9, rest.to_string())
     })
 }
@@ -122,7 +122,7 @@ fn parameter(spec: Spec, load: f64) -> Case {
     Case::new("limits of numbers", format!("knuckle_boom with payload={load:e}"), expected, move || {
         let subject = Subject::new(&spec)?.set("payload", load)?;
         let equilibrium = subject.equilibrium();
-        let run = subject.run(&timing(Method::Rosenbrock, 1e-4, 0.1));
+        let run = subject.run(&timing(Method::RECOMMENDED, 1e-4, 0.1));
         sound(&equilibrium.to_string(), equilibrium.q.iter().all(|x| x.is_finite()), run.err().as_deref())
     })
 }

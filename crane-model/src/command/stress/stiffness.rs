@@ -68,9 +68,9 @@ fn run(group: &'static str, spec: Spec, factor: f64) -> Case {
     let rounded = group == DRIVES && factor == 1e6;
     let or_said = if rounded { ", or said that rounding spoils it" } else { "" };
     let what = if group.starts_with("damping") { "β = " } else { "× " };
-    let expected = format!("{duration} s by rosw4 to the end, energy balanced to {:.1} %{or_said}", BALANCE * 100.0);
+    let expected = format!("{duration} s to the end, energy balanced to {:.1} %{or_said}", BALANCE * 100.0);
     let case = Case::new(group, format!("eight_link_flexible {what}{factor:e}, motion"), expected, move || {
-        let recorded = Subject::new(&spec)?.run(&timing(Method::Rosenbrock, 1e-4, duration))?;
+        let recorded = Subject::new(&spec)?.run(&timing(Method::RECOMMENDED, 1e-4, duration))?;
         let (off, steps) = (imbalance(&recorded), recorded.run.statistics.steps);
         let said = cautions(&recorded);
         let sound = off < BALANCE || rounded && said.contains("rounding");

@@ -71,7 +71,7 @@ impl Subject {
         let rig = self.rig.as_ref();
         let told = |problem: Problem| problem.message();
         let start = Start::of(rig).map_err(told)?;
-        let settings = timing.settings(rig, &start, Method::Rosenbrock).map_err(told)?;
+        let settings = timing.settings(rig, &start, Method::RECOMMENDED).map_err(told)?;
         let recorded = record(rig, &start, &settings, &ProgressBar::hidden()).map_err(told)?;
         let table = &recorded.table;
         match table.not_finite() {

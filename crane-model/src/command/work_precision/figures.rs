@@ -55,7 +55,7 @@ pub fn times(variants: &[Variant], limit: &Limit) -> Vec<Panel> {
     // As many as there are colours.
     let every = variants.len().div_ceil(PALETTE.len());
     let curve = |variant: &Variant| {
-        (format!("{} sections, {}", variant.sections, Method::Rosenbrock), limit.curve(variant, Method::Rosenbrock))
+        (format!("{} sections, {}", variant.sections, Method::RECOMMENDED), limit.curve(variant, Method::RECOMMENDED))
     };
     let chosen = variants.iter().step_by(every).map(curve);
     vec![panel("wall time [ms]", "error of the load path [1]", curves(chosen))]

@@ -64,7 +64,7 @@ pub fn variant(rig: &dyn Rig, start: &Start, base: &Settings, sections: usize, r
     let guess = Trace::points(rig, &rig.guess());
     let deflection = rest.iter().zip(&guess).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
 
-    let tight = timed(rig, &start.q, &with(base, Method::Rosenbrock, Setting::Tolerance(TIGHT)), 1)?;
+    let tight = timed(rig, &start.q, &with(base, Method::RECOMMENDED, Setting::Tolerance(TIGHT)), 1)?;
     let evaluation = tight.wall / tight.run.statistics.evaluations as f64;
     let damped = damped(&rig.small_motions(&start.q))?;
     let mut runs = Vec::new();
@@ -73,11 +73,11 @@ pub fn variant(rig: &dyn Rig, start: &Start, base: &Settings, sections: usize, r
         let settings: Vec<Setting> = match method {
             Method::Rk4 => vec![Setting::Step(SAFE * limit)],
             Method::DormandPrince => EXPLICIT.map(Setting::Tolerance).to_vec(),
-            Method::Rosenbrock => TOLERANCES.map(Setting::Tolerance).to_vec(),
+            Method::Rosenbrock | Method::Bdf => TOLERANCES.map(Setting::Tolerance).to_vec(),
         };
         // An explicit method needs as many steps as are stable; six evaluations a step are the most that one takes.
         let estimate = base.duration / limit * evaluation * 6.0;
-        if method != Method::Rosenbrock && estimate > LONG {
+        if method.is_explicit() && estimate > LONG {
             continue;
         }
         for setting in settings {
