@@ -125,7 +125,7 @@ fn an_a_stable_function_limits_nothing() {
     // Trapezoidal rule, and Euler's method backwards.
     for denominator in [&[1.0, -0.5][..], &[1.0, -1.0]] {
         let numerator: &[f64] = if denominator[1] == -0.5 { &[1.0, 0.5] } else { &[1.0] };
-        let function = StabilityFunction { numerator, denominator };
+        let function = StabilityFunction::Rational { numerator, denominator };
         for eigenvalue in [Complex::new(-1e4, 0.0), Complex::new(-1e-3, 300.0), Complex::new(0.0, 5.0)] {
             assert_eq!(function.largest_step(eigenvalue), None, "{eigenvalue}");
         }
@@ -147,7 +147,7 @@ fn the_boundary_is_where_the_size_is_one() {
 
 #[test]
 fn the_derivative_is_that_of_the_function() {
-    let function = StabilityFunction { numerator: &[1.0, 0.3, 0.2], denominator: &[1.0, -0.7, 0.1] };
+    let function = StabilityFunction::Rational { numerator: &[1.0, 0.3, 0.2], denominator: &[1.0, -0.7, 0.1] };
     let (z, d) = (Complex::new(-0.4, 1.1), 1e-5);
     let difference = (function.value(z + d) - function.value(z - d)) / (2.0 * d);
     // Central difference: d² of numbers of size 1.

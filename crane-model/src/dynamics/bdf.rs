@@ -23,8 +23,7 @@ use super::{
     Settings, Statistics, Stopped,
     adaptive::{FIRST, LEAST, LONGEST, SAFETY},
     motion::{Motion, slope},
-    rk4::{NotFinite, State},
-    step::Nothing,
+    rk4::{NotFinite, State, acceleration},
     system::System,
 };
 use crate::Implicit;
@@ -63,11 +62,10 @@ pub fn step<const N: usize, C: Implicit<N>>(
     const MANY: usize = 30;
     /// What is left of a step, relative to 1 m and rad and to where it leads.
     const EXACT: f64 = 1e-14;
-    let nothing: Nothing<N> = |_, _, _| SVector::zeros();
     let history = History::through(past, t, h);
     let mut correction = Correction::new(crane, &history);
     for _ in 0..MANY {
-        let improvement = correction.improve(crane, &nothing)?;
+        let improvement = correction.improve(crane)?;
         let size = 1.0 + Motion::zeros().size(&correction.end, 1.0);
         if correction.end.size(&improvement, EXACT * size) < 1.0 {
             return Ok(State { q: correction.end.q, v: correction.end.v });
@@ -195,20 +193,23 @@ impl<const N: usize, const M: usize, C: Implicit<N>> Correction<N, M, C> {
         Self { system, t: history.t + history.h, c, past, end, d: Motion::zeros() }
     }
 
-    /// One step of the iteration, and what it adds.
-    fn improve(
-        &mut self,
-        crane: &C,
-        integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-    ) -> Result<Motion<N, M>, NotFinite> {
+    /// One step of the iteration, and what it adds. Integrals wait for its end.
+    fn improve(&mut self, crane: &C) -> Result<Motion<N, M>, NotFinite> {
+        let Motion { q, v, .. } = &self.end;
         // f − (ψ + d)/c
-        let mut rhs = slope(crane, integrand, self.t, &self.end)?;
+        let mut rhs = Motion { q: *v, v: acceleration(crane, self.t, q, v)?, sum: self.past.sum };
         rhs.add(-1.0, &self.past);
         rhs.add(-self.c.recip(), &self.d);
         let improvement = self.system.solve(crane, &rhs, &SVector::zeros());
         self.end.add(1.0, &improvement);
         self.d.add(1.0, &improvement);
         Ok(improvement)
+    }
+
+    /// Integrals over the step, of what the state found says: at its prediction stiff springs are far from balance.
+    fn integrate(&mut self, integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>) {
+        self.d.sum = (integrand(self.t, &self.end.q, &self.end.v) - self.past.sum) * self.c;
+        self.end.sum += self.d.sum;
     }
 }
 
@@ -321,7 +322,8 @@ impl Control {
         let order = history.order;
         let mut correction = Correction::new(crane, history);
         statistics.factorisations += 1;
-        let error = if self.converges(crane, integrand, history.h, &mut correction, statistics) {
+        let error = if self.converges(crane, history.h, &mut correction, statistics) {
+            correction.integrate(integrand);
             self.error(&correction.end, &correction.d, order)
         } else {
             f64::INFINITY
@@ -352,7 +354,6 @@ impl Control {
     fn converges<const N: usize, const M: usize, C: Implicit<N>>(
         &mut self,
         crane: &C,
-        integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
         h: f64,
         correction: &mut Correction<N, M, C>,
         statistics: &mut Statistics,
@@ -360,7 +361,7 @@ impl Control {
         let mut before = None;
         for _ in 0..NEWTON {
             statistics.evaluations += 1;
-            let Ok(improvement) = correction.improve(crane, integrand) else { return false };
+            let Ok(improvement) = correction.improve(crane) else { return false };
             let size = correction.end.size(&improvement, self.tolerance);
             let ratio = before.map_or(self.contraction.expected(h), |before| size / before);
             if before.is_some() {
