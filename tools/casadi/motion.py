@@ -46,7 +46,7 @@ def compare(name, options):
     names = [coordinate.name for coordinate in crane.coordinates]
     agree = True
     exact = None
-    for method in ("rosw4", "dopri5"):
+    for method in ("bdf", "rosw4", "dopri5"):
         times, poses = simulate(name, method, names, options)
         if exact is None:
             start = np.concatenate([poses[0], np.zeros(len(names))])
