@@ -59,9 +59,10 @@ impl Description {
         })
     }
 
-    /// What to say of a pose in which a base on supports is turned too far for linear ones.
+    /// What to say of a pose in which a base on linear supports is turned too far for them.
     pub fn large_tilt(&self, q: &[f64]) -> Option<String> {
-        self.coordinates.iter().zip(q).filter(|_| !self.supports.is_empty()).find_map(|(coordinate, angle)| {
+        let linear = self.supports.iter().any(|support| support.linear);
+        self.coordinates.iter().zip(q).filter(|_| linear).find_map(|(coordinate, angle)| {
             let CoordinateInfo { name, role, kind } = *coordinate;
             let turned = (role, kind) == (CoordinateRole::Base, CoordinateKind::Rotation) && angle.abs() > LARGE_TILT;
             turned.then(|| {
@@ -169,6 +170,8 @@ pub struct SupportInfo {
     pub name: &'static str,
     /// Attachment point in the base's frame with default parameters, m.
     pub position: [f64; 3],
+    /// Whether its elongation is linear in the base's coordinates, `kinematics: linear`.
+    pub linear: bool,
 }
 
 /// A drive.

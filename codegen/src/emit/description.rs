@@ -6,7 +6,7 @@ use syn::{Item, parse_quote};
 
 use super::arithmetic::{integer, literal};
 use super::print::constant;
-use crate::chain::{BodyId, Chain, CoordinateKind, Value};
+use crate::chain::{BodyId, Chain, CoordinateKind, SupportKinematics, Value};
 
 /// Sizes and the `DESCRIPTION`.
 pub fn description(chain: &Chain) -> Vec<Item> {
@@ -37,7 +37,8 @@ fn description_constant(chain: &Chain) -> Item {
     let supports = chain.supports.iter().map(|support| {
         let name = &support.name;
         let position = support.position.iter().map(at_defaults);
-        quote!(SupportInfo { name: #name, position: [#(#position),*] })
+        let linear = support.kinematics == SupportKinematics::Linear;
+        quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear })
     });
     let drives = chain.drives.iter().map(|drive| {
         let coordinate = integer(drive.coordinate.0);

@@ -3,7 +3,7 @@
 //!
 //! | pass | file | after it |
 //! |---|---|---|
-//! | roll, matching | `roll` | what repeats from body to body is a loop over the operations of one |
+//! | roll, loops, matching | `roll` | what repeats from body to body is a loop over the operations of one |
 //! | constants | `constants` | what depends on live parameters alone is computed once, outside of all functions |
 //! | fuse | `fuse` | a product that only sums use is part of them, `a b + c` |
 //! | bundle | `bundle` | a value used once stands where it is used, as long as the expression stays bounded |
@@ -15,6 +15,7 @@
 mod bundle;
 mod constants;
 mod fuse;
+mod loops;
 mod matching;
 mod order;
 mod roll;
@@ -23,7 +24,7 @@ mod split;
 use crate::symbolic::{ExprId, Function, Op, OperationCount, Program};
 
 pub use constants::Constants;
-pub use roll::{Loop, Progression, Rolled, Source, Taking};
+pub use loops::{Loop, Progression, Rolled, Source, Taking};
 
 /// A program as straight lines.
 #[derive(Debug)]

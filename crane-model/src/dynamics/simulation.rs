@@ -28,8 +28,8 @@ pub struct Settings {
     /// Greatest step of a method with constant step, s. The step is the next smaller one that fits the interval of results a
     /// whole number of times.
     pub step: f64,
-    /// Error that an adaptive method allows a step, m and rad; that of a run on the reference crane's coordinates is ten times as
-    /// large, on a path of 10 m.
+    /// Error that a one-step adaptive method allows a step, m and rad; `bdf` allows a tenth of it, as its errors add up over more
+    /// steps. That of a run on the reference crane's coordinates is ten times as large, on a path of 10 m.
     pub tolerance: f64,
     /// Interval between results, s.
     pub output: f64,

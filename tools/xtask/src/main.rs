@@ -160,8 +160,17 @@ fn bless() -> Vec<Step> {
     };
     // The test that compares them compiles them, so the command writes them.
     let golden = |title, spec, module| {
-        let command =
-            ["run", "--release", "--package", "crane-codegen", "--features", CLI, "--bin", "crane-codegen", "--"];
+        let command = [
+            "run",
+            "--release",
+            "--package",
+            "crane-codegen",
+            "--features",
+            "crane-codegen/cli",
+            "--bin",
+            "crane-codegen",
+            "--",
+        ];
         Step::cargo(title, &[&command[..], &["generate", spec, "-o", module]].concat())
     };
     vec![

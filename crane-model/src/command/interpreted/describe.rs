@@ -1,6 +1,6 @@
 //! What an interpreted crane says about itself.
 
-use crane_codegen::chain::{BodyId, Chain, CoordinateKind as Kind, Value};
+use crane_codegen::chain::{BodyId, Chain, CoordinateKind as Kind, SupportKinematics, Value};
 
 use crate::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, SupportInfo,
@@ -34,6 +34,7 @@ pub fn describe(chain: &Chain) -> &'static Description {
     let supports = chain.supports.iter().map(|support| SupportInfo {
         name: text(&support.name),
         position: support.position.each_ref().map(at_defaults),
+        linear: support.kinematics == SupportKinematics::Linear,
     });
     let description = Description {
         name: text(&chain.name),

@@ -54,8 +54,8 @@ supports:
         let description = subject.rig.description();
         let finite = equilibrium.q.iter().all(|x| x.is_finite());
         let (singular, tilted) = (description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q));
-        let right =
-            if near { singular.is_some() } else { singular.is_none() && (exact || tilted.is_some() || angle == 0.0) };
+        let right = if near { singular.is_some() } else { singular.is_none() };
+        let right = right && tilted.is_some() == (!exact && angle >= LARGE_TILT);
         let said = appended(singular.iter().chain(&tilted));
         expect(finite && right, format!("{equilibrium}; θ = {:.6} rad{said}", equilibrium.q[4]))
     })
