@@ -138,7 +138,7 @@ pub fn table(points: &[Point]) -> Grid {
         grid.row([
             (*method).into(),
             setting.step().into(),
-            setting.tolerance().into(),
+            setting.tolerance().map_or(Cell::Empty, Cell::Error),
             Cell::Error(errors.path),
             errors.efforts.map_or(Cell::Empty, Cell::Error),
             Cell::Error(errors.energy),
@@ -172,7 +172,7 @@ pub fn least(points: &[Point], duration: f64) -> Grid {
                 Cell::Error(target),
                 point.method.into(),
                 point.setting.step().into(),
-                point.setting.tolerance().into(),
+                point.setting.tolerance().map_or(Cell::Empty, Cell::Error),
                 (1e3 * point.wall).into(),
                 (duration / point.wall).into(),
                 classical.map(|wall| wall / point.wall).into(),

@@ -156,7 +156,7 @@ impl Limit {
                 variant.sections.into(),
                 run.method.name().into(),
                 run.setting.step().into(),
-                run.setting.tolerance().into(),
+                run.setting.tolerance().map_or(Cell::Empty, Cell::Error),
                 Cell::Error(self.motion.errors(&run.trace).path),
                 (1e3 * run.wall).into(),
             ]);
