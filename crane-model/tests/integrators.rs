@@ -319,6 +319,33 @@ fn order_is_reduced_where_a_stiff_spring_is_forced() {
     assert!(errors[0][0] < 1e-3, "{errors:?}");
 }
 
+#[test]
+fn backward_differences_keep_their_orders_where_a_stiff_spring_is_forced() {
+    // As above: rates are differences of positions that follow the drive, and lose nothing.
+    let lift = Lift { stiffness: 4e11, damping: 4e5, ..Lift::default() };
+    let forced = |t: f64| {
+        let (sin, cos) = (lift.frequency * t).sin_cos();
+        let rate = lift.amplitude * lift.frequency * cos;
+        State { q: Vector1::new(lift.sag() + lift.amplitude * sin), v: Vector1::new(rate) }
+    };
+    for order in 1..=bdf::ORDER {
+        let errors = [50, 100, 200].map(|n: i32| {
+            let h = f64::from(n).recip();
+            // The last first.
+            let mut past: Vec<_> = (0..order).rev().map(|k| forced(h * k as f64)).collect();
+            for k in past.len()..=usize::try_from(n).expect("steps") {
+                past.insert(0, bdf::step(&lift, h * (k - 1) as f64, h, &past[..order]).expect("mass"));
+            }
+            [(past[0].q.x - forced(1.0).q.x).abs(), (past[0].v.x - forced(1.0).v.x).abs()]
+        });
+        let measured = (errors[0][1] / errors[2][1]).log2() / 2.0;
+        println!("order {order}: {measured:.3} of rates, {errors:?}");
+        assert!((measured - order as f64).abs() < ORDER, "order {order}: {measured}, {errors:?}");
+        // Positions are off by the rates' error times d/s, but for the spring's own way.
+        assert!(errors[0][0] < 1e-5 * errors[0][1] + 1e-9, "order {order}: {errors:?}");
+    }
+}
+
 /// Greatest error of a run of the lift at its results, m, and the run's statistics.
 fn lift_error(method: Method, tolerance: f64, output: f64) -> (f64, crane_model::dynamics::Run) {
     let lift = Lift::default();
