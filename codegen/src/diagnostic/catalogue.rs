@@ -49,6 +49,7 @@ macro_rules! catalogue {
     };
 }
 
+#[cfg(feature = "exchange")]
 pub(crate) use catalogue;
 
 catalogue! {
@@ -63,7 +64,7 @@ catalogue! {
         "start with `format: 1`, `name:` and `links:`; specs/double_pendulum.yaml is a short example";
     /// A file is one YAML document.
     E004 not_yaml(problem) "the file is not YAML: {problem}", "the reader stopped here",
-        "check indentation, brackets and quotes of this line and the one before";
+        "check indentation (by spaces, not tabs), brackets and quotes of this line and the one before";
     /// The top level is a mapping of keys to values.
     E005 not_a_mapping(found) "the file describes no crane: its top level is {found}", "expected keys here",
         "write `key: value` lines, beginning with `format: 1`";

@@ -58,7 +58,8 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     // What the robot's own numbers get wrong is to be mended there.
     let (Chain { name, bodies, coordinates, .. }, _) = own::load(file)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
-    Ok(writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates; `crane run {file}` runs it")?)
+    writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates; `crane run {file}` runs it")?;
+    Ok(writeln!(out, "URDF knows no springs and no drives: give `drives:` and `damping:` to what would fall")?)
 }
 
 /// Outlines of the beams of a spec, by link: height and width, m, and whether they are round.

@@ -58,7 +58,7 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     write(&options.folder.join(SCHEMA.0), SCHEMA.1)?;
     writeln!(
         out,
-        "{} written, from {}: change {SPEC} there, then `cargo run --release`",
+        "{} written, from {}: change {SPEC} there, then `cargo run --release`; its first build takes some minutes",
         options.folder.display(),
         description.name
     )?;

@@ -29,6 +29,8 @@ const FILES: [(&str, &str); 3] = [
 ];
 /// Variable of the environment with the folder where programs are kept.
 const CACHE: &str = "CRANE_CACHE";
+/// Variable of the environment that tells a crane's own program what was typed.
+const AS_TYPED: &str = "CRANE_AS_TYPED";
 
 /// Says whether a spec is sound.
 pub fn check(spec: &Path, out: &mut dyn Write) -> Outcome<()> {
@@ -62,7 +64,15 @@ pub fn run_with(package: &str, named: &OsStr, cranes: &[(String, String)]) -> Ou
         Some(name) => name,
         None => argument,
     });
-    finish(Command::new(&program).args(arguments))
+    finish(Command::new(&program).args(arguments).env(AS_TYPED, typed()))
+}
+
+/// The command as it was typed.
+pub fn typed() -> String {
+    env::var(AS_TYPED).unwrap_or_else(|_| {
+        let arguments: Vec<String> = env::args().skip(1).collect();
+        format!("crane {}", arguments.join(" "))
+    })
 }
 
 /// A sound chain and its text, or every mistake.
@@ -75,6 +85,9 @@ pub(super) fn load(spec: &Path) -> Outcome<(Chain, String)> {
 /// A file of text; `help`: what kind of file to name.
 pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
     build::open(file).map_err(|failure| match failure {
+        build::Failure::File(message) if file.extension().is_none() => {
+            Problem::failed(message, format!("{help}; of a shipped crane it is specs/{}.yaml", file.display()))
+        }
         build::Failure::File(message) => Problem::failed(message, help),
         build::Failure::Mistakes(mistakes) => drawn(&mistakes),
     })

@@ -144,6 +144,10 @@ impl Timing {
                 ));
             }
         }
+        if self.output.is_some() && settings.output > settings.duration {
+            let title = format!("results every {} s of a run of {} s", settings.output, settings.duration);
+            return Err(Problem::usage(title, "write an `--output` no longer than the `--duration`"));
+        }
         if settings.tolerance < LEAST_TOLERANCE {
             let title = format!("a tolerance of {:e} is below what rounding leaves", settings.tolerance);
             return Err(Problem::usage(title, format!("write {LEAST_TOLERANCE:e} or more, such as 1e-4")));

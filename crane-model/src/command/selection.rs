@@ -1,5 +1,7 @@
 //! A crane by its name, with parameters set.
 
+use std::path::Path;
+
 use crate::{Description, rig::Rig};
 
 use crate::command::{
@@ -34,7 +36,15 @@ impl Fleet {
         let names: Vec<&str> = all.iter().map(|rig| rig.description().name).collect();
         match names.iter().position(|&known| known == name) {
             Some(index) => all.into_iter().nth(index).ok_or_else(|| Problem::failed("no such crane", "")),
-            None => Err(Problem::usage(format!("there is no crane `{name}`"), meant(name, &names, "cranes"))),
+            None => {
+                let file = format!("{name}.yaml");
+                let help = if Path::new(&file).exists() {
+                    format!("did you mean the file `{file}`?")
+                } else {
+                    meant(name, &names, "cranes")
+                };
+                Err(Problem::usage(format!("there is no crane `{name}`"), help))
+            }
         }
     }
 }

@@ -54,7 +54,7 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     }
     let statistics = recorded.run.statistics;
     report.fact("steps", statistics.steps, "");
-    report.fact("step", recorded.run.step, "s");
+    report.fact(if settings.method.is_adaptive() { "mean step" } else { "step" }, recorded.run.step, "s");
     report.fact("rejected steps", statistics.rejections, "");
     report.fact("evaluations", statistics.evaluations, "");
     report.fact("factorisations", statistics.factorisations, "");

@@ -96,13 +96,18 @@ fn regions(modes: &[DampedMode], own: f64) -> Vec<Panel> {
         };
         let curve = |label: String, colour, points, mark| Curve { label, colour, mark, points };
         Panel {
-            x: "Re hλ".to_owned(),
+            x: format!("Re hλ; {method}, h = {largest:.3e} s"),
             y: "Im hλ".to_owned(),
             equal: true,
             logarithmic: false,
             curves: vec![
-                curve(format!("|R(hλ)| = 1 of {method}"), BLUE, boundary, Mark::Solid),
-                curve(format!("hλ at h = {largest:.3e} s"), VERMILLION, marks(largest), Mark::Dots),
+                curve("|R(hλ)| = 1".to_owned(), BLUE, boundary, Mark::Solid),
+                curve(
+                    "hλ of the crane at its largest stable step h".to_owned(),
+                    VERMILLION,
+                    marks(largest),
+                    Mark::Dots,
+                ),
             ],
         }
     };

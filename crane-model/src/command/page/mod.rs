@@ -6,7 +6,7 @@ mod crane;
 mod scene;
 pub mod twin;
 
-use std::{env, io::Write, path::Path};
+use std::{io::Write, path::Path};
 
 use crate::{
     dynamics::{Method, Settings},
@@ -18,7 +18,7 @@ use crate::command::{
     Fleet,
     arguments::Page,
     compare::runs,
-    exchange, files, modes,
+    exchange, files, modes, own,
     problem::Outcome,
     report::Report,
     run::{POSES, Recorded, Start, manoeuvre},
@@ -66,11 +66,10 @@ fn data(fleet: &Fleet, cases: &[Case<'_>], settings: &[Settings], runs: &[Record
         crane["record"] = files::record(case.rig, settings, run);
         cranes.push(crane);
     }
-    let command: Vec<String> = ["crane".to_owned()].into_iter().chain(env::args().skip(1)).collect();
     Ok(json!({
         "cranes": cranes,
         "tables": all_tables(cases, runs)?.page(),
-        "command": command.join(" "),
+        "command": own::typed(),
         "spec": cases.last().and_then(|case| fleet.spec(case.rig.description().name)),
     }))
 }
