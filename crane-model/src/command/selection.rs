@@ -34,18 +34,16 @@ impl Fleet {
     pub(super) fn crane(&self, name: &str) -> Outcome<Box<dyn Rig>> {
         let all = (self.all)();
         let names: Vec<&str> = all.iter().map(|rig| rig.description().name).collect();
-        match names.iter().position(|&known| known == name) {
-            Some(index) => all.into_iter().nth(index).ok_or_else(|| Problem::failed("no such crane", "")),
-            None => {
-                let file = format!("{name}.yaml");
-                let help = if Path::new(&file).exists() {
-                    format!("did you mean the file `{file}`?")
-                } else {
-                    meant(name, &names, "cranes")
-                };
-                Err(Problem::usage(format!("there is no crane `{name}`"), help))
-            }
+        if let Some(rig) = all.into_iter().find(|rig| rig.description().name == name) {
+            return Ok(rig);
         }
+        let file = format!("{name}.yaml");
+        let help = if Path::new(&file).exists() {
+            format!("did you mean the file `{file}`?")
+        } else {
+            meant(name, &names, "cranes")
+        };
+        Err(Problem::usage(format!("there is no crane `{name}`"), help))
     }
 }
 
