@@ -77,7 +77,14 @@ pub fn typed() -> String {
 
 /// A sound chain and its text, or every mistake.
 pub(super) fn load(spec: &Path) -> Outcome<(Chain, String)> {
-    let source = open(spec, "name a YAML file that describes a crane")?;
+    // The name of a shipped crane, or a file without its extension.
+    let meant = Path::new(MODEL).with_file_name("specs").join(spec).with_extension("yaml");
+    let help = if meant != spec && meant.exists() {
+        format!("did you mean {}?", meant.display())
+    } else {
+        "name a YAML file that describes a crane".to_owned()
+    };
+    let source = open(spec, &help)?;
     let chain = compile::load(&source).map_err(|mistakes| drawn(&mistakes))?;
     Ok((chain, source.text))
 }
@@ -85,9 +92,6 @@ pub(super) fn load(spec: &Path) -> Outcome<(Chain, String)> {
 /// A file of text; `help`: what kind of file to name.
 pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
     build::open(file).map_err(|failure| match failure {
-        build::Failure::File(message) if file.extension().is_none() => {
-            Problem::failed(message, format!("{help}; of a shipped crane it is specs/{}.yaml", file.display()))
-        }
         build::Failure::File(message) => Problem::failed(message, help),
         build::Failure::Mistakes(mistakes) => drawn(&mistakes),
     })

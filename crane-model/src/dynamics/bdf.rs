@@ -127,12 +127,7 @@ impl<const N: usize, const M: usize> History<N, M> {
     fn rescale(&mut self, factor: f64) {
         // The polynomial's values at the new distances, by the weights of the old differences, and differences of those.
         let mut weights: [Weights; ORDER + 1] = std::array::from_fn(|m| newton_polynomials(-factor * m as f64));
-        for m in 1..=self.order {
-            for place in (m..=self.order).rev() {
-                let before = weights[place - 1];
-                weights[place].iter_mut().zip(before).for_each(|(weight, before)| *weight = before - *weight);
-            }
-        }
+        difference(&mut weights[..=self.order], |before, at| std::array::from_fn(|m| before[m] - at[m]));
         let old = self.differences;
         for (m, weights) in weights[..=self.order].iter().enumerate().skip(1) {
             self.differences[m] = Motion::zeros().plus(&weights[m..=self.order], &old[m..], 1.0);
@@ -159,12 +154,17 @@ impl<const N: usize> History<N, 0> {
         for (value, state) in values.iter_mut().zip(past) {
             *value = Motion::starting(state);
         }
-        for m in 1..order {
-            for place in (m..order).rev() {
-                values[place] = values[place - 1].plus(&[-1.0], &[values[place]], 1.0);
-            }
-        }
+        difference(values, |before, at| before.plus(&[-1.0], &[*at], 1.0));
         Self { differences, order, t, h }
+    }
+}
+
+/// Turns values, the last first, into their backward differences; `minus` subtracts the second from the first.
+fn difference<T>(values: &mut [T], minus: impl Fn(&T, &T) -> T) {
+    for m in 1..values.len() {
+        for place in (m..values.len()).rev() {
+            values[place] = minus(&values[place - 1], &values[place]);
+        }
     }
 }
 
