@@ -4,20 +4,20 @@
 
 use super::factors::Factor;
 use super::model::Model;
-use super::outward::{Velocities, velocities};
+use super::outward::{Velocities, along};
 use super::vector::Vec3;
 use crate::symbolic::Expr;
 
 /// `e = −(h + g)` [Urbaś 2016, Eqs. (5), (7), (9), by recursion]; the base is accelerated against gravity.
 pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
-    let along = velocities(model, factors, &model.v);
     let zero = Vec3::zero(model.graph);
-    // Outward: α and a of each frame.
-    let (mut alpha, mut a) = (zero, -model.vector(&model.chain.gravity));
-    let mut accelerations = Vec::new();
+    // Outward: ω, α and a of each frame. In one sweep the three chains of dependent operations run side by side.
+    let (mut omega, mut alpha, mut a) = (zero, zero, -model.vector(&model.chain.gravity));
+    let mut motions = Vec::new();
     let sweep = model.graph.sweep();
-    for (factor, velocity) in factors.iter().zip(&along) {
-        match (factor, velocity) {
+    for factor in factors {
+        let velocities = along(model, &mut omega, factor, &model.v);
+        match (factor, &velocities) {
             (Factor::Turn(turn), _) => (alpha, a) = (turn.inward(alpha), turn.inward(a)),
             (Factor::Revolute { turn, .. }, Velocities::Revolute { gyration }) => {
                 (alpha, a) = (turn.inward(alpha) + *gyration, turn.inward(a));
@@ -31,14 +31,14 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
             (Factor::Body(index), _) => sweep.leave(&model.chain.bodies[*index].name),
             _ => {}
         }
-        accelerations.push((alpha, a));
+        motions.push((velocities, alpha, a));
     }
     // Inward: force and moment that each frame takes.
     let (mut force, mut moment) = (zero, zero);
     let mut bias = model.zeros();
     let sweep = model.graph.sweep();
-    for ((factor, velocity), (alpha, a)) in factors.iter().zip(&along).zip(accelerations).rev() {
-        match (factor, velocity) {
+    for (factor, (velocities, alpha, a)) in factors.iter().zip(motions).rev() {
+        match (factor, velocities) {
             (Factor::Body(index), Velocities::Body { omega }) => {
                 let body = &model.chain.bodies[*index];
                 sweep.visit(&body.name);
@@ -46,7 +46,7 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
                     let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
                     let tensor = model.second_moments(inertia).tensor();
                     force = force + mass * a + alpha.cross(first) + omega.cross(omega.cross(first));
-                    moment = moment + tensor.apply(alpha) + omega.cross(tensor.apply(*omega)) + first.cross(a);
+                    moment = moment + tensor.apply(alpha) + omega.cross(tensor.apply(omega)) + first.cross(a);
                     force.named(&format!("force_{}", body.name));
                     moment.named(&format!("moment_{}", body.name));
                 }

@@ -33,38 +33,47 @@ pub enum Velocities<'g> {
 /// Sweeps outward along `factors` with the velocities `v`, the base at rest.
 pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>]) -> Vec<Velocities<'g>> {
     let mut omega = Vec3::zero(model.graph);
-    let rotate = |omega: &mut Vec3<'g>, turn: &Turn<'g>, rate: Expr<'g>| {
+    let sweep = model.graph.sweep();
+    factors
+        .iter()
+        .map(|factor| {
+            let velocities = along(model, &mut omega, factor, v);
+            if let Factor::Body(index) = factor {
+                sweep.leave(&model.chain.bodies[*index].name);
+            }
+            velocities
+        })
+        .collect()
+}
+
+/// Takes ω along one factor.
+pub fn along<'g>(model: &Model<'g>, omega: &mut Vec3<'g>, factor: &Factor<'g>, v: &[Expr<'g>]) -> Velocities<'g> {
+    let mut rotate = |turn: &Turn<'g>, rate: Expr<'g>| {
         let spin = Vec3::along(turn.axis, rate);
         *omega = turn.inward(*omega) + spin;
         omega.cross(spin)
     };
-    let mut along = Vec::new();
-    let sweep = model.graph.sweep();
-    for factor in factors {
-        along.push(match factor {
-            Factor::Translate(by) => Velocities::Translation { by: *by, acceleration: centripetal(omega, *by) },
-            Factor::Turn(turn) => {
-                omega = turn.inward(omega);
-                Velocities::Turn
-            }
-            Factor::Revolute { j, turn } => Velocities::Revolute { gyration: rotate(&mut omega, turn, v[*j]) },
-            Factor::Prismatic { j, axis } => {
-                let by = Vec3::along(*axis, model.q[*j]);
-                let coriolis = omega.cross(Vec3::along(*axis, 2.0 * v[*j]));
-                Velocities::Translation { by, acceleration: centripetal(omega, by) + coriolis }
-            }
-            Factor::Ball { j, turns } => {
-                let mut gyration = |k: usize| rotate(&mut omega, &turns[k], v[j + k]);
-                Velocities::Ball { gyrations: [gyration(0), gyration(1), gyration(2)] }
-            }
-            Factor::Body(index) => {
-                omega.named(&format!("omega_{}", model.chain.bodies[*index].name));
-                sweep.leave(&model.chain.bodies[*index].name);
-                Velocities::Body { omega }
-            }
-        });
+    match factor {
+        Factor::Translate(by) => Velocities::Translation { by: *by, acceleration: centripetal(*omega, *by) },
+        Factor::Turn(turn) => {
+            *omega = turn.inward(*omega);
+            Velocities::Turn
+        }
+        Factor::Revolute { j, turn } => Velocities::Revolute { gyration: rotate(turn, v[*j]) },
+        Factor::Prismatic { j, axis } => {
+            let by = Vec3::along(*axis, model.q[*j]);
+            let coriolis = omega.cross(Vec3::along(*axis, 2.0 * v[*j]));
+            Velocities::Translation { by, acceleration: centripetal(*omega, by) + coriolis }
+        }
+        Factor::Ball { j, turns } => {
+            let mut gyration = |k: usize| rotate(&turns[k], v[j + k]);
+            Velocities::Ball { gyrations: [gyration(0), gyration(1), gyration(2)] }
+        }
+        Factor::Body(index) => {
+            omega.named(&format!("omega_{}", model.chain.bodies[*index].name));
+            Velocities::Body { omega: *omega }
+        }
     }
-    along
 }
 
 /// `ω × (ω × d)`
