@@ -28,8 +28,8 @@
 //   gravity_energy                       9        81
 //   forward_dynamics                    34       342
 //   solve_mass                          16       330
-//   mass_matrix                         47       300
-//   mass_matrix_and_bias                69       463
+//   mass_matrix                         37       187
+//   mass_matrix_and_bias                59       349
 //   bias                                24       169
 //   kinetic_energy                      65       381
 //   factorise                           21       275
@@ -276,29 +276,32 @@ pub fn forward_dynamics(
         upper_theta,
         lower_theta,
     ]);
-    // upper_theta
+    // Outward: lower
     let upper_theta_dot = v[0];
+    let t001 = upper_theta_dot * upper_theta_dot;
     let lower_theta_dot = v[1];
     let omega_lower_y = upper_theta_dot + lower_theta_dot;
+    // Inward: lower
     let force_lower_z = omega_lower_y * (0.4 * omega_lower_y);
-    let t001 = upper_theta_dot * upper_theta_dot;
     let translational_upper_xz = 0.7511737089201878
         * (sin_lower_theta * cos_lower_theta);
-    let force_upper_x = fma(
-        t001,
-        translational_upper_xz,
-        sin_lower_theta * force_lower_z,
-    );
     let t002 = fma(
         0.7511737089201878,
         sin_lower_theta * sin_lower_theta,
         0.24882629107981225,
     );
+    let force_upper_x = fma(
+        t001,
+        translational_upper_xz,
+        sin_lower_theta * force_lower_z,
+    );
+    // Inward: upper
     let rotational_upper_yy = t002 + 0.667;
-    let t003 = 1.0 / rotational_upper_yy;
     let coupling_upper_y_x = -1.0 - t002;
-    let t004 = 9.81 * sin_upper_theta;
+    let t003 = 1.0 / rotational_upper_yy;
+    // Outward: upper
     let acceleration_upper_z = 9.81 * cos_upper_theta;
+    let t004 = 9.81 * sin_upper_theta;
     let alpha_upper_y = fma(
         force_upper_x,
         t003,
@@ -309,7 +312,7 @@ pub fn forward_dynamics(
         ),
     );
     out[0] = alpha_upper_y;
-    // lower_theta
+    // Outward: lower
     let lower_theta_ddot = -fma(
         1.8779342723004693,
         fma(
@@ -335,22 +338,23 @@ pub fn solve_mass(q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
     let lower_theta = q[1];
     // Sines and cosines
     let ([sin_lower_theta], [cos_lower_theta]) = sin_cos([lower_theta]);
-    // upper_theta
-    let rotational_upper_yy = fma(
-        0.7511737089201878,
-        sin_lower_theta * sin_lower_theta,
-        0.24882629107981225,
-    ) + 0.667;
-    let upper_theta_force = r[0];
+    // Inward: lower
     let lower_theta_force = r[1];
     let moment_upper_y = fma(
         cos_lower_theta,
         1.8779342723004693 * lower_theta_force,
         lower_theta_force,
     );
+    // Inward: upper
+    let rotational_upper_yy = fma(
+        0.7511737089201878,
+        sin_lower_theta * sin_lower_theta,
+        0.24882629107981225,
+    ) + 0.667;
+    let upper_theta_force = r[0];
     let alpha_upper_y = 1.0 / rotational_upper_yy * (upper_theta_force - moment_upper_y);
     out[0] = alpha_upper_y;
-    // lower_theta
+    // Outward: lower
     let lower_theta_ddot = fma(
         4.694835680751173,
         lower_theta_force,
@@ -365,7 +369,7 @@ pub fn solve_mass(q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
 /// `a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ)`
 /// [Urbaś 2016, Eq. (5)]
 ///
-/// 47 operations: 15 add, 30 mul, 0 div, 2 sin_cos.
+/// 37 operations: 17 add, 18 mul, 0 div, 2 sin_cos.
 pub fn mass_matrix(q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
     let q = &q.data.0[0];
     let mut out: [[f64; N]; N] = [[0.0; N]; N];
@@ -376,51 +380,35 @@ pub fn mass_matrix(q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
         upper_theta,
         lower_theta,
     ]);
+    // Inward: lower
+    let t001 = 0.4 * cos_lower_theta;
+    let t002 = 0.4 * sin_lower_theta;
+    let t003 = sin_lower_theta * sin_lower_theta;
+    let t004 = fma(-0.21250000000000002, t003, 0.21275000000000002);
+    let t005 = fma(0.21250000000000002, t003, 0.0002500000000000002);
+    let t006 = t004 + t005;
+    out[1][1] = t006;
+    let second_from_upper_xz = fma(
+        0.21250000000000002,
+        sin_lower_theta * cos_lower_theta,
+        t002,
+    );
+    // Inward: upper
+    let second_from_upper_xx = 0.0005000000000000004 + t005;
+    let second_from_upper_zz = 0.6665 + fma(2.0, t001 - -0.5, t004);
+    let t007 = fma(
+        sin_upper_theta * sin_upper_theta,
+        second_from_upper_zz - second_from_upper_xx,
+        2.0 * second_from_upper_xz * (sin_upper_theta * cos_upper_theta),
+    );
+    out[0][0] = second_from_upper_zz - t007 + (second_from_upper_xx + t007);
     // Row of upper_theta
-    let t001 = fma(
-        cos_upper_theta,
-        0.6665 * cos_upper_theta,
-        sin_upper_theta * (0.0005000000000000004 * sin_upper_theta),
-    );
-    let inertia_upper_yy = fma(
-        sin_upper_theta,
-        0.6665 * sin_upper_theta,
-        cos_upper_theta * (0.0005000000000000004 * cos_upper_theta),
-    ) + t001;
-    let lower_axis_x_x = fma(
-        -sin_upper_theta,
-        sin_lower_theta,
-        cos_upper_theta * cos_lower_theta,
-    );
-    let lower_axis_z_x = fma(
-        cos_upper_theta,
-        sin_lower_theta,
-        sin_upper_theta * cos_lower_theta,
-    );
-    let t002 = fma(
-        lower_axis_x_x,
-        0.21275000000000002 * lower_axis_x_x,
-        lower_axis_z_x * (0.0002500000000000002 * lower_axis_z_x),
-    );
-    let inertia_from_lower_yy = fma(
-        lower_axis_z_x,
-        0.21275000000000002 * lower_axis_z_x,
-        lower_axis_x_x * (0.0002500000000000002 * lower_axis_x_x),
-    ) + t002;
-    let t003 = 0.4 * lower_axis_z_x;
-    let t004 = 0.4 * lower_axis_x_x;
-    let t005 = inertia_from_lower_yy
+    out[1][0] = t006
         + fma(
-            2.0,
-            cos_upper_theta * fma(0.5, cos_upper_theta, t004),
-            2.0 * (sin_upper_theta * fma(0.5, sin_upper_theta, t003)),
+            sin_upper_theta,
+            fma(sin_upper_theta, t001, cos_upper_theta * t002),
+            -(cos_upper_theta * fma(-cos_upper_theta, t001, sin_upper_theta * t002)),
         );
-    let inertia_from_upper_yy = inertia_upper_yy + t005;
-    out[0][0] = inertia_from_upper_yy;
-    out[1][0] = inertia_from_lower_yy
-        + fma(sin_upper_theta, t003, cos_upper_theta * t004);
-    // Row of lower_theta
-    out[1][1] = inertia_from_lower_yy;
     symmetric(out)
 }
 
@@ -429,7 +417,7 @@ pub fn mass_matrix(q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
 /// `A, e`
 /// [Urbaś 2016, Eqs. (5), (9)]
 ///
-/// 69 operations: 25 add, 42 mul, 0 div, 2 sin_cos.
+/// 59 operations: 27 add, 30 mul, 0 div, 2 sin_cos.
 pub fn mass_matrix_and_bias(
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
@@ -445,70 +433,56 @@ pub fn mass_matrix_and_bias(
         upper_theta,
         lower_theta,
     ]);
-    // Row of upper_theta
-    let t001 = fma(
-        cos_upper_theta,
-        0.6665 * cos_upper_theta,
-        sin_upper_theta * (0.0005000000000000004 * sin_upper_theta),
+    // Inward: lower
+    let t001 = 0.4 * cos_lower_theta;
+    let t002 = 0.4 * sin_lower_theta;
+    let t003 = sin_lower_theta * sin_lower_theta;
+    let t004 = fma(-0.21250000000000002, t003, 0.21275000000000002);
+    let t005 = fma(0.21250000000000002, t003, 0.0002500000000000002);
+    let t006 = t004 + t005;
+    out.mass[1][1] = t006;
+    let second_from_upper_xz = fma(
+        0.21250000000000002,
+        sin_lower_theta * cos_lower_theta,
+        t002,
     );
-    let inertia_upper_yy = fma(
-        sin_upper_theta,
-        0.6665 * sin_upper_theta,
-        cos_upper_theta * (0.0005000000000000004 * cos_upper_theta),
-    ) + t001;
-    let lower_axis_x_x = fma(
-        -sin_upper_theta,
-        sin_lower_theta,
-        cos_upper_theta * cos_lower_theta,
+    // Inward: upper
+    let second_from_upper_xx = 0.0005000000000000004 + t005;
+    let second_from_upper_zz = 0.6665 + fma(2.0, t001 - -0.5, t004);
+    let t007 = fma(
+        sin_upper_theta * sin_upper_theta,
+        second_from_upper_zz - second_from_upper_xx,
+        2.0 * second_from_upper_xz * (sin_upper_theta * cos_upper_theta),
     );
-    let lower_axis_z_x = fma(
-        cos_upper_theta,
-        sin_lower_theta,
-        sin_upper_theta * cos_lower_theta,
-    );
-    let t002 = fma(
-        lower_axis_x_x,
-        0.21275000000000002 * lower_axis_x_x,
-        lower_axis_z_x * (0.0002500000000000002 * lower_axis_z_x),
-    );
-    let inertia_from_lower_yy = fma(
-        lower_axis_z_x,
-        0.21275000000000002 * lower_axis_z_x,
-        lower_axis_x_x * (0.0002500000000000002 * lower_axis_x_x),
-    ) + t002;
-    let t003 = 0.4 * lower_axis_z_x;
-    let t004 = 0.4 * lower_axis_x_x;
-    let t005 = inertia_from_lower_yy
-        + fma(
-            2.0,
-            cos_upper_theta * fma(0.5, cos_upper_theta, t004),
-            2.0 * (sin_upper_theta * fma(0.5, sin_upper_theta, t003)),
-        );
-    let inertia_from_upper_yy = inertia_upper_yy + t005;
-    out.mass[0][0] = inertia_from_upper_yy;
-    out.mass[0][1] = inertia_from_lower_yy
-        + fma(sin_upper_theta, t003, cos_upper_theta * t004);
-    // Row of lower_theta
-    out.mass[1][1] = inertia_from_lower_yy;
-    // Bias of upper_theta
-    let t006 = 9.81 * sin_upper_theta;
+    out.mass[0][0] = second_from_upper_zz - t007 + (second_from_upper_xx + t007);
+    // Outward: upper
+    let t008 = 9.81 * sin_upper_theta;
+    // Outward: lower
     let upper_theta_dot = v[0];
-    let t007 = fma(9.81, cos_upper_theta, upper_theta_dot * upper_theta_dot);
-    let t008 = fma(cos_lower_theta, t006, sin_lower_theta * t007);
-    let moment_lower_y = 0.4 * t008;
+    let t009 = fma(9.81, cos_upper_theta, upper_theta_dot * upper_theta_dot);
     let lower_theta_dot = v[1];
     let omega_lower_y = upper_theta_dot + lower_theta_dot;
+    let t010 = fma(cos_lower_theta, t008, sin_lower_theta * t009);
+    // Inward: lower
     let force_lower_z = fma(
         omega_lower_y,
         0.4 * omega_lower_y,
-        fma(-sin_lower_theta, t006, cos_lower_theta * t007),
+        fma(-sin_lower_theta, t008, cos_lower_theta * t009),
     );
-    let moment_upper_y = t006
-        + (moment_lower_y
-            + fma(-sin_lower_theta, force_lower_z, cos_lower_theta * t008));
-    out.bias[0] = -moment_upper_y;
-    // Bias of lower_theta
+    let moment_lower_y = 0.4 * t010;
     out.bias[1] = -moment_lower_y;
+    // Inward: upper
+    let moment_upper_y = t008
+        + (moment_lower_y
+            + fma(-sin_lower_theta, force_lower_z, cos_lower_theta * t010));
+    out.bias[0] = -moment_upper_y;
+    // Row of upper_theta
+    out.mass[0][1] = t006
+        + fma(
+            sin_upper_theta,
+            fma(sin_upper_theta, t001, cos_upper_theta * t002),
+            -(cos_upper_theta * fma(-cos_upper_theta, t001, sin_upper_theta * t002)),
+        );
     mass.data.0 = out.mass;
     SVector::from(out.bias)
 }
@@ -530,25 +504,27 @@ pub fn bias(q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         upper_theta,
         lower_theta,
     ]);
-    // upper_theta
+    // Outward: upper
     let t001 = 9.81 * sin_upper_theta;
+    // Outward: lower
     let upper_theta_dot = v[0];
     let t002 = fma(9.81, cos_upper_theta, upper_theta_dot * upper_theta_dot);
-    let t003 = fma(cos_lower_theta, t001, sin_lower_theta * t002);
-    let moment_lower_y = 0.4 * t003;
     let lower_theta_dot = v[1];
     let omega_lower_y = upper_theta_dot + lower_theta_dot;
+    let t003 = fma(cos_lower_theta, t001, sin_lower_theta * t002);
+    // Inward: lower
     let force_lower_z = fma(
         omega_lower_y,
         0.4 * omega_lower_y,
         fma(-sin_lower_theta, t001, cos_lower_theta * t002),
     );
+    let moment_lower_y = 0.4 * t003;
+    out[1] = -moment_lower_y;
+    // Inward: upper
     let moment_upper_y = t001
         + (moment_lower_y
             + fma(-sin_lower_theta, force_lower_z, cos_lower_theta * t003));
     out[0] = -moment_upper_y;
-    // lower_theta
-    out[1] = -moment_lower_y;
     SVector::from(out)
 }
 
@@ -649,21 +625,23 @@ pub fn factorise(
     let lower_theta = q[1];
     // Sines and cosines
     let ([sin_lower_theta], [cos_lower_theta]) = sin_cos([lower_theta]);
+    // Inward: lower
     let lower_theta_resistance = resistance[1];
-    out[0] = lower_theta_resistance;
-    out[1] = cos_lower_theta;
     let t001 = 1.0 / (lower_theta_resistance + 0.21300000000000002);
     out[2] = t001;
     out[3] = 0.21300000000000002 * t001;
     out[4] = 0.4 * t001;
-    let upper_theta_resistance = resistance[0];
     let t002 = lower_theta_resistance * t001;
-    let t003 = cos_lower_theta * (0.4 * t002);
-    let t004 = fma(-0.16000000000000003, t001, 1.0);
+    let t003 = fma(-0.16000000000000003, t001, 1.0);
+    let t004 = cos_lower_theta * (0.4 * t002);
+    // Inward: upper
     let rotational_upper_yy = 0.667
-        + (t003 + fma(sin_lower_theta * sin_lower_theta, 1.0 - t004, t004)
-            + fma(0.21300000000000002, t002, t003));
+        + (t004 + fma(sin_lower_theta * sin_lower_theta, 1.0 - t003, t003)
+            + fma(0.21300000000000002, t002, t004));
+    let upper_theta_resistance = resistance[0];
     out[5] = 1.0 / (upper_theta_resistance + rotational_upper_yy);
+    out[0] = lower_theta_resistance;
+    out[1] = cos_lower_theta;
     out
 }
 
@@ -675,19 +653,20 @@ pub fn factorise(
 pub fn solve(f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
     let r = &r.data.0[0];
     let mut out: [f64; N] = [0.0; N];
-    // upper_theta
-    let f005 = f[5];
-    let upper_theta_force = r[0];
+    // Inward: lower
     let lower_theta_force = r[1];
-    let f000 = f[0];
     let f002 = f[2];
     let t001 = lower_theta_force * f002;
+    // Inward: upper
+    let f005 = f[5];
+    let upper_theta_force = r[0];
+    let f000 = f[0];
     let f001 = f[1];
     let t002 = f005
         * (upper_theta_force
             - fma(f001, 0.4 * t001, fma(-f000, t001, lower_theta_force)));
     out[0] = t002;
-    // lower_theta
+    // Outward: lower
     let f003 = f[3];
     let f004 = f[4];
     out[1] = t001 - fma(f004, f001 * t002, f003 * t002);

@@ -30,16 +30,16 @@
 //   dissipation                         51        63
 //   forward_dynamics                   244       965
 //   solve_mass                         101       849
-//   mass_matrix                        164       751
-//   mass_matrix_and_bias               242      1111
-//   bias                                81       380
+//   mass_matrix                        127       517
+//   mass_matrix_and_bias               204       875
+//   bias                                80       380
 //   kinetic_energy                     216       837
 //   factorise                           95       711
 //   solve                               61       138
 //   joint_impedances                     0         7
 //   static_residual                     53       392
 //   tangent_stiffness                   51       338
-//   linearise                          195       973
+//   linearise                          165       793
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::support::{MassAndBias, fill, fma, sin_cos, symmetric};
@@ -174,7 +174,6 @@ pub struct Constants {
     c017: f64,
     c018: f64,
     c019: f64,
-    c020: f64,
 }
 
 impl From<&Params> for Constants {
@@ -195,20 +194,18 @@ impl From<&Params> for Constants {
         let c007 = 310.0 + c006;
         let t322 = 420.0 + c007;
         let c008 = c003 + c004;
-        let c009 = t248 - -7.5;
-        let c010 = 1.0 / c008;
-        let c011 = c008 * c010;
-        let c012 = c002 * c010;
-        let t576 = c002 * c012;
-        let c013 = c001 - t576;
-        let c014 = c001 - c013;
+        let c009 = 1.0 / c008;
+        let c010 = c008 * c009;
+        let c011 = c002 * c009;
+        let t576 = c002 * c011;
+        let c012 = c001 - t576;
+        let c013 = c001 - c012;
+        let c014 = 2.6 * c006;
         let c015 = 2.0 * t322;
-        let c016 = c009 * c010;
-        let t950 = c009 * c016;
-        let c017 = c001 - t950;
-        let c018 = c001 - c017;
-        let c019 = 0.5 * c006;
-        let c020 = 0.5 * c007;
+        let c016 = c004 - c003;
+        let c017 = 0.5 * c006;
+        let c018 = 1.3 * c006;
+        let c019 = 1.6 * c007;
         Constants {
             params: *params,
             c001,
@@ -230,7 +227,6 @@ impl From<&Params> for Constants {
             c017,
             c018,
             c019,
-            c020,
         }
     }
 }
@@ -1040,37 +1036,143 @@ pub fn forward_dynamics(
         t004,
         ],
     ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta, t002]);
-    // main_boom_theta
-    let t005 = sin_hook_theta * sin_hook_theta;
-    let translational_extension_zz = 150.0 + fma(-t005, c.c014, c.c001);
-    let translational_extension_xz = sin_hook_theta * cos_hook_theta * c.c014;
-    let translational_extension_xx = 150.0 + fma(t005, c.c014, c.c013);
-    let t006 = 1.0 / translational_extension_xx;
-    let t007 = translational_extension_xz * t006;
-    let t008 = fma(-translational_extension_xz, t007, translational_extension_zz);
-    let translational_knuckle_zz = 310.0 + t008;
+    // Outward: knuckle
+    let main_boom_theta_dot = v[0];
+    let t005 = main_boom_theta_dot * (3.2 * main_boom_theta_dot);
+    let knuckle_theta_dot = v[1];
+    let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
+    // Outward: extension
+    let extension_x_dot = v[2];
+    let t006 = omega_knuckle_y * (2.0 * extension_x_dot);
+    // Outward: hook
+    let hook_theta_dot = v[3];
+    let omega_hook_y = hook_theta_dot + omega_knuckle_y;
+    // Inward: hook
+    let t007 = omega_hook_y * (c.c002 * omega_hook_y);
+    let t008 = 40.0 * hook_theta_dot;
+    let t009 = t008 * c.c009;
+    let t010 = c.c002 * t009;
+    let t011 = sin_hook_theta * sin_hook_theta;
+    let translational_extension_xz = sin_hook_theta * cos_hook_theta * c.c013;
+    let force_extension_z = fma(sin_hook_theta, t010, -(cos_hook_theta * t007));
+    // Inward: extension
+    let translational_extension_xx = 150.0 + fma(t011, c.c013, c.c012);
+    let translational_extension_zz = 150.0 + fma(-t011, c.c013, c.c001);
+    let force_extension_x = fma(
+        omega_knuckle_y,
+        150.0 * omega_knuckle_y,
+        -fma(sin_hook_theta, t007, cos_hook_theta * t010),
+    );
+    let t012 = 1.0 / translational_extension_xx;
+    let t013 = translational_extension_xz * t012;
+    let t014 = t.max(0.0).min(2.0);
+    let t015 = (t - 2.0).max(0.0).min(2.0);
+    let t016 = fma(
+        t015,
+        fma(
+            t015,
+            fma(-0.012500000000000011, t015, 0.02499999999999998),
+            0.25000000000000006,
+        ),
+        fma(t014, t014 * fma(-0.012499999999999983, t014, 0.09999999999999995), 0.2),
+    );
+    let t017 = (t - 4.0).max(0.0).min(2.0);
     let extension_x = q[2];
-    let t009 = fma(-extension_x, t008, 150.0);
-    let t010 = fma(-2.6, t008, t009);
-    let coupling_knuckle_y_z = t010 - 341.0;
+    let t018 = fma(
+        t017,
+        fma(-2.0816681711721685e-17, t017, -0.09999999999999992),
+        fma(
+            t015,
+            fma(-0.03750000000000003, t015, 0.04999999999999996),
+            t014 * fma(-0.03749999999999995, t014, 0.1999999999999999),
+        ),
+    ) - extension_x_dot;
+    let effort_extension_x = fma(
+        80000.0,
+        t018,
+        8000000.0
+            * (fma(
+                t017,
+                fma(
+                    t017,
+                    fma(-6.938893903907228e-18, t017, -0.04999999999999996),
+                    0.19999999999999993,
+                ),
+                t016,
+            ) - extension_x),
+    );
+    let t019 = t012 * (effort_extension_x - force_extension_x);
+    let t020 = fma(-translational_extension_xz, t013, translational_extension_zz);
+    let t021 = fma(
+        -t006,
+        t020,
+        fma(translational_extension_xz, t019, force_extension_z),
+    );
+    let t022 = fma(-extension_x, t020, 150.0);
+    let t023 = fma(-2.6, t020, t022);
+    // Inward: knuckle
     let rotational_knuckle_yy = fma(
         -2.6,
-        t010,
-        fma(-2.6, t009, fma(-extension_x, t009, fma(-150.0, extension_x, 212.0))),
+        t023,
+        fma(-2.6, t022, fma(-extension_x, t022, fma(-150.0, extension_x, 212.0))),
     ) + 568.2;
-    let t011 = 1.0 / rotational_knuckle_yy;
-    let t012 = coupling_knuckle_y_z * t011;
-    let t013 = fma(-coupling_knuckle_y_z, t012, translational_knuckle_zz);
-    let t014 = sin_knuckle_theta * cos_knuckle_theta;
-    let t015 = 31.0 * t011;
-    let t016 = coupling_knuckle_y_z * t015;
-    let t017 = 2.0 * t016;
-    let t018 = sin_knuckle_theta * sin_knuckle_theta;
-    let t019 = t013 - fma(-961.0, t011, 310.0);
-    let t020 = t013 + fma(t014, t017, -(t018 * t019));
-    let rotational_main_boom_yy = fma(10.240000000000002, t020, 1326.05);
-    let t021 = 1.0 / rotational_main_boom_yy;
-    let main_boom_theta_dot = v[0];
+    let coupling_knuckle_y_z = t023 - 341.0;
+    let translational_knuckle_zz = 310.0 + t020;
+    let force_knuckle_x = fma(
+        -omega_knuckle_y,
+        341.0 * omega_knuckle_y,
+        effort_extension_x,
+    );
+    let force_knuckle_z = fma(-omega_knuckle_y, 31.0 * omega_knuckle_y, t021);
+    let t024 = 1.0 / rotational_knuckle_yy;
+    let t025 = 31.0 * t024;
+    let t026 = coupling_knuckle_y_z * t024;
+    let t027 = (0.25 * (t - 1.0)).max(0.0).min(1.0);
+    let t028 = (t027 - 0.7).max(0.0).min(0.30000000000000004);
+    let t029 = t027.max(0.0).min(0.3);
+    let t030 = t028
+        + fma(
+            1.6666666666666667,
+            fma(-t028, t028, t029 * t029),
+            (t027 - 0.3).max(0.0).min(0.39999999999999997),
+        );
+    let effort_knuckle_theta = fma(
+        -30000.0,
+        fma(0.5194432297602172, t029 - t028, knuckle_theta_dot),
+        2000000.0 * (fma(-0.6233318757122607, t030, 1.3089969389957472) - knuckle_theta),
+    );
+    let t031 = t024
+        * (effort_knuckle_theta
+            + fma(2.6, t021, fma(extension_x, t021, fma(150.0, t006, t008))));
+    let t032 = fma(-coupling_knuckle_y_z, t026, translational_knuckle_zz);
+    let t033 = coupling_knuckle_y_z * t025;
+    let t034 = sin_knuckle_theta * sin_knuckle_theta;
+    let t035 = sin_knuckle_theta * cos_knuckle_theta;
+    let t036 = t032 - fma(-961.0, t024, 310.0);
+    let t037 = 2.0 * t033;
+    let t038 = t032 + fma(t035, t037, -(t034 * t036));
+    let translational_main_boom_xz = fma(t034, t037, t035 * t036) - t033;
+    let moment_main_boom_y = fma(
+        -3.2,
+        fma(
+            -t005,
+            translational_main_boom_xz,
+            fma(
+                -sin_knuckle_theta,
+                fma(31.0, t031, force_knuckle_x),
+                cos_knuckle_theta * fma(coupling_knuckle_y_z, t031, force_knuckle_z),
+            ),
+        ),
+        effort_knuckle_theta,
+    );
+    // Inward: main_boom
+    let rotational_main_boom_yy = fma(10.240000000000002, t038, 1326.05);
+    let coupling_main_boom_y_x = fma(-3.2, translational_main_boom_xz, 21.0);
+    let coupling_main_boom_y_z = fma(-3.2, t038, -630.0);
+    let t039 = 1.0 / rotational_main_boom_yy;
+    // Outward: main_boom
+    let acceleration_main_boom_z = 9.81 * cos_main_boom_theta;
+    let t040 = 9.81 * sin_main_boom_theta;
     let effort_main_boom_theta = fma(
         -60000.0,
         fma(0.06544984694978734, 1.0 - t004, main_boom_theta_dot),
@@ -1081,155 +1183,56 @@ pub fn forward_dynamics(
                 -0.7853981633974483,
             ) - main_boom_theta),
     );
-    let t022 = (0.25 * (t - 1.0)).max(0.0).min(1.0);
-    let t023 = (t022 - 0.7).max(0.0).min(0.30000000000000004);
-    let t024 = t022.max(0.0).min(0.3);
-    let t025 = t023
-        + fma(
-            1.6666666666666667,
-            fma(-t023, t023, t024 * t024),
-            (t022 - 0.3).max(0.0).min(0.39999999999999997),
-        );
-    let knuckle_theta_dot = v[1];
-    let effort_knuckle_theta = fma(
-        -30000.0,
-        fma(0.5194432297602172, t024 - t023, knuckle_theta_dot),
-        2000000.0 * (fma(-0.6233318757122607, t025, 1.3089969389957472) - knuckle_theta),
-    );
-    let hook_theta_dot = v[3];
-    let t026 = 40.0 * hook_theta_dot;
-    let t027 = t026 * c.c010;
-    let t028 = c.c002 * t027;
-    let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
-    let omega_hook_y = hook_theta_dot + omega_knuckle_y;
-    let t029 = omega_hook_y * (c.c002 * omega_hook_y);
-    let force_extension_z = fma(sin_hook_theta, t028, -(cos_hook_theta * t029));
-    let t030 = t.max(0.0).min(2.0);
-    let t031 = (t - 2.0).max(0.0).min(2.0);
-    let t032 = fma(
-        t031,
-        fma(
-            t031,
-            fma(-0.012500000000000011, t031, 0.02499999999999998),
-            0.25000000000000006,
-        ),
-        fma(t030, t030 * fma(-0.012499999999999983, t030, 0.09999999999999995), 0.2),
-    );
-    let t033 = (t - 4.0).max(0.0).min(2.0);
-    let extension_x_dot = v[2];
-    let t034 = fma(
-        t033,
-        fma(-2.0816681711721685e-17, t033, -0.09999999999999992),
-        fma(
-            t031,
-            fma(-0.03750000000000003, t031, 0.04999999999999996),
-            t030 * fma(-0.03749999999999995, t030, 0.1999999999999999),
-        ),
-    ) - extension_x_dot;
-    let effort_extension_x = fma(
-        80000.0,
-        t034,
-        8000000.0
-            * (fma(
-                t033,
-                fma(
-                    t033,
-                    fma(-6.938893903907228e-18, t033, -0.04999999999999996),
-                    0.19999999999999993,
-                ),
-                t032,
-            ) - extension_x),
-    );
-    let force_extension_x = fma(
-        omega_knuckle_y,
-        150.0 * omega_knuckle_y,
-        -fma(sin_hook_theta, t029, cos_hook_theta * t028),
-    );
-    let t035 = t006 * (effort_extension_x - force_extension_x);
-    let t036 = omega_knuckle_y * (2.0 * extension_x_dot);
-    let t037 = fma(
-        -t036,
-        t008,
-        fma(translational_extension_xz, t035, force_extension_z),
-    );
-    let force_knuckle_z = fma(-omega_knuckle_y, 31.0 * omega_knuckle_y, t037);
-    let t038 = t011
-        * (effort_knuckle_theta
-            + fma(2.6, t037, fma(extension_x, t037, fma(150.0, t036, t026))));
-    let force_knuckle_x = fma(
-        -omega_knuckle_y,
-        341.0 * omega_knuckle_y,
-        effort_extension_x,
-    );
-    let t039 = main_boom_theta_dot * (3.2 * main_boom_theta_dot);
-    let translational_main_boom_xz = fma(t018, t017, t014 * t019) - t016;
-    let moment_main_boom_y = fma(
-        -3.2,
-        fma(
-            -t039,
-            translational_main_boom_xz,
-            fma(
-                -sin_knuckle_theta,
-                fma(31.0, t038, force_knuckle_x),
-                cos_knuckle_theta * fma(coupling_knuckle_y_z, t038, force_knuckle_z),
-            ),
-        ),
-        effort_knuckle_theta,
-    );
-    let coupling_main_boom_y_z = fma(-3.2, t020, -630.0);
-    let acceleration_main_boom_z = 9.81 * cos_main_boom_theta;
-    let coupling_main_boom_y_x = fma(-3.2, translational_main_boom_xz, 21.0);
-    let t040 = 9.81 * sin_main_boom_theta;
     let alpha_main_boom_y = fma(
-        t021,
+        t039,
         effort_main_boom_theta - moment_main_boom_y,
         -fma(
-            coupling_main_boom_y_z * t021,
+            coupling_main_boom_y_z * t039,
             acceleration_main_boom_z,
-            -(coupling_main_boom_y_x * t021 * t040),
+            -(coupling_main_boom_y_x * t039 * t040),
         ),
     );
     out[0] = alpha_main_boom_y;
-    // knuckle_theta
+    // Outward: knuckle
     let t041 = fma(-3.2, alpha_main_boom_y, acceleration_main_boom_z);
-    let t042 = t039 + t040;
+    let t042 = t005 + t040;
     let acceleration_knuckle_z = fma(-sin_knuckle_theta, t042, cos_knuckle_theta * t041);
     let t043 = fma(sin_knuckle_theta, t041, cos_knuckle_theta * t042);
-    let knuckle_theta_ddot = t038
+    let knuckle_theta_ddot = t031
         - fma(
-            rotational_knuckle_yy * t011,
+            rotational_knuckle_yy * t024,
             alpha_main_boom_y,
-            fma(t012, acceleration_knuckle_z, -(t015 * t043)),
+            fma(t026, acceleration_knuckle_z, -(t025 * t043)),
         );
     out[1] = knuckle_theta_ddot;
-    // extension_x
     let alpha_knuckle_y = alpha_main_boom_y + knuckle_theta_ddot;
-    let acceleration_extension_z = fma(
-        -extension_x,
-        alpha_knuckle_y,
-        fma(-2.6, alpha_knuckle_y, acceleration_knuckle_z),
-    ) - t036;
+    // Outward: extension
     let t044 = fma(
         omega_knuckle_y,
         extension_x * omega_knuckle_y,
         fma(omega_knuckle_y, 2.6 * omega_knuckle_y, t043),
     );
-    let extension_x_ddot = t035
+    let acceleration_extension_z = fma(
+        -extension_x,
+        alpha_knuckle_y,
+        fma(-2.6, alpha_knuckle_y, acceleration_knuckle_z),
+    ) - t006;
+    let extension_x_ddot = t019
         - fma(
-            t007,
+            t013,
             acceleration_extension_z,
-            -(translational_extension_xx * t006 * t044),
+            -(translational_extension_xx * t012 * t044),
         );
     out[2] = extension_x_ddot;
-    // hook_theta
     let acceleration_extension_x = extension_x_ddot - t044;
+    // Outward: hook
     let acceleration_hook_x = fma(
         -sin_hook_theta,
         acceleration_extension_z,
         cos_hook_theta * acceleration_extension_x,
     );
-    let hook_theta_ddot = -(t027
-        + fma(c.c012, acceleration_hook_x, c.c011 * alpha_knuckle_y));
+    let hook_theta_ddot = -(t009
+        + fma(c.c011, acceleration_hook_x, c.c010 * alpha_knuckle_y));
     out[3] = hook_theta_ddot;
     SVector::from(out)
 }
@@ -1254,90 +1257,95 @@ pub fn solve_mass(
         knuckle_theta,
         hook_theta,
     ]);
-    // main_boom_theta
-    let t001 = sin_hook_theta * sin_hook_theta;
-    let translational_extension_zz = 150.0 + fma(-t001, c.c018, c.c001);
-    let translational_extension_xz = sin_hook_theta * cos_hook_theta * c.c018;
-    let translational_extension_xx = 150.0 + fma(t001, c.c018, c.c017);
-    let t002 = 1.0 / translational_extension_xx;
-    let t003 = translational_extension_xz * t002;
-    let t004 = fma(-translational_extension_xz, t003, translational_extension_zz);
-    let translational_knuckle_zz = 310.0 + t004;
-    let extension_x = q[2];
-    let t005 = fma(-extension_x, t004, 150.0);
-    let t006 = fma(-2.6, t004, t005);
-    let coupling_knuckle_y_z = -341.0 + t006;
-    let rotational_knuckle_yy = 568.2
-        + fma(
-            -2.6,
-            t006,
-            fma(-2.6, t005, fma(-extension_x, t005, fma(-150.0, extension_x, 212.0))),
-        );
-    let t007 = 1.0 / rotational_knuckle_yy;
-    let t008 = coupling_knuckle_y_z * t007;
-    let t009 = fma(-coupling_knuckle_y_z, t008, translational_knuckle_zz);
-    let t010 = 31.0 * t007;
-    let t011 = sin_knuckle_theta * sin_knuckle_theta * (t009 - fma(-961.0, t007, 310.0));
-    let rotational_main_boom_yy = fma(
-        10.240000000000002,
-        t009
-            + fma(
-                sin_knuckle_theta * cos_knuckle_theta,
-                2.0 * (coupling_knuckle_y_z * t010),
-                -t011,
-            ),
-        1326.05,
-    );
-    let main_boom_theta_force = r[0];
-    let knuckle_theta_force = r[1];
+    // Inward: hook
     let hook_theta_force = r[3];
-    let t012 = hook_theta_force * c.c010;
-    let t013 = c.c009 * t012;
-    let force_extension_z = sin_hook_theta * t013;
+    let t001 = hook_theta_force * c.c009;
+    let t002 = c.c002 * t001;
+    let t003 = sin_hook_theta * sin_hook_theta;
+    let translational_extension_xz = sin_hook_theta * cos_hook_theta * c.c013;
+    // Inward: extension
+    let translational_extension_xx = 150.0 + fma(t003, c.c013, c.c012);
+    let translational_extension_zz = 150.0 + fma(-t003, c.c013, c.c001);
+    let t004 = 1.0 / translational_extension_xx;
+    let t005 = translational_extension_xz * t004;
     let extension_x_force = r[2];
-    let t014 = t002 * fma(cos_hook_theta, t013, extension_x_force);
-    let force_knuckle_z = fma(translational_extension_xz, t014, force_extension_z);
+    let t006 = t004 * fma(-cos_hook_theta, t002, extension_x_force);
+    let t007 = fma(-translational_extension_xz, t005, translational_extension_zz);
+    let force_knuckle_z = fma(
+        translational_extension_xz,
+        t006,
+        -(sin_hook_theta * t002),
+    );
+    let extension_x = q[2];
+    let t008 = fma(-extension_x, t007, 150.0);
     let moment_knuckle_y = fma(
         -2.6,
         force_knuckle_z,
         fma(-extension_x, force_knuckle_z, hook_theta_force),
     );
-    let t015 = t007 * (knuckle_theta_force - moment_knuckle_y);
+    let t009 = fma(-2.6, t007, t008);
+    // Inward: knuckle
+    let rotational_knuckle_yy = fma(
+        -2.6,
+        t009,
+        fma(-2.6, t008, fma(-extension_x, t008, fma(-150.0, extension_x, 212.0))),
+    ) + 568.2;
+    let coupling_knuckle_y_z = t009 - 341.0;
+    let translational_knuckle_zz = 310.0 + t007;
+    let t010 = 1.0 / rotational_knuckle_yy;
+    let t011 = 31.0 * t010;
+    let t012 = coupling_knuckle_y_z * t010;
+    let knuckle_theta_force = r[1];
+    let t013 = t010 * (knuckle_theta_force - moment_knuckle_y);
+    let t014 = fma(-coupling_knuckle_y_z, t012, translational_knuckle_zz);
+    let t015 = sin_knuckle_theta * sin_knuckle_theta * (t014 - fma(-961.0, t010, 310.0));
     let force_main_boom_z = fma(
         -sin_knuckle_theta,
-        fma(31.0, t015, extension_x_force),
-        cos_knuckle_theta * fma(coupling_knuckle_y_z, t015, force_knuckle_z),
+        fma(31.0, t013, extension_x_force),
+        cos_knuckle_theta * fma(coupling_knuckle_y_z, t013, force_knuckle_z),
     );
     let moment_main_boom_y = fma(-3.2, force_main_boom_z, knuckle_theta_force);
+    // Inward: main_boom
+    let rotational_main_boom_yy = fma(
+        10.240000000000002,
+        t014
+            + fma(
+                sin_knuckle_theta * cos_knuckle_theta,
+                2.0 * (coupling_knuckle_y_z * t011),
+                -t015,
+            ),
+        1326.05,
+    );
+    let main_boom_theta_force = r[0];
     let alpha_main_boom_y = 1.0 / rotational_main_boom_yy
         * (main_boom_theta_force - moment_main_boom_y);
     out[0] = alpha_main_boom_y;
-    // knuckle_theta
+    // Outward: knuckle
     let t016 = 3.2 * alpha_main_boom_y;
-    let acceleration_knuckle_x = sin_knuckle_theta * t016;
     let t017 = cos_knuckle_theta * t016;
-    let knuckle_theta_ddot = t015
+    let acceleration_knuckle_x = sin_knuckle_theta * t016;
+    let knuckle_theta_ddot = t013
         - fma(
-            rotational_knuckle_yy * t007,
+            rotational_knuckle_yy * t010,
             alpha_main_boom_y,
-            fma(-t008, t017, t010 * acceleration_knuckle_x),
+            fma(-t012, t017, t011 * acceleration_knuckle_x),
         );
     out[1] = knuckle_theta_ddot;
-    // extension_x
     let alpha_knuckle_y = alpha_main_boom_y + knuckle_theta_ddot;
+    // Outward: extension
     let t018 = fma(extension_x, alpha_knuckle_y, fma(2.6, alpha_knuckle_y, t017));
-    let extension_x_ddot = t014
-        - fma(-t003, t018, translational_extension_xx * t002 * acceleration_knuckle_x);
+    let extension_x_ddot = t006
+        - fma(-t005, t018, translational_extension_xx * t004 * acceleration_knuckle_x);
     out[2] = extension_x_ddot;
-    // hook_theta
     let acceleration_extension_x = acceleration_knuckle_x + extension_x_ddot;
+    // Outward: hook
     let acceleration_hook_x = fma(
         sin_hook_theta,
         t018,
         cos_hook_theta * acceleration_extension_x,
     );
-    let hook_theta_ddot = t012
-        - fma(-c.c016, acceleration_hook_x, c.c011 * alpha_knuckle_y);
+    let hook_theta_ddot = t001
+        - fma(c.c011, acceleration_hook_x, c.c010 * alpha_knuckle_y);
     out[3] = hook_theta_ddot;
     SVector::from(out)
 }
@@ -1347,7 +1355,7 @@ pub fn solve_mass(
 /// `a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ)`
 /// [Urbaś 2016, Eq. (5)]
 ///
-/// 164 operations: 65 add, 96 mul, 0 div, 3 sin_cos.
+/// 127 operations: 59 add, 65 mul, 0 div, 3 sin_cos.
 pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
     let q = &q.data.0[0];
     let mut out: [[f64; N]; N] = [[0.0; N]; N];
@@ -1365,136 +1373,108 @@ pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
         cos_hook_theta,
         ],
     ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta]);
-    // Row of main_boom_theta
-    let knuckle_axis_x_x = fma(
-        -sin_main_boom_theta,
-        sin_knuckle_theta,
-        cos_main_boom_theta * cos_knuckle_theta,
-    );
+    // Outward: knuckle
     let knuckle_axis_z_x = fma(
         cos_main_boom_theta,
         sin_knuckle_theta,
         sin_main_boom_theta * cos_knuckle_theta,
     );
-    let hook_axis_x_x = fma(
-        -sin_hook_theta,
-        knuckle_axis_z_x,
-        cos_hook_theta * knuckle_axis_x_x,
+    let knuckle_axis_x_x = fma(
+        -sin_main_boom_theta,
+        sin_knuckle_theta,
+        cos_main_boom_theta * cos_knuckle_theta,
     );
-    let hook_axis_z_x = fma(
-        sin_hook_theta,
-        knuckle_axis_x_x,
-        cos_hook_theta * knuckle_axis_z_x,
-    );
-    let t001 = fma(
-        hook_axis_x_x,
-        hook_axis_x_x * c.c004,
-        hook_axis_z_x * (hook_axis_z_x * c.c003),
-    );
-    let inertia_from_hook_yy = fma(
-        hook_axis_z_x,
-        hook_axis_z_x * c.c004,
-        hook_axis_x_x * (hook_axis_x_x * c.c003),
-    ) + t001;
-    let t002 = fma(
-        knuckle_axis_z_x,
-        knuckle_axis_z_x,
-        knuckle_axis_x_x * (211.0 * knuckle_axis_x_x),
-    )
-        + fma(
-            knuckle_axis_x_x,
-            knuckle_axis_x_x,
-            knuckle_axis_z_x * (211.0 * knuckle_axis_z_x),
-        );
-    let inertia_from_extension_yy = inertia_from_hook_yy + t002;
+    // Inward: hook
+    let first_from_extension_z = cos_hook_theta * c.c002;
+    let t001 = sin_hook_theta * c.c002;
+    let t002 = sin_hook_theta * sin_hook_theta;
+    let second_from_extension_xz = sin_hook_theta * cos_hook_theta * c.c016;
+    let t003 = fma(-t002, c.c016, c.c004);
+    let t004 = fma(t002, c.c016, c.c003);
+    let t005 = t003 + t004;
+    out[3][3] = t005;
+    let t006 = fma(-knuckle_axis_z_x, t001, knuckle_axis_x_x * first_from_extension_z);
+    let t007 = fma(knuckle_axis_x_x, t001, knuckle_axis_z_x * first_from_extension_z);
+    // Inward: extension
+    let first_from_extension_x = -150.0 + t001;
+    let second_from_extension_xx = 211.0 + t004;
+    let second_from_extension_zz = 1.0 + t003;
+    let t008 = knuckle_axis_x_x * c.c006;
+    let t009 = knuckle_axis_z_x * c.c006;
     let extension_x = q[2];
-    let t003 = extension_x * knuckle_axis_x_x;
-    let t004 = hook_axis_z_x * c.c009;
-    let t005 = fma(150.0, knuckle_axis_x_x, t004);
-    let t006 = extension_x * knuckle_axis_z_x;
-    let t007 = hook_axis_x_x * c.c009;
-    let first_from_extension_z = fma(150.0, knuckle_axis_z_x, -t007);
-    let t008 = inertia_from_extension_yy
+    let t010 = fma(extension_x, c.c006, first_from_extension_x);
+    let t011 = fma(extension_x, knuckle_axis_x_x, 2.6 * knuckle_axis_x_x);
+    let t012 = fma(extension_x, knuckle_axis_z_x, 2.6 * knuckle_axis_z_x);
+    // Inward: knuckle
+    let first_from_knuckle_x = 341.0 + (c.c014 + t010);
+    let first_from_knuckle_z = 31.0 + first_from_extension_z;
+    let second_from_knuckle_xx = 560.6
         + fma(
-            -2.0,
-            t006 * fma(-t006, c.c019, first_from_extension_z),
-            2.0 * (t003 * fma(t003, c.c019, -t005)),
+            5.2,
+            t010 + c.c018,
+            fma(
+                2.0,
+                extension_x * fma(extension_x, c.c017, first_from_extension_x),
+                second_from_extension_xx,
+            ),
         );
-    let t009 = 2.6 * knuckle_axis_x_x;
-    let t010 = fma(t003, c.c006, -t005);
-    let t011 = 2.6 * knuckle_axis_z_x;
-    let t012 = fma(-t006, c.c006, first_from_extension_z);
-    let t013 = t008
+    let second_from_knuckle_zz = 7.6 + second_from_extension_zz;
+    let second_from_knuckle_xz = 34.1
         + fma(
-            -2.0,
-            t011 * fma(-t011, c.c019, t012),
-            2.0 * (t009 * fma(t009, c.c019, t010)),
+            2.6,
+            first_from_extension_z,
+            fma(extension_x, first_from_extension_z, second_from_extension_xz),
         );
-    let t014 = 34.1 * knuckle_axis_z_x;
-    let t015 = 34.1 * knuckle_axis_x_x;
-    let t016 = fma(
-        knuckle_axis_x_x,
-        fma(7.6, knuckle_axis_x_x, -t014),
-        -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t015)),
+    let t013 = fma(
+        -sin_knuckle_theta,
+        first_from_knuckle_x,
+        cos_knuckle_theta * first_from_knuckle_z,
     );
-    let inertia_from_knuckle_yy = t013
-        + (fma(
-            knuckle_axis_z_x,
-            fma(7.6, knuckle_axis_z_x, t015),
-            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t014),
-        ) + t016);
+    let t014 = fma(
+        sin_knuckle_theta,
+        first_from_knuckle_z,
+        cos_knuckle_theta * first_from_knuckle_x,
+    );
+    let t015 = second_from_knuckle_zz - second_from_knuckle_xx;
+    let t016 = 2.0 * second_from_knuckle_xz;
+    let t017 = sin_knuckle_theta * sin_knuckle_theta;
+    let t018 = sin_knuckle_theta * cos_knuckle_theta;
+    let t019 = fma(t018, t016, t017 * t015);
+    let t020 = second_from_knuckle_zz - t019;
+    let t021 = second_from_knuckle_xx + t019;
+    let t022 = t020 + t021;
+    out[1][1] = t022;
     let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
-    let first_from_knuckle_x = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x)
-        + fma(t009, c.c006, t010);
-    let t017 = 3.2 * sin_main_boom_theta;
-    let first_from_knuckle_z = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x)
-        + fma(-t011, c.c006, t012);
-    let t018 = inertia_from_knuckle_yy
-        + fma(
-            -2.0,
-            t017 * fma(-t017, c.c020, first_from_knuckle_z),
-            2.0
-                * (upsilon_knuckle_theta_z
-                    * fma(upsilon_knuckle_theta_z, c.c020, first_from_knuckle_x)),
-        );
-    let t019 = 31.5 * sin_main_boom_theta;
-    let t020 = 31.5 * cos_main_boom_theta;
-    let t021 = fma(
-        cos_main_boom_theta,
-        fma(6.55, cos_main_boom_theta, -t019),
-        -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t020)),
+    let t023 = 3.2 * sin_main_boom_theta;
+    // Inward: main_boom
+    let second_from_main_boom_xx = 1319.5 + fma(6.4, t014 + c.c019, t021);
+    let second_from_main_boom_zz = 6.55 + t020;
+    let second_from_main_boom_xz = 31.5
+        + fma(3.2, t013, second_from_knuckle_xz + fma(-t017, t016, t018 * t015));
+    let t024 = fma(
+        sin_main_boom_theta * cos_main_boom_theta,
+        2.0 * second_from_main_boom_xz,
+        sin_main_boom_theta * sin_main_boom_theta
+            * (second_from_main_boom_zz - second_from_main_boom_xx),
     );
-    let inertia_from_main_boom_yy = t018
-        + (fma(
-            sin_main_boom_theta,
-            fma(6.55, sin_main_boom_theta, t020),
-            cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t019),
-        ) + t021);
-    out[0][0] = inertia_from_main_boom_yy;
-    out[1][0] = inertia_from_knuckle_yy
+    out[0][0] = second_from_main_boom_zz - t024 + (second_from_main_boom_xx + t024);
+    // Row of main_boom_theta
+    out[1][0] = t022
         + fma(
             upsilon_knuckle_theta_z,
-            first_from_knuckle_x,
-            -(t017 * first_from_knuckle_z),
+            fma(cos_main_boom_theta, t014, sin_main_boom_theta * t013),
+            -(t023 * fma(-sin_main_boom_theta, t014, cos_main_boom_theta * t013)),
         );
-    let t022 = knuckle_axis_z_x * c.c006;
-    let t023 = t009 + t003;
-    let t024 = knuckle_axis_x_x * c.c006;
-    let t025 = t011 + t006;
-    let t026 = fma(-knuckle_axis_z_x, t005, knuckle_axis_x_x * first_from_extension_z)
-        + fma(t022, t023, -(t024 * t025));
-    out[2][0] = t026 + fma(upsilon_knuckle_theta_z, t022, -(t017 * t024));
-    let t027 = inertia_from_hook_yy + fma(-t004, t023, t007 * t025);
-    out[3][0] = t027 + fma(-upsilon_knuckle_theta_z, t004, t017 * t007);
+    let t025 = first_from_extension_z + fma(t009, t011, -(t008 * t012));
+    out[2][0] = t025 + fma(upsilon_knuckle_theta_z, t009, -(t023 * t008));
+    let t026 = t005 + fma(t007, t011, -(t006 * t012));
+    out[3][0] = t026 + fma(upsilon_knuckle_theta_z, t007, -(t023 * t006));
     // Row of knuckle_theta
-    out[1][1] = inertia_from_knuckle_yy;
-    out[2][1] = t026;
-    out[3][1] = t027;
+    out[2][1] = t025;
+    out[3][1] = t026;
     // Row of extension_x
-    out[2][2] = fma(knuckle_axis_z_x, t022, knuckle_axis_x_x * t024);
-    out[3][2] = -fma(knuckle_axis_z_x, t004, knuckle_axis_x_x * t007);
-    // Row of hook_theta
-    out[3][3] = inertia_from_hook_yy;
+    out[2][2] = fma(knuckle_axis_z_x, t009, knuckle_axis_x_x * t008);
+    out[3][2] = fma(knuckle_axis_z_x, t007, knuckle_axis_x_x * t006);
     symmetric(out)
 }
 
@@ -1503,7 +1483,7 @@ pub fn mass_matrix(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, N> {
 /// `A, e`
 /// [Urbaś 2016, Eqs. (5), (9)]
 ///
-/// 242 operations: 97 add, 142 mul, 0 div, 3 sin_cos.
+/// 204 operations: 90 add, 111 mul, 0 div, 3 sin_cos.
 pub fn mass_matrix_and_bias(
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
@@ -1527,201 +1507,166 @@ pub fn mass_matrix_and_bias(
         cos_hook_theta,
         ],
     ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta]);
-    // Row of main_boom_theta
-    let knuckle_axis_x_x = fma(
-        -sin_main_boom_theta,
-        sin_knuckle_theta,
-        cos_main_boom_theta * cos_knuckle_theta,
-    );
+    // Outward: knuckle
     let knuckle_axis_z_x = fma(
         cos_main_boom_theta,
         sin_knuckle_theta,
         sin_main_boom_theta * cos_knuckle_theta,
     );
-    let hook_axis_x_x = fma(
-        -sin_hook_theta,
-        knuckle_axis_z_x,
-        cos_hook_theta * knuckle_axis_x_x,
+    let knuckle_axis_x_x = fma(
+        -sin_main_boom_theta,
+        sin_knuckle_theta,
+        cos_main_boom_theta * cos_knuckle_theta,
     );
-    let hook_axis_z_x = fma(
-        sin_hook_theta,
-        knuckle_axis_x_x,
-        cos_hook_theta * knuckle_axis_z_x,
-    );
-    let t001 = fma(
-        hook_axis_x_x,
-        hook_axis_x_x * c.c004,
-        hook_axis_z_x * (hook_axis_z_x * c.c003),
-    );
-    let inertia_from_hook_yy = fma(
-        hook_axis_z_x,
-        hook_axis_z_x * c.c004,
-        hook_axis_x_x * (hook_axis_x_x * c.c003),
-    ) + t001;
-    let t002 = fma(
-        knuckle_axis_z_x,
-        knuckle_axis_z_x,
-        knuckle_axis_x_x * (211.0 * knuckle_axis_x_x),
-    )
-        + fma(
-            knuckle_axis_x_x,
-            knuckle_axis_x_x,
-            knuckle_axis_z_x * (211.0 * knuckle_axis_z_x),
-        );
-    let inertia_from_extension_yy = inertia_from_hook_yy + t002;
+    // Inward: hook
+    let first_from_extension_z = cos_hook_theta * c.c002;
+    let t001 = sin_hook_theta * c.c002;
+    let t002 = sin_hook_theta * sin_hook_theta;
+    let second_from_extension_xz = sin_hook_theta * cos_hook_theta * c.c016;
+    let t003 = fma(-t002, c.c016, c.c004);
+    let t004 = fma(t002, c.c016, c.c003);
+    let t005 = t003 + t004;
+    out.mass[3][3] = t005;
+    let t006 = fma(-knuckle_axis_z_x, t001, knuckle_axis_x_x * first_from_extension_z);
+    let t007 = fma(knuckle_axis_x_x, t001, knuckle_axis_z_x * first_from_extension_z);
+    // Inward: extension
+    let first_from_extension_x = -150.0 + t001;
+    let second_from_extension_xx = 211.0 + t004;
+    let second_from_extension_zz = 1.0 + t003;
+    let t008 = knuckle_axis_x_x * c.c006;
+    let t009 = knuckle_axis_z_x * c.c006;
     let extension_x = q[2];
-    let t003 = extension_x * knuckle_axis_x_x;
-    let t004 = hook_axis_z_x * c.c009;
-    let t005 = fma(150.0, knuckle_axis_x_x, t004);
-    let t006 = extension_x * knuckle_axis_z_x;
-    let t007 = hook_axis_x_x * c.c009;
-    let first_from_extension_z = fma(150.0, knuckle_axis_z_x, -t007);
-    let t008 = inertia_from_extension_yy
+    let t010 = fma(extension_x, c.c006, first_from_extension_x);
+    let t011 = fma(extension_x, knuckle_axis_x_x, 2.6 * knuckle_axis_x_x);
+    let t012 = fma(extension_x, knuckle_axis_z_x, 2.6 * knuckle_axis_z_x);
+    // Inward: knuckle
+    let first_from_knuckle_x = 341.0 + (c.c014 + t010);
+    let first_from_knuckle_z = 31.0 + first_from_extension_z;
+    let second_from_knuckle_xx = 560.6
         + fma(
-            -2.0,
-            t006 * fma(-t006, c.c019, first_from_extension_z),
-            2.0 * (t003 * fma(t003, c.c019, -t005)),
+            5.2,
+            t010 + c.c018,
+            fma(
+                2.0,
+                extension_x * fma(extension_x, c.c017, first_from_extension_x),
+                second_from_extension_xx,
+            ),
         );
-    let t009 = 2.6 * knuckle_axis_x_x;
-    let t010 = fma(t003, c.c006, -t005);
-    let t011 = 2.6 * knuckle_axis_z_x;
-    let t012 = fma(-t006, c.c006, first_from_extension_z);
-    let t013 = t008
+    let second_from_knuckle_zz = 7.6 + second_from_extension_zz;
+    let second_from_knuckle_xz = 34.1
         + fma(
-            -2.0,
-            t011 * fma(-t011, c.c019, t012),
-            2.0 * (t009 * fma(t009, c.c019, t010)),
+            2.6,
+            first_from_extension_z,
+            fma(extension_x, first_from_extension_z, second_from_extension_xz),
         );
-    let t014 = 34.1 * knuckle_axis_z_x;
-    let t015 = 34.1 * knuckle_axis_x_x;
-    let t016 = fma(
-        knuckle_axis_x_x,
-        fma(7.6, knuckle_axis_x_x, -t014),
-        -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t015)),
+    let t013 = fma(
+        -sin_knuckle_theta,
+        first_from_knuckle_x,
+        cos_knuckle_theta * first_from_knuckle_z,
     );
-    let inertia_from_knuckle_yy = t013
-        + (fma(
-            knuckle_axis_z_x,
-            fma(7.6, knuckle_axis_z_x, t015),
-            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t014),
-        ) + t016);
+    let t014 = fma(
+        sin_knuckle_theta,
+        first_from_knuckle_z,
+        cos_knuckle_theta * first_from_knuckle_x,
+    );
+    let t015 = second_from_knuckle_zz - second_from_knuckle_xx;
+    let t016 = 2.0 * second_from_knuckle_xz;
+    let t017 = sin_knuckle_theta * sin_knuckle_theta;
+    let t018 = sin_knuckle_theta * cos_knuckle_theta;
+    let t019 = fma(t018, t016, t017 * t015);
+    let t020 = second_from_knuckle_zz - t019;
+    let t021 = second_from_knuckle_xx + t019;
+    let t022 = t020 + t021;
+    out.mass[1][1] = t022;
     let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
-    let first_from_knuckle_x = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x)
-        + fma(t009, c.c006, t010);
-    let t017 = 3.2 * sin_main_boom_theta;
-    let first_from_knuckle_z = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x)
-        + fma(-t011, c.c006, t012);
-    let t018 = inertia_from_knuckle_yy
-        + fma(
-            -2.0,
-            t017 * fma(-t017, c.c020, first_from_knuckle_z),
-            2.0
-                * (upsilon_knuckle_theta_z
-                    * fma(upsilon_knuckle_theta_z, c.c020, first_from_knuckle_x)),
-        );
-    let t019 = 31.5 * sin_main_boom_theta;
-    let t020 = 31.5 * cos_main_boom_theta;
-    let t021 = fma(
-        cos_main_boom_theta,
-        fma(6.55, cos_main_boom_theta, -t019),
-        -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t020)),
+    let t023 = 3.2 * sin_main_boom_theta;
+    // Inward: main_boom
+    let second_from_main_boom_xx = 1319.5 + fma(6.4, t014 + c.c019, t021);
+    let second_from_main_boom_zz = 6.55 + t020;
+    let second_from_main_boom_xz = 31.5
+        + fma(3.2, t013, second_from_knuckle_xz + fma(-t017, t016, t018 * t015));
+    let t024 = fma(
+        sin_main_boom_theta * cos_main_boom_theta,
+        2.0 * second_from_main_boom_xz,
+        sin_main_boom_theta * sin_main_boom_theta
+            * (second_from_main_boom_zz - second_from_main_boom_xx),
     );
-    let inertia_from_main_boom_yy = t018
-        + (fma(
-            sin_main_boom_theta,
-            fma(6.55, sin_main_boom_theta, t020),
-            cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t019),
-        ) + t021);
-    out.mass[0][0] = inertia_from_main_boom_yy;
-    out.mass[0][1] = inertia_from_knuckle_yy
-        + fma(
-            upsilon_knuckle_theta_z,
-            first_from_knuckle_x,
-            -(t017 * first_from_knuckle_z),
-        );
-    let t022 = knuckle_axis_z_x * c.c006;
-    let t023 = t009 + t003;
-    let t024 = knuckle_axis_x_x * c.c006;
-    let t025 = t011 + t006;
-    let t026 = fma(-knuckle_axis_z_x, t005, knuckle_axis_x_x * first_from_extension_z)
-        + fma(t022, t023, -(t024 * t025));
-    out.mass[0][2] = t026 + fma(upsilon_knuckle_theta_z, t022, -(t017 * t024));
-    let t027 = inertia_from_hook_yy + fma(-t004, t023, t007 * t025);
-    out.mass[0][3] = t027 + fma(-upsilon_knuckle_theta_z, t004, t017 * t007);
-    // Row of knuckle_theta
-    out.mass[1][1] = inertia_from_knuckle_yy;
-    out.mass[1][2] = t026;
-    out.mass[1][3] = t027;
-    // Row of extension_x
-    out.mass[2][2] = fma(knuckle_axis_z_x, t022, knuckle_axis_x_x * t024);
-    out.mass[2][3] = -fma(knuckle_axis_z_x, t004, knuckle_axis_x_x * t007);
-    // Row of hook_theta
-    out.mass[3][3] = inertia_from_hook_yy;
-    // Bias of main_boom_theta
+    out.mass[0][0] = second_from_main_boom_zz - t024 + (second_from_main_boom_xx + t024);
+    // Outward: main_boom
+    let acceleration_main_boom_z = 9.81 * cos_main_boom_theta;
+    // Outward: knuckle
     let main_boom_theta_dot = v[0];
-    let knuckle_theta_dot = v[1];
-    let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
-    let t028 = fma(
+    let t025 = fma(
         9.81,
         sin_main_boom_theta,
         main_boom_theta_dot * (3.2 * main_boom_theta_dot),
     );
-    let acceleration_main_boom_z = 9.81 * cos_main_boom_theta;
-    let t029 = fma(
-        sin_knuckle_theta,
-        acceleration_main_boom_z,
-        cos_knuckle_theta * t028,
-    );
-    let t030 = fma(
-        omega_knuckle_y,
-        extension_x * omega_knuckle_y,
-        fma(omega_knuckle_y, 2.6 * omega_knuckle_y, t029),
-    );
-    let t031 = fma(
+    let knuckle_theta_dot = v[1];
+    let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
+    let t026 = fma(
         cos_knuckle_theta,
         acceleration_main_boom_z,
-        -(sin_knuckle_theta * t028),
+        -(sin_knuckle_theta * t025),
+    );
+    let t027 = fma(
+        sin_knuckle_theta,
+        acceleration_main_boom_z,
+        cos_knuckle_theta * t025,
+    );
+    // Outward: extension
+    let t028 = fma(
+        omega_knuckle_y,
+        extension_x * omega_knuckle_y,
+        fma(omega_knuckle_y, 2.6 * omega_knuckle_y, t027),
     );
     let extension_x_dot = v[2];
-    let t032 = fma(-omega_knuckle_y, 2.0 * extension_x_dot, t031);
-    let t033 = fma(sin_hook_theta, t032, cos_hook_theta * t030);
-    let moment_hook_y = c.c009 * t033;
-    let moment_extension_y = fma(150.0, t032, moment_hook_y);
+    let t029 = fma(-omega_knuckle_y, 2.0 * extension_x_dot, t026);
+    // Outward: hook
     let hook_theta_dot = v[3];
     let omega_hook_y = hook_theta_dot + omega_knuckle_y;
+    let t030 = fma(sin_hook_theta, t029, cos_hook_theta * t028);
+    // Inward: hook
+    let t031 = c.c001 * t030;
     let force_hook_z = fma(
-        omega_hook_y,
-        omega_hook_y * c.c009,
-        c.c001 * fma(-sin_hook_theta, t030, cos_hook_theta * t032),
+        c.c001,
+        fma(-sin_hook_theta, t028, cos_hook_theta * t029),
+        -(omega_hook_y * (c.c002 * omega_hook_y)),
     );
-    let t034 = c.c001 * t033;
+    let t032 = c.c002 * t030;
+    out.bias[3] = t032;
+    // Inward: extension
     let force_extension_z = fma(
         150.0,
-        t032,
-        fma(sin_hook_theta, t034, cos_hook_theta * force_hook_z),
-    );
-    let t035 = fma(
-        -2.6,
-        force_extension_z,
-        fma(-extension_x, force_extension_z, moment_extension_y),
-    );
-    let t036 = fma(341.0, t031, 31.0 * t029);
-    let moment_knuckle_y = t035 - t036;
-    let force_knuckle_z = fma(
-        -omega_knuckle_y,
-        31.0 * omega_knuckle_y,
-        fma(310.0, t031, force_extension_z),
+        t029,
+        fma(sin_hook_theta, t031, cos_hook_theta * force_hook_z),
     );
     let force_extension_x = fma(
         omega_knuckle_y,
         150.0 * omega_knuckle_y,
-        fma(-150.0, t030, fma(sin_hook_theta, force_hook_z, -(cos_hook_theta * t034))),
+        fma(-150.0, t028, fma(sin_hook_theta, force_hook_z, -(cos_hook_theta * t031))),
     );
+    let moment_extension_y = fma(150.0, t029, -t032);
+    out.bias[2] = -force_extension_x;
+    let t033 = fma(
+        -2.6,
+        force_extension_z,
+        fma(-extension_x, force_extension_z, moment_extension_y),
+    );
+    // Inward: knuckle
     let force_knuckle_x = fma(
         -omega_knuckle_y,
         341.0 * omega_knuckle_y,
-        fma(-310.0, t029, force_extension_x),
+        fma(-310.0, t027, force_extension_x),
     );
+    let force_knuckle_z = fma(
+        -omega_knuckle_y,
+        31.0 * omega_knuckle_y,
+        fma(310.0, t026, force_extension_z),
+    );
+    let t034 = fma(341.0, t026, 31.0 * t027);
+    let moment_knuckle_y = t033 - t034;
+    out.bias[1] = t034 - t033;
+    // Inward: main_boom
     out.bias[0] = fma(
         6180.3,
         cos_main_boom_theta,
@@ -1736,12 +1681,23 @@ pub fn mass_matrix_and_bias(
             ),
             moment_knuckle_y,
         );
-    // Bias of knuckle_theta
-    out.bias[1] = t036 - t035;
-    // Bias of extension_x
-    out.bias[2] = -force_extension_x;
-    // Bias of hook_theta
-    out.bias[3] = -moment_hook_y;
+    // Row of main_boom_theta
+    out.mass[0][1] = t022
+        + fma(
+            upsilon_knuckle_theta_z,
+            fma(cos_main_boom_theta, t014, sin_main_boom_theta * t013),
+            -(t023 * fma(-sin_main_boom_theta, t014, cos_main_boom_theta * t013)),
+        );
+    let t035 = first_from_extension_z + fma(t009, t011, -(t008 * t012));
+    out.mass[0][2] = t035 + fma(upsilon_knuckle_theta_z, t009, -(t023 * t008));
+    let t036 = t005 + fma(t007, t011, -(t006 * t012));
+    out.mass[0][3] = t036 + fma(upsilon_knuckle_theta_z, t007, -(t023 * t006));
+    // Row of knuckle_theta
+    out.mass[1][2] = t035;
+    out.mass[1][3] = t036;
+    // Row of extension_x
+    out.mass[2][2] = fma(knuckle_axis_z_x, t009, knuckle_axis_x_x * t008);
+    out.mass[2][3] = fma(knuckle_axis_z_x, t007, knuckle_axis_x_x * t006);
     mass.data.0 = out.mass;
     SVector::from(out.bias)
 }
@@ -1751,7 +1707,7 @@ pub fn mass_matrix_and_bias(
 /// `e = −(h + g), h_i + g_i = tr(Ω_i Σ T H B̄ᵀ)`
 /// [Urbaś 2016, Eqs. (5), (7), (9)]
 ///
-/// 81 operations: 32 add, 46 mul, 0 div, 3 sin_cos.
+/// 80 operations: 31 add, 46 mul, 0 div, 3 sin_cos.
 pub fn bias(q: &SVector<f64, N>, v: &SVector<f64, N>, c: &Constants) -> SVector<f64, N> {
     let q = &q.data.0[0];
     let v = &v.data.0[0];
@@ -1770,72 +1726,82 @@ pub fn bias(q: &SVector<f64, N>, v: &SVector<f64, N>, c: &Constants) -> SVector<
         cos_hook_theta,
         ],
     ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta]);
-    // main_boom_theta
+    // Outward: main_boom
+    let acceleration_main_boom_z = 9.81 * cos_main_boom_theta;
+    // Outward: knuckle
     let main_boom_theta_dot = v[0];
-    let knuckle_theta_dot = v[1];
-    let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
-    let extension_x = q[2];
     let t001 = fma(
         9.81,
         sin_main_boom_theta,
         main_boom_theta_dot * (3.2 * main_boom_theta_dot),
     );
-    let acceleration_main_boom_z = 9.81 * cos_main_boom_theta;
+    let knuckle_theta_dot = v[1];
+    let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
     let t002 = fma(
-        sin_knuckle_theta,
-        acceleration_main_boom_z,
-        cos_knuckle_theta * t001,
-    );
-    let t003 = fma(
-        omega_knuckle_y,
-        extension_x * omega_knuckle_y,
-        fma(omega_knuckle_y, 2.6 * omega_knuckle_y, t002),
-    );
-    let t004 = fma(
         cos_knuckle_theta,
         acceleration_main_boom_z,
         -(sin_knuckle_theta * t001),
     );
+    let t003 = fma(
+        sin_knuckle_theta,
+        acceleration_main_boom_z,
+        cos_knuckle_theta * t001,
+    );
+    // Outward: extension
+    let extension_x = q[2];
+    let t004 = fma(
+        omega_knuckle_y,
+        extension_x * omega_knuckle_y,
+        fma(omega_knuckle_y, 2.6 * omega_knuckle_y, t003),
+    );
     let extension_x_dot = v[2];
-    let t005 = fma(-omega_knuckle_y, 2.0 * extension_x_dot, t004);
-    let t006 = fma(sin_hook_theta, t005, cos_hook_theta * t003);
-    let moment_hook_y = c.c009 * t006;
-    let moment_extension_y = fma(150.0, t005, moment_hook_y);
+    let t005 = fma(-omega_knuckle_y, 2.0 * extension_x_dot, t002);
+    // Outward: hook
     let hook_theta_dot = v[3];
     let omega_hook_y = hook_theta_dot + omega_knuckle_y;
-    let force_hook_z = fma(
-        omega_hook_y,
-        omega_hook_y * c.c009,
-        c.c001 * fma(-sin_hook_theta, t003, cos_hook_theta * t005),
-    );
+    let t006 = fma(sin_hook_theta, t005, cos_hook_theta * t004);
+    // Inward: hook
     let t007 = c.c001 * t006;
+    let force_hook_z = fma(
+        c.c001,
+        fma(-sin_hook_theta, t004, cos_hook_theta * t005),
+        -(omega_hook_y * (c.c002 * omega_hook_y)),
+    );
+    let t008 = c.c002 * t006;
+    out[3] = t008;
+    // Inward: extension
     let force_extension_z = fma(
         150.0,
         t005,
         fma(sin_hook_theta, t007, cos_hook_theta * force_hook_z),
     );
-    let t008 = fma(
+    let force_extension_x = fma(
+        omega_knuckle_y,
+        150.0 * omega_knuckle_y,
+        fma(-150.0, t004, fma(sin_hook_theta, force_hook_z, -(cos_hook_theta * t007))),
+    );
+    let moment_extension_y = fma(150.0, t005, -t008);
+    out[2] = -force_extension_x;
+    let t009 = fma(
         -2.6,
         force_extension_z,
         fma(-extension_x, force_extension_z, moment_extension_y),
     );
-    let t009 = fma(341.0, t004, 31.0 * t002);
-    let moment_knuckle_y = t008 - t009;
-    let force_knuckle_z = fma(
-        -omega_knuckle_y,
-        31.0 * omega_knuckle_y,
-        fma(310.0, t004, force_extension_z),
-    );
-    let force_extension_x = fma(
-        omega_knuckle_y,
-        150.0 * omega_knuckle_y,
-        fma(-150.0, t003, fma(sin_hook_theta, force_hook_z, -(cos_hook_theta * t007))),
-    );
+    // Inward: knuckle
     let force_knuckle_x = fma(
         -omega_knuckle_y,
         341.0 * omega_knuckle_y,
-        fma(-310.0, t002, force_extension_x),
+        fma(-310.0, t003, force_extension_x),
     );
+    let force_knuckle_z = fma(
+        -omega_knuckle_y,
+        31.0 * omega_knuckle_y,
+        fma(310.0, t002, force_extension_z),
+    );
+    let t010 = fma(341.0, t002, 31.0 * t003);
+    let moment_knuckle_y = t009 - t010;
+    out[1] = t010 - t009;
+    // Inward: main_boom
     out[0] = fma(6180.3, cos_main_boom_theta, 206.01000000000002 * sin_main_boom_theta)
         - fma(
             -3.2,
@@ -1846,12 +1812,6 @@ pub fn bias(q: &SVector<f64, N>, v: &SVector<f64, N>, c: &Constants) -> SVector<
             ),
             moment_knuckle_y,
         );
-    // knuckle_theta
-    out[1] = t009 - t008;
-    // extension_x
-    out[2] = -force_extension_x;
-    // hook_theta
-    out[3] = -moment_hook_y;
     SVector::from(out)
 }
 
@@ -2092,109 +2052,117 @@ pub fn factorise(
         knuckle_theta,
         hook_theta,
     ]);
-    let extension_x = q[2];
-    out[0] = extension_x;
-    let knuckle_theta_resistance = resistance[1];
-    out[1] = knuckle_theta_resistance;
-    let extension_x_resistance = resistance[2];
-    out[2] = extension_x_resistance;
+    // Inward: hook
+    out[8] = c.c002;
     let hook_theta_resistance = resistance[3];
+    let t001 = 1.0 / (hook_theta_resistance + c.c008);
+    out[9] = t001;
+    out[10] = c.c008 * t001;
+    let t002 = c.c002 * t001;
+    out[11] = t002;
+    let t003 = hook_theta_resistance * t001;
+    let t004 = c.c002 * t003;
+    let t005 = fma(-c.c002, t002, c.c001);
+    let t006 = sin_hook_theta * sin_hook_theta;
+    let coupling_extension_y_x = cos_hook_theta * t004;
+    out[12] = coupling_extension_y_x;
+    let t007 = c.c001 - t005;
+    let translational_extension_xz = sin_hook_theta * cos_hook_theta * t007;
+    out[13] = translational_extension_xz;
+    // Inward: extension
+    let rotational_extension_yy = fma(c.c008, t003, 212.0);
+    let coupling_extension_y_z = fma(-sin_hook_theta, t004, 150.0);
+    let translational_extension_xx = 150.0 + fma(t006, t007, t005);
+    let translational_extension_zz = 150.0 + fma(-t006, t007, c.c001);
+    let extension_x_resistance = resistance[2];
+    let t008 = 1.0 / (extension_x_resistance + translational_extension_xx);
+    out[14] = t008;
+    let t009 = coupling_extension_y_x * t008;
+    out[15] = t009;
+    out[16] = translational_extension_xx * t008;
+    let t010 = translational_extension_xz * t008;
+    out[17] = t010;
+    let t011 = extension_x_resistance * t008;
+    let t012 = fma(-translational_extension_xz, t010, translational_extension_zz);
+    let translational_knuckle_xz = translational_extension_xz * t011;
+    let t013 = fma(-translational_extension_xz, t009, coupling_extension_y_z);
+    let extension_x = q[2];
+    let t014 = fma(-extension_x, t012, t013);
+    let t015 = fma(-2.6, t012, t014);
+    // Inward: knuckle
+    let rotational_knuckle_yy = 568.2
+        + fma(
+            -2.6,
+            t015,
+            fma(
+                -2.6,
+                t014,
+                fma(
+                    -extension_x,
+                    t014,
+                    fma(
+                        -extension_x,
+                        t013,
+                        fma(-coupling_extension_y_x, t009, rotational_extension_yy),
+                    ),
+                ),
+            ),
+        );
+    let coupling_knuckle_y_x = 31.0
+        + fma(
+            -2.6,
+            translational_knuckle_xz,
+            fma(-extension_x, translational_knuckle_xz, coupling_extension_y_x * t011),
+        );
+    out[18] = coupling_knuckle_y_x;
+    let coupling_knuckle_y_z = -341.0 + t015;
+    out[19] = coupling_knuckle_y_z;
+    let translational_knuckle_xx = fma(translational_extension_xx, t011, 310.0);
+    let translational_knuckle_zz = 310.0 + t012;
+    let knuckle_theta_resistance = resistance[1];
+    let t016 = 1.0 / (knuckle_theta_resistance + rotational_knuckle_yy);
+    out[20] = t016;
+    out[21] = rotational_knuckle_yy * t016;
+    let t017 = coupling_knuckle_y_x * t016;
+    out[22] = t017;
+    let t018 = coupling_knuckle_y_z * t016;
+    out[23] = t018;
+    let t019 = knuckle_theta_resistance * t016;
+    let t020 = fma(-coupling_knuckle_y_z, t018, translational_knuckle_zz);
+    let t021 = fma(
+        -sin_knuckle_theta,
+        coupling_knuckle_y_x * t019,
+        cos_knuckle_theta * (coupling_knuckle_y_z * t019),
+    );
+    let t022 = sin_knuckle_theta * sin_knuckle_theta
+        * (t020 - fma(-coupling_knuckle_y_x, t017, translational_knuckle_xx));
+    let t023 = fma(-3.2, t021, rotational_knuckle_yy * t019);
+    let t024 = fma(
+        -3.2,
+        fma(
+            -3.2,
+            t020
+                - fma(
+                    sin_knuckle_theta * cos_knuckle_theta,
+                    2.0 * fma(-coupling_knuckle_y_z, t017, translational_knuckle_xz),
+                    t022,
+                ),
+            t021,
+        ),
+        t023,
+    );
+    // Inward: main_boom
+    let rotational_main_boom_yy = 1326.05 + t024;
+    let main_boom_theta_resistance = resistance[0];
+    out[24] = 1.0 / (main_boom_theta_resistance + rotational_main_boom_yy);
+    out[0] = extension_x;
+    out[1] = knuckle_theta_resistance;
+    out[2] = extension_x_resistance;
     out[3] = hook_theta_resistance;
     out[4] = sin_knuckle_theta;
     out[5] = cos_knuckle_theta;
     out[6] = sin_hook_theta;
     out[7] = cos_hook_theta;
-    out[8] = c.c009;
-    let t001 = 1.0 / (hook_theta_resistance + c.c008);
-    out[9] = t001;
-    out[10] = c.c008 * t001;
-    let t002 = c.c009 * t001;
-    out[11] = t002;
-    let t003 = hook_theta_resistance * t001;
-    let t004 = c.c009 * t003;
-    let t005 = cos_hook_theta * t004;
-    out[12] = t005;
-    let t006 = fma(-c.c009, t002, c.c001);
-    let t007 = c.c001 - t006;
-    let translational_extension_xz = sin_hook_theta * cos_hook_theta * t007;
-    out[13] = translational_extension_xz;
-    let t008 = sin_hook_theta * sin_hook_theta;
-    let translational_extension_xx = 150.0 + fma(t008, t007, t006);
-    let t009 = 1.0 / (extension_x_resistance + translational_extension_xx);
-    out[14] = t009;
-    let t010 = t005 * t009;
-    out[15] = t010;
-    out[16] = translational_extension_xx * t009;
-    let t011 = translational_extension_xz * t009;
-    out[17] = t011;
-    let t012 = extension_x_resistance * t009;
-    let translational_knuckle_xz = translational_extension_xz * t012;
-    let coupling_knuckle_y_x = 31.0
-        - fma(
-            2.6,
-            translational_knuckle_xz,
-            fma(extension_x, translational_knuckle_xz, t005 * t012),
-        );
-    out[18] = coupling_knuckle_y_x;
-    let coupling_extension_y_z = fma(sin_hook_theta, t004, 150.0);
-    let t013 = fma(translational_extension_xz, t010, coupling_extension_y_z);
-    let translational_extension_zz = 150.0 + fma(-t008, t007, c.c001);
-    let t014 = fma(-translational_extension_xz, t011, translational_extension_zz);
-    let t015 = fma(-extension_x, t014, t013);
-    let t016 = fma(-2.6, t014, t015);
-    let coupling_knuckle_y_z = -341.0 + t016;
-    out[19] = coupling_knuckle_y_z;
-    let rotational_extension_yy = fma(c.c008, t003, 212.0);
-    let rotational_knuckle_yy = 568.2
-        + fma(
-            -2.6,
-            t016,
-            fma(
-                -2.6,
-                t015,
-                fma(
-                    -extension_x,
-                    t015,
-                    fma(-extension_x, t013, fma(-t005, t010, rotational_extension_yy)),
-                ),
-            ),
-        );
-    let t017 = 1.0 / (knuckle_theta_resistance + rotational_knuckle_yy);
-    out[20] = t017;
-    out[21] = rotational_knuckle_yy * t017;
-    let t018 = coupling_knuckle_y_x * t017;
-    out[22] = t018;
-    let t019 = coupling_knuckle_y_z * t017;
-    out[23] = t019;
-    let main_boom_theta_resistance = resistance[0];
-    let t020 = knuckle_theta_resistance * t017;
-    let t021 = fma(
-        -sin_knuckle_theta,
-        coupling_knuckle_y_x * t020,
-        cos_knuckle_theta * (coupling_knuckle_y_z * t020),
-    );
-    let t022 = fma(-3.2, t021, rotational_knuckle_yy * t020);
-    let translational_knuckle_zz = 310.0 + t014;
-    let t023 = fma(-coupling_knuckle_y_z, t019, translational_knuckle_zz);
-    let translational_knuckle_xx = fma(translational_extension_xx, t012, 310.0);
-    let t024 = sin_knuckle_theta * sin_knuckle_theta
-        * (t023 - fma(-coupling_knuckle_y_x, t018, translational_knuckle_xx));
-    let t025 = fma(
-        -3.2,
-        fma(
-            -3.2,
-            t023
-                - fma(
-                    sin_knuckle_theta * cos_knuckle_theta,
-                    2.0 * fma(-coupling_knuckle_y_z, t018, translational_knuckle_xz),
-                    t024,
-                ),
-            t021,
-        ),
-        t022,
-    );
-    let rotational_main_boom_yy = 1326.05 + t025;
-    out[24] = 1.0 / (main_boom_theta_resistance + rotational_main_boom_yy);
     out
 }
 
@@ -2206,34 +2174,34 @@ pub fn factorise(
 pub fn solve(f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
     let r = &r.data.0[0];
     let mut out: [f64; N] = [0.0; N];
-    // main_boom_theta
-    let f024 = f[24];
-    let main_boom_theta_force = r[0];
-    let knuckle_theta_force = r[1];
-    let f001 = f[1];
-    let f020 = f[20];
+    // Inward: hook
     let hook_theta_force = r[3];
-    let f003 = f[3];
     let f009 = f[9];
     let t001 = hook_theta_force * f009;
-    let f012 = f[12];
+    let f008 = f[8];
+    let t002 = f008 * t001;
+    // Inward: extension
     let f014 = f[14];
     let extension_x_force = r[2];
     let f007 = f[7];
-    let f008 = f[8];
-    let t002 = f008 * t001;
-    let t003 = f014 * fma(f007, t002, extension_x_force);
-    let f000 = f[0];
-    let f006 = f[6];
+    let t003 = f014 * fma(-f007, t002, extension_x_force);
     let f013 = f[13];
-    let t004 = fma(f013, t003, f006 * t002);
+    let f006 = f[6];
+    let t004 = fma(f013, t003, -(f006 * t002));
+    // Inward: knuckle
+    let f020 = f[20];
+    let knuckle_theta_force = r[1];
+    let f003 = f[3];
+    let f012 = f[12];
+    let f000 = f[0];
     let t005 = f020
         * (knuckle_theta_force
             - fma(
                 -2.6,
                 t004,
-                fma(-f000, t004, fma(-f012, t003, fma(-f003, t001, hook_theta_force))),
+                fma(-f000, t004, fma(f012, t003, fma(-f003, t001, hook_theta_force))),
             ));
+    let f001 = f[1];
     let f005 = f[5];
     let f019 = f[19];
     let f004 = f[4];
@@ -2248,29 +2216,32 @@ pub fn solve(f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
         ),
         fma(-f001, t005, knuckle_theta_force),
     );
+    // Inward: main_boom
+    let f024 = f[24];
+    let main_boom_theta_force = r[0];
     let t007 = f024 * (main_boom_theta_force - t006);
     out[0] = t007;
-    // knuckle_theta
+    // Outward: knuckle
+    let t008 = 3.2 * t007;
+    let t009 = f005 * t008;
+    let t010 = f004 * t008;
     let f021 = f[21];
     let f022 = f[22];
-    let t008 = 3.2 * t007;
-    let t009 = f004 * t008;
     let f023 = f[23];
-    let t010 = f005 * t008;
-    let t011 = t005 - fma(f021, t007, fma(-f023, t010, f022 * t009));
+    let t011 = t005 - fma(f021, t007, fma(-f023, t009, f022 * t010));
     out[1] = t011;
-    // extension_x
+    let t012 = t007 + t011;
+    // Outward: extension
+    let t013 = fma(f000, t012, fma(2.6, t012, t009));
+    let f015 = f[15];
     let f016 = f[16];
     let f017 = f[17];
-    let t012 = t007 + t011;
-    let t013 = fma(f000, t012, fma(2.6, t012, t010));
-    let f015 = f[15];
-    let t014 = t003 - fma(-f015, t012, fma(-f017, t013, f016 * t009));
+    let t014 = t003 - fma(f015, t012, fma(-f017, t013, f016 * t010));
     out[2] = t014;
-    // hook_theta
+    // Outward: hook
     let f010 = f[10];
     let f011 = f[11];
-    out[3] = t001 - fma(-f011, fma(f006, t013, f007 * (t009 + t014)), f010 * t012);
+    out[3] = t001 - fma(f011, fma(f006, t013, f007 * (t010 + t014)), f010 * t012);
     SVector::from(out)
 }
 
@@ -2450,7 +2421,7 @@ pub fn tangent_stiffness(q: &SVector<f64, N>, c: &Constants) -> SMatrix<f64, N, 
 ///
 /// `A δq̈ + D δq̇ + K δq = 0`
 ///
-/// 195 operations: 84 add, 108 mul, 0 div, 3 sin_cos.
+/// 165 operations: 80 add, 82 mul, 0 div, 3 sin_cos.
 pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
     let q = &q.data.0[0];
     let mut out: [[[f64; N]; N]; 3] = [[[0.0; N]; N]; 3];
@@ -2469,165 +2440,142 @@ pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
         ],
     ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta]);
     // Mass, row of main_boom_theta
-    let knuckle_axis_x_x = fma(
-        -sin_main_boom_theta,
+    let t001 = sin_hook_theta * sin_hook_theta;
+    let t002 = fma(-t001, c.c016, c.c004);
+    let second_from_extension_zz = 1.0 + t002;
+    let second_from_knuckle_zz = 7.6 + second_from_extension_zz;
+    let t003 = sin_knuckle_theta * sin_knuckle_theta;
+    let t004 = fma(t001, c.c016, c.c003);
+    let second_from_extension_xx = 211.0 + t004;
+    let extension_x = q[2];
+    let t005 = sin_hook_theta * c.c002;
+    let first_from_extension_x = -150.0 + t005;
+    let t006 = fma(extension_x, c.c006, first_from_extension_x);
+    let second_from_knuckle_xx = 560.6
+        + fma(
+            5.2,
+            t006 + c.c018,
+            fma(
+                2.0,
+                extension_x * fma(extension_x, c.c017, first_from_extension_x),
+                second_from_extension_xx,
+            ),
+        );
+    let t007 = second_from_knuckle_zz - second_from_knuckle_xx;
+    let t008 = sin_knuckle_theta * cos_knuckle_theta;
+    let second_from_extension_xz = sin_hook_theta * cos_hook_theta * c.c016;
+    let first_from_extension_z = cos_hook_theta * c.c002;
+    let second_from_knuckle_xz = 34.1
+        + fma(
+            2.6,
+            first_from_extension_z,
+            fma(extension_x, first_from_extension_z, second_from_extension_xz),
+        );
+    let t009 = 2.0 * second_from_knuckle_xz;
+    let t010 = fma(t008, t009, t003 * t007);
+    let t011 = second_from_knuckle_zz - t010;
+    let second_from_main_boom_zz = 6.55 + t011;
+    let t012 = second_from_knuckle_xx + t010;
+    let first_from_knuckle_x = 341.0 + (c.c014 + t006);
+    let first_from_knuckle_z = 31.0 + first_from_extension_z;
+    let t013 = fma(
         sin_knuckle_theta,
-        cos_main_boom_theta * cos_knuckle_theta,
+        first_from_knuckle_z,
+        cos_knuckle_theta * first_from_knuckle_x,
     );
+    let second_from_main_boom_xx = 1319.5 + fma(6.4, t013 + c.c019, t012);
+    let t014 = fma(
+        -sin_knuckle_theta,
+        first_from_knuckle_x,
+        cos_knuckle_theta * first_from_knuckle_z,
+    );
+    let second_from_main_boom_xz = 31.5
+        + fma(3.2, t014, second_from_knuckle_xz + fma(-t003, t009, t008 * t007));
+    let t015 = fma(
+        sin_main_boom_theta * cos_main_boom_theta,
+        2.0 * second_from_main_boom_xz,
+        sin_main_boom_theta * sin_main_boom_theta
+            * (second_from_main_boom_zz - second_from_main_boom_xx),
+    );
+    out[0][0][0] = second_from_main_boom_zz - t015 + (second_from_main_boom_xx + t015);
+    let t016 = t011 + t012;
+    let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
+    let t017 = 3.2 * sin_main_boom_theta;
+    out[0][1][0] = t016
+        + fma(
+            upsilon_knuckle_theta_z,
+            fma(cos_main_boom_theta, t013, sin_main_boom_theta * t014),
+            -(t017 * fma(-sin_main_boom_theta, t013, cos_main_boom_theta * t014)),
+        );
     let knuckle_axis_z_x = fma(
         cos_main_boom_theta,
         sin_knuckle_theta,
         sin_main_boom_theta * cos_knuckle_theta,
     );
+    let t018 = knuckle_axis_z_x * c.c006;
+    let knuckle_axis_x_x = fma(
+        -sin_main_boom_theta,
+        sin_knuckle_theta,
+        cos_main_boom_theta * cos_knuckle_theta,
+    );
+    let t019 = fma(extension_x, knuckle_axis_x_x, 2.6 * knuckle_axis_x_x);
+    let t020 = knuckle_axis_x_x * c.c006;
+    let t021 = extension_x * knuckle_axis_z_x;
+    let t022 = fma(2.6, knuckle_axis_z_x, t021);
+    let t023 = first_from_extension_z + fma(t018, t019, -(t020 * t022));
+    out[0][2][0] = t023 + fma(upsilon_knuckle_theta_z, t018, -(t017 * t020));
+    let t024 = t002 + t004;
+    let t025 = fma(knuckle_axis_x_x, t005, knuckle_axis_z_x * first_from_extension_z);
+    let t026 = fma(-knuckle_axis_z_x, t005, knuckle_axis_x_x * first_from_extension_z);
+    let t027 = t024 + fma(t025, t019, -(t026 * t022));
+    out[0][3][0] = t027 + fma(upsilon_knuckle_theta_z, t025, -(t017 * t026));
+    // Mass, row of knuckle_theta
+    out[0][1][1] = t016;
+    out[0][2][1] = t023;
+    out[0][3][1] = t027;
+    // Mass, row of extension_x
+    out[0][2][2] = fma(knuckle_axis_z_x, t018, knuckle_axis_x_x * t020);
+    out[0][3][2] = fma(knuckle_axis_z_x, t025, knuckle_axis_x_x * t026);
+    // Mass, row of hook_theta
+    out[0][3][3] = t024;
+    // Stiffness, row of main_boom_theta
+    let first_main_boom_z = fma(21.0, cos_main_boom_theta, -630.0 * sin_main_boom_theta)
+        + 840.0;
+    let knuckle_origin_z = 2.0 - t017;
+    let first_knuckle_z = fma(
+        310.0,
+        knuckle_origin_z,
+        fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x),
+    );
+    let t028 = fma(-2.6, knuckle_axis_z_x, knuckle_origin_z);
+    let extension_origin_z = t028 - t021;
+    let first_extension_z = fma(150.0, extension_origin_z, 150.0 * knuckle_axis_z_x);
     let hook_axis_x_x = fma(
         -sin_hook_theta,
         knuckle_axis_z_x,
         cos_hook_theta * knuckle_axis_x_x,
     );
-    let hook_axis_z_x = fma(
-        sin_hook_theta,
-        knuckle_axis_x_x,
-        cos_hook_theta * knuckle_axis_z_x,
-    );
-    let t001 = fma(
-        hook_axis_x_x,
-        hook_axis_x_x * c.c004,
-        hook_axis_z_x * (hook_axis_z_x * c.c003),
-    );
-    let inertia_from_hook_yy = fma(
-        hook_axis_z_x,
-        hook_axis_z_x * c.c004,
-        hook_axis_x_x * (hook_axis_x_x * c.c003),
-    ) + t001;
-    let t002 = fma(
-        knuckle_axis_z_x,
-        knuckle_axis_z_x,
-        knuckle_axis_x_x * (211.0 * knuckle_axis_x_x),
-    )
-        + fma(
-            knuckle_axis_x_x,
-            knuckle_axis_x_x,
-            knuckle_axis_z_x * (211.0 * knuckle_axis_z_x),
-        );
-    let inertia_from_extension_yy = inertia_from_hook_yy + t002;
-    let extension_x = q[2];
-    let t003 = extension_x * knuckle_axis_x_x;
-    let t004 = hook_axis_z_x * c.c009;
-    let t005 = fma(150.0, knuckle_axis_x_x, t004);
-    let t006 = extension_x * knuckle_axis_z_x;
-    let t007 = 150.0 * knuckle_axis_z_x;
-    let t008 = hook_axis_x_x * c.c009;
-    let first_from_extension_z = t007 - t008;
-    let t009 = inertia_from_extension_yy
-        + fma(
-            -2.0,
-            t006 * fma(-t006, c.c019, first_from_extension_z),
-            2.0 * (t003 * fma(t003, c.c019, -t005)),
-        );
-    let t010 = 2.6 * knuckle_axis_x_x;
-    let t011 = fma(t003, c.c006, -t005);
-    let t012 = 2.6 * knuckle_axis_z_x;
-    let t013 = fma(-t006, c.c006, first_from_extension_z);
-    let t014 = t009
-        + fma(
-            -2.0,
-            t012 * fma(-t012, c.c019, t013),
-            2.0 * (t010 * fma(t010, c.c019, t011)),
-        );
-    let t015 = 34.1 * knuckle_axis_z_x;
-    let t016 = 34.1 * knuckle_axis_x_x;
-    let t017 = fma(
-        knuckle_axis_x_x,
-        fma(7.6, knuckle_axis_x_x, -t015),
-        -(knuckle_axis_z_x * fma(-560.6, knuckle_axis_z_x, t016)),
-    );
-    let inertia_from_knuckle_yy = t014
-        + (fma(
-            knuckle_axis_z_x,
-            fma(7.6, knuckle_axis_z_x, t016),
-            knuckle_axis_x_x * fma(560.6, knuckle_axis_x_x, t015),
-        ) + t017);
-    let upsilon_knuckle_theta_z = 3.2 * cos_main_boom_theta;
-    let first_from_knuckle_x = fma(31.0, knuckle_axis_z_x, 341.0 * knuckle_axis_x_x)
-        + fma(t010, c.c006, t011);
-    let t018 = 3.2 * sin_main_boom_theta;
-    let t019 = fma(31.0, knuckle_axis_x_x, -341.0 * knuckle_axis_z_x);
-    let first_from_knuckle_z = t019 + fma(-t012, c.c006, t013);
-    let t020 = inertia_from_knuckle_yy
-        + fma(
-            -2.0,
-            t018 * fma(-t018, c.c020, first_from_knuckle_z),
-            2.0
-                * (upsilon_knuckle_theta_z
-                    * fma(upsilon_knuckle_theta_z, c.c020, first_from_knuckle_x)),
-        );
-    let t021 = 31.5 * sin_main_boom_theta;
-    let t022 = 31.5 * cos_main_boom_theta;
-    let t023 = fma(
-        cos_main_boom_theta,
-        fma(6.55, cos_main_boom_theta, -t021),
-        -(sin_main_boom_theta * fma(-1319.5, sin_main_boom_theta, t022)),
-    );
-    let inertia_from_main_boom_yy = t020
-        + (fma(
-            sin_main_boom_theta,
-            fma(6.55, sin_main_boom_theta, t022),
-            cos_main_boom_theta * fma(1319.5, cos_main_boom_theta, t021),
-        ) + t023);
-    out[0][0][0] = inertia_from_main_boom_yy;
-    out[0][1][0] = inertia_from_knuckle_yy
-        + fma(
-            upsilon_knuckle_theta_z,
-            first_from_knuckle_x,
-            -(t018 * first_from_knuckle_z),
-        );
-    let t024 = knuckle_axis_z_x * c.c006;
-    let t025 = t010 + t003;
-    let t026 = knuckle_axis_x_x * c.c006;
-    let t027 = t012 + t006;
-    let t028 = fma(-knuckle_axis_z_x, t005, knuckle_axis_x_x * first_from_extension_z)
-        + fma(t024, t025, -(t026 * t027));
-    out[0][2][0] = t028 + fma(upsilon_knuckle_theta_z, t024, -(t018 * t026));
-    let t029 = inertia_from_hook_yy + fma(-t004, t025, t008 * t027);
-    out[0][3][0] = t029 + fma(-upsilon_knuckle_theta_z, t004, t018 * t008);
-    // Mass, row of knuckle_theta
-    out[0][1][1] = inertia_from_knuckle_yy;
-    out[0][2][1] = t028;
-    out[0][3][1] = t029;
-    // Mass, row of extension_x
-    out[0][2][2] = fma(knuckle_axis_z_x, t024, knuckle_axis_x_x * t026);
-    out[0][3][2] = -fma(knuckle_axis_z_x, t004, knuckle_axis_x_x * t008);
-    // Mass, row of hook_theta
-    out[0][3][3] = inertia_from_hook_yy;
-    // Stiffness, row of main_boom_theta
-    let first_main_boom_z = fma(21.0, cos_main_boom_theta, -630.0 * sin_main_boom_theta)
-        + 840.0;
-    let knuckle_origin_z = 2.0 - t018;
-    let first_knuckle_z = fma(310.0, knuckle_origin_z, t019);
-    let t030 = knuckle_origin_z - t012;
-    let extension_origin_z = t030 - t006;
-    let first_extension_z = fma(150.0, extension_origin_z, t007);
     let first_hook_z = fma(extension_origin_z, c.c001, hook_axis_x_x * c.c002);
     let first_from_extension_z_2 = first_extension_z + first_hook_z;
     let first_from_knuckle_z_2 = first_knuckle_z + first_from_extension_z_2;
     let first_from_main_boom_z = first_main_boom_z + first_from_knuckle_z_2;
     out[1][0][0] = fma(-9.81, first_from_main_boom_z - c.c015, 4000000.0);
-    let upsilon_knuckle_theta_x = t018 - 2.0;
-    let t031 = 9.81 * fma(upsilon_knuckle_theta_x, c.c007, first_from_knuckle_z_2);
-    out[1][1][0] = -t031;
-    let t032 = -9.81 * t026;
-    out[1][2][0] = t032;
-    let upsilon_hook_theta_x = t006 - t030;
-    let t033 = -9.81 * fma(upsilon_hook_theta_x, c.c001, first_hook_z);
-    out[1][3][0] = t033;
+    let upsilon_knuckle_theta_x = t017 - 2.0;
+    let t029 = 9.81 * fma(upsilon_knuckle_theta_x, c.c007, first_from_knuckle_z_2);
+    out[1][1][0] = -t029;
+    let t030 = -9.81 * t020;
+    out[1][2][0] = t030;
+    let upsilon_hook_theta_x = t021 - t028;
+    let t031 = -9.81 * fma(upsilon_hook_theta_x, c.c001, first_hook_z);
+    out[1][3][0] = t031;
     // Stiffness, row of knuckle_theta
-    out[1][1][1] = 2000000.0 - t031;
-    out[1][2][1] = t032;
-    out[1][3][1] = t033;
+    out[1][1][1] = 2000000.0 - t029;
+    out[1][2][1] = t030;
+    out[1][3][1] = t031;
     // Stiffness, row of extension_x
     out[1][2][2] = 8000000.0;
     // Stiffness, row of hook_theta
-    out[1][3][3] = t033;
+    out[1][3][3] = t031;
     // Damping, row of main_boom_theta
     out[2][0][0] = 60000.0;
     // Damping, row of knuckle_theta
@@ -2842,7 +2790,6 @@ pub mod lanes {
         c017: f64x8,
         c018: f64x8,
         c019: f64x8,
-        c020: f64x8,
     }
     impl From<&Params> for Constants {
         fn from(params: &Params) -> Self {
@@ -2862,20 +2809,18 @@ pub mod lanes {
             let c007 = splat(310.0) + c006;
             let t322 = splat(420.0) + c007;
             let c008 = c003 + c004;
-            let c009 = t248 - splat(-7.5);
-            let c010 = splat(1.0) / c008;
-            let c011 = c008 * c010;
-            let c012 = c002 * c010;
-            let t576 = c002 * c012;
-            let c013 = c001 - t576;
-            let c014 = c001 - c013;
+            let c009 = splat(1.0) / c008;
+            let c010 = c008 * c009;
+            let c011 = c002 * c009;
+            let t576 = c002 * c011;
+            let c012 = c001 - t576;
+            let c013 = c001 - c012;
+            let c014 = splat(2.6) * c006;
             let c015 = splat(2.0) * t322;
-            let c016 = c009 * c010;
-            let t950 = c009 * c016;
-            let c017 = c001 - t950;
-            let c018 = c001 - c017;
-            let c019 = splat(0.5) * c006;
-            let c020 = splat(0.5) * c007;
+            let c016 = c004 - c003;
+            let c017 = splat(0.5) * c006;
+            let c018 = splat(1.3) * c006;
+            let c019 = splat(1.6) * c007;
             Constants {
                 params: *params,
                 c001,
@@ -2897,7 +2842,6 @@ pub mod lanes {
                 c017,
                 c018,
                 c019,
-                c020,
             }
         }
     }
@@ -2934,45 +2878,174 @@ pub mod lanes {
             t004,
             ],
         ) = sin_cos([main_boom_theta, knuckle_theta, hook_theta, t002]);
-        // main_boom_theta
-        let t005 = sin_hook_theta * sin_hook_theta;
-        let translational_extension_zz = splat(150.0) + fma(-t005, c.c014, c.c001);
-        let translational_extension_xz = sin_hook_theta * cos_hook_theta * c.c014;
-        let translational_extension_xx = splat(150.0) + fma(t005, c.c014, c.c013);
-        let t006 = splat(1.0) / translational_extension_xx;
-        let t007 = translational_extension_xz * t006;
-        let t008 = fma(-translational_extension_xz, t007, translational_extension_zz);
-        let translational_knuckle_zz = splat(310.0) + t008;
+        // Outward: knuckle
+        let main_boom_theta_dot = v[0];
+        let t005 = main_boom_theta_dot * (splat(3.2) * main_boom_theta_dot);
+        let knuckle_theta_dot = v[1];
+        let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
+        // Outward: extension
+        let extension_x_dot = v[2];
+        let t006 = omega_knuckle_y * (splat(2.0) * extension_x_dot);
+        // Outward: hook
+        let hook_theta_dot = v[3];
+        let omega_hook_y = hook_theta_dot + omega_knuckle_y;
+        // Inward: hook
+        let t007 = omega_hook_y * (c.c002 * omega_hook_y);
+        let t008 = splat(40.0) * hook_theta_dot;
+        let t009 = t008 * c.c009;
+        let t010 = c.c002 * t009;
+        let t011 = sin_hook_theta * sin_hook_theta;
+        let translational_extension_xz = sin_hook_theta * cos_hook_theta * c.c013;
+        let force_extension_z = fma(sin_hook_theta, t010, -(cos_hook_theta * t007));
+        // Inward: extension
+        let translational_extension_xx = splat(150.0) + fma(t011, c.c013, c.c012);
+        let translational_extension_zz = splat(150.0) + fma(-t011, c.c013, c.c001);
+        let force_extension_x = fma(
+            omega_knuckle_y,
+            splat(150.0) * omega_knuckle_y,
+            -fma(sin_hook_theta, t007, cos_hook_theta * t010),
+        );
+        let t012 = splat(1.0) / translational_extension_xx;
+        let t013 = translational_extension_xz * t012;
+        let t014 = t.max(splat(0.0)).min(splat(2.0));
+        let t015 = (t - splat(2.0)).max(splat(0.0)).min(splat(2.0));
+        let t016 = fma(
+            t015,
+            fma(
+                t015,
+                fma(-splat(0.012500000000000011), t015, splat(0.02499999999999998)),
+                splat(0.25000000000000006),
+            ),
+            fma(
+                t014,
+                t014
+                    * fma(
+                        -splat(0.012499999999999983),
+                        t014,
+                        splat(0.09999999999999995),
+                    ),
+                splat(0.2),
+            ),
+        );
+        let t017 = (t - splat(4.0)).max(splat(0.0)).min(splat(2.0));
         let extension_x = q[2];
-        let t009 = fma(-extension_x, t008, splat(150.0));
-        let t010 = fma(-splat(2.6), t008, t009);
-        let coupling_knuckle_y_z = t010 + splat(-341.0);
+        let t018 = fma(
+            t017,
+            fma(-splat(2.0816681711721685e-17), t017, splat(-0.09999999999999992)),
+            fma(
+                t015,
+                fma(-splat(0.03750000000000003), t015, splat(0.04999999999999996)),
+                t014 * fma(-splat(0.03749999999999995), t014, splat(0.1999999999999999)),
+            ),
+        ) - extension_x_dot;
+        let effort_extension_x = fma(
+            splat(80000.0),
+            t018,
+            splat(8000000.0)
+                * (fma(
+                    t017,
+                    fma(
+                        t017,
+                        fma(
+                            -splat(6.938893903907228e-18),
+                            t017,
+                            splat(-0.04999999999999996),
+                        ),
+                        splat(0.19999999999999993),
+                    ),
+                    t016,
+                ) - extension_x),
+        );
+        let t019 = t012 * (effort_extension_x - force_extension_x);
+        let t020 = fma(-translational_extension_xz, t013, translational_extension_zz);
+        let t021 = fma(
+            -t006,
+            t020,
+            fma(translational_extension_xz, t019, force_extension_z),
+        );
+        let t022 = fma(-extension_x, t020, splat(150.0));
+        let t023 = fma(-splat(2.6), t020, t022);
+        // Inward: knuckle
         let rotational_knuckle_yy = fma(
             -splat(2.6),
-            t010,
+            t023,
             fma(
                 -splat(2.6),
-                t009,
-                fma(-extension_x, t009, fma(-splat(150.0), extension_x, splat(212.0))),
+                t022,
+                fma(-extension_x, t022, fma(-splat(150.0), extension_x, splat(212.0))),
             ),
         ) + splat(568.2);
-        let t011 = splat(1.0) / rotational_knuckle_yy;
-        let t012 = coupling_knuckle_y_z * t011;
-        let t013 = fma(-coupling_knuckle_y_z, t012, translational_knuckle_zz);
-        let t014 = sin_knuckle_theta * cos_knuckle_theta;
-        let t015 = splat(31.0) * t011;
-        let t016 = coupling_knuckle_y_z * t015;
-        let t017 = splat(2.0) * t016;
-        let t018 = sin_knuckle_theta * sin_knuckle_theta;
-        let t019 = t013 - fma(-splat(961.0), t011, splat(310.0));
-        let t020 = t013 + fma(t014, t017, -(t018 * t019));
+        let coupling_knuckle_y_z = t023 + splat(-341.0);
+        let translational_knuckle_zz = splat(310.0) + t020;
+        let force_knuckle_x = fma(
+            -omega_knuckle_y,
+            splat(341.0) * omega_knuckle_y,
+            effort_extension_x,
+        );
+        let force_knuckle_z = fma(-omega_knuckle_y, splat(31.0) * omega_knuckle_y, t021);
+        let t024 = splat(1.0) / rotational_knuckle_yy;
+        let t025 = splat(31.0) * t024;
+        let t026 = coupling_knuckle_y_z * t024;
+        let t027 = (splat(0.25) * (t - splat(1.0))).max(splat(0.0)).min(splat(1.0));
+        let t028 = (t027 - splat(0.7)).max(splat(0.0)).min(splat(0.30000000000000004));
+        let t029 = t027.max(splat(0.0)).min(splat(0.3));
+        let t030 = t028
+            + fma(
+                splat(1.6666666666666667),
+                fma(-t028, t028, t029 * t029),
+                (t027 - splat(0.3)).max(splat(0.0)).min(splat(0.39999999999999997)),
+            );
+        let effort_knuckle_theta = fma(
+            -splat(30000.0),
+            fma(splat(0.5194432297602172), t029 - t028, knuckle_theta_dot),
+            splat(2000000.0)
+                * (fma(-splat(0.6233318757122607), t030, splat(1.3089969389957472))
+                    - knuckle_theta),
+        );
+        let t031 = t024
+            * (effort_knuckle_theta
+                + fma(
+                    splat(2.6),
+                    t021,
+                    fma(extension_x, t021, fma(splat(150.0), t006, t008)),
+                ));
+        let t032 = fma(-coupling_knuckle_y_z, t026, translational_knuckle_zz);
+        let t033 = coupling_knuckle_y_z * t025;
+        let t034 = sin_knuckle_theta * sin_knuckle_theta;
+        let t035 = sin_knuckle_theta * cos_knuckle_theta;
+        let t036 = t032 - fma(-splat(961.0), t024, splat(310.0));
+        let t037 = splat(2.0) * t033;
+        let t038 = t032 + fma(t035, t037, -(t034 * t036));
+        let translational_main_boom_xz = fma(t034, t037, t035 * t036) - t033;
+        let moment_main_boom_y = fma(
+            -splat(3.2),
+            fma(
+                -t005,
+                translational_main_boom_xz,
+                fma(
+                    -sin_knuckle_theta,
+                    fma(splat(31.0), t031, force_knuckle_x),
+                    cos_knuckle_theta * fma(coupling_knuckle_y_z, t031, force_knuckle_z),
+                ),
+            ),
+            effort_knuckle_theta,
+        );
+        // Inward: main_boom
         let rotational_main_boom_yy = fma(
             splat(10.240000000000002),
-            t020,
+            t038,
             splat(1326.05),
         );
-        let t021 = splat(1.0) / rotational_main_boom_yy;
-        let main_boom_theta_dot = v[0];
+        let coupling_main_boom_y_x = fma(
+            -splat(3.2),
+            translational_main_boom_xz,
+            splat(21.0),
+        );
+        let coupling_main_boom_y_z = fma(-splat(3.2), t038, splat(-630.0));
+        let t039 = splat(1.0) / rotational_main_boom_yy;
+        // Outward: main_boom
+        let acceleration_main_boom_z = splat(9.81) * cos_main_boom_theta;
+        let t040 = splat(9.81) * sin_main_boom_theta;
         let effort_main_boom_theta = fma(
             -splat(60000.0),
             fma(splat(0.06544984694978734), splat(1.0) - t004, main_boom_theta_dot),
@@ -2983,182 +3056,60 @@ pub mod lanes {
                     splat(-0.7853981633974483),
                 ) - main_boom_theta),
         );
-        let t022 = (splat(0.25) * (t - splat(1.0))).max(splat(0.0)).min(splat(1.0));
-        let t023 = (t022 - splat(0.7)).max(splat(0.0)).min(splat(0.30000000000000004));
-        let t024 = t022.max(splat(0.0)).min(splat(0.3));
-        let t025 = t023
-            + fma(
-                splat(1.6666666666666667),
-                fma(-t023, t023, t024 * t024),
-                (t022 - splat(0.3)).max(splat(0.0)).min(splat(0.39999999999999997)),
-            );
-        let knuckle_theta_dot = v[1];
-        let effort_knuckle_theta = fma(
-            -splat(30000.0),
-            fma(splat(0.5194432297602172), t024 - t023, knuckle_theta_dot),
-            splat(2000000.0)
-                * (fma(-splat(0.6233318757122607), t025, splat(1.3089969389957472))
-                    - knuckle_theta),
-        );
-        let hook_theta_dot = v[3];
-        let t026 = splat(40.0) * hook_theta_dot;
-        let t027 = t026 * c.c010;
-        let t028 = c.c002 * t027;
-        let omega_knuckle_y = main_boom_theta_dot + knuckle_theta_dot;
-        let omega_hook_y = hook_theta_dot + omega_knuckle_y;
-        let t029 = omega_hook_y * (c.c002 * omega_hook_y);
-        let force_extension_z = fma(sin_hook_theta, t028, -(cos_hook_theta * t029));
-        let t030 = t.max(splat(0.0)).min(splat(2.0));
-        let t031 = (t - splat(2.0)).max(splat(0.0)).min(splat(2.0));
-        let t032 = fma(
-            t031,
-            fma(
-                t031,
-                fma(-splat(0.012500000000000011), t031, splat(0.02499999999999998)),
-                splat(0.25000000000000006),
-            ),
-            fma(
-                t030,
-                t030
-                    * fma(
-                        -splat(0.012499999999999983),
-                        t030,
-                        splat(0.09999999999999995),
-                    ),
-                splat(0.2),
-            ),
-        );
-        let t033 = (t - splat(4.0)).max(splat(0.0)).min(splat(2.0));
-        let extension_x_dot = v[2];
-        let t034 = fma(
-            t033,
-            fma(-splat(2.0816681711721685e-17), t033, splat(-0.09999999999999992)),
-            fma(
-                t031,
-                fma(-splat(0.03750000000000003), t031, splat(0.04999999999999996)),
-                t030 * fma(-splat(0.03749999999999995), t030, splat(0.1999999999999999)),
-            ),
-        ) - extension_x_dot;
-        let effort_extension_x = fma(
-            splat(80000.0),
-            t034,
-            splat(8000000.0)
-                * (fma(
-                    t033,
-                    fma(
-                        t033,
-                        fma(
-                            -splat(6.938893903907228e-18),
-                            t033,
-                            splat(-0.04999999999999996),
-                        ),
-                        splat(0.19999999999999993),
-                    ),
-                    t032,
-                ) - extension_x),
-        );
-        let force_extension_x = fma(
-            omega_knuckle_y,
-            splat(150.0) * omega_knuckle_y,
-            -fma(sin_hook_theta, t029, cos_hook_theta * t028),
-        );
-        let t035 = t006 * (effort_extension_x - force_extension_x);
-        let t036 = omega_knuckle_y * (splat(2.0) * extension_x_dot);
-        let t037 = fma(
-            -t036,
-            t008,
-            fma(translational_extension_xz, t035, force_extension_z),
-        );
-        let force_knuckle_z = fma(-omega_knuckle_y, splat(31.0) * omega_knuckle_y, t037);
-        let t038 = t011
-            * (effort_knuckle_theta
-                + fma(
-                    splat(2.6),
-                    t037,
-                    fma(extension_x, t037, fma(splat(150.0), t036, t026)),
-                ));
-        let force_knuckle_x = fma(
-            -omega_knuckle_y,
-            splat(341.0) * omega_knuckle_y,
-            effort_extension_x,
-        );
-        let t039 = main_boom_theta_dot * (splat(3.2) * main_boom_theta_dot);
-        let translational_main_boom_xz = fma(t018, t017, t014 * t019) - t016;
-        let moment_main_boom_y = fma(
-            -splat(3.2),
-            fma(
-                -t039,
-                translational_main_boom_xz,
-                fma(
-                    -sin_knuckle_theta,
-                    fma(splat(31.0), t038, force_knuckle_x),
-                    cos_knuckle_theta * fma(coupling_knuckle_y_z, t038, force_knuckle_z),
-                ),
-            ),
-            effort_knuckle_theta,
-        );
-        let coupling_main_boom_y_z = fma(-splat(3.2), t020, splat(-630.0));
-        let acceleration_main_boom_z = splat(9.81) * cos_main_boom_theta;
-        let coupling_main_boom_y_x = fma(
-            -splat(3.2),
-            translational_main_boom_xz,
-            splat(21.0),
-        );
-        let t040 = splat(9.81) * sin_main_boom_theta;
         let alpha_main_boom_y = fma(
-            t021,
+            t039,
             effort_main_boom_theta - moment_main_boom_y,
             -fma(
-                coupling_main_boom_y_z * t021,
+                coupling_main_boom_y_z * t039,
                 acceleration_main_boom_z,
-                -(coupling_main_boom_y_x * t021 * t040),
+                -(coupling_main_boom_y_x * t039 * t040),
             ),
         );
         out[0] = alpha_main_boom_y;
-        // knuckle_theta
+        // Outward: knuckle
         let t041 = fma(-splat(3.2), alpha_main_boom_y, acceleration_main_boom_z);
-        let t042 = t039 + t040;
+        let t042 = t005 + t040;
         let acceleration_knuckle_z = fma(
             -sin_knuckle_theta,
             t042,
             cos_knuckle_theta * t041,
         );
         let t043 = fma(sin_knuckle_theta, t041, cos_knuckle_theta * t042);
-        let knuckle_theta_ddot = t038
+        let knuckle_theta_ddot = t031
             - fma(
-                rotational_knuckle_yy * t011,
+                rotational_knuckle_yy * t024,
                 alpha_main_boom_y,
-                fma(t012, acceleration_knuckle_z, -(t015 * t043)),
+                fma(t026, acceleration_knuckle_z, -(t025 * t043)),
             );
         out[1] = knuckle_theta_ddot;
-        // extension_x
         let alpha_knuckle_y = alpha_main_boom_y + knuckle_theta_ddot;
-        let acceleration_extension_z = fma(
-            -extension_x,
-            alpha_knuckle_y,
-            fma(-splat(2.6), alpha_knuckle_y, acceleration_knuckle_z),
-        ) - t036;
+        // Outward: extension
         let t044 = fma(
             omega_knuckle_y,
             extension_x * omega_knuckle_y,
             fma(omega_knuckle_y, splat(2.6) * omega_knuckle_y, t043),
         );
-        let extension_x_ddot = t035
+        let acceleration_extension_z = fma(
+            -extension_x,
+            alpha_knuckle_y,
+            fma(-splat(2.6), alpha_knuckle_y, acceleration_knuckle_z),
+        ) - t006;
+        let extension_x_ddot = t019
             - fma(
-                t007,
+                t013,
                 acceleration_extension_z,
-                -(translational_extension_xx * t006 * t044),
+                -(translational_extension_xx * t012 * t044),
             );
         out[2] = extension_x_ddot;
-        // hook_theta
         let acceleration_extension_x = extension_x_ddot - t044;
+        // Outward: hook
         let acceleration_hook_x = fma(
             -sin_hook_theta,
             acceleration_extension_z,
             cos_hook_theta * acceleration_extension_x,
         );
-        let hook_theta_ddot = -(t027
-            + fma(c.c012, acceleration_hook_x, c.c011 * alpha_knuckle_y));
+        let hook_theta_ddot = -(t009
+            + fma(c.c011, acceleration_hook_x, c.c010 * alpha_knuckle_y));
         out[3] = hook_theta_ddot;
         SVector::from(out)
     }

@@ -236,7 +236,7 @@ impl Writer<'_> {
     /// Statements one by one.
     pub(super) fn statements(&self, piece: &[Statement], names: &mut Names, used: &mut Used) -> Vec<Stmt> {
         let mut statements = Vec::new();
-        let mut group = None;
+        let (mut group, mut sweeping) = (None, false);
         let mut pending: Vec<Stmt> = Vec::new();
         for statement in piece {
             match statement {
@@ -268,12 +268,18 @@ impl Writer<'_> {
                     group = None;
                     statements.extend(self.rounds(*of, body, names, used));
                 }
+                Statement::At(place) => {
+                    statements.append(&mut pending);
+                    group = None;
+                    sweeping = place.is_some();
+                    statements.extend(place.as_ref().map(|place| comment(&rounds::way(place))));
+                }
                 &Statement::Let(id) => {
                     let value = self.operation(id, names, used);
                     pending.push(local(&names.of(id), &value));
                 }
                 &Statement::Output { slot, value } => {
-                    if group != Some(self.storage.group(slot)) {
+                    if !sweeping && group != Some(self.storage.group(slot)) {
                         group = Some(self.storage.group(slot));
                         if let Some(label) = self.labels.of(self.block.function, slot) {
                             statements.push(comment(&label));

@@ -9,7 +9,7 @@ use super::function::{Used, Writer, pattern};
 use super::names::Names;
 use super::number::Number;
 use super::print::comment;
-use crate::lower::{Progression, Source, Statement, Taking};
+use crate::lower::{Place, Progression, Source, Statement, Taking};
 use crate::symbolic::ExprId;
 
 /// Names of what belongs to a loop.
@@ -21,7 +21,8 @@ impl Writer<'_> {
         let own = &self.block.rolled.loops[of];
         let [numbers, gathered, carried, kept] = NAMES.map(|name| owned(name, of));
         let (number, rounds) = (self.number.of(), integer(own.rounds));
-        let mut statements = vec![comment(&format!("{} to {}", own.bodies[0], own.bodies[1]))];
+        let [first, last] = &own.places;
+        let mut statements = vec![comment(&format!("{} to {}", way(first), last.body))];
         if !own.numbers.is_empty() {
             let rows = (0..own.rounds).map(|k| row(own.numbers.iter().map(|column| Number::Single.literal(column[k]))));
             let width = integer(own.numbers.len());
@@ -85,6 +86,11 @@ impl Writer<'_> {
             Taking::Kept { of, slot, round } => element(element(owned("kept", of), round), slot),
         }
     }
+}
+
+/// `Outward: boom_1`
+pub fn way(Place { body, outward }: &Place) -> String {
+    format!("{}: {body}", if *outward { "Outward" } else { "Inward" })
 }
 
 /// Names for those elements of an array that need one: `let [_, sin_psi] = sines;`

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::symbolic::{Argument, ExprId, Function};
+use super::Place;
+use crate::symbolic::{Argument, ExprId, Function, Visit};
 
 /// Where a loop takes what differs from round to round; `k` counts the rounds.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -65,8 +66,8 @@ pub enum Taking {
 pub struct Loop {
     /// How many rounds.
     pub rounds: usize,
-    /// Bodies of the first and the last round.
-    pub bodies: [String; 2],
+    /// Where the sweep is in the first and in the last round.
+    pub places: [Place; 2],
     /// Numbers, column by column.
     pub numbers: Vec<Vec<f64>>,
     /// Values computed before the loop, one a round.
@@ -94,12 +95,15 @@ pub struct Rolled {
     pub takings: Vec<Taking>,
     /// The slots that no loop writes.
     pub outputs: Vec<Option<ExprId>>,
+    /// What is computed outside of loops or taken from them, as the sweeps did.
+    pub visits: Vec<Visit>,
 }
 
 impl Rolled {
     /// A function without loops.
     pub(super) fn in_line(function: &Function) -> Self {
-        Rolled { outputs: function.outputs.iter().copied().map(Some).collect(), ..Rolled::default() }
+        let outputs = function.outputs.iter().copied().map(Some).collect();
+        Rolled { outputs, visits: function.tape.visits.clone(), ..Rolled::default() }
     }
 
     /// Everything that is computed outside of loops, then what the loops compute.

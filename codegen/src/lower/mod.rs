@@ -79,6 +79,8 @@ pub enum Statement {
     SinCos(Vec<Angle>),
     /// Computes a value: `let t017 = …;`
     Let(ExprId),
+    /// A sweep comes to a body: `// Outward: boom_1`. None when all sweeps are done.
+    At(Option<Place>),
     /// A loop and the statements of a round.
     Loop {
         /// Which loop.
@@ -107,6 +109,15 @@ pub enum Statement {
         /// The value.
         value: ExprId,
     },
+}
+
+/// Where a sweep is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// Name of the body.
+    pub body: String,
+    /// Whether the sweep goes from base to tip.
+    pub outward: bool,
 }
 
 /// An angle and what is needed of it.

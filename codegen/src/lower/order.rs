@@ -1,7 +1,14 @@
-//! Order of statements: all angles first, then depth first from each output, so that a value stands near its use.
+//! Order of statements: all angles first; then what sweeps derive, as they do, body by body, each result written as soon as it is
+//! known; the rest depth first from each output, so that a value stands near its use.
+//!
+//! In the order of its sweeps, where what does not depend on each other stands side by side, forward dynamics takes 0.26 µs
+//! at 13 coordinates against 0.28 depth first, the bias 0.12 against 0.15. Within a loop, where rounds overlap anyway, depth first is
+//! faster: 1.74 µs against 1.89 at 103.
 
-use super::{Angle, Constants, Rolled, Source, Statement, Taking, variables_of};
-use crate::symbolic::{Argument, ExprId, Function, Op, Program};
+use std::collections::HashMap;
+
+use super::{Angle, Constants, Place, Rolled, Source, Statement, Taking, variables_of};
+use crate::symbolic::{Argument, ExprId, Function, Op, Program, Visit};
 
 /// One straight line for a function, its loops in it as statements.
 pub(super) fn order(
@@ -16,15 +23,17 @@ pub(super) fn order(
         constants,
         inlined,
         rolled,
+        needed: needed_here(program, constants, &rolled.roots()),
+        unwritten: slots(program, rolled),
         done: vec![false; program.operations.len()],
         run: vec![false; rolled.loops.len()],
         statements: vec![],
     };
     line.angles(&function.outputs);
+    line.follow(&rolled.visits);
     for (slot, value) in rolled.outputs.iter().enumerate() {
-        if let Some(value) = value.filter(|value| program.op(*value) != Op::ZERO) {
-            line.compute_variables(value);
-            line.statements.push(Statement::Output { slot, value });
+        if let Some(value) = value.filter(|value| line.unwritten.contains_key(value)) {
+            line.write(value, &[slot]);
         }
     }
     (0..rolled.loops.len()).for_each(|of| line.run(of));
@@ -57,11 +66,25 @@ pub(super) fn needed_here(program: &Program, constants: &Constants, roots: &[Exp
     needed
 }
 
+/// The slots that values are written to outside of loops; what is zero is there already.
+fn slots(program: &Program, rolled: &Rolled) -> HashMap<ExprId, Vec<usize>> {
+    let mut slots: HashMap<ExprId, Vec<usize>> = HashMap::new();
+    for (slot, value) in rolled.outputs.iter().enumerate() {
+        if let Some(value) = value.filter(|value| program.op(*value) != Op::ZERO) {
+            slots.entry(value).or_default().push(slot);
+        }
+    }
+    slots
+}
+
 struct Line<'a> {
     program: &'a Program,
     constants: &'a Constants,
     inlined: &'a [bool],
     rolled: &'a Rolled,
+    needed: Vec<bool>,
+    /// Slots of the result that wait for a value that sweeps may know.
+    unwritten: HashMap<ExprId, Vec<usize>>,
     done: Vec<bool>,
     /// Which loops are written.
     run: Vec<bool>,
@@ -109,6 +132,36 @@ impl Line<'_> {
         own.roots().into_iter().for_each(|value| self.compute_variables(value));
         let body = std::mem::replace(&mut self.statements, before);
         self.statements.push(Statement::Loop { of, body });
+    }
+
+    /// Computes what is needed of what sweeps asked for, in their order, and writes what is a result at once.
+    fn follow(&mut self, visits: &[Visit]) {
+        for Visit { body, outward, nodes, .. } in visits {
+            let before = self.statements.len();
+            for id in nodes {
+                if self.needed[id.index()] && !self.inlined[id.index()] {
+                    self.compute(*id);
+                }
+                if let Some(slots) = self.unwritten.remove(id) {
+                    self.write(*id, &slots);
+                }
+            }
+            // A loop says itself where it is.
+            let begins = self.statements.get(before).is_some_and(|first| !matches!(first, Statement::Loop { .. }));
+            if begins && !body.is_empty() {
+                let place = Place { body: body.clone(), outward: *outward };
+                self.statements.insert(before, Statement::At(Some(place)));
+            }
+        }
+        if !visits.is_empty() {
+            self.statements.push(Statement::At(None));
+        }
+    }
+
+    /// Writes a value to slots of the result.
+    fn write(&mut self, value: ExprId, slots: &[usize]) {
+        self.compute_variables(value);
+        self.statements.extend(slots.iter().map(|&slot| Statement::Output { slot, value }));
     }
 
     /// What has to stand in variables before `id` can be an argument.

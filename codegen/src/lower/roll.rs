@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use super::loops::{Loop, Progression, Rolled, Source, Taking};
 use super::matching::{Match, matched};
-use super::{Angle, Constants, order};
+use super::{Angle, Constants, Place, order};
 use crate::symbolic::{Argument, ExprId, Function, Op, Program, Shape, Symbol, Visit};
 
 /// Where the operands of all rounds at one place come from.
@@ -64,9 +64,7 @@ pub(super) fn roll(program: &mut Program, constants: &Constants, function: &Func
         let best = plans.min_by_key(|(gathered, skip, rounds, _)| (*gathered, *skip, std::cmp::Reverse(rounds.len())));
         start += match best {
             Some((_, skip, rounds, plan)) => {
-                let of = |round: usize| visits[start + skip + round].body.clone();
-                let bodies = [of(0), of(rounds.len() - 1)];
-                rolling.write(plan, bodies, rounds);
+                rolling.write(plan, &visits[start + skip..][..rounds.len()], rounds);
                 skip + rounds.len()
             }
             None => 1,
@@ -213,8 +211,9 @@ impl Rolling<'_> {
     }
 
     /// Writes the loop's body as expressions of their own.
-    fn write(&mut self, Plan { own, mut making, sources, sites }: Plan, bodies: [String; 2], matches: &[Match]) {
-        making.bodies = bodies;
+    fn write(&mut self, Plan { own, mut making, sources, sites }: Plan, visits: &[Visit], matches: &[Match]) {
+        let place = |visit: &Visit| Place { body: visit.body.clone(), outward: visit.outward };
+        making.places = [place(&visits[0]), place(&visits[visits.len() - 1])];
         let number = self.rolled.loops.len();
         let mut symbols: HashMap<&[ExprId], ExprId> = HashMap::new();
         let mut outside: HashMap<(ExprId, usize), ExprId> = HashMap::new();
@@ -387,6 +386,9 @@ impl Rolling<'_> {
             .zip(in_loops)
             .map(|(value, in_loop)| (!in_loop).then(|| self.straight(*value)))
             .collect();
+        let moved = |visit: &Visit| visit.nodes.iter().filter_map(|id| self.moved.get(id)).copied().collect();
+        let visits = function.tape.visits.iter();
+        self.rolled.visits = visits.map(|visit| Visit { nodes: moved(visit), ..visit.clone() }).collect();
     }
 }
 

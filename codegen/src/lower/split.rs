@@ -63,9 +63,11 @@ impl Lives {
                 }
                 Statement::Let(id) => variables_of(program, constants, inlined, *id),
                 Statement::Output { value, .. } => operands(program, constants, inlined, *value),
-                Statement::Input(_) | Statement::Keep { .. } | Statement::Fetch { .. } | Statement::Loop { .. } => {
-                    vec![]
-                }
+                Statement::Input(_)
+                | Statement::At(_)
+                | Statement::Keep { .. }
+                | Statement::Fetch { .. }
+                | Statement::Loop { .. } => vec![],
             };
             for id in &read {
                 last_read.insert(*id, at);
@@ -153,6 +155,6 @@ fn defines(statement: &Statement) -> Vec<ExprId> {
     match statement {
         Statement::Input(id) | Statement::Let(id) | Statement::Fetch { value: id, .. } => vec![*id],
         Statement::SinCos(angles) => angles.iter().flat_map(|known| [known.sin, known.cos]).flatten().collect(),
-        Statement::Output { .. } | Statement::Keep { .. } | Statement::Loop { .. } => vec![],
+        Statement::At(_) | Statement::Output { .. } | Statement::Keep { .. } | Statement::Loop { .. } => vec![],
     }
 }

@@ -1,36 +1,25 @@
-//! Mass matrix in the world's axes about local points.
+//! Mass matrix from composite bodies.
 //!
 //! Notation
-//! : by components in the world's axes. At each joint, the axis `n_j`; the composite of all that hangs on it about the
-//!   joint's point: mass m, first moments s, inertia I; its momenta at unit rate, `P_j` and, about the point, `L_j`.
+//! : all that hangs on a joint, taken as one body: its mass m, first moments s and inertia I about the joint's point, in the
+//!   joint's own frame; its momenta at unit rate of coordinate j, `P_j` and, about the point, `L_j`, and the axis `n_j`, in the
+//!   world's.
 //!
 //! Output
 //! : `a_ij = n_i · L_j` where i turns and `n_i · P_j` where it slides, i ≤ j, with L_j taken about the point of i
 //!   [Urbaś 2016, Eq. (5)].
 //!
-//! About local points nothing large is subtracted: the torsional inertia of a slender element keeps its digits beside the
-//! inertia of a whole crane about the world's origin.
+//! In its own frame a joint's axis is one of its unit vectors, so that momenta are a column of I and two entries of s, and most placements are
+//! shifts along one axis. In the world's axes a row of A is one scalar product a column, with no rotation from joint to
+//! joint. About local points nothing large is subtracted: the torsional inertia of a slender element keeps its digits beside
+//! the inertia of a whole crane about the world's origin.
 
 use super::factors::Factor;
 use super::model::Model;
 use super::turn::Turn;
 use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};
-use crate::chain::CoordinateKind;
+use crate::chain::{Axis, CoordinateKind, Inertia};
 use crate::symbolic::{Expr, Point};
-
-/// One factor of the chain in the world's axes.
-#[derive(Clone, Copy, Debug)]
-enum Place<'g> {
-    /// Rotation by a coordinate about an axis.
-    Turning { j: usize, axis: Vec3<'g> },
-    /// Translation by a vector, and by a coordinate along an axis if it is one of those.
-    Moving { by: Vec3<'g>, sliding: Option<(usize, Vec3<'g>)> },
-    /// A body's frame.
-    Body { index: usize, rotation: Rotation<'g> },
-}
-
-/// A chain in the world's axes.
-pub struct Places<'g>(Vec<Place<'g>>);
 
 /// What the mass matrix is made of: for each coordinate its axis, its momenta, and the way from its point to that of the
 /// coordinate after it.
@@ -41,88 +30,135 @@ pub struct Columns<'g> {
     pub shifts: Vec<Vec3<'g>>,
 }
 
-impl<'g> Places<'g> {
-    pub fn new(model: &Model<'g>, factors: &[Factor<'g>]) -> Self {
-        let mut rotation = Rotation::identity(model.graph);
-        let mut places = Vec::new();
-        let turning = |rotation: &mut Rotation<'g>, j: usize, turn: &Turn<'g>| {
-            let axis = rotation.axis(turn.axis).named(&format!("axis_{}", model.chain.coordinates[j].name));
-            *rotation = rotation.turned(turn.axis, turn.sin, turn.cos);
-            Place::Turning { j, axis }
-        };
-        let sweep = model.graph.sweep();
-        for factor in factors {
-            match factor {
-                Factor::Translate(by) => places.push(Place::Moving { by: rotation.apply(*by), sliding: None }),
-                Factor::Turn(turn) => rotation = rotation.turned(turn.axis, turn.sin, turn.cos),
-                Factor::Revolute { j, turn } => places.push(turning(&mut rotation, *j, turn)),
-                Factor::Ball { j, turns } => {
-                    for (k, turn) in turns.iter().enumerate() {
-                        places.push(turning(&mut rotation, j + k, turn));
-                    }
-                }
-                Factor::Prismatic { j, axis } => {
-                    let axis: Vec3<'g> = rotation.axis(*axis);
-                    places.push(Place::Moving { by: model.q[*j] * axis, sliding: Some((*j, axis)) });
-                }
-                Factor::Body(index) => {
-                    places.push(Place::Body { index: *index, rotation });
-                    sweep.leave(&model.chain.bodies[*index].name);
+/// Axes, momenta and ways of all coordinates, in the world's axes.
+pub fn columns<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Columns<'g> {
+    let mut frames = frames(model, factors);
+    let mut frame_before = || frames.pop().expect("as many as outward");
+    let zero = Vec3::zero(model.graph);
+    let empty = vec![zero; model.size()];
+    let mut columns = Columns { axes: empty.clone(), linear: empty.clone(), angular: empty.clone(), shifts: empty };
+    let mut composite = Composite::nothing(model);
+    let mut way = zero;
+    let sweep = model.graph.sweep();
+    for factor in factors.iter().rev() {
+        match factor {
+            Factor::Body(index) => {
+                let body = &model.chain.bodies[*index];
+                sweep.visit(&body.name);
+                if let Some(inertia) = &body.inertia {
+                    composite.add(model, inertia);
+                    composite.named(&body.name);
                 }
             }
-        }
-        Places(places)
-    }
-
-    /// Axes and momenta of the coordinates.
-    pub fn columns(&self, model: &Model<'g>) -> Columns<'g> {
-        let zero = Vec3::zero(model.graph);
-        let empty = vec![zero; model.size()];
-        let mut columns = Columns { axes: empty.clone(), linear: empty.clone(), angular: empty.clone(), shifts: empty };
-        let (mut mass, mut first, mut inertia) = (model.zero(), zero, Symmetric3::zero(model.graph));
-        let mut way = zero;
-        let sweep = model.graph.sweep();
-        for place in self.0.iter().rev() {
-            match place {
-                Place::Body { index, rotation } => {
-                    sweep.visit(&model.chain.bodies[*index].name);
-                    if let Some((m, s, i)) = body(model, *index, rotation) {
-                        (mass, first, inertia) = (mass + m, first + s, inertia + i);
-                        let name = &model.chain.bodies[*index].name;
-                        first.named(&format!("first_from_{name}"));
-                        inertia.named(&format!("inertia_from_{name}"));
-                    }
-                }
-                Place::Turning { j, axis } => {
-                    (columns.axes[*j], columns.shifts[*j]) = (*axis, way);
-                    (columns.linear[*j], columns.angular[*j]) = (axis.cross(first), inertia.apply(*axis));
-                    way = zero;
-                }
-                Place::Moving { by, sliding } => {
-                    if let Some((j, axis)) = sliding {
-                        (columns.axes[*j], columns.shifts[*j]) = (*axis, way);
-                        (columns.linear[*j], columns.angular[*j]) = (mass * *axis, first.cross(*axis));
+            Factor::Translate(by) => {
+                composite.shift(*by);
+                way = way + frame_before().apply(*by);
+            }
+            Factor::Prismatic { j, axis } => {
+                let (frame, by) = (frame_before(), Vec3::along(*axis, model.q[*j]));
+                columns.set(model, *j, (&frame, *axis), composite.sliding(*axis), way);
+                composite.shift(by);
+                way = frame.apply(by);
+            }
+            Factor::Turn(_) | Factor::Revolute { .. } | Factor::Ball { .. } => {
+                for (j, turn) in factor.turns().into_iter().rev() {
+                    let frame = frame_before();
+                    composite.turn(&turn);
+                    if let Some(j) = j {
+                        columns.set(model, j, (&frame, turn.axis), composite.turning(turn.axis), way);
                         way = zero;
                     }
-                    inertia = inertia + Symmetric3::outer(first + (0.5 * mass) * *by, *by).tensor();
-                    first = first + mass * *by;
-                    way = way + *by;
                 }
             }
         }
-        columns
     }
+    columns
 }
 
-/// Mass, first moments and inertia of a body about its frame's origin, in the world's axes.
-fn body<'g>(model: &Model<'g>, index: usize, rotation: &Rotation<'g>) -> Option<(Expr<'g>, Vec3<'g>, Symmetric3<'g>)> {
-    let inertia = model.chain.bodies[index].inertia.as_ref()?;
-    let second = model.second_moments(inertia);
-    let first = rotation.apply(model.vector(&inertia.first));
-    Some((model.number(&inertia.mass), first, second.rotated(*rotation).tensor()))
+/// The axes of the frame before each rotation and each translation, from the base to the tip.
+fn frames<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Rotation<'g>> {
+    let mut frame = Rotation::identity(model.graph);
+    let mut frames = Vec::new();
+    let sweep = model.graph.sweep();
+    for factor in factors {
+        match factor {
+            Factor::Body(index) => sweep.leave(&model.chain.bodies[*index].name),
+            Factor::Translate(_) | Factor::Prismatic { .. } => frames.push(frame),
+            Factor::Turn(_) | Factor::Revolute { .. } | Factor::Ball { .. } => {
+                for (_, turn) in factor.turns() {
+                    frames.push(frame);
+                    frame = frame.turned(turn.axis, turn.sin, turn.cos);
+                }
+            }
+        }
+    }
+    frames
+}
+
+/// All that hangs on a frame, taken as one body: mass, first and second moments about the frame's origin in its components.
+struct Composite<'g> {
+    mass: Expr<'g>,
+    first: Vec3<'g>,
+    second: Symmetric3<'g>,
+}
+
+impl<'g> Composite<'g> {
+    fn nothing(model: &Model<'g>) -> Self {
+        Composite { mass: model.zero(), first: Vec3::zero(model.graph), second: Symmetric3::zero(model.graph) }
+    }
+
+    fn add(&mut self, model: &Model<'g>, inertia: &Inertia) {
+        self.mass = self.mass + model.number(&inertia.mass);
+        self.first = self.first + model.vector(&inertia.first);
+        self.second = self.second + model.second_moments(inertia);
+    }
+
+    /// Names in generated code, at the frame of a body.
+    fn named(&self, body: &str) {
+        self.first.named(&format!("first_from_{body}"));
+        self.second.named(&format!("second_from_{body}"));
+    }
+
+    /// Components in the frame before a rotation.
+    fn turn(&mut self, turn: &Turn<'g>) {
+        self.first = turn.outward(self.first);
+        self.second = turn.outward_symmetric(&self.second);
+    }
+
+    /// From the origin at d back to the frame's own: `Σ + u dᵀ + d uᵀ` with `u = s + ½ m d`.
+    fn shift(&mut self, d: Vec3<'g>) {
+        self.second = self.second + Symmetric3::outer(self.first + (0.5 * self.mass) * d, d);
+        self.first = self.first + self.mass * d;
+    }
+
+    /// Momenta P and L of a rotation about an axis of the frame at unit rate: `e × s` and `I e`.
+    fn turning(&self, axis: Axis) -> [Vec3<'g>; 2] {
+        let unit = Vec3::along(axis, self.mass.graph().constant(1.0));
+        [unit.cross(self.first), self.second.tensor().row(axis.index())]
+    }
+
+    /// Momenta P and L of a translation along an axis of the frame at unit rate: `m e` and `s × e`.
+    fn sliding(&self, axis: Axis) -> [Vec3<'g>; 2] {
+        let unit = Vec3::along(axis, self.mass.graph().constant(1.0));
+        [self.mass * unit, self.first.cross(unit)]
+    }
 }
 
 impl<'g> Columns<'g> {
+    /// Coordinate j moves along or about an axis of a frame, by whose components its momenta are given.
+    fn set(
+        &mut self,
+        model: &Model<'g>,
+        j: usize,
+        (frame, axis): (&Rotation<'g>, Axis),
+        momenta: [Vec3<'g>; 2],
+        way: Vec3<'g>,
+    ) {
+        self.axes[j] = frame.axis(axis).named(&format!("axis_{}", model.chain.coordinates[j].name));
+        [self.linear[j], self.angular[j]] = momenta.map(|momentum| frame.apply(momentum));
+        self.shifts[j] = way;
+    }
+
     /// The mass matrix, written out.
     pub fn mass_matrix(&self, model: &Model<'g>) -> SymmetricMatrix<'g> {
         let mut matrix = SymmetricMatrix::zero(model.graph, model.size());

@@ -24,6 +24,18 @@ pub enum Factor<'g> {
     Body(usize),
 }
 
+impl<'g> Factor<'g> {
+    /// Its elementary rotations, from the base to the tip, and whose coordinates they are.
+    pub fn turns(&self) -> Vec<(Option<usize>, Turn<'g>)> {
+        match self {
+            Factor::Turn(turn) => vec![(None, *turn)],
+            Factor::Revolute { j, turn } => vec![(Some(*j), *turn)],
+            Factor::Ball { j, turns } => turns.iter().enumerate().map(|(k, turn)| (Some(j + k), *turn)).collect(),
+            Factor::Translate(_) | Factor::Prismatic { .. } | Factor::Body(_) => vec![],
+        }
+    }
+}
+
 /// The factors of a chain, from the base to the tip.
 pub fn factors<'g>(model: &Model<'g>) -> Vec<Factor<'g>> {
     let mut factors = Vec::new();

@@ -5,7 +5,7 @@ use crate::symbolic::Argument::{self, BaseResistance, Factors, Position, Resista
 use crate::symbolic::{Expr, Function, Graph, Program, Shape, Stages, Symbol, SymbolId, Tape};
 
 use super::articulated::Effort;
-use super::columns::Places;
+use super::columns::columns;
 use super::factors::{Factor, factors};
 use super::forward::{self, Loads};
 use super::inertia::Inertias;
@@ -253,7 +253,7 @@ impl<'g> Derivation<'g> {
         let rest = model.zeros();
         let nothing = Vec3::zero(model.graph);
         let (solution, solution_tape) = model.graph.recorded(|| self.accelerations(&rest, &model.right, nothing));
-        let (columns, mass_tape) = model.graph.recorded(|| Places::new(model, &self.factors).columns(model));
+        let (columns, mass_tape) = model.graph.recorded(|| columns(model, &self.factors));
         let (bias, bias_tape) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
         let looped = model.chain.loops.fill_mass_matrix(model.size());
         let (mass_shape, both_shape, mass, mut both) = if looped {
@@ -463,7 +463,7 @@ impl<'g> Derivation<'g> {
     fn linearise(&self) -> Function {
         let model = &self.model;
         let damping = self.impedances().1;
-        let columns = Places::new(model, &self.factors).columns(model);
+        let columns = columns(model, &self.factors);
         let mut outputs = columns.mass_matrix(model).into_upper();
         outputs.extend(self.stiffness().into_upper().iter().chain(&damping.into_upper()));
         let matrix = || Shape::Symmetric(model.size());

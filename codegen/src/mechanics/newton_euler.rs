@@ -51,14 +51,11 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
                     moment.named(&format!("moment_{}", body.name));
                 }
             }
-            (Factor::Turn(turn), _) => (force, moment) = (turn.outward(force), turn.outward(moment)),
-            (Factor::Revolute { j, turn }, _) => {
-                bias[*j] = -moment[turn.axis.index()];
-                (force, moment) = (turn.outward(force), turn.outward(moment));
-            }
-            (Factor::Ball { j, turns }, _) => {
-                for (k, turn) in turns.iter().enumerate().rev() {
-                    bias[j + k] = -moment[turn.axis.index()];
+            (Factor::Turn(_) | Factor::Revolute { .. } | Factor::Ball { .. }, _) => {
+                for (j, turn) in factor.turns().into_iter().rev() {
+                    if let Some(j) = j {
+                        bias[j] = -moment[turn.axis.index()];
+                    }
                     (force, moment) = (turn.outward(force), turn.outward(moment));
                 }
             }

@@ -9,6 +9,7 @@ use super::forward::{inward, outward};
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::outward::velocities;
+use super::turn::Turn;
 use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::CoordinateId;
 use crate::symbolic::Expr;
@@ -28,7 +29,8 @@ pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[F
 
     let (joints, mut articulated) = inward(model, &factors[split..], &velocities[split..], &efforts);
     let path = &factors[..split];
-    path.iter().rev().for_each(|factor| turn_outward(factor, &mut articulated));
+    let turns: Vec<Turn<'g>> = path.iter().flat_map(Factor::turns).map(|(_, turn)| turn).collect();
+    turns.iter().rev().for_each(|turn| articulated.turn(turn));
     let columns: Vec<(Vec3<'g>, Vec3<'g>)> = base
         .iter()
         .map(|&j| {
@@ -48,8 +50,8 @@ pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[F
     let sum = |pick: fn(&(Vec3<'g>, Vec3<'g>)) -> Vec3<'g>| {
         columns.iter().zip(&motion).fold(zero, |sum, (column, &x)| sum + x * pick(column))
     };
-    let start = path.iter().fold((sum(|column| column.0), sum(|column| column.1)), |(alpha, a), factor| {
-        (turn_inward(factor, alpha), turn_inward(factor, a))
+    let start = turns.iter().fold((sum(|column| column.0), sum(|column| column.1)), |(alpha, a), turn| {
+        (turn.inward(alpha), turn.inward(a))
     });
     let mut x = outward(model, &factors[split..], &velocities[split..], &joints, start);
     for (&j, value) in base.iter().zip(motion) {
@@ -61,22 +63,6 @@ pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[F
 /// Where the frame of the first body is reached.
 fn first_body(factors: &[Factor]) -> usize {
     factors.iter().position(|factor| matches!(factor, Factor::Body(_))).unwrap_or(0)
-}
-
-fn turn_outward<'g>(factor: &Factor<'g>, articulated: &mut Articulated<'g>) {
-    match factor {
-        Factor::Turn(turn) | Factor::Revolute { turn, .. } => articulated.turn(turn),
-        Factor::Ball { turns, .. } => turns.iter().rev().for_each(|turn| articulated.turn(turn)),
-        Factor::Translate(_) | Factor::Prismatic { .. } | Factor::Body(_) => {}
-    }
-}
-
-fn turn_inward<'g>(factor: &Factor<'g>, x: Vec3<'g>) -> Vec3<'g> {
-    match factor {
-        Factor::Turn(turn) | Factor::Revolute { turn, .. } => turn.inward(x),
-        Factor::Ball { turns, .. } => turns.iter().fold(x, |x, turn| turn.inward(x)),
-        Factor::Translate(_) | Factor::Prismatic { .. } | Factor::Body(_) => x,
-    }
 }
 
 /// `ω_i · (J ω_j + H υ_j) + υ_i · (Hᵀ ω_j + M υ_j)`

@@ -78,10 +78,10 @@ fn subtract(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
             let sum = add(graph, x, b);
             negate(graph, sum)
         }
-        // The other order is known already: share it.
+        // Only the other order is known already: share it.
         _ => match graph.known(Sub(b, a)) {
-            Some(flipped) => graph.intern(Neg(flipped)),
-            None => graph.intern(Sub(a, b)),
+            Some(flipped) if graph.known(Sub(a, b)).is_none() => graph.intern(Neg(flipped)),
+            _ => graph.intern(Sub(a, b)),
         },
     }
 }

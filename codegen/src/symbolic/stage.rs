@@ -56,10 +56,9 @@ impl Graph {
             }
         }
         let is_moved = |id: &&ExprId| is_late.get(id.index()).is_some_and(|late| *late) && needed[id.index()];
-        let visits = tape.visits.iter().map(|Visit { sweep, body, nodes }| Visit {
-            sweep: *sweep,
-            body: body.clone(),
-            nodes: nodes.iter().filter(is_moved).map(|id| moved[id.index()]).collect(),
+        let visits = tape.visits.iter().map(|visit| Visit {
+            nodes: visit.nodes.iter().filter(is_moved).map(|id| moved[id.index()]).collect(),
+            ..visit.clone()
         });
         let tape = Tape { visits: visits.collect() };
         Stages { factors, results: results.iter().map(|result| self.expr(moved[result.id().index()])).collect(), tape }

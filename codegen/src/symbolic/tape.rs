@@ -29,6 +29,8 @@ pub struct Visit {
     pub sweep: usize,
     /// Name of the body.
     pub body: String,
+    /// Whether the sweep goes from base to tip.
+    pub outward: bool,
     /// What the sweep asked for at this body for the first time in this function, in the order in which it did.
     pub nodes: Vec<ExprId>,
 }
@@ -83,13 +85,14 @@ impl Sweep<'_> {
         let mut recorder = self.graph.recorder.borrow_mut();
         let sweep = recorder.sweeps;
         recorder.at_a_body = true;
-        recorder.tape.visits.push(Visit { sweep, body: body.to_owned(), nodes: vec![] });
+        recorder.tape.visits.push(Visit { sweep, body: body.to_owned(), outward: false, nodes: vec![] });
     }
 
     /// The sweep has come to a body by its joints, and goes on from it.
     pub fn leave(&self, body: &str) {
         if let Some(visit) = self.graph.recorder.borrow_mut().tape.visits.last_mut() {
             body.clone_into(&mut visit.body);
+            visit.outward = true;
         }
         self.visit("");
     }
