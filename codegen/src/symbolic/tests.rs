@@ -108,6 +108,16 @@ fn negation_costs_nothing_on_differences() {
 }
 
 #[test]
+fn a_difference_stays_the_same_node_once_its_negative_is_known() {
+    let graph = Graph::simplifying();
+    let (x, y) = (graph.symbol(SymbolId(0)), graph.symbol(SymbolId(1)));
+    let difference = x - y;
+    let negative = -difference;
+    assert_eq!((x - y).id(), difference.id());
+    assert_eq!((y - x).id(), negative.id());
+}
+
+#[test]
 fn counts_each_operation_once() {
     let p = program(|_, x, y| vec![x.sin() * y, x.cos() * y, x.sin() * y + y], Graph::simplifying());
     let count = p.count(&p.functions[0].outputs, |_| false);

@@ -121,8 +121,12 @@ fn fill<const K: usize, const N: usize>(
     let way = way.map(f64x8::splat);
     for (eight, momenta) in eights.iter_mut().enumerate().skip(first / 8) {
         let p = momenta.linear.map(f64x8::new);
-        let after = (LANES + number(8 * eight)).simd_ge(number(first + K));
-        let l = moved(way.map(|w| w & after), p, momenta.angular.map(f64x8::new));
+        let mut way = way;
+        if 8 * eight < first + K {
+            let after = (LANES + number(8 * eight)).simd_ge(number(first + K));
+            way = way.map(|w| w & after);
+        }
+        let l = moved(way, p, momenta.angular.map(f64x8::new));
         momenta.angular = l.map(f64x8::to_array);
         for (row, entries) in rows.iter_mut().zip(entries(p, l)) {
             let (eights, rest) = row.as_chunks_mut::<8>();
