@@ -13,8 +13,8 @@ pub enum Loops {
 }
 
 /// Equal work at so many bodies in a row is a loop. Forward dynamics written out against in loops: 0.45 and 0.46 µs with 4
-/// sections, of which 3 are equal, eight at once 0.98 and 1.10; 0.72 and 0.67 with 8; 4.07 and 2.44 with 30, whose code no longer
-/// fits into the first cache.
+/// sections, of which 3 are equal, eight at once 0.98 and 1.10; 0.72 and 0.67 with 8; 4.07 and 2.44 with 30, whose code no
+/// longer fits into the first cache.
 const LEAST_ROUNDS: usize = 5;
 
 /// The mass matrix of more coordinates is filled in a loop over rows and columns: written out it grows with the square, and so

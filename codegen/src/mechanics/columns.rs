@@ -9,10 +9,10 @@
 //! : `a_ij = n_i · L_j` where i turns and `n_i · P_j` where it slides, i ≤ j, with L_j taken about the point of i
 //!   [Urbaś 2016, Eq. (5)].
 //!
-//! In its own frame a joint's axis is one of its unit vectors, so that momenta are a column of I and two entries of s, and most placements are
-//! shifts along one axis. In the world's axes a row of A is one scalar product a column, with no rotation from joint to
-//! joint. About local points nothing large is subtracted: the torsional inertia of a slender element keeps its digits beside
-//! the inertia of a whole crane about the world's origin.
+//! In its own frame a joint's axis is one of the unit vectors: momenta are a column of I and two entries of s, and most
+//! placements are shifts along one axis. In the world's axes a row of A is one scalar product a column, with no rotation
+//! from joint to joint. About local points nothing large is subtracted: the torsional inertia of a slender element keeps
+//! its digits beside the inertia of a whole crane about the world's origin.
 
 use super::factors::Factor;
 use super::model::Model;
