@@ -85,15 +85,14 @@ impl Interpreted {
         state
     }
 
-    /// Undamped circular frequencies about a pose, ascending, rad/s.
-    #[must_use]
-    pub fn frequencies(&self, state: &State) -> Vec<f64> {
-        let lower = self.matrix("mass_matrix", state).cholesky().expect("A is positive definite").l();
-        let half = lower.solve_lower_triangular(&self.matrix("tangent_stiffness", state)).expect("L is regular");
+    /// The lowest undamped angular frequency at a pose in stable equilibrium, rad/s: `1/ω²` is the largest eigenvalue of
+    /// `L⁻¹ A L⁻ᵀ` with `K = L Lᵀ`. Of `A = L Lᵀ` it were the smallest of `L⁻¹ K L⁻ᵀ`, known to 1e-16 of the largest:
+    /// to 1e-5 for 32 sections.
+    pub fn lowest_frequency(&self, state: &State) -> f64 {
+        let lower = self.matrix("tangent_stiffness", state).cholesky().expect("K is positive definite").l();
+        let half = lower.solve_lower_triangular(&self.matrix("mass_matrix", state)).expect("L is regular");
         let reduced = lower.solve_lower_triangular(&half.transpose()).expect("L is regular");
-        let mut squares = SymmetricEigen::new(reduced).eigenvalues.as_slice().to_vec();
-        squares.sort_by(f64::total_cmp);
-        squares.into_iter().map(f64::sqrt).collect()
+        SymmetricEigen::new(reduced).eigenvalues.max().sqrt().recip()
     }
 }
 
