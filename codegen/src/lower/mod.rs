@@ -21,7 +21,7 @@ mod order;
 mod roll;
 mod split;
 
-use crate::symbolic::{ExprId, Function, Op, OperationCount, Program};
+use crate::symbolic::{ExprId, Function, Op, OperationCount, Program, Visit};
 
 pub use constants::Constants;
 pub use loops::{Loop, Progression, Rolled, Source, Taking};
@@ -118,6 +118,12 @@ pub struct Place {
     pub body: String,
     /// Whether the sweep goes from base to tip.
     pub outward: bool,
+}
+
+impl From<&Visit> for Place {
+    fn from(visit: &Visit) -> Self {
+        Place { body: visit.body.clone(), outward: visit.outward }
+    }
 }
 
 /// An angle and what is needed of it.

@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use super::{Angle, Constants, Place, Rolled, Source, Statement, Taking, variables_of};
+use super::{Angle, Constants, Rolled, Source, Statement, Taking, variables_of};
 use crate::symbolic::{Argument, ExprId, Function, Op, Program, Visit};
 
 /// One straight line for a function, its loops in it as statements.
@@ -136,9 +136,9 @@ impl Line<'_> {
 
     /// Computes what is needed of what sweeps asked for, in their order, and writes what is a result at once.
     fn follow(&mut self, visits: &[Visit]) {
-        for Visit { body, outward, nodes, .. } in visits {
+        for visit in visits {
             let before = self.statements.len();
-            for id in nodes {
+            for id in &visit.nodes {
                 if self.needed[id.index()] && !self.inlined[id.index()] {
                     self.compute(*id);
                 }
@@ -148,9 +148,8 @@ impl Line<'_> {
             }
             // A loop says itself where it is.
             let begins = self.statements.get(before).is_some_and(|first| !matches!(first, Statement::Loop { .. }));
-            if begins && !body.is_empty() {
-                let place = Place { body: body.clone(), outward: *outward };
-                self.statements.insert(before, Statement::At(Some(place)));
+            if begins && !visit.body.is_empty() {
+                self.statements.insert(before, Statement::At(Some(visit.into())));
             }
         }
         if !visits.is_empty() {

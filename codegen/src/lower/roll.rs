@@ -212,8 +212,7 @@ impl Rolling<'_> {
 
     /// Writes the loop's body as expressions of their own.
     fn write(&mut self, Plan { own, mut making, sources, sites }: Plan, visits: &[Visit], matches: &[Match]) {
-        let place = |visit: &Visit| Place { body: visit.body.clone(), outward: visit.outward };
-        making.places = [place(&visits[0]), place(&visits[visits.len() - 1])];
+        making.places = [&visits[0], &visits[visits.len() - 1]].map(Place::from);
         let number = self.rolled.loops.len();
         let mut symbols: HashMap<&[ExprId], ExprId> = HashMap::new();
         let mut outside: HashMap<(ExprId, usize), ExprId> = HashMap::new();
