@@ -12,8 +12,6 @@
 //! | frequencies, damping | `modes` | `std` |
 //! | largest stable step | `stability` | `std` |
 //! | any crane through one pointer | `rig::Rig` | `std` |
-//! | the shipped cranes | `cranes` | `cranes` |
-//! | the command `crane`, over any cranes | `command` | `command` |
 //!
 //! With `default-features = false` the crate is `no_std` and needs no heap.
 
@@ -25,13 +23,7 @@ extern crate self as crane_model;
 mod description;
 mod model;
 
-#[cfg(feature = "command")]
-pub mod command;
-#[cfg(feature = "cranes")]
-pub mod cranes;
 pub mod dynamics;
-#[cfg(all(doctest, feature = "cranes"))]
-mod manual;
 #[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]

@@ -2,10 +2,10 @@
 
 use crane_model::{
     Dynamics, Ensemble,
-    cranes::{eight_link_flexible, knuckle_boom},
     dynamics::{Settings, Stopped, ensemble, rk4::State, simulate},
     rig, statics,
 };
+use crane_specs::{eight_link_flexible, knuckle_boom};
 use nalgebra::SVector;
 
 /// Knuckle-boom cranes with loads of their own, at rest where each rests.

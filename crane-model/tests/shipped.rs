@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 
 use crane_model::{
-    cranes,
     dynamics::{Method, Settings, Statistics, rk4, simulate},
     modes, rig,
     stability::limit,
     statics,
 };
+use crane_specs as cranes;
 use nalgebra::{SVector, Vector3};
 
 #[test]

@@ -5,12 +5,13 @@ mod common;
 mod interpreted;
 
 use crane_model::{
-    CoordinateKind, CoordinateRole, Dynamics, Linearise, cranes,
+    CoordinateKind, CoordinateRole, Dynamics, Linearise,
     dynamics::{Method, rk4},
     modes::{SmallMotions, damped},
     stability::{StabilityFunction, cause, grouped, limit},
     statics,
 };
+use crane_specs as cranes;
 use interpreted::Interpreted;
 use nalgebra::{Complex, SVector};
 
@@ -156,7 +157,7 @@ fn the_derivative_is_that_of_the_function() {
 
 #[test]
 fn the_limit_of_the_reference_crane_in_plain_words() {
-    use cranes::eight_link_flexible::{Crane, DESCRIPTION, N};
+    use crane_specs::eight_link_flexible::{Crane, DESCRIPTION, N};
     let crane = Crane::default();
     let q = statics::solve(&crane, &statics::Settings::default()).q;
     let q = SVector::<f64, N>::from_column_slice(&q);

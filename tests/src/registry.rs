@@ -73,7 +73,7 @@ macro_rules! registry {
         #[must_use]
         pub fn all() -> Vec<Entry> {
             vec![
-                $(entry!(crane_model::cranes::$shipped, $shipped, false),)*
+                $(entry!(crane_specs::$shipped, $shipped, false),)*
                 $(entry!(self::random::$random, $random, true),)*
             ]
         }

@@ -2,9 +2,10 @@
 
 use std::hint::black_box;
 
+use crane_model::CraneModel;
 use crane_model::nalgebra::{Matrix4, SVector, Vector3};
 use crane_model::rig::Crane;
-use crane_model::{CraneModel, cranes};
+use crane_specs as cranes;
 
 /// Calls every function of the traits at the guess; vectors and matrices stay on the stack, lists go into `places`.
 fn every_function<const N: usize>(crane: &mut impl Crane<N>, places: &mut Places) {

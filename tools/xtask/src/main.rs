@@ -58,7 +58,7 @@ const ERROR_VS_RUNTIME: [&str; 10] = [
     "run",
     "--release",
     "--features",
-    "cli,yardstick",
+    "yardstick",
     "--",
     "work-precision",
     "--page",
@@ -102,7 +102,7 @@ fn lint() -> Vec<Step> {
 }
 
 /// Features of the commands, on in every step so that nothing is built twice.
-const CLI: &str = "crane-codegen/cli,crane-model/cli";
+const CLI: &str = "crane-codegen/cli";
 
 /// Which cranes the benchmarks compile: to look at them the smallest will do.
 const SECTIONS: &str = "CRANE_BENCH_SECTIONS";

@@ -1,0 +1,6 @@
+//! The shipped cranes: one module a file of `specs/`, compiled by the build script.
+
+#[cfg(doctest)]
+mod manual;
+
+include!(concat!(env!("OUT_DIR"), "/cranes.rs"));

@@ -1,0 +1,445 @@
+//! Arguments of the command.
+
+use std::{
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+    str::FromStr,
+};
+
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+
+use crane_model::dynamics::Method;
+
+const EXAMPLES: &str = "\
+Examples:
+  crane                                the eight-link crane, rigid against flexible
+  crane statics                        pose, drive torques, support reactions
+  crane statics cantilever --format json
+                                       the same of another crane, for a program
+  crane simulate --set load_mass=0 --out empty
+                                       the manoeuvre without the log
+  crane simulate --method rk4 --step 1e-4
+                                       the manoeuvre as the paper integrates it
+  crane simulate --ensemble loads.csv -o peaks.csv
+                                       a crane for every row of a table of parameters
+  crane report -o report.html          the crane in 3-D, plots and tables as a page that needs no network
+  crane modes                          frequencies and damping about the static pose
+  crane stability                      largest stable steps, what limits them, and a figure
+  crane work-precision                 what accuracy costs: methods, steps, tolerances, numbers of sections
+  crane stress --quick                 stiff and extreme cranes, as expected or not
+  crane check my.yaml; crane run my.yaml
+                                       a crane of one's own: its mistakes; everything about it
+  crane explain my.yaml --svg my.svg   its chain, in words and as a picture
+  crane new my-crane --from cantilever a crate that compiles a crane of one's own
+  crane export my.yaml --format urdf -o my.urdf
+                                       the chain for other programs, its springs in my.springs.yaml beside it
+  crane import robot.urdf -o my.yaml   a spec from a robot of others
+  crane list                           the cranes to choose from
+  crane info                           coordinates, parameters, drives of a crane
+  source <(crane completions bash)     completion of commands and options
+
+Exit codes:
+  0  done
+  1  no stable equilibrium, a run that grew without bound, a file that cannot be used
+  2  wrong arguments";
+
+/// Statics, motion and vibration of cranes compiled from YAML.
+///
+/// Without a command: the eight-link forest crane, rigid and with a flexible boom. Static pose, a manoeuvre of 5 s
+/// followed to 10 s, and the comparison of both as figures (SVG) and data (CSV) in `out/`.
+#[derive(Debug, Parser)]
+#[command(name = "crane", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub action: Option<Action>,
+    /// Options of the comparison.
+    #[command(flatten)]
+    pub compare: Compare,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Action {
+    /// All of it: statics, motion, figures and the report, into a folder
+    Run(Simulate),
+    /// Static equilibrium: pose, drive torques, support reactions
+    Statics(Analysis),
+    /// Motion from the static pose: results, figures and a record of the run into a folder
+    Simulate(Simulate),
+    /// Frequencies, damping and dominating coordinates about the static pose, and the largest stable step
+    Modes(Analysis),
+    /// Statics, motion and modes as one HTML page: the crane in 3-D, plots, tables
+    Report(Page),
+    /// Largest stable step of every method and what limits it, at the static pose and along the manoeuvre
+    Stability(Stability),
+    /// Error against run time of every method and number of sections, and which of them are cheapest for an error
+    WorkPrecision(WorkPrecision),
+    /// Stiff and extreme cranes: what is expected of each, and what happens
+    Stress(Stress),
+    /// What a crane consists of: coordinates, bodies, supports, drives, parameters
+    Info(Analysis),
+    /// T, ∂T/∂q, ∂²T/∂q∂q, A and e at a state, for checks by other programs
+    Eval(Eval),
+    /// A crate for a crane of one's own, begun from a shipped one
+    New(New),
+    /// Whether a spec is sound, or every mistake in it
+    Check {
+        /// The crane's YAML file
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        spec: PathBuf,
+    },
+    /// The chain of a spec: bodies, coordinates, what is left out and why, what each function costs
+    Explain {
+        /// The crane's YAML file
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        spec: PathBuf,
+        /// Also draw the chain into this file
+        #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        svg: Option<PathBuf>,
+    },
+    /// A crane as URDF, its springs beside it, or as MJCF, for Pinocchio, `MuJoCo`, ROS and others
+    Export(Export),
+    /// A spec from URDF: a chain of joints of one axis each
+    Import(Import),
+    /// The cranes to choose from
+    List(List),
+    /// Completion script for a shell
+    Completions {
+        /// Shell to write it for.
+        shell: clap_complete::Shell,
+    },
+}
+
+impl Action {
+    /// The YAML file that is named in place of a crane.
+    pub fn spec(&self) -> Option<&Path> {
+        let choice = match self {
+            Action::Run(options) | Action::Simulate(options) => &options.analysis.crane,
+            Action::Statics(options) | Action::Modes(options) | Action::Info(options) => &options.crane,
+            Action::Stability(options) => &options.analysis.crane,
+            Action::Report(options) => &options.crane,
+            Action::Eval(options) => &options.crane,
+            // Compiles the crane with other numbers of sections along.
+            Action::WorkPrecision(_)
+            | Action::New(_)
+            | Action::Stress(_)
+            | Action::Check { .. }
+            | Action::Explain { .. }
+            | Action::Export(_)
+            | Action::Import(_)
+            | Action::List(_)
+            | Action::Completions { .. } => return None,
+        };
+        choice.file()
+    }
+}
+
+/// Form of what is printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Table,
+    /// For programs.
+    Json,
+}
+
+/// A crane with its live parameters.
+#[derive(Debug, Args)]
+pub struct Choice {
+    /// Crane, or its YAML file; `crane list` shows all cranes
+    #[arg(default_value = "eight_link_flexible", value_name = "CRANE")]
+    pub name: String,
+    #[command(flatten)]
+    pub parameters: Parameters,
+}
+
+impl Choice {
+    /// The YAML file that is named in place of a crane.
+    pub fn file(&self) -> Option<&Path> {
+        let path = Path::new(&self.name);
+        path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml").then_some(path)
+    }
+}
+
+/// Values of live parameters.
+#[derive(Debug, Args)]
+pub struct Parameters {
+    /// Value of a live parameter, in the unit that `crane info` shows; may be given several times
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub settings: Vec<String>,
+}
+
+/// An analysis that prints tables.
+#[derive(Debug, Args)]
+pub struct Analysis {
+    #[command(flatten)]
+    pub crane: Choice,
+    /// Form of what is printed
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Step of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// The largest safe one.
+    Auto,
+    /// So many seconds.
+    Seconds(f64),
+}
+
+impl FromStr for Step {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Step::Auto);
+        }
+        text.parse().map(Step::Seconds).map_err(|_| "write a number of seconds, such as 1e-4, or `auto`".to_owned())
+    }
+}
+
+/// Time and step of a run.
+#[derive(Clone, Debug, Args)]
+pub struct Timing {
+    /// Method: `bdf` and `rosw4` implicit and adaptive, for stiff cranes; `dopri5` explicit and adaptive; `rk4` with constant
+    /// step, the paper's [default: rk4 with --step and for the comparison, otherwise bdf]
+    #[arg(long, value_name = "NAME")]
+    pub method: Option<Method>,
+    /// Error that an adaptive method allows a step, m and rad [default: 5e-5]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    pub tolerance: Option<f64>,
+    /// Greatest step of rk4, s; `auto`: the largest safe one [default: the crane's]
+    #[arg(long, value_name = "SECONDS|auto", allow_negative_numbers = true)]
+    pub step: Option<Step>,
+    /// Run even where the step is beyond the largest stable one
+    #[arg(long)]
+    pub force: bool,
+    /// Simulated time, s [default: the crane's]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub duration: Option<f64>,
+    /// Interval of recorded results, s [default: the crane's]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub output: Option<f64>,
+}
+
+/// Folder of results.
+#[derive(Debug, Args)]
+pub struct Folder {
+    /// Folder for results; made where it is missing
+    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+}
+
+/// The comparison of the rigid and the flexible crane.
+#[derive(Debug, Args)]
+pub struct Compare {
+    #[command(flatten)]
+    pub parameters: Parameters,
+    /// Form of what is printed
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+    #[command(flatten)]
+    pub timing: Timing,
+    #[command(flatten)]
+    pub folder: Folder,
+}
+
+/// A run of one crane.
+#[derive(Debug, Args)]
+pub struct Simulate {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    #[command(flatten)]
+    pub timing: Timing,
+    #[command(flatten)]
+    pub folder: Folder,
+    #[command(flatten)]
+    pub ensemble: Ensemble,
+}
+
+/// Runs of many cranes that differ in their parameters.
+#[derive(Debug, Args)]
+pub struct Ensemble {
+    /// Run a crane for every row of a CSV table whose header names live parameters
+    #[arg(long = "ensemble", value_name = "TABLE.csv", value_hint = ValueHint::FilePath)]
+    pub table: Option<PathBuf>,
+    /// File for peaks and final values, a row a crane [default: <CRANE>_ensemble.csv in the folder for results]
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "table")]
+    pub results: Option<PathBuf>,
+    /// Threads that run the cranes of the table, eight at a time each [default: all of the machine]
+    #[arg(long, value_name = "COUNT", requires = "table")]
+    pub threads: Option<NonZeroUsize>,
+}
+
+/// A report as one page.
+#[derive(Debug, Args)]
+pub struct Page {
+    #[command(flatten)]
+    pub crane: Choice,
+    #[command(flatten)]
+    pub timing: Timing,
+    /// File to write
+    #[arg(short = 'o', long, value_name = "FILE", default_value = "report.html", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+}
+
+/// A crate of one's own.
+#[derive(Debug, Args)]
+pub struct New {
+    /// Folder to make; its name is the crate's and the crane's
+    #[arg(value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+    /// Shipped crane to begin from
+    #[arg(long, value_name = "CRANE", default_value = "knuckle_boom")]
+    pub from: String,
+}
+
+/// Stability of time steps.
+#[derive(Debug, Args)]
+pub struct Stability {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Poses along the manoeuvre at which to look as well, evenly in time: where the crane would rest there
+    #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u16).range(..=1000))]
+    pub along: u16,
+    /// Folder for the figure; made where it is missing
+    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+}
+
+/// Language of other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Language {
+    /// Kinematics and masses; springs, dampers and supports in a file beside it.
+    Urdf,
+    /// `MuJoCo`'s, with stiffness, damping and spring references of joints; linear supports as tendons.
+    Mjcf,
+}
+
+/// A crane for other programs.
+#[derive(Debug, Args)]
+pub struct Export {
+    #[command(flatten)]
+    pub crane: Choice,
+    /// Language to write
+    #[arg(long, value_enum)]
+    pub format: Language,
+    /// File to write [default: the crane's name with .urdf or .xml]
+    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+}
+
+/// A spec from another program's file.
+#[derive(Debug, Args)]
+pub struct Import {
+    /// URDF file
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub urdf: PathBuf,
+    /// Spec to write [default: standard output]
+    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub spec: Option<PathBuf>,
+    /// Joint to hold at zero, such as a finger's; may be given several times
+    #[arg(long = "fix", value_name = "JOINT")]
+    pub fixed: Vec<String>,
+}
+
+/// Error against run time.
+#[derive(Debug, Args)]
+pub struct WorkPrecision {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Numbers of sections of every flexible link to compare, two or more; `none` compares the methods alone
+    #[arg(long, value_name = "COUNTS|none", default_value = "1,2,3,4,6,8,12,20,30")]
+    pub sections: Counts,
+    /// Simulated time, s [default: the crane's]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub duration: Option<f64>,
+    /// Fewer steps and tolerances, each run once: to look whether it works
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for tables (CSV) and figures (SVG); made where it is missing
+    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// Also write all of it as a Markdown page, with its figures in `images` beside it
+    #[arg(long, value_name = "FILE.md", value_hint = ValueHint::FilePath)]
+    pub page: Option<PathBuf>,
+}
+
+/// Numbers of sections, ascending; none or at least two.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counts(pub Vec<usize>);
+
+impl FromStr for Counts {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "none" {
+            return Ok(Counts(Vec::new()));
+        }
+        let counts: Result<Vec<usize>, _> = text.split(',').map(|count| count.trim().parse()).collect();
+        let mut counts = counts.map_err(|_| "write whole numbers such as 2,4,8, or `none`".to_owned())?;
+        counts.sort_unstable();
+        counts.dedup();
+        if counts.len() < 2 || counts[0] == 0 {
+            return Err("write two or more different numbers from 1 on, such as 2,4,8, or `none`".to_owned());
+        }
+        Ok(Counts(counts))
+    }
+}
+
+/// The suite of extreme cases.
+#[derive(Debug, Args)]
+pub struct Stress {
+    /// Only the cases that take so little that every build can do them
+    #[arg(long)]
+    pub quick: bool,
+    /// Only the cases with this word in their name or group
+    #[arg(long, value_name = "WORD")]
+    pub only: Option<String>,
+    /// Form of what is printed
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+    /// Folder for the tables stress.csv and stress.md; made where it is missing
+    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+}
+
+/// A list of the cranes.
+#[derive(Debug, Args)]
+pub struct List {
+    /// Form of what is printed
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Form of evaluated matrices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum EvalFormat {
+    /// One object of nested arrays.
+    #[default]
+    Json,
+    /// Archive for `numpy.load`, uncompressed.
+    Npz,
+}
+
+/// Quantities at one state.
+#[derive(Debug, Args)]
+pub struct Eval {
+    #[command(flatten)]
+    pub crane: Choice,
+    /// Coordinates, m and rad: numbers separated by commas or blanks, or a file of them [default: the crane's guess]
+    #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
+    pub q: Option<String>,
+    /// Their rates, m/s and rad/s, likewise [default: 0]
+    #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
+    pub v: Option<String>,
+    /// Form of the result
+    #[arg(long, value_enum, default_value_t)]
+    pub format: EvalFormat,
+    /// File to write; without it, standard output
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+}

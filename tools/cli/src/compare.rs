@@ -1,0 +1,121 @@
+//! `crane` alone: the eight-link crane, rigid against flexible, as [Urbaś 2016, section 3] does it.
+
+use std::{io::Write, mem, thread, time::Instant};
+
+use crane_model::{
+    Description,
+    dynamics::{Method, Settings},
+    results::Table,
+};
+
+use crate::{
+    Fleet,
+    arguments::{Compare, Format, Timing},
+    figures::{Curve, Mark, PALETTE, Panel},
+    files, page,
+    problem::{Outcome, Problem},
+    run::{Recorded, Start, progress, record},
+    simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
+    statics::{Case, deflection, tables},
+};
+
+/// The rigid and the flexible crane.
+pub const CRANES: [&str; 2] = ["eight_link_rigid", "eight_link_flexible"];
+
+/// Statics and motion of both cranes, figures and data.
+pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let begin = Instant::now();
+    let (rigid, flexible) = (options.parameters.crane(CRANES[0], fleet)?, options.parameters.crane(CRANES[1], fleet)?);
+    let folder = &options.folder.out;
+
+    let cases = [Case::new("rigid", rigid.as_ref()), Case::new("flexible", flexible.as_ref())];
+    let format = options.format;
+    let mut report = tables(&cases);
+    let [rigid_case, flexible_case] = &cases;
+    report.grid(deflection(rigid_case, flexible_case));
+    if format == Format::Table {
+        // Something to read while the cranes move.
+        writeln!(out, "Statics of {}\n", flexible.description().title)?;
+        mem::take(&mut report).print(format, out)?;
+    }
+
+    files::folder(folder)?;
+    let (settings, runs) = runs(&cases, &options.timing, Method::Rk4)?;
+    let [rigid_run, flexible_run] = runs.as_slice() else {
+        return Err(Problem::failed("a simulation is missing", "please report it"));
+    };
+
+    let mut written = Vec::new();
+    for ((case, settings), run) in cases.iter().zip(&settings).zip(&runs) {
+        written.extend(write_run(folder, case.rig, settings, run)?);
+    }
+    let description = flexible.description();
+    let traces = [
+        Trace { label: flexible_case.label, table: &flexible_run.table, dashed: false },
+        Trace { label: rigid_case.label, table: &rigid_run.table, dashed: true },
+    ];
+    written.extend(write_figures(folder, "comparison_", description, &traces)?);
+    let deviation_file = "comparison_deviation.svg".to_owned();
+    write_figure(&folder.join(&deviation_file), &deviation(description, &rigid_run.table, &flexible_run.table), 1)?;
+    written.push(deviation_file);
+
+    let page = "report.html";
+    page::write(&folder.join(page), fleet, &cases, &settings, &runs)?;
+    written.push(page.to_owned());
+
+    report.grid(summary(description, &[("rigid", rigid_run), ("flexible", flexible_run)]));
+    report.grid(file_list(folder, &written));
+    if format == Format::Table {
+        let (duration, method, step) = (settings[1].duration, settings[1].method.title(), flexible_run.run.step);
+        writeln!(out, "\nMotion over {duration} s from the {}, {method}, step {step} s\n", flexible_run.start)?;
+    }
+    report.print(format, out)?;
+    if format == Format::Table {
+        writeln!(out, "\nAll in {:.1} s", begin.elapsed().as_secs_f64())?;
+    }
+    Ok(())
+}
+
+/// Runs cranes side by side, each from its own start; `default`: the method unless one is asked for.
+pub fn runs(cases: &[Case<'_>], timing: &Timing, default: Method) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
+    let starts = cases.iter().map(|case| Start::of(case.rig)).collect::<Outcome<Vec<_>>>()?;
+    let settings = cases
+        .iter()
+        .zip(&starts)
+        .map(|(case, start)| timing.settings(case.rig, start, default))
+        .collect::<Outcome<Vec<_>>>()?;
+    let bar = progress(settings.iter().map(|settings| settings.duration).sum());
+    bar.set_message("simulating");
+    let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
+        let runs: Vec<_> = cases
+            .iter()
+            .zip(&starts)
+            .zip(&settings)
+            .map(|((case, start), settings)| scope.spawn(|| record(case.rig, start, settings, &bar)))
+            .collect();
+        let broken = |_| Err(Problem::failed("a simulation broke off", "please report it"));
+        runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
+    });
+    bar.finish_and_clear();
+    Ok((settings, results.into_iter().collect::<Outcome<_>>()?))
+}
+
+/// How far the flexible crane's points are from the rigid one's over time, along each axis.
+fn deviation(description: &Description, rigid: &Table, flexible: &Table) -> Vec<Panel> {
+    let panel = |axis: &str| {
+        let curves = description.points.iter().zip(PALETTE.iter().cycle()).map(|(point, &colour)| {
+            let column = format!("{point}_{axis}");
+            let [from, to] = [rigid, flexible].map(|table| points(table, "t", &column, 1e3));
+            let difference = from.iter().zip(&to).map(|(from, to)| (to.0, to.1 - from.1)).collect();
+            Curve { label: spoken(point), colour, mark: Mark::Solid, points: difference }
+        });
+        Panel {
+            x: "t [s]".to_owned(),
+            y: format!("Δ{axis}, flexible − rigid [mm]"),
+            equal: false,
+            logarithmic: false,
+            curves: curves.collect(),
+        }
+    };
+    ["x", "y", "z"].map(panel).into()
+}

@@ -1,0 +1,82 @@
+//! `crane export` and `crane import`: cranes for other programs, and from them; and outlines for the page.
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use crane_codegen::{
+    SourceFile,
+    chain::Chain,
+    compile, exchange,
+    outline::{self, Outline},
+    read,
+};
+use serde_json::{Value, json};
+
+use crate::{
+    arguments::{Export, Import, Language},
+    files, own,
+    problem::{Outcome, Problem},
+    selection::Fleet,
+};
+
+/// Writes a crane as URDF, with its springs beside it, or as MJCF.
+pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let chain = chain(&options.crane.name, fleet)?;
+    let mut parameters = chain.parameter_defaults();
+    let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
+    for (index, value) in options.crane.parameters.read(&chain.name, &known)? {
+        parameters[index] = value;
+    }
+    let suffix = if options.format == Language::Urdf { "urdf" } else { "xml" };
+    let file = options.file.clone().unwrap_or_else(|| PathBuf::from(format!("{}.{suffix}", chain.name)));
+    let texts = match options.format {
+        Language::Urdf => vec![
+            (file.with_extension("springs.yaml"), exchange::springs(&chain, &parameters)),
+            (file, exchange::urdf(&chain, &parameters)),
+        ],
+        Language::Mjcf => {
+            let text = exchange::mjcf(&chain, &parameters);
+            vec![(file, text.map_err(|failure| Problem::failed(failure.title, failure.help))?)]
+        }
+    };
+    for (file, text) in &texts {
+        files::write_text(file, text)?;
+        writeln!(out, "{} written", file.display())?;
+    }
+    Ok(())
+}
+
+/// Writes a spec made from URDF, and checks it.
+pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
+    let source = own::open(&options.urdf, "name a URDF file")?;
+    let text = exchange::import(&source, &options.fixed).map_err(|mistakes| own::drawn(&mistakes))?;
+    let Some(file) = &options.spec else { return Ok(out.write_all(text.as_bytes())?) };
+    files::write_text(file, &text)?;
+    writeln!(out, "{} written", file.display())?;
+    // What the robot's own numbers get wrong is to be mended there.
+    let (Chain { name, bodies, coordinates, .. }, _) = own::load(file)?;
+    let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
+    writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates; `crane run {file}` runs it")?;
+    Ok(writeln!(out, "URDF knows no springs and no drives: give `drives:` and `damping:` to what would fall")?)
+}
+
+/// Outlines of the beams of a spec, by link: height and width, m, and whether they are round.
+pub fn outlines(spec: Option<&str>) -> Value {
+    let read = spec.and_then(|text| read(&SourceFile::new("spec", text)).ok());
+    let found = read.map_or_else(Vec::new, |spec| outline::outlines(&spec.crane));
+    found.into_iter().map(|Outline { link, size, round }| (link, json!({"size": size, "round": round}))).collect()
+}
+
+/// The chain of a shipped crane, or of a YAML file.
+fn chain(name: &str, fleet: &Fleet) -> Outcome<Chain> {
+    match fleet.spec(name) {
+        Some(text) => compile::load(&SourceFile::new(name, text)).map_err(|mistakes| own::drawn(&mistakes)),
+        None if Path::new(name).extension().is_some() => Ok(own::load(Path::new(name))?.0),
+        // Not a crane: told so, with the nearest that is.
+        None => {
+            fleet.crane(name).and_then(|_| Err(Problem::failed(format!("the spec of {name} is not known here"), "")))
+        }
+    }
+}

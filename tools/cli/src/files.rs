@@ -1,0 +1,109 @@
+//! Files, whole or not at all.
+
+use std::{
+    fs, io,
+    io::Write,
+    path::{Path, PathBuf},
+    process,
+};
+
+use crane_model::{dynamics, results::Table, rig::Rig};
+use serde_json::{Map, Value, json};
+
+use crate::{
+    problem::{Outcome, Problem},
+    run::Recorded,
+};
+
+/// Makes a folder where it is missing.
+pub fn folder(path: &Path) -> Outcome<()> {
+    fs::create_dir_all(path).map_err(|error| Problem::file(path, &error))
+}
+
+/// Writes a file under another name and renames it when it is whole: nobody ever sees half a file.
+pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome<()> {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.part", process::id()));
+    let part: PathBuf = path.with_file_name(name);
+    let written = (|| {
+        let mut file = io::BufWriter::new(fs::File::create(&part)?);
+        content(&mut file)?;
+        file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
+        fs::rename(&part, path)
+    })();
+    written.map_err(|error| {
+        // What is left of the part; the first error is the one to tell.
+        let _ = fs::remove_file(&part);
+        Problem::file(path, &error)
+    })
+}
+
+/// Writes text.
+pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
+    write(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// Writes a table as CSV, units in the header: `boom_psi [rad]`. Only numbers: what is none is told instead.
+pub fn write_csv(path: &Path, table: &Table) -> Outcome<()> {
+    if let Some((row, column)) = table.not_finite() {
+        let what = &table.columns[column].name;
+        let title = format!("{what} in row {} is no number: {} is not written", row + 1, path.display());
+        return Err(Problem::failed(title, "make masses, stiffnesses and positions of a size that a crane has"));
+    }
+    let header = table.columns.iter().map(ToString::to_string);
+    write_fields(path, header, table.rows.iter().map(|row| row.iter().copied().map(number).collect()))
+}
+
+/// The shortest text that reads back as the same number.
+pub fn number(number: f64) -> String {
+    format!("{number:?}")
+}
+
+/// Writes a header and rows of fields as CSV.
+pub fn write_fields(
+    path: &Path,
+    header: impl Iterator<Item = String>,
+    rows: impl Iterator<Item = Vec<String>>,
+) -> Outcome<()> {
+    write(path, |file| {
+        let mut csv = csv::Writer::from_writer(file);
+        csv.write_record(header)?;
+        for row in rows {
+            csv.write_record(row)?;
+        }
+        csv.flush()
+    })
+}
+
+/// What a run was: enough to repeat it.
+pub fn record(rig: &dyn Rig, settings: &dynamics::Settings, recorded: &Recorded) -> Value {
+    let description = rig.description();
+    let parameters: Map<String, Value> = description
+        .parameters
+        .iter()
+        .enumerate()
+        .map(|(index, parameter)| {
+            (parameter.name.to_owned(), json!({"value": rig.parameter(index), "unit": parameter.unit}))
+        })
+        .collect();
+    json!({
+        "crane": description.name,
+        "title": description.title,
+        "spec_hash": description.spec_hash,
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "method": settings.method.title(),
+        "start": recorded.start,
+        "step_s": recorded.run.step,
+        "tolerance": settings.method.is_adaptive().then_some(settings.tolerance),
+        "steps": recorded.run.statistics.steps,
+        "rejected_steps": recorded.run.statistics.rejections,
+        "evaluations": recorded.run.statistics.evaluations,
+        "factorisations": recorded.run.statistics.factorisations,
+        "duration_s": settings.duration,
+        "output_s": settings.output,
+        "parameters": parameters,
+        "wall_time_s": recorded.wall.as_secs_f64(),
+        "real_time_factor": recorded.real_time_factor(),
+    })
+}

@@ -1,0 +1,97 @@
+//! The `crane` command, over any cranes.
+//!
+//! The program `crane` runs it over the shipped cranes; a crate of its own can run it over its own:
+//!
+//! ```ignore
+//! crane_model::cranes! { my_crane }
+//!
+//! fn main() -> std::process::ExitCode {
+//!     let specs = &[("my_crane", include_str!("../crane.yaml"))];
+//!     crane_cli::main(&crane_cli::Fleet { all, specs })
+//! }
+//! ```
+
+mod arguments;
+mod compare;
+mod ensemble;
+mod eval;
+mod exchange;
+mod figures;
+mod files;
+mod info;
+mod interpreted;
+mod modes;
+mod new;
+mod npz;
+mod overall;
+mod own;
+mod page;
+mod parameter_table;
+mod problem;
+mod report;
+mod run;
+mod selection;
+mod simulate;
+mod stability;
+mod statics;
+mod stress;
+mod work_precision;
+
+use std::{io, io::Write, process::ExitCode};
+
+use clap::{CommandFactory, Parser};
+
+use arguments::{Action, Arguments};
+use problem::Outcome;
+pub use selection::Fleet;
+
+/// Does what the arguments of the process ask for, with the cranes of a fleet or of a YAML file that the arguments name.
+pub fn main(fleet: &Fleet) -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version come this way too. Nobody is left to tell where printing fails.
+            let _ = error.print();
+            return if error.use_stderr() { ExitCode::from(problem::USAGE) } else { ExitCode::SUCCESS };
+        }
+    };
+    match act(&arguments, fleet, &mut io::stdout().lock()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(problem) => problem.report(),
+    }
+}
+
+fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    if let Some(spec) = arguments.action.as_ref().and_then(Action::spec) {
+        return own::run(spec);
+    }
+    match &arguments.action {
+        None if fleet.has(compare::CRANES) => compare::compare(&arguments.compare, fleet, out),
+        None => Ok(Arguments::command().print_help()?),
+        Some(Action::Run(options)) => overall::run(options, fleet, out),
+        Some(Action::Statics(options)) => statics::statics(options, fleet, out),
+        Some(Action::Simulate(options)) => match &options.ensemble.table {
+            Some(table) => ensemble::simulate(options, table, fleet, out),
+            None => simulate::simulate(options, fleet, out),
+        },
+        Some(Action::Modes(options)) => modes::modes(options, fleet, out),
+        Some(Action::Stability(options)) => stability::stability(options, fleet, out),
+        Some(Action::Stress(options)) => stress::stress(options, fleet, out),
+        Some(Action::WorkPrecision(options)) => work_precision::work_precision(options, fleet, out),
+        Some(Action::Report(options)) => page::report(options, fleet, out),
+        Some(Action::Info(options)) => info::info(options, fleet, out),
+        Some(Action::Eval(options)) => eval::eval(options, fleet, out),
+        Some(Action::New(options)) => new::new(options, fleet, out),
+        Some(Action::Check { spec }) => own::check(spec, out),
+        Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), out),
+        Some(Action::Export(options)) => exchange::export(options, fleet, out),
+        Some(Action::Import(options)) => exchange::import(options, out),
+        Some(Action::List(options)) => info::list(options.format, fleet, out),
+        Some(Action::Completions { shell }) => {
+            // Into memory first: the generator panics where the other end of a pipe is gone.
+            let mut script = Vec::new();
+            clap_complete::generate(*shell, &mut Arguments::command(), "crane", &mut script);
+            Ok(out.write_all(&script)?)
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! `crane modes`: small vibrations about the static pose.
+
+use std::io::Write;
+
+use crane_model::{
+    Description,
+    dynamics::Method,
+    modes::{DampedMode, damped, undamped},
+    stability::limit,
+};
+
+use crate::{
+    Fleet,
+    arguments::Analysis,
+    problem::Outcome,
+    report::{Cell, Grid, Report},
+    statics::Case,
+};
+
+/// Prints undamped and damped modes and the largest stable step.
+pub fn modes(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(fleet)?;
+    let description = rig.description();
+    let case = Case::new(description.name, rig.as_ref());
+    case.stable()?;
+    let modes = damped(&rig.small_motions(&case.equilibrium.q))?;
+    let mut report = Report::default();
+    report.fact("crane", description.name, "");
+    let step = limit(&modes, &Method::Rk4.stability()).map(|limit| limit.step);
+    report.fact("largest stable step", Cell::from(step), "s");
+    report.grid(undamped_modes(&case)?);
+    report.grid(damped_modes(description, &modes));
+    report.print(options.format, out)
+}
+
+/// Undamped modes about an equilibrium as a table.
+pub fn undamped_modes(case: &Case<'_>) -> Outcome<Grid> {
+    let mut grid = Grid::new("undamped", "Undamped modes", &["mode", "frequency Hz", "omega rad/s", "dominated by"]);
+    for (index, mode) in undamped(&case.rig.small_motions(&case.equilibrium.q))?.iter().enumerate() {
+        let omega = mode.frequency().map(|_| mode.omega_squared.sqrt());
+        let names = names(case.rig.description(), &mode.dominating);
+        grid.row([(index + 1).into(), mode.frequency().into(), omega.into(), names]);
+    }
+    Ok(grid)
+}
+
+/// Damped modes as a table.
+pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
+    let mut grid = Grid::new(
+        "damped",
+        "Damped modes (frequency |λ|/2π; ratio 1: creeps back without swinging)",
+        &["mode", "frequency Hz", "damping ratio", "re 1/s", "im 1/s", "stable step s", "dominated by"],
+    );
+    for (index, mode) in modes.iter().enumerate() {
+        grid.row([
+            (index + 1).into(),
+            mode.frequency().into(),
+            mode.damping_ratio().into(),
+            mode.eigenvalue.re.into(),
+            mode.eigenvalue.im.into(),
+            Method::Rk4.stability().largest_step(mode.eigenvalue).into(),
+            names(description, &mode.dominating),
+        ]);
+    }
+    grid
+}
+
+fn names(description: &Description, coordinates: &[usize]) -> Cell {
+    let names: Vec<&str> = coordinates.iter().map(|&index| description.coordinates[index].name).collect();
+    names.join(", ").into()
+}

@@ -1,0 +1,84 @@
+//! `crane new`: a crate for a crane of one's own, begun from a shipped one.
+
+use std::{io::Write, path::Path};
+
+use crate::{
+    Fleet,
+    arguments::New,
+    files, own,
+    problem::{Outcome, Problem},
+};
+
+/// Files of a new crate: where they go, and what they are made from.
+const FILES: [(&str, &str); 6] = [
+    ("Cargo.toml", include_str!("new/Cargo.toml.template")),
+    ("README.md", include_str!("new/README.md.template")),
+    ("build.rs", include_str!("new/build.rs.template")),
+    ("src/lib.rs", include_str!("new/lib.rs.template")),
+    ("src/main.rs", include_str!("new/main.rs.template")),
+    ("tests/identities.rs", include_str!("new/identities.rs.template")),
+];
+const SPEC: &str = "crane.yaml";
+const SCHEMA: (&str, &str) = ("crane.schema.json", include_str!("../../../specs/crane.schema.json"));
+
+/// Writes the crate.
+pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let package = package(&options.folder)?;
+    let name = package.replace('-', "_");
+    let from = fleet.crane(&options.from.replace('-', "_"))?;
+    let description = from.description();
+    let spec = fleet.spec(description.name).unwrap_or_default();
+
+    if options.folder.exists() {
+        return Err(Problem::usage(
+            format!("{} is there already", options.folder.display()),
+            "name a folder that does not exist yet",
+        ));
+    }
+    let [model, codegen] = ["crane-model", "codegen"].map(|folder| own::root().join(folder));
+    let values = [
+        ("{{package}}", package.as_str()),
+        ("{{name}}", &name),
+        ("{{title}}", description.title),
+        ("{{from}}", description.name),
+        ("{{model}}", &model.to_string_lossy()),
+        ("{{codegen}}", &codegen.to_string_lossy()),
+    ];
+    for (file, template) in FILES {
+        let text = values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
+        write(&options.folder.join(file), &text)?;
+    }
+    write(&options.folder.join(SPEC), &renamed(spec, description.name, &name))?;
+    write(&options.folder.join(SCHEMA.0), SCHEMA.1)?;
+    writeln!(
+        out,
+        "{} written, from {}: change {SPEC} there, then `cargo run --release`; its first build takes some minutes",
+        options.folder.display(),
+        description.name
+    )?;
+    Ok(())
+}
+
+fn write(file: &Path, text: &str) -> Outcome<()> {
+    files::folder(file.parent().unwrap_or(file))?;
+    files::write_text(file, text)
+}
+
+/// The name of the package, that of its folder: letters, digits, `-` and `_`, from which the crane's name is made.
+fn package(folder: &Path) -> Outcome<String> {
+    let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+    if name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(fits) {
+        Ok(name)
+    } else {
+        Err(Problem::usage(
+            format!("`{name}` is no name for a crate"),
+            "begin with a small letter and go on with small letters, digits, `-` or `_`, such as my-crane",
+        ))
+    }
+}
+
+/// A spec with another name of the crane, and all its comments.
+fn renamed(spec: &str, from: &str, to: &str) -> String {
+    spec.replacen(&format!("\nname: {from}\n"), &format!("\nname: {to}\n"), 1)
+}

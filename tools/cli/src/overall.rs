@@ -1,0 +1,52 @@
+//! `crane run`: everything about one crane, printed and written into a folder.
+
+use std::io::Write;
+
+use crane_model::dynamics::Method;
+
+use crate::{
+    Fleet,
+    arguments::Simulate,
+    compare::runs,
+    files,
+    page::{cases, twin, write},
+    problem::Outcome,
+    simulate::{Trace, file_list, summary, write_figures, write_run},
+    statics::{deflection, tables},
+};
+
+/// Statics and motion of a crane, beside its rigid twin where there is one; results, figures and the report.
+pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.open(fleet)?;
+    let (rig, twin) = (rig.as_ref(), twin::rigid(rig.as_ref(), fleet));
+    let cases = cases(rig, twin.as_deref());
+    let mut report = tables(&cases);
+    if let [rigid, flexible] = cases.as_slice() {
+        report.grid(deflection(rigid, flexible));
+    }
+    let (settings, runs) = runs(&cases, &options.timing, Method::RECOMMENDED)?;
+    let labels = cases.iter().map(|case| case.label);
+
+    let folder = &options.folder.out;
+    files::folder(folder)?;
+    let mut written = Vec::new();
+    for ((case, settings), run) in cases.iter().zip(&settings).zip(&runs) {
+        written.extend(write_run(folder, case.rig, settings, run)?);
+    }
+    let traces = labels.clone().zip(&runs).enumerate();
+    let traces: Vec<Trace<'_>> = traces
+        .map(|(index, (label, run))| Trace { label, table: &run.table, dashed: index + 1 < cases.len() })
+        .collect();
+    for (label, caution) in labels.clone().zip(&runs).flat_map(|(l, run)| run.cautions.iter().map(move |c| (l, c))) {
+        report.caution(Some(format!("{label}: {caution}")));
+    }
+    let description = rig.description();
+    written.extend(write_figures(folder, &format!("{}_", description.name), description, &traces)?);
+    let page = format!("{}.html", description.name);
+    write(&folder.join(&page), fleet, &cases, &settings, &runs)?;
+    written.push(page);
+
+    report.grid(summary(description, &labels.zip(&runs).collect::<Vec<_>>()));
+    report.grid(file_list(folder, &written));
+    report.print(options.analysis.format, out)
+}

@@ -1,0 +1,64 @@
+//! One crane of the page: what it is, how it is drawn, its run and its modes.
+
+use base64::{Engine, prelude::BASE64_STANDARD};
+use crane_model::{modes::undamped, results::Table};
+use serde_json::{Value, json};
+
+use super::scene::scene;
+use crate::{problem::Outcome, run::Recorded, statics::Case};
+
+/// Most rows of a run that a page holds; a longer one is thinned, so that the page stays small enough to mail.
+const MOST_ROWS: usize = 4000;
+
+/// Everything of one crane.
+pub fn data(case: &Case<'_>, run: &Recorded) -> Outcome<Value> {
+    let rig = case.rig;
+    let description = rig.description();
+    let coordinates: Vec<Value> = description
+        .coordinates
+        .iter()
+        .map(|coordinate| {
+            json!({
+                "name": coordinate.name, "role": coordinate.role.name(),
+                "unit": coordinate.kind.unit(), "force_unit": coordinate.kind.force_unit(),
+            })
+        })
+        .collect();
+    Ok(json!({
+        "name": description.name,
+        "title": description.title,
+        "label": case.label,
+        "coordinates": coordinates,
+        "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
+        "scene": scene(rig, &case.equilibrium.q),
+        "modes": modes(case)?,
+        "run": columns(&run.table),
+    }))
+}
+
+/// Frequencies, Hz, and shapes in generalized coordinates, lowest first; none about a pose that is no stable equilibrium.
+fn modes(case: &Case<'_>) -> Outcome<Vec<Value>> {
+    if !case.equilibrium.is_stable() {
+        return Ok(Vec::new());
+    }
+    let coordinates = case.rig.description().coordinates;
+    let modes = undamped(&case.rig.small_motions(&case.equilibrium.q))?;
+    let mode = |mode: &crane_model::modes::Mode| {
+        let names: Vec<&str> = mode.dominating.iter().map(|&index| coordinates[index].name).collect();
+        json!({"frequency": mode.frequency(), "shape": mode.shape.as_slice(), "moves": names})
+    };
+    Ok(modes.iter().map(mode).collect())
+}
+
+/// Names, units and values, column by column: little-endian numbers of 32 bits in base 64, that is 7 digits.
+fn columns(table: &Table) -> Value {
+    let every = table.rows.len().div_ceil(MOST_ROWS).max(1);
+    let rows: Vec<&Vec<f64>> = table.rows.iter().step_by(every).collect();
+    #[expect(clippy::cast_possible_truncation, reason = "more digits than anybody can see")]
+    let bytes: Vec<u8> = (0..table.columns.len())
+        .flat_map(|column| rows.iter().flat_map(move |row| (row[column] as f32).to_le_bytes()))
+        .collect();
+    let columns: Vec<Value> =
+        table.columns.iter().map(|column| json!({"name": column.name, "unit": column.unit})).collect();
+    json!({"columns": columns, "rows": rows.len(), "every": every, "data": BASE64_STANDARD.encode(bytes)})
+}

@@ -1,0 +1,93 @@
+//! `crane report`: statics, motion and modes of a crane as one HTML page, which needs no network.
+//!
+//! The page itself is built from `tools/report` and committed; here its data are put in.
+
+mod crane;
+mod scene;
+pub mod twin;
+
+use std::{io::Write, path::Path};
+
+use crane_model::{
+    dynamics::{Method, Settings},
+    rig::Rig,
+};
+use serde_json::{Value, json};
+
+use crate::{
+    Fleet,
+    arguments::Page,
+    compare::runs,
+    exchange, files, modes, own,
+    problem::Outcome,
+    report::Report,
+    run::{POSES, Recorded, Start, manoeuvre},
+    simulate::summary,
+    stability::limits,
+    statics::{Case, deflection, tables},
+};
+
+/// The page without data: script, style and licences in one file.
+const PAGE: &str = include_str!("report.html");
+/// Where the data go.
+const PLACE: &str = "{\"data\":\"here\"}";
+
+/// Computes a crane, and its rigid twin where there is one, and writes the page.
+pub fn report(options: &Page, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(fleet)?;
+    let twin = twin::rigid(rig.as_ref(), fleet);
+    let cases = cases(rig.as_ref(), twin.as_deref());
+    let (settings, runs) = runs(&cases, &options.timing, Method::RECOMMENDED)?;
+    write(&options.file, fleet, &cases, &settings, &runs)?;
+    writeln!(out, "{} written: open it in a browser", options.file.display())?;
+    Ok(())
+}
+
+/// A crane and its rigid twin in equilibrium, the twin first.
+pub fn cases<'a>(rig: &'a dyn Rig, twin: Option<&'a dyn Rig>) -> Vec<Case<'a>> {
+    match twin {
+        Some(twin) => vec![Case::new("rigid", twin), Case::new("flexible", rig)],
+        None => vec![Case::new(rig.description().name, rig)],
+    }
+}
+
+/// Writes the page of cranes side by side; the last is the one it is about.
+pub fn write(file: &Path, fleet: &Fleet, cases: &[Case<'_>], settings: &[Settings], runs: &[Recorded]) -> Outcome<()> {
+    let data = data(fleet, cases, settings, runs)?.to_string();
+    // No text of a spec ends the script element that holds the data.
+    files::write_text(file, &PAGE.replacen(PLACE, &data.replace('<', "\\u003c"), 1))
+}
+
+fn data(fleet: &Fleet, cases: &[Case<'_>], settings: &[Settings], runs: &[Recorded]) -> Outcome<Value> {
+    let mut cranes = Vec::new();
+    for ((case, settings), run) in cases.iter().zip(settings).zip(runs) {
+        let mut crane = crane::data(case, run)?;
+        crane["outlines"] = exchange::outlines(fleet.spec(case.rig.description().name));
+        crane["record"] = files::record(case.rig, settings, run);
+        cranes.push(crane);
+    }
+    Ok(json!({
+        "cranes": cranes,
+        "tables": all_tables(cases, runs)?.page(),
+        "command": own::typed(),
+        "spec": cases.last().and_then(|case| fleet.spec(case.rig.description().name)),
+    }))
+}
+
+fn all_tables(cases: &[Case<'_>], runs: &[Recorded]) -> Outcome<Report> {
+    let mut report = tables(cases);
+    if let [rigid, flexible] = cases {
+        report.grid(deflection(rigid, flexible));
+    }
+    if let Some(case) = cases.last() {
+        let labelled: Vec<(&str, &Recorded)> = cases.iter().map(|case| case.label).zip(runs).collect();
+        report.grid(summary(case.rig.description(), &labelled));
+        if case.equilibrium.is_stable() {
+            report.grid(modes::undamped_modes(case)?);
+            let poses = manoeuvre(case.rig, &Start::of(case.rig)?, POSES)?;
+            report.grid(modes::damped_modes(case.rig.description(), poses.first().map_or(&[], |pose| &pose.modes)));
+            report.grid(limits(case.rig.description(), &poses));
+        }
+    }
+    Ok(report)
+}

@@ -1,0 +1,80 @@
+//! What moves, as the page draws it: frames of the bodies at one pose, and a screw for each coordinate.
+//!
+//! `T_p(q) = exp(ξ₁ (q₁ − q₁⁰)) … exp(ξ_n (q_n − q_n⁰)) T_p(q⁰)`, over the coordinates that move body p: the product of
+//! exponentials (R. W. Brockett, Robotic manipulators and the product of exponentials formula, 1984). Exact for any chain,
+//! so that the page can draw any pose, exaggerated and modal ones too.
+
+use crane_model::rig::Rig;
+use nalgebra::{Matrix4, Vector3};
+use serde_json::{Value, json};
+
+/// Frames, screws, supports and points of a crane about pose `q`.
+pub fn scene(rig: &dyn Rig, q: &[f64]) -> Value {
+    let description = rig.description();
+    let frames = rig.transforms(q);
+    let bodies: Vec<Value> = description
+        .bodies
+        .iter()
+        .zip(&frames)
+        .map(|(body, frame)| {
+            json!({
+                "name": body.name, "link": body.link, "mass": body.mass, "length": body.length,
+                "moved_by": body.degrees_of_freedom, "frame": rows(frame),
+            })
+        })
+        .collect();
+    let supports: Vec<Value> =
+        description.supports.iter().map(|support| json!({"name": support.name, "at": support.position})).collect();
+    json!({"pose": q, "bodies": bodies, "screws": screws(rig, q, &frames), "supports": supports, "points": points(rig, q)})
+}
+
+/// The upper three rows.
+fn rows(frame: &Matrix4<f64>) -> Vec<f64> {
+    frame.transpose().iter().copied().take(12).collect()
+}
+
+/// Screws of all coordinates in the world frame at pose `q`, `ξ̂ = ∂T/∂q_j T⁻¹`: direction ω, then velocity at the origin.
+fn screws(rig: &dyn Rig, q: &[f64], frames: &[Matrix4<f64>]) -> Vec<[f64; 6]> {
+    let derivatives = rig.transform_derivatives(q);
+    let mut screws = Vec::with_capacity(q.len());
+    let mut first = 0;
+    for (body, frame) in rig.description().bodies.iter().zip(frames) {
+        // Those of earlier coordinates are known from earlier bodies.
+        for derivative in &derivatives[first + screws.len()..first + body.degrees_of_freedom] {
+            let s = derivative * inverse(frame);
+            screws.push([s[(2, 1)], s[(0, 2)], s[(1, 0)], s[(0, 3)], s[(1, 3)], s[(2, 3)]]);
+        }
+        first += body.degrees_of_freedom;
+    }
+    screws
+}
+
+/// Inverse of a frame: `[Rᵀ, −Rᵀ p]`.
+fn inverse(frame: &Matrix4<f64>) -> Matrix4<f64> {
+    let rotation = frame.fixed_view::<3, 3>(0, 0).transpose();
+    let mut inverse = rotation.to_homogeneous();
+    inverse.fixed_view_mut::<3, 1>(0, 3).copy_from(&(-rotation * frame.fixed_view::<3, 1>(0, 3)));
+    inverse
+}
+
+/// Points of interest with the body that carries each: the one in whose frame it stays where it is when everything moves.
+fn points(rig: &dyn Rig, q: &[f64]) -> Vec<Value> {
+    /// Way from the pose, m and rad: any that moves all coordinates, no two alike.
+    const WAY: f64 = 0.1;
+    let other: Vec<f64> = q.iter().enumerate().map(|(i, q)| q + WAY / (1.0 + i as f64)).collect();
+    let local = |q: &[f64]| -> Vec<Vec<Vector3<f64>>> {
+        let inverses: Vec<Matrix4<f64>> = rig.transforms(q).iter().map(inverse).collect();
+        let place = |point: &Vector3<f64>| inverses.iter().map(|inverse| (inverse * point.push(1.0)).xyz()).collect();
+        rig.points(q).iter().map(place).collect()
+    };
+    rig.description()
+        .points
+        .iter()
+        .zip(local(q).iter().zip(&local(&other)))
+        .map(|(name, (here, there))| {
+            let moved = |body: usize| (here[body] - there[body]).norm();
+            let body = (0..here.len()).min_by(|&a, &b| moved(a).total_cmp(&moved(b))).unwrap_or(0);
+            json!({"name": name, "body": body, "at": here.get(body).map(|place| <[f64; 3]>::from(*place))})
+        })
+        .collect()
+}

@@ -1,0 +1,51 @@
+//! The rigid crane to compare a flexible one with.
+
+use crane_model::{CoordinateRole, rig::Rig};
+
+use crate::Fleet;
+
+/// The crane of the fleet that is `rig` but for its elements, with the same parameters.
+pub fn rigid(rig: &dyn Rig, fleet: &Fleet) -> Option<Box<dyn Rig>> {
+    let parameters = rig.description().parameters;
+    (fleet.all)().into_iter().find_map(|mut other| {
+        for (index, parameter) in other.description().parameters.iter().enumerate() {
+            if let Some(own) = parameters.iter().position(|own| own.name == parameter.name) {
+                other.set_parameter(index, rig.parameter(own));
+            }
+        }
+        is_rigid(rig, other.as_ref()).then_some(other)
+    })
+}
+
+/// Whether `other` has the joints, drives, supports and points of `rig`, in the same places and with the same laws, and no
+/// elements: compared at a pose off the drives' positions.
+fn is_rigid(rig: &dyn Rig, other: &dyn Rig) -> bool {
+    /// Way off the guess, m and rad.
+    const OFF: f64 = 0.1;
+    let (own, rigid) = (rig.description(), other.description());
+    let joints: Vec<usize> =
+        (0..own.coordinates.len()).filter(|&index| own.coordinates[index].role != CoordinateRole::Element).collect();
+    let same_joints = joints.iter().map(|&index| &own.coordinates[index]).eq(rigid.coordinates);
+    let same_supports = own.supports.iter().map(|s| s.name).eq(rigid.supports.iter().map(|s| s.name));
+    if joints.len() == own.coordinates.len() || !same_joints || !same_supports || own.points != rigid.points {
+        return false;
+    }
+    let pose: Vec<f64> = other.guess().iter().map(|guess| guess + OFF).collect();
+    let mut straight = vec![0.0; own.coordinates.len()];
+    for (&index, &value) in joints.iter().zip(&pose) {
+        straight[index] = value;
+    }
+    let numbers = |rig: &dyn Rig, q: &[f64]| -> Vec<f64> {
+        let rest = vec![0.0; q.len()];
+        let places = rig.points(q).into_iter().chain(rig.support_reactions(q, &rest));
+        places.flat_map(<[f64; 3]>::from).chain(rig.drive_efforts(0.0, q, &rest)).collect()
+    };
+    alike(&numbers(rig, &straight), &numbers(other, &pose))
+}
+
+/// Equal but for rounding.
+fn alike(left: &[f64], right: &[f64]) -> bool {
+    /// Relative to the numbers, and to 1.
+    const ROUNDING: f64 = 1e-9;
+    left.len() == right.len() && left.iter().zip(right).all(|(a, b)| (a - b).abs() <= ROUNDING * (1.0 + a.abs()))
+}

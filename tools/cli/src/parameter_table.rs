@@ -1,0 +1,106 @@
+//! A table of parameter values, a row a crane.
+
+use std::path::Path;
+
+use crane_model::{Description, rig::Rig};
+
+use crate::{
+    problem::{Outcome, Problem},
+    selection::parameter,
+};
+
+/// Values of live parameters of many cranes.
+pub struct ParameterTable {
+    /// Places of the columns' parameters in the description.
+    pub columns: Vec<usize>,
+    /// Values, a row a crane; at least one.
+    pub rows: Vec<Vec<f64>>,
+}
+
+impl ParameterTable {
+    /// Reads a CSV file whose header names live parameters, with or without their units: `load_mass` or `load_mass [kg]`.
+    pub fn read(path: &Path, description: &Description) -> Outcome<Self> {
+        let csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path);
+        let unreadable = |error: csv::Error| {
+            let title = match error.kind() {
+                csv::ErrorKind::UnequalLengths { pos: Some(pos), expected_len, len } => {
+                    let path = path.display();
+                    format!("{path}, line {}: {len} fields where the header names {expected_len}", pos.line())
+                }
+                _ => format!("cannot use {}: {error}", path.display()),
+            };
+            Problem::usage(title, "write a CSV table: names of live parameters, then a row of as many numbers a crane")
+        };
+        let mut csv = csv.map_err(unreadable)?;
+        let mut columns = Vec::new();
+        for (place, header) in csv.headers().map_err(unreadable)?.iter().enumerate() {
+            let at = Place { path, line: 1, column: place + 1 };
+            let index = at.parameter(header, description)?;
+            if columns.contains(&index) {
+                return Err(at.problem(&format!("`{header}` a second time"), "give every parameter one column"));
+            }
+            columns.push(index);
+        }
+        let mut rows = Vec::new();
+        for record in csv.records() {
+            let record = record.map_err(unreadable)?;
+            let line = record.position().map_or(0, csv::Position::line);
+            let value = |(place, (text, &index)): (usize, (&str, &usize))| {
+                let info = &description.parameters[index];
+                text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+                    let help = format!("write a finite number, in {}, such as {}", info.unit, info.default);
+                    Place { path, line, column: place + 1 }
+                        .problem(&format!("`{text}` is no value for {}", info.name), help)
+                })
+            };
+            rows.push(record.iter().zip(&columns).enumerate().map(value).collect::<Outcome<_>>()?);
+        }
+        if rows.is_empty() {
+            return Err(Problem::usage(
+                format!("{} has no rows: there is no crane to run", path.display()),
+                "write names of live parameters in the first line, then the values of a crane in each further one",
+            ));
+        }
+        Ok(Self { columns, rows })
+    }
+
+    /// The crane of a row: what has no column is as in `rig`.
+    pub fn crane(&self, rig: &dyn Rig, row: &[f64]) -> Box<dyn Rig> {
+        let mut crane = rig.boxed_clone();
+        for (&index, &value) in self.columns.iter().zip(row) {
+            crane.set_parameter(index, value);
+        }
+        crane
+    }
+}
+
+/// A field of a table.
+struct Place<'a> {
+    path: &'a Path,
+    line: u64,
+    column: usize,
+}
+
+impl Place<'_> {
+    fn problem(&self, what: &str, help: impl Into<String>) -> Problem {
+        let Self { path, line, column } = self;
+        Problem::usage(format!("{}, line {line}, column {column}: {what}", path.display()), help)
+    }
+
+    /// The parameter that a header names.
+    fn parameter(&self, header: &str, description: &Description) -> Outcome<usize> {
+        let (name, unit) = match header.strip_suffix(']').and_then(|header| header.split_once('[')) {
+            Some((name, unit)) => (name.trim_end(), Some(unit)),
+            None => (header, None),
+        };
+        let index = parameter(name, description).map_err(|(title, help)| self.problem(&title, help))?;
+        let wanted = description.parameters[index].unit;
+        match unit {
+            Some(unit) if unit != wanted => {
+                Err(self
+                    .problem(&format!("{name} is in {wanted}, not in {unit}"), format!("write `{name} [{wanted}]`")))
+            }
+            _ => Ok(index),
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! What can go wrong, as a person reads it.
+
+use std::{fmt::Write as _, io, path::Path, process::ExitCode};
+
+use crane_model::{dynamics::Stopped, modes::NoModes, statics::Equilibrium};
+
+/// Exit code where the computation or a file failed.
+pub const FAILED: u8 = 1;
+/// Exit code where the arguments are wrong.
+pub const USAGE: u8 = 2;
+
+/// A result or a problem for the user.
+pub type Outcome<T> = Result<T, Problem>;
+
+/// What is wrong, and what to do about it.
+#[derive(Debug)]
+pub enum Problem {
+    /// The reader of our output has gone; nothing to say.
+    NobodyListens,
+    /// Another program has told it, and ended with this code.
+    Elsewhere(u8),
+    /// Something for the user to read.
+    Told {
+        /// What is wrong.
+        title: String,
+        /// What to do about it.
+        help: String,
+        /// Exit code.
+        code: u8,
+    },
+}
+
+impl Problem {
+    /// The arguments are wrong.
+    pub fn usage(title: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Told { title: title.into(), help: help.into(), code: USAGE }
+    }
+
+    /// The computation failed.
+    pub fn failed(title: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Told { title: title.into(), help: help.into(), code: FAILED }
+    }
+
+    /// A file or folder could not be used.
+    pub fn file(path: &Path, error: &io::Error) -> Self {
+        Self::failed(
+            format!("cannot use {}: {error}", path.display()),
+            "name a file or folder that exists and is yours to use",
+        )
+    }
+
+    /// No stable equilibrium to start from.
+    pub fn equilibrium(name: &str, equilibrium: &Equilibrium) -> Self {
+        let residual = equilibrium.residual();
+        let left = if residual.is_finite() { format!(", residual {residual:.1e}") } else { String::new() };
+        Self::failed(
+            format!("{name}: statics did not find a stable equilibrium ({equilibrium}{left})"),
+            "change `guess:` in its spec to a pose near a stable equilibrium, or drive or spring the coordinates named",
+        )
+    }
+
+    /// What is wrong.
+    pub fn title(&self) -> &str {
+        match self {
+            Problem::Told { title, .. } => title,
+            _ => "",
+        }
+    }
+
+    /// What is wrong and what to do about it, in one line.
+    pub fn message(&self) -> String {
+        match self {
+            Problem::Told { title, help, .. } if !help.is_empty() => format!("{title}; {help}"),
+            _ => self.title().to_owned(),
+        }
+    }
+
+    /// Prints the problem; the exit code it ends with.
+    pub fn report(&self) -> ExitCode {
+        match self {
+            Problem::NobodyListens => ExitCode::SUCCESS,
+            Problem::Elsewhere(code) => ExitCode::from(*code),
+            Problem::Told { title, help, code } => {
+                let mut text = format!("error: {title}\n");
+                if !help.is_empty() {
+                    let _ = writeln!(text, "  help: {help}");
+                }
+                // Not eprint: it panics where standard error is closed.
+                let _ = io::Write::write_all(&mut io::stderr(), text.as_bytes());
+                ExitCode::from(*code)
+            }
+        }
+    }
+}
+
+impl From<io::Error> for Problem {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Problem::NobodyListens,
+            _ => Problem::failed(format!("cannot write the output: {error}"), ""),
+        }
+    }
+}
+
+impl From<Stopped> for Problem {
+    fn from(stopped: Stopped) -> Self {
+        Problem::failed(stopped.to_string(), stopped.advice())
+    }
+}
+
+impl From<NoModes> for Problem {
+    fn from(error: NoModes) -> Self {
+        Problem::failed(error.to_string(), "check masses and inertias in the spec")
+    }
+}
+
+/// The word of `known` that is most like `word`, if any is like it.
+pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    /// Two words are alike from here on: 0 nothing in common, 1 equal.
+    const ALIKE: f64 = 0.6;
+    known
+        .into_iter()
+        .map(|candidate| (strsim::normalized_damerau_levenshtein(word, candidate), candidate))
+        .filter(|(likeness, candidate)| *likeness >= ALIKE || (!word.is_empty() && candidate.contains(word)))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}

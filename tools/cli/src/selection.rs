@@ -1,0 +1,121 @@
+//! A crane by its name, with parameters set.
+
+use std::path::Path;
+
+use crane_model::{Description, rig::Rig};
+
+use crate::{
+    arguments::{Choice, Parameters},
+    problem::{Outcome, Problem, nearest},
+};
+
+/// Cranes that the command can choose from.
+#[derive(Clone, Copy, Debug)]
+pub struct Fleet {
+    /// All of them, with the parameters of their specs.
+    pub all: fn() -> Vec<Box<dyn Rig>>,
+    /// Names and specs (YAML), as far as they are known.
+    pub specs: &'static [(&'static str, &'static str)],
+}
+
+impl Fleet {
+    /// Whether it has cranes of all these names.
+    pub(super) fn has(&self, names: [&str; 2]) -> bool {
+        let all = (self.all)();
+        names.iter().all(|name| all.iter().any(|rig| rig.description().name == *name))
+    }
+
+    /// The spec of a crane.
+    pub(super) fn spec(&self, name: &str) -> Option<&'static str> {
+        self.specs.iter().find(|(known, _)| *known == name).map(|(_, spec)| *spec)
+    }
+
+    /// A crane by its name.
+    pub(super) fn crane(&self, name: &str) -> Outcome<Box<dyn Rig>> {
+        let all = (self.all)();
+        let names: Vec<&str> = all.iter().map(|rig| rig.description().name).collect();
+        if let Some(rig) = all.into_iter().find(|rig| rig.description().name == name) {
+            return Ok(rig);
+        }
+        let file = format!("{name}.yaml");
+        let help = if Path::new(&file).exists() {
+            format!("did you mean the file `{file}`?")
+        } else {
+            meant(name, &names, "cranes")
+        };
+        Err(Problem::usage(format!("there is no crane `{name}`"), help))
+    }
+}
+
+impl Choice {
+    /// The crane with its parameters.
+    pub fn open(&self, fleet: &Fleet) -> Outcome<Box<dyn Rig>> {
+        self.parameters.crane(&self.name, fleet)
+    }
+}
+
+impl Parameters {
+    /// A crane with these parameters.
+    pub fn crane(&self, name: &str, fleet: &Fleet) -> Outcome<Box<dyn Rig>> {
+        let mut rig = fleet.crane(name)?;
+        self.apply(rig.as_mut())?;
+        Ok(rig)
+    }
+
+    fn apply(&self, rig: &mut dyn Rig) -> Outcome<()> {
+        let description = rig.description();
+        for (index, number) in self.read(description.name, &known(description))? {
+            rig.set_parameter(index, number);
+        }
+        Ok(())
+    }
+
+    /// Places of the parameters that are set, and their values; `known`: names and units of those that the crane has.
+    pub fn read(&self, crane: &str, known: &[(&str, &str)]) -> Outcome<Vec<(usize, f64)>> {
+        let read = |setting: &String| {
+            let (name, value) = setting.split_once('=').ok_or_else(|| {
+                Problem::usage(
+                    format!("`--set {setting}` has no value"),
+                    "write `--set name=value`, such as `--set load_mass=300`",
+                )
+            })?;
+            let index = place(name, crane, known).map_err(|(title, help)| Problem::usage(title, help))?;
+            let unit = known[index].1;
+            let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+                Problem::usage(format!("`{value}` is no value for {name}"), format!("write a finite number, in {unit}"))
+            })?;
+            Ok((index, number))
+        };
+        self.settings.iter().map(read).collect()
+    }
+}
+
+/// Names and units of a crane's live parameters.
+fn known(description: &Description) -> Vec<(&'static str, &'static str)> {
+    description.parameters.iter().map(|parameter| (parameter.name, parameter.unit)).collect()
+}
+
+/// Place of a live parameter by its name; else what is wrong and what to write.
+pub fn parameter(name: &str, description: &Description) -> Result<usize, (String, String)> {
+    place(name, description.name, &known(description))
+}
+
+fn place(name: &str, crane: &str, known: &[(&str, &str)]) -> Result<usize, (String, String)> {
+    known.iter().position(|(known, _)| *known == name).ok_or_else(|| {
+        let names: Vec<String> = known.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
+        let title = format!("{crane} has no live parameter `{name}`");
+        if names.is_empty() {
+            return (title, "it has none; name values under `parameters:` in its spec".to_owned());
+        }
+        let guess = nearest(name, known.iter().map(|(name, _)| *name));
+        (title, hint(guess, &names.join(", "), "parameters"))
+    })
+}
+
+fn meant(word: &str, known: &[&str], what: &str) -> String {
+    hint(nearest(word, known.iter().copied()), &known.join(", "), what)
+}
+
+fn hint(nearest: Option<&str>, known: &str, what: &str) -> String {
+    nearest.map_or_else(String::new, |nearest| format!("did you mean `{nearest}`? ")) + &format!("{what}: {known}")
+}

@@ -1,0 +1,214 @@
+//! `crane simulate`: a run of one crane into files.
+
+use std::{io::Write, path::Path};
+
+use crane_model::{
+    CoordinateKind, Description, dynamics,
+    dynamics::Method,
+    results::{Table, drive_effort},
+    rig::Rig,
+};
+
+use crate::{
+    Fleet,
+    arguments::Simulate,
+    figures::{Curve, Mark, PALETTE, Panel, svg},
+    files,
+    problem::{Outcome, Problem},
+    report::{Grid, Report},
+    run::{Recorded, Start, progress, record},
+};
+
+/// A recorded run as a curve of the figures.
+pub struct Trace<'a> {
+    /// Name in the legend.
+    pub label: &'a str,
+    /// Its results.
+    pub table: &'a Table,
+    /// Dashed where it lies over others.
+    pub dashed: bool,
+}
+
+/// Runs a crane and writes its results.
+pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.open(fleet)?;
+    let rig = rig.as_ref();
+    let name = rig.description().name;
+    let start = Start::of(rig)?;
+    let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;
+    files::folder(&options.folder.out)?;
+    let bar = progress(settings.duration);
+    let recorded = record(rig, &start, &settings, &bar)?;
+    bar.finish_and_clear();
+
+    let mut written = write_run(&options.folder.out, rig, &settings, &recorded)?;
+    let traces = [Trace { label: name, table: &recorded.table, dashed: false }];
+    written.extend(write_figures(&options.folder.out, &format!("{name}_"), rig.description(), &traces)?);
+
+    let mut report = Report::default();
+    report.fact("crane", name, "");
+    report.fact("start", recorded.start, "");
+    report.fact("method", settings.method.title(), "");
+    if settings.method.is_adaptive() {
+        report.fact("tolerance", settings.tolerance, "m, rad");
+    }
+    let statistics = recorded.run.statistics;
+    report.fact("steps", statistics.steps, "");
+    report.fact(if settings.method.is_adaptive() { "mean step" } else { "step" }, recorded.run.step, "s");
+    report.fact("rejected steps", statistics.rejections, "");
+    report.fact("evaluations", statistics.evaluations, "");
+    report.fact("factorisations", statistics.factorisations, "");
+    for caution in &recorded.cautions {
+        report.caution(Some(caution.as_str()));
+    }
+    report.grid(summary(rig.description(), &[(name, &recorded)]));
+    report.grid(file_list(&options.folder.out, &written));
+    report.print(options.analysis.format, out)
+}
+
+/// The files written, as a table.
+pub fn file_list(folder: &Path, written: &[String]) -> Grid {
+    let mut grid = Grid::new("files", format!("Written to {}", folder.display()), &["file"]);
+    for file in written {
+        grid.row([file.as_str().into()]);
+    }
+    grid
+}
+
+/// Writes results and record of a run; their file names.
+pub fn write_run(
+    folder: &Path,
+    rig: &dyn Rig,
+    settings: &dynamics::Settings,
+    recorded: &Recorded,
+) -> Outcome<Vec<String>> {
+    let name = rig.description().name;
+    let (csv, json) = (format!("{name}.csv"), format!("{name}.json"));
+    files::write_csv(&folder.join(&csv), &recorded.table)?;
+    files::write_text(&folder.join(&json), &format!("{:#}\n", files::record(rig, settings, recorded)))?;
+    Ok(vec![csv, json])
+}
+
+/// Writes the path of the points in the x–y plane and the drives' torques and forces; their file names.
+pub fn write_figures(
+    folder: &Path,
+    prefix: &str,
+    description: &Description,
+    traces: &[Trace<'_>],
+) -> Outcome<Vec<String>> {
+    let mut written = Vec::new();
+    let figures = [("path", vec![path(description, traces)], 1), ("drives", drives(description, traces), 2)];
+    for (what, panels, columns) in figures {
+        if panels.iter().any(|panel| !panel.curves.is_empty()) {
+            let file = format!("{prefix}{what}.svg");
+            write_figure(&folder.join(&file), &panels, columns)?;
+            written.push(file);
+        }
+    }
+    Ok(written)
+}
+
+/// Writes a figure.
+pub fn write_figure(file: &Path, panels: &[Panel], columns: usize) -> Outcome<()> {
+    let text = svg(panels, columns)
+        .map_err(|error| Problem::failed(format!("cannot draw {}: {error}", file.display()), ""))?;
+    files::write_text(file, &text)
+}
+
+/// Values of two columns as points.
+pub fn points(table: &Table, x: &str, y: &str, scale: f64) -> Vec<(f64, f64)> {
+    match (table.values(x), table.values(y)) {
+        (Some(x), Some(y)) => x.zip(y.map(|y| y * scale)).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// A name for a reader: blanks for underscores.
+pub fn spoken(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// The path of the points in the horizontal plane, [Urbaś 2016, Fig. 8]; in a vertical one where they hardly leave it.
+fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
+    /// A point hardly moves along an axis below this part of its way along z.
+    const HARDLY: f64 = 0.01;
+    let way = |axis: &str| {
+        let columns = description.points.iter().map(|point| format!("{point}_{axis}"));
+        let ranges = columns.filter_map(|column| {
+            let values: Vec<f64> = traces.first()?.table.values(&column)?.collect();
+            Some(values.iter().copied().fold(f64::MIN, f64::max) - values.iter().copied().fold(f64::MAX, f64::min))
+        });
+        ranges.fold(0.0, f64::max)
+    };
+    let [x, y] = match (way("x"), way("y"), HARDLY * way("z")) {
+        (_, y, hardly) if y < hardly => ["x", "z"],
+        (x, _, hardly) if x < hardly => ["y", "z"],
+        _ => ["x", "y"],
+    };
+    let curves = traces
+        .iter()
+        .flat_map(|trace| {
+            description.points.iter().zip(PALETTE.iter().cycle()).map(|(point, &colour)| Curve {
+                label: format!("{}, {}", spoken(point), spoken(trace.label)),
+                colour,
+                mark: if trace.dashed { Mark::Dashed } else { Mark::Solid },
+                points: points(trace.table, &format!("{point}_{x}"), &format!("{point}_{y}"), 1.0),
+            })
+        })
+        .collect();
+    Panel { x: format!("{x} [m]"), y: format!("{y} [m]"), equal: true, logarithmic: false, curves }
+}
+
+fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
+    let panel = |drive: &crane_model::DriveInfo| {
+        let coordinate = &description.coordinates[drive.coordinate];
+        let effort = drive_effort(coordinate.name, coordinate.kind);
+        let (symbol, unit) = match coordinate.kind {
+            CoordinateKind::Translation => ("force", "kN"),
+            CoordinateKind::Rotation => ("torque", "kN m"),
+        };
+        let curves = traces
+            .iter()
+            .zip(PALETTE.iter().cycle())
+            .map(|(trace, &colour)| Curve {
+                label: spoken(trace.label),
+                colour,
+                mark: if trace.dashed { Mark::Dashed } else { Mark::Solid },
+                points: points(trace.table, "t", &effort, 1e-3),
+            })
+            .collect();
+        Panel {
+            x: "t [s]".to_owned(),
+            y: format!("{}, {symbol} [{unit}]", spoken(coordinate.name)),
+            equal: false,
+            logarithmic: false,
+            curves,
+        }
+    };
+    description.drives.iter().map(panel).collect()
+}
+
+/// Greatest torques and forces, work, energy balance and time of runs, a column each.
+pub fn summary(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
+    let labels = runs.iter().map(|(label, _)| *label);
+    let headers: Vec<&str> = ["quantity"].into_iter().chain(labels).chain(["unit"]).collect();
+    let mut grid = Grid::new("summary", "Run", &headers);
+    let mut row = |name: String, unit: &str, value: &dyn Fn(&Recorded) -> Option<f64>| {
+        let values = runs.iter().map(|(_, run)| value(run).into());
+        grid.row([name.into()].into_iter().chain(values).chain([unit.into()]).collect::<Vec<_>>());
+    };
+    let greatest = |run: &Recorded, column: &str| run.table.values(column).map(|v| v.map(f64::abs).fold(0.0, f64::max));
+    let last = |run: &Recorded, column: &str| run.table.values(column).and_then(Iterator::last);
+    for drive in description.drives {
+        let coordinate = &description.coordinates[drive.coordinate];
+        let what = if coordinate.kind == CoordinateKind::Rotation { "torque" } else { "force" };
+        let column = drive_effort(coordinate.name, coordinate.kind);
+        row(format!("peak {what}, {}", coordinate.name), coordinate.kind.force_unit(), &|run| greatest(run, &column));
+    }
+    row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
+    row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
+    row("energy balance, greatest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
+    row("wall time".to_owned(), "s", &|run| Some(run.wall.as_secs_f64()));
+    row("real-time factor".to_owned(), "", &|run| Some(run.real_time_factor()));
+    grid
+}

@@ -1,0 +1,115 @@
+//! `crane stability`: the largest stable step of every method, and what limits it.
+
+use std::io::Write;
+
+use crane_model::{
+    Description,
+    dynamics::Method,
+    modes::DampedMode,
+    stability::{cause, limit},
+};
+
+use crate::{
+    Fleet,
+    arguments::Stability,
+    figures::{BLUE, Curve, Mark, Panel, VERMILLION},
+    files,
+    modes::damped_modes,
+    problem::Outcome,
+    report::{Grid, Report},
+    run::{Bound, Pose, SAFE, Start, manoeuvre},
+    simulate::{file_list, write_figure},
+};
+
+/// Prints limits and modes, and draws the regions.
+pub fn stability(options: &Stability, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.open(fleet)?;
+    let rig = rig.as_ref();
+    let description = rig.description();
+    let start = Start::of(rig)?;
+    let poses = manoeuvre(rig, &start, options.along)?;
+    let modes = poses.first().map_or(&[][..], |pose| &pose.modes);
+
+    let mut report = Report::default();
+    report.fact("crane", description.name, "");
+    report.fact("start", start.what, "");
+    report.grid(limits(description, &poses));
+    if poses.len() > 1 {
+        report.grid(along(description, &poses));
+    }
+    report.grid(damped_modes(description, modes));
+
+    files::folder(&options.out)?;
+    let file = format!("{}_stability.svg", description.name);
+    write_figure(&options.out.join(&file), &regions(modes, description.step), 1)?;
+    report.grid(file_list(&options.out, &[file]));
+    report.print(options.analysis.format, out)
+}
+
+/// The largest stable step of every method over some poses, and what limits it.
+pub fn limits(description: &Description, poses: &[Pose]) -> Grid {
+    let headers = ["method", "order", "step s", "safe step s", "at t s", "limited by"];
+    let mut grid = Grid::new("limits", "Largest stable steps", &headers);
+    for method in Method::ALL {
+        let bound = Bound::of(poses, method);
+        let step = bound.as_ref().map(|bound| bound.limit.step);
+        let why = bound.as_ref().map_or_else(|| "nothing".to_owned(), |bound| cause(description, &bound.limit.mode));
+        grid.row([
+            method.name().into(),
+            method.order().into(),
+            step.into(),
+            step.map(|step| SAFE * step).into(),
+            bound.map(|bound| bound.t).into(),
+            why.into(),
+        ]);
+    }
+    grid
+}
+
+/// Limits at every pose, one method after the other.
+fn along(description: &Description, poses: &[Pose]) -> Grid {
+    let title = "Along the manoeuvre, as if the drives stopped there";
+    let mut grid = Grid::new("along", title, &["method", "t s", "step s", "limited by"]);
+    for method in Method::ALL {
+        for pose in poses {
+            if let Some(limit) = limit(&pose.modes, &method.stability()) {
+                let why = cause(description, &limit.mode);
+                grid.row([method.name().into(), pose.t.into(), limit.step.into(), why.into()]);
+            }
+        }
+    }
+    grid
+}
+
+/// The region of every method that has an end, with hλ of every mode at its largest stable step and at the spec's.
+fn regions(modes: &[DampedMode], own: f64) -> Vec<Panel> {
+    let panel = |method: Method| {
+        let function = method.stability();
+        let boundary = function.boundary().iter().map(|z| (z.re, z.im)).collect();
+        let largest = limit(modes, &function).map_or(own, |limit| limit.step);
+        let marks = |h: f64| {
+            let pair = |mode: &DampedMode| {
+                let z = mode.eigenvalue * h;
+                [(z.re, z.im), (z.re, -z.im)]
+            };
+            modes.iter().flat_map(pair).collect()
+        };
+        let curve = |label: String, colour, points, mark| Curve { label, colour, mark, points };
+        Panel {
+            x: format!("Re hλ; {method}, h = {largest:.3e} s"),
+            y: "Im hλ".to_owned(),
+            equal: true,
+            logarithmic: false,
+            curves: vec![
+                curve("|R(hλ)| = 1".to_owned(), BLUE, boundary, Mark::Solid),
+                curve(
+                    "hλ of the crane at its largest stable step h".to_owned(),
+                    VERMILLION,
+                    marks(largest),
+                    Mark::Dots,
+                ),
+            ],
+        }
+    };
+    Method::ALL.into_iter().filter(|method| method.is_explicit()).map(panel).collect()
+}

@@ -1,0 +1,201 @@
+//! `crane statics`: the pose at rest, of one crane or of several side by side.
+
+use std::io::Write;
+
+use crane_model::{
+    CoordinateInfo,
+    rig::Rig,
+    statics::{Equilibrium, Settings},
+};
+
+use nalgebra::Vector3;
+
+use crate::{
+    Fleet,
+    arguments::{Analysis, Format},
+    problem::{Outcome, Problem},
+    report::{Cell, Grid, Report},
+    run::{EQUILIBRIUM, Start},
+};
+
+/// A crane in equilibrium.
+pub struct Case<'a> {
+    /// Heading of its column.
+    pub label: &'a str,
+    /// The crane.
+    pub rig: &'a dyn Rig,
+    /// Where it rests.
+    pub equilibrium: Equilibrium,
+}
+
+impl<'a> Case<'a> {
+    /// Solves statics.
+    pub fn new(label: &'a str, rig: &'a dyn Rig) -> Self {
+        Self { label, rig, equilibrium: rig.equilibrium(&Settings::default()) }
+    }
+
+    /// A problem unless the equilibrium is stable, and of a crane whose masses are above zero.
+    pub fn stable(&self) -> Outcome<()> {
+        let (name, q) = (self.rig.description().name, &self.equilibrium.q);
+        if !self.equilibrium.is_stable() {
+            return Err(Problem::equilibrium(name, &self.equilibrium));
+        }
+        // A load that pulls upwards rests as well, but moves nowhere.
+        if !q.is_empty() && self.rig.mass_matrix(q).cholesky().is_none() {
+            return Err(Problem::failed(
+                format!("{name}: the mass matrix is not positive definite: a mass or an inertia is not above zero"),
+                "give masses in kg and inertias in kg m² above zero; a parameter may have taken one away",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Where a run from this equilibrium starts: a problem unless it is stable.
+    pub fn start(&self) -> Outcome<Start> {
+        self.stable()?;
+        Ok(Start { q: self.equilibrium.q.clone(), what: EQUILIBRIUM })
+    }
+
+    fn coordinates(&self) -> &'static [CoordinateInfo] {
+        self.rig.description().coordinates
+    }
+
+    /// Velocity at rest.
+    fn rest(&self) -> Vec<f64> {
+        vec![0.0; self.equilibrium.q.len()]
+    }
+
+    /// Value of `values`, one a coordinate, at the coordinate of this name.
+    fn value(&self, name: &str, values: &[f64]) -> Option<f64> {
+        self.coordinates().iter().position(|coordinate| coordinate.name == name).map(|index| values[index])
+    }
+}
+
+/// Prints the equilibrium of a crane.
+pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(fleet)?;
+    let case = Case::new("value", rig.as_ref());
+    let mut report = tables(std::slice::from_ref(&case));
+    if options.format == Format::Json {
+        report.grid(history(&case.equilibrium));
+    }
+    report.print(options.format, out)?;
+    case.stable()
+}
+
+/// Tables of cranes in equilibrium, a column each.
+pub fn tables(cases: &[Case<'_>]) -> Report {
+    let mut report = Report::default();
+    for case in cases {
+        let Case { equilibrium, .. } = case;
+        let residual = equilibrium.residual();
+        report.fact(case.rig.description().name, format!("{equilibrium}, {residual:.1e} of the forces left over"), "");
+        let description = case.rig.description();
+        for caution in [description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q)] {
+            report.caution(caution);
+        }
+    }
+    report.grid(pose(cases));
+    report.grid(drives(cases));
+    report.grid(reactions(cases));
+    report.grid(points(cases));
+    report
+}
+
+/// How far the points of the second crane are from those of the first.
+pub fn deflection(rigid: &Case<'_>, flexible: &Case<'_>) -> Grid {
+    let title = format!("Deflection of the load points due to flexibility ({} − {})", flexible.label, rigid.label);
+    let mut grid = Grid::new("deflection", title, &["point", "x", "y", "z", "distance", "unit"]);
+    let [from, to] = [rigid, flexible].map(|case| case.rig.points(&case.equilibrium.q));
+    for (name, (from, to)) in flexible.rig.description().points.iter().zip(from.iter().zip(&to)) {
+        let way = (to - from) * 1e3;
+        grid.row([(*name).into(), way.x.into(), way.y.into(), way.z.into(), way.norm().into(), "mm".into()]);
+    }
+    grid
+}
+
+/// Headings: `first`, the labels, `unit`.
+fn headers<'a>(first: &[&'a str], cases: &[Case<'a>]) -> Vec<&'a str> {
+    first.iter().copied().chain(cases.iter().map(|case| case.label)).chain(["unit"]).collect()
+}
+
+/// The case with most coordinates: it has all names.
+fn widest<'c, 'a>(cases: &'c [Case<'a>]) -> Option<&'c Case<'a>> {
+    cases.iter().max_by_key(|case| case.coordinates().len())
+}
+
+fn pose(cases: &[Case<'_>]) -> Grid {
+    let mut grid = Grid::new("pose", "Pose", &headers(&["coordinate"], cases));
+    for coordinate in widest(cases).map_or(&[][..], Case::coordinates) {
+        let values = cases.iter().map(|case| Cell::from(case.value(coordinate.name, &case.equilibrium.q)));
+        let row: Vec<Cell> =
+            [coordinate.name.into()].into_iter().chain(values).chain([coordinate.kind.unit().into()]).collect();
+        grid.row(row);
+    }
+    grid
+}
+
+fn drives(cases: &[Case<'_>]) -> Grid {
+    let mut grid = Grid::new("drives", "Torques and forces of the drives", &headers(&["drive"], cases));
+    let efforts: Vec<Vec<f64>> =
+        cases.iter().map(|case| case.rig.drive_efforts(0.0, &case.equilibrium.q, &case.rest())).collect();
+    let Some(first) = cases.first() else { return grid };
+    for (index, drive) in first.rig.description().drives.iter().enumerate() {
+        let coordinate = &first.coordinates()[drive.coordinate];
+        let values = efforts.iter().map(|efforts| Cell::from(efforts.get(index).copied()));
+        let unit = coordinate.kind.force_unit();
+        let row: Vec<Cell> = [coordinate.name.into()].into_iter().chain(values).chain([unit.into()]).collect();
+        grid.row(row);
+    }
+    grid
+}
+
+fn reactions(cases: &[Case<'_>]) -> Grid {
+    let mut grid = vectors("reactions", "Support reactions", "support", cases);
+    let reactions: Vec<_> =
+        cases.iter().map(|case| case.rig.support_reactions(&case.equilibrium.q, &case.rest())).collect();
+    let supports = cases.first().map_or(&[][..], |case| case.rig.description().supports);
+    for (index, support) in supports.iter().enumerate() {
+        let forces = reactions.iter().map(|of| of.get(index).map_or([None; 3], |force| (*force).map(Some).into()));
+        grid.row(vector_row(support.name, forces, "N"));
+    }
+    if !supports.is_empty() {
+        let sums = reactions.iter().map(|of| <[f64; 3]>::from(of.iter().sum::<Vector3<f64>>()));
+        grid.row(vector_row("Σ supports", sums, "N"));
+        grid.row(vector_row("weight", cases.iter().map(|case| case.rig.weight(&case.equilibrium.q)), "N"));
+    }
+    grid
+}
+
+fn points(cases: &[Case<'_>]) -> Grid {
+    let mut grid = vectors("points", "Points of interest", "point", cases);
+    let positions: Vec<_> = cases.iter().map(|case| case.rig.points(&case.equilibrium.q)).collect();
+    for (index, name) in cases.first().map_or(&[][..], |case| case.rig.description().points).iter().enumerate() {
+        let places = positions.iter().map(|of| of.get(index).map_or([None; 3], |place| (*place).map(Some).into()));
+        grid.row(vector_row(name, places, "m"));
+    }
+    grid
+}
+
+/// A table of vectors, three columns a case.
+fn vectors(key: &'static str, title: &str, first: &str, cases: &[Case<'_>]) -> Grid {
+    let axes = cases.iter().flat_map(|case| {
+        let prefix = if cases.len() > 1 { format!("{} ", case.label) } else { String::new() };
+        ["x", "y", "z"].map(|axis| format!("{prefix}{axis}"))
+    });
+    let headers: Vec<String> = [first.to_owned()].into_iter().chain(axes).chain(["unit".to_owned()]).collect();
+    Grid::new(key, title, &headers.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+fn vector_row<T: Into<Cell>>(name: &str, vectors: impl Iterator<Item = [T; 3]>, unit: &str) -> Vec<Cell> {
+    let cells = vectors.flatten().map(Into::into);
+    [name.into()].into_iter().chain(cells).chain([unit.into()]).collect()
+}
+
+fn history(equilibrium: &Equilibrium) -> Grid {
+    let mut grid = Grid::new("history", "Newton iterations", &["step", "residual", "fraction"]);
+    for (step, iteration) in equilibrium.history.iter().enumerate() {
+        grid.row([step.into(), iteration.residual.into(), iteration.fraction.into()]);
+    }
+    grid
+}

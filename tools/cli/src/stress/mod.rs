@@ -1,0 +1,177 @@
+//! `crane stress`: stiff and extreme cranes, what is expected of each and what happens.
+
+mod angles;
+mod beams;
+mod case;
+mod loads;
+mod motions;
+mod numbers;
+mod poses;
+mod spec;
+mod stiffness;
+mod subject;
+mod supports;
+
+use std::{
+    fmt::Write as _,
+    io::Write,
+    path::Path,
+    sync::{Mutex, PoisonError},
+    thread,
+};
+
+use indicatif::ProgressBar;
+
+use crate::{
+    Fleet,
+    arguments::Stress,
+    files,
+    problem::{Outcome, Problem},
+    report::{Grid, Report},
+    run::styled,
+};
+use case::{Case, Verdict};
+use spec::Spec;
+
+/// Gravity of the shipped specs, m/s².
+const GRAVITY: f64 = 9.81;
+/// What the tables say of a case that went as expected, and of one that did not.
+const VERDICTS: [&str; 2] = ["FAILED", "ok"];
+
+/// The shipped specs that cases are derived from.
+struct Specs<'a> {
+    fleet: &'a Fleet,
+}
+
+impl Specs<'_> {
+    fn shipped(&self, name: &str) -> Spec {
+        let text = self.fleet.spec(name);
+        Spec { missing: text.is_none().then(|| name.to_owned()), text: text.unwrap_or_default().to_owned() }
+    }
+
+    /// The reference crane.
+    fn reference(&self) -> Spec {
+        self.shipped("eight_link_flexible")
+    }
+
+    /// The cantilever, in so many sections.
+    fn cantilever(&self, sections: usize) -> Spec {
+        self.shipped("cantilever").with("sections: 8 ", &format!("sections: {sections} "))
+    }
+}
+
+/// Runs the suite, prints it and writes it.
+pub fn stress(options: &Stress, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let specs = Specs { fleet };
+    let mut cases = stiffness::cases(&specs);
+    cases.extend(beams::cases(&specs));
+    cases.extend(loads::cases(&specs));
+    cases.extend(supports::cases());
+    cases.extend(angles::cases());
+    cases.extend(poses::cases(&specs));
+    cases.extend(motions::cases(&specs));
+    cases.extend(numbers::cases(&specs));
+    cases.sort_by_key(|case| case.group);
+    cases.retain(|case| case.quick || !options.quick);
+    if let Some(word) = &options.only {
+        cases.retain(|case| case.group.contains(word.as_str()) || case.name.contains(word.as_str()));
+        if cases.is_empty() {
+            return Err(Problem::usage(format!("no case has `{word}` in its name"), "`crane stress` lists all names"));
+        }
+    }
+    let bar = styled(ProgressBar::new(cases.len() as u64));
+    let verdicts = judge(cases, &bar);
+    bar.finish_and_clear();
+
+    files::folder(&options.out)?;
+    write(&options.out, &verdicts)?;
+    let failed = verdicts.iter().filter(|verdict| !verdict.passed).count();
+    let mut report = Report::default();
+    report.fact("cases", verdicts.len(), "");
+    report.fact("failed", failed, "");
+    report.grid(grid(&verdicts));
+    report.print(options.format, out)?;
+    if failed == 0 {
+        return Ok(());
+    }
+    let worst: Vec<&str> = verdicts.iter().filter(|verdict| !verdict.passed).map(|v| v.name.as_str()).collect();
+    Err(Problem::failed(format!("{failed} of {} cases did not go as expected", verdicts.len()), worst.join("; ")))
+}
+
+/// All verdicts in the order of the cases, by as many threads as the machine has.
+fn judge(cases: Vec<Case>, bar: &ProgressBar) -> Vec<Verdict> {
+    let count = cases.len();
+    let queue = Mutex::new(cases.into_iter().enumerate());
+    let verdicts = Mutex::new(Vec::with_capacity(count));
+    let work = || {
+        loop {
+            let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some((index, case)) = next else { return };
+            let verdict = case.judge();
+            bar.inc(1);
+            verdicts.lock().unwrap_or_else(PoisonError::into_inner).push((index, verdict));
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(work);
+        }
+    });
+    let mut verdicts = verdicts.into_inner().unwrap_or_else(PoisonError::into_inner);
+    verdicts.sort_by_key(|(index, _)| *index);
+    verdicts.into_iter().map(|(_, verdict)| verdict).collect()
+}
+
+fn grid(verdicts: &[Verdict]) -> Grid {
+    let mut grid = Grid::new("cases", "Cases", &["group", "case", "expected", "happened", "verdict", "wall s"]);
+    for verdict in verdicts {
+        let Verdict { group, name, expected, happened, passed, wall } = verdict;
+        let said = VERDICTS[usize::from(*passed)];
+        grid.row([
+            (*group).into(),
+            name.as_str().into(),
+            expected.as_str().into(),
+            happened.as_str().into(),
+            said.into(),
+            wall.as_secs_f64().into(),
+        ]);
+    }
+    grid
+}
+
+/// Writes the suite as CSV and as a page of Markdown; without times, so that both stay what they are.
+fn write(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
+    let header = ["group", "case", "expected", "happened", "verdict"];
+    let fields = |verdict: &Verdict| {
+        let Verdict { group, name, expected, happened, passed, .. } = verdict;
+        vec![
+            (*group).to_owned(),
+            name.clone(),
+            expected.clone(),
+            happened.clone(),
+            VERDICTS[usize::from(*passed)].to_owned(),
+        ]
+    };
+    files::write_fields(
+        &folder.join("stress.csv"),
+        header.map(str::to_owned).into_iter(),
+        verdicts.iter().map(fields),
+    )?;
+
+    let mut page = include_str!("introduction.md").to_owned();
+    let mut group = "";
+    for verdict in verdicts {
+        if verdict.group != group {
+            group = verdict.group;
+            let _ = write!(
+                page,
+                "\n## {}{}\n\n| case | expected | happened | |\n|---|---|---|---|\n",
+                group[..1].to_uppercase(),
+                &group[1..]
+            );
+        }
+        let row = fields(verdict)[1..].iter().map(|cell| cell.replace('|', "\\|")).collect::<Vec<_>>();
+        let _ = writeln!(page, "| {} |", row.join(" | "));
+    }
+    files::write_text(&folder.join("stress.md"), &page)
+}

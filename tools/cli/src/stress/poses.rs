@@ -1,0 +1,158 @@
+//! Poses that no crane should be in: upside down, without gravity, without what holds them.
+
+use std::f64::consts::PI;
+
+use super::{
+    GRAVITY, Specs,
+    case::{Case, Finding, expect},
+    spec::Spec,
+    subject::{Subject, balanced, timing},
+};
+use crane_model::{
+    dynamics::Method,
+    statics::{Equilibrium, Status},
+};
+
+/// The hinges at which the reference crane's grapple hangs.
+const HINGES: &[&str] = &["upper_hinge_psi", "rotator_psi"];
+
+pub fn cases(specs: &Specs) -> Vec<Case> {
+    let mut cases = Vec::new();
+    let reference = || specs.reference();
+    let crane = |name: &str| specs.shipped(name);
+
+    cases.push(named("upside down", "knuckle_boom, load above the hook", Expected::Unstable(&["hook_theta"]), {
+        crane("knuckle_boom").with("hook_theta: -30 deg", "hook_theta: 150 deg")
+    }));
+    cases.push(named("upside down", "knuckle_boom, 1 rad off upside down", Expected::Stable, {
+        crane("knuckle_boom").with("hook_theta: -30 deg", "hook_theta: 93 deg")
+    }));
+    cases.push(named(
+        "upside down",
+        "eight_link_flexible, grapple above its hinge",
+        Expected::Unstable(&["upper_hinge_psi"]),
+        reference().with("upper_hinge_psi: 180 deg", "upper_hinge_psi: 0 deg"),
+    ));
+
+    let weightless = |spec: Spec| spec.with("[0, 0, -9.81]", "[0, 0, 0]");
+    cases.push(named("zero gravity", "cantilever", Expected::Stable, weightless(specs.cantilever(8))));
+    cases.push(named("zero gravity", "eight_link_flexible", Expected::Loose(HINGES), weightless(reference())));
+    cases.push(floating(weightless(reference())));
+
+    let group = "nothing holds it";
+    let undriven = |coordinate: &str| {
+        let stiffness = if coordinate.ends_with("_z") { "1e8" } else { "1e7" };
+        let mark = format!("coordinate: {coordinate},");
+        reference().on_line(&mark, &format!("stiffness: {stiffness}"), "stiffness: 0")
+    };
+    cases.push(named(
+        group,
+        "slewing crane on the ground, joint without a drive",
+        Expected::Loose(&["column_psi"]),
+        slewing(""),
+    ));
+    cases.push(named(
+        group,
+        "slewing crane on the ground, drive of zero stiffness",
+        Expected::Loose(&["column_psi"]),
+        slewing("drives: [{coordinate: column_psi, stiffness: 0, damping: 7e3, motion: {hold: 0}}]"),
+    ));
+    // Its supports give way and let the truck tilt towards the load: slewing has a lowest place.
+    cases.push(named(
+        group,
+        "eight_link_flexible, slewing drive of zero stiffness",
+        Expected::Stable,
+        undriven("column_psi"),
+    ));
+    cases.push(named(group, "eight_link_flexible, slewing joint without a drive", Expected::Stable, {
+        reference().without("coordinate: column_psi,")
+    }));
+    cases.push(named(
+        group,
+        "eight_link_flexible, supports of zero stiffness along x",
+        Expected::Loose(&["truck_x"]),
+        reference().with("[3e6, 3e6, 1e7]", "[0, 3e6, 1e7]"),
+    ));
+    // It rests where its axis is level, and slides on wherever it is pushed.
+    cases.push(named(
+        group,
+        "eight_link_flexible, telescope drive of zero stiffness",
+        Expected::Unstable(&["telescope_z"]),
+        undriven("telescope_z"),
+    ));
+    cases.push(fallen(undriven("boom_psi")));
+    cases
+}
+
+/// A crane on the ground that slews about the vertical: gravity does nothing about it.
+fn slewing(drives: &str) -> Spec {
+    Spec::new(format!(
+        "format: 1
+name: slewing
+links:
+  - {{name: column, joint: revolute, mass: 500, com: [0.1, 0, 1], inertia: {{Ixx: 200, Iyy: 200, Izz: 30}}}}
+  - {{name: boom, placement: {{transform: {{translation: [0, 0, 2]}}}}, mass: 300, com: [2, 0, 0]}}
+{drives}
+"
+    ))
+}
+
+/// What statics must say.
+#[derive(Clone, Copy)]
+enum Expected {
+    Stable,
+    Unstable(&'static [&'static str]),
+    Loose(&'static [&'static str]),
+}
+
+impl Expected {
+    fn words(self) -> String {
+        match self {
+            Expected::Stable => "stable".to_owned(),
+            Expected::Unstable(names) => format!("unstable, {} named", names.join(", ")),
+            Expected::Loose(names) => format!("singular, {} named", names.join(", ")),
+        }
+    }
+
+    fn meets(self, equilibrium: &Equilibrium) -> bool {
+        let all = |names: &[&str], found: &[&str]| names.iter().all(|name| found.contains(name));
+        match (self, &equilibrium.status) {
+            (Expected::Stable, Status::Converged) => true,
+            (Expected::Unstable(names), Status::Unstable { coordinates })
+            | (Expected::Loose(names), Status::Singular { coordinates }) => all(names, coordinates),
+            _ => false,
+        }
+    }
+}
+
+fn named(group: &'static str, name: &str, expected: Expected, spec: Spec) -> Case {
+    Case::new(group, name, expected.words(), move || {
+        let equilibrium = Subject::new(&spec)?.equilibrium();
+        expect(expected.meets(&equilibrium), equilibrium.to_string())
+    })
+}
+
+/// Without weight the hinges hang nowhere; the motion itself is well posed from the guess.
+fn floating(spec: Spec) -> Case {
+    let expected = "1 s from the guess, energy balanced to 0.1 %";
+    Case::new("zero gravity", "eight_link_flexible, motion", expected, move || {
+        let spec = spec.with("analyses: [statics, dynamics, modes, ensemble]", "analyses: [dynamics, modes]");
+        let recorded = Subject::new(&spec)?.run(&timing(Method::RECOMMENDED, 1e-4, 1.0))?;
+        balanced(&recorded, 1e-3)
+    })
+}
+
+/// Without stiffness in the boom's drive everything beyond its pin hangs below it.
+fn fallen(spec: Spec) -> Case {
+    let expected = "stable: everything beyond the boom's pin hangs straight below it, its drive carries nothing";
+    Case::new("nothing holds it", "eight_link_flexible, boom drive of zero stiffness", expected, move || -> Finding {
+        let subject = Subject::new(&spec)?;
+        let rest = subject.rest()?;
+        let boom = subject.index("boom_psi")?;
+        let weights = subject.rig.bias(&rest.q, &vec![0.0; rest.q.len()]);
+        let turned = (rest.q[boom] + PI).rem_euclid(2.0 * PI) - PI;
+        // Gravity's moment about the pin is zero: the common centre of mass is below it.
+        let right = weights[boom].abs() < 1e-4 * GRAVITY * 1e4 && turned < 0.0;
+        expect(right, format!("{rest}; boom at {turned:.4} rad, {:.1e} N m about its pin", weights[boom]))
+    })
+}

@@ -1,0 +1,170 @@
+//! Stiffness of drives, elements and supports over ten powers of ten, and damping.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::{
+    GRAVITY, Specs,
+    case::{Case, expect},
+    spec::Spec,
+    subject::{Subject, cautions, imbalance, timing},
+};
+use crane_model::{
+    dynamics::Method,
+    modes::{damped, undamped},
+};
+
+const DRIVES: &str = "stiffness of drives";
+/// Factors of a stiffness.
+const FACTORS: [f64; 8] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e2, 1e4, 1e6];
+/// Moment of all weights about the pin of the reference crane's boom while boom, outer boom and telescope lie level, N m:
+/// boom 408.1 kg at 1.75 m, outer boom 335 kg at 4.76 m, telescope 224 kg at 6.08 m, the rest 846 kg at 7.7 m.
+const LEVEL_MOMENT: f64 = GRAVITY * (408.1 * 1.75 + 335.0 * 4.76 + 224.0 * 6.08 + 846.0 * 7.7);
+/// Weight of the reference crane, N.
+const WEIGHT: f64 = GRAVITY * (15000.0 + 515.5 + 408.1 + 335.0 + 224.0 + 846.0);
+/// Vertical stiffness of its eight supports, N/m.
+const GROUND: f64 = 8.0 * 1e7;
+/// The rotation of a base from which linear supports are off by more than half a percent, rad.
+const SMALL: f64 = 0.1;
+/// Simulated time of a run, s: the beginning of the manoeuvre.
+const DURATION: f64 = 1.0;
+/// Part of the energy turned over that a run at tolerance 1e-4 may lose or gain.
+const BALANCE: f64 = 1e-3;
+
+pub fn cases(specs: &Specs) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for factor in FACTORS {
+        cases.push(drives(specs.reference(), factor));
+        cases.push(run(DRIVES, specs.reference().scaled("drives", "stiffness:", factor), factor));
+        cases.push(single_element(specs.cantilever(1), factor));
+        let elements = |spec: Spec| spec.scaled("materials", "E:", factor).scaled("materials", "G:", factor);
+        cases.push(run("stiffness of elements", elements(specs.reference()), factor));
+        cases.push(supports(specs.reference(), factor));
+        // Below, the crane turns over.
+        if factor >= 1e-2 {
+            cases.push(run(
+                "stiffness of supports",
+                specs.reference().scaled("supports", "stiffness:", factor),
+                factor,
+            ));
+        }
+    }
+    for beta in [0.0, 1e-6, 1e-4, 1e-2, 1e-1] {
+        cases.push(damping(specs.cantilever(8), beta));
+        let spec = specs.reference().with("beta: 1.5e-3", &format!("beta: {beta:e}"));
+        cases.push(run("damping of elements", spec, beta));
+    }
+    cases
+}
+
+/// A run as the command does it by default.
+fn run(group: &'static str, spec: Spec, factor: f64) -> Case {
+    let what = if group.starts_with("damping") { "β = " } else { "× " };
+    let expected = format!("{DURATION} s to the end, energy balanced to {:.1} %", BALANCE * 100.0);
+    let case = Case::new(group, format!("eight_link_flexible {what}{factor:e}, motion"), expected, move || {
+        let recorded = Subject::new(&spec)?.run(&timing(Method::RECOMMENDED, 1e-4, DURATION))?;
+        let (off, steps) = (imbalance(&recorded), recorded.run.statistics.steps);
+        let said = cautions(&recorded);
+
+        expect(recorded.run.time == DURATION && off < BALANCE, format!("{steps} steps, energy off by {off:.1e}{said}"))
+    });
+    if factor == 1e-4 || factor == 1e6 && group != DRIVES { case } else { case.long() }
+}
+
+fn drives(spec: Spec, factor: f64) -> Case {
+    let stiff = factor >= 1.0;
+    let expected = if stiff {
+        format!("stable; boom drive carries {:.1} kN m ± 2 %, the level boom's moment", LEVEL_MOMENT / 1e3)
+    } else {
+        format!("stable; boom sinks and its drive carries less than {:.1} kN m", LEVEL_MOMENT / 1e3)
+    };
+    Case::new(DRIVES, format!("eight_link_flexible × {factor:e}, statics"), expected, move || {
+        let subject = Subject::new(&spec.scaled("drives", "stiffness:", factor))?;
+        let rest = subject.rest()?;
+        let boom = subject.index("boom_psi")?;
+        let drives = subject.rig.description().drives;
+        let place = drives.iter().position(|drive| drive.coordinate == boom).ok_or("no drive of the boom")?;
+        let torque = subject.rig.drive_efforts(0.0, &rest.q, &vec![0.0; rest.q.len()])[place];
+        // Sag of some centimetres and tilt of the truck shorten and lengthen the levers by about a percent.
+        let right = if stiff { (torque / LEVEL_MOMENT - 1.0).abs() < 0.02 } else { torque < 1.001 * LEVEL_MOMENT };
+        expect(right, format!("{rest}; {:.1} kN m, boom at {:.4} rad", torque / 1e3, rest.q[boom]))
+    })
+}
+
+/// A cantilever of one section is a rod on one spring in its middle: `s θ = g cos θ (m l/2 + μ l²/8)`, s = EI/l.
+fn single_element(spec: Spec, factor: f64) -> Case {
+    /// Steel of 60 × 40 mm, 2 m long, 20 kg at its end; weak axis.
+    const LENGTH: f64 = 2.0;
+    const LOAD: f64 = 20.0;
+    const LINE: f64 = 7850.0 * 0.06 * 0.04;
+    const RIGIDITY: f64 = 2.1e11 * 0.06 * 0.04 * 0.04 * 0.04 / 12.0;
+    let spring = factor * RIGIDITY / LENGTH;
+    let moment = GRAVITY * (LOAD * LENGTH / 2.0 + LINE * LENGTH * LENGTH / 8.0);
+    let (mut low, mut high) = (0.0, FRAC_PI_2);
+    for _ in 0..100 {
+        let middle = f64::midpoint(low, high);
+        if spring * middle < moment * middle.cos() { low = middle } else { high = middle }
+    }
+    let (angle, sunk) = (low, LENGTH / 2.0 * low.sin());
+    let near = FRAC_PI_2 - angle < crane_model::NEAR_SINGULAR;
+    let said = if near { ", the angle near 90° said" } else { "" };
+    let expected = format!("stable; tip sinks by {sunk:.6} m, spring turned by {angle:.6} rad{said}");
+    Case::new("stiffness of elements", format!("cantilever of 1 section × {factor:e}, statics"), expected, move || {
+        let subject = Subject::new(&spec.scaled("materials", "E:", factor).scaled("materials", "G:", factor))?;
+        let rest = subject.rest()?;
+        let description = subject.rig.description();
+        let tip = subject.rig.points(&rest.q)[1];
+        let found = rest.q[subject.index("beam_1_theta")?];
+        let caution = description.near_singular(&rest.q);
+        let right = (tip.z + sunk).abs() < 1e-8 && (found - angle).abs() < 1e-8 && caution.is_some() == near;
+        let said = caution.map_or(String::new(), |caution| format!("; {caution}"));
+        expect(right, format!("{rest}; tip {:.6} m, {found:.6} rad{said}", tip.z))
+    })
+}
+
+fn supports(spec: Spec, factor: f64) -> Case {
+    // The load's moment over the supports' stiffness against tilting about y, 1.5 m to either side.
+    let tilt = LEVEL_MOMENT / (factor * GROUND * 1.5 * 1.5);
+    let small = tilt < SMALL;
+    let sunk = WEIGHT / (factor * GROUND);
+    let expected = if small {
+        format!("stable; supports pressed by {sunk:.4e} m on average, weight over stiffness")
+    } else {
+        format!("base turns by some {tilt:.2} rad: too much for linear supports, said")
+    };
+    Case::new("stiffness of supports", format!("eight_link_flexible × {factor:e}, statics"), expected, move || {
+        let subject = Subject::new(&spec.scaled("supports", "stiffness:", factor))?;
+        let equilibrium = subject.equilibrium();
+        if !small {
+            let caution = subject.rig.description().large_tilt(&equilibrium.q);
+            let happened = caution.as_ref().map_or(String::new(), |caution| format!("; {caution}"));
+            return expect(caution.is_some(), format!("{equilibrium}{happened}"));
+        }
+        let rest = subject.rest()?;
+        let reactions = subject.rig.support_reactions(&rest.q, &vec![0.0; rest.q.len()]);
+        let pressed = reactions.iter().map(|force| force.z).sum::<f64>() / (factor * GROUND);
+        // Newton leaves 1e-10 of the forces.
+        expect((pressed / sunk - 1.0).abs() < 1e-8, format!("{rest}; {pressed:.4e} m"))
+    })
+}
+
+/// Damping in proportion to stiffness, `D = β K`: mode by mode `ζ = β ω/2`.
+fn damping(spec: Spec, beta: f64) -> Case {
+    // Gravity's stiffness is not damped.
+    let spec = spec.with("beta: 1e-4", &format!("beta: {beta:e}")).with("[0, 0, -9.81]", "[0, 0, 0]");
+    let expected = "every mode below critical has ζ = β ω/2 to 1e-6, all others creep";
+    Case::new("damping of elements", format!("cantilever β = {beta:e}, modes"), expected, move || {
+        let subject = Subject::new(&spec)?;
+        let motions = subject.rig.small_motions(&subject.rest()?.q);
+        let (free, modes) = (undamped(&motions), damped(&motions));
+        let (free, modes) = (free.map_err(|e| e.to_string())?, modes.map_err(|e| e.to_string())?);
+        let below: Vec<f64> =
+            free.iter().map(|mode| mode.omega_squared.sqrt()).filter(|omega| beta * omega / 2.0 < 1.0).collect();
+        let swinging: Vec<_> = modes.iter().filter(|mode| mode.eigenvalue.im > 0.0).collect();
+        let off = below.iter().zip(&swinging).map(|(omega, mode)| {
+            ((mode.eigenvalue.norm() / omega - 1.0).abs()).max((mode.damping_ratio() - beta * omega / 2.0).abs())
+        });
+        let off = off.fold(0.0, f64::max);
+        let happened = format!("{} of {} modes swing, off by {off:.1e}", swinging.len(), free.len());
+        expect(below.len() == swinging.len() && off < 1e-6, happened)
+    })
+}

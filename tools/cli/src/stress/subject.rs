@@ -1,0 +1,117 @@
+//! A crane under test, used as the command uses it.
+
+use crane_codegen::{SourceFile, compile};
+use indicatif::ProgressBar;
+
+use super::{
+    case::{Finding, expect},
+    spec::Spec,
+};
+use crane_model::{
+    dynamics::Method,
+    rig::Rig,
+    statics::{Equilibrium, Settings},
+};
+
+use crate::{
+    arguments::Timing,
+    interpreted::interpret,
+    problem::Problem,
+    run::{self, Recorded, Start, record},
+};
+
+/// A crane under test.
+pub struct Subject {
+    /// The crane.
+    pub rig: Box<dyn Rig>,
+}
+
+impl Subject {
+    /// The crane of a spec, or the codes and titles of its mistakes.
+    pub fn new(spec: &Spec) -> Result<Self, String> {
+        if let Some(words) = &spec.missing {
+            return Err(format!("the shipped spec has no `{words}` any more"));
+        }
+        let chain = compile::load(&SourceFile::new("spec", spec.text.as_str())).map_err(|mistakes| {
+            let told = mistakes.mistakes().iter().map(|mistake| format!("{}: {}", mistake.code, mistake.title));
+            format!("refused, {}", told.collect::<Vec<_>>().join("; "))
+        })?;
+        let rig = interpret(&chain).ok_or_else(|| format!("no size for {} coordinates", chain.coordinates.len()))?;
+        Ok(Self { rig })
+    }
+
+    /// With another value of a live parameter.
+    pub fn set(mut self, name: &str, value: f64) -> Result<Self, String> {
+        let index = self.rig.description().parameters.iter().position(|parameter| parameter.name == name);
+        self.rig.set_parameter(index.ok_or_else(|| format!("no parameter {name}"))?, value);
+        Ok(self)
+    }
+
+    /// Index of a coordinate.
+    pub fn index(&self, name: &str) -> Result<usize, String> {
+        let coordinates = self.rig.description().coordinates;
+        coordinates.iter().position(|c| c.name == name).ok_or_else(|| format!("no coordinate {name}"))
+    }
+
+    /// Where statics end, whatever that is.
+    pub fn equilibrium(&self) -> Equilibrium {
+        self.rig.equilibrium(&Settings::default())
+    }
+
+    /// The stable pose, or what statics said instead.
+    pub fn rest(&self) -> Result<Equilibrium, String> {
+        let equilibrium = self.equilibrium();
+        if !equilibrium.is_stable() {
+            return Err(equilibrium.to_string());
+        }
+        if equilibrium.q.iter().all(|x| x.is_finite()) { Ok(equilibrium) } else { Err("a pose of NaN".to_owned()) }
+    }
+
+    /// A run as the command does it; its message where it refuses or ends early. All numbers of its results are finite.
+    pub fn run(&self, timing: &Timing) -> Result<Recorded, String> {
+        let rig = self.rig.as_ref();
+        let told = |problem: Problem| problem.message();
+        let start = Start::of(rig).map_err(told)?;
+        let settings = timing.settings(rig, &start, Method::RECOMMENDED).map_err(told)?;
+        let recorded = record(rig, &start, &settings, &ProgressBar::hidden()).map_err(told)?;
+        let table = &recorded.table;
+        match table.not_finite() {
+            Some((row, column)) => Err(format!("{} is no number in row {row} of the results", table.columns[column])),
+            None => Ok(recorded),
+        }
+    }
+}
+
+/// A run of so many seconds by a method at its tolerance, or its step.
+pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
+    let adaptive = method.is_adaptive();
+    Timing {
+        method: Some(method),
+        tolerance: adaptive.then_some(accuracy),
+        step: (!adaptive).then_some(crate::arguments::Step::Seconds(accuracy)),
+        force: false,
+        duration: Some(duration),
+        output: Some(duration / 100.0),
+    }
+}
+
+/// Greatest error of the energy balance over the greatest energy that was turned over.
+pub fn imbalance(recorded: &Recorded) -> f64 {
+    run::imbalance(&recorded.table)
+}
+
+/// What the command says of a run besides its results, after a semicolon each.
+pub fn cautions(recorded: &Recorded) -> String {
+    appended(&recorded.cautions)
+}
+
+/// Sentences, each after a semicolon.
+pub fn appended<'a>(sentences: impl IntoIterator<Item = &'a String>) -> String {
+    sentences.into_iter().fold(String::new(), |text, sentence| text + "; " + sentence)
+}
+
+/// As expected if a run kept its energy to a part of what it turned over.
+pub fn balanced(recorded: &Recorded, part: f64) -> Finding {
+    let (off, steps) = (imbalance(recorded), recorded.run.statistics.steps);
+    expect(off < part, format!("{steps} steps, energy off by {off:.1e}{}", cautions(recorded)))
+}

@@ -1,0 +1,169 @@
+//! `crane work-precision`: error against run time, of the methods and of the model.
+
+mod figures;
+mod methods;
+mod page;
+mod reference;
+mod sections;
+mod trace;
+mod variants;
+#[cfg(feature = "yardstick")]
+mod yardstick;
+
+use std::io::Write;
+
+use crane_codegen::{SourceFile, chain::Chain};
+
+use crane_model::{
+    Description,
+    dynamics::{Method, Settings},
+    rig::Rig,
+};
+
+use crate::{
+    Fleet,
+    arguments::WorkPrecision,
+    files, own,
+    problem::{Outcome, Problem},
+    report::{Grid, Report},
+    run::{Bound, GUESS, POSES, SAFE, Start, manoeuvre, progress},
+    simulate::{file_list, write_figure},
+};
+use methods::{REPEATS, least, series, table};
+use reference::reference;
+use sections::{Limit, Variant, announce, variant};
+
+/// Finds a reference, times every method and every number of sections, and writes tables and figures.
+pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let choice = &options.analysis.crane;
+    let (crane, text) = if let Some(file) = choice.file() {
+        let (Chain { name, .. }, text) = own::load(file)?;
+        (name, text)
+    } else {
+        let name = fleet.crane(&choice.name)?.description().name;
+        (name.to_owned(), fleet.spec(name).unwrap_or_default().to_owned())
+    };
+    let counts = options.sections.0.as_slice();
+    let known: Vec<&str> = fleet.specs.iter().map(|(name, _)| *name).collect();
+    let missing = counts.iter().any(|&count| !known.contains(&variants::name(&crane, count).as_str()));
+    let flexible = if missing { others(&crane, &text, counts) } else { Vec::new() };
+    if flexible.is_empty() && choice.file().is_none() {
+        return study(options, if missing { &[] } else { counts }, fleet, out);
+    }
+    let hash = SourceFile::new(&crane, &text).hash();
+    let listed: Vec<String> = counts.iter().map(ToString::to_string).collect();
+    let package = match flexible.len() {
+        0 => format!("crane-{crane}-{hash}"),
+        _ => format!("crane-{crane}-{hash}-{}", listed.join("-")),
+    };
+    let cranes = [vec![(crane, text)], flexible].concat();
+    own::run_with(&package, choice.name.as_ref(), &cranes)
+}
+
+/// Names and specs of a crane with other numbers of sections; none of a crane without flexible links.
+fn others(crane: &str, text: &str, counts: &[usize]) -> Vec<(String, String)> {
+    let other = |&count: &usize| Some((variants::name(crane, count), variants::spec(crane, text, count)?));
+    counts.iter().filter_map(other).collect()
+}
+
+/// What was found, with everything that is written.
+struct Found<'a> {
+    description: &'static Description,
+    facts: Report,
+    grids: Vec<Grid>,
+    figures: Vec<(&'a str, Vec<figures::Panel>)>,
+}
+
+/// The study itself, with the cranes of a fleet.
+fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.open(fleet)?;
+    let rig = rig.as_ref();
+    let description = rig.description();
+    let start = start(rig)?;
+    let base = base(options, description)?;
+    let bar = progress(0.0);
+    bar.set_message("reference");
+    let poses = manoeuvre(rig, &start, POSES)?;
+    let safe = Bound::of(&poses, Method::Rk4).map_or(base.output, |bound| SAFE * bound.limit.step).min(base.output);
+    let reference = reference(rig, &start.q, &base, safe)?;
+    let repeats = if options.quick { 1 } else { REPEATS };
+    let points = series(rig, &start.q, &base, &reference.solution.trace, safe, options.quick, &bar);
+    #[cfg(feature = "yardstick")]
+    let points = [points, yardstick::series(rig, &start.q, &base, &reference.solution.trace, repeats)].concat();
+
+    let mut facts = Report::default();
+    facts.fact("crane", description.name, "");
+    facts.fact("start", start.what, "");
+    facts.fact("duration", base.duration, "s");
+    facts.fact("longest way of a point", reference.solution.trace.size(), "m");
+    let (tolerance, step) = reference.settings;
+    facts.fact("reference", format!("dopri5, tolerance {tolerance:.0e}; rk4, step {step:.3e} s"), "");
+    let agreement = format!("{:.1e}, {:.1e}", reference.agreement.path, reference.agreement.of_forces());
+    facts.fact("they differ by", agreement, "of the load path, of torques and energy");
+    let mut found = Found {
+        description,
+        facts,
+        grids: vec![least(&points, base.duration), table(&points)],
+        figures: vec![("work_precision", figures::methods(&points))],
+    };
+    if !counts.is_empty() {
+        let variants = counts.iter().map(|&count| {
+            announce(&bar, count);
+            let rig = options.analysis.crane.parameters.crane(&variants::name(description.name, count), fleet)?;
+            variant(rig.as_ref(), &self::start(rig.as_ref())?, &base, count, repeats)
+        });
+        let variants: Vec<Variant> = variants.collect::<Outcome<_>>()?;
+        if let Some(limit) = Limit::of(&variants) {
+            let grids = [limit.advice(&variants, base.duration), limit.table(&variants), limit.runs(&variants)];
+            found.grids.extend(grids);
+            found.figures.push(("sections", figures::sections(&variants, &limit)));
+            found.figures.push(("sections_time", figures::times(&variants, &limit)));
+        }
+    }
+    bar.finish_and_clear();
+    deliver(options, found, out)
+}
+
+/// Where runs start: at rest in equilibrium, or at the guess where no drive would move the crane from there.
+fn start(rig: &dyn Rig) -> Outcome<Start> {
+    if rig.description().drives.is_empty() { Ok(Start { q: rig.guess(), what: GUESS }) } else { Start::of(rig) }
+}
+
+/// The run to be studied.
+fn base(options: &WorkPrecision, description: &'static Description) -> Outcome<Settings> {
+    let own = Settings::of(description);
+    let duration = options.duration.unwrap_or(own.duration);
+    if !(duration.is_finite() && duration > 0.0) {
+        return Err(Problem::usage(
+            format!("`--duration {duration}` is no length of time"),
+            "write a positive number of seconds, such as 2",
+        ));
+    }
+    Ok(Settings { duration, output: own.output.min(duration), ..own })
+}
+
+/// Writes tables and figures, and prints what was found.
+fn deliver(options: &WorkPrecision, found: Found<'_>, out: &mut dyn Write) -> Outcome<()> {
+    let name = found.description.name;
+    files::folder(&options.out)?;
+    let mut written = Vec::new();
+    for grid in &found.grids {
+        let file = format!("{name}_{}.csv", grid.key());
+        let (headers, rows) = grid.fields();
+        files::write_fields(&options.out.join(&file), headers, rows)?;
+        written.push(file);
+    }
+    for (what, panels) in &found.figures {
+        let file = format!("{name}_{what}.svg");
+        write_figure(&options.out.join(&file), panels, 2)?;
+        written.push(file);
+    }
+    if let Some(file) = &options.page {
+        page::write(file, &found)?;
+        written.push(file.display().to_string());
+    }
+    let mut report = found.facts;
+    found.grids.into_iter().for_each(|grid| report.grid(grid));
+    report.grid(file_list(&options.out, &written));
+    report.print(options.analysis.format, out)
+}
