@@ -1,5 +1,7 @@
 //! What a generated crane says about itself.
 
+use crate::Bound;
+
 /// Names, units and settings of a crane; constants of the generated module.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Description {
@@ -83,6 +85,10 @@ pub struct ParameterInfo {
     pub about: &'static str,
     /// Value unless set.
     pub default: f64,
+    /// The least value that every use of the parameter allows.
+    pub least: Bound,
+    /// The greatest value that every use of the parameter allows.
+    pub greatest: Bound,
 }
 
 /// A generalized coordinate.

@@ -22,6 +22,7 @@ extern crate self as crane_model;
 
 mod description;
 mod model;
+mod parameter;
 
 pub mod dynamics;
 #[cfg(feature = "std")]
@@ -46,3 +47,4 @@ pub use model::{
 };
 /// The linear algebra of every signature, so that generated code needs this crate alone.
 pub use nalgebra;
+pub use parameter::{Bound, ParameterError, Refusal};

@@ -9,8 +9,8 @@ use nalgebra::{
     Cholesky, Const, DefaultAllocator, Dim, Matrix4, OMatrix, SMatrix, SVector, Vector3, allocator::Allocator,
 };
 
-use crate::Description;
 use crate::support::lanes::f64x8;
+use crate::{Description, ParameterError};
 
 /// Poses, forces and potential energy of a crane.
 pub trait CraneModel<const N: usize> {
@@ -21,7 +21,19 @@ pub trait CraneModel<const N: usize> {
     fn parameter(&self, index: usize) -> f64;
 
     /// Sets a live parameter. An index out of range changes nothing.
-    fn set_parameter(&mut self, index: usize, value: f64);
+    ///
+    /// # Errors
+    /// The value breaks a rule of the spec language; the crane stays as it is.
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError>;
+
+    /// Sets the first live parameters together, as many as there are values: rules that join several parameters are checked
+    /// for all of them at once.
+    ///
+    /// # Errors
+    /// A value breaks a rule of the spec language; a generated crane then stays as it is.
+    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
+        values.iter().enumerate().try_for_each(|(index, &value)| self.set_parameter(index, value))
+    }
 
     /// Transforms T of all bodies into the world frame, Eq. (3). `out`: one a body.
     fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]);

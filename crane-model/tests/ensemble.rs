@@ -11,7 +11,8 @@ use nalgebra::SVector;
 /// Knuckle-boom cranes with loads of their own, at rest where each rests.
 fn knuckle_booms(count: u32) -> Vec<(knuckle_boom::Crane, State<{ knuckle_boom::N }>)> {
     let crane = |index| {
-        let crane = knuckle_boom::Crane::new(knuckle_boom::Params { payload: 100.0 * f64::from(index) });
+        let crane = knuckle_boom::Crane::new(knuckle_boom::Params { payload: 100.0 * f64::from(index) })
+            .expect("a payload not below zero");
         let q = statics::solve(&crane, &statics::Settings::default()).q;
         (crane, State::at_rest(SVector::from_column_slice(&q)))
     };
@@ -67,7 +68,8 @@ fn eight_lanes_are_eight_single_runs() {
 
     let flexible = |lane: usize| {
         let load_mass = 100.0 * lane as f64;
-        let crane = eight_link_flexible::Crane::new(eight_link_flexible::Params { load_mass });
+        let crane =
+            eight_link_flexible::Crane::new(eight_link_flexible::Params { load_mass }).expect("a load not below zero");
         let q = statics::solve(&crane, &statics::Settings::default()).q;
         (crane, State::at_rest(SVector::from_column_slice(&q)))
     };

@@ -9,7 +9,7 @@ use common::{
     implicit::{Factors, factorise, solve},
 };
 use crane_model::{
-    CraneModel, Description, Dynamics, Implicit,
+    CraneModel, Description, Dynamics, Implicit, ParameterError,
     dynamics::{Method, Settings, bdf, dormand_prince, rk4::State, rosenbrock, simulate},
 };
 use nalgebra::{Complex, Matrix4, SMatrix, SVector, Vector1, Vector2};
@@ -28,8 +28,8 @@ impl<const N: usize, C: CraneModel<N>> CraneModel<N> for Misled<C> {
     fn parameter(&self, index: usize) -> f64 {
         self.crane.parameter(index)
     }
-    fn set_parameter(&mut self, index: usize, value: f64) {
-        self.crane.set_parameter(index, value);
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
+        self.crane.set_parameter(index, value)
     }
     fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
         self.crane.transforms(q, out);

@@ -12,7 +12,7 @@ use crane_model::{
     CoordinateInfo,
     CoordinateKind::{Rotation, Translation},
     CoordinateRole::Passive,
-    CraneModel, Description, Dynamics, Implicit,
+    CraneModel, Description, Dynamics, Implicit, ParameterError,
     dynamics::{Method, Run, Settings, rk4::State, simulate},
 };
 use nalgebra::{Matrix2, Matrix4, SMatrix, Vector2};
@@ -37,7 +37,9 @@ impl CraneModel<2> for ElasticPendulum {
     fn parameter(&self, _: usize) -> f64 {
         f64::NAN
     }
-    fn set_parameter(&mut self, _: usize, _: f64) {}
+    fn set_parameter(&mut self, _: usize, _: f64) -> Result<(), ParameterError> {
+        Ok(())
+    }
     fn transforms(&self, _: &Vector2<f64>, _: &mut [Matrix4<f64>]) {}
     fn forces(&self, _: f64, q: &Vector2<f64>, v: &Vector2<f64>) -> Vector2<f64> {
         Vector2::new(-self.stiffness * q.x - self.damping * v.x, 0.0)

@@ -40,7 +40,7 @@ use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::support::{MassAndBias, fill, fma, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description,
-    Dynamics, Ensemble, Implicit, OneByOne,
+    Dynamics, Ensemble, Implicit, OneByOne, ParameterError,
 };
 
 /// Number of generalized coordinates.
@@ -701,7 +701,13 @@ impl CraneModel<N> for Crane {
     fn parameter(&self, _index: usize) -> f64 {
         f64::NAN
     }
-    fn set_parameter(&mut self, _index: usize, _value: f64) {}
+    fn set_parameter(
+        &mut self,
+        _index: usize,
+        _value: f64,
+    ) -> Result<(), ParameterError> {
+        Ok(())
+    }
     fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
         fill(out, &transforms(q));
     }

@@ -44,9 +44,9 @@
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::support::{MassAndBias, fill, fma, sin_cos, symmetric};
 use ::crane_model::{
-    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description,
-    DriveInfo, Dynamics, Ensemble, Implicit, Linearisation, Linearise, ParameterInfo,
-    Statics,
+    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel,
+    Description, DriveInfo, Dynamics, Ensemble, Implicit, Linearisation, Linearise,
+    ParameterError, ParameterInfo, Refusal, Statics,
 };
 
 /// Number of generalized coordinates.
@@ -57,14 +57,7 @@ pub const DESCRIPTION: Description = Description {
     name: "knuckle_boom",
     title: "Planar knuckle-boom crane on a fixed base",
     spec_hash: "4b98de3d10084c62",
-    parameters: &[
-        ParameterInfo {
-            name: "payload",
-            unit: "kg",
-            about: "what hangs on the hook",
-            default: 800.0,
-        },
-    ],
+    parameters: &PARAMETERS,
     coordinates: &[
         CoordinateInfo {
             name: "main_boom_theta",
@@ -176,8 +169,8 @@ pub struct Constants {
     c019: f64,
 }
 
-impl From<&Params> for Constants {
-    fn from(params: &Params) -> Self {
+impl Constants {
+    fn of(params: &Params) -> Self {
         let c001 = params.payload + 25.0;
         let t248 = 1.2 * params.payload;
         let c002 = -7.5 - t248;
@@ -228,6 +221,37 @@ impl From<&Params> for Constants {
             c018,
             c019,
         }
+    }
+}
+
+/// Live parameters: names, units, and the values that they may have.
+pub const PARAMETERS: [ParameterInfo; 1] = [
+    ParameterInfo {
+        name: "payload",
+        unit: "kg",
+        about: "what hangs on the hook",
+        default: 800.0,
+        least: Bound {
+            value: 0.0,
+            allowed: true,
+            refusal: Refusal {
+                code: "E032",
+                title: "the mass of body `load` must not be below zero, and is",
+                help: "write 0 or a number above, in kg",
+            },
+        },
+        greatest: Bound::GREATEST,
+    },
+];
+
+impl Params {
+    /// Whether the crane may have these values.
+    ///
+    /// # Errors
+    /// The first rule of the spec language that they break.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        PARAMETERS[0].check(self.payload)?;
+        Ok(())
     }
 }
 
@@ -2600,10 +2624,14 @@ pub struct Crane {
 
 impl Crane {
     /// The crane with these values of its live parameters.
-    pub fn new(params: Params) -> Self {
-        Crane {
-            constants: Constants::from(&params),
-        }
+    ///
+    /// # Errors
+    /// They break a rule of the spec language.
+    pub fn new(params: Params) -> Result<Self, ParameterError> {
+        params.check()?;
+        Ok(Crane {
+            constants: Constants::of(&params),
+        })
     }
     /// Values of the live parameters.
     #[allow(dead_code)]
@@ -2614,7 +2642,9 @@ impl Crane {
 
 impl Default for Crane {
     fn default() -> Self {
-        Crane::new(Params::default())
+        Crane {
+            constants: Constants::of(&Params::default()),
+        }
     }
 }
 
@@ -2628,13 +2658,25 @@ impl CraneModel<N> for Crane {
             _ => f64::NAN,
         }
     }
-    fn set_parameter(&mut self, index: usize, value: f64) {
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
         let mut params = self.constants.params;
         match index {
             0 => params.payload = value,
             _ => {}
         }
-        *self = Crane::new(params);
+        *self = Crane::new(params)?;
+        Ok(())
+    }
+    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
+        let mut params = self.constants.params;
+        for (index, &value) in values.iter().enumerate() {
+            match index {
+                0 => params.payload = value,
+                _ => {}
+            }
+        }
+        *self = Crane::new(params)?;
+        Ok(())
     }
     fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
         fill(out, &transforms(q));
@@ -2791,8 +2833,8 @@ pub mod lanes {
         c018: f64x8,
         c019: f64x8,
     }
-    impl From<&Params> for Constants {
-        fn from(params: &Params) -> Self {
+    impl Constants {
+        fn of(params: &Params) -> Self {
             let c001 = params.payload + splat(25.0);
             let t248 = splat(1.2) * params.payload;
             let c002 = splat(-7.5) - t248;
@@ -3129,10 +3171,10 @@ pub mod lanes {
         }
     }
     impl Cranes {
-        /// Eight cranes with these values of their live parameters.
-        pub fn new(params: &Params) -> Self {
+        /// Eight cranes with these values of their live parameters, each of which its crane has checked.
+        pub(super) fn new(params: &Params) -> Self {
             Cranes {
-                constants: Constants::from(params),
+                constants: Constants::of(params),
             }
         }
     }

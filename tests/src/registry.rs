@@ -34,9 +34,7 @@ impl Entry {
 /// A crane with these parameters.
 fn with_parameters<const N: usize, C: CraneModel<N> + Default>(parameters: &[f64]) -> C {
     let mut crane = C::default();
-    for (index, &value) in parameters.iter().enumerate() {
-        crane.set_parameter(index, value);
-    }
+    crane.set_parameters(parameters).unwrap_or_else(|refused| panic!("{refused}"));
     crane
 }
 

@@ -4,11 +4,13 @@
 
 mod frame;
 mod loops;
+mod parameter;
 mod profile;
 mod value;
 
 pub use frame::{Frame, Vector};
 pub use loops::Loops;
+pub use parameter::{Bound, Parameter, Refusal, Relation};
 pub use profile::{Profile, Ramp, Segment};
 pub use value::{ParameterId, Value};
 
@@ -33,6 +35,8 @@ pub struct Chain {
     pub gravity: [Value; 3],
     /// Values that stay live at run time.
     pub parameters: Vec<Parameter>,
+    /// Rules that join several numbers of which some are live.
+    pub relations: Vec<Relation>,
     /// Generalized coordinates `q`, Eq. (1).
     pub coordinates: Vec<Coordinate>,
     /// Bodies from the base to the tip; body `p` hangs on body `p − 1`, the first on the world.
@@ -57,19 +61,6 @@ pub struct Chain {
     pub analyses: Analyses,
     /// When what repeats is a loop.
     pub loops: Loops,
-}
-
-/// A live parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
-    /// Name, a valid Rust identifier.
-    pub name: String,
-    /// Unit as written by the user, for tables.
-    pub unit: String,
-    /// What it is.
-    pub about: String,
-    /// Value unless set at run time.
-    pub default: f64,
 }
 
 /// A generalized coordinate.

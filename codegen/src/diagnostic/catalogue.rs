@@ -125,7 +125,7 @@ catalogue! {
     E032 negative(place, given, unit) "{place} must not be below zero, and is {given}", "{given} {unit}",
         "write 0 or a number above, in {unit}";
     /// Numbers are of a size that occurs: 0, or between 1e-30 and 1e18.
-    E033 out_of_range(place, given) "{place} is {given}, which no crane has", "0, or from 1e-30 to 1e18",
+    E033 out_of_range(place, given) "{place} is outside the allowed range: {given}", "0, or from 1e-30 to 1e18",
         "check the exponent; every number is in SI units";
     /// An angle is written only where an angle belongs.
     E034 misplaced_angle(place) "{place} is not an angle", "`deg` and `pi` belong to angles", "write a number, in SI units";

@@ -57,8 +57,12 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
         items.push(parse_quote! {
             impl Crane {
                 #[doc = " The crane with these values of its live parameters."]
-                pub fn new(params: Params) -> Self {
-                    Crane { constants: Constants::from(&params) }
+                #[doc = ""]
+                #[doc = " # Errors"]
+                #[doc = " They break a rule of the spec language."]
+                pub fn new(params: Params) -> Result<Self, ParameterError> {
+                    params.check()?;
+                    Ok(Crane { constants: Constants::of(&params) })
                 }
 
                 #[doc = " Values of the live parameters."]
@@ -69,7 +73,7 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
             }
         });
     }
-    let default = if live { quote!(Crane::new(Params::default())) } else { quote!(Crane) };
+    let default = if live { quote!(Crane { constants: Constants::of(&Params::default()) }) } else { quote!(Crane) };
     items.push(parse_quote! {
         impl Default for Crane {
             fn default() -> Self {
@@ -116,7 +120,9 @@ fn common_methods(chain: &Chain) -> TokenStream {
                 }
             ),
             quote!(
-                fn set_parameter(&mut self, _index: usize, _value: f64) {}
+                fn set_parameter(&mut self, _index: usize, _value: f64) -> Result<(), ParameterError> {
+                    Ok(())
+                }
             ),
         )
     } else {
@@ -130,13 +136,26 @@ fn common_methods(chain: &Chain) -> TokenStream {
                 }
             ),
             quote!(
-                fn set_parameter(&mut self, index: usize, value: f64) {
+                fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
                     let mut params = self.constants.params;
                     match index {
                         #(#indices => params.#names = value,)*
                         _ => {}
                     }
-                    *self = Crane::new(params);
+                    *self = Crane::new(params)?;
+                    Ok(())
+                }
+
+                fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
+                    let mut params = self.constants.params;
+                    for (index, &value) in values.iter().enumerate() {
+                        match index {
+                            #(#indices => params.#names = value,)*
+                            _ => {}
+                        }
+                    }
+                    *self = Crane::new(params)?;
+                    Ok(())
                 }
             ),
         )

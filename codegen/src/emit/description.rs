@@ -19,10 +19,6 @@ pub fn description(chain: &Chain) -> Vec<Item> {
 fn description_constant(chain: &Chain) -> Item {
     let defaults = chain.parameter_defaults();
     let at_defaults = |value: &Value| literal(value.at(&defaults));
-    let parameters = chain.parameters.iter().map(|p| {
-        let (name, unit, about, default) = (&p.name, &p.unit, &p.about, literal(p.default));
-        quote!(ParameterInfo { name: #name, unit: #unit, about: #about, default: #default })
-    });
     let coordinates = chain.coordinates.iter().enumerate().map(|(i, c)| {
         let (name, kind, role) = (&c.name, kind(c.kind), role(chain, i));
         quote!(CoordinateInfo { name: #name, kind: CoordinateKind::#kind, role: CoordinateRole::#role })
@@ -45,6 +41,7 @@ fn description_constant(chain: &Chain) -> Item {
         quote!(DriveInfo { coordinate: #coordinate })
     });
     let points = chain.points.iter().map(|point| &point.name);
+    let parameters = if chain.parameters.is_empty() { quote!(&[]) } else { quote!(&PARAMETERS) };
     let statics = chain.analyses.statics;
     let guess = chain.guess.iter().map(|&x| literal(x));
     let (name, title, hash) = (&chain.name, &chain.title, &chain.spec_hash);
@@ -55,7 +52,7 @@ fn description_constant(chain: &Chain) -> Item {
             name: #name,
             title: #title,
             spec_hash: #hash,
-            parameters: &[#(#parameters),*],
+            parameters: #parameters,
             coordinates: &[#(#coordinates),*],
             bodies: &[#(#bodies),*],
             supports: &[#(#supports),*],

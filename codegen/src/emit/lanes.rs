@@ -61,9 +61,9 @@ pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
         let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
         items.push(parse_quote! {
             impl Cranes {
-                #[doc = " Eight cranes with these values of their live parameters."]
-                pub fn new(params: &Params) -> Self {
-                    Cranes { constants: Constants::from(params) }
+                #[doc = " Eight cranes with these values of their live parameters, each of which its crane has checked."]
+                pub(super) fn new(params: &Params) -> Self {
+                    Cranes { constants: Constants::of(params) }
                 }
             }
         });

@@ -7,6 +7,7 @@ mod function;
 mod header;
 mod labels;
 mod lanes;
+mod limits;
 mod names;
 mod number;
 mod parameters;
@@ -48,6 +49,7 @@ pub fn emit(chain: &Chain, analyses: Analyses, blocks: &Blocks, report: Report, 
     let mut items = Vec::new();
     items.extend(description::description(chain));
     items.extend(parameters::parameters(chain, blocks, &labels, Number::Single));
+    items.extend(limits::limits(chain));
     items.push(parse_quote!(
         const BLANK: Matrix4<f64> =
             Matrix4::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
@@ -87,6 +89,7 @@ fn imports(items: &[syn::Item]) -> String {
             "::crane_model",
             &[
                 "BodyInfo",
+                "Bound",
                 "CoordinateInfo",
                 "CoordinateKind",
                 "CoordinateRole",
@@ -99,7 +102,9 @@ fn imports(items: &[syn::Item]) -> String {
                 "Linearisation",
                 "Linearise",
                 "OneByOne",
+                "ParameterError",
                 "ParameterInfo",
+                "Refusal",
                 "Statics",
                 "SupportInfo",
                 "TransformDerivatives",

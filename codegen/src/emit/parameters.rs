@@ -47,8 +47,8 @@ pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels, number: Numbe
             }
         },
         parse_quote! {
-            impl From<&Params> for Constants {
-                fn from(params: &Params) -> Self {
+            impl Constants {
+                fn of(params: &Params) -> Self {
                     #(#body)*
                     Constants { params: *params, #(#stored),* }
                 }

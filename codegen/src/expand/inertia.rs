@@ -50,10 +50,43 @@ fn planar_moments([xx, yy, zz, xy, xz, yz]: &Tensor) -> [Value; 6] {
     [planar(xx, yy, zz), planar(yy, xx, zz), planar(zz, xx, yy), -xy.clone(), -xz.clone(), -yz.clone()]
 }
 
-/// Tensor about the centre of mass in numbers, of a tensor about the origin: the parallel axes back.
-pub(crate) fn tensor_at_com(mass: f64, [x, y, z]: [f64; 3], tensor: [f64; 6]) -> [f64; 6] {
-    let shift = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z];
-    std::array::from_fn(|k| tensor[k] - mass * shift[k])
+/// Tensor about the centre of mass, of a tensor about the origin: the parallel axes back.
+pub(crate) fn tensor_at_com(mass: &Value, com: &[Value; 3], tensor: &Tensor) -> Tensor {
+    let product = |i: usize, j: usize| com[i].clone() * com[j].clone();
+    let square = product(0, 0) + product(1, 1) + product(2, 2);
+    std::array::from_fn(|k| {
+        let (i, j) = PAIRS[k];
+        let shift = if i == j { square.clone() - product(i, i) } else { -product(i, j) };
+        tensor[k].clone() - mass.clone() * shift
+    })
+}
+
+/// Leading principal minors of a tensor: all above zero where it is positive definite, and only there (Sylvester).
+pub(crate) fn leading_minors([xx, yy, zz, xy, xz, yz]: Tensor) -> [Value; 3] {
+    let of_two = xx.clone() * yy.clone() - xy.clone() * xy.clone();
+    let determinant = of_two.clone() * zz + 2.0 * (xy * xz.clone() * yz.clone())
+        - xx.clone() * (yz.clone() * yz)
+        - yy * (xz.clone() * xz);
+    [xx, of_two, determinant]
+}
+
+/// `I − ε tr(I) 1`: positive definite where the smallest principal moment is above a share ε of their sum.
+pub(crate) fn definite_margin(tensor: &Tensor, share: f64) -> Tensor {
+    with_trace(tensor, -share, 1.0)
+}
+
+/// `(1 + τ) tr(I) 1 − (2 + τ) I`: positive definite where no principal moment exceeds the sum of the other two by a share τ.
+pub(crate) fn triangle_margin(tensor: &Tensor, share: f64) -> Tensor {
+    with_trace(tensor, 1.0 + share, -2.0 - share)
+}
+
+/// `a tr(I) 1 + b I`
+fn with_trace(tensor: &Tensor, a: f64, b: f64) -> Tensor {
+    let trace = tensor[0].clone() + tensor[1].clone() + tensor[2].clone();
+    std::array::from_fn(|k| {
+        let own = b * tensor[k].clone();
+        if k < 3 { a * trace.clone() + own } else { own }
+    })
 }
 
 /// Principal moments of a tensor, ascending, by Jacobi's rotations.
@@ -101,8 +134,28 @@ mod tests {
         // The same about the corner, where the products of the tensor are negative.
         let corner = numbers([64.0 + 144.0, 16.0 + 144.0, 16.0 + 64.0, -24.0, -36.0, -72.0]);
         assert_eq!(about_origin(mass.into(), &numbers([1.0, 2.0, 3.0]), &corner), brick);
-        let back = tensor_at_com(mass, [1.0, 2.0, 3.0], [208.0, 160.0, 80.0, -24.0, -36.0, -72.0]);
-        assert_eq!(numbers(back), tensor);
+        let origin = numbers([208.0, 160.0, 80.0, -24.0, -36.0, -72.0]);
+        let back = tensor_at_com(&mass.into(), &numbers([1.0, 2.0, 3.0]), &origin);
+        assert_eq!(back, tensor);
+    }
+
+    #[test]
+    fn minors_tell_what_principal_moments_tell() {
+        for tensor in [
+            [1.0, 2.0, 2.5, 0.0, 0.0, 0.0],
+            [1.0, 2.0, 3.2, 0.0, 0.0, 0.0],
+            [1.0, 2.0, 3.8, 0.0, 0.0, 0.0],
+            [4.0, 2.0, 3.0, 1.0, -0.5, 0.3],
+            [4.0, 2.0, 3.0, 2.8, -0.5, 0.3],
+            [4.0, 2.0, 3.0, 3.0, -0.5, 0.3],
+            [-1.0, 2.0, 2.0, 0.0, 0.0, 0.0],
+        ] {
+            let [smallest, middle, largest] = principal_moments(tensor);
+            let positive = |tensor: &Tensor| leading_minors(tensor.clone()).iter().all(|minor| minor.at(&[]) > 0.0);
+            assert_eq!(positive(&numbers(tensor)), smallest > 0.0, "{tensor:?}");
+            let margin = triangle_margin(&numbers(tensor), 0.25);
+            assert_eq!(positive(&margin), largest < 1.25 * (smallest + middle), "{tensor:?}");
+        }
     }
 
     #[test]

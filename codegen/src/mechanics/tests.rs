@@ -41,6 +41,7 @@ fn double_pendulum() -> Chain {
         spec_hash: String::new(),
         gravity: [Value::ZERO, Value::ZERO, c(-GRAVITY)],
         parameters: vec![],
+        relations: vec![],
         coordinates: vec![coordinate(0), coordinate(1)],
         bodies: vec![
             body(0, vec![Step::Move(CoordinateId(0))]),

@@ -1,7 +1,7 @@
 //! Supports of the base.
 
 use super::Check;
-use super::numbers::Limit;
+use super::limits::Limit;
 use crate::chain::{Step, Support, SupportKinematics};
 use crate::diagnostic::rule;
 use crate::spec::{Crane, Kinematics};

@@ -1,6 +1,6 @@
 //! Beams: of equal sections, and how elements become bodies.
 
-use super::numbers::Limit;
+use super::limits::Limit;
 use super::{Check, Owner};
 use crate::chain::{self, Axis, CoordinateKind, ElementSpring, Step, Value};
 use crate::diagnostic::{Span, rule};

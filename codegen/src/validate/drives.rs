@@ -1,6 +1,6 @@
 //! Drives and their motions, and the damping of passive joints.
 
-use super::numbers::Limit;
+use super::limits::Limit;
 use super::{Check, Owner};
 use crate::chain::{self, CoordinateId, CoordinateKind, Drive, Hinge, Profile, Value};
 use crate::diagnostic::{Span, rule};

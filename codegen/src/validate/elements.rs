@@ -1,7 +1,7 @@
 //! Beams given element by element.
 
 use super::Check;
-use super::numbers::Limit;
+use super::limits::Limit;
 use crate::chain::Value;
 use crate::diagnostic::rule;
 use crate::expand::beam::{Elements, Joint, RigidElement};
@@ -46,6 +46,10 @@ impl<'a> Check<'a> {
         if (sum - whole).abs() > WRITTEN * whole {
             self.report(rule::beam_length(elements.span, sum, whole));
         }
+        let sum = elements_read.iter().fold(Value::ZERO, |sum, element| sum + element.length.clone());
+        let broken = rule::beam_length(elements.span, whole, whole);
+        self.keep_below(&sum, &((1.0 + WRITTEN) * length.clone()), &broken);
+        self.keep_below(&((1.0 - WRITTEN) * length.clone()), &sum, &broken);
         (elements_read.len() == joints.len() + 1).then_some(Elements { elements: elements_read, joints })
     }
 

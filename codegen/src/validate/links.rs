@@ -1,6 +1,6 @@
 //! Links, their placements and joints.
 
-use super::numbers::Limit;
+use super::limits::Limit;
 use super::{Check, Owner, Place};
 use crate::chain::{Axis, Body, BodyId, Coordinate, CoordinateId, CoordinateKind, Step, Value};
 use crate::diagnostic::{Span, rule};

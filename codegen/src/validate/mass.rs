@@ -1,14 +1,14 @@
 //! What a link carries: masses and inertias.
 
 use super::Check;
-use super::numbers::Limit;
+use super::limits::Limit;
 use crate::chain::{self, Part, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::inertia::{self, Tensor};
 use crate::spec::{About, Body, Given, Inertia, Link, Number, Vector};
 
-/// Rounding that people do when they write an inertia down: the triangle inequality may miss by this share.
-const WRITTEN: f64 = 1e-6;
+/// Published inertias are measured or rounded: the triangle inequality may be missed by this share.
+pub(super) const SLIGHT: f64 = 0.25;
 /// A smallest principal moment below this share of the largest is zero to rounding.
 const VANISHING: f64 = 1e-12;
 
@@ -92,13 +92,20 @@ impl<'a> Check<'a> {
         inertia: Option<&Given<Inertia>>,
         place: &str,
     ) -> Option<(chain::Inertia, [Value; 3])> {
-        let m = self.number(mass, &format!("the mass of {place}"), "kg", Limit::Positive);
+        let m = self.number(mass, &format!("the mass of {place}"), "kg", Limit::Mass);
         let com = self.vector_or_zero(com, &format!("the centre of mass of {place}"), "m", Limit::Any);
         let place = format!("the inertia of {place}");
         let Some(given) = inertia else { return Some((inertia::point(m, &com), com)) };
         let written = given.value.as_ref()?;
         let (tensor, about) = self.tensor(written, given.span, &m, &place)?;
-        self.possible(&m, &com, &tensor, about, given.span, &place);
+        match &written.gyration {
+            // Radii are possible or not whatever the mass, which may be zero.
+            Some(_) => {
+                let (unit, _) = self.tensor(written, given.span, &Value::ONE, &place)?;
+                self.possible(&Value::ONE, &com, &unit, about, given.span, &place);
+            }
+            None => self.possible(&m, &com, &tensor, about, given.span, &place),
+        }
         let inertia = match about {
             About::Com => inertia::about_com(m, &com, &tensor),
             About::Origin => inertia::about_origin(m, &com, &tensor),
@@ -136,20 +143,27 @@ impl<'a> Check<'a> {
 
     /// An inertia that a body can have.
     fn possible(&mut self, mass: &Value, com: &[Value; 3], tensor: &Tensor, about: About, span: Span, place: &str) {
-        let numbers = tensor.each_ref().map(|element| self.now(element));
-        let com = com.each_ref().map(|coordinate| self.now(coordinate));
-        let at_com = match about {
-            About::Com => numbers,
-            About::Origin => inertia::tensor_at_com(self.now(mass), com, numbers),
+        let tensor = match about {
+            About::Com => tensor.clone(),
+            About::Origin => inertia::tensor_at_com(mass, com, tensor),
         };
-        if !at_com.iter().all(|element| element.is_finite()) {
+        let numbers = tensor.each_ref().map(|element| self.now(element));
+        if !numbers.iter().all(|element| element.is_finite()) {
             return;
         }
-        let [smallest, middle, largest] = inertia::principal_moments(at_com);
+        let [smallest, middle, largest] = inertia::principal_moments(numbers);
+        let not_positive = rule::not_positive_definite(span, place, rounded(smallest));
+        let triangle = rule::triangle(span, place, rounded(largest), rounded(smallest + middle));
+        for (margins, broken) in [
+            (inertia::leading_minors(inertia::definite_margin(&tensor, VANISHING)), &not_positive),
+            (inertia::leading_minors(inertia::triangle_margin(&tensor, SLIGHT)), &triangle),
+        ] {
+            margins.into_iter().for_each(|margin| self.keep_positive(margin, broken));
+        }
         if smallest <= VANISHING * largest {
-            self.report(rule::not_positive_definite(span, place, rounded(smallest)));
-        } else if largest > (smallest + middle) * (1.0 + WRITTEN) {
-            self.report(rule::triangle(span, place, rounded(largest), rounded(smallest + middle)));
+            self.report(not_positive);
+        } else if largest > (smallest + middle) * (1.0 + SLIGHT) {
+            self.report(triangle);
         }
     }
 }

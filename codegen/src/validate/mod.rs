@@ -7,6 +7,7 @@ mod base;
 mod beam;
 mod drives;
 mod elements;
+mod limits;
 mod links;
 mod mass;
 mod names;
@@ -17,11 +18,14 @@ mod section;
 
 use std::collections::BTreeMap;
 
-use crate::chain::{Analyses, Body, Chain, Coordinate, CoordinateId, ElementSpring, Loops, Parameter, Value};
+use crate::chain::{
+    Analyses, Body, Bound, Chain, Coordinate, CoordinateId, ElementSpring, Loops, Parameter, ParameterId, Relation,
+    Value,
+};
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
 use crate::spec::{self, Analysis, Crane, CraneSpec, Given};
+use limits::Limit;
 use names::Names;
-use numbers::Limit;
 
 /// Checks a spec and expands it into the chain of its bodies.
 ///
@@ -29,10 +33,11 @@ use numbers::Limit;
 /// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
 pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnostics> {
     let mut check = Check { mistakes: spec.mistakes.clone(), ..Check::default() };
-    let chain = check.crane(&spec.crane, source);
+    let mut chain = check.crane(&spec.crane, source);
     if check.mistakes.is_empty() {
         // The mass matrix exists only where all else is sound.
         check.regular(&chain, &spec.crane);
+        check.keep_masses(&mut chain);
     }
     if check.mistakes.is_empty() { Ok(chain) } else { Err(Diagnostics::new(source, check.mistakes)) }
 }
@@ -66,6 +71,10 @@ struct Check<'a> {
     defaults: Vec<f64>,
     /// Which of them some number refers to.
     used: Vec<bool>,
+    /// Live masses, and the bound of those that cannot be zero.
+    live_masses: Vec<(ParameterId, Bound)>,
+    /// Rules that join several numbers of which some are live.
+    relations: Vec<Relation>,
     /// Young's modulus, shear modulus and density of each material.
     materials: BTreeMap<&'a str, [Value; 3]>,
     coordinates: Vec<Coordinate>,
@@ -120,6 +129,7 @@ impl<'a> Check<'a> {
             spec_hash: source.hash(),
             gravity,
             parameters: std::mem::take(&mut self.parameters),
+            relations: std::mem::take(&mut self.relations),
             coordinates: std::mem::take(&mut self.coordinates),
             bodies: std::mem::take(&mut self.bodies),
             base: self.base,

@@ -1,20 +1,10 @@
 //! Numbers: finite, in range, resolved to constants or live parameters.
 
 use super::Check;
+use super::limits::Limit;
 use crate::chain::{CoordinateKind, Parameter, ParameterId, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{Angle, Constant, Crane, FixedAngle, Given, Number, Scalar, Vector};
-
-/// What a number may be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Limit {
-    /// Anything finite.
-    Any,
-    /// Zero or above.
-    NotNegative,
-    /// Above zero.
-    Positive,
-}
 
 /// Magnitudes outside of this range, zero apart, come from a slip in an exponent. Inside, no product or quotient that
 /// the expansion forms leaves the range of a double.
@@ -47,6 +37,7 @@ impl<'a> Check<'a> {
                 unit: unit.unwrap_or_default(),
                 about: about.unwrap_or_default(),
                 default,
+                least: None,
             });
             self.defaults.push(default);
             self.used.push(false);
@@ -168,14 +159,5 @@ impl<'a> Check<'a> {
             self.report(rule::unknown_parameter(span, name, help));
         }
         None
-    }
-
-    fn keep_limit(&mut self, value: &Value, span: Span, place: &str, unit: &str, limit: Limit) {
-        let number = self.now(value);
-        match limit {
-            Limit::Positive if number <= 0.0 => self.report(rule::not_positive(span, place, number, unit)),
-            Limit::NotNegative if number < 0.0 => self.report(rule::negative(span, place, number, unit)),
-            _ => {}
-        }
     }
 }

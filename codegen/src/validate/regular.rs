@@ -4,7 +4,7 @@
 //! pivots of the mass matrix one by one: the inertia `D_j` that coordinate j feels with all later joints free.
 
 use super::{Check, Owner};
-use crate::chain::{Axis, Chain, CoordinateKind, Frame, Inertia, Step, Vector};
+use crate::chain::{Axis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Inertia, Step, Vector};
 use crate::diagnostic::{Span, rule};
 use crate::spec::Crane;
 
@@ -66,8 +66,17 @@ fn inertia_in_world(frame: &Frame, inertia: &Inertia, parameters: &[f64]) -> Spa
 }
 
 impl Check<'_> {
-    /// Reports coordinates that move no mass of their own, at a pose that no structure singles out.
+    /// Reports coordinates that move no mass of their own.
     pub(super) fn regular(&mut self, chain: &Chain, crane: &Crane) {
+        for (body, CoordinateId(index)) in self.idle_coordinates(chain, &self.defaults) {
+            let link = &chain.bodies[body.0].link;
+            self.report(rule::moves_nothing(joint_span(crane, link), &chain.coordinates[index].name));
+        }
+    }
+
+    /// Coordinates that move no mass of their own, and the bodies behind them, at a pose that no structure singles out.
+    pub(super) fn idle_coordinates(&self, chain: &Chain, parameters: &[f64]) -> Vec<(BodyId, CoordinateId)> {
+        let mut idle = Vec::new();
         let mut frame = Frame::WORLD;
         let mut frames = Vec::with_capacity(chain.bodies.len());
         let mut motions = vec![[0.0; 6]; chain.coordinates.len()];
@@ -80,15 +89,15 @@ impl Check<'_> {
                     let coordinate = &chain.coordinates[id.0];
                     motions[id.0] = unit_motion(&frame, coordinate.kind, coordinate.axis);
                 }
-                frame = frame.after(step, chain, &q, &self.defaults);
+                frame = frame.after(step, chain, &q, parameters);
             }
             frames.push(frame);
         }
 
         let (mut articulated, mut locked) = ([[0.0; 6]; 6], [[0.0; 6]; 6]);
-        for (body, frame) in chain.bodies.iter().zip(&frames).rev() {
+        for (index, (body, frame)) in chain.bodies.iter().zip(&frames).enumerate().rev() {
             if let Some(inertia) = &body.inertia {
-                let own = inertia_in_world(frame, inertia, &self.defaults);
+                let own = inertia_in_world(frame, inertia, parameters);
                 for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
                     articulated[i][j] += own[i][j];
                     locked[i][j] += own[i][j];
@@ -100,7 +109,7 @@ impl Check<'_> {
                 let force = apply(&articulated, motion);
                 let pivot = dot(&force, motion);
                 if pivot <= VANISHING * dot(&apply(&locked, motion), motion) {
-                    self.report(rule::moves_nothing(joint_span(crane, &body.link), &chain.coordinates[id.0].name));
+                    idle.push((BodyId(index), *id));
                     continue;
                 }
                 for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
@@ -108,6 +117,7 @@ impl Check<'_> {
                 }
             }
         }
+        idle
     }
 }
 

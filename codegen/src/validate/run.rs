@@ -1,7 +1,7 @@
 //! Points of interest, the guess of the static solution, and the settings of a run.
 
 use super::Check;
-use super::numbers::Limit;
+use super::limits::Limit;
 use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Support, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::expand::profile;

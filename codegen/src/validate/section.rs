@@ -1,7 +1,7 @@
 //! Materials and cross-sections of beams.
 
 use super::Check;
-use super::numbers::Limit;
+use super::limits::Limit;
 use crate::chain::Value;
 use crate::diagnostic::{Span, rule, suggest};
 use crate::expand::section::{self, CrossSection};
@@ -69,10 +69,14 @@ impl<'a> Check<'a> {
 
     /// Walls leave a hollow.
     fn wall<'v>(&mut self, span: Span, thickness: &Value, sizes: impl Iterator<Item = &'v Value>) {
-        let smallest = sizes.map(|size| self.now(size)).fold(f64::INFINITY, f64::min);
-        let thickness = self.now(thickness);
-        if 2.0 * thickness >= smallest && smallest > 0.0 {
-            self.report(rule::wall(span, thickness, smallest));
+        let sizes: Vec<&Value> = sizes.collect();
+        let smallest = sizes.iter().map(|size| self.now(size)).fold(f64::INFINITY, f64::min);
+        let now = self.now(thickness);
+        if 2.0 * now >= smallest && smallest > 0.0 {
+            self.report(rule::wall(span, now, smallest));
+        }
+        for size in sizes {
+            self.keep_below(&(2.0 * thickness.clone()), size, &rule::wall(span, now, smallest));
         }
     }
 }

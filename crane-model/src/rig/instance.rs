@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector, Matrix4, SVector, Vector3};
 
 use super::{Energies, Member, Rig};
 use crate::{
-    CoordinateRole, Description, Ensemble, Implicit, Linearise, Statics, TransformDerivatives, dynamics,
+    CoordinateRole, Description, Ensemble, Implicit, Linearise, ParameterError, Statics, TransformDerivatives,
+    dynamics,
     dynamics::{Run, Sample, Stopped, rk4},
     modes::SmallMotions,
     statics,
@@ -46,8 +47,12 @@ impl<const N: usize, C: Crane<N> + Send + Sync + 'static> Rig for Instance<N, C>
         self.0.parameter(index)
     }
 
-    fn set_parameter(&mut self, index: usize, value: f64) {
-        self.0.set_parameter(index, value);
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
+        self.0.set_parameter(index, value)
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
+        self.0.set_parameters(values)
     }
 
     fn transforms(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
@@ -162,16 +167,14 @@ impl<const N: usize, C: Crane<N> + Send + Sync + 'static> Rig for Instance<N, C>
         members: &[Member],
         settings: &dynamics::Settings,
         observe: &mut dyn FnMut(usize, &Sample<'_>),
-    ) -> Vec<Result<Run, Stopped>> {
+    ) -> Result<Vec<Result<Run, Stopped>>, ParameterError> {
         let member = |member: &Member| {
             let mut crane = self.0.clone();
-            for (index, value) in member.parameters.iter().enumerate() {
-                crane.set_parameter(index, *value);
-            }
-            (crane, rk4::State::at_rest(vector(&member.start)))
+            crane.set_parameters(&member.parameters)?;
+            Ok((crane, rk4::State::at_rest(vector(&member.start))))
         };
-        let cranes: Vec<_> = members.iter().map(member).collect();
-        dynamics::ensemble::simulate(&cranes, settings, observe)
+        let cranes: Vec<_> = members.iter().map(member).collect::<Result<_, _>>()?;
+        Ok(dynamics::ensemble::simulate(&cranes, settings, observe))
     }
 
     fn boxed_clone(&self) -> Box<dyn Rig> {

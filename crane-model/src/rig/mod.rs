@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 pub use instance::{Crane, Instance, boxed};
 
 use crate::{
-    CoordinateKind, CoordinateRole, Description, dynamics,
+    CoordinateKind, CoordinateRole, Description, ParameterError, dynamics,
     dynamics::{Run, Sample, Stopped},
     modes::SmallMotions,
     statics,
@@ -63,7 +63,16 @@ pub trait Rig: Send + Sync {
     fn parameter(&self, index: usize) -> f64;
 
     /// Sets a live parameter.
-    fn set_parameter(&mut self, index: usize, value: f64);
+    ///
+    /// # Errors
+    /// The value breaks a rule of the spec language.
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError>;
+
+    /// Sets the first live parameters together: [`CraneModel::set_parameters`](crate::CraneModel::set_parameters).
+    ///
+    /// # Errors
+    /// A value breaks a rule of the spec language.
+    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError>;
 
     /// Transforms of all bodies into the world frame.
     fn transforms(&self, q: &[f64]) -> Vec<Matrix4<f64>>;
@@ -149,12 +158,15 @@ pub trait Rig: Send + Sync {
     ) -> Result<Run, Stopped>;
 
     /// Runs of cranes that differ in their parameters, eight at a time: [`dynamics::ensemble::simulate`].
+    ///
+    /// # Errors
+    /// The parameters of a member break a rule of the spec language.
     fn simulate_ensemble(
         &self,
         members: &[Member],
         settings: &dynamics::Settings,
         observe: &mut dyn FnMut(usize, &Sample<'_>),
-    ) -> Vec<Result<Run, Stopped>>;
+    ) -> Result<Vec<Result<Run, Stopped>>, ParameterError>;
 
     /// A crane of its own with the same parameters.
     fn boxed_clone(&self) -> Box<dyn Rig>;

@@ -15,9 +15,9 @@ pub fn guess<const N: usize, C: CraneModel<N> + Clone>(crane: &C) -> SVector<f64
     let description = crane.description();
     let mut q = SVector::from_fn(|i, _| description.guess[i]);
     let mut at_defaults = crane.clone();
-    for (index, parameter) in description.parameters.iter().enumerate() {
-        at_defaults.set_parameter(index, parameter.default);
-    }
+    let defaults: Vec<f64> = description.parameters.iter().map(|parameter| parameter.default).collect();
+    // The spec's own values keep its rules.
+    let _ = at_defaults.set_parameters(&defaults);
     let [own, default] = [crane, &at_defaults].map(|crane| {
         let mut motions = vec![[0.0; 2]; description.drives.len()];
         crane.drive_motions(0.0, &mut motions);

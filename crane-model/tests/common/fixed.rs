@@ -1,6 +1,8 @@
 //! A crane without coordinates: nothing moves.
 
-use crane_model::{CraneModel, Description, Dynamics, Linearisation, Linearise, Statics, TransformDerivatives};
+use crane_model::{
+    CraneModel, Description, Dynamics, Linearisation, Linearise, ParameterError, Statics, TransformDerivatives,
+};
 use nalgebra::{Matrix4, SMatrix, SVector};
 
 use super::description;
@@ -20,7 +22,9 @@ impl CraneModel<0> for Fixed {
         f64::NAN
     }
 
-    fn set_parameter(&mut self, _: usize, _: f64) {}
+    fn set_parameter(&mut self, _: usize, _: f64) -> Result<(), ParameterError> {
+        Ok(())
+    }
 
     fn transforms(&self, _: &SVector<f64, 0>, _: &mut [Matrix4<f64>]) {}
 

@@ -6,7 +6,7 @@ use crane_codegen::{
     compile, mechanics,
     symbolic::{Inputs, Program},
 };
-use crane_model::{CraneModel, Description, Dynamics, Linearisation, Linearise, modes::SmallMotions};
+use crane_model::{CraneModel, Description, Dynamics, Linearisation, Linearise, ParameterError, modes::SmallMotions};
 use nalgebra::{DVector, Matrix4, SMatrix, SVector};
 
 use crate::common::description;
@@ -65,7 +65,9 @@ impl<const N: usize> CraneModel<N> for Interpreted<N> {
         f64::NAN
     }
 
-    fn set_parameter(&mut self, _: usize, _: f64) {}
+    fn set_parameter(&mut self, _: usize, _: f64) -> Result<(), ParameterError> {
+        Ok(())
+    }
 
     fn transforms(&self, _: &SVector<f64, N>, _: &mut [Matrix4<f64>]) {}
 

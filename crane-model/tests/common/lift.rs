@@ -2,8 +2,8 @@
 //! motion is known in closed form.
 
 use crane_model::{
-    CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Driven, CraneModel, Description, DriveInfo, Dynamics,
-    Linearisation, Linearise, ParameterInfo, Statics,
+    Bound, CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Driven, CraneModel, Description, DriveInfo,
+    Dynamics, Linearisation, Linearise, ParameterError, ParameterInfo, Statics,
 };
 use nalgebra::{Complex, Matrix1, Matrix4, Vector1};
 
@@ -12,7 +12,14 @@ use super::{GRAVITY, coordinate, description};
 const COORDINATES: &[CoordinateInfo] = &[coordinate("lift_z", Translation, Driven)];
 static DESCRIPTION: Description = Description {
     drives: &[DriveInfo { coordinate: 0 }],
-    parameters: &[ParameterInfo { name: "height", unit: "m", about: "where the support starts", default: 0.0 }],
+    parameters: &[ParameterInfo {
+        name: "height",
+        unit: "m",
+        about: "where the support starts",
+        default: 0.0,
+        least: Bound::LEAST,
+        greatest: Bound::GREATEST,
+    }],
     ..description("lift", COORDINATES, &[0.0])
 };
 static GUESSED: Description = Description { guess: &[0.5], ..DESCRIPTION };
@@ -88,8 +95,9 @@ impl CraneModel<1> for Lift {
         self.height
     }
 
-    fn set_parameter(&mut self, _: usize, value: f64) {
+    fn set_parameter(&mut self, _: usize, value: f64) -> Result<(), ParameterError> {
         self.height = value;
+        Ok(())
     }
 
     fn transforms(&self, _: &Vector1<f64>, _: &mut [Matrix4<f64>]) {}

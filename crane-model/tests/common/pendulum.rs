@@ -3,7 +3,7 @@
 
 use crane_model::{
     CoordinateInfo, CoordinateKind::Rotation, CoordinateRole::Passive, CraneModel, Description, Dynamics,
-    Linearisation, Linearise, Statics,
+    Linearisation, Linearise, ParameterError, Statics,
 };
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
@@ -83,7 +83,9 @@ impl CraneModel<2> for DoublePendulum {
         f64::NAN
     }
 
-    fn set_parameter(&mut self, _: usize, _: f64) {}
+    fn set_parameter(&mut self, _: usize, _: f64) -> Result<(), ParameterError> {
+        Ok(())
+    }
 
     fn transforms(&self, _: &Vector2<f64>, _: &mut [Matrix4<f64>]) {}
 

@@ -1,8 +1,8 @@
 //! A block on springs whose base moves along x and z, its axes turned about y, under live gravity: its weight is known.
 
 use crane_model::{
-    BodyInfo, CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Base, CraneModel, Description, Dynamics,
-    Linearisation, Linearise, ParameterInfo, Statics, TransformDerivatives,
+    BodyInfo, Bound, CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Base, CraneModel, Description,
+    Dynamics, Linearisation, Linearise, ParameterError, ParameterInfo, Statics, TransformDerivatives,
 };
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2, Vector3};
 
@@ -11,7 +11,14 @@ use super::{GRAVITY, coordinate, description};
 const COORDINATES: &[CoordinateInfo] =
     &[coordinate("sledge_x", Translation, Base), coordinate("sledge_z", Translation, Base)];
 static DESCRIPTION: Description = Description {
-    parameters: &[ParameterInfo { name: "gravity", unit: "m/s²", about: "downwards", default: GRAVITY }],
+    parameters: &[ParameterInfo {
+        name: "gravity",
+        unit: "m/s²",
+        about: "downwards",
+        default: GRAVITY,
+        least: Bound::LEAST,
+        greatest: Bound::GREATEST,
+    }],
     bodies: &[BodyInfo { name: "sledge", link: "sledge", mass: MASS, length: 0.0, degrees_of_freedom: 2 }],
     ..description("sledge", COORDINATES, &[0.0, 0.0])
 };
@@ -57,8 +64,9 @@ impl CraneModel<2> for Sledge {
         self.gravity
     }
 
-    fn set_parameter(&mut self, _: usize, value: f64) {
+    fn set_parameter(&mut self, _: usize, value: f64) -> Result<(), ParameterError> {
         self.gravity = value;
+        Ok(())
     }
 
     fn transforms(&self, q: &Vector2<f64>, out: &mut [Matrix4<f64>]) {

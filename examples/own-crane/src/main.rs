@@ -14,7 +14,7 @@ mod own_crane {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let crane = Crane::new(Params { payload: 500.0 });
+    let crane = Crane::new(Params { payload: 500.0 })?;
     let rest = statics::solve(&crane, &statics::Settings::default());
     println!("{}, {} Newton steps", rest.status, rest.steps());
 

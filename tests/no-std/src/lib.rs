@@ -16,7 +16,7 @@
 
 use crane_model::dynamics::rk4::{self, State};
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use crane_model::{CraneModel, Dynamics, Linearisation, Linearise, Statics, TransformDerivatives};
+use crane_model::{CraneModel, Dynamics, Linearisation, Linearise, ParameterError, Statics, TransformDerivatives};
 
 pub use crane::{Crane, DESCRIPTION, N};
 
@@ -74,8 +74,14 @@ exported! {
 
 /// Another value of a live parameter.
 #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
-pub fn set_parameter(crane: &mut Crane, index: usize, value: f64) {
-    crane.set_parameter(index, value);
+pub fn set_parameter(crane: &mut Crane, index: usize, value: f64) -> Result<(), ParameterError> {
+    crane.set_parameter(index, value)
+}
+
+/// Other values of the first live parameters.
+#[cfg_attr(feature = "no-panic", no_panic::no_panic)]
+pub fn set_parameters(crane: &mut Crane, values: &[f64]) -> Result<(), ParameterError> {
+    crane.set_parameters(values)
 }
 
 /// One step of the motion; false where the mass matrix is not positive definite.

@@ -13,7 +13,8 @@ fn main() {
     let mut matrices = vec![Matrix4::zeros(); black_box(pairs)];
     let mut vectors = vec![Vector3::zeros(); black_box(DESCRIPTION.supports.len().max(DESCRIPTION.points.len()))];
     let mut motions = vec![[0.0; 2]; black_box(DESCRIPTION.drives.len())];
-    no_std_crane::set_parameter(&mut crane, black_box(0), 400.0);
+    let _ = black_box(no_std_crane::set_parameter(&mut crane, black_box(0), black_box(400.0)));
+    let _ = black_box(no_std_crane::set_parameters(&mut crane, black_box(&[400.0])));
     no_std_crane::transforms(&crane, &q, &mut matrices);
     no_std_crane::points(&crane, &q, &mut vectors);
     no_std_crane::point_velocities(&crane, &q, &v, &mut vectors);

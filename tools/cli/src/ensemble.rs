@@ -75,7 +75,7 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
 /// another is asked for.
 fn settings(timing: &Timing, rig: &dyn Rig, table: &ParameterTable) -> Outcome<(dynamics::Settings, &'static str)> {
     let startable = |row: &Vec<f64>| {
-        let crane = table.crane(rig, row);
+        let crane = table.crane(rig, row)?;
         Start::of(crane.as_ref()).map(|start| (crane, start))
     };
     let rests = |row: &Vec<f64>| startable(row).ok();
@@ -129,8 +129,8 @@ fn batch(rig: &dyn Rig, table: &ParameterTable, rows: &[Vec<f64>], settings: &dy
     let (mut places, mut cranes, mut members) = (Vec::new(), Vec::new(), Vec::new());
     for (place, row) in rows.iter().enumerate() {
         let crane = table.crane(rig, row);
-        match Start::of(crane.as_ref()) {
-            Ok(start) => {
+        match crane.and_then(|crane| Start::of(crane.as_ref()).map(|start| (crane, start))) {
+            Ok((crane, start)) => {
                 let parameters = (0..rig.description().parameters.len()).map(|index| crane.parameter(index)).collect();
                 members.push(Member { parameters, start: start.q });
                 cranes.push(crane);
@@ -143,6 +143,15 @@ fn batch(rig: &dyn Rig, table: &ParameterTable, rows: &[Vec<f64>], settings: &dy
     let results = rig.simulate_ensemble(&members, settings, &mut |member, sample| {
         peaks[member].push(cranes[member].as_ref(), sample);
     });
+    let results = match results {
+        Ok(results) => results,
+        Err(refused) => {
+            for place in places {
+                told[place].status = refused.to_string();
+            }
+            return told;
+        }
+    };
     for ((place, peaks), result) in places.into_iter().zip(peaks).zip(results) {
         told[place] = match result {
             Ok(run) => Row { peaks: Some(peaks), time: run.time, status: DONE.to_owned() },

@@ -6,7 +6,7 @@ use crane_model::{Description, rig::Rig};
 
 use crate::{
     problem::{Outcome, Problem},
-    selection::parameter,
+    selection::{parameter, set, told},
 };
 
 /// Values of live parameters of many cranes.
@@ -46,12 +46,16 @@ impl ParameterTable {
             let record = record.map_err(unreadable)?;
             let line = record.position().map_or(0, csv::Position::line);
             let value = |(place, (text, &index)): (usize, (&str, &usize))| {
-                let info = &description.parameters[index];
-                text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+                let (info, at) = (&description.parameters[index], Place { path, line, column: place + 1 });
+                let number = text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                     let help = format!("write a finite number, in {}, such as {}", info.unit, info.default);
-                    Place { path, line, column: place + 1 }
-                        .problem(&format!("`{text}` is no value for {}", info.name), help)
-                })
+                    at.problem(&format!("`{text}` is not a value for {}", info.name), help)
+                })?;
+                info.check(number).map_err(|refused| {
+                    let (title, help) = told(&refused);
+                    at.problem(&title, help)
+                })?;
+                Ok(number)
             };
             rows.push(record.iter().zip(&columns).enumerate().map(value).collect::<Outcome<_>>()?);
         }
@@ -65,12 +69,11 @@ impl ParameterTable {
     }
 
     /// The crane of a row: what has no column is as in `rig`.
-    pub fn crane(&self, rig: &dyn Rig, row: &[f64]) -> Box<dyn Rig> {
+    pub fn crane(&self, rig: &dyn Rig, row: &[f64]) -> Outcome<Box<dyn Rig>> {
         let mut crane = rig.boxed_clone();
-        for (&index, &value) in self.columns.iter().zip(row) {
-            crane.set_parameter(index, value);
-        }
-        crane
+        let settings: Vec<(usize, f64)> = self.columns.iter().copied().zip(row.iter().copied()).collect();
+        set(crane.as_mut(), &settings)?;
+        Ok(crane)
     }
 }
 

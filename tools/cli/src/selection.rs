@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crane_model::{Description, rig::Rig};
+use crane_model::{Description, ParameterError, Refusal, rig::Rig};
 
 use crate::{
     arguments::{Choice, Parameters},
@@ -64,10 +64,7 @@ impl Parameters {
 
     fn apply(&self, rig: &mut dyn Rig) -> Outcome<()> {
         let description = rig.description();
-        for (index, number) in self.read(description.name, &known(description))? {
-            rig.set_parameter(index, number);
-        }
-        Ok(())
+        set(rig, &self.read(description.name, &known(description))?)
     }
 
     /// Places of the parameters that are set, and their values; `known`: names and units of those that the crane has.
@@ -82,12 +79,37 @@ impl Parameters {
             let index = place(name, crane, known).map_err(|(title, help)| Problem::usage(title, help))?;
             let unit = known[index].1;
             let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-                Problem::usage(format!("`{value}` is no value for {name}"), format!("write a finite number, in {unit}"))
+                Problem::usage(
+                    format!("`{value}` is not a value for {name}"),
+                    format!("write a finite number, in {unit}"),
+                )
             })?;
             Ok((index, number))
         };
         self.settings.iter().map(read).collect()
     }
+}
+
+/// Sets live parameters, by their places in the description, all at once.
+pub fn set(rig: &mut dyn Rig, settings: &[(usize, f64)]) -> Outcome<()> {
+    let mut values: Vec<f64> = (0..rig.description().parameters.len()).map(|index| rig.parameter(index)).collect();
+    for &(index, value) in settings {
+        values[index] = value;
+    }
+    rig.set_parameters(&values).map_err(|refused| {
+        let (title, help) = told(&refused);
+        Problem::usage(title, help)
+    })
+}
+
+/// What is wrong with the value of a parameter, and what to write instead.
+pub fn told(refused: &ParameterError) -> (String, String) {
+    let Refusal { code, title, help } = refused.refusal;
+    let title = match refused.given {
+        Some((parameter, value)) => format!("parameter `{parameter}`: {title} {value} [{code}]"),
+        None => format!("{title} [{code}]"),
+    };
+    (title, help.to_owned())
 }
 
 /// Names and units of a crane's live parameters.

@@ -13,7 +13,7 @@ use super::{
     routine::{Inputs, Routine},
 };
 use crane_model::{
-    CraneModel, Description, Dynamics, Ensemble, Implicit, Linearisation, Linearise, OneByOne, Statics,
+    CraneModel, Description, Dynamics, Ensemble, Implicit, Linearisation, Linearise, OneByOne, ParameterError, Statics,
     TransformDerivatives,
 };
 
@@ -99,10 +99,13 @@ impl<const N: usize> CraneModel<N> for Interpreted<N> {
         self.parameters.get(index).copied().unwrap_or(f64::NAN)
     }
 
-    fn set_parameter(&mut self, index: usize, value: f64) {
-        if let Some(parameter) = self.parameters.get_mut(index) {
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
+        if let (Some(parameter), Some(info)) = (self.parameters.get_mut(index), self.description.parameters.get(index))
+        {
+            info.check(value)?;
             *parameter = value;
         }
+        Ok(())
     }
 
     fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {

@@ -1,9 +1,10 @@
 //! What an interpreted crane says about itself.
 
-use crane_codegen::chain::{BodyId, Chain, CoordinateKind as Kind, SupportKinematics, Value};
+use crane_codegen::chain::{self, BodyId, Chain, CoordinateKind as Kind, SupportKinematics, Value};
 
 use crane_model::{
-    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, SupportInfo,
+    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, Refusal,
+    SupportInfo,
 };
 
 /// The description of a chain, as the compiler writes it. It stays for the rest of the process, as compiled ones do.
@@ -15,6 +16,8 @@ pub fn describe(chain: &Chain) -> &'static Description {
         unit: text(&p.unit),
         about: text(&p.about),
         default: p.default,
+        least: p.least.as_ref().map_or(Bound::LEAST, bound),
+        greatest: Bound::GREATEST,
     });
     let coordinates = chain.coordinates.iter().enumerate().map(|(index, coordinate)| CoordinateInfo {
         name: text(&coordinate.name),
@@ -53,6 +56,15 @@ pub fn describe(chain: &Chain) -> &'static Description {
         output: chain.run.output,
     };
     Box::leak(Box::new(description))
+}
+
+fn bound(bound: &chain::Bound) -> Bound {
+    let chain::Refusal { code, title, help } = &bound.refusal;
+    Bound {
+        value: bound.value,
+        allowed: bound.allowed,
+        refusal: Refusal { code, title: text(title), help: text(help) },
+    }
 }
 
 fn role(chain: &Chain, index: usize) -> CoordinateRole {

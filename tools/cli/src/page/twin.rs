@@ -1,6 +1,6 @@
 //! The rigid crane to compare a flexible one with.
 
-use crane_model::{CoordinateRole, rig::Rig};
+use crane_model::{CoordinateRole, ParameterInfo, rig::Rig};
 
 use crate::Fleet;
 
@@ -8,11 +8,15 @@ use crate::Fleet;
 pub fn rigid(rig: &dyn Rig, fleet: &Fleet) -> Option<Box<dyn Rig>> {
     let parameters = rig.description().parameters;
     (fleet.all)().into_iter().find_map(|mut other| {
-        for (index, parameter) in other.description().parameters.iter().enumerate() {
-            if let Some(own) = parameters.iter().position(|own| own.name == parameter.name) {
-                other.set_parameter(index, rig.parameter(own));
-            }
-        }
+        let own = |(index, parameter): (usize, &ParameterInfo)| match parameters
+            .iter()
+            .position(|own| own.name == parameter.name)
+        {
+            Some(own) => rig.parameter(own),
+            None => other.parameter(index),
+        };
+        let values: Vec<f64> = other.description().parameters.iter().enumerate().map(own).collect();
+        other.set_parameters(&values).ok()?;
         is_rigid(rig, other.as_ref()).then_some(other)
     })
 }

@@ -43,7 +43,8 @@ impl Subject {
     /// With another value of a live parameter.
     pub fn set(mut self, name: &str, value: f64) -> Result<Self, String> {
         let index = self.rig.description().parameters.iter().position(|parameter| parameter.name == name);
-        self.rig.set_parameter(index.ok_or_else(|| format!("no parameter {name}"))?, value);
+        let index = index.ok_or_else(|| format!("no parameter {name}"))?;
+        self.rig.set_parameter(index, value).map_err(|refused| refused.to_string())?;
         Ok(self)
     }
 

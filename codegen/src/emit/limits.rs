@@ -1,0 +1,90 @@
+//! The rules that the values of live parameters keep, whenever they are set.
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::{Expr, Item, parse_quote};
+
+use super::arithmetic::{difference, field, integer, literal, negative, product, quotient, sum, variable};
+use crate::chain::{Bound, Chain, ParameterId, Refusal, Relation, Value};
+
+/// `PARAMETERS` with their ranges, and the check of all values together; nothing if all numbers are baked in.
+pub fn limits(chain: &Chain) -> Vec<Item> {
+    if chain.parameters.is_empty() {
+        return vec![];
+    }
+    let infos = chain.parameters.iter().map(|p| {
+        let (name, unit, about, default) = (&p.name, &p.unit, &p.about, literal(p.default));
+        let least = p.least.as_ref().map_or_else(|| quote!(Bound::LEAST), bound);
+        quote! {
+            ParameterInfo {
+                name: #name, unit: #unit, about: #about, default: #default, least: #least, greatest: Bound::GREATEST,
+            }
+        }
+    });
+    let count = integer(chain.parameters.len());
+    let ranges = chain.parameters.iter().enumerate().map(|(index, p)| {
+        let (index, name) = (integer(index), format_ident!("{}", p.name));
+        quote!(PARAMETERS[#index].check(self.#name)?;)
+    });
+    let relations = chain.relations.iter().map(|Relation { margin, refusal: broken }| {
+        let (margin, broken) = (expression(margin, chain), refusal(broken));
+        quote! {
+            let margin = #margin;
+            if margin.is_nan() || margin <= 0.0 {
+                return Err(ParameterError { given: None, refusal: #broken });
+            }
+        }
+    });
+    vec![
+        parse_quote! {
+            #[doc = " Live parameters: names, units, and the values that they may have."]
+            pub const PARAMETERS: [ParameterInfo; #count] = [#(#infos),*];
+        },
+        parse_quote! {
+            impl Params {
+                #[doc = " Whether the crane may have these values."]
+                #[doc = ""]
+                #[doc = " # Errors"]
+                #[doc = " The first rule of the spec language that they break."]
+                pub fn check(&self) -> Result<(), ParameterError> {
+                    #(#ranges)*
+                    #(#relations)*
+                    Ok(())
+                }
+            }
+        },
+    ]
+}
+
+fn bound(Bound { value, allowed, refusal: said }: &Bound) -> TokenStream {
+    let (value, said) = (literal(*value), refusal(said));
+    quote!(Bound { value: #value, allowed: #allowed, refusal: #said })
+}
+
+fn refusal(Refusal { code, title, help }: &Refusal) -> TokenStream {
+    quote!(Refusal { code: #code, title: #title, help: #help })
+}
+
+/// A number of the chain over the fields of `self`.
+fn expression(value: &Value, chain: &Chain) -> Expr {
+    let of = |value: &Value| expression(value, chain);
+    match value {
+        Value::Constant(c) => literal(*c),
+        Value::Parameter(ParameterId(index)) => field(variable("self"), &chain.parameters[*index].name),
+        Value::Neg(a) => negative(of(a)),
+        Value::Add(a, b) => match &**b {
+            Value::Neg(b) => difference(of(a), of(b)),
+            b => sum(of(a), of(b)),
+        },
+        Value::Mul(a, b) => product(of(a), of(b)),
+        Value::Div(a, b) => quotient(of(a), of(b)),
+        Value::Sin(a) => {
+            let a = of(a);
+            parse_quote!(sin_cos([#a]).0[0])
+        }
+        Value::Cos(a) => {
+            let a = of(a);
+            parse_quote!(sin_cos([#a]).1[0])
+        }
+    }
+}

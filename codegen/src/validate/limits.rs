@@ -1,0 +1,79 @@
+//! Limits of numbers: constants are checked here, live parameters get bounds that hold whenever they are set.
+
+use super::Check;
+use crate::chain::{Bound, Chain, ParameterId, Refusal, Relation, Value};
+use crate::diagnostic::{Mistake, Span, rule};
+
+/// What a number may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Limit {
+    /// Anything finite.
+    Any,
+    /// Zero or above.
+    NotNegative,
+    /// Above zero.
+    Positive,
+    /// Above zero; a live one may be zero where the crane can do without this mass.
+    Mass,
+}
+
+/// What a rule says before the number that breaks it, or without one.
+fn refusal(mistake: &Mistake) -> Refusal {
+    Refusal { code: mistake.code, title: mistake.title.trim_end().to_owned(), help: mistake.help.clone() }
+}
+
+impl Check<'_> {
+    /// Reports a number beyond its limit; a live parameter keeps the limit as a bound.
+    pub(super) fn keep_limit(&mut self, value: &Value, span: Span, place: &str, unit: &str, limit: Limit) {
+        let live = match value {
+            Value::Parameter(id) => Some(*id),
+            _ => None,
+        };
+        let number = self.now(value);
+        match (limit, live) {
+            (Limit::Positive, _) | (Limit::Mass, None) if number <= 0.0 => {
+                self.report(rule::not_positive(span, place, number, unit));
+            }
+            (Limit::NotNegative, _) | (Limit::Mass, Some(_)) if number < 0.0 => {
+                self.report(rule::negative(span, place, number, unit));
+            }
+            _ => {}
+        }
+        let Some(id) = live else { return };
+        let above = Bound { value: 0.0, allowed: false, refusal: refusal(&rule::not_positive(span, place, "", unit)) };
+        let not_below = Bound { value: 0.0, allowed: true, refusal: refusal(&rule::negative(span, place, "", unit)) };
+        match limit {
+            Limit::Any => {}
+            Limit::Positive => self.parameters[id.0].raise(above),
+            Limit::NotNegative => self.parameters[id.0].raise(not_below),
+            Limit::Mass => {
+                self.parameters[id.0].raise(not_below);
+                self.live_masses.push((id, above));
+            }
+        }
+    }
+
+    /// A rule that holds where `smaller` is below `larger`, and is checked for the defaults elsewhere: with live numbers it
+    /// is to hold whenever they are set.
+    pub(super) fn keep_below(&mut self, smaller: &Value, larger: &Value, broken: &Mistake) {
+        self.keep_positive(larger.clone() - smaller.clone(), broken);
+    }
+
+    /// A rule that holds where `margin` is above zero, and is checked for the defaults elsewhere.
+    pub(super) fn keep_positive(&mut self, margin: Value, broken: &Mistake) {
+        if margin.as_constant().is_none() {
+            self.relations.push(Relation { margin, refusal: refusal(broken) });
+        }
+    }
+
+    /// A live mass without which a joint would move nothing cannot be zero.
+    pub(super) fn keep_masses(&mut self, chain: &mut Chain) {
+        for (ParameterId(index), above) in std::mem::take(&mut self.live_masses) {
+            let mut without = self.defaults.clone();
+            without[index] = 0.0;
+            if !self.idle_coordinates(chain, &without).is_empty() {
+                chain.parameters[index].raise(above);
+            }
+        }
+    }
+}

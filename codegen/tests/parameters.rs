@@ -1,0 +1,109 @@
+//! Live parameters keep the rules of every place where they stand, for any value that they may get.
+
+use crane_codegen::chain::Chain;
+use crane_codegen::{SourceFile, read, validate};
+
+/// A crane with a parameter `p` in many places, each in a spec of its own: `P` in these is the parameter or a number.
+const USES: [(&str, &str); 16] = [
+    ("mass of a link", "links: [{name: arm, joint: revolute, mass: P, com: [1, 0, 0]}]"),
+    (
+        "one mass of two",
+        "links: [{name: arm, joint: revolute, bodies: [{name: a, mass: 5, com: [1, 0, 0]}, {name: b, mass: P, com: [1, 0, 0]}]}]",
+    ),
+    ("centre of mass", "links: [{name: arm, joint: prismatic, mass: 5, com: [P, 0, 0]}]"),
+    (
+        "length",
+        "links: [{name: arm, beam: {length: P, sections: 1, material: {E: 2e11, G: 8e10, density: 7850}, section: {circle: {diameter: 0.1}}}}]",
+    ),
+    (
+        "modulus",
+        "links: [{name: arm, beam: {length: 2, sections: 1, material: {E: P, G: 8e10, density: 7850}, section: {circle: {diameter: 0.1}}}}]",
+    ),
+    (
+        "density",
+        "links: [{name: arm, beam: {length: 2, sections: 1, material: {E: 2e11, G: 8e10, density: P}, section: {circle: {diameter: 0.1}}}}]",
+    ),
+    (
+        "diameter",
+        "links: [{name: arm, beam: {length: 2, sections: 1, material: {E: 2e11, G: 8e10, density: 7850}, section: {circle: {diameter: P}}}}]",
+    ),
+    (
+        "thickness",
+        "links: [{name: arm, beam: {length: 2, sections: 1, material: {E: 2e11, G: 8e10, density: 7850}, section: {tube: {diameter: 0.1, thickness: P}}}}]",
+    ),
+    (
+        "extra mass",
+        "links: [{name: arm, beam: {length: 2, sections: 1, material: {E: 2e11, G: 8e10, density: 7850}, section: {circle: {diameter: 0.1}}, extra_mass: P}}]",
+    ),
+    (
+        "beta",
+        "links: [{name: arm, beam: {length: 2, sections: 1, material: {E: 2e11, G: 8e10, density: 7850}, section: {circle: {diameter: 0.1}}, damping: {beta: P}}}]",
+    ),
+    (
+        "length of an element",
+        "links: [{name: arm, beam: {length: 2, elements: [{length: P, mass: 5, com: [0.5, 0, 0], inertia: {gyration: [0.1, 0.3, 0.3]}}, {length: 1, mass: 5, com: [0.5, 0, 0], inertia: {gyration: [0.1, 0.3, 0.3]}}], springs: [{stiffness: {psi: 1e6, theta: 1e6, phi: 1e6}}]}}]",
+    ),
+    (
+        "stiffness of a drive",
+        "links: [{name: arm, joint: prismatic, mass: 5, com: [0, 0, 0]}]\ndrives: [{coordinate: arm_z, stiffness: P, motion: {hold: 0}}]",
+    ),
+    ("damping of a joint", "links: [{name: arm, joint: prismatic, mass: 5, com: [0, 0, 0]}]\ndamping: {arm_z: P}"),
+    (
+        "duration",
+        "links: [{name: arm, joint: prismatic, mass: 5, com: [0, 0, 0]}]\ndrives: [{coordinate: arm_z, stiffness: 1e6, motion: {quintic: {from: 0, to: 1, duration: P}}}]",
+    ),
+    ("gravity", "gravity: [0, 0, P]\nlinks: [{name: arm, joint: prismatic, mass: 5, com: [0, 0, 0]}]"),
+    (
+        "radius of gyration",
+        "links: [{name: arm, joint: prismatic, mass: 5, com: [0, 0, 0], inertia: {gyration: [1, 1, P]}}]",
+    ),
+];
+
+/// The chain of a spec, or the codes of its mistakes.
+fn chain(text: &str) -> Result<Chain, Vec<&'static str>> {
+    let source = SourceFile::new("test.yaml", text);
+    read(&source)
+        .and_then(|spec| validate(&spec, &source))
+        .map_err(|found| found.mistakes().iter().map(|mistake| mistake.code).collect())
+}
+
+/// What the rules that go with a chain say of a value of its only parameter.
+fn refused(chain: &Chain, value: f64) -> Option<&'static str> {
+    let least = chain.parameters[0].least.as_ref();
+    let below = least.filter(|least| value < least.value || (value == least.value && !least.allowed));
+    below.map(|least| least.refusal.code).or_else(|| chain.broken_relation(&[value]).map(|broken| broken.refusal.code))
+}
+
+#[test]
+fn a_value_is_refused_at_run_time_where_the_spec_refuses_it() {
+    for (place, spec) in USES {
+        // Sound in every place.
+        let sound = if place == "thickness" { 0.01 } else { 1.0 };
+        let live = |default: f64| {
+            format!("format: 1\nname: test\nparameters: {{p: {{value: {default:?}}}}}\n{}", spec.replace('P', "p"))
+        };
+        let compiled = chain(&live(sound)).unwrap_or_else(|codes| panic!("{place}: {codes:?}"));
+        for value in [-1e3, -1.0, -1e-6, 0.0, 1e-6, 0.04, 0.06, 1.0, 2.0, 1e3] {
+            let written = chain(&live(value));
+            let refused = refused(&compiled, value);
+            assert_eq!(refused.is_some(), written.is_err(), "{place} = {value}: {refused:?}, {written:?}");
+            if let (Some(code), Err(codes)) = (refused, written) {
+                // Of a mass that cannot be zero a spec says that it is negative, or that the joint moves nothing (E046).
+                let mass = place == "mass of a link" && code == "E031" && matches!(codes[..], ["E032"] | ["E046"]);
+                assert!(mass || codes.contains(&code), "{place} = {value}: {code}, {codes:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_strictest_of_several_places_counts() {
+    let spec = "format: 1\nname: test\nparameters: {p: {value: 1}}\n\
+        links: [{name: arm, joint: revolute, mass: 5, com: [p, 0, 0]}]\n\
+        damping: {arm_psi: p}\n\
+        drives: []\nrun: {duration: 1, step: 1e-3}\ngravity: [p, 0, 0]\n";
+    let least = chain(spec).expect("a sound spec").parameters.remove(0).least.expect("damping is not below zero");
+    assert_eq!((least.value, least.allowed, least.refusal.code), (0.0, true, "E032"));
+    assert_eq!(least.refusal.title, "the damping of `arm_psi` must not be below zero, and is");
+    assert_eq!(least.refusal.help, "write 0 or a number above, in N m s/rad");
+}

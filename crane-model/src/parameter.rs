@@ -1,0 +1,139 @@
+//! The values that a live parameter may take: the rules of the spec language hold whenever it is set.
+
+use core::fmt;
+
+use crate::ParameterInfo;
+
+/// The smallest magnitude of a number other than 0 (rule E033).
+const SMALLEST: f64 = 1e-30;
+/// The largest magnitude of a number (rule E033).
+const LARGEST: f64 = 1e18;
+
+/// An end of the range of a live parameter. The compiler derives it from every place where the parameter is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// The end of the range.
+    pub value: f64,
+    /// Whether the parameter may be equal to it.
+    pub allowed: bool,
+    /// What to say of a value beyond it.
+    pub refusal: Refusal,
+}
+
+/// What the compiler says of a value that breaks a rule of the spec language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// Code of the rule, such as `E031`.
+    pub code: &'static str,
+    /// What is wrong; the value follows.
+    pub title: &'static str,
+    /// What to write instead.
+    pub help: &'static str,
+}
+
+const OUT_OF_RANGE: Refusal = Refusal {
+    code: "E033",
+    title: "the number is outside the allowed range:",
+    help: "write 0 or a magnitude from 1e-30 to 1e18, in SI units",
+};
+const NOT_FINITE: Refusal =
+    Refusal { code: "E030", title: "not a finite number:", help: "write a finite number, in SI units" };
+
+impl Bound {
+    /// The least number of the spec language.
+    pub const LEAST: Bound = Bound { value: -LARGEST, allowed: true, refusal: OUT_OF_RANGE };
+    /// The greatest number of the spec language.
+    pub const GREATEST: Bound = Bound { value: LARGEST, allowed: true, refusal: OUT_OF_RANGE };
+}
+
+impl ParameterInfo {
+    /// Whether the parameter may have this value.
+    ///
+    /// # Errors
+    /// The rule of the spec language that the value breaks.
+    pub fn check(&self, value: f64) -> Result<(), ParameterError> {
+        let refuse = |refusal| Err(ParameterError { given: Some((self.name, value)), refusal });
+        let Self { least, greatest, .. } = self;
+        if !value.is_finite() {
+            refuse(NOT_FINITE)
+        } else if value < least.value || (value == least.value && !least.allowed) {
+            refuse(least.refusal)
+        } else if value > greatest.value || (value == greatest.value && !greatest.allowed) {
+            refuse(greatest.refusal)
+        } else if value != 0.0 && value.abs() < SMALLEST {
+            refuse(OUT_OF_RANGE)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Live parameters cannot have these values: they break a rule of the spec language.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterError {
+    /// Name and value of the parameter; `None` where the rule joins several parameters.
+    pub given: Option<(&'static str, f64)>,
+    /// The rule and what it says.
+    pub refusal: Refusal,
+}
+
+impl fmt::Display for ParameterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Refusal { code, title, help } = self.refusal;
+        match self.given {
+            Some((parameter, value)) => write!(f, "parameter `{parameter}`: {title} {value} [{code}]; {help}"),
+            None => write!(f, "{title} [{code}]; {help}"),
+        }
+    }
+}
+
+impl core::error::Error for ParameterError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MASS: ParameterInfo = ParameterInfo {
+        name: "load",
+        unit: "kg",
+        about: "",
+        default: 1.0,
+        least: Bound {
+            value: 0.0,
+            allowed: false,
+            refusal: Refusal {
+                code: "E031",
+                title: "the mass must be above zero, not",
+                help: "write a number above 0",
+            },
+        },
+        greatest: Bound::GREATEST,
+    };
+
+    #[test]
+    fn values_outside_the_range_are_refused_with_their_rule() {
+        let code = |info: &ParameterInfo, value| info.check(value).err().map(|error| error.refusal.code);
+        let free = ParameterInfo { least: Bound::LEAST, ..MASS };
+        let zero_too = ParameterInfo { least: Bound { allowed: true, ..MASS.least }, ..MASS };
+        for (value, mass, zero, any) in [
+            (-10.0, Some("E031"), Some("E031"), None),
+            (0.0, Some("E031"), None, None),
+            (-0.0, Some("E031"), None, None),
+            (1e-31, Some("E033"), Some("E033"), Some("E033")),
+            (1e-30, None, None, None),
+            (1e18, None, None, None),
+            (1.1e18, Some("E033"), Some("E033"), Some("E033")),
+            (f64::NAN, Some("E030"), Some("E030"), Some("E030")),
+            (f64::INFINITY, Some("E030"), Some("E030"), Some("E030")),
+        ] {
+            assert_eq!([code(&MASS, value), code(&zero_too, value), code(&free, value)], [mass, zero, any], "{value}");
+        }
+    }
+
+    #[cfg(feature = "std")]
+    #[test]
+    fn the_message_names_parameter_value_rule_and_remedy() {
+        let said = MASS.check(-10.0).unwrap_err().to_string();
+        assert_eq!(said, "parameter `load`: the mass must be above zero, not -10 [E031]; write a number above 0");
+    }
+}
