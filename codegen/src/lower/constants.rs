@@ -13,7 +13,9 @@ pub struct Constants {
 }
 
 impl Constants {
-    pub(super) fn of(program: &Program) -> Self {
+    /// The constants that the functions of a program read.
+    #[must_use]
+    pub fn of(program: &Program) -> Self {
         let is_constant = parameters_alone(program);
         let mut is_stored = vec![false; program.operations.len()];
         let needed = program.needed(program.functions.iter().flat_map(|f| f.outputs.iter().copied()));

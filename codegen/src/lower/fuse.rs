@@ -11,7 +11,8 @@ const MOST_SUMS: usize = 4;
 /// A product is fused into all the sums that use it, or into none, so that it needs no operation of its own. Products of one
 /// sum come first; where a sum could take either of its two operands, it takes the one constructed later, whose factors are
 /// known later.
-pub(super) fn fuse(program: &Program, constants: &Constants, roots: &[ExprId]) -> Vec<Option<ExprId>> {
+#[must_use]
+pub fn fuse(program: &Program, constants: &Constants, roots: &[ExprId]) -> Vec<Option<ExprId>> {
     let needed = program.needed(roots.iter().copied());
     let computed = |id: ExprId| needed[id.index()] && !constants.is_free(program, id);
     let mut users: Vec<Vec<ExprId>> = vec![vec![]; program.operations.len()];

@@ -24,6 +24,7 @@ mod split;
 use crate::symbolic::{ExprId, Function, Op, OperationCount, Program, Visit};
 
 pub use constants::Constants;
+pub use fuse::fuse;
 pub use loops::{Loop, Progression, Rolled, Source, Taking};
 
 /// A program as straight lines.

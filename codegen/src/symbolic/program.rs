@@ -7,7 +7,7 @@ use super::shape::Shape;
 use super::tape::Tape;
 
 /// Functions that share one graph of expressions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Program {
     /// All operations, operands before their users.
     pub operations: Vec<Op>,
@@ -152,5 +152,23 @@ impl Program {
             }
         }
         needed
+    }
+
+    /// A program of one of its functions, without what the function does not need.
+    ///
+    /// # Panics
+    /// If the function is another program's.
+    #[must_use]
+    pub fn alone(&self, function: &Function) -> Program {
+        let needed = self.needed(function.outputs.iter().copied());
+        let mut alone = Program { symbols: self.symbols.clone(), ..Program::default() };
+        let mut moved: Vec<Option<ExprId>> = vec![None; self.operations.len()];
+        for id in self.ids().filter(|id| needed[id.index()]) {
+            let op = self.op(id).map(|operand| moved[operand.index()].expect("operands come before their users"));
+            moved[id.index()] = Some(alone.append(op));
+        }
+        let outputs = function.outputs.iter().filter_map(|id| moved[id.index()]).collect();
+        alone.functions = vec![Function { outputs, tape: Tape::default(), ..function.clone() }];
+        alone
     }
 }

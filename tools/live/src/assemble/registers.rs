@@ -1,0 +1,100 @@
+//! Registers by linear scan: a value takes the register that was given back last, which is still in the first cache.
+
+use super::TooLarge;
+use super::line::{Line, Step, Value};
+use crate::bytecode::{Code, Instruction, Kind, Register, Segment, Store};
+
+/// The bytecode of a line.
+pub fn assign(line: &Line) -> Result<Code, TooLarge> {
+    let last_reads = last_reads(line);
+    let mut registers = Registers { of: vec![0; line.values], free: vec![], count: line.fixed.len() };
+    for value in 0..line.fixed.len() {
+        registers.of[value] = value;
+    }
+    let inputs: usize = line.inputs.iter().map(|inputs| inputs.count).sum();
+    for value in line.fixed.len()..line.fixed.len() + inputs {
+        registers.give(value);
+    }
+    let mut code = Code {
+        fixed: line.fixed.clone(),
+        inputs: line.inputs.clone(),
+        instructions: vec![],
+        stores: vec![],
+        segments: vec![],
+        registers: 0,
+        results: line.results,
+    };
+    for (place, step) in line.steps.iter().enumerate() {
+        let is_last = |value: &Value| *value >= line.fixed.len() && last_reads[*value] == Some(place);
+        let mut ending: Vec<Value> = step.reads().filter(is_last).collect();
+        ending.sort_unstable();
+        ending.dedup();
+        let read = |value: Value| registers.of[value];
+        let reads = match *step {
+            Step::Operation { operands, .. } => operands.map(read),
+            Step::Angle { angle: value, .. } | Step::Store { value, .. } => [read(value); 3],
+        };
+        // Both results of an angle are written before the next angle is read, and one may be needed by nobody.
+        registers.free.extend(ending.iter().map(|value| registers.of[*value]));
+        for value in step.makes() {
+            registers.give(value);
+        }
+        for value in step.makes().filter(|value| last_reads[*value].is_none()) {
+            registers.free.push(registers.of[value]);
+        }
+        let own = |register: usize| Register::try_from(register).unwrap_or(Register::MAX);
+        let [a, b, c] = reads.map(own);
+        let kind = match *step {
+            Step::Operation { kind, out, .. } => {
+                code.instructions.push(Instruction::new(own(registers.of[out]), [a, b, c]));
+                kind
+            }
+            Step::Angle { sin, cos, .. } => {
+                let [out, b] = [sin, cos].map(|value| own(registers.of[value]));
+                code.instructions.push(Instruction::new(out, [a, b, c]));
+                Kind::Angle
+            }
+            Step::Store { place, .. } => {
+                code.stores.push(Store { place: u32::try_from(place).unwrap_or(u32::MAX), register: a });
+                Kind::Store
+            }
+        };
+        match code.segments.last_mut() {
+            Some(segment) if segment.kind == kind => segment.length += 1,
+            _ => code.segments.push(Segment { kind, length: 1 }),
+        }
+    }
+    code.registers = registers.count;
+    let nameable = usize::from(Register::MAX) + 1;
+    if code.registers > nameable { Err(TooLarge { registers: code.registers }) } else { Ok(code) }
+}
+
+/// For every value, the step that reads it last.
+fn last_reads(line: &Line) -> Vec<Option<usize>> {
+    let mut last = vec![None; line.values];
+    for (place, step) in line.steps.iter().enumerate() {
+        for value in step.reads() {
+            last[value] = Some(place);
+        }
+    }
+    last
+}
+
+/// Registers while they are given out.
+struct Registers {
+    /// The register of every value that has one.
+    of: Vec<usize>,
+    /// Registers that are free, the one that was given back last at the end.
+    free: Vec<usize>,
+    /// How many there are.
+    count: usize,
+}
+
+impl Registers {
+    fn give(&mut self, value: Value) {
+        self.of[value] = self.free.pop().unwrap_or_else(|| {
+            self.count += 1;
+            self.count - 1
+        });
+    }
+}

@@ -1,0 +1,183 @@
+//! Which values are computed, and with which sign.
+//!
+//! With `a b + c` alone, a difference needs a negative. Users are visited before what they use: a value knows who wants it
+//! positive and who negative, computes the sign that is wanted, and where both are, costs one operation more.
+
+use crane_codegen::symbolic::{ExprId, Op};
+
+use super::Graph;
+
+/// A value of the graph, or its negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Signed {
+    pub id: ExprId,
+    pub negative: bool,
+}
+
+/// An operand of an operation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operand {
+    /// A number of the program.
+    Number(f64),
+    /// What is there before a call, a constant or a live parameter; or a value that is computed or given.
+    Value(Signed),
+}
+
+/// How a value is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Recipe {
+    /// It is there.
+    Given,
+    /// `a b + c`
+    MulAdd([Operand; 3]),
+    /// `a / b`
+    Div([Operand; 2]),
+    /// The smaller of two.
+    Min([Operand; 2]),
+    /// The larger of two.
+    Max([Operand; 2]),
+    /// Sine of an angle.
+    Sin(Operand),
+    /// Cosine of an angle.
+    Cos(Operand),
+}
+
+/// `x − 0 = x` for every x, −0 too.
+pub const NOTHING: Operand = Operand::Number(-0.0);
+
+/// What is computed.
+#[derive(Debug)]
+pub struct Selection {
+    /// For every node, whether its value (0) and its negative (1) are wanted.
+    pub wanted: Vec<[bool; 2]>,
+    /// How the first of the wanted signs is computed, and whether that is the negative; the other is its negative.
+    pub recipes: Vec<Option<(Recipe, bool)>>,
+}
+
+impl Graph<'_> {
+    /// Whether it is there before a call and needs no operation with either sign.
+    pub fn is_fixed(&self, id: ExprId) -> bool {
+        match (self.program.op(id), self.constants) {
+            (Op::Constant(_), _) => true,
+            (_, Some(constants)) => constants.is_free(self.program, id),
+            (_, None) => false,
+        }
+    }
+
+    /// A value by the node that is not a negation.
+    pub fn operand(&self, mut id: ExprId, mut negative: bool) -> Operand {
+        loop {
+            match self.program.op(id) {
+                Op::Constant(constant) if negative => return Operand::Number(-constant.value()),
+                Op::Constant(constant) => return Operand::Number(constant.value()),
+                Op::Neg(of) if !self.is_fixed(id) => (id, negative) = (of, !negative),
+                _ => return Operand::Value(Signed { id, negative }),
+            }
+        }
+    }
+}
+
+impl Selection {
+    /// What `outputs` need.
+    pub fn of(graph: &Graph, outputs: &[ExprId]) -> Self {
+        let size = graph.program.operations.len();
+        let mut selection = Selection { wanted: vec![[false; 2]; size], recipes: vec![None; size] };
+        for output in outputs {
+            selection.want(graph, graph.operand(*output, false));
+        }
+        for id in graph.program.ids().rev() {
+            let [positive, negative] = selection.wanted[id.index()];
+            if (positive || negative) && !graph.is_fixed(id) {
+                let (recipe, sign) = selection.recipe(graph, id, !positive);
+                for operand in recipe.operands() {
+                    selection.want(graph, operand);
+                }
+                selection.recipes[id.index()] = Some((recipe, sign));
+            }
+        }
+        selection
+    }
+
+    fn want(&mut self, graph: &Graph, operand: Operand) {
+        if let Operand::Value(Signed { id, negative }) = operand
+            && !graph.is_fixed(id)
+        {
+            self.wanted[id.index()][usize::from(negative)] = true;
+        }
+    }
+
+    /// How a value is computed, negative if `negative` and it can be at no cost; and whether it is.
+    fn recipe(&self, graph: &Graph, id: ExprId, negative: bool) -> (Recipe, bool) {
+        let of = |id: ExprId, negative: bool| graph.operand(id, negative);
+        let product = |a: ExprId, b: ExprId, negative: bool| self.product(graph, a, b, negative);
+        let sum = |[a, b]: [Operand; 2], c: Operand| (Recipe::MulAdd([a, b, c]), negative);
+        let op = graph.program.op(id);
+        if let (Some(fused), Op::Add(x, y) | Op::Sub(x, y)) = (graph.fused[id.index()], op)
+            && let Op::Mul(a, b) = graph.program.op(fused)
+        {
+            let subtracted = matches!(op, Op::Sub(..));
+            return if fused == x {
+                sum(product(a, b, negative), of(y, subtracted != negative))
+            } else {
+                sum(product(a, b, subtracted != negative), of(x, negative))
+            };
+        }
+        let sign = |negative: bool| Operand::Number(if negative { -1.0 } else { 1.0 });
+        match op {
+            Op::Add(a, b) => {
+                // What is known first is multiplied.
+                let (first, last) = (a.min(b), a.max(b));
+                sum([of(first, false), sign(negative)], of(last, negative))
+            }
+            Op::Sub(a, b) if negative => sum([of(a, false), sign(true)], of(b, false)),
+            Op::Sub(a, b) => sum([of(b, false), sign(true)], of(a, false)),
+            Op::Mul(a, b) => sum(product(a, b, negative), NOTHING),
+            Op::Div(a, b) => {
+                let [a, b] = product(a, b, negative);
+                (Recipe::Div([a, b]), negative)
+            }
+            Op::Min(a, b) => (Recipe::Min([of(a, false), of(b, false)]), false),
+            Op::Max(a, b) => (Recipe::Max([of(a, false), of(b, false)]), false),
+            Op::Sin(a) => (Recipe::Sin(of(a, false)), false),
+            Op::Cos(a) => (Recipe::Cos(of(a, false)), false),
+            // Negations are operands' signs.
+            Op::Constant(_) | Op::Symbol(_) | Op::Neg(_) => (Recipe::Given, false),
+        }
+    }
+
+    /// The factors of `a b`, negative if `negative`, with those signs that cost least; the same for a quotient.
+    fn product(&self, graph: &Graph, a: ExprId, b: ExprId, negative: bool) -> [Operand; 2] {
+        let choices = [[false, negative], [true, !negative]].map(|[m, n]| [graph.operand(a, m), graph.operand(b, n)]);
+        let cost = |factors: &[Operand; 2]| factors.iter().map(|factor| self.cost(graph, *factor)).sum::<u32>();
+        let [first, second] = choices;
+        if cost(&second) < cost(&first) { second } else { first }
+    }
+
+    /// What it costs to have an operand with its sign, roughly.
+    fn cost(&self, graph: &Graph, operand: Operand) -> u32 {
+        let Operand::Value(Signed { id, negative }) = operand else { return 0 };
+        if graph.is_fixed(id) {
+            return 0;
+        }
+        let wanted = self.wanted[id.index()];
+        let has_a_sign =
+            matches!(graph.program.op(id), Op::Symbol(_) | Op::Sin(_) | Op::Cos(_) | Op::Min(..) | Op::Max(..));
+        match (wanted[usize::from(negative)], wanted[usize::from(!negative)] || (negative && has_a_sign)) {
+            (true, _) => 0,
+            (false, true) => 4,
+            (false, false) => u32::from(negative),
+        }
+    }
+}
+
+impl Recipe {
+    /// The operands, in order.
+    pub fn operands(&self) -> Vec<Operand> {
+        match *self {
+            Recipe::Given => vec![],
+            Recipe::MulAdd(operands) => operands.to_vec(),
+            Recipe::Div(operands) | Recipe::Min(operands) | Recipe::Max(operands) => operands.to_vec(),
+            Recipe::Sin(angle) | Recipe::Cos(angle) => vec![angle],
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! Runs bytecode, for one state or for eight at a time.
+
+use std::ops::Div;
+
+use crane_codegen::symbolic::Argument;
+use crane_model::support::lanes::{Fused, f64x8};
+use crane_model::support::{fma, sin_cos, sin_cos_lanes};
+
+use crate::bytecode::{Code, Fixed, Instruction, Kind};
+
+/// One number, or eight of different states.
+pub trait Number: Copy + Fused + Div<Output = Self> + 'static {
+    /// The same number everywhere.
+    fn splat(number: f64) -> Self;
+    /// The smaller of two.
+    #[must_use]
+    fn min(self, other: Self) -> Self;
+    /// The larger of two.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+    /// Sines and cosines of angles.
+    fn sin_cos(angles: [Self; ANGLES]) -> ([Self; ANGLES], [Self; ANGLES]);
+}
+
+/// Angles that are taken at a time.
+pub const ANGLES: usize = 8;
+
+impl Number for f64 {
+    fn splat(number: f64) -> Self {
+        number
+    }
+    fn min(self, other: Self) -> Self {
+        f64::min(self, other)
+    }
+    fn max(self, other: Self) -> Self {
+        f64::max(self, other)
+    }
+    fn sin_cos(angles: [Self; ANGLES]) -> ([Self; ANGLES], [Self; ANGLES]) {
+        sin_cos(angles)
+    }
+}
+
+impl Number for f64x8 {
+    fn splat(number: f64) -> Self {
+        f64x8::splat(number)
+    }
+    fn min(self, other: Self) -> Self {
+        f64x8::min(self, other)
+    }
+    fn max(self, other: Self) -> Self {
+        f64x8::max(self, other)
+    }
+    fn sin_cos(angles: [Self; ANGLES]) -> ([Self; ANGLES], [Self; ANGLES]) {
+        sin_cos_lanes(angles)
+    }
+}
+
+/// Values of a function's arguments; what it does not take may be empty.
+#[derive(Clone, Copy, Debug)]
+pub struct Arguments<'a, T> {
+    /// Time, s.
+    pub t: T,
+    /// Coordinates, m and rad.
+    pub q: &'a [T],
+    /// Their rates.
+    pub v: &'a [T],
+    /// Right-hand side of a linear system.
+    pub right: &'a [T],
+    /// Resistances of single coordinates.
+    pub resistance: &'a [T],
+    /// Resistance of the base, 6×6, column by column.
+    pub base: &'a [T],
+    /// What an earlier function left.
+    pub factors: &'a [T],
+    /// Live parameters.
+    pub parameters: &'a [T],
+}
+
+impl<T: Number> Arguments<'_, T> {
+    /// Nothing, at t = 0.
+    #[must_use]
+    pub fn none() -> Self {
+        let t = T::splat(0.0);
+        Self { t, q: &[], v: &[], right: &[], resistance: &[], base: &[], factors: &[], parameters: &[] }
+    }
+
+    /// The numbers of an argument.
+    fn of(&self, argument: Argument) -> &[T] {
+        match argument {
+            Argument::Time => std::slice::from_ref(&self.t),
+            Argument::Position => self.q,
+            Argument::Velocity => self.v,
+            Argument::Right => self.right,
+            Argument::Resistance => self.resistance,
+            Argument::BaseResistance => self.base,
+            Argument::Factors => self.factors,
+            Argument::Parameters => self.parameters,
+            // Only loops of compiled code have these.
+            Argument::Round | Argument::Loop => &[],
+        }
+    }
+}
+
+/// Numbers of registers that a machine may have: a number of a register is masked, not compared.
+const SIZES: [usize; 3] = [1 << 10, 1 << 13, 1 << 16];
+
+/// Registers of a function.
+#[derive(Clone, Debug)]
+enum File<T> {
+    Small(Box<[T; SIZES[0]]>),
+    Medium(Box<[T; SIZES[1]]>),
+    Large(Box<[T; SIZES[2]]>),
+}
+
+/// The registers of a function, its fixed numbers among them.
+#[derive(Clone, Debug)]
+pub struct Machine<T> {
+    file: File<T>,
+}
+
+impl<T: Number> Machine<T> {
+    /// Registers for a function; `parameter` and `stored` are live parameters and the constants made of them, by place.
+    pub fn new(code: &Code, parameter: impl Fn(usize) -> T, stored: impl Fn(usize) -> T) -> Self {
+        let file = match code.registers {
+            count if count <= SIZES[0] => File::Small(zeros()),
+            count if count <= SIZES[1] => File::Medium(zeros()),
+            _ => File::Large(zeros()),
+        };
+        let mut machine = Self { file };
+        // −x as −1 x − 0.
+        let negative = |x: T| fma(T::splat(-1.0), x, T::splat(-0.0));
+        for (register, fixed) in machine.registers().iter_mut().zip(&code.fixed) {
+            let (number, sign) = match *fixed {
+                Fixed::Number(number) => (T::splat(number), false),
+                Fixed::Parameter { index, negative } => (parameter(index), negative),
+                Fixed::Stored { index, negative } => (stored(index), negative),
+            };
+            *register = if sign { negative(number) } else { number };
+        }
+        machine
+    }
+
+    fn registers(&mut self) -> &mut [T] {
+        match &mut self.file {
+            File::Small(file) => file.as_mut_slice(),
+            File::Medium(file) => file.as_mut_slice(),
+            File::Large(file) => file.as_mut_slice(),
+        }
+    }
+
+    /// Runs a function, the same that the machine was made for. An input that is not given is zero.
+    pub fn run(&mut self, code: &Code, arguments: &Arguments<'_, T>, out: &mut [T]) {
+        let mut registers = self.registers().get_mut(code.fixed.len()..).unwrap_or_default();
+        for inputs in &code.inputs {
+            let given = arguments.of(inputs.argument);
+            let (own, rest) = registers.split_at_mut(inputs.count.min(registers.len()));
+            match given.get(inputs.first..inputs.first + inputs.count) {
+                Some(given) => own.copy_from_slice(given),
+                None => own.fill(T::splat(0.0)),
+            }
+            registers = rest;
+        }
+        match &mut self.file {
+            File::Small(file) => run(code, file, out),
+            File::Medium(file) => run(code, file, out),
+            File::Large(file) => run(code, file, out),
+        }
+    }
+}
+
+#[expect(clippy::unnecessary_box_returns, reason = "the largest have megabytes")]
+fn zeros<T: Number, const SIZE: usize>() -> Box<[T; SIZE]> {
+    let zeros = vec![T::splat(0.0); SIZE].into_boxed_slice();
+    match zeros.try_into() {
+        Ok(zeros) => zeros,
+        Err(_) => unreachable!("as many as were asked for"),
+    }
+}
+
+/// Runs all segments.
+fn run<T: Number, const SIZE: usize>(code: &Code, file: &mut [T; SIZE], out: &mut [T]) {
+    let (mut instructions, mut copies) = (code.instructions.as_slice(), code.stores.as_slice());
+    for segment in &code.segments {
+        let length = segment.length as usize;
+        if segment.kind == Kind::Store {
+            let (own, rest) = copies.split_at(length);
+            copies = rest;
+            for copy in own {
+                if let Some(place) = out.get_mut(copy.place as usize) {
+                    *place = file[at::<SIZE>(copy.register)];
+                }
+            }
+            continue;
+        }
+        let (own, rest) = instructions.split_at(length);
+        instructions = rest;
+        match segment.kind {
+            Kind::MulAdd => multiply_and_add(own, file),
+            Kind::Div => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()) / get(file, i.b()))),
+            Kind::Min => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()).min(get(file, i.b())))),
+            Kind::Max => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()).max(get(file, i.b())))),
+            Kind::Angle => take_angles(own, file),
+            Kind::Store => {}
+        }
+    }
+}
+
+fn multiply_and_add<T: Number, const SIZE: usize>(instructions: &[Instruction], file: &mut [T; SIZE]) {
+    for i in instructions {
+        set(file, i.out(), fma(get(file, i.a()), get(file, i.b()), get(file, i.c())));
+    }
+}
+
+/// Sines and cosines of angles, eight by eight; all eight are read before one is written.
+fn take_angles<T: Number, const SIZE: usize>(instructions: &[Instruction], file: &mut [T; SIZE]) {
+    for eight in instructions.chunks(ANGLES) {
+        let mut angles = [T::splat(0.0); ANGLES];
+        for (angle, i) in angles.iter_mut().zip(eight) {
+            *angle = get(file, i.a());
+        }
+        let (sines, cosines) = T::sin_cos(angles);
+        for (i, (sin, cos)) in eight.iter().zip(sines.into_iter().zip(cosines)) {
+            set(file, i.out(), sin);
+            set(file, i.b(), cos);
+        }
+    }
+}
+
+/// A register's place: a power of two is a mask, and no comparison is left.
+#[inline]
+fn at<const SIZE: usize>(register: u16) -> usize {
+    usize::from(register) % SIZE
+}
+
+#[inline]
+fn get<T: Number, const SIZE: usize>(file: &[T; SIZE], register: u16) -> T {
+    file[at::<SIZE>(register)]
+}
+
+#[inline]
+fn set<T: Number, const SIZE: usize>(file: &mut [T; SIZE], register: u16, value: T) {
+    file[at::<SIZE>(register)] = value;
+}

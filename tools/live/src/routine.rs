@@ -1,0 +1,67 @@
+//! A function that is ready to run with any live parameters.
+
+use crane_codegen::lower::Constants;
+use crane_codegen::symbolic::{Function, Program, Shape};
+
+use crate::assemble::{TooLarge, assemble, assemble_constants};
+use crate::bytecode::Code;
+use crate::machine::{Arguments, Machine, Number};
+
+/// A function as bytecode, with what it needs of its live parameters.
+#[derive(Clone, Debug)]
+pub struct Routine {
+    shape: Shape,
+    code: Code,
+    constants: Code,
+}
+
+impl Routine {
+    /// A function of a program.
+    ///
+    /// # Errors
+    /// It needs too many registers.
+    pub fn new(program: &Program, function: &Function) -> Result<Self, TooLarge> {
+        let alone = program.alone(function);
+        let constants = Constants::of(&alone);
+        let code = alone.functions.iter().map(|function| assemble(&alone, &constants, function)).next();
+        Ok(Self {
+            shape: function.shape.clone(),
+            code: code.transpose()?.unwrap_or_default(),
+            constants: assemble_constants(&alone, &constants)?,
+        })
+    }
+
+    /// What it returns.
+    #[must_use]
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// How many numbers it returns, as [`layout`](crate::layout::layout) has them.
+    #[must_use]
+    pub fn results(&self) -> usize {
+        self.code.results
+    }
+
+    /// Its bytecode.
+    #[must_use]
+    pub fn code(&self) -> &Code {
+        &self.code
+    }
+
+    /// Room for runs with these live parameters.
+    pub fn machine<T: Number>(&self, parameters: &[T]) -> Machine<T> {
+        let zero = T::splat(0.0);
+        let nothing = |_| zero;
+        let mut stored = vec![zero; self.constants.results];
+        let arguments = Arguments { parameters, ..Arguments::none() };
+        Machine::new(&self.constants, nothing, nothing).run(&self.constants, &arguments, &mut stored);
+        let at = |values: &[T], index: usize| values.get(index).copied().unwrap_or(zero);
+        Machine::new(&self.code, |index| at(parameters, index), |index| at(&stored, index))
+    }
+
+    /// Runs it; `machine` is room that it made.
+    pub fn run<T: Number>(&self, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
+        machine.run(&self.code, arguments, out);
+    }
+}

@@ -1,0 +1,155 @@
+//! Bytecode against the interpreter of the compiler, which is the meaning of a program.
+
+use crane_codegen::SourceFile;
+use crane_codegen::chain::{Analyses, Chain};
+use crane_codegen::symbolic::{Argument, Inputs, Program, Shape};
+use crane_codegen::{compile, mechanics};
+use crane_live::Routine;
+use crane_live::layout::{Entry, layout};
+use crane_live::machine::Arguments;
+use crane_model::support::lanes::f64x8;
+
+/// Specs with everything that functions can have: supports, beams, drives, hinges, live parameters, prismatic joints.
+const SPECS: [&str; 4] = ["eight_link_flexible", "eight_link_identified", "knuckle_boom", "double_pendulum"];
+
+/// A chain and all its functions.
+fn crane(name: &str) -> (Chain, Program) {
+    let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap();
+    let chain = compile::load(&SourceFile::new(&path, &text)).unwrap();
+    let program = mechanics::derive(&chain, Analyses::ALL);
+    (chain, program)
+}
+
+/// A value of every argument, different for every lane.
+struct State {
+    t: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    right: Vec<f64>,
+    resistance: Vec<f64>,
+    base: Vec<f64>,
+    factors: Vec<f64>,
+    parameters: Vec<f64>,
+}
+
+impl State {
+    fn new(chain: &Chain, program: &Program, seed: f64) -> Self {
+        let wave = |count: usize, scale: f64, rate: f64| -> Vec<f64> {
+            (0..count).map(|i| scale * (rate * (i as f64 + 1.0) + seed).sin()).collect()
+        };
+        let n = chain.coordinates.len();
+        let factors = program.function("factorise").map_or(0, |function| function.shape.len());
+        let near = |guess: &[f64], wave: Vec<f64>| guess.iter().zip(wave).map(|(g, w)| g + w).collect();
+        let mut base = vec![0.0; 36];
+        (0..6).for_each(|i| base[7 * i] = 3.0 + seed);
+        Self {
+            t: 0.7 + seed,
+            q: near(&chain.guess, wave(n, 0.05, 1.3)),
+            v: wave(n, 0.4, 0.7),
+            right: wave(n, 100.0, 2.1),
+            resistance: vec![2.0 + seed; n],
+            base,
+            factors: wave(factors, 1.0, 0.37),
+            parameters: chain.parameter_defaults().iter().map(|p| p * (1.0 + 0.01 * seed)).collect(),
+        }
+    }
+
+    fn inputs(&self) -> Inputs<f64> {
+        Inputs::state(self.t, self.q.clone(), self.v.clone(), self.parameters.clone())
+            .with(Argument::Right, self.right.clone())
+            .with(Argument::Resistance, self.resistance.clone())
+            .with(Argument::BaseResistance, self.base.clone())
+            .with(Argument::Factors, self.factors.clone())
+    }
+
+    fn arguments(&self) -> Arguments<'_, f64> {
+        Arguments {
+            t: self.t,
+            q: &self.q,
+            v: &self.v,
+            right: &self.right,
+            resistance: &self.resistance,
+            base: &self.base,
+            factors: &self.factors,
+            parameters: &[],
+        }
+    }
+}
+
+/// The slots of a result that stands as its layout has it.
+fn slots(shape: &Shape, result: &[f64]) -> Vec<f64> {
+    let mut slots = vec![f64::NAN; shape.len()];
+    for (entry, number) in layout(shape).iter().zip(result) {
+        match entry {
+            Entry::Slot(slot) => slots[*slot] = *number,
+            Entry::Number(expected) => assert_eq!(number, expected),
+        }
+    }
+    slots
+}
+
+/// The interpreter rounds products and sums apart and takes other sines, a unit in the last place off: that is what the results
+/// of 3,000 operations may differ by, in proportion to the largest of them. Solutions of `A x = r` lose digits to A's condition.
+#[test]
+fn bytecode_computes_what_the_interpreter_does() {
+    for name in SPECS {
+        let (chain, program) = crane(name);
+        let state = State::new(&chain, &program, 0.0);
+        for function in &program.functions {
+            let routine = Routine::new(&program, function).unwrap();
+            let mut result = vec![f64::NAN; routine.results()];
+            routine.run(&mut routine.machine(&state.parameters), &state.arguments(), &mut result);
+            let result = function.shape.close(slots(&function.shape, &result));
+            let expected = program.evaluate(function, &state.inputs());
+            assert_eq!(result.len(), expected.len(), "{name} {}", function.name);
+            let largest = expected.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+            for (result, expected) in result.iter().zip(&expected) {
+                let error = (result - expected).abs();
+                assert!(error <= 1e-12 * largest, "{name} {}: {result} for {expected}", function.name);
+            }
+        }
+    }
+}
+
+/// Eight states at a time, each with its own parameters, are eight times one state: the same bits.
+#[test]
+fn a_lane_computes_what_one_state_does() {
+    for name in SPECS {
+        let (chain, program) = crane(name);
+        let states: Vec<State> = (0..8).map(|lane| State::new(&chain, &program, f64::from(lane))).collect();
+        let lanes = |of: fn(&State) -> &Vec<f64>| lanes_of(&states, of);
+        let (q, v, right) = (lanes(|s| &s.q), lanes(|s| &s.v), lanes(|s| &s.right));
+        let (resistance, base) = (lanes(|s| &s.resistance), lanes(|s| &s.base));
+        let (factors, parameters) = (lanes(|s| &s.factors), lanes(|s| &s.parameters));
+        let t = f64x8::new(std::array::from_fn(|lane| states[lane].t));
+        let arguments = Arguments {
+            t,
+            q: &q,
+            v: &v,
+            right: &right,
+            resistance: &resistance,
+            base: &base,
+            factors: &factors,
+            parameters: &[],
+        };
+        for function in &program.functions {
+            let routine = Routine::new(&program, function).unwrap();
+            let mut eight = vec![f64x8::splat(0.0); routine.results()];
+            routine.run(&mut routine.machine(&parameters), &arguments, &mut eight);
+            for (lane, state) in states.iter().enumerate() {
+                let mut one = vec![0.0; routine.results()];
+                routine.run(&mut routine.machine(&state.parameters), &state.arguments(), &mut one);
+                for (eight, one) in eight.iter().zip(&one) {
+                    assert_eq!(eight.to_array()[lane], *one, "{name} {} lane {lane}", function.name);
+                }
+            }
+        }
+    }
+}
+
+/// Numbers of all states, one per lane.
+fn lanes_of(states: &[State], of: fn(&State) -> &Vec<f64>) -> Vec<f64x8> {
+    let lane = |i: usize| f64x8::new(std::array::from_fn(|lane| of(&states[lane])[i]));
+    (0..of(&states[0]).len()).map(lane).collect()
+}
