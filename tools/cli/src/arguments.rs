@@ -10,6 +10,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
 use crane_model::dynamics::Method;
 
+use crate::cautions::BEND;
+
 const EXAMPLES: &str = "\
 Examples:
   crane                                the eight-link crane, rigid against flexible
@@ -153,6 +155,8 @@ pub struct Choice {
     pub name: String,
     #[command(flatten)]
     pub parameters: Parameters,
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 impl Choice {
@@ -169,6 +173,14 @@ pub struct Parameters {
     /// Value of a live parameter, in the unit that `crane info` shows; may be given several times
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub settings: Vec<String>,
+}
+
+/// Limits of what the model holds for.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Limits {
+    /// Angle by which one section of a beam may bend or twist before a caution says so, degrees
+    #[arg(long = "bend-limit", value_name = "DEGREES", default_value_t = BEND)]
+    pub bend: f64,
 }
 
 /// An analysis that prints tables.
@@ -217,6 +229,9 @@ pub struct Timing {
     /// Run even where the step is beyond the largest stable one
     #[arg(long)]
     pub force: bool,
+    /// Do not repeat the run at a tenth of the tolerance or half the step to estimate its error
+    #[arg(long)]
+    pub no_verify: bool,
     /// Simulated time, s [default: the crane's]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub duration: Option<f64>,
@@ -238,6 +253,8 @@ pub struct Folder {
 pub struct Compare {
     #[command(flatten)]
     pub parameters: Parameters,
+    #[command(flatten)]
+    pub limits: Limits,
     /// Form of what is printed
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -10,13 +10,14 @@ use crane_model::{
 
 use crate::{
     Fleet,
-    arguments::{Compare, Format, Timing},
+    arguments::{Compare, Format, Limits, Timing},
+    extremes::extremes,
     figures::{Curve, Mark, PALETTE, Panel},
     files, page,
     problem::{Outcome, Problem},
-    run::{Recorded, Start, progress, record},
+    run::{Recorded, Start, progress, record_checked},
     simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
-    statics::{Case, deflection, tables},
+    statics::{Case, caution_of_runs, deflection, tables},
 };
 
 /// The rigid and the flexible crane.
@@ -30,7 +31,7 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
 
     let cases = [Case::new("rigid", rigid.as_ref()), Case::new("flexible", flexible.as_ref())];
     let format = options.format;
-    let mut report = tables(&cases);
+    let mut report = tables(&cases, &options.limits);
     let [rigid_case, flexible_case] = &cases;
     report.grid(deflection(rigid_case, flexible_case));
     if format == Format::Table {
@@ -40,7 +41,7 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     }
 
     files::folder(folder)?;
-    let (settings, runs) = runs(&cases, &options.timing, Method::Rk4)?;
+    let (settings, runs) = runs(&cases, &options.timing, &options.limits, Method::Rk4)?;
     let [rigid_run, flexible_run] = runs.as_slice() else {
         return Err(Problem::failed("a simulation is missing", "please report it"));
     };
@@ -60,10 +61,13 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     written.push(deviation_file);
 
     let page = "report.html";
-    page::write(&folder.join(page), fleet, &cases, &settings, &runs)?;
+    page::write(&folder.join(page), fleet, (&cases, &options.limits), &settings, &runs)?;
     written.push(page.to_owned());
 
-    report.grid(summary(description, &[("rigid", rigid_run), ("flexible", flexible_run)]));
+    let labelled = [("rigid", rigid_run), ("flexible", flexible_run)];
+    caution_of_runs(&mut report, labelled.into_iter());
+    report.grid(extremes(description, &labelled));
+    report.grid(summary(&labelled));
     report.grid(file_list(folder, &written));
     if format == Format::Table {
         let (duration, method, step) = (settings[1].duration, settings[1].method.title(), flexible_run.run.step);
@@ -77,7 +81,12 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
 }
 
 /// Runs cranes side by side, each from its own start; `default`: the method unless one is asked for.
-pub fn runs(cases: &[Case<'_>], timing: &Timing, default: Method) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
+pub fn runs(
+    cases: &[Case<'_>],
+    timing: &Timing,
+    limits: &Limits,
+    default: Method,
+) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
     let starts = cases.iter().map(|case| Start::of(case.rig)).collect::<Outcome<Vec<_>>>()?;
     let settings = cases
         .iter()
@@ -91,7 +100,9 @@ pub fn runs(cases: &[Case<'_>], timing: &Timing, default: Method) -> Outcome<(Ve
             .iter()
             .zip(&starts)
             .zip(&settings)
-            .map(|((case, start), settings)| scope.spawn(|| record(case.rig, start, settings, &bar)))
+            .map(|((case, start), settings)| {
+                scope.spawn(|| record_checked(case.rig, start, settings, (!timing.no_verify, limits), &bar))
+            })
             .collect();
         let broken = |_| Err(Problem::failed("a simulation broke off", "please report it"));
         runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()

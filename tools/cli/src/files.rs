@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 use crate::{
     problem::{Outcome, Problem},
     run::Recorded,
+    verification::Verification,
 };
 
 /// Makes a folder where it is missing.
@@ -75,6 +76,12 @@ pub fn write_fields(
     })
 }
 
+/// Greatest difference of every column from a finer run, by name.
+fn differences(recorded: &Recorded, verification: &Verification) -> Map<String, Value> {
+    let columns = recorded.table.columns.iter().map(|column| column.name.clone());
+    columns.zip(verification.differences.iter().map(|difference| json!(difference))).collect()
+}
+
 /// What a run was: enough to repeat it.
 pub fn record(rig: &dyn Rig, settings: &dynamics::Settings, recorded: &Recorded) -> Value {
     let description = rig.description();
@@ -103,6 +110,8 @@ pub fn record(rig: &dyn Rig, settings: &dynamics::Settings, recorded: &Recorded)
         "duration_s": settings.duration,
         "output_s": settings.output,
         "parameters": parameters,
+        "cautions": recorded.cautions,
+        "differences_from_a_finer_run": recorded.verification.as_ref().map(|verification| differences(recorded, verification)),
         "wall_time_s": recorded.wall.as_secs_f64(),
         "real_time_factor": recorded.real_time_factor(),
     })

@@ -12,10 +12,12 @@
 //! ```
 
 mod arguments;
+mod cautions;
 mod compare;
 mod ensemble;
 mod eval;
 mod exchange;
+mod extremes;
 mod figures;
 mod files;
 mod info;
@@ -35,6 +37,7 @@ mod simulate;
 mod stability;
 mod statics;
 mod stress;
+mod verification;
 mod work_precision;
 
 use std::{io, io::Write, process::ExitCode};

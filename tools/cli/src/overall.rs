@@ -8,11 +8,12 @@ use crate::{
     Fleet,
     arguments::Simulate,
     compare::runs,
+    extremes::extremes,
     files,
     page::{cases, twin, write},
     problem::Outcome,
     simulate::{Trace, file_list, summary, write_figures, write_run},
-    statics::{deflection, tables},
+    statics::{caution_of_runs, deflection, tables},
 };
 
 /// Statics and motion of a crane, beside its rigid twin where there is one; results, figures and the report.
@@ -20,11 +21,11 @@ pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()
     let rig = options.analysis.crane.open(fleet)?;
     let (rig, twin) = (rig.as_ref(), twin::rigid(rig.as_ref(), fleet));
     let cases = cases(rig, twin.as_deref());
-    let mut report = tables(&cases);
+    let mut report = tables(&cases, &options.analysis.crane.limits);
     if let [rigid, flexible] = cases.as_slice() {
         report.grid(deflection(rigid, flexible));
     }
-    let (settings, runs) = runs(&cases, &options.timing, Method::RECOMMENDED)?;
+    let (settings, runs) = runs(&cases, &options.timing, &options.analysis.crane.limits, Method::RECOMMENDED)?;
     let labels = cases.iter().map(|case| case.label);
 
     let folder = &options.folder.out;
@@ -37,16 +38,16 @@ pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()
     let traces: Vec<Trace<'_>> = traces
         .map(|(index, (label, run))| Trace { label, table: &run.table, dashed: index + 1 < cases.len() })
         .collect();
-    for (label, caution) in labels.clone().zip(&runs).flat_map(|(l, run)| run.cautions.iter().map(move |c| (l, c))) {
-        report.caution(Some(format!("{label}: {caution}")));
-    }
+    caution_of_runs(&mut report, labels.clone().zip(&runs));
     let description = rig.description();
     written.extend(write_figures(folder, &format!("{}_", description.name), description, &traces)?);
     let page = format!("{}.html", description.name);
-    write(&folder.join(&page), fleet, &cases, &settings, &runs)?;
+    write(&folder.join(&page), fleet, (&cases, &options.analysis.crane.limits), &settings, &runs)?;
     written.push(page);
 
-    report.grid(summary(description, &labels.zip(&runs).collect::<Vec<_>>()));
+    let labelled: Vec<_> = labels.zip(&runs).collect();
+    report.grid(extremes(description, &labelled));
+    report.grid(summary(&labelled));
     report.grid(file_list(folder, &written));
     report.print(options.analysis.format, out)
 }

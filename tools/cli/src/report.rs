@@ -15,6 +15,8 @@ pub enum Cell {
     Number(f64),
     /// A relative error: its size is what matters.
     Error(f64),
+    /// An absolute error, in the unit of its row: two digits are enough.
+    Uncertainty(f64),
     /// A count.
     Count(usize),
     /// Nothing to say.
@@ -57,6 +59,7 @@ impl Cell {
             Cell::Text(text) => text.clone(),
             Cell::Number(number) => readable(*number),
             Cell::Error(error) => format!("{error:.1e}"),
+            Cell::Uncertainty(error) => uncertain(*error),
             Cell::Count(count) => count.to_string(),
             Cell::Empty => "–".to_owned(),
         }
@@ -65,10 +68,19 @@ impl Cell {
     fn json(&self) -> Value {
         match self {
             Cell::Text(text) => text.as_str().into(),
-            Cell::Number(number) | Cell::Error(number) => (*number).into(),
+            Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) => (*number).into(),
             Cell::Count(count) => (*count).into(),
             Cell::Empty => Value::Null,
         }
+    }
+}
+
+/// A number with two significant digits, in powers of ten where it is very large or small.
+fn uncertain(number: f64) -> String {
+    let short = format!("{number:.1e}");
+    match short.parse::<f64>() {
+        Ok(rounded) if (1e-3..1e6).contains(&rounded) => rounded.to_string(),
+        _ => short,
     }
 }
 
@@ -144,7 +156,7 @@ impl Grid {
     /// Names of the columns, and rows of fields with all digits, for a CSV file.
     pub fn fields(&self) -> (impl Iterator<Item = String>, impl Iterator<Item = Vec<String>>) {
         let field = |cell: &Cell| match cell {
-            Cell::Number(number) | Cell::Error(number) => files::number(*number),
+            Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) => files::number(*number),
             Cell::Empty => String::new(),
             other => other.text(),
         };

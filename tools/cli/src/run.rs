@@ -16,9 +16,11 @@ use crane_model::{
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
-    arguments::{Step, Timing},
+    arguments::{Limits, Step, Timing},
+    cautions,
     problem::{Outcome, Problem},
     statics::Case,
+    verification::{self, Verification},
 };
 
 /// Most results of a run that are kept in memory and written.
@@ -66,7 +68,9 @@ pub struct Recorded {
     pub table: Table,
     /// Time it took.
     pub wall: Duration,
-    /// What to say of poses that it went through.
+    /// How far off it may be, unless that was not asked for.
+    pub verification: Option<Verification>,
+    /// What the run did that the model or the method does not hold for.
     pub cautions: Vec<String>,
 }
 
@@ -328,5 +332,36 @@ pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: 
         )
     });
     let cautions = singular.into_iter().chain(tilted).chain(unbalanced).collect();
-    Ok(Recorded { start: start.what, run, table, wall: begin.elapsed(), cautions })
+    Ok(Recorded { start: start.what, run, table, wall: begin.elapsed(), verification: None, cautions })
+}
+
+/// Runs from `start`, once more to estimate the error if `verify`, and says what the run did that the model does not hold for.
+pub fn record_checked(
+    rig: &dyn Rig,
+    start: &Start,
+    settings: &dynamics::Settings,
+    (verify, limits): (bool, &Limits),
+    bar: &ProgressBar,
+) -> Outcome<Recorded> {
+    let mut recorded = record(rig, start, settings, bar)?;
+    let description = rig.description();
+    recorded.cautions.extend(cautions::of_run(description, &recorded.table, limits.bend));
+    if !settings.method.is_adaptive() {
+        let limit = step_limit(rig, start).map_or(f64::INFINITY, |bound| bound.limit.step);
+        recorded.cautions.extend(cautions::of_step(settings.step_taken(), limit));
+    }
+    if verify {
+        let finer = dynamics::Settings { audit: false, ..verification::finer(settings) };
+        match record(rig, start, &finer, &ProgressBar::hidden()) {
+            Ok(finer) => {
+                let found = Verification::new(&recorded.table, &finer.table, description.coordinates.len());
+                recorded.cautions.extend(found.cautions(description, &recorded.table));
+                recorded.verification = Some(found);
+            }
+            Err(problem) => recorded
+                .cautions
+                .push(format!("the error of the run is unknown: a finer run ended early ({})", problem.title())),
+        }
+    }
+    Ok(recorded)
 }

@@ -12,11 +12,12 @@ use crane_model::{
 use crate::{
     Fleet,
     arguments::Simulate,
+    extremes::extremes,
     figures::{Curve, Mark, PALETTE, Panel, svg},
     files,
     problem::{Outcome, Problem},
     report::{Grid, Report},
-    run::{Recorded, Start, progress, record},
+    run::{Recorded, Start, progress, record_checked},
 };
 
 /// A recorded run as a curve of the figures.
@@ -38,7 +39,8 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;
     files::folder(&options.folder.out)?;
     let bar = progress(settings.duration);
-    let recorded = record(rig, &start, &settings, &bar)?;
+    let checks = (!options.timing.no_verify, &options.analysis.crane.limits);
+    let recorded = record_checked(rig, &start, &settings, checks, &bar)?;
     bar.finish_and_clear();
 
     let mut written = write_run(&options.folder.out, rig, &settings, &recorded)?;
@@ -61,7 +63,8 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));
     }
-    report.grid(summary(rig.description(), &[(name, &recorded)]));
+    report.grid(extremes(rig.description(), &[(name, &recorded)]));
+    report.grid(summary(&[(name, &recorded)]));
     report.grid(file_list(&options.folder.out, &written));
     report.print(options.analysis.format, out)
 }
@@ -188,8 +191,8 @@ fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
     description.drives.iter().map(panel).collect()
 }
 
-/// Greatest torques and forces, work, energy balance and time of runs, a column each.
-pub fn summary(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
+/// Work, energy balance and time of runs, a column each.
+pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
     let labels = runs.iter().map(|(label, _)| *label);
     let headers: Vec<&str> = ["quantity"].into_iter().chain(labels).chain(["unit"]).collect();
     let mut grid = Grid::new("summary", "Run", &headers);
@@ -199,12 +202,6 @@ pub fn summary(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
     };
     let greatest = |run: &Recorded, column: &str| run.table.values(column).map(|v| v.map(f64::abs).fold(0.0, f64::max));
     let last = |run: &Recorded, column: &str| run.table.values(column).and_then(Iterator::last);
-    for drive in description.drives {
-        let coordinate = &description.coordinates[drive.coordinate];
-        let what = if coordinate.kind == CoordinateKind::Rotation { "torque" } else { "force" };
-        let column = drive_effort(coordinate.name, coordinate.kind);
-        row(format!("peak {what}, {}", coordinate.name), coordinate.kind.force_unit(), &|run| greatest(run, &column));
-    }
     row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
     row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
     row("energy balance, greatest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));

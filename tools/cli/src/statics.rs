@@ -12,10 +12,11 @@ use nalgebra::Vector3;
 
 use crate::{
     Fleet,
-    arguments::{Analysis, Format},
+    arguments::{Analysis, Format, Limits},
+    cautions,
     problem::{Outcome, Problem},
     report::{Cell, Grid, Report},
-    run::{EQUILIBRIUM, Start},
+    run::{EQUILIBRIUM, Recorded, Start},
 };
 
 /// A crane in equilibrium.
@@ -75,7 +76,7 @@ impl<'a> Case<'a> {
 pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.crane.open(fleet)?;
     let case = Case::new("value", rig.as_ref());
-    let mut report = tables(std::slice::from_ref(&case));
+    let mut report = tables(std::slice::from_ref(&case), &options.crane.limits);
     if options.format == Format::Json {
         report.grid(history(&case.equilibrium));
     }
@@ -84,7 +85,7 @@ pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcom
 }
 
 /// Tables of cranes in equilibrium, a column each.
-pub fn tables(cases: &[Case<'_>]) -> Report {
+pub fn tables(cases: &[Case<'_>], limits: &Limits) -> Report {
     let mut report = Report::default();
     for case in cases {
         let Case { equilibrium, .. } = case;
@@ -94,12 +95,26 @@ pub fn tables(cases: &[Case<'_>]) -> Report {
         for caution in [description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q)] {
             report.caution(caution);
         }
+        for caution in cautions::of_pose(case.rig, &equilibrium.q, limits.bend) {
+            let label = if cases.len() > 1 { format!("{}: ", case.label) } else { String::new() };
+            report.caution(Some(label + &caution));
+        }
     }
     report.grid(pose(cases));
     report.grid(drives(cases));
     report.grid(reactions(cases));
     report.grid(points(cases));
     report
+}
+
+/// Adds the cautions of labelled runs; the label stands before each where there are several.
+pub fn caution_of_runs<'a>(report: &mut Report, runs: impl ExactSizeIterator<Item = (&'a str, &'a Recorded)>) {
+    let alone = runs.len() == 1;
+    for (label, run) in runs {
+        for caution in &run.cautions {
+            report.caution(Some(if alone { caution.clone() } else { format!("{label}: {caution}") }));
+        }
+    }
 }
 
 /// How far the points of the second crane are from those of the first.

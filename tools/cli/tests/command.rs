@@ -178,12 +178,47 @@ fn a_crane_with_statics_starts_in_equilibrium() {
 }
 
 #[test]
+fn a_run_estimates_its_error_and_names_feet_that_pull() {
+    let out = folder("verified");
+    let path = out.to_str().expect("a path");
+    let run = |more: &[&str]| {
+        let common = ["simulate", "eight_link_flexible", "--duration", "1", "--format", "json", "--out", path];
+        json(&[&common[..], more].concat())
+    };
+    let error = |report: &Value, quantity: &str| {
+        let rows = report["extremes"].as_array().expect("a table").clone();
+        rows.iter().find(|row| row["quantity"] == quantity).expect("a row")["error"].as_f64()
+    };
+    let verified = run(&["--tolerance", "1e-5"]);
+    let finer = run(&["--tolerance", "1e-6", "--no-verify"]);
+    assert_eq!(error(&finer, "boom_psi_drive_torque"), None);
+    // The estimate is the difference of just these two runs, which is not less than that of their peaks.
+    let peak = |report: &Value| {
+        let rows = report["extremes"].as_array().expect("a table").clone();
+        rows.iter().find(|row| row["quantity"] == "boom_psi_drive_torque").expect("a row")["maximum"].as_f64()
+    };
+    let difference = (peak(&verified).expect("a number") - peak(&finer).expect("a number")).abs();
+    let estimate = error(&verified, "boom_psi_drive_torque").expect("an estimate");
+    assert!(difference <= estimate && estimate > 0.0, "{difference} > {estimate}");
+    let converged = run(&["--method", "rk4"]);
+    assert!(converged["cautions"].is_null(), "{}", converged["cautions"]);
+
+    let overloaded = run(&["--set", "load_mass=6000"]);
+    let cautions = overloaded["cautions"].to_string();
+    assert!(cautions.contains("s5 (-") && cautions.contains("real feet would lift off"), "{cautions}");
+    let record = fs::read_to_string(out.join("eight_link_flexible.json")).expect("a record");
+    assert!(record.contains("real feet would lift off"), "{record}");
+    let rest = json(&["statics", "eight_link_flexible", "--set", "load_mass=6000", "--format", "json"]);
+    assert!(rest["cautions"].to_string().contains("s5 (-26.49 kN)"), "{}", rest["cautions"]);
+}
+
+#[test]
 fn the_comparison_writes_figures() {
     let out = folder("comparison");
     let output = crane(&["--duration", "0.02", "--out", out.to_str().expect("a path")]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let printed = text(&output.stdout);
-    for words in ["Deflection of the load points", "peak torque, boom_psi", "real-time factor", "N m"] {
+    for words in ["Deflection of the load points", "boom_psi_drive_torque", "real-time factor", "N m"] {
         assert!(printed.contains(words), "`{words}` not in: {printed}");
     }
     assert!(fs::metadata(out.join("report.html")).is_ok_and(|page| page.len() > 500_000));

@@ -16,15 +16,17 @@ use serde_json::{Value, json};
 
 use crate::{
     Fleet,
-    arguments::Page,
+    arguments::{Limits, Page},
     compare::runs,
-    exchange, files, modes, own,
+    exchange,
+    extremes::extremes,
+    files, modes, own,
     problem::Outcome,
     report::Report,
     run::{POSES, Recorded, Start, manoeuvre},
     simulate::summary,
-    stability::limits,
-    statics::{Case, deflection, tables},
+    stability,
+    statics::{Case, caution_of_runs, deflection, tables},
 };
 
 /// The page without data: script, style and licences in one file.
@@ -37,8 +39,8 @@ pub fn report(options: &Page, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
     let rig = options.crane.open(fleet)?;
     let twin = twin::rigid(rig.as_ref(), fleet);
     let cases = cases(rig.as_ref(), twin.as_deref());
-    let (settings, runs) = runs(&cases, &options.timing, Method::RECOMMENDED)?;
-    write(&options.file, fleet, &cases, &settings, &runs)?;
+    let (settings, runs) = runs(&cases, &options.timing, &options.crane.limits, Method::RECOMMENDED)?;
+    write(&options.file, fleet, (&cases, &options.crane.limits), &settings, &runs)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())
 }
@@ -52,13 +54,24 @@ pub fn cases<'a>(rig: &'a dyn Rig, twin: Option<&'a dyn Rig>) -> Vec<Case<'a>> {
 }
 
 /// Writes the page of cranes side by side; the last is the one it is about.
-pub fn write(file: &Path, fleet: &Fleet, cases: &[Case<'_>], settings: &[Settings], runs: &[Recorded]) -> Outcome<()> {
+pub fn write(
+    file: &Path,
+    fleet: &Fleet,
+    cases: (&[Case<'_>], &Limits),
+    settings: &[Settings],
+    runs: &[Recorded],
+) -> Outcome<()> {
     let data = data(fleet, cases, settings, runs)?.to_string();
     // No text of a spec ends the script element that holds the data.
     files::write_text(file, &PAGE.replacen(PLACE, &data.replace('<', "\\u003c"), 1))
 }
 
-fn data(fleet: &Fleet, cases: &[Case<'_>], settings: &[Settings], runs: &[Recorded]) -> Outcome<Value> {
+fn data(
+    fleet: &Fleet,
+    (cases, limits): (&[Case<'_>], &Limits),
+    settings: &[Settings],
+    runs: &[Recorded],
+) -> Outcome<Value> {
     let mut cranes = Vec::new();
     for ((case, settings), run) in cases.iter().zip(settings).zip(runs) {
         let mut crane = crane::data(case, run)?;
@@ -68,25 +81,27 @@ fn data(fleet: &Fleet, cases: &[Case<'_>], settings: &[Settings], runs: &[Record
     }
     Ok(json!({
         "cranes": cranes,
-        "tables": all_tables(cases, runs)?.page(),
+        "tables": all_tables(cases, limits, runs)?.page(),
         "command": own::typed(),
         "spec": cases.last().and_then(|case| fleet.spec(case.rig.description().name)),
     }))
 }
 
-fn all_tables(cases: &[Case<'_>], runs: &[Recorded]) -> Outcome<Report> {
-    let mut report = tables(cases);
+fn all_tables(cases: &[Case<'_>], limits: &Limits, runs: &[Recorded]) -> Outcome<Report> {
+    let mut report = tables(cases, limits);
+    caution_of_runs(&mut report, cases.iter().map(|case| case.label).zip(runs));
     if let [rigid, flexible] = cases {
         report.grid(deflection(rigid, flexible));
     }
     if let Some(case) = cases.last() {
         let labelled: Vec<(&str, &Recorded)> = cases.iter().map(|case| case.label).zip(runs).collect();
-        report.grid(summary(case.rig.description(), &labelled));
+        report.grid(extremes(case.rig.description(), &labelled));
+        report.grid(summary(&labelled));
         if case.equilibrium.is_stable() {
             report.grid(modes::undamped_modes(case)?);
             let poses = manoeuvre(case.rig, &Start::of(case.rig)?, POSES)?;
             report.grid(modes::damped_modes(case.rig.description(), poses.first().map_or(&[], |pose| &pose.modes)));
-            report.grid(limits(case.rig.description(), &poses));
+            report.grid(stability::limits(case.rig.description(), &poses));
         }
     }
     Ok(report)

@@ -90,6 +90,7 @@ pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
         method: Some(method),
         tolerance: adaptive.then_some(accuracy),
         step: (!adaptive).then_some(crate::arguments::Step::Seconds(accuracy)),
+        no_verify: true,
         force: false,
         duration: Some(duration),
         output: Some(duration / 100.0),

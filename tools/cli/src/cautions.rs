@@ -1,0 +1,81 @@
+//! What a pose or a run does that the model does not hold for.
+
+use crane_model::{CoordinateRole, Description, results::Table, rig::Rig};
+use nalgebra::Vector3;
+
+use crate::extremes::Extremes;
+
+/// Bend of one section of a beam from which that is said unless asked otherwise, degrees: linear springs and straight
+/// elements are then off by about a hundredth.
+pub const BEND: f64 = 20.0;
+/// Part of the greatest reaction below which a pull is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Feet that pull the crane down, and elements bent beyond `bend` degrees, at a pose at rest.
+pub fn of_pose(rig: &dyn Rig, q: &[f64], bend: f64) -> Vec<String> {
+    let description = rig.description();
+    let reactions = rig.support_reactions(q, &vec![0.0; q.len()]);
+    let greatest = reactions.iter().map(Vector3::amax).fold(0.0, f64::max);
+    let forces = description.supports.iter().zip(&reactions).map(|(support, force)| (support.name, force.z, None));
+    let pulls: Vec<_> = forces.filter(|(_, force, _)| *force < -ROUNDING * greatest).collect();
+    let angles =
+        description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role == CoordinateRole::Element);
+    let bent = angles.map(|(coordinate, angle)| (coordinate.name, *angle));
+    pulled(&pulls).into_iter().chain(bent_beyond(bent, bend)).collect()
+}
+
+/// The same over a run.
+pub fn of_run(description: &Description, table: &Table, bend: f64) -> Vec<String> {
+    let reaction = |name: &str| Extremes::of(table, &format!("{name}_reaction_z"));
+    let greatest = description.supports.iter().map(|support| reaction(support.name).size()).fold(0.0, f64::max);
+    let pulls = description.supports.iter().filter_map(|support| {
+        let Extremes { minimum, time_of_minimum, .. } = reaction(support.name);
+        (minimum < -ROUNDING * greatest).then_some((support.name, minimum, Some(time_of_minimum)))
+    });
+    let elements = description.coordinates.iter().filter(|coordinate| coordinate.role == CoordinateRole::Element);
+    let bent = elements.map(|coordinate| {
+        let Extremes { minimum, maximum, .. } = Extremes::of(table, coordinate.name);
+        (coordinate.name, if -minimum > maximum { minimum } else { maximum })
+    });
+    pulled(&pulls.collect::<Vec<_>>()).into_iter().chain(bent_beyond(bent, bend)).collect()
+}
+
+/// Says which feet pull, with how much, and when.
+fn pulled(pulls: &[(&str, f64, Option<f64>)]) -> Option<String> {
+    let each = pulls.iter().map(|(name, force, time)| {
+        let when = time.map_or_else(String::new, |t| format!(" at {t:.2} s"));
+        format!("{name} ({:.2} kN{when})", force / 1e3)
+    });
+    let feet = each.collect::<Vec<_>>().join(", ");
+    let (pull, would) = if pulls.len() == 1 { ("pulls", "a real foot") } else { ("pull", "real feet") };
+    (!pulls.is_empty()).then(|| {
+        format!(
+            "{feet} {pull} on the ground: {would} would lift off and the crane might tip; forces and poses hold only for \
+             feet that are anchored"
+        )
+    })
+}
+
+/// Says which element bends or twists furthest, where that is beyond `limit` degrees.
+fn bent_beyond<'a>(angles: impl Iterator<Item = (&'a str, f64)>, limit: f64) -> Option<String> {
+    let (name, angle) = angles.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let degrees = angle.to_degrees();
+    (degrees.abs() > limit).then(|| {
+        format!(
+            "{name} turns by {degrees:.0}° in one section, beyond {limit}°: check E, G and the cross-section, and their units; \
+             if they are right, use more sections"
+        )
+    })
+}
+
+/// Says where a step is so near the largest stable one that a change of pose may make it unstable.
+pub fn of_step(step: f64, limit: f64) -> Option<String> {
+    /// Part of the limit.
+    const NEAR: f64 = 0.97;
+    (step > NEAR * limit).then(|| {
+        format!(
+            "the step of {step:.3e} s is within 3 % of the largest stable one, {limit:.3e} s: fast modes are wrong, and a \
+             change of pose may make the run unstable; `--step auto` takes a safe one"
+        )
+    })
+}

@@ -1,0 +1,143 @@
+//! How far off a run is: the same run once more, at a tenth of the tolerance or with half the step.
+//!
+//! Where the method converges, the finer run is several times as exact, so the difference of the two is the error of the
+//! coarser one but for a small part of it.
+
+use crane_model::{Description, dynamics, results::Table};
+
+use crate::extremes::{Extremes, columns};
+
+/// Part of the tolerance of the finer run.
+const FINER: f64 = 0.1;
+/// Part of a quantity's size from which a difference is a caution.
+const CAUTION: f64 = 0.01;
+/// What is smaller than this part of the greatest quantity of its kind is not worth a caution.
+const NEGLIGIBLE: f64 = 1e-4;
+/// Growth of the difference of two runs, in powers of e, that only exponential growth explains.
+const CHAOS: f64 = 7.0;
+/// Part of the variance of the logarithm that a straight line explains where growth is exponential.
+const STRAIGHT: f64 = 0.8;
+
+/// Settings of the finer run.
+pub fn finer(settings: &dynamics::Settings) -> dynamics::Settings {
+    if settings.method.is_adaptive() {
+        dynamics::Settings { tolerance: settings.tolerance * FINER, ..*settings }
+    } else {
+        dynamics::Settings { step: settings.step_taken() / 2.0, ..*settings }
+    }
+}
+
+/// What the finer run says about a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verification {
+    /// Greatest difference over the run, column by column, in the column's unit.
+    pub differences: Vec<f64>,
+    /// Time in which small differences grow by a factor e, s, where the motion is chaotic.
+    pub divergence: Option<f64>,
+}
+
+impl Verification {
+    /// Compares two runs that were sampled at the same times.
+    pub fn new(run: &Table, finer: &Table, coordinates: usize) -> Self {
+        let rows = || run.rows.iter().zip(&finer.rows);
+        let difference = |column: usize| rows().map(|(a, b)| (a[column] - b[column]).abs()).fold(0.0, f64::max);
+        Self {
+            differences: (0..run.columns.len()).map(difference).collect(),
+            divergence: divergence(run, finer, coordinates),
+        }
+    }
+
+    /// Greatest difference of the column of this name.
+    pub fn difference(&self, table: &Table, name: &str) -> Option<f64> {
+        let index = table.columns.iter().position(|column| column.name == name)?;
+        self.differences.get(index).copied()
+    }
+
+    /// Names what may be off by more than one percent of its size.
+    pub fn cautions(&self, description: &Description, table: &Table) -> Vec<String> {
+        let mut cautions = Vec::new();
+        for kind in columns(description) {
+            let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of(table, name))).collect();
+            let greatest = sizes.iter().copied().fold(0.0, f64::max);
+            for (name, size) in kind.names.iter().zip(sizes) {
+                let Some(difference) = self.difference(table, name) else { continue };
+                if difference > CAUTION * size.max(NEGLIGIBLE * greatest) && difference > kind.noise(table, name) {
+                    let percent = 100.0 * difference / size.max(f64::MIN_POSITIVE);
+                    let unit = kind.unit;
+                    cautions.push(format!(
+                        "{name} may be off by {difference:.2e} {unit}, {percent:.1} % of its {}: a finer run differs by \
+                         as much; use a smaller `--tolerance` or `--step`",
+                        kind.measure
+                    ));
+                }
+            }
+        }
+        if let (Some(time), false) = (self.divergence, cautions.is_empty()) {
+            cautions.push(format!(
+                "the motion is chaotic: small differences grow by a factor e every {time:.2} s, so no tolerance makes the \
+                 end of the run exact; trust the beginning, or statistics over many runs"
+            ));
+        }
+        cautions
+    }
+}
+
+/// Time in which the difference of two runs grows by a factor e, where it does so by [`CHAOS`] powers and along a straight
+/// line: least squares of the logarithm of the greatest difference of a coordinate over time.
+fn divergence(run: &Table, finer: &Table, coordinates: usize) -> Option<f64> {
+    let difference = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+        let greatest =
+            a[1..=coordinates].iter().zip(&b[1..=coordinates]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        (greatest > 0.0).then(|| (a[0], greatest.ln()))
+    };
+    let points: Vec<(f64, f64)> = run.rows.iter().zip(&finer.rows).filter_map(difference).collect();
+    let count = points.len() as f64;
+    let (first, last) = (points.first()?.0, points.last()?.0);
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
+    let (t, y) = (mean(&|p| p.0), mean(&|p| p.1));
+    let covariance = mean(&|p| (p.0 - t) * (p.1 - y));
+    let (spread, variance) = (mean(&|p| (p.0 - t).powi(2)), mean(&|p| (p.1 - y).powi(2)));
+    let slope = covariance / spread;
+    let straight = covariance * covariance > STRAIGHT * spread * variance;
+    (straight && slope * (last - first) > CHAOS).then(|| slope.recip())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(value: impl Fn(f64) -> f64) -> Table {
+        let mut table = Table::default();
+        table.add("t", "s");
+        table.add("q", "rad");
+        table.rows = (0..=1000).map(|i| f64::from(i) * 0.01).map(|t| vec![t, value(t)]).collect();
+        table
+    }
+
+    #[test]
+    fn exponential_growth_is_chaos_and_its_time_is_found() {
+        let run = table(f64::sin);
+        let finer = table(|t| t.sin() + 1e-8 * (1.5 * t).exp());
+        let time = divergence(&run, &finer, 1).expect("chaos");
+        // The fit is exact but for rounding of differences as small as 1e-8 of numbers of size 1.
+        assert!((time * 1.5 - 1.0).abs() < 1e-3, "{time}");
+    }
+
+    #[test]
+    fn polynomial_growth_is_not_chaos() {
+        let run = table(f64::sin);
+        // A frequency that is off makes a difference that grows with time; an integrator's error with its square.
+        for power in [0, 1, 2] {
+            let finer = table(|t| t.sin() + 1e-3 * (t + 0.1).powi(power));
+            assert_eq!(divergence(&run, &finer, 1), None, "power {power}");
+        }
+    }
+
+    #[test]
+    fn differences_are_the_greatest_of_each_column() {
+        let (run, finer) = (table(|_| 1.0), table(|t| 1.0 - 0.02 * t));
+        let verification = Verification::new(&run, &finer, 1);
+        assert!((verification.difference(&run, "q").expect("a column") - 0.2).abs() < 1e-15);
+        assert_eq!(verification.difference(&run, "none"), None);
+    }
+}
