@@ -88,6 +88,8 @@ fn poses(chain: &Chain) -> (Vec<Frame>, Vec<Joint>) {
 fn role(chain: &Chain, id: CoordinateId) -> &'static str {
     if chain.base.contains(&Some(id)) {
         "base"
+    } else if chain.is_prescribed(id) {
+        "prescribed"
     } else if chain.drives.iter().any(|drive| drive.coordinate == id) {
         "driven"
     } else if chain.elements.iter().any(|element| element.coordinate == id) {
@@ -267,7 +269,7 @@ impl Sheet {
     /// A circle where something turns, a square where it slides, full where a drive moves it; with its number.
     fn joint(&mut self, chain: &Chain, joint: &Joint, number: usize) {
         let (x, y) = self.project(joint.at);
-        let fill = if role(chain, joint.coordinate) == "driven" { INK } else { "#fff" };
+        let fill = if matches!(role(chain, joint.coordinate), "driven" | "prescribed") { INK } else { "#fff" };
         let style = format!("fill='{fill}' stroke='{INK}' stroke-width='1.6'");
         let _ = match chain.coordinates[joint.coordinate.0].kind {
             CoordinateKind::Rotation => writeln!(self.svg, "<circle cx='{x:.1}' cy='{y:.1}' r='{JOINT}' {style}/>"),

@@ -134,8 +134,10 @@ impl CoordinateKind {
 pub enum CoordinateRole {
     /// Motion of the base.
     Base,
-    /// A joint with a drive.
+    /// A joint with a drive that gives way.
     Driven,
+    /// A joint with a rigid drive: its motion is given, and no unknown.
+    Prescribed,
     /// A joint without a drive.
     Passive,
     /// Deformation of a flexible link.
@@ -148,6 +150,7 @@ impl CoordinateRole {
         match self {
             CoordinateRole::Base => "base",
             CoordinateRole::Driven => "driven",
+            CoordinateRole::Prescribed => "prescribed",
             CoordinateRole::Passive => "passive",
             CoordinateRole::Element => "element",
         }

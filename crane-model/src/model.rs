@@ -75,6 +75,10 @@ pub trait CraneModel<const N: usize> {
     /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair a drive.
     fn drive_motions(&self, _t: f64, _out: &mut [[f64; 2]]) {}
 
+    /// Sets the coordinates that rigid drives prescribe, and their rates, as they are at time t. A crane without rigid drives
+    /// has none.
+    fn prescribe(&self, _t: f64, _q: &mut SVector<f64, N>, _v: &mut SVector<f64, N>) {}
+
     /// Potential energy of gravity, zero at the world's origin, Eq. (6). J.
     fn gravity_energy(&self, q: &SVector<f64, N>) -> f64;
 
@@ -210,8 +214,24 @@ pub trait Statics<const N: usize>: CraneModel<N> {
     /// `∂E_p/∂q` at t = 0; zero in equilibrium. N and N m.
     fn static_residual(&self, q: &SVector<f64, N>) -> SVector<f64, N>;
 
-    /// `∂²E_p/∂q²`, symmetric; positive definite where the equilibrium is stable.
+    /// `∂²E_p/∂q²`, symmetric; positive definite where the equilibrium is stable. A prescribed coordinate, whose residual is 0,
+    /// has 1 on the diagonal and zeros beside it.
     fn tangent_stiffness(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N>;
+
+    /// Generalized forces of the drives that hold the crane at rest at t = 0: of springs, and all that is left to rigid drives.
+    /// N and N m.
+    fn drive_forces_at_rest(&self, q: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut motions = [[0.0; 2]; N];
+        self.drive_motions(0.0, &mut motions);
+        // At the rates of their motions the dampers rest.
+        let mut v = SVector::<f64, N>::zeros();
+        for (drive, [_, rate]) in self.description().drives.iter().zip(motions) {
+            if let Some(v) = v.get_mut(drive.coordinate) {
+                *v = rate;
+            }
+        }
+        self.drive_forces(0.0, q, &v)
+    }
 }
 
 /// Small motions about a pose at rest: `A δq̈ + D δq̇ + K δq = 0`.

@@ -14,6 +14,12 @@ impl Dual {
         Dual(Dual64::new(value, derivative))
     }
 
+    /// The value.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        self.0.re
+    }
+
     /// The derivative.
     #[must_use]
     pub fn derivative(self) -> f64 {

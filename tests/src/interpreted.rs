@@ -29,6 +29,24 @@ impl Interpreted {
         self.chain.coordinates.len()
     }
 
+    /// Coordinates that rigid drives prescribe.
+    #[must_use]
+    pub fn prescribed(&self) -> Vec<usize> {
+        self.chain.rigid_drives().map(|drive| drive.coordinate.0).collect()
+    }
+
+    /// A matrix, and the right-hand side of a system with it, without the unknowns that are prescribed: x = 0 there.
+    #[must_use]
+    pub fn unknowns(&self, mut matrix: DMatrix<f64>, mut right: DVector<f64>) -> (DMatrix<f64>, DVector<f64>) {
+        for j in self.prescribed() {
+            matrix.column_mut(j).fill(0.0);
+            matrix.row_mut(j).fill(0.0);
+            matrix[(j, j)] = 1.0;
+            right[j] = 0.0;
+        }
+        (matrix, right)
+    }
+
     /// Inputs at a state with the spec's parameters.
     #[must_use]
     pub fn inputs(&self, state: &State) -> Inputs<f64> {

@@ -48,6 +48,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("element_forces", vec![n]),
         ("drive_forces", vec![n]),
         ("hinge_forces", vec![n]),
+        ("drive_forces_at_rest", vec![n]),
         ("forward_dynamics", vec![n]),
         ("mass_solution", vec![n]),
         ("implicit_solution", vec![n]),
@@ -68,6 +69,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("drive_motions", vec![drives, 2]),
         ("drive_power", vec![1]),
         ("dissipation", vec![1]),
+        ("prescribed", vec![2, n]),
     ];
     rows.into_iter().map(|(name, shape)| Quantity { name, shape }).collect()
 }
@@ -120,6 +122,7 @@ pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f6
         crane.element_forces(q, v),
         crane.drive_forces(t, q, v),
         crane.hinge_forces(v),
+        crane.drive_forces_at_rest(q),
         crane.forward_dynamics(t, q, v),
         crane.solve_mass(q, v),
         implicit_solution(crane, q, v),
@@ -152,6 +155,9 @@ pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f6
     crane.drive_motions(t, &mut motions);
     out.extend(motions.iter().flatten());
     out.extend([crane.drive_power(t, q, v), crane.dissipation(t, q, v)]);
+    let (mut q, mut v) = (*q, *v);
+    crane.prescribe(t, &mut q, &mut v);
+    out.extend(q.iter().chain(&v));
     out
 }
 

@@ -247,10 +247,12 @@ impl Writer {
         self.line("drives:");
         let driven: Vec<_> = self.coordinates.iter().take(5).cloned().collect();
         let passive = self.coordinates[5..].to_vec();
-        let first = self.rng.usize(0..6);
+        let first = self.rng.usize(0..8);
         for (k, (coordinate, rotation)) in driven.into_iter().enumerate() {
             let to = if rotation { "swing".into() } else { self.number(0.5) };
             let from = self.number(0.5);
+            // Up to three are rigid, on joints that turn and that slide.
+            let rigid = self.rng.u8(0..3) == 0;
             let motion = [
                 format!("{{quintic: {{from: {from}, to: {to}, begin: 0.2, duration: 1.5}}}}"),
                 format!("{{cubic: {{from: {from}, to: {to}, duration: 2}}}}"),
@@ -258,12 +260,18 @@ impl Writer {
                 format!("{{trapezoid: {{from: {from}, to: {to}, begin: 0.3, duration: 1.8, blend: 0.2}}}}"),
                 format!("{{table: {{times: [0, 0.5, 1.2, 2], values: [0.1, {from}, -0.2, 0.4]}}}}"),
                 format!("{{hold: {to}}}"),
-            ][(first + k) % 6]
+                format!("{{speed: {{from: {from}, rate: {to}, begin: 0.4, ramp: 0.7}}}}"),
+                // Only a drive that gives way may jump to its speed in a run.
+                format!("{{speed: {{rate: {to}{}}}}}", if rigid { "" } else { ", begin: 0.6" }),
+            ][(first + k) % 8]
                 .clone();
             let (stiffness, damping) = (self.positive(900.0), self.positive(30.0));
-            self.line(&format!(
-                "  - {{coordinate: {coordinate}, stiffness: {stiffness}, damping: {damping}, motion: {motion}}}"
-            ));
+            // Every other one has a rotor.
+            let armature = self.positive(4.0);
+            let rotor = if k % 2 == 0 { format!("armature: {armature}, ") } else { String::new() };
+            let spring =
+                if rigid { "rigid: true".to_owned() } else { format!("stiffness: {stiffness}, damping: {damping}") };
+            self.line(&format!("  - {{coordinate: {coordinate}, {spring}, {rotor}motion: {motion}}}"));
         }
         if !passive.is_empty() {
             self.line("damping:");
@@ -271,6 +279,10 @@ impl Writer {
                 let damping = self.positive(3.0);
                 self.line(&format!("  {coordinate}: {damping}"));
             }
+            let (coordinate, _) = &self.coordinates[5];
+            let coordinate = coordinate.clone();
+            let armature = self.positive(2.0);
+            self.line(&format!("armature: {{{coordinate}: {armature}}}"));
         }
     }
 

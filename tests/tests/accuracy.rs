@@ -64,10 +64,14 @@ impl Crane {
         }
     }
 
-    /// `a_ij = Σ tr(∂T/∂q_i H ∂Tᵀ/∂q_j)` over the bodies [Urbaś 2016, Eq. (5)].
+    /// `a_ij = Σ tr(∂T/∂q_i H ∂Tᵀ/∂q_j)` over the bodies [Urbaś 2016, Eq. (5)], and rotors.
     fn mass_matrix(&self, state: &State) -> Vec<Vec<Precise>> {
         let n = self.size();
         let mut matrix = vec![vec![Precise::from_f64(0.0); n]; n];
+        for rotor in &self.chain.rotors {
+            let armature = rotor.armature.at(&self.chain.parameter_defaults());
+            matrix[rotor.coordinate.0][rotor.coordinate.0] = Precise::from_f64(armature);
+        }
         let entries = self.precise("transform_derivatives", state);
         // Three rows of four, one after the other.
         let mut derivatives = entries.chunks(12);

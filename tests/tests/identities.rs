@@ -1,6 +1,7 @@
 //! Physical identities on random cranes with fixed seeds, by the interpreter.
 
-use crane_codegen::symbolic::Inputs;
+use crane_codegen::chain::Chain;
+use crane_codegen::symbolic::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use crane_tests::dual::Dual;
 use crane_tests::interpreted::Interpreted;
@@ -78,6 +79,32 @@ fn rate_of_the_mass_matrix_less_twice_c_is_skew() {
             let quadratic = w.dot(&(DMatrix::from_row_slice(n, n, &rate) * &w));
             let size = w.iter().zip(&h(&(&v + &w))).map(|(w, h)| (w * h).abs()).sum();
             assert_close(quadratic, 2.0 * w.dot(&coriolis), size, 1e-11, &format!("seed {seed}"));
+        }
+    }
+}
+
+/// A rotor adds its inertia to one entry of A, and `½ I q̇²` to the kinetic energy; no other force knows it.
+#[test]
+fn a_rotor_adds_to_the_diagonal_and_to_nothing_else() {
+    for (seed, crane) in cranes() {
+        let without = Interpreted::new(Chain { rotors: vec![], ..crane.chain.clone() });
+        let parameters = crane.chain.parameter_defaults();
+        let mut armature = DVector::zeros(crane.size());
+        for rotor in &crane.chain.rotors {
+            armature[rotor.coordinate.0] += rotor.armature.at(&parameters);
+        }
+        assert!(armature.iter().filter(|inertia| **inertia > 0.0).count() >= 3, "seed {seed}: {armature}");
+        for state in states::far(&crane.chain, 2, seed) {
+            let v = DVector::from_column_slice(&state.v);
+            let added = crane.matrix("mass_matrix", &state) - without.matrix("mass_matrix", &state);
+            let size = crane.matrix("mass_matrix", &state).amax();
+            assert!((added - DMatrix::from_diagonal(&armature)).amax() <= 1e-15 * size, "seed {seed}");
+            let energy = crane.scalar("kinetic_energy", &state) - without.scalar("kinetic_energy", &state);
+            let size = crane.scalar("kinetic_energy", &state);
+            assert_close(energy, 0.5 * v.component_mul(&armature).dot(&v), size, 1e-15, &format!("seed {seed}"));
+            for force in ["bias", "support_forces", "element_forces", "hinge_forces"] {
+                assert_eq!(crane.vector(force, &state), without.vector(force, &state), "seed {seed}: {force}");
+            }
         }
     }
 }
@@ -162,6 +189,48 @@ fn power_balances() {
     }
 }
 
+/// Rigid drives: their coordinates move as prescribed, `A q̈ = e + f` holds with what they take for it, and no linear system has
+/// them among its unknowns.
+#[test]
+fn prescribed_coordinates_are_no_unknowns() {
+    let mut tested = 0;
+    for (seed, crane) in cranes() {
+        let (n, prescribed) = (crane.size(), crane.prescribed());
+        tested += prescribed.len();
+        for state in states::far(&crane.chain, 3, seed) {
+            let acceleration = crane.acceleration(&state);
+            let (mass, force) =
+                (crane.matrix("mass_matrix", &state), crane.vector("bias", &state) + crane.vector("forces", &state));
+            let size = (mass.abs() * acceleration.abs()).amax();
+            assert!((&mass * &acceleration - &force).amax() < 1e-12 * size, "seed {seed}: A q̈ = e + f");
+            let parts = ["support_forces", "element_forces", "drive_forces", "hinge_forces"];
+            let sum = parts.iter().fold(DVector::zeros(n), |sum, part| sum + crane.vector(part, &state));
+            let forces = crane.vector("forces", &state);
+            assert!(
+                (sum - &forces).amax() <= 1e-14 * forces.amax(),
+                "seed {seed}: the forces are the sum of their parts"
+            );
+
+            let motions = moving(&crane, &state, (1.0, &vec![0.0; n], &vec![0.0; n]));
+            let motions = crane.get("prescribed_motions", &motions, 0);
+            for (j, motion) in prescribed.iter().zip(motions.chunks(2)) {
+                let (rate, own) = (motion[1].derivative(), acceleration[*j]);
+                assert_close(motion[0].derivative(), motion[1].value(), 1.0, 1e-13, &format!("seed {seed}, rate {j}"));
+                assert_close(rate, own, 1.0, 1e-12, &format!("seed {seed}, acceleration {j}"));
+            }
+
+            let right = DVector::from_column_slice(&state.v);
+            let inputs = crane.inputs(&state).with(Argument::Right, state.v.clone());
+            let x = DVector::from_vec(crane.get("solve_mass", &inputs, n));
+            let (unknowns, right) = crane.unknowns(mass, right);
+            assert!(prescribed.iter().all(|j| x[*j] == 0.0), "seed {seed}: prescribed coordinates are not solved for");
+            let size = (unknowns.abs() * x.abs()).amax();
+            assert!((unknowns * x - &right).amax() < 1e-12 * size, "seed {seed}: A x = r");
+        }
+    }
+    assert!(tested >= 24, "{tested} rigid drives");
+}
+
 /// The residual is the gradient of the potential energy and the tangent is its Hessian, by dual numbers.
 #[test]
 fn residual_and_tangent_are_derivatives_of_the_energy() {
@@ -171,6 +240,7 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
             let state = State { t: 0.0, v: vec![0.0; n], ..state };
             let residual = crane.vector("static_residual", &state);
             let tangent = crane.matrix("tangent_stiffness", &state);
+            let holding = crane.get("drive_forces_at_rest", &crane.inputs(&state), n);
             for j in 0..n {
                 let mut direction = vec![0.0; n];
                 direction[j] = 1.0;
@@ -178,6 +248,14 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
                 let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy"];
                 let slopes: Vec<f64> = parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
                 let size = slopes.iter().map(|slope| slope.abs()).sum();
+                if crane.prescribed().contains(&j) {
+                    // No unknown: its drive takes what the gradient asks for, and it does not move.
+                    assert_close(slopes.iter().sum(), holding[j], size, 1e-11, &format!("seed {seed}, held {j}"));
+                    assert!(residual[j] == 0.0, "seed {seed}, residual {j}");
+                    let column: Vec<f64> = tangent.column(j).iter().copied().collect();
+                    assert_eq!(column, direction, "seed {seed}, tangent {j}");
+                    continue;
+                }
                 assert_close(slopes.iter().sum(), residual[j], size, 1e-11, &format!("seed {seed}, residual {j}"));
                 let column: Vec<f64> =
                     crane.get("static_residual", &inputs, n).into_iter().map(Dual::derivative).collect();

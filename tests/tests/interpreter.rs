@@ -35,8 +35,26 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
         "bias_with_mass_matrix" => crane.get("mass_matrix_and_bias", inputs, 0).split_off(n * (n + 1) / 2),
         "lane_forward_dynamics" => crane.get("forward_dynamics", inputs, n),
         "implicit_solution" => implicit_solution(crane, inputs),
+        "prescribed" => prescribed(crane, inputs),
+        "drive_forces_at_rest" if crane.prescribed().is_empty() => {
+            let start = inputs.clone().with(Argument::Time, vec![Runtime(0.0)]);
+            let mut rates = vec![Runtime(0.0); n];
+            for (drive, motion) in crane.chain.drives.iter().zip(crane.get("drive_motions", &start, 0).chunks(2)) {
+                rates[drive.coordinate.0] = motion[1];
+            }
+            crane.get("drive_forces", &start.with(Argument::Velocity, rates), n)
+        }
         name => crane.get(name, inputs, quantity.len()),
     }
+}
+
+/// Coordinates and rates with those that are prescribed set.
+fn prescribed(crane: &Interpreted, inputs: &Inputs<Runtime>) -> Vec<Runtime> {
+    let mut state = [inputs.get(Argument::Position), inputs.get(Argument::Velocity)];
+    for (j, motion) in crane.prescribed().into_iter().zip(crane.get("prescribed_motions", inputs, 0).chunks(2)) {
+        (state[0][j], state[1][j]) = (motion[0], motion[1]);
+    }
+    state.concat()
 }
 
 /// As `quantities` computes it.

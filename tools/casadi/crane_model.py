@@ -42,13 +42,14 @@ class Body:
 
 @dataclass
 class Spring:
-    """Spring and damper on one coordinate: an element's, or with a motion a drive's."""
+    """Spring and damper on one coordinate: an element's, or with a motion a drive's; a rigid drive has neither."""
 
     coordinate: Coordinate
     stiffness: object
     damping: object
     motion: object = 0
     moves_within: tuple = (0.0, 0.0)
+    is_rigid: bool = False
 
 
 @dataclass
@@ -83,6 +84,7 @@ class Crane:
     elements: list = field(default_factory=list)
     drives: list = field(default_factory=list)
     hinges: list = field(default_factory=list)
+    rotors: list = field(default_factory=list)
     points: dict = field(default_factory=dict)
     guess: list = field(default_factory=list)
 
@@ -100,6 +102,12 @@ class Crane:
     def parameters(self):
         """Live parameters in the order of the spec."""
         return ca.vertcat(*self.spec.parameters.values())
+
+    @property
+    def rigid_drives(self):
+        """Rigid drives by the place of their coordinate, which they prescribe."""
+        places = {coordinate.name: place for place, coordinate in enumerate(self.coordinates)}
+        return {places[drive.coordinate.name]: drive for drive in self.drives if drive.is_rigid}
 
     def coordinate(self, name):
         """The coordinate of that name."""
@@ -132,8 +140,11 @@ def read_crane(path):
         crane.supports.append(read_support(crane, written, base))
     for written in spec.get("drives", []):
         crane.drives.append(read_drive(crane, written))
+        crane.rotors.append((crane.drives[-1].coordinate, spec.number(written.get("armature", 0))))
     for name, damping in spec.get("damping", {}).items():
         crane.hinges.append(Spring(crane.coordinate(name), 0, spec.number(damping)))
+    for name, armature in spec.get("armature", {}).items():
+        crane.rotors.append((crane.coordinate(name), spec.number(armature)))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     crane.guess = read_guess(crane)
@@ -241,12 +252,12 @@ def read_support(crane, written, base):
 
 
 def read_drive(crane, written):
-    """A drive: spring and damper from a prescribed motion to its coordinate [Urbaś 2016, Eqs. (19)-(21)]."""
+    """A drive: spring and damper from a prescribed motion to its coordinate [Urbaś 2016, Eqs. (19)-(21)], or nothing between."""
     spec = crane.spec
     coordinate = crane.coordinate(written["coordinate"])
     motion, interval = read_profile(spec, written["motion"], coordinate.is_rotation, crane.time)
-    damping = spec.number(written.get("damping", 0))
-    return Spring(coordinate, spec.number(written["stiffness"]), damping, motion, interval)
+    stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
+    return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False))
 
 
 def read_point(spec, written, span):

@@ -25,6 +25,7 @@ class Derivations:
             **self.forces(),
             **self.statics(),
             **self.motions(),
+            **self.prescribed(),
         }
 
     def rate(self, expression):
@@ -58,8 +59,8 @@ class Derivations:
         }
 
     def kinetic_energy(self):
-        """`½ Σ tr(Ṫ H Ṫᵀ)` [Urbaś 2016, Eq. (4)]."""
-        energy = ca.SX(0)
+        """`½ Σ tr(Ṫ H Ṫᵀ)` [Urbaś 2016, Eq. (4)], and of rotors, whose armature is reflected to the joint, `½ Σ I q̇²`."""
+        energy = sum((armature * coordinate.v**2 / 2 for coordinate, armature in self.crane.rotors), ca.SX(0))
         for body in self.crane.bodies:
             rate = self.rate(body.transform)
             energy += ca.trace(rate @ body.pseudo_inertia @ rate.T) / 2
@@ -83,7 +84,7 @@ class Derivations:
             "bias": bias,
             "bias_with_mass_matrix": bias,
             "kinetic_energy": kinetic,
-            "linearised_mass": row_major(ca.densify(mass_matrix)),
+            "linearised_mass": self.unknowns(mass_matrix, 1),
         }
 
     def potentials(self):
@@ -124,11 +125,29 @@ class Derivations:
             "gravity_energy": self.gravity_energy(),
             **{f"{part}_energy": energies[part] for part in ("support", "element", "drive")},
             "dissipation": 2 * dissipation_function,
-            "linearised_damping": row_major(ca.densify(damping)),
+            "linearised_damping": self.unknowns(damping, 0),
         }
 
+    def unknowns(self, matrix, diagonal):
+        """A matrix of small motions, row by row: where a coordinate is prescribed, nothing but a number on the diagonal."""
+        matrix = ca.densify(matrix)
+        for place in self.crane.rigid_drives:
+            matrix[place, :] = 0
+            matrix[:, place] = 0
+            matrix[place, place] = diagonal
+        return row_major(matrix)
+
+    def prescribed(self):
+        """Coordinates and rates with those set that rigid drives prescribe, and the accelerations that they prescribe."""
+        q, v, acceleration = ca.SX(self.crane.q), ca.SX(self.crane.v), ca.SX.zeros(self.crane.q.shape)
+        for place, drive in self.crane.rigid_drives.items():
+            motion = ca.SX(drive.motion)
+            q[place], v[place] = motion, self.rate(motion)
+            acceleration[place] = self.rate(v[place])
+        return {"prescribed": ca.vertcat(q, v), PRESCRIBED: acceleration}
+
     def driving_forces(self):
-        """`t_dr` of each drive: the generalized force of all drives on its own coordinate."""
+        """`t_dr` of each drive with a spring: the generalized force of all drives on its own coordinate."""
         energy, lost = self.potentials()["drive"]
         coordinates = [drive.coordinate for drive in self.crane.drives]
         return ca.vertcat(*[-ca.gradient(energy, c.q) - ca.gradient(lost, c.v) for c in coordinates])
@@ -136,15 +155,24 @@ class Derivations:
     def statics(self):
         """Gradient and Hessian of the whole potential energy at t = 0."""
         potential = self.gravity_energy() + sum(energy for energy, _ in self.potentials().values())
-        stiffness, residual = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
-        stiffness = row_major(ca.densify(stiffness))
+        stiffness, gradient = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
+        stiffness = self.unknowns(stiffness, 1)
+        residual, holding = ca.densify(gradient), self.springs_at_rest()
+        for place in self.crane.rigid_drives:
+            holding[place], residual[place] = gradient[place], 0
         springs = ca.hessian(sum(energy for energy, _ in self.potentials().values()), self.crane.q)[0]
         return {
             "static_residual": residual,
+            "drive_forces_at_rest": holding,
             "tangent_stiffness": stiffness,
             "linearised_stiffness": stiffness,
             SPRINGS: row_major(ca.densify(springs)),
         }
+
+    def springs_at_rest(self):
+        """Generalized forces of the drives' springs at t = 0."""
+        energy, _ = self.potentials()["drive"]
+        return ca.densify(ca.substitute(-ca.gradient(energy, self.crane.q), self.crane.time, 0))
 
     def motions(self):
         """Points and their velocities, reactions of the supports, and what the drives prescribe and deliver."""
@@ -164,7 +192,7 @@ class Derivations:
 
     def sizes(self):
         """How many numbers each quantity has."""
-        own = {name: expression.numel() for name, expression in self.quantities.items() if name != SPRINGS}
+        own = {name: expression.numel() for name, expression in self.quantities.items() if name not in INTERNAL}
         return own | dict.fromkeys(SOLUTIONS, self.crane.q.numel())
 
     def evaluate(self, states):
@@ -174,7 +202,7 @@ class Derivations:
         function = ca.Function("quantities", self.arguments, [ca.densify(self.quantities[name]) for name in names])
         values = function(*columns)
         values = {name: value.full().T for name, value in zip(names, values)}
-        return values | solutions(values, states.v)
+        return values | solutions(values, states.v, list(self.crane.rigid_drives))
 
 
 # Step of `implicit_solution`, s; that of the program that evaluates.
@@ -183,19 +211,43 @@ IMPLICIT_STEP = 0.01
 SOLUTIONS = ["forward_dynamics", "lane_forward_dynamics", "mass_solution", "implicit_solution"]
 # The stiffness of all springs, for these alone: nothing generated has it by itself.
 SPRINGS = "impedance_stiffness"
+# The accelerations of coordinates that rigid drives prescribe, likewise.
+PRESCRIBED = "prescribed_acceleration"
+INTERNAL = [SPRINGS, PRESCRIBED]
 
 
-def solutions(values, v):
-    """Accelerations and solutions of linear systems, by dense factors of the derived matrices."""
+def solutions(values, v, prescribed):
+    """Accelerations and solutions of linear systems, by dense factors of the derived matrices; efforts of rigid drives.
+
+    Prescribed coordinates are no unknowns: with P these and U the others, `A_UU q̈_U = (e + f)_U - A_UP q̈_P`. What the motion
+    takes, `(A q̈ - e - f)_P`, joins the forces.
+    """
     count = v.shape[1]
     mass, damping, stiffness = (
         values[name].reshape(-1, count, count) for name in ("mass_matrix", "linearised_damping", SPRINGS)
     )
     implicit = mass + IMPLICIT_STEP * damping + IMPLICIT_STEP**2 * stiffness
-    del values[SPRINGS]
-    accelerations = solve_scaled(mass, values["bias"] + values["forces"])
-    found = [accelerations, accelerations, solve_scaled(mass, v), solve_scaled(implicit, v)]
+    given = values[PRESCRIBED]
+    for name in INTERNAL:
+        del values[name]
+    forces = values["bias"] + values["forces"]
+    accelerations = given + solve_unknown(mass, forces - np.einsum("sij,sj->si", mass, given), prescribed)
+    efforts = (np.einsum("sij,sj->si", mass, accelerations) - forces)[:, prescribed]
+    for name in ("drive_forces", "forces"):
+        values[name][:, prescribed] += efforts
+    values["drive_power"][:, 0] += np.einsum("si,si->s", efforts, v[:, prescribed])
+    found = [accelerations, accelerations, solve_unknown(mass, v, prescribed), solve_unknown(implicit, v, prescribed)]
     return dict(zip(SOLUTIONS, found))
+
+
+def solve_unknown(matrices, right, prescribed):
+    """`A x = r` without the rows and columns of what is prescribed, where x = 0."""
+    matrices, right = matrices.copy(), right.copy()
+    matrices[:, prescribed, :] = 0
+    matrices[:, :, prescribed] = 0
+    matrices[:, prescribed, prescribed] = 1
+    right[:, prescribed] = 0
+    return solve_scaled(matrices, right)
 
 
 def solve_scaled(matrices, right):

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from crane_model import read_crane
-from derivations import Derivations
+from derivations import PRESCRIBED, Derivations, solve_unknown
 
 WORKSPACE = Path(__file__).resolve().parents[2]
 CRANES = ["double_pendulum", "eight_link_flexible", "knuckle_boom"]
@@ -44,14 +44,14 @@ def main():
 def compare(name, options):
     """Runs a crane by its own methods and by Radau from the same pose at rest."""
     crane = read_crane(WORKSPACE / "specs" / f"{name}.yaml")
-    slope, jacobian = equations(crane)
+    slope, jacobian, rates = equations(crane)
     names = [coordinate.name for coordinate in crane.coordinates]
     agree = True
     exact = None
     for method, tolerance in METHODS.items():
         times, poses = simulate(name, method, tolerance, names, options)
         if exact is None:
-            start = np.concatenate([poses[0], np.zeros(len(names))])
+            start = np.concatenate([poses[0], rates])
             span = (times[0], times[-1])
             # An error of a rate counts less than one of a coordinate, as it lasts.
             exact = solve_ivp(slope, span, start, "Radau", times, jac=jacobian, rtol=TOLERANCE, atol=TOLERANCE)
@@ -65,32 +65,47 @@ def compare(name, options):
 
 
 def equations(crane):
-    """Slopes of (q, v) and their Jacobian as functions of t and (q, v)."""
+    """Slopes of (q, v) and their Jacobian as functions of t and (q, v), and the rates at t = 0.
+
+    Where a rigid drive prescribes a coordinate, its acceleration is given: it is integrated along, as a check of the motion too.
+    """
     derivations = Derivations(crane)
     quantities = derivations.quantities
     count = crane.q.numel()
     mass = ca.reshape(quantities["mass_matrix"], count, count)
     state = ca.vertcat(crane.q, crane.v)
     forces = quantities["bias"] + quantities["forces"]
+    prescribed = list(crane.rigid_drives)
     defaults = ca.DM(list(crane.spec.defaults.values()))
     at = [crane.time, crane.q, crane.v, crane.parameters]
-    function = ca.Function("forces", at, [mass, forces, ca.jacobian(forces, state)])
+    rates = ca.Function("rates", [crane.time, crane.parameters], [ca.densify(given_rates(crane, derivations))])
+    function = ca.Function("forces", at, [mass, forces, ca.jacobian(forces, state), quantities[PRESCRIBED]])
 
     def values(t, y):
-        mass, forces, slopes = function(t, y[:count], y[count:], defaults)
-        return mass.full(), forces.full()[:, 0], slopes.full()
+        mass, forces, slopes, given = function(t, y[:count], y[count:], defaults)
+        return mass.full(), forces.full()[:, 0], slopes.full(), given.full()[:, 0]
 
     def slope(t, y):
-        mass, forces, _ = values(t, y)
-        return np.concatenate([y[count:], np.linalg.solve(mass, forces)])
+        mass, forces, _, given = values(t, y)
+        others = solve_unknown(mass[None], (forces - mass @ given)[None], prescribed)[0]
+        return np.concatenate([y[count:], given + others])
 
     def jacobian(t, y):
         """Without the change of the mass matrix: Newton's iteration needs no more, and its result does not depend on it."""
-        mass, _, slopes = values(t, y)
+        mass, _, slopes, _ = values(t, y)
         upper = np.hstack([np.zeros((count, count)), np.eye(count)])
-        return np.vstack([upper, np.linalg.solve(mass, slopes)])
+        columns = [solve_unknown(mass[None], column[None], prescribed)[0] for column in slopes.T]
+        return np.vstack([upper, np.column_stack(columns)])
 
-    return slope, jacobian
+    return slope, jacobian, rates(0, defaults).full()[:, 0]
+
+
+def given_rates(crane, derivations):
+    """Zero, but for coordinates that rigid drives prescribe."""
+    rates = ca.SX.zeros(crane.q.shape)
+    for place, drive in crane.rigid_drives.items():
+        rates[place] = derivations.rate(ca.SX(drive.motion))
+    return rates
 
 
 def simulate(name, method, tolerance, coordinates, options):

@@ -38,6 +38,16 @@ def trapezoid(tau, blend):
     return ca.if_else(tau < blend, rising, ca.if_else(tau < 1 - blend, steady, falling))
 
 
+def speed(time, rate, begin, ramp):
+    """The way at a constant speed that is reached over `ramp` seconds, `rate (3τ² - 2τ³)`; without, at once."""
+    if ramp is None:
+        return ca.if_else(time < begin, 0, rate * (time - begin))
+    tau = (time - begin) / ramp
+    reaching = rate * ramp * (tau**3 - tau**4 / 2)
+    reached = rate * ramp / 2 + rate * (time - begin - ramp)
+    return ca.if_else(time < begin, 0, ca.if_else(time < begin + ramp, reaching, reached))
+
+
 def spline(time, times, values):
     """Cubic spline through the values with zero slope at both ends, continuous to the second derivative.
 
@@ -74,6 +84,13 @@ def read_profile(spec, motion, is_rotation, time):
         times = [float(t) for t in written["times"]]
         values = [spec.position(value, is_rotation) for value in written["values"]]
         return spline(time, times, values), (times[0], times[-1])
+
+    if kind == "speed":
+        start, rate = (spec.position(written.get(key, 0), is_rotation) for key in ("from", "rate"))
+        begin, ramp = spec.number(written.get("begin", 0)), written.get("ramp")
+        ramp = None if ramp is None else spec.number(ramp)
+        reached = spec.default(begin + (ramp or 0))
+        return start + speed(time, rate, begin, ramp), (spec.default(begin), reached + 1.0)
 
     start, end = (spec.position(written[key], is_rotation) for key in ("from", "to"))
     begin, duration = spec.number(written.get("begin", 0)), spec.number(written["duration"])

@@ -82,10 +82,11 @@ class Step:
 
 @dataclass
 class Chain:
-    """Links from the base to the tip, and gravity, m/s²."""
+    """Links from the base to the tip, gravity, m/s², and the inertia of each joint's rotor, kg m² or kg."""
 
     links: list
     gravity: np.ndarray
+    armature: np.ndarray
 
     @property
     def size(self):
@@ -128,7 +129,11 @@ def read_chain(crane):
         placement = whole(np.linalg.solve(before, carrier.pose))
         links.append(Link(placement, joints, *mass_com_tensor(inertia)))
         before, passed = carrier.pose, count
-    return Chain(links, evaluate(crane, [crane.gravity])[0].ravel())
+    armature = ca.SX.zeros(crane.q.shape)
+    for coordinate, inertia in crane.rotors:
+        armature[crane.coordinates.index(coordinate)] += inertia
+    gravity, armature = evaluate(crane, [crane.gravity, armature])
+    return Chain(links, gravity.ravel(), armature.ravel())
 
 
 @dataclass

@@ -65,6 +65,8 @@ class Mjcf(MuJoCo):
 
     def __init__(self, path):
         self.model = mujoco.MjModel.from_xml_path(str(path))
+        # What rigid drives take is applied instead of what their equalities find, which give way a little.
+        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EQUALITY
         self.data = mujoco.MjData(self.model)
 
     def passive(self, q, v):
@@ -85,6 +87,8 @@ class Springs:
         self.stiffness, self.damping, self.rest = (
             np.array([joint[key] for joint in numbers], float) for key in ("stiffness", "damping", "rest")
         )
+        self.prescribed = [names.index(name) for name in content.get("prescribed") or {}]
+        self.armature = np.array([(content.get("armature") or {}).get(name, 0) for name in names], float)
         letters = ("x", "y", "z", "psi", "theta", "phi")
         base = names[0].rpartition("_")[0]
         self.base = [(i, letters.index(n.rpartition("_")[2])) for i, n in enumerate(names) if n.rpartition("_")[0] == base]
@@ -140,36 +144,42 @@ class Exported:
         crane(self.options, "export", self.spec, "--format", "urdf", "-o", urdf)
         springs = Springs(urdf.with_suffix(".springs.yaml"), self.layout["coordinates"])
         library = Urdf(urdf, springs.gravity)
+        library.model.armature = springs.armature
+        library.data = library.model.createData()
         if list(library.model.names)[1:] != self.layout["coordinates"]:
             print(f"{self.name}: joints are {list(library.model.names)[1:]}")
             return False
         forces = np.array([springs.force(q, v) for q, v in zip(self.states.q, self.states.v)])
+        efforts = np.zeros_like(forces)
+        efforts[:, springs.prescribed] = self.ours["forces"][:, springs.prescribed]
         expressible = all(support["kinematics"] == "linear" for support in springs.supports)
-        passed = self.compare(library, forces if expressible else self.ours["forces"], applied=True)
-        passed &= self.again(urdf, springs.gravity)
+        forces = forces + efforts if expressible else self.ours["forces"]
+        passed = self.compare(library, forces, applied=forces)
+        passed &= self.again(urdf, springs)
         written = crane(self.options, "export", self.spec, "--format", "mjcf", "-o", mjcf, check=False)
         if not expressible:
             return passed and written.returncode == 1 and b"kinematics: linear" in written.stderr
         library = Mjcf(mjcf)
         forces = np.array([library.passive(q, v) for q, v in zip(self.states.q, self.states.v)])
-        return self.compare(library, forces, applied=False) and passed
+        return self.compare(library, forces + efforts, applied=efforts) and passed
 
     def compare(self, library, forces, applied):
-        """Compares A, e, the forces and q̈ of a library, the forces applied to it or its own."""
-        theirs = computed(library, self.states, forces if applied else np.zeros_like(forces))
+        """Compares A, e, the forces and q̈ of a library, some of the forces applied to it, the others its own."""
+        theirs = computed(library, self.states, applied)
         comparisons = compare_all(theirs, self.ours, self.states)
         comparisons.append(compare("forces", forces, self.ours["forces"], self.states.groups))
         return told(f"{self.name}, {type(library).__name__}", comparisons)
 
-    def again(self, urdf, gravity):
-        """Compares A and e of the spec that comes of its own URDF file; gravity URDF does not know."""
+    def again(self, urdf, springs):
+        """Compares A and e of the spec that comes of its own URDF file, which knows neither gravity nor rotors."""
         spec = self.folder / f"{self.name}_again.yaml"
         crane(self.options, "import", urdf, "-o", spec)
         with spec.open("a", encoding="utf-8") as text:
-            text.write(f"gravity: {list(gravity)}\n")
+            text.write(f"gravity: {list(springs.gravity)}\n")
         layout = self.evaluate.layout(str(spec))
         states = States(self.states.time, self.states.q, self.states.v, np.empty((len(self.states.time), 0)))
         again = self.evaluate.values(layout, states)
+        again["mass_matrix"] += np.diag(springs.armature).ravel()
         comparisons = [compare(name, self.ours[name], again[name], states.groups) for name in ("mass_matrix", "bias")]
         return told(f"{self.name}, spec of URDF", comparisons)
 

@@ -68,11 +68,12 @@ def build(chain):
     spec.option.gravity = chain.gravity
     spec.option.disableflags = int(DISABLED)
     body = spec.worldbody
+    armature = iter(chain.armature)
     for link in chain.links:
         body = body.add_body(pos=link.placement[:3, 3], quat=quaternion(link.placement[:3, :3]))
         for joint in link.joints:
             kind = mujoco.mjtJoint.mjJNT_HINGE if joint.is_rotation else mujoco.mjtJoint.mjJNT_SLIDE
-            body.add_joint(type=kind, axis=joint.axis, pos=joint.point, armature=0, limited=False)
+            body.add_joint(type=kind, axis=joint.axis, pos=joint.point, armature=next(armature), limited=False)
         # Principal axes from here: MuJoCo's own are good to 1e-12 only.
         moments, axes = principal(link.tensor)
         body.mass, body.ipos, body.iquat = link.mass, link.com, quaternion(axes)

@@ -25,6 +25,7 @@ class Pinocchio:
             placement = pin.SE3(step.placement[:3, :3], step.placement[:3, 3])
             joint = self.model.addJoint(last, JOINTS[step.is_rotation, step.axis](), placement, f"joint_{last}")
             self.model.appendBodyToJoint(joint, pin.Inertia(step.mass, step.com, step.tensor), pin.SE3.Identity())
+        self.model.armature = chain.armature
         self.data = self.model.createData()
 
     def evaluate(self, q, v, force):

@@ -47,10 +47,12 @@ pub struct Chain {
     pub supports: Vec<Support>,
     /// Springs and dampers between the rigid elements of flexible links, Eqs. (14)–(15).
     pub elements: Vec<ElementSpring>,
-    /// Flexible drives, Eqs. (19)–(21).
+    /// Drives, Eqs. (19)–(21).
     pub drives: Vec<Drive>,
     /// Viscous damping of passive joints.
     pub hinges: Vec<Hinge>,
+    /// Rotors that joints turn through gears.
+    pub rotors: Vec<Rotor>,
     /// Points whose motion is of interest.
     pub points: Vec<Point>,
     /// Where the static solution starts; one number a coordinate, m or rad.
@@ -198,17 +200,40 @@ pub struct ElementSpring {
     pub damping: Value,
 }
 
-/// A flexible drive, Eqs. (19)–(21).
+/// A drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     /// The coordinate it drives.
     pub coordinate: CoordinateId,
-    /// Stiffness, N m/rad or N/m.
-    pub stiffness: Value,
-    /// Damping, N m s/rad or N s/m.
-    pub damping: Value,
-    /// Prescribed motion of the spring's far end.
+    /// How its motion reaches the coordinate.
+    pub transmission: Transmission,
+    /// Prescribed motion of the transmission's far end.
     pub profile: Profile,
+}
+
+/// What is between a prescribed motion and the coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Transmission {
+    /// A spring and a damper, Eqs. (19)–(21).
+    Flexible {
+        /// Stiffness, N m/rad or N/m.
+        stiffness: Value,
+        /// Damping, N m s/rad or N s/m.
+        damping: Value,
+    },
+    /// Nothing that gives way: the coordinate is prescribed.
+    Rigid,
+}
+
+impl Drive {
+    /// Stiffness and damping, if it is flexible.
+    #[must_use]
+    pub fn spring(&self) -> Option<(&Value, &Value)> {
+        match &self.transmission {
+            Transmission::Flexible { stiffness, damping } => Some((stiffness, damping)),
+            Transmission::Rigid => None,
+        }
+    }
 }
 
 /// Viscous damping of a coordinate.
@@ -218,6 +243,17 @@ pub struct Hinge {
     pub coordinate: CoordinateId,
     /// Damping, N m s/rad or N s/m.
     pub damping: Value,
+}
+
+/// A rotor that a joint turns through a gear, by its inertia reflected to the joint: `i² J`, i the gear ratio.
+///
+/// It resists the joint's acceleration and nothing else: neither its weight nor its gyroscopic moments count.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rotor {
+    /// The coordinate of the joint.
+    pub coordinate: CoordinateId,
+    /// Reflected inertia, kg m² or kg.
+    pub armature: Value,
 }
 
 /// A point of interest fixed to a body.
@@ -269,6 +305,17 @@ impl Chain {
     #[must_use]
     pub fn degrees_of_freedom(&self, body: BodyId) -> usize {
         self.bodies[..=body.0].iter().flat_map(|b| &b.path).filter(|s| matches!(s, Step::Move(_))).count()
+    }
+
+    /// Rigid drives: their coordinates are prescribed, and no unknowns.
+    pub fn rigid_drives(&self) -> impl Iterator<Item = &Drive> {
+        self.drives.iter().filter(|drive| drive.transmission == Transmission::Rigid)
+    }
+
+    /// Whether a coordinate is prescribed.
+    #[must_use]
+    pub fn is_prescribed(&self, id: CoordinateId) -> bool {
+        self.rigid_drives().any(|drive| drive.coordinate == id)
     }
 
     /// Parameter values unless set at run time.

@@ -2,7 +2,8 @@
 
 use super::Value;
 
-/// A prescribed motion: constant before it begins and after it ends, once continuously differentiable throughout.
+/// A prescribed motion: constant before it begins and, unless it has a speed, after it ends; once continuously
+/// differentiable throughout, unless it jumps to its speed.
 ///
 /// With `τ = clamp((t − begin)/duration, 0, 1)` the normalised profiles move from `from` to `to` as
 /// `q_dr = from + (to − from) s(τ)`.
@@ -23,6 +24,17 @@ pub enum Profile {
         ramp: Ramp,
         /// Share of the duration spent accelerating.
         blend: f64,
+    },
+    /// Constant speed from `begin` on, without end.
+    Speed {
+        /// Position before, m or rad.
+        from: Value,
+        /// Speed, m/s or rad/s.
+        rate: Value,
+        /// When it begins, s.
+        begin: Value,
+        /// How long it takes to reach the speed, s: `q̇_dr = rate (3τ² − 2τ³)`. Without, the speed jumps.
+        ramp: Option<Value>,
     },
     /// Cubic spline through given positions, at rest at both ends.
     Table {

@@ -218,6 +218,18 @@ catalogue! {
     /// Passive damping is of joints that are not driven, nor inside a beam.
     E085 not_passive(coordinate, owner) "coordinate `{coordinate}` is not passive", "it belongs to {owner}",
         "give the damping there";
+    /// Rotors turn with joints; that of a driven joint belongs to its drive.
+    E086 no_rotor(coordinate, owner, help) "coordinate `{coordinate}` has no rotor of its own", "it belongs to {owner}",
+        "{help}";
+    /// A drive has a stiffness, or is rigid.
+    E087 no_transmission(coordinate) "drive `{coordinate}` has no stiffness", "neither `stiffness` nor `rigid: true`",
+        "write its `stiffness:`, or `rigid: true` where the coordinate follows the motion exactly";
+    /// A rigid drive has neither stiffness nor damping.
+    E088 rigid_spring(coordinate, key) "drive `{coordinate}` is rigid and has a `{key}`", "a rigid drive does not give way",
+        "remove `{key}`, or `rigid: true`";
+    /// The speed of a rigid drive does not jump.
+    E089 jumps(coordinate, time) "the motion of rigid drive `{coordinate}` jumps to its speed at {time}",
+        "this takes an infinite force", "add a `ramp` in s, or let it `begin` at t = 0 or before";
 
     // Run.
     /// `step` ≤ `output` ≤ `duration`.
@@ -225,4 +237,7 @@ catalogue! {
         "choose step ≤ output ≤ duration, in s";
     /// There is something to compute.
     E091 no_analyses() "`analyses` is empty", "nothing to compute", "list some of statics, dynamics, modes, derivatives";
+    /// The guess of a coordinate is not prescribed by a rigid drive.
+    E092 prescribed_guess(coordinate) "the guess of `{coordinate}` has no effect", "its rigid drive prescribes where it is",
+        "remove it";
 }

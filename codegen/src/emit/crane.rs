@@ -28,6 +28,7 @@ const TRAITS: [(&str, &[&str]); 6] = [
             "hinge_forces",
             "support_reactions",
             "drive_motions",
+            PRESCRIBED,
             "gravity_energy",
             "support_energy",
             "element_energy",
@@ -38,10 +39,13 @@ const TRAITS: [(&str, &[&str]); 6] = [
     ),
     ("Dynamics", &["forward_dynamics", "solve_mass", "mass_matrix", "mass_matrix_and_bias", "bias", "kinetic_energy"]),
     ("Implicit", &["factorise", "solve", "joint_impedances", "base_stiffness", "base_damping"]),
-    ("Statics", &["static_residual", "tangent_stiffness"]),
+    ("Statics", &["static_residual", "tangent_stiffness", "drive_forces_at_rest"]),
     ("Linearise", &["linearise"]),
     ("TransformDerivatives", &["transform_derivatives", "transform_second_derivatives"]),
 ];
+
+/// What [`prescribe`] calls.
+const PRESCRIBED: &str = "prescribed_motions";
 
 /// `Crane` and its traits.
 pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
@@ -85,7 +89,7 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
         let methods: Vec<_> = functions
             .iter()
             .filter_map(|function| blocks.functions.iter().find(|b| b.function.name == *function))
-            .map(method)
+            .map(|block| if block.function.name == PRESCRIBED { prescribe(chain, block) } else { method(block) })
             .collect();
         if methods.is_empty() {
             continue;
@@ -166,6 +170,25 @@ fn common_methods(chain: &Chain) -> TokenStream {
         }
         #get
         #set
+    }
+}
+
+/// The method that sets prescribed coordinates and their rates.
+fn prescribe(chain: &Chain, block: &Block) -> TokenStream {
+    let coordinates: Vec<_> = chain.rigid_drives().map(|drive| integer(drive.coordinate.0)).collect();
+    let (positions, rates): (Vec<_>, Vec<_>) = chain
+        .rigid_drives()
+        .map(|drive| &chain.coordinates[drive.coordinate.0].name)
+        .map(|name| (format_ident!("{name}_position"), format_ident!("{name}_rate")))
+        .unzip();
+    let constants = block.reads_parameters.then(|| quote!(, &self.constants));
+    quote! {
+        fn prescribe(&self, t: f64, q: &mut SVector<f64, N>, v: &mut SVector<f64, N>) {
+            let [#([#positions, #rates]),*] = prescribed_motions(t #constants);
+            let ([q], [v]) = (&mut q.data.0, &mut v.data.0);
+            #(q[#coordinates] = #positions;)*
+            #(v[#coordinates] = #rates;)*
+        }
     }
 }
 

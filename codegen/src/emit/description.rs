@@ -6,7 +6,7 @@ use syn::{Item, parse_quote};
 
 use super::arithmetic::{integer, literal};
 use super::print::constant;
-use crate::chain::{BodyId, Chain, CoordinateKind, SupportKinematics, Value};
+use crate::chain::{BodyId, Chain, CoordinateId, CoordinateKind, SupportKinematics, Value};
 
 /// Sizes and the `DESCRIPTION`.
 pub fn description(chain: &Chain) -> Vec<Item> {
@@ -78,6 +78,8 @@ fn kind(kind: CoordinateKind) -> TokenStream {
 fn role(chain: &Chain, coordinate: usize) -> TokenStream {
     let role = if chain.base.iter().flatten().any(|id| id.0 == coordinate) {
         "Base"
+    } else if chain.is_prescribed(CoordinateId(coordinate)) {
+        "Prescribed"
     } else if chain.drives.iter().any(|d| d.coordinate.0 == coordinate) {
         "Driven"
     } else if chain.elements.iter().any(|e| e.coordinate.0 == coordinate) {

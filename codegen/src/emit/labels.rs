@@ -53,6 +53,9 @@ impl<'a> Labels<'a> {
             Shape::Vectors(_) if function.name == "support_reactions" => Some(chain.supports[slot / 3].name.clone()),
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
             Shape::Pairs(_) if function.name == "joint_impedances" => Some(coordinate(slot / 2).to_owned()),
+            Shape::Pairs(_) if function.name == "prescribed_motions" => {
+                chain.rigid_drives().nth(slot / 2).map(|drive| coordinate(drive.coordinate.0).to_owned())
+            }
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
             Shape::Transforms { counts, .. } => Some(self.transform(function.name, counts, slot / 12)),
             Shape::Turned { degrees, rotations } => {

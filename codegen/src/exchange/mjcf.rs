@@ -8,6 +8,7 @@ use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, bars, origin, placements};
 use crate::chain::{Chain, CoordinateId, CoordinateKind, Frame, Step, Support, SupportKinematics};
+use crate::expand::profile;
 
 /// `MuJoCo` refuses what moves without mass or inertia: a massless frame, a point, gets this much, kg or kg m². That is
 /// below the rounding of any sum that it enters.
@@ -33,7 +34,7 @@ impl std::error::Error for Inexpressible {}
 /// The MJCF text of a crane with the given parameter values.
 ///
 /// A joint a coordinate, of its name. Springs of elements, drives, held where they stand at t = 0, and passive damping become
-/// stiffness, damping and spring reference of joints; a linear support becomes three tendons, whose lengths are linear in the
+/// stiffness, damping and spring reference of joints, rotors their armature, rigid drives equalities; a linear support becomes three tendons, whose lengths are linear in the
 /// base's coordinates. The guess is the key frame `start`.
 ///
 /// # Errors
@@ -82,6 +83,16 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
         }
         xml.close();
     }
+    if chain.rigid_drives().next().is_some() {
+        xml.open("equality", &[]);
+        for drive in chain.rigid_drives() {
+            let name = chain.coordinates[drive.coordinate.0].name.clone();
+            // q = q₀ + 0 + …
+            let held = [profile::start(&drive.profile, parameters), 0.0, 0.0, 0.0, 0.0];
+            xml.leaf("joint", &[("joint1", name), ("polycoef", numbers(&held))]);
+        }
+        xml.close();
+    }
     xml.open("keyframe", &[]);
     xml.leaf("key", &[("name", "start".into()), ("qpos", numbers(&chain.guess))]);
     Ok(xml.finish())
@@ -122,7 +133,7 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
     }
 }
 
-/// A joint with its spring and damper; `frame`: where it acts, in the frame of its body at `q = 0`.
+/// A joint with its spring, damper and rotor; `frame`: where it acts, in the frame of its body at `q = 0`.
 fn joint(xml: &mut Xml, chain: &Chain, id: CoordinateId, frame: &Frame, parameters: &[f64]) {
     let coordinate = &chain.coordinates[id.0];
     let kind = if coordinate.kind == CoordinateKind::Rotation { "hinge" } else { "slide" };
@@ -132,7 +143,9 @@ fn joint(xml: &mut Xml, chain: &Chain, id: CoordinateId, frame: &Frame, paramete
     }
     attributes.push(("axis", numbers(&frame.axes[coordinate.axis.index()])));
     let JointSpring { stiffness, damping, rest } = on(chain, id, parameters);
-    let spring = [("stiffness", stiffness), ("damping", damping), ("springref", rest)];
+    let rotor = chain.rotors.iter().find(|rotor| rotor.coordinate == id);
+    let armature = rotor.map_or(0.0, |rotor| rotor.armature.at(parameters));
+    let spring = [("stiffness", stiffness), ("damping", damping), ("springref", rest), ("armature", armature)];
     attributes.extend(spring.iter().filter(|(_, value)| *value != 0.0).map(|(key, value)| (*key, number_text(*value))));
     xml.leaf("joint", &attributes);
 }

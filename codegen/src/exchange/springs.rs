@@ -26,7 +26,8 @@ pub(super) fn on(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> JointSp
         JointSpring { stiffness: number(&spring.stiffness), damping: number(&spring.damping), rest: 0.0 }
     } else if let Some(drive) = chain.drives.iter().find(|drive| drive.coordinate == id) {
         let rest = profile::start(&drive.profile, parameters);
-        JointSpring { stiffness: number(&drive.stiffness), damping: number(&drive.damping), rest }
+        let (stiffness, damping) = drive.spring().map_or((0.0, 0.0), |(s, d)| (number(s), number(d)));
+        JointSpring { stiffness, damping, rest }
     } else if let Some(hinge) = chain.hinges.iter().find(|hinge| hinge.coordinate == id) {
         JointSpring { damping: number(&hinge.damping), ..JointSpring::default() }
     } else {
@@ -56,6 +57,22 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
             let [stiffness, damping, rest] = [stiffness, damping, rest].map(number_text);
             let _ =
                 writeln!(text, "  {}: {{stiffness: {stiffness}, damping: {damping}, rest: {rest}}}", coordinate.name);
+        }
+    }
+
+    if chain.rigid_drives().next().is_some() {
+        text += "\n# Joints whose motion rigid drives prescribe, where they stand at t = 0, rad or m.\nprescribed:\n";
+        for drive in chain.rigid_drives() {
+            let name = &chain.coordinates[drive.coordinate.0].name;
+            let _ = writeln!(text, "  {name}: {}", number_text(profile::start(&drive.profile, parameters)));
+        }
+    }
+    if !chain.rotors.is_empty() {
+        text +=
+            "\n# Inertia of the joints' rotors, on the diagonal of A besides the bodies', kg m^2 or kg.\narmature:\n";
+        for rotor in &chain.rotors {
+            let name = &chain.coordinates[rotor.coordinate.0].name;
+            let _ = writeln!(text, "  {name}: {}", number_text(rotor.armature.at(parameters)));
         }
     }
 

@@ -16,6 +16,15 @@ pub(crate) fn start(profile: &Profile, parameters: &[f64]) -> f64 {
         Profile::Cubic(ramp) => along(ramp, &|tau| tau * tau * (3.0 - 2.0 * tau)),
         Profile::Cycloid(ramp) => along(ramp, &|tau| tau - libm::sin(2.0 * PI * tau) / (2.0 * PI)),
         Profile::Trapezoid { ramp, blend } => along(ramp, &|tau| trapezoid(tau, *blend)),
+        Profile::Speed { from, rate, begin, ramp } => {
+            let passed = (-begin.at(parameters)).max(0.0);
+            let lost = ramp.as_ref().map_or(0.0, |ramp| {
+                let ramp = ramp.at(parameters);
+                let tau = (passed / ramp).min(1.0);
+                ramp * (tau - tau.powi(3) * (1.0 - tau / 2.0))
+            });
+            from.at(parameters) + rate.at(parameters) * (passed - lost)
+        }
         Profile::Table { from, segments } => segments.iter().fold(*from, |position, segment| {
             let u = (-segment.begin).max(0.0).min(segment.duration);
             let [c1, c2, c3] = segment.coefficients;

@@ -45,6 +45,14 @@ pub struct Response<'g> {
     pub linear: Vec3<'g>,
 }
 
+/// What a joint takes whose q̈ is prescribed, from the accelerations before it: `τ = rest + ⟨angular, α⟩ + ⟨linear, a⟩`.
+#[derive(Clone, Copy, Debug)]
+pub struct Reaction<'g> {
+    pub rest: Expr<'g>,
+    pub angular: Vec3<'g>,
+    pub linear: Vec3<'g>,
+}
+
 /// How the acceleration of a ball joint follows from those before it: `α' − α = rest − B α − G a`, with B only where there
 /// is resistance; without, α' itself.
 #[derive(Clone, Copy, Debug)]
@@ -180,6 +188,35 @@ impl<'g> Articulated<'g> {
         Response { rest: free, angular: scaled_angular, linear: scaled_linear }
     }
 
+    /// Turns about an axis with a prescribed `q̈`, in the frame after it; `gyration` is `ω × e q̇`.
+    ///
+    /// What hangs on the joint moves with what is before it but for `e q̈` and the gyration: J, H and M stay, n₀ and f₀ take
+    /// these accelerations in. `τ = n₀_k + J_k α + H_k a + d̂ q̈`. Featherstone 2008, section 9.2.
+    pub fn prescribe_rotation(
+        &mut self,
+        axis: Axis,
+        acceleration: Expr<'g>,
+        resistance: Expr<'g>,
+        gyration: Vec3<'g>,
+    ) -> Reaction<'g> {
+        let k = axis.index();
+        let own = Vec3::along(axis, acceleration) + gyration;
+        self.moment = self.moment + self.rotational.apply(own);
+        self.force = self.force + self.coupling.apply_transposed(own);
+        let rest = self.moment[k] + resistance * acceleration;
+        Reaction { rest, angular: self.rotational.row(k), linear: self.coupling.row(k) }
+    }
+
+    /// Moves along an axis with a prescribed `q̈`. `τ = f₀_k + H_kᵀ α + M_k a + d̂ q̈`.
+    pub fn prescribe_translation(&mut self, axis: Axis, acceleration: Expr<'g>, resistance: Expr<'g>) -> Reaction<'g> {
+        let k = axis.index();
+        let own = Vec3::along(axis, acceleration);
+        self.moment = self.moment + self.coupling.apply(own);
+        self.force = self.force + self.translational.apply(own);
+        let rest = self.force[k] + resistance * acceleration;
+        Reaction { rest, angular: self.coupling.column(k), linear: self.translational.row(k) }
+    }
+
     /// Frees all rotations about the origin, against the moment `n_τ − D' (α' − α)`; everything in one frame.
     ///
     /// With `K = J + D'`: `α' − α = K⁻¹ (n_τ − n₀ − H a − J α)`. What is transmitted,
@@ -214,6 +251,13 @@ impl<'g> Articulated<'g> {
         self.coupling = linear.map_columns(|column| resistance.apply(column));
         self.moment = moment - resistance.apply(rest);
         BallResponse { rest, angular: Some(angular), linear }
+    }
+}
+
+impl<'g> Reaction<'g> {
+    /// τ from the accelerations before the joint's own motion.
+    pub fn effort(&self, angular: Vec3<'g>, linear: Vec3<'g>) -> Expr<'g> {
+        self.rest + (self.angular.dot(angular) + self.linear.dot(linear))
     }
 }
 

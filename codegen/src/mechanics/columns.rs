@@ -16,6 +16,7 @@
 
 use super::factors::Factor;
 use super::model::Model;
+use super::rotors;
 use super::turn::Turn;
 use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};
 use crate::chain::{Axis, CoordinateKind, Inertia};
@@ -159,7 +160,7 @@ impl<'g> Columns<'g> {
         self.shifts[j] = way;
     }
 
-    /// The mass matrix, written out.
+    /// The mass matrix, written out, rotors included.
     pub fn mass_matrix(&self, model: &Model<'g>) -> SymmetricMatrix<'g> {
         let mut matrix = SymmetricMatrix::zero(model.graph, model.size());
         let mut angular = self.angular.clone();
@@ -174,6 +175,9 @@ impl<'g> Columns<'g> {
                 };
                 matrix.add(i, j, self.axes[i].dot(momentum));
             }
+        }
+        for (j, armature) in rotors::by_coordinate(model) {
+            matrix.add(j, j, armature);
         }
         matrix
     }

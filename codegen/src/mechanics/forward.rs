@@ -4,9 +4,10 @@
 //! The mass matrix is never formed, and nothing is lost to its condition number.
 //!
 //! With velocities and gravity: `q̈` of `A q̈ = e + f` [Urbaś 2016, Eq. (23)]. At rest without gravity: `A x = r`, and with
-//! resistances D̂, block-diagonal, `(A + D̂) x = r`.
+//! resistances D̂, block-diagonal, `(A + D̂) x = r`. Where a coordinate's acceleration is prescribed, its joint is not freed but
+//! moves as it must, and what that takes is found on the way out (hybrid dynamics).
 
-use super::articulated::{Articulated, BallResponse, Effort, Response};
+use super::articulated::{Articulated, BallResponse, Effort, Reaction, Response};
 use super::factors::Factor;
 use super::model::Model;
 use super::outward::{Velocities, velocities};
@@ -21,21 +22,33 @@ pub struct Loads<'a, 'g> {
     pub v: &'a [Expr<'g>],
     /// Efforts on the coordinates.
     pub efforts: &'a [Effort<'g>],
+    /// Accelerations of the coordinates where they are prescribed: there the effort is what is sought.
+    pub prescribed: &'a [Option<Expr<'g>>],
     /// Acceleration of gravity in the world frame.
     pub gravity: Vec3<'g>,
+}
+
+/// How a chain moves under its loads.
+pub struct Motion<'g> {
+    /// q̈ of all coordinates.
+    pub accelerations: Vec<Expr<'g>>,
+    /// Efforts that the prescribed accelerations take; zero elsewhere.
+    pub efforts: Vec<Expr<'g>>,
 }
 
 /// How a joint responds, found on the way in and used on the way out.
 pub(super) enum Joint<'g> {
     None,
     Single(Response<'g>),
+    /// Its acceleration is prescribed.
+    Prescribed(Expr<'g>, Reaction<'g>),
     Ball(Ball<'g>, Box<BallResponse<'g>>),
 }
 
-/// q̈ of all coordinates.
-pub fn accelerations<'g>(model: &Model<'g>, factors: &[Factor<'g>], loads: &Loads<'_, 'g>) -> Vec<Expr<'g>> {
+/// q̈ of all coordinates, and the efforts of those that are prescribed (hybrid dynamics).
+pub fn hybrid_dynamics<'g>(model: &Model<'g>, factors: &[Factor<'g>], loads: &Loads<'_, 'g>) -> Motion<'g> {
     let velocities = velocities(model, factors, loads.v);
-    let (joints, _) = inward(model, factors, &velocities, loads.efforts);
+    let (joints, _) = inward(model, factors, &velocities, loads.efforts, loads.prescribed);
     outward(model, factors, &velocities, &joints, (Vec3::zero(model.graph), -loads.gravity))
 }
 
@@ -45,6 +58,7 @@ pub(super) fn inward<'g>(
     factors: &[Factor<'g>],
     velocities: &[Velocities<'g>],
     efforts: &[Effort<'g>],
+    prescribed: &[Option<Expr<'g>>],
 ) -> (Vec<Joint<'g>>, Articulated<'g>) {
     let mut articulated = Articulated::zero(model.graph);
     let sweep = model.graph.sweep();
@@ -73,14 +87,26 @@ pub(super) fn inward<'g>(
                 Joint::None
             }
             (Factor::Prismatic { j, axis }, Velocities::Translation { by, acceleration }) => {
-                let response = articulated.free_translation(*axis, efforts[*j]);
+                let joint = match prescribed[*j] {
+                    Some(q) => {
+                        Joint::Prescribed(q, articulated.prescribe_translation(*axis, q, efforts[*j].resistance))
+                    }
+                    None => Joint::Single(articulated.free_translation(*axis, efforts[*j])),
+                };
                 articulated.shift(*by, *acceleration);
-                Joint::Single(response)
+                joint
             }
             (Factor::Revolute { j, turn }, Velocities::Revolute { gyration }) => {
-                let response = articulated.free_rotation(turn.axis, efforts[*j], *gyration);
+                let axis = turn.axis;
+                let joint = match prescribed[*j] {
+                    Some(q) => {
+                        let resistance = efforts[*j].resistance;
+                        Joint::Prescribed(q, articulated.prescribe_rotation(axis, q, resistance, *gyration))
+                    }
+                    None => Joint::Single(articulated.free_rotation(axis, efforts[*j], *gyration)),
+                };
                 articulated.turn(turn);
-                Joint::Single(response)
+                joint
             }
             (Factor::Ball { j, turns }, Velocities::Ball { .. }) => {
                 let ball = Ball { turns: *turns, resists: efforts[*j..j + 3].iter().any(|e| !e.resistance.is_zero()) };
@@ -101,9 +127,9 @@ pub(super) fn outward<'g>(
     velocities: &[Velocities<'g>],
     joints: &[Joint<'g>],
     start: (Vec3<'g>, Vec3<'g>),
-) -> Vec<Expr<'g>> {
+) -> Motion<'g> {
     let (mut angular, mut linear) = start;
-    let mut accelerations = model.zeros();
+    let (mut accelerations, mut efforts) = (model.zeros(), model.zeros());
     let sweep = model.graph.sweep();
     for ((factor, velocity), joint) in factors.iter().zip(velocities).zip(joints) {
         if let Velocities::Translation { by, acceleration } = velocity {
@@ -111,13 +137,13 @@ pub(super) fn outward<'g>(
         }
         match (factor, velocity, joint) {
             (Factor::Turn(turn), ..) => (angular, linear) = (turn.inward(angular), turn.inward(linear)),
-            (Factor::Revolute { j, turn }, Velocities::Revolute { gyration }, Joint::Single(response)) => {
+            (Factor::Revolute { j, turn }, Velocities::Revolute { gyration }, joint) => {
                 (angular, linear) = (turn.inward(angular), turn.inward(linear));
-                accelerations[*j] = response.acceleration(angular, linear);
+                joint.move_on(&mut accelerations[*j], &mut efforts[*j], angular, linear);
                 angular = angular + Vec3::along(turn.axis, accelerations[*j]) + *gyration;
             }
-            (Factor::Prismatic { j, axis }, _, Joint::Single(response)) => {
-                accelerations[*j] = response.acceleration(angular, linear);
+            (Factor::Prismatic { j, axis }, _, joint) => {
+                joint.move_on(&mut accelerations[*j], &mut efforts[*j], angular, linear);
                 linear = linear + Vec3::along(*axis, accelerations[*j]);
             }
             (Factor::Ball { j, .. }, Velocities::Ball { gyrations }, Joint::Ball(ball, response)) => {
@@ -137,7 +163,25 @@ pub(super) fn outward<'g>(
     for (acceleration, coordinate) in accelerations.iter().zip(&model.chain.coordinates) {
         model.graph.name(*acceleration, format!("{}_ddot", coordinate.name));
     }
-    accelerations
+    for (effort, coordinate) in efforts.iter().zip(&model.chain.coordinates) {
+        model.graph.name(*effort, format!("effort_{}", coordinate.name));
+    }
+    Motion { accelerations, efforts }
+}
+
+impl<'g> Joint<'g> {
+    /// The acceleration of a joint of one coordinate, or the effort that it takes where that is prescribed, from the
+    /// accelerations before it.
+    fn move_on(&self, own: &mut Expr<'g>, effort: &mut Expr<'g>, angular: Vec3<'g>, linear: Vec3<'g>) {
+        match self {
+            Joint::Single(response) => *own = response.acceleration(angular, linear),
+            Joint::Prescribed(acceleration, reaction) => {
+                *own = *acceleration;
+                *effort = reaction.effort(angular, linear);
+            }
+            Joint::None | Joint::Ball(..) => unreachable!("joints were made from the same factors"),
+        }
+    }
 }
 
 /// Three rotations through one point, `R_a(ψ) R_b(θ) R_c(φ)`.

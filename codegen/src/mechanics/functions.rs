@@ -7,13 +7,13 @@ use crate::symbolic::{Expr, Function, Graph, Program, Shape, Stages, Symbol, Sym
 use super::articulated::Effort;
 use super::columns::columns;
 use super::factors::{Factor, factors};
-use super::forward::{self, Loads};
+use super::forward::{self, Loads, Motion};
 use super::inertia::Inertias;
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
-use super::{drives, energy, gravity, newton_euler, points, resisted, springs, supports, transforms};
+use super::{drives, energy, gravity, newton_euler, points, resisted, rotors, springs, supports, transforms};
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
@@ -29,6 +29,17 @@ struct Derivation<'g> {
     kinematics: Kinematics<'g>,
     inertias: Inertias<'g>,
     twists: Vec<Twist<'g>>,
+    /// Whether some coordinate is prescribed.
+    rigid: bool,
+}
+
+/// What moves a chain: velocities, forces, prescribed accelerations, gravity.
+#[derive(Clone, Copy)]
+struct Load<'a, 'g> {
+    v: &'a [Expr<'g>],
+    forces: &'a [Expr<'g>],
+    prescribed: &'a [Option<Expr<'g>>],
+    gravity: Vec3<'g>,
 }
 
 impl<'g> Derivation<'g> {
@@ -38,7 +49,8 @@ impl<'g> Derivation<'g> {
         let kinematics = Kinematics::new(&model);
         let inertias = Inertias::new(&model, &kinematics);
         let twists = twists(&model, &kinematics);
-        Derivation { model, factors, kinematics, inertias, twists }
+        let rigid = chain.rigid_drives().next().is_some();
+        Derivation { model, factors, kinematics, inertias, twists, rigid }
     }
 
     fn functions(&self, analyses: Analyses, symbols: &mut Vec<Symbol>) -> Vec<Function> {
@@ -131,23 +143,40 @@ impl<'g> Derivation<'g> {
             ));
         }
         if !chain.drives.is_empty() {
-            let forces = drives::forces(model, model.t, &model.v);
+            let (forces, tape) = self.recorded_if_rigid(|| self.drive_forces());
             parts.push(forces.clone());
-            functions.push(function(
-                "drive_forces",
-                "Generalized forces of the drives, N and N m.",
-                "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]",
-                &[Time, Position, Velocity],
-                vector(),
-                forces,
-            ));
+            functions.push(
+                function(
+                    "drive_forces",
+                    "Generalized forces of the drives, N and N m.",
+                    if self.rigid {
+                        "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]; of rigid drives (A q̈ − e)_j"
+                    } else {
+                        "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]"
+                    },
+                    &[Time, Position, Velocity],
+                    vector(),
+                    forces,
+                )
+                .by(tape),
+            );
             functions.push(function(
                 "drive_motions",
                 "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
                 "q_dr(t), q̇_dr(t)",
                 &[Time],
                 Shape::Pairs(chain.drives.len()),
-                drives::motions(model),
+                drives::motions(model, chain.drives.iter()),
+            ));
+        }
+        if self.rigid {
+            functions.push(function(
+                "prescribed_motions",
+                "Position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every coordinate that a rigid drive prescribes.",
+                "q_dr(t), q̇_dr(t)",
+                &[Time],
+                Shape::Pairs(chain.rigid_drives().count()),
+                drives::motions(model, chain.rigid_drives()),
             ));
         }
         if !chain.hinges.is_empty() {
@@ -163,20 +192,35 @@ impl<'g> Derivation<'g> {
             ));
         }
         if parts.len() > 1 {
-            functions.push(function(
-                "forces",
-                "Generalized forces of all but inertia and gravity, N and N m.",
-                "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
-                &[Time, Position, Velocity],
-                vector(),
-                sum(&parts),
-            ));
+            functions.push(
+                function(
+                    "forces",
+                    "Generalized forces of all but inertia and gravity, N and N m.",
+                    "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
+                    &[Time, Position, Velocity],
+                    vector(),
+                    sum(&parts),
+                )
+                .by(self.recorded_if_rigid(|| self.drive_forces()).1),
+            );
         }
         functions
     }
 
-    /// Generalized forces of all but inertia and gravity.
-    fn all_forces(&self, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    /// Generalized forces of all drives: of the springs, and what the prescribed motions take.
+    fn drive_forces(&self) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let flexible = drives::forces(model, model.t, &model.v);
+        if self.rigid { sum(&[flexible, self.motion().efforts]) } else { flexible }
+    }
+
+    /// What efforts of rigid drives need comes in the order of the recursion that finds them.
+    fn recorded_if_rigid<T>(&self, derive: impl FnOnce() -> T) -> (T, Tape) {
+        if self.rigid { self.model.graph.recorded(derive) } else { (derive(), Tape::default()) }
+    }
+
+    /// Generalized forces of all but inertia, gravity and rigid drives.
+    fn given_forces(&self, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let model = &self.model;
         sum(&[
             supports::forces(model, &self.kinematics, v),
@@ -216,20 +260,29 @@ impl<'g> Derivation<'g> {
             ));
         }
         if !chain.drives.is_empty() {
-            functions.push(scalar(
-                "drive_energy",
-                "Energy of the drives' springs, J.",
-                "½ Σ s (q_dr − q)² [Urbaś 2016, Eq. (19)]",
-                &[Time, Position],
-                drives::energy(model),
-            ));
-            functions.push(scalar(
-                "drive_power",
-                "Power that the prescribed motions put in, W.",
-                "Σ t_dr q̇_dr",
-                &[Time, Position, Velocity],
-                drives::power(model),
-            ));
+            if chain.drives.iter().any(|drive| drive.spring().is_some()) {
+                functions.push(scalar(
+                    "drive_energy",
+                    "Energy of the drives' springs, J.",
+                    "½ Σ s (q_dr − q)² [Urbaś 2016, Eq. (19)]",
+                    &[Time, Position],
+                    drives::energy(model),
+                ));
+            }
+            let (power, tape) = self.recorded_if_rigid(|| {
+                let efforts = if self.rigid { self.motion().efforts } else { vec![] };
+                drives::power(model, &efforts)
+            });
+            functions.push(
+                scalar(
+                    "drive_power",
+                    "Power that the prescribed motions put in, W.",
+                    "Σ t_dr q̇_dr",
+                    &[Time, Position, Velocity],
+                    power,
+                )
+                .by(tape),
+            );
         }
         let dissipation =
             supports::dissipation(model, &self.kinematics) + springs::dissipation(model) + drives::dissipation(model);
@@ -248,14 +301,17 @@ impl<'g> Derivation<'g> {
     fn dynamics(&self) -> Vec<Function> {
         let model = &self.model;
         let gravity = model.vector(&model.chain.gravity);
-        let forces = self.all_forces(model.t, &model.v);
-        let (accelerations, tape) = model.graph.recorded(|| self.accelerations(&model.v, &forces, gravity));
-        let rest = model.zeros();
-        let nothing = Vec3::zero(model.graph);
-        let (solution, solution_tape) = model.graph.recorded(|| self.accelerations(&rest, &model.right, nothing));
+        let forces = self.given_forces(model.t, &model.v);
+        let prescribed = drives::accelerations(model);
+        let of_motion = Load { v: &model.v, forces: &forces, prescribed: &prescribed, gravity };
+        let (accelerations, tape) = model.graph.recorded(|| self.hybrid_dynamics(&of_motion).accelerations);
+        let (rest, still) = (model.zeros(), drives::at_rest(model));
+        let at_rest = Load { v: &rest, forces: &model.right, prescribed: &still, gravity: Vec3::zero(model.graph) };
+        let (solution, solution_tape) = model.graph.recorded(|| self.hybrid_dynamics(&at_rest).accelerations);
         let (columns, mass_tape) = model.graph.recorded(|| columns(model, &self.factors));
         let (bias, bias_tape) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
-        let looped = model.chain.loops.fill_mass_matrix(model.size());
+        // The loop knows bodies alone.
+        let looped = model.chain.loops.fill_mass_matrix(model.size()) && model.chain.rotors.is_empty();
         let (mass_shape, both_shape, mass, mut both) = if looped {
             let slots = columns.slots();
             let shape = |bias| Shape::Columns { n: model.size(), points: columns.points(model), bias };
@@ -322,11 +378,22 @@ impl<'g> Derivation<'g> {
         ]
     }
 
-    /// Accelerations from velocities, forces and gravity.
-    fn accelerations(&self, v: &[Expr<'g>], forces: &[Expr<'g>], gravity: Vec3<'g>) -> Vec<Expr<'g>> {
-        let resistance = self.model.zero();
-        let efforts: Vec<_> = forces.iter().map(|&applied| Effort { applied, resistance }).collect();
-        forward::accelerations(&self.model, &self.factors, &Loads { v, efforts: &efforts, gravity })
+    /// Accelerations, and efforts of rigid drives, at the present state.
+    fn motion(&self) -> Motion<'g> {
+        let model = &self.model;
+        let forces = self.given_forces(model.t, &model.v);
+        let prescribed = drives::accelerations(model);
+        let gravity = model.vector(&model.chain.gravity);
+        self.hybrid_dynamics(&Load { v: &model.v, forces: &forces, prescribed: &prescribed, gravity })
+    }
+
+    /// How the chain moves, rotors included.
+    fn hybrid_dynamics(&self, load: &Load<'_, 'g>) -> Motion<'g> {
+        let Load { v, forces, prescribed, gravity } = *load;
+        let armatures = rotors::armatures(&self.model);
+        let efforts = forces.iter().zip(armatures).map(|(&applied, resistance)| Effort { applied, resistance });
+        let efforts: Vec<_> = efforts.collect();
+        forward::hybrid_dynamics(&self.model, &self.factors, &Loads { v, efforts: &efforts, prescribed, gravity })
     }
 
     /// What implicit integration needs: structured stiffness and damping, and systems with them.
@@ -420,7 +487,7 @@ impl<'g> Derivation<'g> {
     }
 
     fn statics(&self) -> Vec<Function> {
-        vec![
+        let mut functions = vec![
             function(
                 "static_residual",
                 "Gradient of the potential energy at t = 0, zero in equilibrium; N and N m.",
@@ -435,20 +502,58 @@ impl<'g> Derivation<'g> {
                 "∂²E_p/∂q∂q",
                 &[Position],
                 Shape::Symmetric(self.model.size()),
-                self.stiffness().into_upper(),
+                self.unknowns(self.stiffness(), 1.0).into_upper(),
             ),
-        ]
+        ];
+        if self.rigid {
+            functions.push(function(
+                "drive_forces_at_rest",
+                "Generalized forces of the drives that hold the crane at rest at t = 0, N and N m.",
+                "s (q_dr − q) [Urbaś 2016, Eq. (20)]; of rigid drives ∂E_p/∂q_j",
+                &[Position],
+                Shape::Vector(self.model.size()),
+                self.drive_forces_at_rest(),
+            ));
+        }
+        functions
+    }
+
+    /// `∂E_p/∂q`, 0 where a coordinate is prescribed.
+    fn static_residual(&self) -> Vec<Expr<'g>> {
+        let mut residual = self.gradient();
+        for drive in self.model.chain.rigid_drives() {
+            residual[drive.coordinate.0] = self.model.zero();
+        }
+        residual
+    }
+
+    /// Of rigid drives all that the other forces leave to them.
+    fn drive_forces_at_rest(&self) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let mut forces = drives::forces_at_rest(model);
+        let gradient = self.gradient();
+        for drive in model.chain.rigid_drives() {
+            forces[drive.coordinate.0] = gradient[drive.coordinate.0];
+        }
+        forces
+    }
+
+    /// A matrix of small motions with nothing but `diagonal` in the rows and columns of prescribed coordinates, which do not
+    /// move.
+    fn unknowns(&self, matrix: SymmetricMatrix<'g>, diagonal: f64) -> SymmetricMatrix<'g> {
+        let diagonal = self.model.graph.constant(diagonal);
+        self.model.chain.rigid_drives().fold(matrix, |matrix, drive| matrix.without(drive.coordinate.0, diagonal))
     }
 
     /// `∂E_p/∂q`: gravity less all forces at rest and t = 0.
-    fn static_residual(&self) -> Vec<Expr<'g>> {
+    fn gradient(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
-        let (start, rest) = (model.zero(), model.zeros());
+        let rest = model.zeros();
         let gravity = gravity::gradient(model, &self.kinematics, &self.inertias);
         let forces = sum(&[
             supports::forces(model, &self.kinematics, &rest),
             springs::element_forces(model, &model.q, &rest),
-            drives::forces(model, start, &rest),
+            drives::forces_at_rest(model),
         ]);
         gravity.into_iter().zip(forces).map(|(g, f)| g - f).collect()
     }
@@ -464,8 +569,9 @@ impl<'g> Derivation<'g> {
         let model = &self.model;
         let damping = self.impedances().1;
         let columns = columns(model, &self.factors);
-        let mut outputs = columns.mass_matrix(model).into_upper();
-        outputs.extend(self.stiffness().into_upper().iter().chain(&damping.into_upper()));
+        let mut outputs = self.unknowns(columns.mass_matrix(model), 1.0).into_upper();
+        outputs.extend(self.unknowns(self.stiffness(), 1.0).into_upper());
+        outputs.extend(self.unknowns(damping, 0.0).into_upper());
         let matrix = || Shape::Symmetric(model.size());
         let shape =
             Shape::Record("Linearisation", vec![("mass", matrix()), ("stiffness", matrix()), ("damping", matrix())]);

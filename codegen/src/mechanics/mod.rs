@@ -21,6 +21,7 @@ mod outward;
 mod points;
 mod profile;
 mod resisted;
+mod rotors;
 mod springs;
 mod supports;
 #[cfg(test)]

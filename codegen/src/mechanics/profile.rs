@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::model::Model;
-use crate::chain::{Profile, Ramp, Segment};
+use crate::chain::{Profile, Ramp, Segment, Value};
 use crate::symbolic::Expr;
 
 /// `q_dr(t)`, m or rad.
@@ -33,6 +33,16 @@ pub fn position<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'
             let [up, level, down] = phases(model, ramp, *share, t);
             let curved = (up.squared() - down.squared()) / (2.0 * share);
             blend(ramp, (curved + level + down) / (1.0 - share))
+        }
+        Profile::Speed { from, rate, begin, ramp } => {
+            let from = model.number(from);
+            let (tau, rest) = since(model, begin, ramp.as_ref(), t);
+            // ∫ (3τ² − 2τ³) dτ
+            let way = match ramp {
+                Some(ramp) => model.number(ramp) * (tau * tau * tau * (1.0 - tau * 0.5)) + rest,
+                None => rest,
+            };
+            from + model.number(rate) * way
         }
         Profile::Table { from, segments } => segments.iter().fold(model.graph.constant(*from), |sum, segment| {
             let u = local_time(model, segment, t);
@@ -66,6 +76,10 @@ pub fn rate<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
             let [up, _, down] = phases(model, ramp, *blend, t);
             scale(ramp, (up - down) / (blend * (1.0 - blend)))
         }
+        Profile::Speed { rate, begin, ramp, .. } => {
+            let (tau, _) = since(model, begin, ramp.as_ref(), t);
+            model.number(rate) * if ramp.is_some() { tau * tau * (3.0 - tau * 2.0) } else { tau }
+        }
         // Each piece adds the change of rate over it; the first starts at rest.
         Profile::Table { segments, .. } => segments.iter().fold(model.zero(), |sum, segment| {
             let u = local_time(model, segment, t);
@@ -75,12 +89,78 @@ pub fn rate<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
     }
 }
 
+/// `q̈_dr(t)`, m/s² or rad/s². Where it jumps, a motion that begins or ends has the acceleration that it begins or ends with.
+pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
+    let scale = |ramp: &Ramp, curvature: Expr<'g>| {
+        let travel = model.number(&ramp.to) - model.number(&ramp.from);
+        travel / model.number(&ramp.duration).squared() * curvature
+    };
+    match profile {
+        Profile::Hold(_) => model.zero(),
+        Profile::Quintic(ramp) => {
+            let tau = tau(model, ramp, t);
+            scale(ramp, tau * (1.0 - tau) * (1.0 - 2.0 * tau) * 60.0)
+        }
+        Profile::Cubic(ramp) => {
+            let [begun, ended] = bounds(model, &ramp.begin, &ramp.duration, t);
+            scale(ramp, (begun + ended - 2.0 * tau(model, ramp, t)) * 6.0)
+        }
+        Profile::Cycloid(ramp) => scale(ramp, (tau(model, ramp, t) * TAU).sin() * TAU),
+        Profile::Trapezoid { ramp, blend } => {
+            let [begun, ended] = bounds(model, &ramp.begin, &ramp.duration, t);
+            let tau = tau(model, ramp, t);
+            let [level, down] = [*blend, 1.0 - blend].map(|share| after(model, tau - share));
+            scale(ramp, (begun - level - down + ended) / (blend * (1.0 - blend)))
+        }
+        Profile::Speed { rate, begin, ramp: Some(ramp), .. } => {
+            let (tau, _) = since(model, begin, Some(ramp), t);
+            model.number(rate) / model.number(ramp) * (tau * (1.0 - tau) * 6.0)
+        }
+        Profile::Speed { ramp: None, .. } => model.zero(),
+        // The spline's second derivative changes along its pieces, and jumps at both ends.
+        Profile::Table { segments, .. } => {
+            let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return model.zero() };
+            let [_, c2, _] = first.coefficients;
+            let [_, d2, d3] = last.coefficients;
+            let inside = segments.iter().fold((1.0 - after(model, first.begin - t)) * (2.0 * c2), |sum, segment| {
+                sum + local_time(model, segment, t) * (6.0 * segment.coefficients[2])
+            });
+            inside - after(model, t - last.begin - last.duration) * (2.0 * d2 + 6.0 * d3 * last.duration)
+        }
+    }
+}
+
+/// 1 from the beginning of a motion on, and 1 after its end; 0 before.
+fn bounds<'g>(model: &Model<'g>, begin: &Value, duration: &Value, t: Expr<'g>) -> [Expr<'g>; 2] {
+    let passed = t - model.number(begin);
+    [1.0 - after(model, -passed), after(model, passed - model.number(duration))]
+}
+
 /// `τ = clamp((t − begin)/duration, 0, 1)`
 fn tau<'g>(model: &Model<'g>, ramp: &Ramp, t: Expr<'g>) -> Expr<'g> {
     let (zero, one) = (model.zero(), model.graph.constant(1.0));
     // The reciprocal is a number, or a constant of the live parameters.
     let per_second = one / model.number(&ramp.duration);
     ((t - model.number(&ramp.begin)) * per_second).clamp(zero, one)
+}
+
+/// Of a constant speed: the share τ of its ramp that has passed, from 0 to 1 at once without one, and the time since, s.
+fn since<'g>(model: &Model<'g>, begin: &Value, ramp: Option<&Value>, t: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
+    let (zero, one) = (model.zero(), model.graph.constant(1.0));
+    let passed = t - model.number(begin);
+    match ramp {
+        Some(ramp) => {
+            let ramp = model.number(ramp);
+            ((passed * (one / ramp)).clamp(zero, one), (passed - ramp).max(zero))
+        }
+        None => (one - after(model, -passed), passed.max(zero)),
+    }
+}
+
+/// 1 where x > 0, and 0 elsewhere: times are 0, or not as small as the reciprocal of this.
+fn after<'g>(model: &Model<'g>, x: Expr<'g>) -> Expr<'g> {
+    const STEEP: f64 = 1e300;
+    (x * STEEP).clamp(model.zero(), model.graph.constant(1.0))
 }
 
 /// Share of τ spent speeding up, at constant rate, and slowing down, each from 0 to its length.

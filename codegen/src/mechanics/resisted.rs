@@ -4,30 +4,36 @@
 //! implicit step adds to A has this structure, and costs what A alone costs.
 
 use super::articulated::{Articulated, Effort};
+use super::drives;
 use super::factors::Factor;
 use super::forward::{inward, outward};
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::outward::velocities;
+use super::rotors;
 use super::turn::Turn;
 use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::CoordinateId;
 use crate::symbolic::Expr;
 
-/// x of `(A + D̂) x = r`.
+/// x of `(A + D̂) x = r`, without the rows and columns of prescribed coordinates: their x is 0.
 ///
 /// All that hangs on the base is freed joint by joint; what is left is a system of the base's coordinates, with the columns
 /// `(ω_j, υ_j)` of the motions of the first body's origin.
 pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let base: Vec<usize> = model.chain.base.iter().flatten().map(|CoordinateId(j)| *j).collect();
     let zero = Vec3::zero(model.graph);
-    let efforts: Vec<Effort<'g>> = (model.right.iter().zip(&model.resistance))
+    let mut efforts: Vec<Effort<'g>> = (model.right.iter().zip(&model.resistance))
         .map(|(&applied, &resistance)| Effort { applied, resistance })
         .collect();
+    for (j, armature) in rotors::by_coordinate(model) {
+        efforts[j].resistance = efforts[j].resistance + armature;
+    }
     let velocities = velocities(model, factors, &model.zeros());
     let split = if base.is_empty() { 0 } else { first_body(factors) };
 
-    let (joints, mut articulated) = inward(model, &factors[split..], &velocities[split..], &efforts);
+    let prescribed = drives::at_rest(model);
+    let (joints, mut articulated) = inward(model, &factors[split..], &velocities[split..], &efforts, &prescribed);
     let path = &factors[..split];
     let turns: Vec<Turn<'g>> = path.iter().flat_map(Factor::turns).map(|(_, turn)| turn).collect();
     turns.iter().rev().for_each(|turn| articulated.turn(turn));
@@ -53,7 +59,7 @@ pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[F
     let start = turns.iter().fold((sum(|column| column.0), sum(|column| column.1)), |(alpha, a), turn| {
         (turn.inward(alpha), turn.inward(a))
     });
-    let mut x = outward(model, &factors[split..], &velocities[split..], &joints, start);
+    let mut x = outward(model, &factors[split..], &velocities[split..], &joints, start).accelerations;
     for (&j, value) in base.iter().zip(motion) {
         x[j] = value;
     }

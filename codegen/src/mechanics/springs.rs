@@ -36,7 +36,7 @@ pub fn hinge_forces<'g>(model: &Model<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
 /// Stiffness of elements and drives, on the diagonal.
 pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     let elements = model.chain.elements.iter().map(|s| (s.coordinate.0, &s.stiffness));
-    let drives = model.chain.drives.iter().map(|d| (d.coordinate.0, &d.stiffness));
+    let drives = model.chain.drives.iter().filter_map(|d| Some((d.coordinate.0, d.spring()?.0)));
     for (j, stiffness) in elements.chain(drives) {
         matrix.add(j, j, model.number(stiffness));
     }
@@ -45,7 +45,7 @@ pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
 /// Damping of elements, drives and joints, on the diagonal.
 pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     let elements = model.chain.elements.iter().map(|s| (s.coordinate.0, &s.damping));
-    let drives = model.chain.drives.iter().map(|d| (d.coordinate.0, &d.damping));
+    let drives = model.chain.drives.iter().filter_map(|d| Some((d.coordinate.0, d.spring()?.1)));
     let hinges = model.chain.hinges.iter().map(|h| (h.coordinate.0, &h.damping));
     for (j, damping) in elements.chain(drives).chain(hinges) {
         matrix.add(j, j, model.number(damping));

@@ -321,6 +321,15 @@ impl<'g> SymmetricMatrix<'g> {
         self.upper[self.slot(row, column)]
     }
 
+    /// The matrix with `x` on the diagonal of row and column j, and zeros beside it.
+    pub fn without(mut self, j: usize, x: Expr<'g>) -> Self {
+        for i in 0..self.size {
+            let slot = self.slot(i.min(j), i.max(j));
+            self.upper[slot] = if i == j { x } else { x.graph().constant(0.0) };
+        }
+        self
+    }
+
     fn slot(&self, row: usize, column: usize) -> usize {
         row * self.size - row * row.saturating_sub(1) / 2 + column - row
     }

@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
                 self.place,
                 node.content.describe(),
                 node.content.kind(),
-                expected,
+                if expected == "a boolean" { "`true` or `false`" } else { expected.as_str() },
             ));
         }
     }

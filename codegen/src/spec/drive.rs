@@ -5,21 +5,28 @@ use serde::Deserialize;
 
 use super::{Angle, Constant, FixedAngle, Given, Number};
 
-/// A flexible drive: a spring and a damper between a joint and a prescribed motion.
+/// A drive: a spring and a damper between a joint and a prescribed motion, or the motion itself.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `coordinate`, `stiffness`, `damping` and `motion`")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a mapping of `coordinate`, `stiffness`, `damping` and `motion`, or of `coordinate`, `rigid` and `motion`"
+)]
 pub struct Drive {
     /// The coordinate it drives, such as `boom_psi`.
     pub coordinate: Given<String>,
-    /// Stiffness, N m/rad or N/m.
-    pub stiffness: Given<Number>,
+    /// Stiffness, N m/rad or N/m; required unless the drive is rigid.
+    pub stiffness: Option<Given<Number>>,
     /// Damping, N m s/rad or N s/m. Default 0.
     pub damping: Option<Given<Number>>,
-    /// Motion of the spring's far end, exactly one.
+    /// Whether the coordinate follows the motion exactly. Default false.
+    pub rigid: Option<Given<bool>>,
+    /// Inertia of the drive's rotor, reflected to the joint by the square of the gear ratio, kg m² or kg. Default 0.
+    pub armature: Option<Given<Number>>,
+    /// Motion of the spring's far end, or of the joint of a rigid drive; exactly one.
     pub motion: Given<Motion>,
 }
 
-/// Motion of a drive; before it begins and after it ends, the drive holds its position.
+/// Motion of a drive; before it begins and, unless it is a speed, after it ends, the drive holds its position.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
@@ -33,6 +40,8 @@ pub enum Motion {
     Cycloid(Ramp),
     /// Constant acceleration, constant velocity, constant deceleration.
     Trapezoid(Trapezoid),
+    /// Constant speed without end.
+    Speed(Speed),
     /// Cubic spline through given positions, at rest at both ends.
     Table(Table),
 }
@@ -65,6 +74,20 @@ pub struct Trapezoid {
     pub duration: Given<Number>,
     /// Share of the duration spent accelerating, and as much decelerating, above 0, up to 0.5. Default 0.25.
     pub blend: Option<Given<Constant>>,
+}
+
+/// A constant speed.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `rate`, `from`, `begin`, `ramp`")]
+pub struct Speed {
+    /// Speed, rad/s or m/s.
+    pub rate: Given<Angle>,
+    /// Position before, rad or m. Default 0.
+    pub from: Option<Given<Angle>>,
+    /// When it begins, s. Default 0.
+    pub begin: Option<Given<Number>>,
+    /// How long it takes to reach the speed, smoothly, s. Default: it jumps to its speed.
+    pub ramp: Option<Given<Number>>,
 }
 
 /// Positions at given times.

@@ -13,7 +13,7 @@ mod schema;
 mod support;
 
 pub use beam::{Beam, BeamDamping, Directions, Element, Material, Section, Sections, Spring};
-pub use drive::{Drive, Motion, Ramp, Table, Trapezoid};
+pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub(crate) use given::{EITHER, GIVEN, MANY};
 pub use given::{Either, Entries, Given, Many};
 pub use inertia::{About, Inertia};
@@ -63,10 +63,12 @@ pub struct Crane {
     pub links: Given<Vec<Given<Link>>>,
     /// Springs and dampers between a free base and the ground.
     pub supports: Option<Given<Vec<Given<Support>>>>,
-    /// Flexible drives of joints.
+    /// Drives of joints.
     pub drives: Option<Given<Vec<Given<Drive>>>>,
     /// Viscous damping of passive joints by coordinate, N m s/rad or N s/m.
     pub damping: Option<Given<Entries<Number>>>,
+    /// Rotor inertia of joints without a drive by coordinate, reflected by the square of the gear ratio, kg m² or kg.
+    pub armature: Option<Given<Entries<Number>>>,
     /// Points whose motion is of interest.
     pub points: Option<Given<Vec<Given<Point>>>>,
     /// Where the static solution starts, by coordinate, rad or m. Default: a driven coordinate at its drive's position

@@ -57,6 +57,12 @@ impl<'g> Expr<'g> {
         self.graph.build(Op::Cos(self.id))
     }
 
+    /// The larger of x and y.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        self.graph.build(Op::Max(self.id, other.id))
+    }
+
     /// The nearest number to x in [low, high].
     #[must_use]
     pub fn clamp(self, low: Self, high: Self) -> Self {

@@ -2,32 +2,40 @@
 
 use super::limits::Limit;
 use super::{Check, Owner};
-use crate::chain::{self, CoordinateId, CoordinateKind, Drive, Hinge, Profile, Value};
+use crate::chain::{self, CoordinateId, CoordinateKind, Drive, Hinge, Profile, Rotor, Transmission, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::spline;
-use crate::spec::{Angle, Crane, Given, Motion, Number, Table};
+use crate::spec::{self, Angle, Crane, Given, Motion, Number, Table};
 
-/// Unit of a drive's stiffness and damping.
-fn units(kind: Option<CoordinateKind>) -> (&'static str, &'static str) {
+/// Units on a coordinate.
+struct Units {
+    stiffness: &'static str,
+    damping: &'static str,
+    armature: &'static str,
+}
+
+fn units(kind: Option<CoordinateKind>) -> Units {
     match kind {
-        Some(CoordinateKind::Translation) => ("N/m", "N s/m"),
-        _ => ("N m/rad", "N m s/rad"),
+        Some(CoordinateKind::Translation) => Units { stiffness: "N/m", damping: "N s/m", armature: "kg" },
+        _ => Units { stiffness: "N m/rad", damping: "N m s/rad", armature: "kg m²" },
     }
 }
 
 impl<'a> Check<'a> {
-    pub(super) fn drives(&mut self, crane: &'a Crane) -> Vec<Drive> {
+    /// The drives, and the rotors that they turn.
+    pub(super) fn drives(&mut self, crane: &'a Crane) -> (Vec<Drive>, Vec<Rotor>) {
         let mut drives: Vec<Drive> = Vec::new();
+        let mut rotors = Vec::new();
         let given = crane.drives.as_ref().and_then(|drives| drives.value.as_deref()).unwrap_or_default();
-        for drive in given.iter().filter_map(|drive| drive.value.as_ref()) {
+        for given in given {
+            let Some(drive) = &given.value else { continue };
             let coordinate = self.coordinate(&drive.coordinate);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let name = drive.coordinate.value.as_deref().unwrap_or_default();
-            let (stiffness_unit, damping_unit) = units(kind);
-            let place = |what: &str| format!("the {what} of drive `{name}`");
-            let stiffness = self.number(&drive.stiffness, &place("stiffness"), stiffness_unit, Limit::NotNegative);
-            let damping = drive.damping.as_ref();
-            let damping = self.number_or(damping, 0.0, &place("damping"), damping_unit, Limit::NotNegative);
+            let transmission = self.transmission(drive, given.span, name, kind);
+            let armature = drive.armature.as_ref();
+            let place = format!("the armature of drive `{name}`");
+            let armature = self.number_or(armature, 0.0, &place, units(kind).armature, Limit::NotNegative);
             let profile = drive.motion.value.as_ref().and_then(|motion| self.motion(motion, kind, drive.motion.span));
             let Some(id) = coordinate else { continue };
             if let Some(owner) = self.not_a_joint(id) {
@@ -36,9 +44,52 @@ impl<'a> Check<'a> {
                 self.report(rule::driven_twice(drive.coordinate.span, name));
             }
             let profile = profile.unwrap_or(Profile::Hold(f64::NAN.into()));
-            drives.push(Drive { coordinate: id, stiffness, damping, profile });
+            if transmission == Transmission::Rigid
+                && let Some(begin) = jump(&profile)
+            {
+                self.report(rule::jumps(drive.motion.span, name, begin));
+            }
+            drives.push(Drive { coordinate: id, transmission, profile });
+            if !armature.is_zero() {
+                rotors.push(Rotor { coordinate: id, armature });
+            }
         }
-        drives
+        (drives, rotors)
+    }
+
+    /// A spring and a damper, or nothing that gives way.
+    fn transmission(
+        &mut self,
+        drive: &spec::Drive,
+        span: Span,
+        name: &str,
+        kind: Option<CoordinateKind>,
+    ) -> Transmission {
+        let units = units(kind);
+        let mut number = |given: &Given<Number>, what, unit| {
+            self.number(given, &format!("the {what} of drive `{name}`"), unit, Limit::NotNegative)
+        };
+        let stiffness = drive.stiffness.as_ref().map(|given| number(given, "stiffness", units.stiffness));
+        let damping = drive.damping.as_ref().map(|given| number(given, "damping", units.damping));
+        if drive.rigid.as_ref().is_some_and(|rigid| rigid.value == Some(true)) {
+            for (key, span) in [
+                ("stiffness", drive.stiffness.as_ref().map(|given| given.span)),
+                ("damping", drive.damping.as_ref().map(|given| given.span)),
+            ] {
+                if let Some(span) = span {
+                    self.report(rule::rigid_spring(span, name, key));
+                }
+            }
+            return Transmission::Rigid;
+        }
+        // What `rigid` says may have been wrong.
+        if stiffness.is_none() && drive.rigid.as_ref().is_none_or(|rigid| rigid.value.is_some()) {
+            self.report(rule::no_transmission(span, name));
+        }
+        Transmission::Flexible {
+            stiffness: stiffness.unwrap_or(f64::NAN.into()),
+            damping: damping.unwrap_or(Value::ZERO),
+        }
     }
 
     pub(super) fn hinges(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Hinge> {
@@ -48,7 +99,7 @@ impl<'a> Check<'a> {
             let coordinate = self.coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let place = format!("the damping of `{}`", name.value.as_deref().unwrap_or_default());
-            let damping = self.number(damping, &place, units(kind).1, Limit::NotNegative);
+            let damping = self.number(damping, &place, units(kind).damping, Limit::NotNegative);
             let Some(id) = coordinate else { continue };
             let owner = match &self.owners[id.0] {
                 Owner::Beam(link) => Some(format!("the springs of beam `{link}`")),
@@ -61,6 +112,28 @@ impl<'a> Check<'a> {
             hinges.push(Hinge { coordinate: id, damping });
         }
         hinges
+    }
+
+    /// Rotors of joints without a drive.
+    pub(super) fn rotors(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Rotor> {
+        let mut rotors = Vec::new();
+        let Some(entries) = crane.armature.as_ref().and_then(|armature| armature.value.as_ref()) else { return rotors };
+        for (name, armature) in &entries.0 {
+            let coordinate = self.coordinate(name);
+            let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
+            let place = format!("the armature of `{}`", name.value.as_deref().unwrap_or_default());
+            let armature = self.number(armature, &place, units(kind).armature, Limit::NotNegative);
+            let Some(id) = coordinate else { continue };
+            let name_of = &self.coordinates[id.0].name;
+            if let Some(owner) = self.not_a_joint(id) {
+                self.report(rule::no_rotor(name.span, name_of, owner, "leave it out: rotors turn with joints"));
+            } else if drives.iter().any(|drive| drive.coordinate == id) {
+                self.report(rule::no_rotor(name.span, name_of, "a drive", "write `armature:` in the drive"));
+            } else if !armature.is_zero() {
+                rotors.push(Rotor { coordinate: id, armature });
+            }
+        }
+        rotors
     }
 
     /// What a coordinate belongs to, if that is not a joint.
@@ -88,6 +161,16 @@ impl<'a> Check<'a> {
                     share
                 });
                 Profile::Trapezoid { ramp, blend }
+            }
+            Motion::Speed(speed) => {
+                let from = speed.from.as_ref();
+                let (begin, ramp) = (speed.begin.as_ref(), speed.ramp.as_ref());
+                Profile::Speed {
+                    from: from.map_or(Value::ZERO, |from| self.position(from, kind, "`from`")),
+                    rate: self.position(&speed.rate, kind, "`rate`"),
+                    begin: begin.map_or(Value::ZERO, |begin| self.number(begin, "`begin`", "s", Limit::Any)),
+                    ramp: ramp.map(|ramp| self.number(ramp, "the ramp of a motion", "s", Limit::Positive)),
+                }
             }
             Motion::Table(table) => self.table(table, kind, span)?,
         })
@@ -128,5 +211,16 @@ impl<'a> Check<'a> {
             return None;
         }
         Some(Profile::Table { from: values[0], segments: spline::clamped(&times, &values) })
+    }
+}
+
+/// When a motion jumps to its speed, in words, if it does so in a run.
+fn jump(profile: &Profile) -> Option<String> {
+    match profile {
+        Profile::Speed { begin: Value::Constant(begin), ramp: None, .. } => {
+            (*begin > 0.0).then(|| format!("t = {begin} s"))
+        }
+        Profile::Speed { ramp: None, .. } => Some("the live `begin`".into()),
+        _ => None,
     }
 }

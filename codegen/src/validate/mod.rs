@@ -115,8 +115,9 @@ impl<'a> Check<'a> {
         };
         self.links(&crane.links);
         let supports = self.supports(crane);
-        let drives = self.drives(crane);
+        let (drives, mut rotors) = self.drives(crane);
         let hinges = self.hinges(crane, &drives);
+        rotors.extend(self.rotors(crane, &drives));
         let points = self.points(crane, &supports);
         let guess = self.guess(crane, &drives);
         let run = self.run(crane.run.as_ref());
@@ -137,6 +138,7 @@ impl<'a> Check<'a> {
             elements: std::mem::take(&mut self.elements),
             drives,
             hinges,
+            rotors,
             points,
             guess,
             run,

@@ -107,8 +107,9 @@ impl Check<'_> {
                 let Step::Move(id) = step else { continue };
                 let motion = &motions[id.0];
                 let force = apply(&articulated, motion);
-                let pivot = dot(&force, motion);
-                if pivot <= VANISHING * dot(&apply(&locked, motion), motion) {
+                let armature = armature(chain, *id, parameters);
+                let pivot = dot(&force, motion) + armature;
+                if pivot <= VANISHING * (dot(&apply(&locked, motion), motion) + armature) {
                     idle.push((BodyId(index), *id));
                     continue;
                 }
@@ -119,6 +120,11 @@ impl Check<'_> {
         }
         idle
     }
+}
+
+/// Inertia of a coordinate's rotor.
+fn armature(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> f64 {
+    chain.rotors.iter().filter(|rotor| rotor.coordinate == id).map(|rotor| rotor.armature.at(parameters)).sum()
 }
 
 /// An angle or distance of order 1 for the n-th coordinate, in no simple relation to any other.

@@ -2,7 +2,7 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Support, Value};
+use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Support, Transmission, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::expand::profile;
 use crate::spec::{self, Constant, Crane, Given};
@@ -68,9 +68,11 @@ impl<'a> Check<'a> {
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let place = format!("the guess of `{}`", name.value.as_deref().unwrap_or_default());
             let position = self.fixed(position, &place, kind);
-            if let Some(CoordinateId(index)) = coordinate {
-                guess[index] = position;
+            let Some(id) = coordinate else { continue };
+            if drives.iter().any(|drive| drive.coordinate == id && drive.transmission == Transmission::Rigid) {
+                self.report(rule::prescribed_guess(name.span, &self.coordinates[id.0].name));
             }
+            guess[id.0] = position;
         }
         guess
     }

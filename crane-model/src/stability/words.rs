@@ -30,7 +30,7 @@ fn moving(description: &Description, coordinate: usize) -> (String, Option<&'sta
     let name = description.coordinates[coordinate].name;
     match description.coordinates[coordinate].role {
         CoordinateRole::Base => (format!("base ({name})"), None),
-        CoordinateRole::Driven => (format!("drive of {name}"), None),
+        CoordinateRole::Driven | CoordinateRole::Prescribed => (format!("drive of {name}"), None),
         CoordinateRole::Passive => (format!("joint {name}"), None),
         CoordinateRole::Element => {
             // The rotations of an element come in a row; the first body that a coordinate moves carries it.

@@ -65,7 +65,9 @@ pub fn by_eight<const N: usize>(states: &[State<N>]) -> Vec<EightStates<N>> {
 fn reach(crane: &Description, index: usize) -> f64 {
     let coordinate = &crane.coordinates[index];
     match (coordinate.role, coordinate.kind) {
-        (CoordinateRole::Driven | CoordinateRole::Passive, CoordinateKind::Rotation) => 0.3,
+        (CoordinateRole::Driven | CoordinateRole::Prescribed | CoordinateRole::Passive, CoordinateKind::Rotation) => {
+            0.3
+        }
         _ => 0.02,
     }
 }

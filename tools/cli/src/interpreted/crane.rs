@@ -23,6 +23,8 @@ pub struct Interpreted<const N: usize> {
     description: &'static Description,
     routines: Arc<HashMap<&'static str, Routine>>,
     parameters: Vec<f64>,
+    /// Coordinates that rigid drives prescribe.
+    prescribed: Vec<usize>,
 }
 
 impl<const N: usize> Interpreted<N> {
@@ -31,7 +33,12 @@ impl<const N: usize> Interpreted<N> {
         let program = mechanics::derive(chain, Analyses::ALL);
         let routines =
             program.functions.iter().map(|function| (function.name, Routine::new(&program, function))).collect();
-        Self { description: describe(chain), routines: Arc::new(routines), parameters: chain.parameter_defaults() }
+        Self {
+            description: describe(chain),
+            routines: Arc::new(routines),
+            parameters: chain.parameter_defaults(),
+            prescribed: chain.rigid_drives().map(|drive| drive.coordinate.0).collect(),
+        }
     }
 
     /// The result of a function; `None` where the crane does not need it.
@@ -148,6 +155,13 @@ impl<const N: usize> CraneModel<N> for Interpreted<N> {
         self.pairs("drive_motions", Inputs { t, ..Inputs::default() }, out);
     }
 
+    fn prescribe(&self, t: f64, q: &mut SVector<f64, N>, v: &mut SVector<f64, N>) {
+        let motions = self.run("prescribed_motions", Inputs { t, ..Inputs::default() }).unwrap_or_default();
+        for (&j, motion) in self.prescribed.iter().zip(motions.chunks(2)) {
+            (q[j], v[j]) = (motion[0], motion[1]);
+        }
+    }
+
     fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
         self.scalar("gravity_energy", at(q))
     }
@@ -235,6 +249,21 @@ impl<const N: usize> Statics<N> for Interpreted<N> {
 
     fn tangent_stiffness(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
         self.matrix("tangent_stiffness", at(q))
+    }
+
+    fn drive_forces_at_rest(&self, q: &SVector<f64, N>) -> SVector<f64, N> {
+        match self.run("drive_forces_at_rest", at(q)) {
+            Some(forces) => SVector::from_vec(forces),
+            None => {
+                let mut motions = vec![[0.0; 2]; self.description.drives.len()];
+                self.drive_motions(0.0, &mut motions);
+                let mut v = SVector::zeros();
+                for (drive, [_, rate]) in self.description.drives.iter().zip(motions) {
+                    v[drive.coordinate] = rate;
+                }
+                self.drive_forces(0.0, q, &v)
+            }
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What an interpreted crane says about itself.
 
-use crane_codegen::chain::{self, BodyId, Chain, CoordinateKind as Kind, SupportKinematics, Value};
+use crane_codegen::chain::{self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, SupportKinematics, Value};
 
 use crane_model::{
     BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, Refusal,
@@ -70,6 +70,8 @@ fn bound(bound: &chain::Bound) -> Bound {
 fn role(chain: &Chain, index: usize) -> CoordinateRole {
     if chain.base.iter().flatten().any(|id| id.0 == index) {
         CoordinateRole::Base
+    } else if chain.is_prescribed(CoordinateId(index)) {
+        CoordinateRole::Prescribed
     } else if chain.drives.iter().any(|drive| drive.coordinate.0 == index) {
         CoordinateRole::Driven
     } else if chain.elements.iter().any(|element| element.coordinate.0 == index) {

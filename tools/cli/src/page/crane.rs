@@ -1,7 +1,7 @@
 //! One crane of the page: what it is, how it is drawn, its run and its modes.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
-use crane_model::{modes::undamped, results::Table};
+use crane_model::{CoordinateRole, modes::undamped, results::Table};
 use serde_json::{Value, json};
 
 use super::scene::scene;
@@ -18,8 +18,13 @@ pub fn data(case: &Case<'_>, run: &Recorded) -> Outcome<Value> {
         .coordinates
         .iter()
         .map(|coordinate| {
+            // A joint is drawn alike whether its drive gives way or not.
+            let role = match coordinate.role {
+                CoordinateRole::Prescribed => CoordinateRole::Driven,
+                role => role,
+            };
             json!({
-                "name": coordinate.name, "role": coordinate.role.name(),
+                "name": coordinate.name, "role": role.name(),
                 "unit": coordinate.kind.unit(), "force_unit": coordinate.kind.force_unit(),
             })
         })

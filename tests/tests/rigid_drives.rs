@@ -1,0 +1,133 @@
+//! Rigid drives and rotors against laws of mechanics that every textbook has.
+
+use crane_codegen::symbolic::Inputs;
+use crane_tests::dual::Dual;
+use crane_tests::interpreted::Interpreted;
+use crane_tests::quantities::State;
+use crane_tests::workspace;
+
+/// Some hundred roundings.
+const ROUNDING: f64 = 1e-13;
+
+fn crane(spec: &str) -> Interpreted {
+    Interpreted::new(workspace::chain_of("law", spec))
+}
+
+/// The state at a time with all prescribed coordinates set.
+fn at(crane: &Interpreted, t: f64, q: &[f64], v: &[f64]) -> State {
+    let mut state = State { t, q: q.to_vec(), v: v.to_vec() };
+    let motions = crane.get("prescribed_motions", &crane.inputs(&state), 0);
+    for (j, motion) in crane.prescribed().into_iter().zip(motions.chunks(2)) {
+        (state.q[j], state.v[j]) = (motion[0], motion[1]);
+    }
+    state
+}
+
+fn assert_close(value: f64, expected: f64, what: &str) {
+    assert!((value - expected).abs() <= ROUNDING * expected.abs().max(1.0), "{what}: {value}, expected {expected}");
+}
+
+/// A pendulum of mass m at distance l about a horizontal axis, with a rotor I_a.
+const PENDULUM: &str = "
+format: 1
+name: law
+links:
+  - name: arm
+    placement: {transform: {rotation: {x: 90 deg}}}
+    joint: revolute
+    mass: 3
+    com: [0.7, 0, 0]
+    inertia: {Ixx: 0.1, Iyy: 0.2, Izz: 0.25}
+drives:
+  - {coordinate: arm_psi, rigid: true, armature: 0.4, motion: MOTION}
+";
+
+/// At constant speed a motor carries the weight alone, `m g l cos q`; in the ramp also `(I + m l² + I_a) q̈`.
+#[test]
+fn a_pendulum_that_turns_at_constant_speed() {
+    let crane = crane(&PENDULUM.replace("MOTION", "{speed: {rate: 2.0, from: 0.3, begin: 0.5, ramp: 1.5}}"));
+    let inertia = 0.25 + 3.0 * 0.7 * 0.7 + 0.4;
+    for t in [0.0, 0.5, 0.9, 1.7, 2.0, 3.0, 47.0] {
+        let state = at(&crane, t, &[0.0], &[0.0]);
+        let passed: f64 = (t - 0.5_f64).max(0.0);
+        let tau = (passed / 1.5).min(1.0);
+        let angle = 0.3 + 2.0 * (1.5 * (tau.powi(3) - tau.powi(4) / 2.0) + (passed - 1.5).max(0.0));
+        let rate = 2.0 * (3.0 * tau.powi(2) - 2.0 * tau.powi(3));
+        let acceleration = 2.0 / 1.5 * 6.0 * tau * (1.0 - tau);
+        assert_close(state.q[0], angle, "position");
+        assert_close(state.v[0], rate, "rate");
+        assert_close(crane.acceleration(&state)[0], acceleration, "acceleration");
+        let torque = inertia * acceleration + 3.0 * 9.81 * 0.7 * angle.cos();
+        assert_close(crane.vector("drive_forces", &state)[0], torque, "torque");
+        assert_close(crane.scalar("drive_power", &state), torque * rate, "power");
+    }
+    // Without a ramp it has its speed from the start.
+    let crane = self::crane(&PENDULUM.replace("MOTION", "{speed: {rate: 2.0}}"));
+    for t in [0.0, 5.0] {
+        let state = at(&crane, t, &[0.0], &[0.0]);
+        assert_eq!((state.q[0], state.v[0], crane.acceleration(&state)[0]), (2.0 * t, 2.0, 0.0));
+    }
+}
+
+/// At rest the drive holds `∂E_p/∂q`, though its motion begins with an acceleration.
+#[test]
+fn a_rigid_drive_holds_the_weight_at_rest() {
+    let crane = crane(&PENDULUM.replace("MOTION", "{cubic: {from: 0.4, to: 1.4, duration: 2}}"));
+    let state = at(&crane, 0.0, &[0.0], &[0.0]);
+    let weight = 3.0 * 9.81 * 0.7 * 0.4_f64.cos();
+    assert_close(crane.vector("drive_forces_at_rest", &state)[0], weight, "at rest");
+    let acceleration = 6.0 / 4.0;
+    let started = weight + (0.25 + 3.0 * 0.7 * 0.7 + 0.4) * acceleration;
+    assert_close(crane.vector("drive_forces", &state)[0], started, "as it starts");
+    assert_eq!(crane.vector("static_residual", &state)[0], 0.0);
+    assert_eq!(crane.matrix("tangent_stiffness", &state)[(0, 0)], 1.0);
+}
+
+/// Dampers hold nothing at rest, though the motion of their drive is under way at t = 0.
+#[test]
+fn dampers_are_no_part_of_statics() {
+    let spec = PENDULUM.replace("rigid: true", "stiffness: 500, damping: 80");
+    let crane = crane(&spec.replace("MOTION", "{speed: {rate: 2.0, begin: -0.5}}"));
+    let state = State { t: 0.0, q: vec![0.7], v: vec![0.0] };
+    let residual = 3.0 * 9.81 * 0.7 * 0.7_f64.cos() - 500.0 * (1.0 - 0.7);
+    assert_close(crane.vector("static_residual", &state)[0], residual, "residual");
+}
+
+/// A blade on a hub that turns at Ω, hinged at the distance e from its axis: it flaps at `Ω² (1 + e m r/I)` and lags at
+/// `Ω² e m r/I`, with m r its first moment and I its inertia about the hinge.
+#[test]
+fn a_blade_on_a_turning_hub_is_stiffened_by_its_centrifugal_force() {
+    const SPEED: f64 = 7.0;
+    for (axis, coordinate, hinged_out) in [("y", "blade_theta", 1.0), ("z", "blade_psi", 0.0)] {
+        let crane = crane(
+            &format!(
+                "
+format: 1
+name: law
+gravity: [0, 0, 0]
+links:
+  - {{name: hub, joint: revolute, mass: 5, com: [0.1, 0, 0.2], inertia: {{Ixx: 1, Iyy: 1, Izz: 1}}}}
+  - name: blade
+    placement: {{transform: {{translation: [0.4, 0, 0]}}}}
+    joint: {{revolute: {{axis: {axis}}}}}
+    mass: 2
+    com: [1.5, 0, 0]
+    inertia: {{Ixx: 0, Iyy: 0.9, Izz: 0.9}}
+drives:
+  - {{coordinate: hub_psi, rigid: true, motion: {{speed: {{rate: {SPEED}}}}}}}
+"
+            )
+            .replace("Ixx: 0,", "Ixx: 1e-9,"),
+        );
+        assert_eq!(crane.chain.coordinates[1].name, coordinate);
+        let state = at(&crane, 1.3, &[0.0, 0.0], &[0.0, 0.0]);
+        let angle = vec![Dual::new(state.q[0], 0.0), Dual::new(0.0, 1.0)];
+        let rates = state.v.iter().map(|rate| Dual::new(*rate, 0.0)).collect();
+        let inputs = Inputs::state(Dual::new(state.t, 0.0), angle, rates, vec![]);
+        let acceleration = crane.get("forward_dynamics", &inputs, 2)[1];
+        let (moment, inertia) = (2.0 * 1.5, 0.9 + 2.0 * 1.5 * 1.5);
+        let square = SPEED * SPEED * (hinged_out * (1.0 - 1e-9 / inertia) + 0.4 * moment / inertia);
+        assert_close(acceleration.value(), 0.0, "straight out it stays");
+        assert_close(-acceleration.derivative(), square, coordinate);
+    }
+}
