@@ -131,3 +131,83 @@ drives:
         assert_close(-acceleration.derivative(), square, coordinate);
     }
 }
+
+/// A driven arm and a load that swings from its end.
+const SWINGING: &str = "
+format: 1
+name: law
+links:
+  - name: arm
+    placement: {transform: {rotation: {x: 90 deg}}}
+    joint: revolute
+    mass: 3
+    com: [0.7, 0, 0]
+    inertia: {Ixx: 0.1, Iyy: 0.2, Izz: 0.25}
+  - {name: load, placement: {transform: {translation: [1.2, 0, 0]}}, joint: revolute, mass: 2, com: [0, -0.8, 0]}
+drives:
+  - {coordinate: arm_psi, DRIVE, motion: {quintic: {from: 0, to: 1, duration: 2}}}
+damping: {load_psi: 0.3}
+";
+
+/// Classical Runge–Kutta steps by the interpreter, prescribed coordinates set after each.
+fn after(crane: &Interpreted, start: &State, duration: f64, steps: u32) -> State {
+    let h = duration / f64::from(steps);
+    let moved = |state: &State, [rate, acceleration]: &[Vec<f64>; 2], h: f64| {
+        let add = |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
+        State { t: state.t + h, q: add(&state.q, rate), v: add(&state.v, acceleration) }
+    };
+    let slope = |state: &State| [state.v.clone(), crane.acceleration(state).as_slice().to_vec()];
+    (0..steps).fold(start.clone(), |state, _| {
+        let k1 = slope(&state);
+        let k2 = slope(&moved(&state, &k1, h / 2.0));
+        let k3 = slope(&moved(&state, &k2, h / 2.0));
+        let k4 = slope(&moved(&state, &k3, h));
+        let mean = |of: usize| {
+            let terms = k1[of].iter().zip(&k2[of]).zip(k3[of].iter().zip(&k4[of]));
+            terms.map(|((a, b), (c, d))| (a + 2.0 * b + 2.0 * c + d) / 6.0).collect()
+        };
+        let end = moved(&state, &[mean(0), mean(1)], h);
+        at(crane, end.t, &end.q, &end.v)
+    })
+}
+
+/// The stiffer a drive, the nearer to a rigid one: motion of the load and torque differ by a share that falls as 1/s.
+#[test]
+fn a_stiff_drive_tends_to_a_rigid_one() {
+    let run = |drive: &str| {
+        let crane = crane(&SWINGING.replace("DRIVE", drive));
+        let end = after(&crane, &at(&crane, 0.0, &[0.0; 2], &[0.0; 2]), 1.5, 3000);
+        (end.q[1], crane.vector("drive_forces", &end)[0])
+    };
+    let rigid = run("rigid: true");
+    let [stiff, stiffer] = [1e5, 1e6].map(|s| {
+        // A tenth of critical damping, so that what the start excites is gone.
+        let (q, torque) = run(&format!("stiffness: {s}, damping: {}", 0.6 * f64::sqrt(s)));
+        [q - rigid.0, torque - rigid.1].map(f64::abs)
+    });
+    assert!(stiff[0] < 2e-3 && stiff[1] < 0.02 * rigid.1.abs(), "{stiff:?} of {rigid:?}");
+    for (stiff, stiffer) in stiff.iter().zip(stiffer) {
+        assert!((8.0..12.5).contains(&(stiff / stiffer)), "{stiff} to {stiffer}");
+    }
+}
+
+/// Work of a rigid drive, less what the damper took out, is the energy that the crane gained.
+#[test]
+fn energy_of_a_rigidly_driven_crane_balances() {
+    let crane = crane(&SWINGING.replace("DRIVE", "rigid: true, armature: 2"));
+    let energy = |state: &State| crane.scalar("kinetic_energy", state) + crane.scalar("gravity_energy", state);
+    let start = at(&crane, 0.0, &[0.0, 0.4], &[0.0; 2]);
+    // Simpson's rule over steps of the same order as the method.
+    let supplied = |state: &State| crane.scalar("drive_power", state) - crane.scalar("dissipation", state);
+    let (mut state, mut work) = (start.clone(), 0.0);
+    for _ in 0..300 {
+        let middle = after(&crane, &state, 0.005, 4);
+        let end = after(&crane, &middle, 0.005, 4);
+        work += 0.01 / 6.0 * (supplied(&state) + 4.0 * supplied(&middle) + supplied(&end));
+        state = end;
+    }
+    let gained = energy(&state) - energy(&start);
+    assert!(gained.abs() > 10.0, "{gained} J");
+    // h⁴ of Simpson's rule at some rad/s.
+    assert!((gained - work).abs() < 1e-7 * gained.abs(), "{gained} J against {work} J");
+}
