@@ -52,7 +52,7 @@ pub fn forces_at_rest<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     forces
 }
 
-/// q̈_dr of the coordinates that rigid drives prescribe.
+/// `q̈_dr` of the coordinates that rigid drives prescribe.
 pub fn accelerations<'g>(model: &Model<'g>) -> Vec<Option<Expr<'g>>> {
     prescribed(model, |drive| profile::acceleration(model, &drive.profile, model.t))
 }

@@ -96,7 +96,8 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
         travel / model.number(&ramp.duration).squared() * curvature
     };
     match profile {
-        Profile::Hold(_) => model.zero(),
+        // A speed that jumps does so before a run, or its drive would not be rigid.
+        Profile::Hold(_) | Profile::Speed { ramp: None, .. } => model.zero(),
         Profile::Quintic(ramp) => {
             let tau = tau(model, ramp, t);
             scale(ramp, tau * (1.0 - tau) * (1.0 - 2.0 * tau) * 60.0)
@@ -116,7 +117,6 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
             let (tau, _) = since(model, begin, Some(ramp), t);
             model.number(rate) / model.number(ramp) * (tau * (1.0 - tau) * 6.0)
         }
-        Profile::Speed { ramp: None, .. } => model.zero(),
         // The spline's second derivative changes along its pieces, and jumps at both ends.
         Profile::Table { segments, .. } => {
             let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return model.zero() };

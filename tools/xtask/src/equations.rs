@@ -3,13 +3,16 @@
 use crate::workspace;
 
 const DOCUMENT: &str = "docs/EQUATIONS.md";
-/// Where the generated functions are listed.
-const FUNCTIONS: &str = "codegen/src/mechanics/functions.rs";
+/// The folder where the generated functions are listed.
+const FUNCTIONS: &str = "codegen/src/mechanics/functions";
 
 /// Every name that is stale, and every generated function without a row.
 pub fn check() -> Result<(), String> {
     let document = workspace::read(DOCUMENT)?;
-    let generated = generated_functions(&workspace::read(FUNCTIONS)?);
+    let mut generated = Vec::new();
+    for file in workspace::files(FUNCTIONS, "rs")? {
+        generated.extend(generated_functions(&workspace::read(&file)?));
+    }
     let mut stale = Vec::new();
     let mut documented = Vec::new();
     for (index, line) in document.lines().enumerate().filter(|(_, line)| line.starts_with('|')) {

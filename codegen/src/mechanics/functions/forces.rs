@@ -1,0 +1,209 @@
+//! Forces and energies by part, and what drives do.
+
+use super::{Derivation, function, sum};
+use crate::mechanics::{drives, gravity, springs, supports};
+use crate::symbolic::Argument::{Position, Time, Velocity};
+use crate::symbolic::{Expr, Function, Shape, Tape};
+
+impl<'g> Derivation<'g> {
+    pub(super) fn forces(&self) -> Vec<Function> {
+        let (model, chain) = (&self.model, self.model.chain);
+        let vector = || Shape::Vector(model.size());
+        let mut functions = Vec::new();
+        let mut parts = vec![model.zeros()];
+        if !chain.supports.is_empty() {
+            let forces = supports::forces(model, &self.kinematics, &model.v);
+            parts.push(forces.clone());
+            functions.push(function(
+                "support_forces",
+                "Generalized forces of the supports, N and N m.",
+                "−Jᵀ (s e + d ė) [Urbaś 2016, Eq. (18)]",
+                &[Position, Velocity],
+                vector(),
+                forces,
+            ));
+            functions.push(function(
+                "support_reactions",
+                "Forces of the supports on the crane in the world frame, N.",
+                "−s e − d ė [Urbaś 2016, Eq. (16)]",
+                &[Position, Velocity],
+                Shape::Vectors(chain.supports.len()),
+                supports::reactions(model, &self.kinematics),
+            ));
+        }
+        if !chain.elements.is_empty() {
+            let forces = springs::element_forces(model, &model.q, &model.v);
+            parts.push(forces.clone());
+            functions.push(function(
+                "element_forces",
+                "Generalized forces of the springs and dampers between rigid elements, N m.",
+                "−S q̃ − D q̃̇ [Urbaś 2016, Eq. (15)]",
+                &[Position, Velocity],
+                vector(),
+                forces,
+            ));
+        }
+        if !chain.drives.is_empty() {
+            let (forces, tape) = self.recorded_if_rigid(|| self.drive_forces());
+            parts.push(forces.clone());
+            functions.extend(self.drives(forces, tape));
+        }
+        if !chain.hinges.is_empty() {
+            let forces = springs::hinge_forces(model, &model.v);
+            parts.push(forces.clone());
+            functions.push(function(
+                "hinge_forces",
+                "Generalized forces of viscous damping in passive joints, N and N m.",
+                "−d q̇",
+                &[Velocity],
+                vector(),
+                forces,
+            ));
+        }
+        if parts.len() > 1 {
+            functions.push(
+                function(
+                    "forces",
+                    "Generalized forces of all but inertia and gravity, N and N m.",
+                    "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
+                    &[Time, Position, Velocity],
+                    vector(),
+                    sum(&parts),
+                )
+                .by(self.recorded_if_rigid(|| self.drive_forces()).1),
+            );
+        }
+        functions
+    }
+
+    /// What drives do and how they move, from their generalized forces.
+    fn drives(&self, forces: Vec<Expr<'g>>, tape: Tape) -> Vec<Function> {
+        let (model, chain) = (&self.model, self.model.chain);
+        let equation = if self.rigid {
+            "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]; of rigid drives (A q̈ − e)_j"
+        } else {
+            "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]"
+        };
+        let mut functions = vec![
+            function(
+                "drive_forces",
+                "Generalized forces of the drives, N and N m.",
+                equation,
+                &[Time, Position, Velocity],
+                Shape::Vector(model.size()),
+                forces,
+            )
+            .by(tape),
+            function(
+                "drive_motions",
+                "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
+                "q_dr(t), q̇_dr(t)",
+                &[Time],
+                Shape::Pairs(chain.drives.len()),
+                drives::motions(model, chain.drives.iter()),
+            ),
+        ];
+        if self.rigid {
+            functions.push(function(
+                "prescribed_motions",
+                "Position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every coordinate that a rigid drive prescribes.",
+                "q_dr(t), q̇_dr(t)",
+                &[Time],
+                Shape::Pairs(chain.rigid_drives().count()),
+                drives::motions(model, chain.rigid_drives()),
+            ));
+        }
+        functions
+    }
+
+    /// Generalized forces of all drives: of the springs, and what the prescribed motions take.
+    fn drive_forces(&self) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let flexible = drives::forces(model, model.t, &model.v);
+        if self.rigid { sum(&[flexible, self.motion().efforts]) } else { flexible }
+    }
+
+    /// What efforts of rigid drives need comes in the order of the recursion that finds them.
+    fn recorded_if_rigid<T>(&self, derive: impl FnOnce() -> T) -> (T, Tape) {
+        if self.rigid { self.model.graph.recorded(derive) } else { (derive(), Tape::default()) }
+    }
+
+    /// Generalized forces of all but inertia, gravity and rigid drives.
+    pub(super) fn given_forces(&self, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        sum(&[
+            supports::forces(model, &self.kinematics, v),
+            springs::element_forces(model, &model.q, v),
+            drives::forces(model, t, v),
+            springs::hinge_forces(model, v),
+        ])
+    }
+
+    pub(super) fn energies(&self) -> Vec<Function> {
+        let (model, chain) = (&self.model, self.model.chain);
+        let scalar =
+            |name, doc, equation, arguments, expr| function(name, doc, equation, arguments, Shape::Scalar, vec![expr]);
+        let mut functions = vec![scalar(
+            "gravity_energy",
+            "Potential energy of gravity, zero at the world's origin, J.",
+            "E_g = −Σ γ · ∫ x dm [Urbaś 2016, Eq. (6)]",
+            &[Position],
+            gravity::energy(model, &self.inertias),
+        )];
+        if !chain.supports.is_empty() {
+            functions.push(scalar(
+                "support_energy",
+                "Energy of the supports' springs, J.",
+                "½ Σ s e² [Urbaś 2016, Eqs. (16)–(17)]",
+                &[Position],
+                supports::energy(model, &self.kinematics),
+            ));
+        }
+        if !chain.elements.is_empty() {
+            functions.push(scalar(
+                "element_energy",
+                "Energy of the springs between rigid elements, J.",
+                "½ q̃ᵀ S q̃ [Urbaś 2016, Eq. (14)]",
+                &[Position],
+                springs::element_energy(model),
+            ));
+        }
+        if !chain.drives.is_empty() {
+            if chain.drives.iter().any(|drive| drive.spring().is_some()) {
+                functions.push(scalar(
+                    "drive_energy",
+                    "Energy of the drives' springs, J.",
+                    "½ Σ s (q_dr − q)² [Urbaś 2016, Eq. (19)]",
+                    &[Time, Position],
+                    drives::energy(model),
+                ));
+            }
+            let (power, tape) = self.recorded_if_rigid(|| {
+                let efforts = if self.rigid { self.motion().efforts } else { vec![] };
+                drives::power(model, &efforts)
+            });
+            functions.push(
+                scalar(
+                    "drive_power",
+                    "Power that the prescribed motions put in, W.",
+                    "Σ t_dr q̇_dr",
+                    &[Time, Position, Velocity],
+                    power,
+                )
+                .by(tape),
+            );
+        }
+        let dissipation =
+            supports::dissipation(model, &self.kinematics) + springs::dissipation(model) + drives::dissipation(model);
+        if !dissipation.is_zero() {
+            functions.push(scalar(
+                "dissipation",
+                "Power that all dampers take out, W.",
+                "2R [Urbaś 2016, Eqs. (14), (17), (19)]",
+                &[Time, Position, Velocity],
+                dissipation,
+            ));
+        }
+        functions
+    }
+}

@@ -1,0 +1,109 @@
+//! Statics and small motions.
+
+use super::{Derivation, function, sum};
+use crate::mechanics::columns::columns;
+use crate::mechanics::vector::SymmetricMatrix;
+use crate::mechanics::{drives, gravity, springs, supports};
+use crate::symbolic::Argument::Position;
+use crate::symbolic::{Expr, Function, Shape};
+
+impl<'g> Derivation<'g> {
+    pub(super) fn statics(&self) -> Vec<Function> {
+        let mut functions = vec![
+            function(
+                "static_residual",
+                "Gradient of the potential energy at t = 0, zero in equilibrium; N and N m.",
+                "∂E_p/∂q [Urbaś 2016, Eqs. (7), (15), (18), (20)]",
+                &[Position],
+                Shape::Vector(self.model.size()),
+                self.static_residual(),
+            ),
+            function(
+                "tangent_stiffness",
+                "Tangent stiffness K: second derivatives of the potential energy; N/m, N and N m.",
+                "∂²E_p/∂q∂q",
+                &[Position],
+                Shape::Symmetric(self.model.size()),
+                self.unknowns(self.stiffness(), 1.0).into_upper(),
+            ),
+        ];
+        if self.rigid {
+            functions.push(function(
+                "drive_forces_at_rest",
+                "Generalized forces of the drives that hold the crane at rest at t = 0, N and N m.",
+                "s (q_dr − q) [Urbaś 2016, Eq. (20)]; of rigid drives ∂E_p/∂q_j",
+                &[Position],
+                Shape::Vector(self.model.size()),
+                self.drive_forces_at_rest(),
+            ));
+        }
+        functions
+    }
+
+    /// `∂E_p/∂q`, 0 where a coordinate is prescribed.
+    fn static_residual(&self) -> Vec<Expr<'g>> {
+        let mut residual = self.gradient();
+        for drive in self.model.chain.rigid_drives() {
+            residual[drive.coordinate.0] = self.model.zero();
+        }
+        residual
+    }
+
+    /// Of rigid drives all that the other forces leave to them.
+    fn drive_forces_at_rest(&self) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let mut forces = drives::forces_at_rest(model);
+        let gradient = self.gradient();
+        for drive in model.chain.rigid_drives() {
+            forces[drive.coordinate.0] = gradient[drive.coordinate.0];
+        }
+        forces
+    }
+
+    /// A matrix of small motions with nothing but `diagonal` in the rows and columns of prescribed coordinates, which do not
+    /// move.
+    fn unknowns(&self, matrix: SymmetricMatrix<'g>, diagonal: f64) -> SymmetricMatrix<'g> {
+        let diagonal = self.model.graph.constant(diagonal);
+        self.model.chain.rigid_drives().fold(matrix, |matrix, drive| matrix.without(drive.coordinate.0, diagonal))
+    }
+
+    /// `∂E_p/∂q`: gravity less all forces at rest and t = 0.
+    fn gradient(&self) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let rest = model.zeros();
+        let gravity = gravity::gradient(model, &self.kinematics, &self.inertias);
+        let forces = sum(&[
+            supports::forces(model, &self.kinematics, &rest),
+            springs::element_forces(model, &model.q, &rest),
+            drives::forces_at_rest(model),
+        ]);
+        gravity.into_iter().zip(forces).map(|(g, f)| g - f).collect()
+    }
+
+    fn stiffness(&self) -> SymmetricMatrix<'g> {
+        let model = &self.model;
+        let mut matrix = self.impedances().0;
+        gravity::stiffness(model, &self.kinematics, &self.inertias, &mut matrix);
+        matrix
+    }
+
+    pub(super) fn linearise(&self) -> Function {
+        let model = &self.model;
+        let damping = self.impedances().1;
+        let columns = columns(model, &self.factors);
+        let mut outputs = self.unknowns(columns.mass_matrix(model), 1.0).into_upper();
+        outputs.extend(self.unknowns(self.stiffness(), 1.0).into_upper());
+        outputs.extend(self.unknowns(damping, 0.0).into_upper());
+        let matrix = || Shape::Symmetric(model.size());
+        let shape =
+            Shape::Record("Linearisation", vec![("mass", matrix()), ("stiffness", matrix()), ("damping", matrix())]);
+        function(
+            "linearise",
+            "Mass matrix A, tangent stiffness K and damping matrix D of small motions about a pose at rest.",
+            "A δq̈ + D δq̇ + K δq = 0",
+            &[Position],
+            shape,
+            outputs,
+        )
+    }
+}
