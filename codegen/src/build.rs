@@ -6,9 +6,10 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::{env, fmt, fs, io, process};
 
+use crate::GeneratedCode;
 use crate::chain::Analyses;
+use crate::compile::{self, Compiled};
 use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile};
-use crate::{GeneratedCode, compile};
 
 /// Compiles `spec` into `$OUT_DIR/<name of the crane>.rs`, to be included into a module:
 ///
@@ -25,7 +26,8 @@ use crate::{GeneratedCode, compile};
 /// }
 /// ```
 ///
-/// Cargo runs the build script again when the spec changes. A spec with mistakes ends the build, with every mistake drawn.
+/// Cargo runs the build script again when the spec changes. A spec with mistakes ends the build, with every mistake drawn;
+/// what is implausible in it becomes warnings of the build.
 pub fn compile_spec(spec: impl AsRef<Path>) -> GeneratedCode {
     compile_spec_for(spec, None)
 }
@@ -34,10 +36,10 @@ pub fn compile_spec(spec: impl AsRef<Path>) -> GeneratedCode {
 pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> GeneratedCode {
     let spec = spec.as_ref();
     println!("cargo::rerun-if-changed={}", spec.display());
-    let code = open(spec)
+    let Compiled { code, warnings } = open(spec)
         .and_then(|source| compile::compile(&source, analyses).map_err(Failure::Mistakes))
         .unwrap_or_else(|error| error.fail());
-    if let Some(warning) = code.report.warning(&code.name) {
+    for warning in warnings.lines().chain(code.report.warning(&code.name)) {
         println!("cargo::warning={warning}");
     }
     let target = out_dir().join(format!("{}.rs", code.name));

@@ -9,19 +9,28 @@ use crate::lower::{Blocks, lower};
 use crate::mechanics::{derive, derive_verbatim, left_out};
 use crate::read::read;
 use crate::report::Report;
-use crate::validate::validate;
+use crate::validate::{self, Checked};
+
+/// A crane's Rust, and what is implausible about the crane.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// The module.
+    pub code: GeneratedCode,
+    /// Warnings, with their places.
+    pub warnings: Diagnostics,
+}
 
 /// Compiles a spec to Rust: what its `analyses` ask for, or `analyses` in their place.
 ///
 /// # Errors
 /// All mistakes of the spec at once.
-pub fn compile(source: &SourceFile, analyses: Option<Analyses>) -> Result<GeneratedCode, Diagnostics> {
-    let chain = load(source)?;
+pub fn compile(source: &SourceFile, analyses: Option<Analyses>) -> Result<Compiled, Diagnostics> {
+    let Checked { chain, warnings } = check(source)?;
     // Eight cranes a call are asked for by the spec alone.
     let analyses = Analyses { ensemble: chain.analyses.ensemble, ..analyses.unwrap_or(chain.analyses) };
     // A path would differ from machine to machine.
     let file = Path::new(&source.name).file_name().unwrap_or_default().to_string_lossy();
-    Ok(generate(&chain, analyses, &file))
+    Ok(Compiled { code: generate(&chain, analyses, &file), warnings })
 }
 
 /// A spec as a sound chain.
@@ -29,8 +38,16 @@ pub fn compile(source: &SourceFile, analyses: Option<Analyses>) -> Result<Genera
 /// # Errors
 /// All mistakes of the spec at once.
 pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
+    check(source).map(|checked| checked.chain)
+}
+
+/// A spec as a sound chain, with warnings about what is implausible.
+///
+/// # Errors
+/// All mistakes of the spec at once.
+pub fn check(source: &SourceFile) -> Result<Checked, Diagnostics> {
     let spec = read(source)?;
-    validate(&spec, source)
+    validate::check(&spec, source)
 }
 
 /// Compiles a chain to Rust. `spec_file` is the name of the YAML file, for the header.

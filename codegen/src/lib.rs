@@ -32,4 +32,4 @@ pub use diagnostic::{Diagnostics, SourceFile};
 pub use emit::GeneratedCode;
 pub use read::read;
 pub use spec::{CraneSpec, json_schema};
-pub use validate::validate;
+pub use validate::{Checked, check, validate};

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use crane_codegen::chain::{Analyses, Chain};
-use crane_codegen::{GeneratedCode, build, compile, explain, json_schema, picture};
+use crane_codegen::compile::Compiled;
+use crane_codegen::{Checked, Diagnostics, build, compile, explain, json_schema, picture};
 
 /// Compiles a crane described in YAML to specialised Rust.
 #[derive(Parser)]
@@ -37,10 +38,13 @@ enum Command {
         #[arg(long)]
         all: bool,
     },
-    /// Say whether a spec is sound, or draw every mistake in it
+    /// Check a spec: draw every mistake in it, or what is implausible
     Check {
         /// The crane's YAML file
         spec: PathBuf,
+        /// Fail on warnings, too
+        #[arg(long)]
+        strict: bool,
     },
     /// Print the chain, its coordinates, what is left out and why, and what each function costs
     Explain {
@@ -80,7 +84,8 @@ fn main() -> ExitCode {
 fn run(command: &Command) -> Result<String, String> {
     match command {
         Command::Generate { spec, output, all } => {
-            let code = compiled(spec, *all)?;
+            let Compiled { code, warnings } = compiled(spec, *all)?;
+            warn(&warnings);
             if let Some(warning) = code.report.warning(&code.name) {
                 eprintln!("warning: {warning}");
             }
@@ -89,8 +94,12 @@ fn run(command: &Command) -> Result<String, String> {
             let functions = code.report.costs.len();
             Ok(format!("{}: {functions} functions, {} lines\n", target.display(), code.text.lines().count()))
         }
-        Command::Check { spec } => {
-            let chain = loaded(spec)?;
+        Command::Check { spec, strict } => {
+            let Checked { chain, warnings } = checked(spec)?;
+            if *strict && !warnings.is_empty() {
+                return Err(warnings.to_string());
+            }
+            warn(&warnings);
             let (bodies, coordinates) = (chain.bodies.len(), chain.coordinates.len());
             Ok(format!("{}: sound; {bodies} bodies, {coordinates} coordinates\n", spec.display()))
         }
@@ -112,12 +121,26 @@ fn run(command: &Command) -> Result<String, String> {
     }
 }
 
-fn loaded(spec: &Path) -> Result<Chain, String> {
+fn checked(spec: &Path) -> Result<Checked, String> {
     let source = build::open(spec).map_err(|error| error.to_string())?;
-    compile::load(&source).map_err(|mistakes| mistakes.to_string())
+    compile::check(&source).map_err(|mistakes| mistakes.to_string())
 }
 
-fn compiled(spec: &Path, all: bool) -> Result<GeneratedCode, String> {
+/// The chain of a spec; warnings are drawn.
+fn loaded(spec: &Path) -> Result<Chain, String> {
+    let Checked { chain, warnings } = checked(spec)?;
+    warn(&warnings);
+    Ok(chain)
+}
+
+/// Draws warnings on standard error.
+fn warn(warnings: &Diagnostics) {
+    if !warnings.is_empty() {
+        eprintln!("{warnings}\n");
+    }
+}
+
+fn compiled(spec: &Path, all: bool) -> Result<Compiled, String> {
     let source = build::open(spec).map_err(|error| error.to_string())?;
     compile::compile(&source, all.then_some(Analyses::ALL)).map_err(|mistakes| mistakes.to_string())
 }

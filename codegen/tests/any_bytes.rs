@@ -2,16 +2,22 @@
 
 use std::path::Path;
 
-use crane_codegen::{SourceFile, read, validate};
+use crane_codegen::diagnostic::Mistake;
+use crane_codegen::{Checked, SourceFile, check, read};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
 /// Reads, validates and draws.
 fn answer(bytes: &[u8]) {
-    let chain = SourceFile::from_bytes("any.yaml", bytes)
-        .and_then(|source| read(&source).and_then(|spec| validate(&spec, &source)));
-    match chain {
-        Ok(chain) => assert_eq!(chain.guess.len(), chain.coordinates.len()),
+    let answer = SourceFile::from_bytes("any.yaml", bytes)
+        .and_then(|source| read(&source).and_then(|spec| check(&spec, &source)));
+    match answer {
+        Ok(Checked { chain, warnings }) => {
+            assert_eq!(chain.guess.len(), chain.coordinates.len());
+            assert!(warnings.mistakes().iter().all(Mistake::is_warning));
+            assert_eq!(warnings.lines().count(), warnings.mistakes().len());
+            assert!(warnings.is_empty() || warnings.to_string().contains("warning"));
+        }
         Err(mistakes) => {
             assert!(!mistakes.mistakes().is_empty());
             assert!(mistakes.to_string().contains("mistake"));
@@ -22,7 +28,7 @@ fn answer(bytes: &[u8]) {
 
 /// Texts of all shipped specs and all bad ones that are text.
 fn specs() -> Vec<String> {
-    ["../specs", "tests/bad"]
+    ["../specs", "tests/bad", "tests/implausible"]
         .iter()
         .flat_map(|folder| std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).expect("a folder"))
         .map(|entry| entry.expect("an entry").path())

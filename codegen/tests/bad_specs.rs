@@ -52,6 +52,8 @@ fn each_bad_spec_gives_its_message() {
 fn each_rule_has_a_bad_spec() {
     let mut shown: BTreeSet<String> =
         bad_specs().into_iter().filter_map(|(name, _)| Some(name.split_once('_')?.0.to_owned())).collect();
+    // Warnings have their specs and their test elsewhere.
+    shown.extend(CATALOGUE.iter().map(|rule| rule.code.to_owned()).filter(|code| code.starts_with('W')));
     // Too large for a file in a repository; see below.
     shown.insert("E001".into());
     for rule in CATALOGUE {
@@ -96,5 +98,17 @@ fn the_largest_garbage_that_is_read_is_refused_soon() {
         // Unoptimised, the slowest takes a second or two here.
         assert!(begin.elapsed() < Duration::from_secs(20), "{unit:?}: {:?}", begin.elapsed());
         assert!(found.len() < 200_000, "{unit:?}: {} bytes of message", found.len());
+    }
+}
+
+#[test]
+fn too_many_joints_are_counted_and_too_many_values_refused() {
+    let links = |count: usize| {
+        let link = |index| format!("  - {{name: l{index}, joint: revolute, mass: 1, com: [1, 0, 0]}}\n");
+        format!("format: 1\nname: long\nlinks:\n{}", (0..count).map(link).collect::<String>())
+    };
+    for (count, code) in [(10_001, "E047"), (12_000, "E007")] {
+        let found = mistakes("long.yaml", links(count).as_bytes());
+        assert_eq!(found.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(), [code], "{count}");
     }
 }

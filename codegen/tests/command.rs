@@ -57,7 +57,7 @@ fn command_build_script_and_library_write_the_same_bytes() {
     let name = "eight_link_rigid";
     let path = spec(name).display().to_string();
     let source = SourceFile::new(path.clone(), fs::read_to_string(&path).unwrap());
-    let library = compile::compile(&source, None).unwrap().text;
+    let library = compile::compile(&source, None).unwrap().code.text;
 
     // Another process has other hash seeds, another folder other paths.
     let elsewhere = folder("elsewhere");
@@ -121,4 +121,27 @@ fn explain_shows_chain_coordinates_omissions_and_costs() {
 fn check_counts_bodies_and_coordinates() {
     let output = run(&["check", "specs/eight_link_flexible.yaml"], &workspace());
     assert_eq!(text(&output.stdout), "specs/eight_link_flexible.yaml: sound; 12 bodies, 25 coordinates\n");
+}
+
+#[test]
+fn warnings_are_drawn_passed_on_to_cargo_and_fail_a_strict_check() {
+    let here = folder("warned");
+    let implausible = fs::read_to_string(spec("cantilever")).unwrap().replacen("E: 2.1e11", "E: 210", 1);
+    fs::write(here.join("soft.yaml"), implausible).unwrap();
+    let title = "Young's modulus `E` of material `steel` is 210 Pa";
+
+    let checked = run(&["check", "soft.yaml"], &here);
+    assert!(checked.status.success());
+    let err = text(&checked.stderr);
+    assert!(err.contains(&format!("warning[W001]: {title}")) && err.contains("soft.yaml: 1 warning"), "{err}");
+    assert!(text(&checked.stdout).starts_with("soft.yaml: sound"));
+
+    let strict = run(&["check", "--strict", "soft.yaml"], &here);
+    assert_eq!(strict.status.code(), Some(1));
+    assert!(text(&strict.stderr).contains(title) && strict.stdout.is_empty());
+
+    let built = build_script("soft.yaml", &here, &here);
+    assert!(built.status.success(), "{}", text(&built.stderr));
+    let out = text(&built.stdout);
+    assert!(out.contains(&format!("cargo::warning=soft.yaml:16:14: {title} [W001]\n")), "{out}");
 }

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crane_codegen::chain::{Chain, Inertia, Step, Value};
-use crane_codegen::{SourceFile, read, validate};
+use crane_codegen::{SourceFile, compile, read, validate};
 
 /// A spec of the given links and further keys.
 fn chain(rest: &str) -> Chain {
@@ -139,4 +139,21 @@ fn anchors_and_aliases_work() {
          - {name: b, joint: revolute, placement: {classic_dh: {a: 1}}, mass: 1, com: *c, inertia: *i}\n",
     );
     assert_eq!(twice.bodies[0].inertia, twice.bodies[1].inertia);
+}
+
+#[test]
+fn names_that_end_in_an_underscore_give_code_without_warnings() {
+    let spec = "format: 1\nname: box_\nlinks: [{name: arm_, joint: revolute, mass: 5, com: [1, 0, 0]}]\n";
+    let code = compile::compile(&SourceFile::new("box.yaml", spec), None).expect("a sound spec").code.text;
+    let items: Vec<syn::Item> = syn::parse_file(&code).expect("Rust").items;
+    let mut named = 0;
+    for item in items {
+        let syn::Item::Fn(function) = item else { continue };
+        let text = quote::quote!(#function).to_string();
+        if text.contains("__") {
+            assert!(text.contains("non_snake_case"), "{text}");
+            named += 1;
+        }
+    }
+    assert!(named > 0, "coordinates are called arm__psi");
 }

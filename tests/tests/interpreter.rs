@@ -172,7 +172,7 @@ fn the_same_spec_gives_the_same_bytes_from_any_folder() {
     let text = std::fs::read_to_string(workspace::root().join("specs/eight_link_flexible.yaml")).unwrap();
     let compiled = |name: &str| {
         let source = crane_codegen::SourceFile::new(name, text.clone());
-        compile::compile(&source, Some(Analyses::ALL)).unwrap().text
+        compile::compile(&source, Some(Analyses::ALL)).unwrap().code.text
     };
     let first = compiled("/somewhere/eight_link_flexible.yaml");
     assert_eq!(first, compiled("elsewhere/deep/eight_link_flexible.yaml"));

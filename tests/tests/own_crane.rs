@@ -31,7 +31,7 @@ fn the_readme_shows_the_files_to_the_byte() {
 #[test]
 fn the_spec_compiles_through_the_library() {
     let source = SourceFile::new("crane.yaml", text(&format!("{FOLDER}/crane.yaml")));
-    let code = compile::compile(&source, None).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let code = compile::compile(&source, None).unwrap_or_else(|mistakes| panic!("{mistakes}")).code;
     assert_eq!(code.name, "own_crane");
     assert!(code.text.contains("pub payload: f64"), "the payload is live");
 }

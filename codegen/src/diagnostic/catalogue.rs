@@ -1,4 +1,4 @@
-//! The rules of the spec language: each has a code, a title, a label and a remedy.
+//! The rules of the spec language: each has a code, a title, a label and a remedy. A code E is of a mistake, W of a warning.
 
 /// A rule, for documentation and for the test that each has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +70,9 @@ catalogue! {
         "write `key: value` lines, beginning with `format: 1`";
     /// `format` names a version of the language that this compiler reads.
     E006 wrong_format(given) "format {given} is not known", "this compiler reads format 1", "write `format: 1`";
+    /// A file has at most 131072 values; what an alias repeats counts each time.
+    E007 too_many_values(most) "the file has more than {most} values", "too many from here on",
+        "an alias (`*name`) repeats all that its anchor holds: write out what differs, and give a beam `sections` instead of `elements`";
 
     // Keys and shapes.
     /// Every key is one of the language.
@@ -93,11 +96,11 @@ catalogue! {
         "write it on one line; `>-` folds a long text into one";
 
     // Names.
-    /// Names are `snake_case` identifiers: they become names in Rust.
-    E020 not_an_identifier(name) "`{name}` cannot be a name", "not an identifier",
-        "use lower-case letters, digits and `_`, beginning with a letter, such as `outer_boom`";
-    /// Names are not keywords of Rust.
-    E021 keyword(name) "`{name}` cannot be a name", "a keyword of Rust", "choose another word, such as `{name}_1`";
+    /// Names are `snake_case` identifiers of at most 64 letters: they become names in Rust.
+    E020 not_an_identifier(name, why) "`{name}` cannot be a name", "{why}",
+        "use up to 64 lower-case letters, digits and `_`, beginning with a letter, such as `outer_boom`";
+    /// Names are not keywords of Rust; a crane is not named as a crate that programs around it use.
+    E021 keyword(name, why) "`{name}` cannot be a name", "{why}", "choose another word, such as `{name}_1`";
     /// Names are unique among their kind, rigid elements and coordinates included.
     E022 duplicate_name(kinds, name, other) "two {kinds} are called `{name}`", "taken by {other}", "rename one of the two";
     /// A parameter that is referred to exists.
@@ -151,18 +154,20 @@ catalogue! {
     E046 moves_nothing(coordinate) "coordinate `{coordinate}` moves no mass of its own", "the mass matrix is singular",
         "give the links after this joint mass and inertia, or fix the joint";
     /// A crane has at most 10000 coordinates.
-    E047 too_many(link, count, most) "with beam `{link}` the crane has {count} coordinates", "at most {most} in all",
-        "cut beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
+    E047 too_many(what, count, most, help) "with {what} the crane has {count} coordinates", "at most {most} in all", "{help}";
     /// A crane has a joint that moves, or a beam with sections.
     E048 nothing_moves() "nothing in the crane can move", "no link has a joint that moves or a beam with sections",
         "write `joint: revolute`, `prismatic` or, in the first link, `free`; or give a beam `sections`";
+    /// The elements of a beam are not too light beside what the beam carries, else the mass matrix is singular to rounding.
+    E049 too_light(link, mass) "beam `{link}` is too light for what it carries", "{mass} kg; the mass matrix is singular to rounding",
+        "check `density` and the section, in kg/m³ and m; or write `sections: rigid`";
 
     // Inertias.
     /// An inertia is positive definite.
     E050 not_positive_definite(place, smallest) "{place} is not positive definite",
         "smallest principal moment about the centre of mass: {smallest} kg m²",
         "check signs, products and `about`; leave `inertia` out for a point mass";
-    /// Principal moments satisfy the triangle inequality: none exceeds the sum of the other two.
+    /// Principal moments satisfy the triangle inequality: none exceeds the sum of the other two, not even by 25 %.
     E051 triangle(place, largest, others) "{place} belongs to no body", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
         "no principal moment about the centre of mass may exceed the sum of the other two";
     /// An inertia is given by its tensor or by radii of gyration.
@@ -240,4 +245,33 @@ catalogue! {
     /// The guess of a coordinate is not prescribed by a rigid drive.
     E092 prescribed_guess(coordinate) "the guess of `{coordinate}` has no effect", "its rigid drive prescribes where it is",
         "remove it";
+
+    // Plausibility: warnings.
+    /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa.
+    W001 modulus(what, place, given, usual, help) "{what} of {place} is {given} Pa", "usual: {usual} Pa", "{help}";
+    /// The shear modulus is at most half of Young's modulus: Poisson's ratio is not below zero.
+    W002 poisson(place, ratio) "{place} has a Poisson's ratio of {ratio}", "`G` exceeds E/2",
+        "check that `E` and `G` are not swapped; steel has E = 2.1e11, G = 8.1e10";
+    /// Densities are from 100 to 25000 kg/m³.
+    W003 density(place, given, help) "the density of {place} is {given} kg/m³", "usual: 100 to 25000 kg/m³", "{help}";
+    /// Cross-sections are at most 5 m high and wide, their area at most 4 m², their moments at most 10 m⁴.
+    W004 section_size(place, what, help) "the section of {place} has {what}", "larger than any crane's", "{help}";
+    /// Lengths and distances within a crane are at most 200 m.
+    W005 far(what, given, help) "{what} is {given} m", "longer than any crane", "{help}";
+    /// A beam is longer than its section is high and wide.
+    W006 stubby(place, key, side, length) "{place} is shorter than its section is large", "`{key}` is {side} m, the beam {length} m long",
+        "check both units; a beam this short does not bend as a beam: `sections: rigid` suits it";
+    /// The torsion constant of a section is at most the sum of its two second moments of area.
+    W007 torsion_constant(place, given, polar) "the torsion constant `Jo` of {place} exceeds Jy + Jz", "{given} m⁴ exceeds {polar} m⁴",
+        "write the torsion constant: Jy + Jz for circles and tubes, less for boxes, far less for open sections";
+    /// Angles without `deg` or `pi` are at most one turn.
+    W008 degrees(what, given, turns) "{what} is {given} rad", "{turns} turns", "did you mean `{given} deg`? Write several turns as a multiple of `pi`";
+    /// The damping of a beam leaves its lowest bending vibration: β ω is at most 10 for the beam alone, clamped at one end.
+    W009 overdamped(link, beta, frequency, product) "the damping of beam `{link}` suppresses all vibration: β ω = {product}",
+        "β = {beta} s, the lowest bending frequency is {frequency} rad/s", "check the unit: `beta` is in s, 1e-4 to 1e-2 s for steel structures";
+    /// A payload is not out of proportion to the crane that carries it.
+    W010 payload(place, mass, crane, help) "the mass of {place} is {mass} kg", "the crane that carries it has {crane} kg", "{help}";
+    /// Principal moments satisfy the triangle inequality, which measured ones may miss by up to 25 % (above: E051).
+    W011 slight_triangle(place, largest, others) "{place} violates the triangle inequality a little", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
+        "no principal moment about the centre of mass exceeds the sum of the other two; rounded or identified data may miss that a little";
 }

@@ -18,10 +18,11 @@ pub(super) fn draw(source: &SourceFile, mistakes: &[Mistake], f: &mut fmt::Forma
         draw_one(&renderer, source, mistake, f)?;
         f.write_str("\n\n")?;
     }
+    let word = if mistakes.iter().any(Mistake::is_warning) { "warning" } else { "mistake" };
     match mistakes.len() {
-        1 => write!(f, "{}: 1 mistake", source.name),
-        n if n > MAX_DRAWN => write!(f, "{}: {n} mistakes, of which {} are not shown", source.name, n - MAX_DRAWN),
-        n => write!(f, "{}: {n} mistakes", source.name),
+        1 => write!(f, "{}: 1 {word}", source.name),
+        n if n > MAX_DRAWN => write!(f, "{}: {n} {word}s, of which {} are not shown", source.name, n - MAX_DRAWN),
+        n => write!(f, "{}: {n} {word}s", source.name),
     }
 }
 
@@ -33,14 +34,40 @@ fn draw_one(renderer: &Renderer, source: &SourceFile, mistake: &Mistake, f: &mut
     // A span that runs over its line, as that of a block, is drawn as far as the line goes.
     let end = source.boundary(mistake.span.end).clamp(start, last);
     let (number, _) = source.position(start);
-    let snippet = Snippet::source(&source.text[first..last])
+    let shown = harmless(&source.text[first..last]);
+    let snippet = Snippet::source(shown.as_str())
         .line_start(number)
         .path(&source.name)
         .annotation(AnnotationKind::Primary.span(start - first..end - first).label(&mistake.label));
-    let report = Level::ERROR
+    let level = if mistake.is_warning() { Level::WARNING } else { Level::ERROR };
+    let report = level
         .primary_title(&mistake.title)
         .id(mistake.code)
         .element(snippet)
         .element(Level::HELP.message(&mistake.help));
     f.write_str(&renderer.render(&[report]))
+}
+
+/// The text with signs in place of what a terminal would obey (C1 controls) or turn around (marks of direction). Each takes as
+/// many bytes as what it stands for, so that places stay.
+fn harmless(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\u{80}'..='\u{9f}' => '¿',
+        '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
+        other => other,
+    };
+    text.chars().map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn excerpts_hold_nothing_that_a_terminal_obeys() {
+        let text = "a\u{9b}31m b\u{202e}c é";
+        let shown = harmless(text);
+        assert_eq!(shown, "a¿31m b\u{fffd}c é");
+        assert_eq!(shown.len(), text.len());
+    }
 }

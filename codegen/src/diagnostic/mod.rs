@@ -1,4 +1,4 @@
-//! Mistakes of a spec: what is wrong, where, and what to write instead; all of a file at once.
+//! Mistakes of a spec and warnings about it: what is wrong, where, and what to write instead; all of a file at once.
 
 mod catalogue;
 mod draw;
@@ -14,7 +14,7 @@ pub use source::{MAX_BYTES, SourceFile, Span};
 
 use std::fmt;
 
-/// One mistake.
+/// One mistake, or one warning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistake {
     /// Code of the rule it breaks, such as `E031`.
@@ -29,7 +29,15 @@ pub struct Mistake {
     pub help: String,
 }
 
-/// All mistakes of one file, in the order of the file.
+impl Mistake {
+    /// Whether the crane is compiled all the same.
+    #[must_use]
+    pub fn is_warning(&self) -> bool {
+        self.code.starts_with('W')
+    }
+}
+
+/// All mistakes of one file, or all warnings about a file without mistakes, in the order of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostics {
     source: SourceFile,
@@ -37,28 +45,40 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// Mistakes of a source file; there is at least one.
+    /// What was found in a source file.
     pub(crate) fn new(source: &SourceFile, mut mistakes: Vec<Mistake>) -> Self {
         mistakes.sort_by_key(|m| (m.span.start, m.code));
         Diagnostics { source: source.clone(), mistakes }
     }
 
-    /// The mistakes, in the order of the file.
+    /// The mistakes or warnings, in the order of the file.
     #[must_use]
     pub fn mistakes(&self) -> &[Mistake] {
         &self.mistakes
     }
 
+    /// Whether nothing was found.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.mistakes.is_empty()
+    }
+
+    /// Each in one line, for places that show no more: `crane.yaml:3:5: unknown key `masss` [E010]`.
+    pub fn lines(&self) -> impl Iterator<Item = String> {
+        self.mistakes.iter().map(|mistake| {
+            let (line, column) = self.source.position(mistake.span.start);
+            format!("{}:{line}:{column}: {} [{}]", self.source.name, mistake.title, mistake.code)
+        })
+    }
+
     /// The whole in one line, for places that show no more: `crane.yaml:3:5: unknown key `masss` [E010] (and 2 more)`.
     #[must_use]
     pub fn headline(&self) -> String {
-        let Some(first) = self.mistakes.first() else { return format!("{}: no mistakes", self.source.name) };
-        let (line, column) = self.source.position(first.span.start);
-        let more = match self.mistakes.len() - 1 {
-            0 => String::new(),
-            n => format!(" (and {n} more)"),
-        };
-        format!("{}:{line}:{column}: {} [{}]{more}", self.source.name, first.title, first.code)
+        let Some(first) = self.lines().next() else { return format!("{}: no mistakes", self.source.name) };
+        match self.mistakes.len() - 1 {
+            0 => first,
+            n => format!("{first} (and {n} more)"),
+        }
     }
 }
 

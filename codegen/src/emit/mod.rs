@@ -70,6 +70,7 @@ pub fn emit(chain: &Chain, analyses: Analyses, blocks: &Blocks, report: Report, 
     } else if analyses.dynamics {
         items.push(lanes::one_by_one());
     }
+    items.iter_mut().for_each(allow_double_underscores);
     let imports = imports(&items);
     let body = print::file(items);
     let text = format!("{}\n{}\n{body}", header::header(chain, &report, spec_file), imports);
@@ -118,6 +119,21 @@ fn imports(items: &[syn::Item]) -> String {
         let _ = writeln!(text, "use {source}::{{{}}};", used.join(", "));
     }
     syn::parse_file(&text).map(|file| prettyplease::unparse(&file)).unwrap_or(text)
+}
+
+/// A name of the user's that ends in `_` makes names such as `box__psi`, which rustc does not take for snake case.
+fn allow_double_underscores(item: &mut syn::Item) {
+    if !identifiers(std::slice::from_ref(item)).iter().any(|name| name.contains("__")) {
+        return;
+    }
+    let attributes = match item {
+        syn::Item::Fn(item) => &mut item.attrs,
+        syn::Item::Impl(item) => &mut item.attrs,
+        syn::Item::Mod(item) => &mut item.attrs,
+        syn::Item::Struct(item) => &mut item.attrs,
+        _ => return,
+    };
+    attributes.push(parse_quote!(#[allow(non_snake_case)]));
 }
 
 /// All identifiers of the code; not what stands in strings and documentation, which is the user's.

@@ -141,11 +141,18 @@ impl<'a> Fields<'a> {
     /// Reports unknown and duplicate keys, and leaves them out.
     pub fn new(reader: Reader<'a>, entries: &'a [(Node, Node)], names: &'static [&'static str]) -> Self {
         let mut given = vec![None; names.len()];
+        // A whole number just before: a comma within a number ends it in `{mass: 50,5}`.
+        let mut before = None;
         for (key, value) in entries {
             let name = key.key_text();
             match names.iter().position(|field| *field == name) {
                 None => {
-                    let help = suggest(&name, names.iter().copied());
+                    let help = match before {
+                        Some(whole) if matches!(value.content, Content::Null) && is_fraction(&key.content) => {
+                            format!("did you mean `{whole}.{name}`? A decimal point, not a comma")
+                        }
+                        _ => suggest(&name, names.iter().copied()),
+                    };
                     reader.report(rule::unknown_key(key.span, name, help));
                 }
                 Some(field) if given[field].is_some() => {
@@ -153,9 +160,18 @@ impl<'a> Fields<'a> {
                 }
                 Some(field) => given[field] = Some((shown(key.span, value), value)),
             }
+            before = match value.content {
+                Content::Number(number) if number.fract() == 0.0 => Some(number),
+                _ => None,
+            };
         }
         Fields { reader, names, given, next: 0 }
     }
+}
+
+/// Whether a key can be what follows the comma of a number.
+fn is_fraction(key: &Content) -> bool {
+    matches!(key, Content::Number(digits) if *digits >= 0.0 && digits.fract() == 0.0)
 }
 
 impl<'a> MapAccess<'a> for Fields<'a> {

@@ -43,6 +43,14 @@ impl de::Error for Unread {
     }
 }
 
+/// The number that a text with a decimal comma means.
+fn with_decimal_point(content: &Content) -> Option<String> {
+    let Content::Text(text) = content else { return None };
+    let (whole, fraction) = text.split_once(',')?;
+    let digits = |text: &str| !text.is_empty() && text.len() < 20 && text.bytes().all(|b| b.is_ascii_digit());
+    (digits(whole.trim_start_matches('-')) && digits(fraction)).then(|| format!("{whole}.{fraction}"))
+}
+
 /// What a node is called in messages.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Place<'a> {
@@ -104,7 +112,10 @@ impl<'a> Reader<'a> {
 
     /// Notes that the value is not what was expected, unless that was said.
     pub fn report_unread(&self, unread: Unread) {
-        if let (Unread::Expected(expected), Some(node)) = (unread, self.node) {
+        if let (Unread::Expected(mut expected), Some(node)) = (unread, self.node) {
+            if let Some(number) = with_decimal_point(&node.content) {
+                expected = format!("`{number}`, with a decimal point");
+            }
             self.report(rule::wrong_value(
                 self.span,
                 self.place,

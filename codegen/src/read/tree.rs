@@ -48,8 +48,8 @@ impl Node {
 
 /// Depth at which no spec is nested, and recursion over the tree is still harmless.
 const MAX_DEPTH: usize = 24;
-/// Nodes of a crane with a thousand elements written one by one, twice over; aliases may not multiply them beyond this.
-const MAX_NODES: usize = 1 << 16;
+/// Values of a crane with as many joints as there may be, twice over; aliases may not multiply them beyond this.
+const MAX_NODES: usize = 1 << 17;
 
 /// Parses YAML.
 pub(super) fn parse(text: &str) -> Result<Node, Mistake> {
@@ -72,6 +72,7 @@ pub(super) fn parse(text: &str) -> Result<Node, Mistake> {
         let span = error.location().map_or(Span::START, |location| span(text, &location));
         match text.trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}') {
             "" => rule::empty(Span::START),
+            _ if too_many(&error) => rule::too_many_values(span, MAX_NODES),
             _ => rule::not_yaml(span, problem(&error)),
         }
     })?;
@@ -80,6 +81,17 @@ pub(super) fn parse(text: &str) -> Result<Node, Mistake> {
         Content::Null => Err(rule::empty(Span::START)),
         Content::Mapping(_) => Ok(root),
         content => Err(rule::not_a_mapping(root.span, content.describe())),
+    }
+}
+
+/// Whether the parser gave up over the number of values, aliases resolved, and not over what they are.
+fn too_many(error: &serde_yaml::Error) -> bool {
+    use serde_yaml::{Error, budget::BudgetBreach};
+    match error.without_snippet() {
+        Error::Budget { breach, .. } => !matches!(breach, BudgetBreach::Depth { .. }),
+        Error::AliasReplayLimitExceeded { .. } => true,
+        Error::AliasError { error, .. } => too_many(error),
+        _ => false,
     }
 }
 

@@ -11,7 +11,10 @@ use crate::spec::{Beam, BeamDamping, Directions, Either, Given, Sections};
 /// The most sections a beam may have.
 const MOST_SECTIONS: f64 = 1000.0;
 /// The most coordinates that a crane may have: far more than make sense, few enough to answer at once.
-const MOST_COORDINATES: usize = 10_000;
+pub(super) const MOST_COORDINATES: usize = 10_000;
+/// What to do about too many of them.
+const FEWER_SECTIONS: &str =
+    "cut beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
 /// Rotations of an element after the first, in order.
 const ROTATIONS: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 
@@ -34,7 +37,7 @@ impl<'a> Check<'a> {
         let count = |elements: &Elements| self.coordinates.len() + ROTATIONS.len() * elements.joints.len();
         let total = elements.as_ref().map_or(0, count);
         if total > MOST_COORDINATES {
-            self.report(rule::too_many(given.span, link, total, MOST_COORDINATES));
+            self.report(rule::too_many(given.span, format!("beam `{link}`"), total, MOST_COORDINATES, FEWER_SECTIONS));
         }
         let Some(Elements { elements, joints }) = elements.filter(|_| total <= MOST_COORDINATES) else {
             // Its coordinates are not known.

@@ -1,5 +1,6 @@
 //! Links, their placements and joints.
 
+use super::beam::MOST_COORDINATES;
 use super::limits::Limit;
 use super::{Check, Owner, Place};
 use crate::chain::{Axis, Body, BodyId, Coordinate, CoordinateId, CoordinateKind, Step, Value};
@@ -50,6 +51,13 @@ impl<'a> Check<'a> {
             match &link.value {
                 Some(inside) => tip = self.link(inside, index == 0, tip),
                 None => self.unknown.links = true,
+            }
+            let count = self.coordinates.len();
+            if count > MOST_COORDINATES {
+                let help = "a crane has a joint for each drive and hinge: leave out what does not move by itself";
+                self.report(rule::too_many(link.span, format!("link {}", index + 1), count, MOST_COORDINATES, help));
+                self.unknown.links = true;
+                return;
             }
         }
     }

@@ -8,7 +8,9 @@ use crate::expand::inertia::{self, Tensor};
 use crate::spec::{About, Body, Given, Inertia, Link, Number, Vector};
 
 /// Published inertias are measured or rounded: the triangle inequality may be missed by this share.
-pub(super) const SLIGHT: f64 = 0.25;
+const SLIGHT: f64 = 0.25;
+/// Rounding that people do when they write an inertia down, which is not worth a warning.
+const WRITTEN: f64 = 1e-6;
 /// A smallest principal moment below this share of the largest is zero to rounding.
 const VANISHING: f64 = 1e-12;
 
@@ -158,12 +160,16 @@ impl<'a> Check<'a> {
             (inertia::leading_minors(inertia::definite_margin(&tensor, VANISHING)), &not_positive),
             (inertia::leading_minors(inertia::triangle_margin(&tensor, SLIGHT)), &triangle),
         ] {
-            margins.into_iter().for_each(|margin| self.keep_positive(margin, broken));
+            for margin in margins {
+                self.keep_positive(margin, broken);
+            }
         }
         if smallest <= VANISHING * largest {
             self.report(not_positive);
         } else if largest > (smallest + middle) * (1.0 + SLIGHT) {
             self.report(triangle);
+        } else if largest > (smallest + middle) * (1.0 + WRITTEN) {
+            self.warnings.push(rule::slight_triangle(span, place, rounded(largest), rounded(smallest + middle)));
         }
     }
 }

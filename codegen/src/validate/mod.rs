@@ -12,6 +12,7 @@ mod links;
 mod mass;
 mod names;
 mod numbers;
+mod plausibility;
 mod regular;
 mod run;
 mod section;
@@ -27,11 +28,28 @@ use crate::spec::{self, Analysis, Crane, CraneSpec, Given};
 use limits::Limit;
 use names::Names;
 
+/// A crane without mistakes.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// The chain of its bodies.
+    pub chain: Chain,
+    /// What looks like another unit or a slip, and is compiled all the same.
+    pub warnings: Diagnostics,
+}
+
 /// Checks a spec and expands it into the chain of its bodies.
 ///
 /// # Errors
 /// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
 pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnostics> {
+    check(spec, source).map(|checked| checked.chain)
+}
+
+/// Checks a spec, expands it into the chain of its bodies, and looks for what is implausible.
+///
+/// # Errors
+/// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
+pub fn check(spec: &CraneSpec, source: &SourceFile) -> Result<Checked, Diagnostics> {
     let mut check = Check { mistakes: spec.mistakes.clone(), ..Check::default() };
     let mut chain = check.crane(&spec.crane, source);
     if check.mistakes.is_empty() {
@@ -39,7 +57,12 @@ pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnost
         check.regular(&chain, &spec.crane);
         check.keep_masses(&mut chain);
     }
-    if check.mistakes.is_empty() { Ok(chain) } else { Err(Diagnostics::new(source, check.mistakes)) }
+    if !check.mistakes.is_empty() {
+        return Err(Diagnostics::new(source, check.mistakes));
+    }
+    let mut warnings = check.warnings;
+    warnings.extend(plausibility::warnings(&spec.crane, &chain));
+    Ok(Checked { chain, warnings: Diagnostics::new(source, warnings) })
 }
 
 /// What a coordinate belongs to.
@@ -66,6 +89,8 @@ struct Place {
 #[derive(Debug, Default)]
 struct Check<'a> {
     mistakes: Vec<Mistake>,
+    /// Warnings of rules that are broken a little.
+    warnings: Vec<Mistake>,
     parameters: Vec<Parameter>,
     /// Their values, at which live numbers are checked.
     defaults: Vec<f64>,
@@ -105,7 +130,7 @@ impl<'a> Check<'a> {
 
     fn crane(&mut self, crane: &'a Crane, source: &SourceFile) -> Chain {
         self.format(crane);
-        let name = self.name(&crane.name).unwrap_or_default();
+        let name = self.crane_name(&crane.name).unwrap_or_default();
         let title = self.text(crane.title.as_ref(), "`title`").unwrap_or_else(|| name.to_owned());
         self.take_parameters(crane);
         self.take_materials(crane);

@@ -7,6 +7,22 @@ use crate::chain::CoordinateId;
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::Given;
 
+/// The longest name, letters: names of files, and lines of generated code, are made of it.
+const LONGEST: usize = 64;
+/// Crates whose names are looked up at the root of a program: a module of the same name would hide them.
+const CRATES: [&str; 10] = [
+    "std",
+    "core",
+    "alloc",
+    "nalgebra",
+    "wide",
+    "crane_model",
+    "crane_codegen",
+    "crane_cli",
+    "crane_specs",
+    "crane_live",
+];
+
 /// Names taken so far, by kind and name, and what took them.
 #[derive(Debug, Default)]
 pub(super) struct Names(BTreeMap<(&'static str, String), String>);
@@ -29,13 +45,25 @@ impl Check<'_> {
     pub(super) fn name<'n>(&mut self, given: &'n Given<String>) -> Option<&'n str> {
         let name = given.value.as_deref()?;
         let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-        if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.chars().all(letters) {
-            self.report(rule::not_an_identifier(given.span, name.chars().take(40).collect::<String>()));
+        let identifier = name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(letters);
+        if !identifier || name.len() > LONGEST {
+            let why = if identifier { "longer than 64 letters" } else { "not an identifier" };
+            self.report(rule::not_an_identifier(given.span, name.chars().take(40).collect::<String>(), why));
             return None;
         }
         // `gen` is a keyword since edition 2024.
         if name == "gen" || syn::parse_str::<syn::Ident>(name).is_err() {
-            self.report(rule::keyword(given.span, name));
+            self.report(rule::keyword(given.span, name, "a keyword of Rust"));
+            return None;
+        }
+        Some(name)
+    }
+
+    /// The name of the crane, which becomes a module at the root of a program.
+    pub(super) fn crane_name<'n>(&mut self, given: &'n Given<String>) -> Option<&'n str> {
+        let name = self.name(given)?;
+        if CRATES.contains(&name) {
+            self.report(rule::keyword(given.span, name, "programs around a crane use a crate of this name"));
             return None;
         }
         Some(name)

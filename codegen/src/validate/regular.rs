@@ -68,9 +68,25 @@ fn inertia_in_world(frame: &Frame, inertia: &Inertia, parameters: &[f64]) -> Spa
 impl Check<'_> {
     /// Reports coordinates that move no mass of their own.
     pub(super) fn regular(&mut self, chain: &Chain, crane: &Crane) {
-        for (body, CoordinateId(index)) in self.idle_coordinates(chain, &self.defaults) {
-            let link = &chain.bodies[body.0].link;
-            self.report(rule::moves_nothing(joint_span(crane, link), &chain.coordinates[index].name));
+        let idle = self.idle_coordinates(chain, &self.defaults);
+        let in_beam =
+            |(_, CoordinateId(index)): &&(BodyId, CoordinateId)| matches!(self.owners[*index], Owner::Beam(_));
+        let mut light: Vec<&str> =
+            idle.iter().filter(in_beam).map(|(body, _)| chain.bodies[body.0].link.as_str()).collect();
+        light.sort_unstable();
+        light.dedup();
+        for link in &light {
+            let elements = chain.bodies.iter().filter(|body| body.link == *link);
+            let inertias = elements.filter_map(|body| body.inertia.as_ref());
+            let mass: f64 = inertias.map(|inertia| self.now(&inertia.mass)).sum();
+            self.report(rule::too_light(joint_span(crane, link), link, format!("{mass:.3e}")));
+        }
+        // Beside a beam without mass, which joints are lost to rounding is chance.
+        if light.is_empty() {
+            for (body, CoordinateId(index)) in idle {
+                let span = joint_span(crane, &chain.bodies[body.0].link);
+                self.report(rule::moves_nothing(span, &chain.coordinates[index].name));
+            }
         }
     }
 

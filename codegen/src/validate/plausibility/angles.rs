@@ -1,0 +1,107 @@
+//! Angles that look like degrees, and positions of joints.
+
+use std::f64::consts::TAU;
+
+use super::lengths::is_far;
+use super::{Look, items, rounded};
+use crate::chain::CoordinateKind;
+use crate::diagnostic::{Span, rule};
+use crate::spec::{Angle, Given, Link, Motion, Placement, Scalar, Turn};
+
+/// Bare angles beyond a full turn look like degrees. Four ulp of it: `6.283185307179586` is 2π.
+const FULL_TURN: f64 = TAU * (1.0 + 4.0 * f64::EPSILON);
+
+impl Look<'_> {
+    pub(super) fn angles(&mut self) {
+        let crane = self.crane;
+        for link in items(Some(&crane.links)) {
+            self.rotations(link);
+        }
+        for drive in items(crane.drives.as_ref()) {
+            let name = drive.coordinate.value.as_deref().unwrap_or_default();
+            if let Some(motion) = &drive.motion.value {
+                self.motion(motion, name);
+            }
+        }
+        let guess = crane.guess.as_ref().and_then(|guess| guess.value.as_ref());
+        for (name, position) in guess.into_iter().flat_map(|guess| &guess.0) {
+            let name = name.value.as_deref().unwrap_or_default();
+            let scalar = position.value.as_ref().map(|position| &position.0);
+            self.position(scalar, position.span, name, &format!("the guess of `{name}`"));
+        }
+    }
+
+    fn rotations(&mut self, link: &Link) {
+        let name = link.name.value.as_deref().unwrap_or_default();
+        let angles: Vec<&Given<Angle>> = match link.placement.as_ref().and_then(|placement| placement.value.as_ref()) {
+            Some(Placement::ModifiedDh(row)) => [&row.alpha, &row.theta].into_iter().flatten().collect(),
+            Some(Placement::ClassicDh(row)) => [&row.alpha, &row.theta].into_iter().flatten().collect(),
+            Some(Placement::Transform(transform)) => {
+                let turns = transform.rotation.as_ref().and_then(|rotation| rotation.value.as_ref());
+                let turns = turns.into_iter().flat_map(|turns| &turns.0).filter_map(|turn| turn.value.as_ref());
+                turns.map(|(Turn::X(angle) | Turn::Y(angle) | Turn::Z(angle))| angle).collect()
+            }
+            None => vec![],
+        };
+        for (scalar, at) in angles.into_iter().map(written) {
+            self.angle(scalar, at, &format!("a rotation of link `{name}`"));
+        }
+    }
+
+    fn motion(&mut self, motion: &Motion, coordinate: &str) {
+        let what = format!("a position of `{coordinate}`");
+        let positions: Vec<(Option<&Scalar>, Span)> = match motion {
+            Motion::Hold(at) => vec![written(at)],
+            Motion::Quintic(ramp) | Motion::Cubic(ramp) | Motion::Cycloid(ramp) => {
+                vec![written(&ramp.from), written(&ramp.to)]
+            }
+            Motion::Trapezoid(trapezoid) => vec![written(&trapezoid.from), written(&trapezoid.to)],
+            Motion::Speed(speed) => speed.from.iter().map(written).collect(),
+            Motion::Table(table) => {
+                let values = table.values.value.iter().flatten();
+                values.map(|value| (value.value.as_ref().map(|value| &value.0), value.span)).collect()
+            }
+        };
+        // The first that is wrong says it for the motion.
+        let before = self.warnings.len();
+        for (scalar, at) in positions {
+            self.position(scalar, at, coordinate, &what);
+            if self.warnings.len() > before {
+                return;
+            }
+        }
+    }
+
+    /// A position of a coordinate: an angle, or a way along a slide.
+    fn position(&mut self, scalar: Option<&Scalar>, at: Span, coordinate: &str, what: &str) {
+        let known = self.chain.coordinates.iter().find(|known| known.name == coordinate);
+        match known.map(|known| known.kind) {
+            Some(CoordinateKind::Rotation) => self.angle(scalar, at, what),
+            Some(CoordinateKind::Translation) => {
+                let number = scalar.map_or(0.0, |scalar| self.scalar(scalar));
+                if is_far(number) {
+                    self.far(number, at, what);
+                }
+            }
+            None => {}
+        }
+    }
+
+    /// An angle that is written without `deg` or `pi`, itself or as the value of the parameter that it names.
+    fn angle(&mut self, scalar: Option<&Scalar>, at: Span, what: &str) {
+        let bare = match scalar {
+            Some(Scalar::Name(name)) => self.parameter(name),
+            other => other,
+        };
+        if let Some(&Scalar::Number(angle)) = bare
+            && angle.abs() > FULL_TURN
+        {
+            self.warn(rule::degrees(at, what, angle, rounded(angle / TAU)));
+        }
+    }
+}
+
+/// What is written for an angle, and where.
+fn written(angle: &Given<Angle>) -> (Option<&Scalar>, Span) {
+    (angle.value.as_ref().map(|angle| &angle.0), angle.span)
+}

@@ -1,0 +1,76 @@
+//! Lengths of beams, and places within the crane.
+
+use super::beams::in_metres;
+use super::{Look, items, rounded};
+use crate::diagnostic::{Span, rule};
+use crate::spec::{Given, Link, Number, Placement, Vector};
+
+/// Nothing in a crane is longer or further away, m.
+const LONGEST: f64 = 200.0;
+
+impl Look<'_> {
+    pub(super) fn lengths(&mut self) {
+        let crane = self.crane;
+        for (index, link) in items(Some(&crane.links)).enumerate() {
+            self.lengths_of(link, index == 0);
+        }
+        for support in items(crane.supports.as_ref()) {
+            let name = support.name.value.as_deref().unwrap_or_default();
+            self.place(Some(&support.at), &format!("support `{name}`"));
+        }
+        for point in items(crane.points.as_ref()) {
+            let name = point.name.value.as_deref().unwrap_or_default();
+            self.place(Some(&point.at), &format!("point `{name}`"));
+        }
+    }
+
+    fn lengths_of(&mut self, link: &Link, first: bool) {
+        let name = link.name.value.as_deref().unwrap_or_default();
+        if let Some(beam) = link.beam.as_ref().and_then(|beam| beam.value.as_ref()) {
+            self.length(&beam.length, &format!("the length of beam `{name}`"));
+        }
+        self.place(link.com.as_ref(), &format!("the centre of mass of link `{name}`"));
+        for body in items(link.bodies.as_ref()) {
+            let body_name = body.name.value.as_deref().unwrap_or_default();
+            self.place(Some(&body.com), &format!("the centre of mass of body `{body_name}`"));
+        }
+        // The crane as a whole may stand anywhere in the world.
+        let placement = link.placement.as_ref().filter(|_| !first).and_then(|placement| placement.value.as_ref());
+        let what = format!("the placement of link `{name}`");
+        let along = match placement {
+            Some(Placement::Transform(transform)) => return self.place(transform.translation.as_ref(), &what),
+            Some(Placement::ModifiedDh(row)) => [&row.a, &row.d],
+            Some(Placement::ClassicDh(row)) => [&row.a, &row.d],
+            None => return,
+        };
+        for given in along.into_iter().flatten() {
+            self.length(given, &what);
+        }
+    }
+
+    /// Three lengths, of which the first that is too long says it for all.
+    fn place(&mut self, given: Option<&Given<Vector>>, what: &str) {
+        let Some(numbers) = given.and_then(|given| given.value.as_ref()) else { return };
+        let far = numbers.each_ref().map(|number| self.number(number)).into_iter().find(|(number, _)| is_far(*number));
+        if let Some((number, at)) = far {
+            self.far(number, at, what);
+        }
+    }
+
+    fn length(&mut self, given: &Given<Number>, what: &str) {
+        let (number, at) = self.number(given);
+        if is_far(number) {
+            self.far(number, at, what);
+        }
+    }
+
+    /// A length that is too long.
+    pub(super) fn far(&mut self, number: f64, at: Span, what: &str) {
+        self.warn(rule::far(at, what, rounded(number), in_metres(number)));
+    }
+}
+
+/// Whether a length is out of proportion.
+pub(super) fn is_far(length: f64) -> bool {
+    length.abs() > LONGEST
+}

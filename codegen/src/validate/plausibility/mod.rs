@@ -1,0 +1,72 @@
+//! Plausibility: numbers that no rule refuses, but that look like another unit than SI or like a slip.
+//!
+//! Looked for in a crane without mistakes, at the default values of its parameters. Each finding is a warning: the crane
+//! is compiled as it is written.
+
+mod angles;
+mod beams;
+mod lengths;
+mod masses;
+
+use crate::chain::Chain;
+use crate::diagnostic::{Mistake, Span};
+use crate::spec::{Crane, Given, Number, Parameter, Scalar};
+
+/// Warnings about a crane without mistakes.
+pub(super) fn warnings(crane: &Crane, chain: &Chain) -> Vec<Mistake> {
+    let mut look = Look { crane, chain, defaults: chain.parameter_defaults(), warnings: Vec::new() };
+    look.beams();
+    look.lengths();
+    // Frequencies and masses that follow from such numbers would be named a second time.
+    if look.warnings.is_empty() {
+        look.damping();
+        look.masses();
+    }
+    look.angles();
+    look.warnings
+}
+
+/// A look over a crane: as it is written, and as it was understood.
+struct Look<'a> {
+    crane: &'a Crane,
+    chain: &'a Chain,
+    /// Values of the parameters at which the numbers are looked at.
+    defaults: Vec<f64>,
+    warnings: Vec<Mistake>,
+}
+
+impl<'a> Look<'a> {
+    fn warn(&mut self, warning: Mistake) {
+        self.warnings.push(warning);
+    }
+
+    /// A number, and where it stands.
+    fn number(&self, given: &Given<Number>) -> (f64, Span) {
+        (given.value.as_ref().map_or(f64::NAN, |number| self.scalar(&number.0)), given.span)
+    }
+
+    fn scalar(&self, scalar: &Scalar) -> f64 {
+        match scalar {
+            Scalar::Number(number) | Scalar::Angle(number) => *number,
+            Scalar::Name(name) => self.parameter(name).map_or(f64::NAN, |value| self.scalar(value)),
+        }
+    }
+
+    /// What stands under `value` of a parameter.
+    fn parameter(&self, name: &str) -> Option<&'a Scalar> {
+        let entries = &self.crane.parameters.as_ref()?.value.as_ref()?.0;
+        let named = entries.iter().find(|(known, _)| known.value.as_deref() == Some(name));
+        let Parameter { value, .. } = named?.1.value.as_ref()?;
+        value.value.as_ref().map(|value| &value.0)
+    }
+}
+
+/// A number as a person would write it, to four digits.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.3e}").parse().unwrap_or(number)
+}
+
+/// Items of a list that may be missing.
+fn items<T>(given: Option<&Given<Vec<Given<T>>>>) -> impl Iterator<Item = &T> {
+    given.and_then(|given| given.value.as_ref()).into_iter().flatten().filter_map(|item| item.value.as_ref())
+}

@@ -1,0 +1,108 @@
+//! Every warning has a spec in `tests/implausible` that deserves it and a snapshot of its message; no crane that is shipped
+//! or described gets one.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use crane_codegen::diagnostic::CATALOGUE;
+use crane_codegen::{Diagnostics, SourceFile, check, read};
+
+/// Warnings about a spec without mistakes.
+fn warnings(name: &str, text: &str) -> Diagnostics {
+    let source = SourceFile::new(name, text);
+    let checked = read(&source).and_then(|spec| check(&spec, &source)).unwrap_or_else(|found| panic!("{found}"));
+    checked.warnings
+}
+
+/// Codes of the warnings about a spec, in the order of the file.
+fn codes(found: &Diagnostics) -> Vec<&'static str> {
+    found.mistakes().iter().map(|warning| warning.code).collect()
+}
+
+/// Files of a folder of this repository, by name, in order; only YAML.
+fn specs(folder: &str) -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let mut specs: Vec<_> = std::fs::read_dir(folder)
+        .expect("a folder of specs")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
+        .map(|path| {
+            let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+            (name, std::fs::read_to_string(&path).expect("a spec"))
+        })
+        .collect();
+    specs.sort();
+    specs
+}
+
+#[test]
+fn each_implausible_spec_gives_its_warning() {
+    let mut shown = BTreeSet::new();
+    for (name, text) in specs("tests/implausible") {
+        let found = warnings(&format!("{name}.yaml"), &text);
+        insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "implausible_messages", omit_expression => true }, {
+            insta::assert_snapshot!(name.as_str(), found.to_string());
+        });
+        if let Some((code, _)) = name.split_once('_').filter(|(code, _)| code.starts_with('W')) {
+            assert!(codes(&found).iter().all(|other| *other == code), "{name}: {found}");
+            assert!(!found.is_empty(), "{name} is plausible");
+            shown.insert(code.to_owned());
+        }
+    }
+    for rule in CATALOGUE.iter().filter(|rule| rule.code.starts_with('W')) {
+        assert!(shown.contains(rule.code), "no implausible spec for {}: {}", rule.code, rule.about);
+    }
+}
+
+#[test]
+fn mistakes_of_unit_are_noticed() {
+    let spec = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/own-crane/crane.yaml"));
+    let spec = spec.expect("the example").replace("\r\n", "\n");
+    let section = "{height: 0.2, width: 0.15, thickness: 0.006}";
+    let in_mm = "{height: 200, width: 150, thickness: 6}";
+    for (slip, replaced, expected) in [
+        ("E in GPa", &[("E: 2.1e11", "E: 210")][..], &["W001"][..]),
+        ("E in MPa", &[("E: 2.1e11", "E: 210000")], &["W001"]),
+        ("lengths in mm", &[("length: 4", "length: 4000"), (section, in_mm)], &["W005", "W004"]),
+        ("section in mm", &[(section, in_mm)], &["W004"]),
+        ("motion in degrees", &[("to: 45 deg", "to: 45")], &["W008"]),
+        ("rotation in degrees", &[("{x: 90 deg}", "{x: 90}")], &["W008"]),
+        ("density in t/m³", &[("density: 7850", "density: 7.85")], &["W003"]),
+        ("G above E", &[("G: 8.1e10", "G: 3e11")], &["W002"]),
+        ("payload in t", &[("value: 300", "value: 0.3")], &["W010"]),
+    ] {
+        let mut text = spec.clone();
+        for (from, to) in replaced {
+            assert_eq!(text.matches(from).count(), 1, "{slip}: `{from}` in the example");
+            text = text.replace(from, to);
+        }
+        assert_eq!(codes(&warnings(slip, &text)), expected, "{slip}");
+    }
+}
+
+#[test]
+fn shipped_and_described_cranes_are_plausible() {
+    let mut cranes: Vec<(String, String)> = specs("../specs");
+    cranes.extend(specs("../examples/own-crane"));
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let pages = std::fs::read_dir(docs.join("manual")).expect("the manual").map(|entry| entry.expect("a page").path());
+    for page in pages.chain([docs.join("SPEC.md"), docs.join("../README.md")]) {
+        let text = std::fs::read_to_string(&page).expect("a page");
+        let blocks = text.split("```yaml\n").skip(1).filter_map(|rest| rest.split("```").next());
+        let whole = blocks.filter(|block| block.contains("format:"));
+        cranes.extend(whole.map(|block| (page.display().to_string(), block.to_owned())));
+    }
+    assert!(cranes.len() > 10, "the folders were searched");
+    for (name, text) in cranes {
+        let found = warnings(&name, &text);
+        assert!(found.is_empty(), "{found}");
+    }
+}
+
+#[test]
+fn a_published_robot_that_misses_the_triangle_inequality_passes() {
+    // Link 3 of the PUMA 560 [Armstrong, Khatib, Burdick 1986]: 0.086 kg m² exceeds 0.066 + 0.0125.
+    let text = "format: 1\nname: puma\nlinks:\n  - name: forearm\n    joint: revolute\n    mass: 4.8\n    \
+        com: [0, -0.0141, 0.0702]\n    inertia: {Ixx: 0.066, Iyy: 0.086, Izz: 0.0125}\n";
+    assert_eq!(codes(&warnings("puma", text)), ["W011"]);
+}
