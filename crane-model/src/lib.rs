@@ -11,7 +11,7 @@
 //! | runs of many cranes, eight at a time | `dynamics::ensemble` | `std` |
 //! | frequencies, damping | `modes` | `std` |
 //! | largest stable step | `stability` | `std` |
-//! | any crane through one pointer | `rig::Rig` | `std` |
+//! | cranes of any size through one pointer | `dyn_crane` | `std` |
 //!
 //! With `default-features = false` the crate is `no_std` and needs no heap.
 
@@ -24,13 +24,13 @@ mod description;
 mod model;
 mod parameter;
 
+#[cfg(feature = "std")]
+pub mod dyn_crane;
 pub mod dynamics;
 #[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]
 pub mod results;
-#[cfg(feature = "std")]
-pub mod rig;
 #[cfg(feature = "std")]
 pub mod stability;
 #[cfg(feature = "std")]
@@ -38,8 +38,8 @@ pub mod statics;
 pub mod support;
 
 pub use description::{
-    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, LARGE_TILT, NEAR_SINGULAR,
-    ParameterInfo, SupportInfo,
+    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, LARGE_TILT, List, NEAR_SINGULAR,
+    ParameterInfo, SupportInfo, Text,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, LaneDynamics, Linearisation, Linearise, OneByOne, Statics,

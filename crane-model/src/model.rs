@@ -15,7 +15,7 @@ use crate::{Description, ParameterError};
 /// Poses, forces and potential energy of a crane.
 pub trait CraneModel<const N: usize> {
     /// Names, units and settings.
-    fn description(&self) -> &'static Description;
+    fn description(&self) -> &Description;
 
     /// Value of a live parameter, by its place in [`Description::parameters`].
     fn parameter(&self, index: usize) -> f64;
@@ -78,6 +78,10 @@ pub trait CraneModel<const N: usize> {
     /// Sets the coordinates that rigid drives prescribe, and their rates, as they are at time t. A crane without rigid drives
     /// has none.
     fn prescribe(&self, _t: f64, _q: &mut SVector<f64, N>, _v: &mut SVector<f64, N>) {}
+
+    /// Begin and end of the pieces in which the drives' motions are smooth, s. `out`: one pair per piece, drive by drive, as
+    /// many as [`DriveInfo::pieces`](crate::DriveInfo::pieces) says.
+    fn drive_pieces(&self, _out: &mut [[f64; 2]]) {}
 
     /// Potential energy of gravity, zero at the world's origin, Eq. (6). J.
     fn gravity_energy(&self, q: &SVector<f64, N>) -> f64;

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::ParameterInfo;
+use crate::{ParameterInfo, Text};
 
 /// The smallest magnitude of a number other than 0 (rule E033).
 const SMALLEST: f64 = 1e-30;
@@ -10,7 +10,7 @@ const SMALLEST: f64 = 1e-30;
 const LARGEST: f64 = 1e18;
 
 /// An end of the range of a live parameter. The compiler derives it from every place where the parameter is used.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
     /// The end of the range.
     pub value: f64,
@@ -21,23 +21,26 @@ pub struct Bound {
 }
 
 /// What the compiler says of a value that breaks a rule of the spec language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
     /// Code of the rule, such as `E031`.
-    pub code: &'static str,
+    pub code: Text,
     /// What is wrong; the value follows.
-    pub title: &'static str,
+    pub title: Text,
     /// What to write instead.
-    pub help: &'static str,
+    pub help: Text,
 }
 
 const OUT_OF_RANGE: Refusal = Refusal {
-    code: "E033",
-    title: "the number is outside the allowed range:",
-    help: "write 0 or a magnitude from 1e-30 to 1e18, in SI units",
+    code: Text::Static("E033"),
+    title: Text::Static("the number is outside the allowed range:"),
+    help: Text::Static("write 0 or a magnitude from 1e-30 to 1e18, in SI units"),
 };
-const NOT_FINITE: Refusal =
-    Refusal { code: "E030", title: "not a finite number:", help: "write a finite number, in SI units" };
+const NOT_FINITE: Refusal = Refusal {
+    code: Text::Static("E030"),
+    title: Text::Static("not a finite number:"),
+    help: Text::Static("write a finite number, in SI units"),
+};
 
 impl Bound {
     /// The least number of the spec language.
@@ -52,16 +55,18 @@ impl ParameterInfo {
     /// # Errors
     /// The rule of the spec language that the value breaks.
     pub fn check(&self, value: f64) -> Result<(), ParameterError> {
-        let refuse = |refusal| Err(ParameterError { given: Some((self.name, value)), refusal });
+        let refuse = |refusal: &Refusal| {
+            Err(ParameterError { given: Some((self.name.clone(), value)), refusal: refusal.clone() })
+        };
         let Self { least, greatest, .. } = self;
         if !value.is_finite() {
-            refuse(NOT_FINITE)
+            refuse(&NOT_FINITE)
         } else if value < least.value || (value == least.value && !least.allowed) {
-            refuse(least.refusal)
+            refuse(&least.refusal)
         } else if value > greatest.value || (value == greatest.value && !greatest.allowed) {
-            refuse(greatest.refusal)
+            refuse(&greatest.refusal)
         } else if value != 0.0 && value.abs() < SMALLEST {
-            refuse(OUT_OF_RANGE)
+            refuse(&OUT_OF_RANGE)
         } else {
             Ok(())
         }
@@ -69,18 +74,18 @@ impl ParameterInfo {
 }
 
 /// Live parameters cannot have these values: they break a rule of the spec language.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ParameterError {
     /// Name and value of the parameter; `None` where the rule joins several parameters.
-    pub given: Option<(&'static str, f64)>,
+    pub given: Option<(Text, f64)>,
     /// The rule and what it says.
     pub refusal: Refusal,
 }
 
 impl fmt::Display for ParameterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Refusal { code, title, help } = self.refusal;
-        match self.given {
+        let Refusal { code, title, help } = &self.refusal;
+        match &self.given {
             Some((parameter, value)) => write!(f, "parameter `{parameter}`: {title} {value} [{code}]; {help}"),
             None => write!(f, "{title} [{code}]; {help}"),
         }
@@ -94,17 +99,17 @@ mod tests {
     use super::*;
 
     const MASS: ParameterInfo = ParameterInfo {
-        name: "load",
-        unit: "kg",
-        about: "",
+        name: Text::Static("load"),
+        unit: Text::Static("kg"),
+        about: Text::Static(""),
         default: 1.0,
         least: Bound {
             value: 0.0,
             allowed: false,
             refusal: Refusal {
-                code: "E031",
-                title: "the mass must be above zero, not",
-                help: "write a number above 0",
+                code: Text::Static("E031"),
+                title: Text::Static("the mass must be above zero, not"),
+                help: Text::Static("write a number above 0"),
             },
         },
         greatest: Bound::GREATEST,
@@ -126,7 +131,11 @@ mod tests {
             (f64::NAN, Some("E030"), Some("E030"), Some("E030")),
             (f64::INFINITY, Some("E030"), Some("E030"), Some("E030")),
         ] {
-            assert_eq!([code(&MASS, value), code(&zero_too, value), code(&free, value)], [mass, zero, any], "{value}");
+            assert_eq!(
+                [code(&MASS, value), code(&zero_too, value), code(&free, value)],
+                [mass, zero, any].map(|code| code.map(Text::Static)),
+                "{value}"
+            );
         }
     }
 

@@ -31,7 +31,7 @@ struct ElasticPendulum {
 }
 
 impl CraneModel<2> for ElasticPendulum {
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         &DESCRIPTION
     }
     fn parameter(&self, _: usize) -> f64 {

@@ -40,7 +40,7 @@ use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::support::{MassAndBias, fill, fma, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description,
-    Dynamics, Ensemble, Implicit, OneByOne, ParameterError,
+    Dynamics, Ensemble, Implicit, List, OneByOne, ParameterError, Text,
 };
 
 /// Number of generalized coordinates.
@@ -48,43 +48,47 @@ pub const N: usize = 2;
 
 /// Names, units and settings.
 pub const DESCRIPTION: Description = Description {
-    name: "double_pendulum",
-    title: "Double pendulum",
-    spec_hash: "8e06c265e090e7d5",
-    parameters: &[],
-    coordinates: &[
-        CoordinateInfo {
-            name: "upper_theta",
-            kind: CoordinateKind::Rotation,
-            role: CoordinateRole::Passive,
-        },
-        CoordinateInfo {
-            name: "lower_theta",
-            kind: CoordinateKind::Rotation,
-            role: CoordinateRole::Passive,
-        },
-    ],
-    bodies: &[
-        BodyInfo {
-            name: "upper",
-            link: "upper",
-            mass: 2.0,
-            length: 0.0,
-            degrees_of_freedom: 1,
-        },
-        BodyInfo {
-            name: "lower",
-            link: "lower",
-            mass: 1.0,
-            length: 0.0,
-            degrees_of_freedom: 2,
-        },
-    ],
-    supports: &[],
-    drives: &[],
-    points: &["end"],
+    name: Text::Static("double_pendulum"),
+    title: Text::Static("Double pendulum"),
+    spec_hash: Text::Static("8e06c265e090e7d5"),
+    parameters: List::Static(&[]),
+    coordinates: List::Static(
+        &[
+            CoordinateInfo {
+                name: Text::Static("upper_theta"),
+                kind: CoordinateKind::Rotation,
+                role: CoordinateRole::Passive,
+            },
+            CoordinateInfo {
+                name: Text::Static("lower_theta"),
+                kind: CoordinateKind::Rotation,
+                role: CoordinateRole::Passive,
+            },
+        ],
+    ),
+    bodies: List::Static(
+        &[
+            BodyInfo {
+                name: Text::Static("upper"),
+                link: Text::Static("upper"),
+                mass: 2.0,
+                length: 0.0,
+                degrees_of_freedom: 1,
+            },
+            BodyInfo {
+                name: Text::Static("lower"),
+                link: Text::Static("lower"),
+                mass: 1.0,
+                length: 0.0,
+                degrees_of_freedom: 2,
+            },
+        ],
+    ),
+    supports: List::Static(&[]),
+    drives: List::Static(&[]),
+    points: List::Static(&[Text::Static("end")]),
     statics: false,
-    guess: &[1.5707963267948966, -1.5707963267948966],
+    guess: List::Static(&[1.5707963267948966, -1.5707963267948966]),
     duration: 10.0,
     step: 0.001,
     output: 0.01,
@@ -695,7 +699,7 @@ impl Default for Crane {
 }
 
 impl CraneModel<N> for Crane {
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         &DESCRIPTION
     }
     fn parameter(&self, _index: usize) -> f64 {

@@ -22,6 +22,7 @@
 //   point_velocities                    54       210
 //   drive_forces                        84        95
 //   drive_motions                       69        80
+//   drive_pieces                         0         0
 //   hinge_forces                         1         2
 //   forces                              85       105
 //   gravity_energy                      37       188
@@ -45,8 +46,8 @@ use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::support::{MassAndBias, fill, fma, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel,
-    Description, DriveInfo, Dynamics, Ensemble, Implicit, Linearisation, Linearise,
-    ParameterError, ParameterInfo, Refusal, Statics,
+    Description, DriveInfo, Dynamics, Ensemble, Implicit, Linearisation, Linearise, List,
+    ParameterError, ParameterInfo, Refusal, Statics, Text,
 };
 
 /// Number of generalized coordinates.
@@ -54,78 +55,98 @@ pub const N: usize = 4;
 
 /// Names, units and settings.
 pub const DESCRIPTION: Description = Description {
-    name: "knuckle_boom",
-    title: "Planar knuckle-boom crane on a fixed base",
-    spec_hash: "4b98de3d10084c62",
-    parameters: &PARAMETERS,
-    coordinates: &[
-        CoordinateInfo {
-            name: "main_boom_theta",
-            kind: CoordinateKind::Rotation,
-            role: CoordinateRole::Driven,
-        },
-        CoordinateInfo {
-            name: "knuckle_theta",
-            kind: CoordinateKind::Rotation,
-            role: CoordinateRole::Driven,
-        },
-        CoordinateInfo {
-            name: "extension_x",
-            kind: CoordinateKind::Translation,
-            role: CoordinateRole::Driven,
-        },
-        CoordinateInfo {
-            name: "hook_theta",
-            kind: CoordinateKind::Rotation,
-            role: CoordinateRole::Passive,
-        },
-    ],
-    bodies: &[
-        BodyInfo {
-            name: "pillar",
-            link: "pillar",
-            mass: 0.0,
-            length: 0.0,
-            degrees_of_freedom: 0,
-        },
-        BodyInfo {
-            name: "main_boom",
-            link: "main_boom",
-            mass: 420.0,
-            length: 0.0,
-            degrees_of_freedom: 1,
-        },
-        BodyInfo {
-            name: "knuckle",
-            link: "knuckle",
-            mass: 310.0,
-            length: 0.0,
-            degrees_of_freedom: 2,
-        },
-        BodyInfo {
-            name: "extension",
-            link: "extension",
-            mass: 150.0,
-            length: 0.0,
-            degrees_of_freedom: 3,
-        },
-        BodyInfo {
-            name: "hook",
-            link: "hook",
-            mass: 825.0,
-            length: 0.0,
-            degrees_of_freedom: 4,
-        },
-    ],
-    supports: &[],
-    drives: &[
-        DriveInfo { coordinate: 0 },
-        DriveInfo { coordinate: 1 },
-        DriveInfo { coordinate: 2 },
-    ],
-    points: &["boom_tip", "load_centre"],
+    name: Text::Static("knuckle_boom"),
+    title: Text::Static("Planar knuckle-boom crane on a fixed base"),
+    spec_hash: Text::Static("4b98de3d10084c62"),
+    parameters: List::Static(&PARAMETERS),
+    coordinates: List::Static(
+        &[
+            CoordinateInfo {
+                name: Text::Static("main_boom_theta"),
+                kind: CoordinateKind::Rotation,
+                role: CoordinateRole::Driven,
+            },
+            CoordinateInfo {
+                name: Text::Static("knuckle_theta"),
+                kind: CoordinateKind::Rotation,
+                role: CoordinateRole::Driven,
+            },
+            CoordinateInfo {
+                name: Text::Static("extension_x"),
+                kind: CoordinateKind::Translation,
+                role: CoordinateRole::Driven,
+            },
+            CoordinateInfo {
+                name: Text::Static("hook_theta"),
+                kind: CoordinateKind::Rotation,
+                role: CoordinateRole::Passive,
+            },
+        ],
+    ),
+    bodies: List::Static(
+        &[
+            BodyInfo {
+                name: Text::Static("pillar"),
+                link: Text::Static("pillar"),
+                mass: 0.0,
+                length: 0.0,
+                degrees_of_freedom: 0,
+            },
+            BodyInfo {
+                name: Text::Static("main_boom"),
+                link: Text::Static("main_boom"),
+                mass: 420.0,
+                length: 0.0,
+                degrees_of_freedom: 1,
+            },
+            BodyInfo {
+                name: Text::Static("knuckle"),
+                link: Text::Static("knuckle"),
+                mass: 310.0,
+                length: 0.0,
+                degrees_of_freedom: 2,
+            },
+            BodyInfo {
+                name: Text::Static("extension"),
+                link: Text::Static("extension"),
+                mass: 150.0,
+                length: 0.0,
+                degrees_of_freedom: 3,
+            },
+            BodyInfo {
+                name: Text::Static("hook"),
+                link: Text::Static("hook"),
+                mass: 825.0,
+                length: 0.0,
+                degrees_of_freedom: 4,
+            },
+        ],
+    ),
+    supports: List::Static(&[]),
+    drives: List::Static(
+        &[
+            DriveInfo {
+                coordinate: 0,
+                start: -0.7853981633974483,
+                pieces: 1,
+            },
+            DriveInfo {
+                coordinate: 1,
+                start: 1.3089969389957472,
+                pieces: 3,
+            },
+            DriveInfo {
+                coordinate: 2,
+                start: 0.2,
+                pieces: 3,
+            },
+        ],
+    ),
+    points: List::Static(&[Text::Static("boom_tip"), Text::Static("load_centre")]),
     statics: true,
-    guess: &[-0.7853981633974483, 1.3089969389957472, 0.2, -0.5235987755982988],
+    guess: List::Static(
+        &[-0.7853981633974483, 1.3089969389957472, 0.2, -0.5235987755982988],
+    ),
     duration: 10.0,
     step: 0.001,
     output: 0.01,
@@ -190,8 +211,8 @@ impl Constants {
         let c009 = 1.0 / c008;
         let c010 = c008 * c009;
         let c011 = c002 * c009;
-        let t576 = c002 * c011;
-        let c012 = c001 - t576;
+        let t580 = c002 * c011;
+        let c012 = c001 - t580;
         let c013 = c001 - c012;
         let c014 = 2.6 * c006;
         let c015 = 2.0 * t322;
@@ -227,17 +248,19 @@ impl Constants {
 /// Live parameters: names, units, and the values that they may have.
 pub const PARAMETERS: [ParameterInfo; 1] = [
     ParameterInfo {
-        name: "payload",
-        unit: "kg",
-        about: "what hangs on the hook",
+        name: Text::Static("payload"),
+        unit: Text::Static("kg"),
+        about: Text::Static("what hangs on the hook"),
         default: 800.0,
         least: Bound {
             value: 0.0,
             allowed: true,
             refusal: Refusal {
-                code: "E032",
-                title: "the mass of body `load` must not be below zero, and is",
-                help: "write 0 or a number above, in kg",
+                code: Text::Static("E032"),
+                title: Text::Static(
+                    "the mass of body `load` must not be below zero, and is",
+                ),
+                help: Text::Static("write 0 or a number above, in kg"),
             },
         },
         greatest: Bound::GREATEST,
@@ -673,6 +696,35 @@ pub fn drive_motions(t: f64) -> [[f64; 2]; 3] {
             t009 * fma(-0.03749999999999995, t009, 0.1999999999999999),
         ),
     );
+    out
+}
+
+/// Begin and end of the pieces in which the drives' motions are smooth, drive by drive, s.
+///
+/// `t_begin, t_end`
+///
+/// 0 operations: 0 add, 0 mul, 0 div, 0 sin_cos.
+pub fn drive_pieces() -> [[f64; 2]; 7] {
+    let mut out: [[f64; 2]; 7] = [[0.0; 2]; 7];
+    // main_boom_theta
+    out[0][1] = 4.0;
+    // knuckle_theta
+    out[1][0] = 1.0;
+    out[1][1] = 2.2;
+    // knuckle_theta
+    out[2][0] = 2.2;
+    out[2][1] = 3.8;
+    // knuckle_theta
+    out[3][0] = 3.8;
+    out[3][1] = 5.0;
+    // extension_x
+    out[4][1] = 2.0;
+    // extension_x
+    out[5][0] = 2.0;
+    out[5][1] = 4.0;
+    // extension_x
+    out[6][0] = 4.0;
+    out[6][1] = 6.0;
     out
 }
 
@@ -2649,7 +2701,7 @@ impl Default for Crane {
 }
 
 impl CraneModel<N> for Crane {
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         &DESCRIPTION
     }
     fn parameter(&self, index: usize) -> f64 {
@@ -2713,6 +2765,9 @@ impl CraneModel<N> for Crane {
     }
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
         fill(out, &drive_motions(t));
+    }
+    fn drive_pieces(&self, out: &mut [[f64; 2]]) {
+        fill(out, &drive_pieces());
     }
     fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
         gravity_energy(q, &self.constants)
@@ -2854,8 +2909,8 @@ pub mod lanes {
             let c009 = splat(1.0) / c008;
             let c010 = c008 * c009;
             let c011 = c002 * c009;
-            let t576 = c002 * c011;
-            let c012 = c001 - t576;
+            let t580 = c002 * c011;
+            let c012 = c001 - t580;
             let c013 = c001 - c012;
             let c014 = splat(2.6) * c006;
             let c015 = splat(2.0) * t322;

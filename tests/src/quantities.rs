@@ -1,7 +1,7 @@
 //! Every quantity that a generated crane computes, as plain numbers in one order.
 
+use crane_model::dyn_crane::Crane;
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use crane_model::rig::Crane;
 use crane_model::support::lanes::f64x8;
 use crane_model::{Description, LaneDynamics, Linearisation};
 

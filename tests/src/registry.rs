@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crane_model::rig::Rig;
+use crane_model::dyn_crane::DynCrane;
 use crane_model::{CraneModel, Description};
 
 use crate::quantities::{self, State};
@@ -19,7 +19,7 @@ pub struct Entry {
     /// All quantities at a state, with the given parameters.
     pub evaluate: fn(&State, &[f64]) -> Vec<f64>,
     /// The crane behind one pointer, with the parameters of its spec.
-    pub rig: fn() -> Box<dyn Rig>,
+    pub rig: fn() -> Box<dyn DynCrane>,
 }
 
 impl Entry {
@@ -49,7 +49,7 @@ macro_rules! entry {
                 let crane: module::Crane = with_parameters::<{ module::N }, _>(parameters);
                 quantities::evaluate::<{ module::N }, _>(&crane, state)
             },
-            rig: || crane_model::rig::boxed::<{ module::N }, module::Crane>(),
+            rig: || crane_model::dyn_crane::boxed::<{ module::N }, module::Crane>(),
         }
     }};
 }

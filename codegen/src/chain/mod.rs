@@ -6,6 +6,7 @@ mod frame;
 mod loops;
 mod parameter;
 mod profile;
+mod start;
 mod value;
 
 pub use frame::{Frame, Vector};

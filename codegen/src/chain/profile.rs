@@ -45,6 +45,37 @@ pub enum Profile {
     },
 }
 
+impl Profile {
+    /// Begin and end, s, of the pieces in which it is smooth: beyond their ends it jumps in some derivative, or is at rest.
+    #[must_use]
+    pub fn pieces(&self) -> Vec<[Value; 2]> {
+        match self {
+            Profile::Hold(_) => Vec::new(),
+            Profile::Quintic(ramp) | Profile::Cubic(ramp) | Profile::Cycloid(ramp) => {
+                vec![[ramp.at(0.0), ramp.at(1.0)]]
+            }
+            Profile::Trapezoid { ramp, blend } => {
+                let ends = [0.0, *blend, 1.0 - blend, 1.0];
+                ends.windows(2).map(|share| [ramp.at(share[0]), ramp.at(share[1])]).collect()
+            }
+            Profile::Speed { begin, ramp, .. } => {
+                let end = ramp.as_ref().map_or_else(|| begin.clone(), |ramp| begin.clone() + ramp.clone());
+                vec![[begin.clone(), end]]
+            }
+            Profile::Table { segments, .. } => {
+                segments.iter().map(|piece| [piece.begin.into(), (piece.begin + piece.duration).into()]).collect()
+            }
+        }
+    }
+}
+
+impl Ramp {
+    /// The time at a share of the duration.
+    fn at(&self, share: f64) -> Value {
+        self.begin.clone() + share * self.duration.clone()
+    }
+}
+
 /// Start, end and time of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ramp {
@@ -67,4 +98,25 @@ pub struct Segment {
     pub duration: f64,
     /// `c₁, c₂, c₃`.
     pub coefficients: [f64; 3],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chain::ParameterId;
+    use crate::expand::spline::clamped;
+
+    #[test]
+    fn pieces_end_where_motions_are_not_smooth() {
+        let duration = Value::Parameter(ParameterId(0));
+        let ramp = Ramp { from: 1.0.into(), to: 3.0.into(), begin: 2.0.into(), duration };
+        let at = |profile: Profile| -> Vec<[f64; 2]> {
+            profile.pieces().iter().map(|ends| ends.each_ref().map(|end| end.at(&[4.0]))).collect()
+        };
+        assert_eq!(at(Profile::Quintic(ramp.clone())), [[2.0, 6.0]]);
+        assert_eq!(at(Profile::Trapezoid { ramp, blend: 0.25 }), [[2.0, 3.0], [3.0, 5.0], [5.0, 6.0]]);
+        let segments = clamped(&[-2.0, 0.0, 1.0], &[1.0, 2.5, 3.0]);
+        assert_eq!(at(Profile::Table { from: 1.0, segments }), [[-2.0, 0.0], [0.0, 1.0]]);
+        assert!(at(Profile::Hold(1.0.into())).is_empty());
+    }
 }

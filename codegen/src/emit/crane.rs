@@ -29,6 +29,7 @@ const TRAITS: [(&str, &[&str]); 6] = [
             "support_reactions",
             "drive_motions",
             PRESCRIBED,
+            "drive_pieces",
             "gravity_energy",
             "support_energy",
             "element_energy",
@@ -165,7 +166,7 @@ fn common_methods(chain: &Chain) -> TokenStream {
         )
     };
     quote! {
-        fn description(&self) -> &'static Description {
+        fn description(&self) -> &Description {
             &DESCRIPTION
         }
         #get

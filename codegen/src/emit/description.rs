@@ -1,7 +1,7 @@
 //! Constants that describe the crane.
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 use syn::{Item, parse_quote};
 
 use super::arithmetic::{integer, literal};
@@ -20,31 +20,34 @@ fn description_constant(chain: &Chain) -> Item {
     let defaults = chain.parameter_defaults();
     let at_defaults = |value: &Value| literal(value.at(&defaults));
     let coordinates = chain.coordinates.iter().enumerate().map(|(i, c)| {
-        let (name, kind, role) = (&c.name, kind(c.kind), role(chain, i));
+        let (name, kind, role) = (text(&c.name), kind(c.kind), role(chain, i));
         quote!(CoordinateInfo { name: #name, kind: CoordinateKind::#kind, role: CoordinateRole::#role })
     });
     let bodies = chain.bodies.iter().enumerate().map(|(p, body)| {
-        let (name, link) = (&body.name, &body.link);
+        let (name, link) = (text(&body.name), text(&body.link));
         let mass = literal(body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&defaults)));
         let length = at_defaults(&body.length);
         let degrees = integer(chain.degrees_of_freedom(BodyId(p)));
         quote!(BodyInfo { name: #name, link: #link, mass: #mass, length: #length, degrees_of_freedom: #degrees })
     });
     let supports = chain.supports.iter().map(|support| {
-        let name = &support.name;
+        let name = text(&support.name);
         let position = support.position.iter().map(at_defaults);
         let linear = support.kinematics == SupportKinematics::Linear;
         quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear })
     });
     let drives = chain.drives.iter().map(|drive| {
-        let coordinate = integer(drive.coordinate.0);
-        quote!(DriveInfo { coordinate: #coordinate })
+        let (coordinate, start) = (integer(drive.coordinate.0), literal(drive.profile.start(&defaults)));
+        let pieces = integer(drive.profile.pieces().len());
+        quote!(DriveInfo { coordinate: #coordinate, start: #start, pieces: #pieces })
     });
-    let points = chain.points.iter().map(|point| &point.name);
+    let points = chain.points.iter().map(|point| text(&point.name));
     let parameters = if chain.parameters.is_empty() { quote!(&[]) } else { quote!(&PARAMETERS) };
     let statics = chain.analyses.statics;
     let guess = chain.guess.iter().map(|&x| literal(x));
-    let (name, title, hash) = (&chain.name, &chain.title, &chain.spec_hash);
+    let [coordinates, bodies] = [list(coordinates), list(bodies)];
+    let [supports, drives, points, guess] = [list(supports), list(drives), list(points), list(guess)];
+    let [name, title, hash] = [&chain.name, &chain.title, &chain.spec_hash].map(|words| text(words));
     let (duration, step, output) = (literal(chain.run.duration), literal(chain.run.step), literal(chain.run.output));
     parse_quote! {
         #[doc = " Names, units and settings."]
@@ -52,19 +55,29 @@ fn description_constant(chain: &Chain) -> Item {
             name: #name,
             title: #title,
             spec_hash: #hash,
-            parameters: #parameters,
-            coordinates: &[#(#coordinates),*],
-            bodies: &[#(#bodies),*],
-            supports: &[#(#supports),*],
-            drives: &[#(#drives),*],
-            points: &[#(#points),*],
+            parameters: List::Static(#parameters),
+            coordinates: #coordinates,
+            bodies: #bodies,
+            supports: #supports,
+            drives: #drives,
+            points: #points,
             statics: #statics,
-            guess: &[#(#guess),*],
+            guess: #guess,
             duration: #duration,
             step: #step,
             output: #output,
         };
     }
+}
+
+/// Text of a description.
+pub fn text(text: &str) -> TokenStream {
+    quote!(Text::Static(#text))
+}
+
+/// A list of a description.
+fn list(items: impl Iterator<Item = impl ToTokens>) -> TokenStream {
+    quote!(List::Static(&[#(#items),*]))
 }
 
 fn kind(kind: CoordinateKind) -> TokenStream {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::chain::{BodyId, Chain};
+use crate::chain::{BodyId, Chain, Drive};
 use crate::lower::Blocks;
 use crate::symbolic::{ExprId, Function, Shape};
 
@@ -55,6 +55,10 @@ impl<'a> Labels<'a> {
             Shape::Pairs(_) if function.name == "joint_impedances" => Some(coordinate(slot / 2).to_owned()),
             Shape::Pairs(_) if function.name == "prescribed_motions" => {
                 chain.rigid_drives().nth(slot / 2).map(|drive| coordinate(drive.coordinate.0).to_owned())
+            }
+            Shape::Pairs(_) if function.name == "drive_pieces" => {
+                let of = |drive: &'a Drive| std::iter::repeat_n(drive.coordinate.0, drive.profile.pieces().len());
+                chain.drives.iter().flat_map(of).nth(slot / 2).map(|i| coordinate(i).to_owned())
             }
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
             Shape::Transforms { counts, .. } => Some(self.transform(function.name, counts, slot / 12)),

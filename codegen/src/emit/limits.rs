@@ -5,6 +5,7 @@ use quote::{format_ident, quote};
 use syn::{Expr, Item, parse_quote};
 
 use super::arithmetic::{difference, field, integer, literal, negative, product, quotient, sum, variable};
+use super::description::text;
 use crate::chain::{Bound, Chain, ParameterId, Refusal, Relation, Value};
 
 /// `PARAMETERS` with their ranges, and the check of all values together; nothing if all numbers are baked in.
@@ -13,7 +14,8 @@ pub fn limits(chain: &Chain) -> Vec<Item> {
         return vec![];
     }
     let infos = chain.parameters.iter().map(|p| {
-        let (name, unit, about, default) = (&p.name, &p.unit, &p.about, literal(p.default));
+        let (name, unit, about) = (text(&p.name), text(&p.unit), text(&p.about));
+        let default = literal(p.default);
         let least = p.least.as_ref().map_or_else(|| quote!(Bound::LEAST), bound);
         quote! {
             ParameterInfo {
@@ -62,6 +64,7 @@ fn bound(Bound { value, allowed, refusal: said }: &Bound) -> TokenStream {
 }
 
 fn refusal(Refusal { code, title, help }: &Refusal) -> TokenStream {
+    let (code, title, help) = (text(code), text(title), text(help));
     quote!(Refusal { code: #code, title: #title, help: #help })
 }
 

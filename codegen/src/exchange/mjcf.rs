@@ -8,7 +8,6 @@ use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, bars, origin, placements};
 use crate::chain::{Chain, CoordinateId, CoordinateKind, Frame, Step, Support, SupportKinematics};
-use crate::expand::profile;
 
 /// `MuJoCo` refuses what moves without mass or inertia: a massless frame, a point, gets this much, kg or kg m². That is
 /// below the rounding of any sum that it enters.
@@ -88,7 +87,7 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
         for drive in chain.rigid_drives() {
             let name = chain.coordinates[drive.coordinate.0].name.clone();
             // q = q₀ + 0 + …
-            let held = [profile::start(&drive.profile, parameters), 0.0, 0.0, 0.0, 0.0];
+            let held = [drive.profile.start(parameters), 0.0, 0.0, 0.0, 0.0];
             xml.leaf("joint", &[("joint1", name), ("polycoef", numbers(&held))]);
         }
         xml.close();

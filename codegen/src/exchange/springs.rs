@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use super::xml::{number_text, numbers};
 use crate::chain::{Chain, CoordinateId, SupportKinematics, Vector};
-use crate::expand::profile;
 
 /// A spring and a damper on a coordinate: its force is `stiffness (rest − q) − damping q̇`.
 #[derive(Default)]
@@ -25,7 +24,7 @@ pub(super) fn on(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> JointSp
     if let Some(spring) = chain.elements.iter().find(|spring| spring.coordinate == id) {
         JointSpring { stiffness: number(&spring.stiffness), damping: number(&spring.damping), rest: 0.0 }
     } else if let Some(drive) = chain.drives.iter().find(|drive| drive.coordinate == id) {
-        let rest = profile::start(&drive.profile, parameters);
+        let rest = drive.profile.start(parameters);
         let (stiffness, damping) = drive.spring().map_or((0.0, 0.0), |(s, d)| (number(s), number(d)));
         JointSpring { stiffness, damping, rest }
     } else if let Some(hinge) = chain.hinges.iter().find(|hinge| hinge.coordinate == id) {
@@ -64,7 +63,7 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
         text += "\n# Joints whose motion rigid drives prescribe, where they stand at t = 0, rad or m.\nprescribed:\n";
         for drive in chain.rigid_drives() {
             let name = &chain.coordinates[drive.coordinate.0].name;
-            let _ = writeln!(text, "  {name}: {}", number_text(profile::start(&drive.profile, parameters)));
+            let _ = writeln!(text, "  {name}: {}", number_text(drive.profile.start(parameters)));
         }
     }
     if !chain.rotors.is_empty() {

@@ -5,6 +5,5 @@
 pub(crate) mod beam;
 pub(crate) mod inertia;
 pub(crate) mod placement;
-pub(crate) mod profile;
 pub(crate) mod section;
 pub(crate) mod spline;

@@ -87,6 +87,12 @@ pub fn motions<'g, 'a>(model: &Model<'g>, drives: impl Iterator<Item = &'a Drive
     drives.flat_map(motion).collect()
 }
 
+/// Begin and end of the pieces of every drive's motion.
+pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let pieces = model.chain.drives.iter().flat_map(|drive| drive.profile.pieces());
+    pieces.flatten().map(|time| model.number(&time)).collect()
+}
+
 /// Power that the prescribed motions put in, `Σ t_dr q̇_dr`: of rigid drives, whose efforts are given, `τ q̇`.
 pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
     let flexible = flexible(model).fold(model.zero(), |sum, drive| {

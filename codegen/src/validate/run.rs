@@ -4,7 +4,6 @@ use super::Check;
 use super::limits::Limit;
 use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Support, Transmission, Value};
 use crate::diagnostic::{Span, rule, suggest};
-use crate::expand::profile;
 use crate::spec::{self, Constant, Crane, Given};
 
 /// A point belongs to the element that begins at its x, were it off by this share of the beam's length: both are
@@ -60,7 +59,7 @@ impl<'a> Check<'a> {
     pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<f64> {
         let mut guess = vec![0.0; self.coordinates.len()];
         for drive in drives {
-            guess[drive.coordinate.0] = profile::start(&drive.profile, &self.defaults);
+            guess[drive.coordinate.0] = drive.profile.start(&self.defaults);
         }
         let Some(entries) = crane.guess.as_ref().and_then(|guess| guess.value.as_ref()) else { return guess };
         for (name, position) in &entries.0 {

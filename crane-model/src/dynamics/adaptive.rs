@@ -1,93 +1,117 @@
-//! Steps as long as a tolerance allows.
-
-use nalgebra::SVector;
+//! Steps as long as a tolerance allows, of methods that look back no further than one step.
 
 use super::{
-    Method, Settings, Statistics, Stopped, dormand_prince,
-    motion::{Motion, slope},
-    rk4::NotFinite,
-    rosenbrock,
-    step::Step,
+    Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped, equations::Equations, motion, state::NotFinite,
+    step::Step, stopped::Place,
 };
-use crate::Implicit;
 
 /// First step tried, s: a crane starts gently, and steps may grow threefold.
 pub(super) const FIRST: f64 = 1e-4;
-/// Longest step, s: an implicit method at rest would step over a motion of its drives. So a stage falls into each that takes
-/// 25 ms, and a load that swings once a second has ten steps for it anyway.
+/// Longest step, s: a load that swings once a second has ten steps for it.
 pub(super) const LONGEST: f64 = 0.1;
 /// Part of the step at which the error would just be the tolerance.
 pub(super) const SAFETY: f64 = 0.9;
 /// Least and greatest ratio of a step to the one before.
 const RATIO: (f64, f64) = (0.2, 3.0);
-/// A step as short as this, of the time simulated, goes nowhere.
+/// A step as short as this, of the time ahead, goes nowhere.
 pub(super) const LEAST: f64 = 1e-13;
+/// A step that would end this near to a stop, in parts of its length, ends there.
+pub(super) const SLIVER: f64 = 0.01;
+
+/// A formula that takes a step.
+pub(super) trait Formula {
+    /// Its name.
+    const METHOD: Method;
+
+    /// Tries a step from its beginning, length and first slope.
+    fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite>;
+
+    /// Factorisations so far.
+    fn factorisations(&self) -> usize;
+}
 
 /// A motion that proceeds in steps of its own length: they go beyond the results, which are interpolated.
-pub(super) struct Adaptive<const N: usize, const M: usize> {
-    method: Method,
+pub(super) struct Adaptive<'a, F> {
+    formula: F,
+    equations: Equations<'a>,
     tolerance: f64,
     /// Step to try next, s.
     next: f64,
-    /// The last step, and its beginning, s.
-    last: Option<(f64, Step<N, M>)>,
+    step: Step,
+    steps: usize,
+    rejections: usize,
 }
 
-impl<const N: usize, const M: usize> Adaptive<N, M> {
-    /// With the method and tolerance of the settings.
-    pub fn new(settings: &Settings) -> Self {
-        let Settings { method, tolerance, .. } = *settings;
-        Self { method, tolerance, next: FIRST, last: None }
+impl<'a, F: Formula> Adaptive<'a, F> {
+    /// With the tolerance of the settings.
+    pub fn new(formula: F, equations: Equations<'a>, settings: &Settings) -> Self {
+        let step = Step::new(equations.len());
+        Self { formula, equations, tolerance: settings.tolerance, next: FIRST, step, steps: 0, rejections: 0 }
     }
 
-    /// Moves `motion` from `begin` to `end`, s.
-    pub fn advance<C: Implicit<N>>(
-        &mut self,
-        crane: &C,
-        integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-        [begin, end]: [f64; 2],
-        motion: &mut Motion<N, M>,
-        statistics: &mut Statistics,
-    ) -> Result<(), Stopped> {
+    /// No step leads on.
+    fn stuck(&self, t: f64, h: f64, motion: &[f64]) -> Stopped {
+        let Equations { crane, .. } = self.equations;
+        let (q, _) = self.equations.state(motion);
+        Place { method: F::METHOD, t, h, q, description: crane.description() }.failed(Cause::Tolerance, crane)
+    }
+
+    /// Whether a step that was tried meets the tolerance; the length to try next in any case.
+    fn judge(&mut self, tried: Result<(), NotFinite>) -> bool {
+        let Step { length, end, error, .. } = &self.step;
+        let error = match tried {
+            Ok(()) => motion::size(self.equations.n, end, error) / self.tolerance,
+            Err(NotFinite) => f64::INFINITY,
+        };
+        let ideal = SAFETY * error.powf(-1.0 / F::METHOD.order() as f64);
+        let meets = error <= 1.0;
+        let next = length * ideal.clamp(RATIO.0, if meets { RATIO.1 } else { 1.0 });
+        // A step cut short by a stop says nothing against the length that was meant.
+        self.next = if meets && *length < self.next { next.max(self.next) } else { next }.min(LONGEST);
+        meets
+    }
+}
+
+impl<F: Formula> Stepper for Adaptive<'_, F> {
+    fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
+        (self.step.t, self.step.length, self.next) = (t, 0.0, FIRST);
+        self.step.end.copy_from_slice(motion);
+        let [_, slope] = &mut self.step.slopes;
+        self.equations.slope(t, motion, slope).map_err(|NotFinite| self.stuck(t, FIRST, motion))
+    }
+
+    fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
+        self.step.proceed();
+        let t = self.step.t;
         loop {
-            let (t, start, first) = match &self.last {
-                Some((from, step)) if from + step.length >= end => {
-                    *motion = step.at((end - from) / step.length);
-                    return Ok(());
-                }
-                Some((from, step)) => (from + step.length, step.end, Ok(step.slopes[1])),
-                None => {
-                    statistics.evaluations += 1;
-                    (begin, *motion, slope(crane, integrand, begin, motion))
-                }
-            };
-            let step = loop {
-                let h = self.next;
-                if h < LEAST * end {
-                    let mass = crane.mass_matrix(&start.q);
-                    return Err(Stopped::tolerance(t, h, start.q.as_slice(), &mass, crane.description()));
-                }
-                let tried = first.and_then(|first| match self.method {
-                    Method::DormandPrince => dormand_prince::advance(crane, t, h, &start, &first, integrand),
-                    _ => rosenbrock::advance(crane, t, h, &start, &first, integrand),
-                });
-                statistics.count(self.method);
-                match self.judge(h, tried) {
-                    Some(step) => break step,
-                    None => statistics.rejections += 1,
-                }
-            };
-            statistics.steps += 1;
-            self.last = Some((t, step));
+            if self.next < LEAST * ahead.result {
+                return Err(self.stuck(t, self.next, &self.step.start));
+            }
+            let stops = t + self.next * (1.0 + SLIVER) >= ahead.stop;
+            self.step.length = if stops { ahead.stop - t } else { self.next };
+            let tried = self.formula.attempt(&mut self.equations, &mut self.step);
+            if self.judge(tried) {
+                self.steps += 1;
+                return Ok(if stops { ahead.stop } else { self.step.reached() });
+            }
+            self.rejections += 1;
         }
     }
 
-    /// A step of length `h`, where it meets the tolerance; the length to try next in any case.
-    fn judge(&mut self, h: f64, tried: Result<Step<N, M>, NotFinite>) -> Option<Step<N, M>> {
-        let error = tried.as_ref().map_or(f64::INFINITY, |step| step.end.size(&step.error, self.tolerance));
-        let ideal = SAFETY * error.powf(-1.0 / self.method.order() as f64);
-        let meets = error <= 1.0;
-        self.next = (h * ideal.clamp(RATIO.0, if meets { RATIO.1 } else { 1.0 })).min(LONGEST);
-        tried.ok().filter(|_| meets)
+    fn motion(&self) -> &[f64] {
+        &self.step.end
+    }
+
+    fn interpolate(&self, t: f64, motion: &mut [f64]) {
+        self.step.at(t, motion);
+    }
+
+    fn statistics(&self) -> Statistics {
+        Statistics {
+            steps: self.steps,
+            rejections: self.rejections,
+            evaluations: self.equations.evaluations,
+            factorisations: self.formula.factorisations(),
+        }
     }
 }

@@ -17,19 +17,23 @@
 //! G. Wanner, Solving Ordinary Differential Equations I, section II.6. The last stage is the first of the next step. On the
 //! second-order form the stages of q are the rates of the stages, so that no slope of q is computed.
 
-use nalgebra::SVector;
-
 use super::{
-    motion::{Motion, slope},
-    rk4::{NotFinite, State},
-    step::{Step, bare},
+    Method, Settings, Statistics, Stepper, Stopped,
+    adaptive::{Adaptive, Formula},
+    equations::Equations,
+    motion::add_all,
+    state::{NotFinite, State},
+    step::Step,
+    stepper::{Ahead, forward},
+    typed,
 };
-use crate::Dynamics;
+use crate::{
+    Dynamics,
+    dyn_crane::{DynDynamics, Instance},
+};
 
 /// Stages.
 const STAGES: usize = 7;
-/// Evaluations that a step needs after the one before.
-pub(super) const EVALUATIONS: usize = STAGES - 1;
 /// Coefficients of R(z).
 pub const STABILITY: [f64; 7] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 600.0];
 
@@ -56,7 +60,7 @@ const DENSE: [f64; STAGES] = [
     69_997_945.0 / 29_380_423.0,
 ];
 
-/// A step from `t` to `t + h`: the state there, and the difference to the embedded formula. No allocation.
+/// A step from `t` to `t + h`: the state there, and the difference to the embedded formula.
 ///
 /// # Errors
 /// An acceleration is not finite.
@@ -66,24 +70,57 @@ pub fn step<const N: usize, C: Dynamics<N>>(
     h: f64,
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
-    bare(crane, t, state, |start, first, nothing| advance(crane, t, h, start, first, nothing))
+    let crane = Instance::<N, _>(crane);
+    let mut equations = Equations::new(&crane, false);
+    typed::step(&mut equations, t, h, state, &mut Tableau::new(2 * N))
 }
 
-/// As [`step`], with integrals along the motion and the slope at the start given.
-pub(super) fn advance<const N: usize, const M: usize, C: Dynamics<N>>(
-    crane: &C,
-    t: f64,
-    h: f64,
-    start: &Motion<N, M>,
-    first: &Motion<N, M>,
-    integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-) -> Result<Step<N, M>, NotFinite> {
-    let mut slopes = [*first; STAGES];
-    let mut place = *start;
-    for i in 1..STAGES {
-        place = start.plus(A[i], &slopes, h);
-        slopes[i] = slope(crane, integrand, t + NODES[i] * h, &place)?;
+/// A motion by the pair.
+pub struct DormandPrince<'a>(Adaptive<'a, Tableau>);
+
+impl<'a> DormandPrince<'a> {
+    /// With the tolerance of the settings.
+    pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
+        let equations = Equations::new(crane, settings.audit);
+        Self(Adaptive::new(Tableau::new(equations.len()), equations, settings))
     }
-    let [error, bulge] = [ERROR, DENSE].map(|weights| Motion::zeros().plus(&weights, &slopes, h));
-    Ok(Step { start: *start, end: place, error, slopes: [*first, slopes[STAGES - 1]], bulge, length: h })
+}
+
+forward!(DormandPrince);
+
+/// The formula, with room for its stages.
+pub(super) struct Tableau {
+    slopes: [Vec<f64>; STAGES],
+}
+
+impl Tableau {
+    /// Room for motions of so many numbers.
+    pub fn new(len: usize) -> Self {
+        Self { slopes: std::array::from_fn(|_| vec![0.0; len]) }
+    }
+}
+
+impl Formula for Tableau {
+    const METHOD: Method = Method::DormandPrince;
+
+    fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
+        let Self { slopes } = self;
+        let h = step.length;
+        slopes[0].copy_from_slice(&step.slopes[0]);
+        for i in 1..STAGES {
+            step.end.copy_from_slice(&step.start);
+            add_all(&mut step.end, h, A[i], slopes.iter());
+            equations.slope(step.t + NODES[i] * h, &step.end, &mut slopes[i])?;
+        }
+        for (out, weights) in [(&mut step.error, &ERROR), (&mut step.bulge, &DENSE)] {
+            out.fill(0.0);
+            add_all(out, h, weights, slopes.iter());
+        }
+        step.slopes[1].copy_from_slice(&slopes[STAGES - 1]);
+        Ok(())
+    }
+
+    fn factorisations(&self) -> usize {
+        0
+    }
 }

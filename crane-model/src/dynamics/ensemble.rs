@@ -1,14 +1,23 @@
-//! Many cranes at a time: the classical Runge–Kutta method over eight lanes, one crane a lane.
+//! Many cranes at a time: the classical Runge–Kutta method over lanes, one crane per lane.
 //!
 //! All lanes take the same step. Lane by lane the operations are those of [`rk4`], in the same order, with the accelerations of
-//! [`LaneDynamics`]: a crane moves alike whatever moves beside it.
+//! [`LaneDynamics`] or [`DynBlock`]: a crane moves alike whatever moves beside it.
+
+use std::convert::Infallible;
 
 use nalgebra::SVector;
 
-use super::{Run, Sample, Settings, Statistics, Stopped, rk4, simulation::divided};
-use crate::{Ensemble, LaneDynamics, support::lanes::f64x8};
+use super::{
+    Cause, InitialState, Method, Run, Sample, Settings, State, Statistics, Stopped, rk4, settings::divided,
+    stopped::Place, stops::Stops,
+};
+use crate::{
+    Description, Ensemble, LaneDynamics, ParameterError,
+    dyn_crane::{Block, DynBlock, DynCrane, DynModel, Instance, Member},
+    support::lanes::f64x8,
+};
 
-/// Cranes a batch.
+/// Cranes per vector.
 pub const LANES: usize = 8;
 
 /// Poses and velocities of eight cranes.
@@ -21,111 +30,202 @@ pub struct States<const N: usize> {
 }
 
 impl<const N: usize> States<N> {
-    /// A state a lane.
-    pub fn of(states: [&rk4::State<N>; LANES]) -> Self {
-        let lanes = |of: fn(&rk4::State<N>) -> &SVector<f64, N>| {
+    /// One state per lane.
+    pub fn of(states: [&State<N>; LANES]) -> Self {
+        let lanes = |of: fn(&State<N>) -> &SVector<f64, N>| {
             SVector::from_fn(|i, _| f64x8::new(states.map(|state| of(state)[i])))
         };
         Self { q: lanes(|state| &state.q), v: lanes(|state| &state.v) }
     }
 
     /// The state of a lane, below [`LANES`].
-    pub fn lane(&self, lane: usize) -> rk4::State<N> {
-        rk4::State { q: self.q.map(|x| x.to_array()[lane]), v: self.v.map(|x| x.to_array()[lane]) }
+    pub fn lane(&self, lane: usize) -> State<N> {
+        State { q: self.q.map(|x| x.to_array()[lane]), v: self.v.map(|x| x.to_array()[lane]) }
     }
-
-    fn set(&mut self, lane: usize, state: &rk4::State<N>) {
-        for (lanes, x) in self.q.iter_mut().zip(&state.q).chain(self.v.iter_mut().zip(&state.v)) {
-            lanes.as_mut_array()[lane] = *x;
-        }
-    }
-
-    /// Whether a lane stays within `bound`, m and rad; false for what is no number.
-    fn bounded(&self, bound: f64) -> [bool; LANES] {
-        let bound = f64x8::splat(bound);
-        let within = self.q.iter().fold(f64x8::splat(0.0).simd_le(bound), |within, x| within & x.abs().simd_le(bound));
-        let mask = within.to_bitmask();
-        std::array::from_fn(|lane| mask >> lane & 1 == 1)
-    }
-}
-
-/// `x + ẋ h`
-fn moved<const N: usize>(x: &SVector<f64x8, N>, rate: &SVector<f64x8, N>, h: f64) -> SVector<f64x8, N> {
-    x.zip_map(rate, |x, rate| x + rate * h)
 }
 
 /// Moves eight cranes from `t` to `t + h`, both in s. No allocation.
 pub fn step<const N: usize, L: LaneDynamics<N>>(cranes: &L, t: f64, h: f64, states: &mut States<N>) {
-    let States { q, v } = &*states;
-    let [begin, middle, end] = [t, t + 0.5 * h, t + h].map(f64x8::splat);
-
-    let a1 = cranes.forward_dynamics(begin, q, v);
-    let v2 = moved(v, &a1, 0.5 * h);
-    let a2 = cranes.forward_dynamics(middle, &moved(q, v, 0.5 * h), &v2);
-    let v3 = moved(v, &a2, 0.5 * h);
-    let a3 = cranes.forward_dynamics(middle, &moved(q, &v2, 0.5 * h), &v3);
-    let v4 = moved(v, &a3, h);
-    let a4 = cranes.forward_dynamics(end, &moved(q, &v3, h), &v4);
-
-    let mean = |[x1, x2, x3, x4]: [&SVector<f64x8, N>; 4]| -> SVector<f64x8, N> {
-        SVector::from_fn(|i, _| x1[i] + (x2[i] + x3[i]) * 2.0 + x4[i])
-    };
-    let (rates, accelerations) = (mean([v, &v2, &v3, &v4]), mean([&a1, &a2, &a3, &a4]));
-    states.q = moved(&states.q, &rates, h / 6.0);
-    states.v = moved(&states.v, &accelerations, h / 6.0);
+    let mut room = [[f64x8::splat(0.0); N]; rk4::ROOM];
+    let States { q, v } = states;
+    let Ok(()) =
+        rk4::advance(t, h, [q.as_mut_slice(), v.as_mut_slice()], room.as_flattened_mut(), |_, t, q, v, out| {
+            let [q, v] = [q, v].map(SVector::from_column_slice);
+            out.copy_from_slice(cranes.forward_dynamics(f64x8::splat(t), &q, &v).as_slice());
+            Ok::<(), Infallible>(())
+        });
 }
 
 /// Integrates Eq. (23) of every crane from its state at t = 0, eight at a time, and shows `observe` its place in `cranes` and
-/// a sample at t = 0, at every interval and at the end, as [`simulate`](super::simulate) without audit.
+/// a sample at t = 0, at every interval and at the end, as [`simulate`](super::simulate) by RK4 without audit.
 ///
-/// A crane that leaves the bound of the settings ends with [`Stopped`], and the others go on. Returns one result a crane.
+/// A crane that leaves the bound of the settings ends with [`Stopped`], and the others go on. Returns one result per crane.
 pub fn simulate<const N: usize, C: Ensemble<N>>(
-    cranes: &[(C, rk4::State<N>)],
+    cranes: &[(C, State<N>)],
     settings: &Settings,
     mut observe: impl FnMut(usize, &Sample<'_>),
 ) -> Vec<Result<Run, Stopped>> {
     let mut results = Vec::with_capacity(cranes.len());
     for (index, cranes) in cranes.chunks(LANES).enumerate() {
-        results.extend(batch(cranes, settings, |lane, sample| observe(index * LANES + lane, sample)));
+        let mut block = Block::<N, _>(C::lanes(std::array::from_fn(|lane| &cranes[lane.min(cranes.len() - 1)].0)));
+        let starts: Vec<InitialState> = cranes.iter().map(|(_, start)| start.into()).collect();
+        let models: Vec<_> = cranes.iter().map(|(crane, _)| Instance::<N, _>(crane)).collect();
+        let stops = Stops::of(models.iter().map(|model| model as &dyn DynModel), settings.duration);
+        let batch = Batch::new(&mut block, LANES, starts.iter(), cranes[0].0.description());
+        results.extend(batch.run(settings, &stops, &mut |lane, sample| observe(index * LANES + lane, sample)));
     }
     results
 }
 
-/// A run of one to eight cranes.
-fn batch<const N: usize, C: Ensemble<N>>(
-    cranes: &[(C, rk4::State<N>)],
+/// As [`simulate`], of cranes of any size that differ from one in their parameters, as many at a time as it has lanes.
+///
+/// # Errors
+/// The parameters of a member break a rule of the spec language.
+///
+/// # Panics
+/// Where a start has not as many numbers as the crane has coordinates.
+pub fn simulate_dyn(
+    crane: &dyn DynCrane,
+    members: &[Member],
     settings: &Settings,
-    mut observe: impl FnMut(usize, &Sample<'_>),
-) -> Vec<Result<Run, Stopped>> {
-    // Copies of the last crane fill the lanes; nobody looks at them.
-    let members: [_; LANES] = std::array::from_fn(|lane| &cranes[lane.min(cranes.len() - 1)]);
-    let lanes = C::lanes(members.map(|(crane, _)| crane));
-    let mut states = States::of(members.map(|(_, start)| start));
-    let run = Run { statistics: Statistics::default(), step: settings.step_taken(), time: 0.0 };
-    let mut results = vec![Ok(run); cranes.len()];
-    let intervals = divided(settings.duration, settings.output).0;
+    observe: &mut dyn FnMut(usize, &Sample<'_>),
+) -> Result<Vec<Result<Run, Stopped>>, ParameterError> {
+    let lanes = crane.lanes();
+    let mut results = Vec::with_capacity(members.len());
+    for (index, members) in members.chunks(lanes).enumerate() {
+        let parameters = |lane: usize| members[lane.min(members.len() - 1)].parameters.as_slice();
+        let mut block = crane.block(&(0..lanes).map(parameters).collect::<Vec<_>>())?;
+        let starts = members.iter().map(|member| &member.start);
+        let models: Vec<_> =
+            members.iter().map(|member| with_parameters(crane, &member.parameters)).collect::<Result<_, _>>()?;
+        let stops = Stops::of(models.iter().map(|model| model.as_ref() as &dyn DynModel), settings.duration);
+        let batch = Batch::new(block.as_mut(), lanes, starts, crane.description());
+        results.extend(batch.run(settings, &stops, &mut |lane, sample| observe(index * lanes + lane, sample)));
+    }
+    Ok(results)
+}
 
-    let mut begin = 0.0;
-    for interval in 0..=intervals {
-        for (lane, _) in results.iter().enumerate().filter(|(_, result)| result.is_ok()) {
-            let rk4::State { q, v } = states.lane(lane);
-            observe(lane, &Sample { t: begin, q: q.as_slice(), v: v.as_slice(), work: 0.0, dissipated: 0.0 });
+/// A crane with other parameters.
+fn with_parameters(crane: &dyn DynCrane, parameters: &[f64]) -> Result<Box<dyn DynCrane>, ParameterError> {
+    let mut crane = crane.boxed_clone();
+    crane.set_parameters(parameters)?;
+    Ok(crane)
+}
+
+/// A block of cranes on their way. Lane l of coordinate i is element `l % 8` of vector `i w + l / 8`, w vectors per coordinate.
+struct Batch<'a> {
+    block: &'a mut dyn DynBlock,
+    description: &'a Description,
+    /// Cranes; copies of the last one fill the lanes behind them, and nobody looks at those.
+    count: usize,
+    /// w.
+    vectors: usize,
+    q: Vec<f64x8>,
+    v: Vec<f64x8>,
+    start: [Vec<f64x8>; 2],
+    room: Vec<f64x8>,
+}
+
+impl<'a> Batch<'a> {
+    fn new<'s>(
+        block: &'a mut dyn DynBlock,
+        lanes: usize,
+        starts: impl ExactSizeIterator<Item = &'s InitialState> + Clone,
+        description: &'a Description,
+    ) -> Self {
+        let (n, vectors) = (description.coordinates.len(), lanes / LANES);
+        let count = starts.len();
+        let mut start = [(); 2].map(|()| vec![f64x8::splat(0.0); n * vectors]);
+        for (lane, state) in starts.clone().chain(starts.last().into_iter().cycle()).take(lanes).enumerate() {
+            for (lanes, numbers) in start.iter_mut().zip([&state.q, &state.v]) {
+                assert_eq!(numbers.len(), n, "as many numbers as coordinates");
+                for (i, number) in numbers.iter().enumerate() {
+                    lanes[i * vectors + lane / LANES].as_mut_array()[lane % LANES] = *number;
+                }
+            }
         }
-        if interval == intervals || results.iter().all(Result::is_err) {
-            break;
+        let [q, v] = start.clone();
+        let room = vec![f64x8::splat(0.0); rk4::ROOM * q.len()];
+        Self { block, description, count, vectors, q, v, start, room }
+    }
+
+    /// Numbers of a lane.
+    fn lane(&self, lane: usize, of: &[f64x8], out: &mut [f64]) {
+        for (out, vectors) in out.iter_mut().zip(of.chunks(self.vectors)) {
+            *out = vectors[lane / LANES].to_array()[lane % LANES];
         }
-        let end = (settings.output * (interval + 1) as f64).min(settings.duration);
+    }
+
+    /// Whether a lane stays within `bound`, m and rad; false for what is not a number.
+    fn bounded(&self, lane: usize, bound: f64) -> bool {
+        self.q.iter().skip(lane / LANES).step_by(self.vectors).all(|x| x.to_array()[lane % LANES].abs() <= bound)
+    }
+
+    /// Whether all lanes stay within `bound`.
+    fn all_bounded(&self, bound: f64) -> bool {
+        let bound = f64x8::splat(bound);
+        let within = self.q.iter().fold(f64x8::splat(0.0).simd_le(bound), |within, x| within & x.abs().simd_le(bound));
+        within.to_bitmask() & 0xff == 0xff
+    }
+
+    /// Sets a lane back to its start: numbers without bound would slow down all lanes.
+    fn reset(&mut self, lane: usize) {
+        for (lanes, start) in [&mut self.q, &mut self.v].into_iter().zip(&self.start) {
+            for (x, start) in lanes.iter_mut().zip(start).skip(lane / LANES).step_by(self.vectors) {
+                x.as_mut_array()[lane % LANES] = start.to_array()[lane % LANES];
+            }
+        }
+    }
+
+    fn step(&mut self, t: f64, h: f64) {
+        let Self { block, q, v, room, .. } = self;
+        let Ok(()) = rk4::advance(t, h, [q, v], room, |_, t, q, v, out| {
+            block.forward_dynamics(t, q, v, out);
+            Ok::<(), Infallible>(())
+        });
+    }
+
+    /// Steps are as long as intervals of results and stops allow.
+    fn run(
+        mut self,
+        settings: &Settings,
+        stops: &Stops,
+        observe: &mut dyn FnMut(usize, &Sample<'_>),
+    ) -> Vec<Result<Run, Stopped>> {
+        let run = Run { statistics: Statistics::default(), step: settings.step_taken(), time: 0.0 };
+        let mut results = vec![Ok(run); self.count];
+        let n = self.description.coordinates.len();
+        let (mut q, mut v) = (vec![0.0; n], vec![0.0; n]);
+        let intervals = divided(settings.duration, settings.output).0;
+
+        let mut begin = 0.0;
+        for interval in 0..=intervals {
+            for (lane, _) in results.iter().enumerate().filter(|(_, result)| result.is_ok()) {
+                self.lane(lane, &self.q, &mut q);
+                self.lane(lane, &self.v, &mut v);
+                observe(lane, &Sample { t: begin, q: &q, v: &v, work: 0.0, dissipated: 0.0 });
+            }
+            if interval == intervals || results.iter().all(Result::is_err) {
+                break;
+            }
+            let result = (settings.output * (interval + 1) as f64).min(settings.duration);
+            while begin < result {
+                let end = result.min(stops.after(begin));
+                self.advance(begin, end, settings, &mut results);
+                begin = end;
+            }
+        }
+        results
+    }
+
+    /// Moves all lanes from `begin` to `end`, s, in equal steps; a crane that leaves the bound ends with [`Stopped`].
+    fn advance(&mut self, begin: f64, end: f64, settings: &Settings, results: &mut [Result<Run, Stopped>]) {
         let (steps, h) = divided(end - begin, settings.step);
         for k in 0..steps {
             let t = begin + h * k as f64;
-            step(&lanes, t, h, &mut states);
-            for (lane, _) in states.bounded(settings.bound).iter().enumerate().filter(|(_, bounded)| !**bounded) {
-                if let Some(result @ Ok(_)) = results.get_mut(lane) {
-                    let q = states.lane(lane).q;
-                    *result = Err(Stopped::growth(t, h, q.as_slice(), members[lane].0.description()));
-                }
-                // It goes on unseen from its start: numbers without bound would slow down all lanes.
-                states.set(lane, &members[lane].1);
+            self.step(t, h);
+            if !self.all_bounded(settings.bound) {
+                self.stop_lanes(t, h, settings.bound, results);
             }
         }
         for run in results.iter_mut().flatten() {
@@ -133,7 +233,21 @@ fn batch<const N: usize, C: Ensemble<N>>(
             run.statistics.evaluations += rk4::STAGES * steps;
             run.time = end;
         }
-        begin = end;
     }
-    results
+
+    /// Ends the runs of cranes beyond the bound.
+    fn stop_lanes(&mut self, t: f64, h: f64, bound: f64, results: &mut [Result<Run, Stopped>]) {
+        for lane in 0..self.vectors * LANES {
+            if self.bounded(lane, bound) {
+                continue;
+            }
+            if let Some(result @ Ok(_)) = results.get_mut(lane) {
+                let mut q = vec![0.0; self.description.coordinates.len()];
+                self.lane(lane, &self.q, &mut q);
+                let place = Place { method: Method::Rk4, t, h, q: &q, description: self.description };
+                *result = Err(place.furthest(Cause::Growth));
+            }
+            self.reset(lane);
+        }
+    }
 }

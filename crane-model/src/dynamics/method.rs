@@ -2,20 +2,18 @@
 
 use std::{fmt, str::FromStr};
 
-use super::{bdf, dormand_prince, rk4, rosenbrock};
-use crate::stability::StabilityFunction;
-
 /// A method of integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// The classical Runge–Kutta method, constant step: [`rk4`].
-    #[default]
+    /// The classical Runge–Kutta method, constant step: [`rk4`](super::rk4).
     Rk4,
-    /// The explicit pair of Dormand and Prince, adaptive: [`dormand_prince`].
+    /// The explicit pair of Dormand and Prince, adaptive: [`dormand_prince`](super::dormand_prince).
     DormandPrince,
-    /// A linearly implicit W-method for stiff motions, adaptive: [`rosenbrock`].
+    /// A linearly implicit W-method for stiff motions, adaptive: [`rosenbrock`](super::rosenbrock).
     Rosenbrock,
-    /// Backward differentiation formulas of variable order for stiff motions, adaptive: [`bdf`].
+    /// Backward differentiation formulas of variable order for stiff motions, adaptive: [`bdf`](super::bdf). What is best where
+    /// engineers look, on cranes from soft to stiff; measured in docs/error-vs-runtime.md.
+    #[default]
     Bdf,
 }
 
@@ -23,7 +21,7 @@ impl Method {
     /// All methods.
     pub const ALL: [Method; 4] = [Method::Rk4, Method::DormandPrince, Method::Rosenbrock, Method::Bdf];
 
-    /// What is best where engineers look, on cranes from soft to stiff. Measured: docs/error-vs-runtime.md.
+    /// The default.
     pub const RECOMMENDED: Method = Method::Bdf;
 
     /// Name on the command line.
@@ -49,8 +47,7 @@ impl Method {
     /// Order of consistency; the highest, where it varies.
     pub const fn order(self) -> usize {
         match self {
-            Method::Rk4 | Method::Rosenbrock => 4,
-            Method::Bdf => bdf::ORDER,
+            Method::Rk4 | Method::Rosenbrock | Method::Bdf => 4,
             Method::DormandPrince => 5,
         }
     }
@@ -63,18 +60,6 @@ impl Method {
     /// Whether its steps have a limit of stability whatever the damping.
     pub const fn is_explicit(self) -> bool {
         matches!(self, Method::Rk4 | Method::DormandPrince)
-    }
-
-    /// R(z), by which a step multiplies a small motion; of an implicit method with the exact Jacobian. Of backward differences that of
-    /// order 2, to which they return where a motion grows at a higher one.
-    pub const fn stability(self) -> StabilityFunction {
-        use StabilityFunction::{Backward, Rational};
-        match self {
-            Method::Rk4 => Rational { numerator: &rk4::STABILITY, denominator: &[1.0] },
-            Method::DormandPrince => Rational { numerator: &dormand_prince::STABILITY, denominator: &[1.0] },
-            Method::Rosenbrock => Rational { numerator: &rosenbrock::NUMERATOR, denominator: &rosenbrock::DENOMINATOR },
-            Method::Bdf => Backward,
-        }
     }
 }
 

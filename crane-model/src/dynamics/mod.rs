@@ -5,9 +5,13 @@ mod adaptive;
 #[cfg(feature = "std")]
 pub mod bdf;
 #[cfg(feature = "std")]
+mod constant;
+#[cfg(feature = "std")]
 pub mod dormand_prince;
 #[cfg(feature = "std")]
 pub mod ensemble;
+#[cfg(feature = "std")]
+mod equations;
 #[cfg(feature = "std")]
 mod method;
 #[cfg(feature = "std")]
@@ -18,17 +22,43 @@ pub mod rosenbrock;
 #[cfg(feature = "std")]
 mod roughness;
 #[cfg(feature = "std")]
+mod run;
+#[cfg(feature = "std")]
+mod settings;
+#[cfg(feature = "std")]
 mod simulation;
+mod state;
+#[cfg(feature = "std")]
+mod statistics;
 #[cfg(feature = "std")]
 mod step;
 #[cfg(feature = "std")]
+mod stepper;
+#[cfg(feature = "std")]
 mod stopped;
 #[cfg(feature = "std")]
+mod stops;
+#[cfg(feature = "std")]
 mod system;
+#[cfg(feature = "std")]
+mod typed;
 
+#[cfg(feature = "std")]
+pub use constant::Rk4;
 #[cfg(feature = "std")]
 pub use method::{Method, UnknownMethod};
 #[cfg(feature = "std")]
-pub use simulation::{Run, Sample, Settings, Statistics, simulate};
+pub use run::{Run, Sample};
+#[cfg(feature = "std")]
+pub use settings::Settings;
+#[cfg(feature = "std")]
+pub use simulation::{run, simulate, simulate_dyn};
+#[cfg(feature = "std")]
+pub use state::InitialState;
+pub use state::{NotFinite, State, acceleration};
+#[cfg(feature = "std")]
+pub use statistics::Statistics;
+#[cfg(feature = "std")]
+pub use stepper::{Ahead, Stepper};
 #[cfg(feature = "std")]
 pub use stopped::{Cause, Stopped};

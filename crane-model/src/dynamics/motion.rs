@@ -1,94 +1,67 @@
-//! Pose, rates and integrals in one vector, and their slopes.
+//! Sums of motions, and how large an error of one is.
 
-use nalgebra::SVector;
-
-use super::rk4::{NotFinite, State, acceleration};
-use crate::Dynamics;
-
-/// Pose q, rates v and `M` integrals along the motion; or their slopes v, q̈ and the integrands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Motion<const N: usize, const M: usize> {
-    /// Coordinates, or rates.
-    pub q: SVector<f64, N>,
-    /// Rates, or accelerations.
-    pub v: SVector<f64, N>,
-    /// Integrals, or integrands.
-    pub sum: SVector<f64, M>,
+/// `y += a x`, in a plain loop that becomes vector instructions.
+#[inline]
+pub(super) fn add(y: &mut [f64], a: f64, x: &[f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += a * x;
+    }
 }
 
-impl<const N: usize, const M: usize> Motion<N, M> {
-    /// A state with integrals at zero.
-    pub fn starting(state: &State<N>) -> Self {
-        Self { q: state.q, v: state.v, sum: SVector::zeros() }
-    }
-
-    /// Nothing.
-    pub fn zeros() -> Self {
-        Self { q: SVector::zeros(), v: SVector::zeros(), sum: SVector::zeros() }
-    }
-
-    /// `self + scale Σ factor · term`.
-    #[inline]
-    pub fn plus(mut self, factors: &[f64], terms: &[Self], scale: f64) -> Self {
-        for (factor, term) in factors.iter().zip(terms) {
-            let factor = factor * scale;
-            if factor != 0.0 {
-                self.add(factor, term);
-            }
+/// `y += scale Σ factor · term`
+#[inline]
+pub(super) fn add_all<'a>(y: &mut [f64], scale: f64, factors: &[f64], terms: impl IntoIterator<Item = &'a Vec<f64>>) {
+    for (factor, term) in factors.iter().zip(terms) {
+        let factor = factor * scale;
+        if factor != 0.0 {
+            add(y, factor, term);
         }
-        self
-    }
-
-    /// `self += factor · term`
-    #[inline]
-    pub fn add(&mut self, factor: f64, term: &Self) {
-        add(&mut self.q, factor, &term.q);
-        add(&mut self.v, factor, &term.v);
-        add(&mut self.sum, factor, &term.sum);
-    }
-
-    /// Error of a step that ends here, in units of the tolerance: the greatest of `|δq|/tolerance`, in m and rad, and
-    /// `|δv|/(1 + |v|)` times [`RATE`] over the tolerance; infinite where one is no number.
-    pub fn size(&self, error: &Self, tolerance: f64) -> f64 {
-        /// Comparisons at once, so that they become vector instructions.
-        const LANES: usize = 8;
-        let mut greatest = [0.0_f64; LANES];
-        let mut finite = [true; LANES];
-        let mut note = |lane: usize, size: f64| {
-            greatest[lane] = if size > greatest[lane] { size } else { greatest[lane] };
-            finite[lane] &= size < f64::INFINITY;
-        };
-        let columns = |x: &SVector<f64, N>| x.data.0[0];
-        let (q, v, rates) = (columns(&error.q), columns(&error.v), columns(&self.v));
-        for i in 0..N {
-            note(i % LANES, q[i].abs());
-        }
-        for i in 0..N {
-            note(i % LANES, v[i].abs() * RATE / (1.0 + rates[i].abs()));
-        }
-        let greatest = greatest.into_iter().fold(0.0, f64::max);
-        if finite.into_iter().all(|finite| finite) { greatest / tolerance } else { f64::INFINITY }
     }
 }
 
 /// What an error of a rate counts against one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
 const RATE: f64 = 0.2;
 
-/// Slopes of a motion by the crane's equations and of the integrals.
-pub(super) fn slope<const N: usize, const M: usize, C: Dynamics<N>>(
-    crane: &C,
-    integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-    t: f64,
-    motion: &Motion<N, M>,
-) -> Result<Motion<N, M>, NotFinite> {
-    let Motion { q, v, .. } = motion;
-    Ok(Motion { q: *v, v: acceleration(crane, t, q, v)?, sum: integrand(t, q, v) })
+/// Size of an error of a motion of `n` coordinates: the greatest of `|δq|`, in m and rad, and `|δv|/(1 + |v|)` times [`RATE`];
+/// infinite where one is not a number.
+pub(super) fn size(n: usize, motion: &[f64], error: &[f64]) -> f64 {
+    let mut greatest = Greatest::default();
+    for error in &error[..n] {
+        greatest.note(error.abs());
+    }
+    for (error, rate) in error[n..2 * n].iter().zip(&motion[n..2 * n]) {
+        greatest.note(error.abs() * RATE / (1.0 + rate.abs()));
+    }
+    greatest.value()
 }
 
-/// `y += a x`, in a plain loop that becomes vector instructions.
-#[inline]
-fn add<const N: usize>(y: &mut SVector<f64, N>, a: f64, x: &SVector<f64, N>) {
-    for (y, x) in y.data.0[0].iter_mut().zip(&x.data.0[0]) {
-        *y += a * x;
+/// The greatest of some sizes; several comparisons at once become vector instructions.
+#[derive(Clone, Copy, Debug)]
+struct Greatest {
+    lanes: [f64; Greatest::LANES],
+    finite: [bool; Greatest::LANES],
+    next: usize,
+}
+
+impl Default for Greatest {
+    fn default() -> Self {
+        Self { lanes: [0.0; Self::LANES], finite: [true; Self::LANES], next: 0 }
+    }
+}
+
+impl Greatest {
+    const LANES: usize = 8;
+
+    #[inline]
+    fn note(&mut self, size: f64) {
+        let lane = self.next % Self::LANES;
+        self.next += 1;
+        self.lanes[lane] = if size > self.lanes[lane] { size } else { self.lanes[lane] };
+        self.finite[lane] &= size < f64::INFINITY;
+    }
+
+    fn value(&self) -> f64 {
+        let greatest = self.lanes.into_iter().fold(0.0, f64::max);
+        if self.finite.into_iter().all(|finite| finite) { greatest } else { f64::INFINITY }
     }
 }

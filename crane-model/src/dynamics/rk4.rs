@@ -15,9 +15,13 @@
 //! As a rule of thumb for modes of frequency ω (rad/s), damped by β (s) times stiffness:
 //! `h < min(2.83/ω, 2.785/(βω²))`. The first is the region's end on the imaginary axis, 2√2; the second that on the real one.
 
+use core::ops::{Add, Mul};
+
 use nalgebra::SVector;
 
-use crate::Dynamics;
+use super::state::acceleration;
+pub use super::state::{NotFinite, State};
+use crate::{Dynamics, support::lanes::f64x8};
 
 /// End of the stability region on the imaginary axis, 2√2.
 pub const IMAGINARY_LIMIT: f64 = 2.0 * core::f64::consts::SQRT_2;
@@ -27,41 +31,6 @@ pub const REAL_LIMIT: f64 = 2.785_293_563_405_282;
 pub const STAGES: usize = 4;
 /// Coefficients of `R(z) = 1 + z + z²/2 + z³/6 + z⁴/24`.
 pub const STABILITY: [f64; 5] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0];
-
-/// An acceleration is not finite: a body without inertia, or a pose that is no number any more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NotFinite;
-
-/// Pose and velocity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State<const N: usize> {
-    /// Generalized coordinates, m and rad.
-    pub q: SVector<f64, N>,
-    /// Their rates, m/s and rad/s.
-    pub v: SVector<f64, N>,
-}
-
-impl<const N: usize> State<N> {
-    /// Pose `q` at rest.
-    pub fn at_rest(q: SVector<f64, N>) -> Self {
-        Self { q, v: SVector::zeros() }
-    }
-}
-
-/// Acceleration `q̈ = A⁻¹(e + f)`, Eq. (23), m/s² and rad/s².
-///
-/// # Errors
-/// It is not finite.
-#[inline]
-pub fn acceleration<const N: usize, C: Dynamics<N>>(
-    crane: &C,
-    t: f64,
-    q: &SVector<f64, N>,
-    v: &SVector<f64, N>,
-) -> Result<SVector<f64, N>, NotFinite> {
-    let a = crane.forward_dynamics(t, q, v);
-    if a.iter().all(|x| x.is_finite()) { Ok(a) } else { Err(NotFinite) }
-}
 
 /// Moves `state` from `t` to `t + h`. No allocation.
 ///
@@ -83,40 +52,81 @@ pub fn step_with<const N: usize, const M: usize, C: Dynamics<N>>(
     state: &mut State<N>,
     integrand: impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
 ) -> Result<SVector<f64, M>, NotFinite> {
-    advance(crane, t, h, state, integrand).map(|(_, increments)| increments)
+    let mut integrands = [SVector::<f64, M>::zeros(); STAGES];
+    let mut room = [[0.0; N]; ROOM];
+    let State { q, v } = state;
+    advance(t, h, [q.as_mut_slice(), v.as_mut_slice()], room.as_flattened_mut(), |stage, t, q, v, out| {
+        let [q, v] = [q, v].map(SVector::from_column_slice);
+        integrands[stage] = integrand(t, &q, &v);
+        acceleration(crane, t, &q, &v).map(|a| out.copy_from_slice(a.as_slice()))
+    })?;
+    Ok(increments(&integrands, h))
 }
 
-/// As [`step_with`]; also the acceleration at the beginning.
-pub(super) fn advance<const N: usize, const M: usize, C: Dynamics<N>>(
-    crane: &C,
+/// Numbers that a step moves: one crane's, or those of eight cranes in lanes.
+pub(super) trait Number: Copy + Add<Output = Self> + Mul<f64, Output = Self> {}
+
+impl Number for f64 {}
+impl Number for f64x8 {}
+
+/// Slices as long as a pose that a step needs room for.
+pub(super) const ROOM: usize = 8;
+
+/// `x + ẋ h`
+#[inline]
+fn moved<T: Number>(out: &mut [T], x: &[T], rate: &[T], h: f64) {
+    for ((out, x), rate) in out.iter_mut().zip(x).zip(rate) {
+        *out = *x + *rate * h;
+    }
+}
+
+/// Increments of integrals over a step, from their integrands at the stages.
+#[inline]
+pub(super) fn increments<const M: usize>([i1, i2, i3, i4]: &[SVector<f64, M>; STAGES], h: f64) -> SVector<f64, M> {
+    (i1 + (i2 + i3) * 2.0 + i4) * (h / 6.0)
+}
+
+/// Moves pose and rates from `t` to `t + h`, in `room` for [`ROOM`] slices of their length. `accelerate` writes the accelerations
+/// of a stage, 0 to 3; those of the first stand at the beginning of `room` afterwards.
+///
+/// Each number of a pose is moved by the same operations in the same order, whatever stands beside it.
+///
+/// # Errors
+/// Those of `accelerate`; pose and rates are unchanged.
+#[inline]
+pub(super) fn advance<T: Number, E>(
     t: f64,
     h: f64,
-    state: &mut State<N>,
-    integrand: impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-) -> Result<(SVector<f64, N>, SVector<f64, M>), NotFinite> {
-    let State { q, v } = &*state;
-    let middle = t + 0.5 * h;
-    let end = t + h;
+    [q, v]: [&mut [T]; 2],
+    room: &mut [T],
+    mut accelerate: impl FnMut(usize, f64, &[T], &[T], &mut [T]) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut rest = room;
+    let mut take = || -> &mut [T] {
+        let (first, others) = core::mem::take(&mut rest).split_at_mut(q.len());
+        rest = others;
+        first
+    };
+    let [a1, a2, a3, a4, v2, v3, v4, place]: [&mut [T]; ROOM] = core::array::from_fn(|_| take());
+    let (middle, end) = (t + 0.5 * h, t + h);
 
-    let a1 = acceleration(crane, t, q, v)?;
-    let i1 = integrand(t, q, v);
+    accelerate(0, t, q, v, a1)?;
 
-    let v2 = v + a1 * (0.5 * h);
-    let q2 = q + v * (0.5 * h);
-    let a2 = acceleration(crane, middle, &q2, &v2)?;
-    let i2 = integrand(middle, &q2, &v2);
+    moved(v2, v, a1, 0.5 * h);
+    moved(place, q, v, 0.5 * h);
+    accelerate(1, middle, place, v2, a2)?;
 
-    let v3 = v + a2 * (0.5 * h);
-    let q3 = q + v2 * (0.5 * h);
-    let a3 = acceleration(crane, middle, &q3, &v3)?;
-    let i3 = integrand(middle, &q3, &v3);
+    moved(v3, v, a2, 0.5 * h);
+    moved(place, q, v2, 0.5 * h);
+    accelerate(2, middle, place, v3, a3)?;
 
-    let v4 = v + a3 * h;
-    let q4 = q + v3 * h;
-    let a4 = acceleration(crane, end, &q4, &v4)?;
-    let i4 = integrand(end, &q4, &v4);
+    moved(v4, v, a3, h);
+    moved(place, q, v3, h);
+    accelerate(3, end, place, v4, a4)?;
 
-    state.q += (v + (v2 + v3) * 2.0 + v4) * (h / 6.0);
-    state.v += (a1 + (a2 + a3) * 2.0 + a4) * (h / 6.0);
-    Ok((a1, (i1 + (i2 + i3) * 2.0 + i4) * (h / 6.0)))
+    for i in 0..q.len() {
+        q[i] = q[i] + (v[i] + (v2[i] + v3[i]) * 2.0 + v4[i]) * (h / 6.0);
+        v[i] = v[i] + (a1[i] + (a2[i] + a3[i]) * 2.0 + a4[i]) * (h / 6.0);
+    }
+    Ok(())
 }

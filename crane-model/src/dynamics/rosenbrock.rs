@@ -19,15 +19,21 @@
 //! `J = [[0, I], [−A⁻¹K̂, −A⁻¹D̂]]`: gravity, velocity forces and the change of A are left out. A stage then needs one system
 //! of half the size, which the O(n) recursion solves (`system.rs`).
 
-use nalgebra::SVector;
-
 use super::{
-    motion::{Motion, slope},
-    rk4::{NotFinite, State},
-    step::{Step, bare},
+    Method, Settings, Statistics, Stepper, Stopped,
+    adaptive::{Adaptive, Formula},
+    equations::Equations,
+    motion::add_all,
+    state::{NotFinite, State},
+    step::Step,
+    stepper::{Ahead, forward},
     system::System,
+    typed,
 };
-use crate::Implicit;
+use crate::{
+    Implicit,
+    dyn_crane::{DynImplicit, Instance},
+};
 
 /// Stages, as many as evaluations a step: the slope at its end is the first of the next.
 pub const STAGES: usize = 6;
@@ -101,7 +107,7 @@ const NODES: [f64; STAGES] = [
     0.927_104_723_987_567,
 ];
 
-/// A step from `t` to `t + h`: the state there, and the difference to the embedded formula. No allocation.
+/// A step from `t` to `t + h`: the state there, and the difference to the embedded formula.
 ///
 /// # Errors
 /// An acceleration is not finite.
@@ -111,31 +117,89 @@ pub fn step<const N: usize, C: Implicit<N>>(
     h: f64,
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
-    bare(crane, t, state, |start, first, nothing| advance(crane, t, h, start, first, nothing))
+    let crane = Instance::<N, _>(crane);
+    let mut equations = Equations::new(&crane, false);
+    typed::step(&mut equations, t, h, state, &mut Stages::new(&crane, 2 * N))
 }
 
-/// As [`step`], with integrals along the motion, for which J is zero, and the slope at the start given.
-pub(super) fn advance<const N: usize, const M: usize, C: Implicit<N>>(
-    crane: &C,
-    t: f64,
-    h: f64,
-    start: &Motion<N, M>,
-    first: &Motion<N, M>,
-    integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-) -> Result<Step<N, M>, NotFinite> {
-    let system = System::new(crane, &start.q, h * GAMMA);
-    let forces = |t: f64| crane.forces(t, &start.q, &start.v);
-    // h ∂f/∂t
-    let drift = (forces(t + h * DIFFERENCE) - forces(t - h * DIFFERENCE)) / (2.0 * DIFFERENCE);
-    let mut stages = [Motion::zeros(); STAGES];
-    stages[0] = system.solve(crane, first, &(drift * GAMMAS[0]));
-    for i in 1..STAGES {
-        let place = start.plus(A[i], &stages, 1.0);
-        let rhs = slope(crane, integrand, t + NODES[i] * h, &place)?.plus(C[i], &stages, h.recip());
-        stages[i] = system.solve(crane, &rhs, &(drift * GAMMAS[i]));
+/// A motion by the method.
+pub struct Rosenbrock<'a>(Adaptive<'a, Stages<'a>>);
+
+impl<'a> Rosenbrock<'a> {
+    /// With the tolerance of the settings.
+    pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
+        let equations = Equations::new(crane, settings.audit);
+        Self(Adaptive::new(Stages::new(crane, equations.len()), equations, settings))
     }
-    let end = start.plus(&WEIGHTS, &stages, 1.0);
-    let last = slope(crane, integrand, t + h, &end)?;
-    let error = Motion::zeros().plus(&ERROR, &stages, 1.0);
-    Ok(Step { start: *start, end, error, slopes: [*first, last], bulge: Motion::zeros(), length: h })
+}
+
+forward!(Rosenbrock);
+
+/// The formula, with room for its stages.
+pub(super) struct Stages<'a> {
+    system: System<'a>,
+    /// uᵢ.
+    stages: [Vec<f64>; STAGES],
+    place: Vec<f64>,
+    rhs: Vec<f64>,
+    /// `h ∂f/∂t`, and room for it.
+    drift: Vec<f64>,
+    force: Vec<f64>,
+}
+
+impl<'a> Stages<'a> {
+    /// Room for motions of so many numbers.
+    pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
+        let (zeros, pose) = (|| vec![0.0; len], || vec![0.0; crane.size()]);
+        let stages = std::array::from_fn(|_| zeros());
+        Self { system: System::new(crane), stages, place: zeros(), rhs: zeros(), drift: pose(), force: pose() }
+    }
+
+    /// Differences the forces at the beginning of a step by time.
+    fn difference(&mut self, equations: &Equations<'_>, step: &Step) {
+        let (q, v) = equations.state(&step.start);
+        let by = step.length * DIFFERENCE;
+        equations.crane.forces(step.t + by, q, v, &mut self.drift);
+        equations.crane.forces(step.t - by, q, v, &mut self.force);
+        for (drift, before) in self.drift.iter_mut().zip(&self.force) {
+            *drift = (*drift - before) / (2.0 * DIFFERENCE);
+        }
+    }
+
+    /// Solves for a stage.
+    fn solve(&mut self, stage: usize) {
+        for (force, drift) in self.force.iter_mut().zip(&self.drift) {
+            *force = drift * GAMMAS[stage];
+        }
+        self.system.solve(&self.rhs, Some(&self.force), &mut self.stages[stage]);
+    }
+}
+
+impl Formula for Stages<'_> {
+    const METHOD: Method = Method::Rosenbrock;
+
+    /// Integrals go along; J is zero for them.
+    fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
+        let h = step.length;
+        self.system.factorise(equations.state(&step.start).0, h * GAMMA);
+        self.difference(equations, step);
+        self.rhs.copy_from_slice(&step.slopes[0]);
+        self.solve(0);
+        for i in 1..STAGES {
+            self.place.copy_from_slice(&step.start);
+            add_all(&mut self.place, 1.0, A[i], self.stages.iter());
+            equations.slope(step.t + NODES[i] * h, &self.place, &mut self.rhs)?;
+            add_all(&mut self.rhs, h.recip(), C[i], self.stages.iter());
+            self.solve(i);
+        }
+        step.end.copy_from_slice(&step.start);
+        add_all(&mut step.end, 1.0, &WEIGHTS, self.stages.iter());
+        step.error.fill(0.0);
+        add_all(&mut step.error, 1.0, &ERROR, self.stages.iter());
+        equations.slope(step.reached(), &step.end, &mut step.slopes[1])
+    }
+
+    fn factorisations(&self) -> usize {
+        self.system.factorisations
+    }
 }

@@ -1,7 +1,5 @@
 //! Growth from step to step, recognised long before a run leaves all bounds.
 
-use nalgebra::{SMatrix, SVector};
-
 /// Rates below this, m/s and rad/s, are rounding about a rest.
 const REST: f64 = 1e-6;
 /// Growth of roughness, as energy, while it outweighs the motion: a decaying mode loses energy from step to step, and one
@@ -14,17 +12,17 @@ const GROWTH: f64 = 1e2;
 /// A resolved motion has `ε ≈ h² v̈/2`, small against v. At the limit of stability a step multiplies the limiting mode by
 /// a factor of size 1 though `1 + hλ` is well beyond: ε outweighs v, and grows beyond the limit. Both are measured as
 /// kinetic energy with the diagonal of the mass matrix, which makes m and rad comparable.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Roughness<const N: usize> {
-    weights: SVector<f64, N>,
+#[derive(Clone, Debug)]
+pub(super) struct Roughness {
+    weights: Vec<f64>,
     /// Roughness when it came to outweigh the motion, and the coordinate that is roughest now.
     outweighs: Option<(f64, usize)>,
 }
 
-impl<const N: usize> Roughness<N> {
-    /// With the mass matrix at the start.
-    pub(super) fn new(mass: &SMatrix<f64, N, N>) -> Self {
-        Self { weights: mass.diagonal(), outweighs: None }
+impl Roughness {
+    /// With the diagonal of the mass matrix at the start.
+    pub(super) fn new(weights: Vec<f64>) -> Self {
+        Self { weights, outweighs: None }
     }
 
     /// The roughest coordinate, where roughness outweighs the motion.
@@ -32,19 +30,20 @@ impl<const N: usize> Roughness<N> {
         self.outweighs.map(|(_, roughest)| roughest)
     }
 
-    /// After a step that was foretold to end with rates `foretold`, and ended with `v`: whether the run grows from step to
-    /// step.
-    pub(super) fn grows(&mut self, foretold: &SVector<f64, N>, v: &SVector<f64, N>) -> bool {
-        let energy = |rates: &SVector<f64, N>| rates.component_mul(rates).dot(&self.weights);
-        let difference = foretold - v;
-        let rough = energy(&difference);
-        if rough <= energy(v).max(REST * REST * self.weights.sum()) {
+    /// After a step of length `h` from the rates `before` with the accelerations `accelerations` to the rates `after`: whether
+    /// the run grows from step to step.
+    pub(super) fn grows(&mut self, h: f64, before: &[f64], accelerations: &[f64], after: &[f64]) -> bool {
+        let difference = |i: usize| before[i] + accelerations[i] * h - after[i];
+        let share = |i: usize| difference(i) * difference(i) * self.weights[i];
+        let all = 0..self.weights.len();
+        let rough: f64 = all.clone().map(share).sum();
+        let energy: f64 = all.clone().map(|i| after[i] * after[i] * self.weights[i]).sum();
+        if rough <= energy.max(REST * REST * self.weights.iter().sum::<f64>()) {
             self.outweighs = None;
             return false;
         }
         let since = self.outweighs.map_or(rough, |(since, _)| since);
-        let share = |i: usize| difference[i] * difference[i] * self.weights[i];
-        self.outweighs = Some((since, (0..N).max_by(|&i, &j| share(i).total_cmp(&share(j))).unwrap_or(0)));
+        self.outweighs = Some((since, all.max_by(|&i, &j| share(i).total_cmp(&share(j))).unwrap_or(0)));
         rough > GROWTH * since
     }
 }

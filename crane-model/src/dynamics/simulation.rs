@@ -2,112 +2,22 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::{Cholesky, SVector, Vector2};
+use nalgebra::DMatrix;
 
 use super::{
-    Method, Stopped, adaptive::Adaptive, bdf::Backward, dormand_prince, motion::Motion, rk4, rosenbrock,
-    roughness::Roughness,
+    Ahead, Cause, InitialState, Method, Run, Sample, Settings, State, Stepper, Stopped,
+    bdf::Bdf,
+    constant::Rk4,
+    dormand_prince::DormandPrince,
+    rosenbrock::Rosenbrock,
+    settings::divided,
+    stopped::{Place, without_inertia},
+    stops::Stops,
 };
-use crate::{Description, Dynamics, Implicit};
-
-/// No crane is 1 km long and no joint of one turns 160 times: beyond this, m or rad, a run has blown up.
-const BOUND: f64 = 1e3;
-/// Whole numbers of steps are recognised to this relative accuracy: 0.01/1e-4 is not 100 in binary.
-const WHOLE: f64 = 1e-9;
-/// What keeps the load path of the reference crane within 1e-4 of its size, which engineers do not see: a tenth of a millimetre a
-/// metre. Measured: docs/error-vs-runtime.md.
-const TOLERANCE: f64 = 5e-5;
-
-/// How to run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Simulated time, s.
-    pub duration: f64,
-    /// Method of integration.
-    pub method: Method,
-    /// Greatest step of a method with constant step, s. The step is the next smaller one that fits the interval of results a
-    /// whole number of times.
-    pub step: f64,
-    /// Error that a one-step adaptive method allows a step, m and rad; `bdf` allows a tenth of it, as its errors add up over more
-    /// steps. That of a run on the reference crane's coordinates is ten times as large, on a path of 10 m.
-    pub tolerance: f64,
-    /// Interval between results, s.
-    pub output: f64,
-    /// Whether to integrate the work of the drives and of the dampers along with the motion.
-    pub audit: bool,
-    /// Greatest size of a coordinate, m or rad, before the run counts as blown up.
-    pub bound: f64,
-}
-
-impl Settings {
-    /// The run that the crane's spec asks for, by the classical Runge–Kutta method, without audit.
-    pub fn of(description: &Description) -> Self {
-        let Description { duration, step, output, .. } = *description;
-        Self { duration, method: Method::Rk4, step, tolerance: TOLERANCE, output, audit: false, bound: BOUND }
-    }
-
-    /// Number and length, s, of the intervals between results.
-    pub fn intervals(&self) -> (usize, f64) {
-        let count = divided(self.duration, self.output).0;
-        (count, self.duration / count as f64)
-    }
-
-    /// The step that a run takes, s: the longest that fits the interval of results a whole number of times.
-    pub fn step_taken(&self) -> f64 {
-        divided(self.output, self.step).1
-    }
-}
-
-/// One moment of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample<'a> {
-    /// Time, s.
-    pub t: f64,
-    /// Generalized coordinates, m and rad.
-    pub q: &'a [f64],
-    /// Their rates, m/s and rad/s.
-    pub v: &'a [f64],
-    /// Work that the drives' motions put in since t = 0, J; 0 without audit.
-    pub work: f64,
-    /// Energy that the dampers took out since t = 0, J; 0 without audit.
-    pub dissipated: f64,
-}
-
-/// What a run did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Statistics {
-    /// Steps done.
-    pub steps: usize,
-    /// Steps tried in vain: their error was above the tolerance.
-    pub rejections: usize,
-    /// Evaluations of the accelerations.
-    pub evaluations: usize,
-    /// Factorisations of the system of an implicit step.
-    pub factorisations: usize,
-}
-
-impl Statistics {
-    /// Counts what an adaptive method spends on a step, done or in vain.
-    pub(super) fn count(&mut self, method: Method) {
-        let (evaluations, factorisations) = match method {
-            Method::DormandPrince => (dormand_prince::EVALUATIONS, 0),
-            _ => (rosenbrock::STAGES, 1),
-        };
-        self.evaluations += evaluations;
-        self.factorisations += factorisations;
-    }
-}
-
-/// What a run took.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Run {
-    /// What it did.
-    pub statistics: Statistics,
-    /// Step, s; the mean of an adaptive method.
-    pub step: f64,
-    /// Time reached, s.
-    pub time: f64,
-}
+use crate::{
+    Implicit,
+    dyn_crane::{DynDynamics, DynImplicit, DynModel, Instance},
+};
 
 /// Integrates Eq. (23) from `start` at t = 0 and shows `observe` a sample at t = 0, at every interval and at the end.
 /// `observe` may break off the run.
@@ -116,71 +26,90 @@ pub struct Run {
 /// `E(t) − E(0) − W + D`, zero for the exact motion, measures the error of the run.
 ///
 /// # Errors
-/// [`Stopped`] where the motion grows from step to step or beyond the bound, where no step meets the tolerance, or where the
-/// mass matrix is not positive definite.
+/// [`Stopped`] where the motion grows from step to step or beyond the bound, where no step meets the tolerance, where steps are
+/// more than allowed, or where the mass matrix is not positive definite.
 pub fn simulate<const N: usize, C: Implicit<N>>(
     crane: &C,
-    start: rk4::State<N>,
+    start: State<N>,
     settings: &Settings,
-    observe: impl FnMut(&Sample<'_>) -> ControlFlow<()>,
+    mut observe: impl FnMut(&Sample<'_>) -> ControlFlow<()>,
 ) -> Result<Run, Stopped> {
-    if settings.audit {
-        let power = |t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>| {
-            Vector2::new(crane.drive_power(t, q, v), crane.dissipation(t, q, v))
-        };
-        integrate(crane, start, settings, power, |sum| [sum.x, sum.y], observe)
-    } else {
-        integrate(crane, start, settings, |_, _, _| SVector::<f64, 0>::zeros(), |_| [0.0, 0.0], observe)
+    simulate_dyn(&Instance::<N, _>(crane), &InitialState::from(&start), settings, &mut observe)
+}
+
+/// As [`simulate`], of a crane of any size.
+///
+/// # Errors
+/// As [`simulate`].
+///
+/// # Panics
+/// Where the start has not as many numbers as the crane has coordinates.
+pub fn simulate_dyn(
+    crane: &dyn DynImplicit,
+    start: &InitialState,
+    settings: &Settings,
+    observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
+) -> Result<Run, Stopped> {
+    match settings.method {
+        Method::Rk4 => run(crane, &mut Rk4::new(crane, settings), start, settings, observe),
+        Method::DormandPrince => run(crane, &mut DormandPrince::new(crane, settings), start, settings, observe),
+        Method::Rosenbrock => run(crane, &mut Rosenbrock::new(crane, settings), start, settings, observe),
+        Method::Bdf => run(crane, &mut Bdf::new(crane, settings), start, settings, observe),
     }
 }
 
-fn integrate<const N: usize, const M: usize, C: Implicit<N>>(
-    crane: &C,
-    start: rk4::State<N>,
+/// As [`simulate_dyn`], by a stepper made for this crane and these settings: explicit ones ask for no more than [`DynDynamics`].
+///
+/// # Errors
+/// As [`simulate`].
+///
+/// # Panics
+/// Where the start has not as many numbers as the crane has coordinates.
+pub fn run(
+    crane: &dyn DynDynamics,
+    stepper: &mut dyn Stepper,
+    start: &InitialState,
     settings: &Settings,
-    integrand: impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-    audit: impl Fn(&SVector<f64, M>) -> [f64; 2],
-    mut observe: impl FnMut(&Sample<'_>) -> ControlFlow<()>,
+    observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
 ) -> Result<Run, Stopped> {
-    let mut motion = Motion::<N, M>::starting(&start);
-    let mass = crane.mass_matrix(&motion.q);
-    // The recursion of O(n) divides by inertias one by one and would go on with negative ones.
-    if N > 0 && Cholesky::new(mass).is_none() {
-        return Err(Stopped::mass_matrix(0.0, settings.step, motion.q.as_slice(), &mass, crane.description()));
-    }
-    let mut roughness = Roughness::new(&mass);
-    let mut adaptive = Adaptive::new(settings);
-    let mut backward = Backward::new(settings);
-    let mut statistics = Statistics::default();
+    let (n, description) = (crane.size(), crane.description());
+    let method = settings.method;
+    check_inertia(crane, &start.q).map_err(|index| {
+        let place = Place { method, t: 0.0, h: settings.step, q: &start.q, description };
+        place.stopped(Cause::MassMatrix, index)
+    })?;
+    let mut motion = [start.q.as_slice(), &start.v, if settings.audit { &[0.0; 2] } else { &[] }].concat();
+    stepper.start(0.0, &motion)?;
     let mut time = 0.0;
+    let mut reached = 0.0;
+    let stops = Stops::of([crane as &dyn DynModel], settings.duration);
     let intervals = divided(settings.duration, settings.output).0;
 
     for interval in 0..=intervals {
-        let [work, dissipated] = audit(&motion.sum);
-        let sample = Sample { t: time, q: motion.q.as_slice(), v: motion.v.as_slice(), work, dissipated };
-        if observe(&sample).is_break() || interval == intervals {
+        let (q, rest) = motion.split_at(n);
+        let (v, integrals) = rest.split_at(n);
+        let [work, dissipated] = *integrals.first_chunk().unwrap_or(&[0.0; 2]);
+        if observe(&Sample { t: time, q, v, work, dissipated }).is_break() || interval == intervals {
             break;
         }
-        let end = (settings.output * (interval + 1) as f64).min(settings.duration);
-        if settings.method.is_adaptive() {
-            match settings.method {
-                Method::Bdf => backward.advance(crane, &integrand, [time, end], &mut motion, &mut statistics)?,
-                _ => adaptive.advance(crane, &integrand, [time, end], &mut motion, &mut statistics)?,
+        let result = (settings.output * (interval + 1) as f64).min(settings.duration);
+        while reached < result {
+            let before = reached;
+            reached = stepper.step(&Ahead { result, stop: stops.after(reached) })?;
+            let steps = stepper.statistics().steps;
+            let q = &stepper.motion()[..n];
+            let place = Place { method, t: reached, h: reached - before, q, description };
+            if !q.iter().all(|x| x.abs() <= settings.bound) {
+                return Err(place.furthest(Cause::Growth));
             }
-            if !bounded(&motion, settings) {
-                return Err(Stopped::growth(end, settings.output, motion.q.as_slice(), crane.description()));
+            if steps >= settings.most_steps && reached < settings.duration {
+                return Err(place.furthest(Cause::Steps));
             }
-        } else {
-            let (steps, h) = divided(end - time, settings.step);
-            for k in 0..steps {
-                let t = time + h * k as f64;
-                constant(crane, &integrand, [t, h], &mut motion, &mut roughness, settings)?;
-            }
-            statistics.steps += steps;
-            statistics.evaluations += rk4::STAGES * steps;
         }
-        time = end;
+        stepper.interpolate(result, &mut motion);
+        time = result;
     }
+    let statistics = stepper.statistics();
     let step = match (settings.method.is_adaptive(), statistics.steps) {
         (true, 1..) => time / statistics.steps as f64,
         _ => settings.step_taken(),
@@ -188,44 +117,10 @@ fn integrate<const N: usize, const M: usize, C: Implicit<N>>(
     Ok(Run { statistics, step, time })
 }
 
-/// A step of the classical Runge–Kutta method from `t` to `t + h`.
-fn constant<const N: usize, const M: usize, C: Dynamics<N>>(
-    crane: &C,
-    integrand: &impl Fn(f64, &SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, M>,
-    [t, h]: [f64; 2],
-    motion: &mut Motion<N, M>,
-    roughness: &mut Roughness<N>,
-    settings: &Settings,
-) -> Result<(), Stopped> {
-    let mut state = rk4::State { q: motion.q, v: motion.v };
-    let step = rk4::advance(crane, t, h, &mut state, integrand);
-    let rough = |roughness: &Roughness<N>| {
-        let stopped = |coordinate| Stopped::rough(coordinate, t, h, state.q.as_slice(), crane.description());
-        roughness.roughest().map(stopped)
-    };
-    let (acceleration, increments) = step.map_err(|rk4::NotFinite| {
-        let mass = || Stopped::mass_matrix(t, h, state.q.as_slice(), &crane.mass_matrix(&state.q), crane.description());
-        rough(roughness).unwrap_or_else(mass)
-    })?;
-    let grows = roughness.grows(&(motion.v + acceleration * h), &state.v);
-    *motion = Motion { q: state.q, v: state.v, sum: motion.sum + increments };
-    if grows || !bounded(motion, settings) {
-        let growth = || Stopped::growth(t, h, state.q.as_slice(), crane.description());
-        return Err(rough(roughness).unwrap_or_else(growth));
-    }
-    Ok(())
-}
-
-/// Whether all coordinates are within bounds, and numbers.
-fn bounded<const N: usize, const M: usize>(motion: &Motion<N, M>, settings: &Settings) -> bool {
-    motion.q.iter().all(|x| x.abs() <= settings.bound)
-}
-
-/// The least whole number of parts of `length`, none longer than `part`, and their length.
-pub(super) fn divided(length: f64, part: f64) -> (usize, f64) {
-    let count = (length / part * (1.0 - WHOLE)).ceil().max(1.0);
-    // Saturates where the ratio is no number.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let whole = count as usize;
-    (whole, length / count)
+/// Checks that the mass matrix at a pose is positive definite: the recursion of O(n) divides by inertias one by one and would go on
+/// with negative ones. Otherwise the coordinate to blame.
+fn check_inertia(crane: &dyn DynDynamics, q: &[f64]) -> Result<(), usize> {
+    let mut mass = DMatrix::zeros(q.len(), q.len());
+    crane.mass_matrix(q, mass.as_mut_slice());
+    without_inertia(&mass).map_or(Ok(()), Err)
 }

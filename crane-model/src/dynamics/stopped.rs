@@ -2,32 +2,37 @@
 
 use std::{error::Error, fmt};
 
-use nalgebra::SMatrix;
+use nalgebra::DMatrix;
 
-use crate::Description;
+use super::Method;
+use crate::{Description, Text, dyn_crane::DynDynamics};
 
 /// Why a run stopped before its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// A coordinate left the bound of the settings, or is no number any more.
+    /// A coordinate left the bound of the settings, or is not a number any more.
     Growth,
     /// The motion grows from step to step against its own acceleration: the step is beyond the limit of stability.
     Step,
     /// No step, however short, meets the tolerance of an adaptive method.
     Tolerance,
+    /// The run took as many steps as the settings allow.
+    Steps,
     /// The mass matrix is not positive definite: a coordinate moves nothing that has inertia.
     MassMatrix,
 }
 
 /// A run that stopped before its time, and where.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Stopped {
     /// Why.
     pub cause: Cause,
+    /// By which method.
+    pub method: Method,
     /// When, s.
     pub time: f64,
     /// Coordinate that is furthest out, or that moves no inertia.
-    pub coordinate: &'static str,
+    pub coordinate: Text,
     /// Its value.
     pub value: f64,
     /// Unit of the value.
@@ -36,71 +41,74 @@ pub struct Stopped {
     pub step: f64,
 }
 
-impl Stopped {
-    /// Growth, by the coordinate of `q` that is furthest out: the first that is not finite, else the greatest.
-    pub(super) fn growth(time: f64, step: f64, q: &[f64], description: &Description) -> Self {
+/// Where a run stopped.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'a> {
+    pub method: Method,
+    /// Time and step, s.
+    pub t: f64,
+    pub h: f64,
+    pub q: &'a [f64],
+    pub description: &'a Description,
+}
+
+impl Place<'_> {
+    /// A run that stopped because of a coordinate.
+    pub fn stopped(&self, cause: Cause, coordinate: usize) -> Stopped {
+        let info = self.description.coordinates.get(coordinate);
+        let (name, unit) = info.map_or((Text::Static(""), ""), |info| (info.name.clone(), info.kind.unit()));
+        let value = self.q.get(coordinate).copied().unwrap_or(f64::NAN);
+        Stopped { cause, method: self.method, time: self.t, coordinate: name, value, unit, step: self.h }
+    }
+
+    /// As [`stopped`](Self::stopped), by the coordinate that is furthest out: the first that is not finite, else the greatest.
+    pub fn furthest(&self, cause: Cause) -> Stopped {
         let size = |x: f64| if x.is_finite() { x.abs() } else { f64::INFINITY };
-        let worst = (0..q.len()).rev().max_by(|&i, &j| size(q[i]).total_cmp(&size(q[j]))).unwrap_or(0);
-        Self::at(worst, Cause::Growth, time, step, q, description)
+        let worst = (0..self.q.len()).rev().max_by(|&i, &j| size(self.q[i]).total_cmp(&size(self.q[j])));
+        self.stopped(cause, worst.unwrap_or(0))
     }
 
-    /// Growth from step to step, of the coordinate that is roughest.
-    pub(super) fn rough(coordinate: usize, time: f64, step: f64, q: &[f64], description: &Description) -> Self {
-        Self::at(coordinate, Cause::Step, time, step, q, description)
+    /// A step that came to nothing: for want of inertia where the mass matrix at its beginning is not positive definite, else
+    /// for another cause.
+    pub fn failed(&self, cause: Cause, crane: &dyn DynDynamics) -> Stopped {
+        let n = self.q.len();
+        let mut mass = DMatrix::zeros(n, n);
+        crane.mass_matrix(self.q, mass.as_mut_slice());
+        without_inertia(&mass).map_or_else(|| self.furthest(cause), |index| self.stopped(Cause::MassMatrix, index))
     }
+}
 
-    /// No step is short enough: for want of inertia at the beginning `q` of the step, or else of smoothness.
-    pub(super) fn tolerance<const N: usize>(
-        time: f64,
-        step: f64,
-        q: &[f64],
-        mass: &SMatrix<f64, N, N>,
-        description: &Description,
-    ) -> Self {
-        let stopped = Self::mass_matrix(time, step, q, mass, description);
-        match stopped.cause {
-            Cause::MassMatrix => stopped,
-            _ => Self { cause: Cause::Tolerance, ..stopped },
-        }
-    }
+/// The first coordinate that moves nothing with inertia: all leading blocks before it are positive definite.
+pub(super) fn without_inertia(mass: &DMatrix<f64>) -> Option<usize> {
+    let regular = |size: usize| size == 0 || mass.view((0, 0), (size, size)).into_owned().cholesky().is_some();
+    if regular(mass.nrows()) { None } else { (0..mass.nrows()).find(|&index| !regular(index + 1)) }
+}
 
-    /// A step that met a mass matrix not positive definite: for want of inertia where `mass`, the matrix at its beginning
-    /// `q`, is not either, else because the step leads out of all bounds.
-    pub(super) fn mass_matrix<const N: usize>(
-        time: f64,
-        step: f64,
-        q: &[f64],
-        mass: &SMatrix<f64, N, N>,
-        description: &Description,
-    ) -> Self {
-        // Positive definite as far as all leading blocks are; the first that is not has a pivot of zero at its end.
-        let regular = |size: &usize| mass.view((0, 0), (*size, *size)).into_owned().cholesky().is_some();
-        match (1..=N).find(|size| !regular(size)) {
-            Some(size) => Self::at(size - 1, Cause::MassMatrix, time, step, q, description),
-            None => Self::growth(time, step, q, description),
-        }
-    }
-
-    fn at(index: usize, cause: Cause, time: f64, step: f64, q: &[f64], description: &Description) -> Self {
-        let (coordinate, unit) =
-            description.coordinates.get(index).map_or(("", ""), |info| (info.name, info.kind.unit()));
-        let value = q.get(index).copied().unwrap_or(f64::NAN);
-        Self { cause, time, coordinate, value, unit, step }
-    }
-
+impl Stopped {
     /// What to do about it.
     pub fn advice(&self) -> String {
         match self.cause {
-            Cause::Growth | Cause::Step => format!(
+            Cause::Growth | Cause::Step if !self.method.is_adaptive() => format!(
                 "try a smaller step than {:.2e} s; RK4 is stable for h < min(2.83/ω, 2.785/(βω²)) of the fastest mode \
                  (ω in rad/s, damping β in s)",
                 self.step
             ),
+            Cause::Growth | Cause::Step => format!(
+                "nothing holds {} any more: look for a load that is too great, a spring or damper that is missing or negative, \
+                 and an initial state far from equilibrium; a smaller tolerance shows whether the motion is real",
+                self.coordinate
+            ),
             Cause::Tolerance => {
-                "allow a greater tolerance, 1e-4 is usual; motions and forces must be bounded, and the \
-                                 start must be no overflow"
+                "use a larger tolerance (1e-4 is typical) and check that motions, forces and the initial state are \
+                                 finite"
                     .to_owned()
             }
+            Cause::Steps if self.method.is_adaptive() => format!(
+                "steps are {:.1e} s here: use a larger tolerance (1e-4 is typical) or a shorter duration, or look for what \
+                 vibrates that fast; the limit is a setting, `most_steps`",
+                self.step
+            ),
+            Cause::Steps => "use a longer step or a shorter duration; the limit is a setting, `most_steps`".to_owned(),
             Cause::MassMatrix => format!(
                 "give what {} moves a `mass` above zero, in kg, and where it only turns an `inertia`, in kg m², or hold \
                  it by `joint: fixed`; a parameter set to zero may have taken it away",
@@ -121,6 +129,7 @@ impl fmt::Display for Stopped {
             Cause::Tolerance => {
                 write!(f, "no step from t = {time:.6} s meets the tolerance; {coordinate} is {value:.3e} {unit}")
             }
+            Cause::Steps => write!(f, "the run took all the steps that it may take: it came to t = {time:.6} s"),
             Cause::MassMatrix => write!(
                 f,
                 "the mass matrix is not positive definite at t = {time:.6} s: nothing that {coordinate} \

@@ -9,58 +9,85 @@
 //! (A + cD̂ + c²K̂) z = −c² ((D̂ + cK̂) G + K̂ P) + c F,     w = c G + z,     p = c (w + P)
 //! ```
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::Matrix6;
 
-use super::motion::Motion;
-use crate::Implicit;
+use crate::dyn_crane::{DynImplicit, DynSystem};
 
-/// A diagonal matrix, but for the block of the base's coordinates.
-struct Structured<const N: usize> {
-    diagonal: SVector<f64, N>,
-    base: SMatrix<f64, 6, 6>,
-}
-
-impl<const N: usize> Structured<N> {
-    fn times(&self, x: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut product = self.diagonal.component_mul(x);
-        let [column] = &mut product.data.0;
-        for (base, x) in self.base.data.0.iter().zip(&x.data.0[0]) {
-            for (product, base) in column.iter_mut().zip(base) {
-                *product += base * x;
-            }
-        }
-        product
-    }
-}
-
-/// `A + cD̂ + c²K̂`, factorised.
-pub(super) struct System<const N: usize, C: Implicit<N>> {
-    factors: C::Factors,
-    stiffness: Structured<N>,
-    damping: Structured<N>,
+/// `A + cD̂ + c²K̂` of a crane, factorised.
+pub(super) struct System<'a> {
+    crane: &'a dyn DynImplicit,
+    factors: Box<dyn DynSystem + 'a>,
+    /// Stiffness and damping on single coordinates.
+    joints: Vec<[f64; 2]>,
+    /// Stiffness and damping over the base's coordinates.
+    base: [Matrix6<f64>; 2],
     /// c, s.
     c: f64,
+    resistance: Vec<f64>,
+    right: Vec<f64>,
+    solution: Vec<f64>,
+    /// Factorisations so far.
+    pub factorisations: usize,
 }
 
-impl<const N: usize, C: Implicit<N>> System<N, C> {
-    /// About the pose `q`.
-    pub fn new(crane: &C, q: &SVector<f64, N>, c: f64) -> Self {
-        let mut joints = [[0.0; 2]; N];
+impl<'a> System<'a> {
+    /// Room for the systems of a crane.
+    pub fn new(crane: &'a dyn DynImplicit) -> Self {
+        let n = crane.size();
+        let mut joints = vec![[0.0; 2]; n];
         crane.joint_impedances(&mut joints);
-        let diagonal = |of: usize| SVector::from_fn(|i, _| joints[i][of]);
-        let stiffness = Structured { diagonal: diagonal(0), base: crane.base_stiffness(q) };
-        let damping = Structured { diagonal: diagonal(1), base: crane.base_damping(q) };
-        let resistance = damping.diagonal * c + stiffness.diagonal * (c * c);
-        let base = damping.base * c + stiffness.base * (c * c);
-        Self { factors: crane.factorise(q, &resistance, &base), stiffness, damping, c }
+        let zeros = || vec![0.0; n];
+        Self {
+            crane,
+            factors: crane.system(),
+            joints,
+            base: [Matrix6::zeros(); 2],
+            c: f64::NAN,
+            resistance: zeros(),
+            right: zeros(),
+            solution: zeros(),
+            factorisations: 0,
+        }
     }
 
-    /// u for a right-hand side `(P, G, ·)` and a force F.
-    pub fn solve<const M: usize>(&self, crane: &C, rhs: &Motion<N, M>, force: &SVector<f64, N>) -> Motion<N, M> {
-        let Motion { q: p, v: g, sum } = rhs;
-        let c = self.c;
-        let right = (self.damping.times(g) + self.stiffness.times(&(g * c + p))) * (-c * c) + force * c;
-        let w = g * c + crane.solve(&self.factors, &right);
-        Motion { q: (w + p) * c, v: w, sum: sum * c }
+    /// Factorises about the pose `q`.
+    pub fn factorise(&mut self, q: &[f64], c: f64) {
+        self.c = c;
+        self.base = [self.crane.base_stiffness(q), self.crane.base_damping(q)];
+        for (resistance, [stiffness, damping]) in self.resistance.iter_mut().zip(&self.joints) {
+            *resistance = damping * c + stiffness * (c * c);
+        }
+        let [stiffness, damping] = &self.base;
+        self.factors.factorise(q, &self.resistance, &(damping * c + stiffness * (c * c)));
+        self.factorisations += 1;
+    }
+
+    /// u for a right-hand side `(P, G, ·)` and a force F, if there is one.
+    pub fn solve(&mut self, rhs: &[f64], force: Option<&[f64]>, u: &mut [f64]) {
+        let (c, n) = (self.c, self.joints.len());
+        let (p, g) = rhs[..2 * n].split_at(n);
+        // D̂ G + K̂ (c G + P), first of single coordinates, then of the base.
+        for (i, [stiffness, damping]) in self.joints.iter().enumerate() {
+            self.right[i] = damping * g[i] + stiffness * (c * g[i] + p[i]);
+        }
+        let [stiffness, damping] = &self.base;
+        for (column, (g, p)) in g.iter().zip(p).enumerate().take(6) {
+            for (row, right) in self.right.iter_mut().enumerate().take(6) {
+                *right += damping[(row, column)] * g + stiffness[(row, column)] * (c * g + p);
+            }
+        }
+        for (i, right) in self.right.iter_mut().enumerate() {
+            *right = -c * c * *right + c * force.map_or(0.0, |force| force[i]);
+        }
+        self.factors.solve(&self.right, &mut self.solution);
+        let (of_q, rest) = u.split_at_mut(n);
+        let (of_v, of_integrals) = rest.split_at_mut(n);
+        for i in 0..n {
+            of_v[i] = c * g[i] + self.solution[i];
+            of_q[i] = c * (of_v[i] + p[i]);
+        }
+        for (u, rhs) in of_integrals.iter_mut().zip(&rhs[2 * n..]) {
+            *u = c * rhs;
+        }
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Complex, ComplexField, DMatrix, DVector};
 
 use super::NoModes;
-use crate::{Linearisation, model::state_blocks};
+use crate::{Linearisation, dyn_crane::DynLinearise, model::state_blocks};
 
 /// A coordinate belongs to a mode from this part of the greatest share of energy.
 const SHARE: f64 = 0.2;
@@ -28,6 +28,14 @@ impl<const N: usize> From<&Linearisation<N>> for SmallMotions {
 }
 
 impl SmallMotions {
+    /// About the pose `q` of a crane of any size.
+    pub fn of(crane: &(impl DynLinearise + ?Sized), q: &[f64]) -> Self {
+        let zeros = || DMatrix::zeros(q.len(), q.len());
+        let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
+        crane.linearise(q, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
+        Self { mass, stiffness, damping }
+    }
+
     /// State matrix `[[0, I], [−A⁻¹K, −A⁻¹D]]` of `d/dt [δq; δq̇]`, 2N × 2N.
     ///
     /// # Errors

@@ -2,9 +2,9 @@
 
 use crate::{
     Description,
+    dyn_crane::DynCrane,
     dynamics::Sample,
     results::{Column, Table, drive_effort},
-    rig::Rig,
 };
 
 /// Greatest and last values over the samples of a run.
@@ -25,18 +25,18 @@ impl Peaks {
         const AXES: [&str; 3] = ["x", "y", "z"];
         let mut table = Table::default();
         for what in ["max", "end"] {
-            for point in description.points {
+            for point in &description.points {
                 for axis in AXES {
                     table.add(format!("{point}_{axis}_{what}"), "m");
                 }
             }
         }
-        for drive in description.drives {
+        for drive in &description.drives {
             let coordinate = &description.coordinates[drive.coordinate];
-            let effort = drive_effort(coordinate.name, coordinate.kind);
+            let effort = drive_effort(&coordinate.name, coordinate.kind);
             table.add(format!("{effort}_peak"), coordinate.kind.force_unit());
         }
-        for support in description.supports {
+        for support in &description.supports {
             for axis in AXES {
                 table.add(format!("{}_reaction_{axis}_peak", support.name), "N");
             }
@@ -44,13 +44,13 @@ impl Peaks {
         table.columns
     }
 
-    /// Adds a sample of the run of `rig`.
-    pub fn push(&mut self, rig: &dyn Rig, sample: &Sample<'_>) {
+    /// Adds a sample of the run of `crane`.
+    pub fn push(&mut self, crane: &dyn DynCrane, sample: &Sample<'_>) {
         let &Sample { t, q, v, .. } = sample;
         self.last.clear();
-        self.last.extend(rig.points(q).iter().flatten());
-        let reactions = rig.support_reactions(q, v);
-        let forces = rig.drive_efforts(t, q, v).into_iter().chain(reactions.iter().flatten().copied());
+        self.last.extend(crane.points_at(q).iter().flatten());
+        let reactions = crane.support_reactions_at(q, v);
+        let forces = crane.drive_efforts_at(t, q, v).into_iter().chain(reactions.iter().flatten().copied());
         raise(&mut self.highest, self.last.iter().copied());
         raise(&mut self.largest, forces.map(f64::abs));
     }

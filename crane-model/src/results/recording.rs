@@ -1,6 +1,6 @@
 //! Everything of a run that is worth a column.
 
-use crate::{CoordinateKind, CoordinateRole, Description, dynamics::Sample, results::Table, rig::Rig};
+use crate::{CoordinateKind, CoordinateRole, Description, dyn_crane::DynCrane, dynamics::Sample, results::Table};
 
 /// Records the samples of a run of a crane.
 ///
@@ -9,17 +9,17 @@ use crate::{CoordinateKind, CoordinateRole, Description, dynamics::Sample, resul
 /// `<support>_reaction_x`, `_y`, `_z`; of a coordinate of an element `<coordinate>_moment`; energies. `energy_balance` is `E(t) − E(0) − drive_work + dissipated_energy`, the
 /// error of the run if it is audited.
 pub struct Recording<'a> {
-    rig: &'a dyn Rig,
+    crane: &'a dyn DynCrane,
     table: Table,
     energy_at_start: f64,
 }
 
 impl<'a> Recording<'a> {
     /// No samples yet.
-    pub fn new(rig: &'a dyn Rig) -> Self {
+    pub fn new(crane: &'a dyn DynCrane) -> Self {
         Self {
-            rig,
-            table: Table { columns: columns(rig.description()).columns, rows: Vec::new() },
+            crane,
+            table: Table { columns: columns(crane.description()).columns, rows: Vec::new() },
             energy_at_start: 0.0,
         }
     }
@@ -27,8 +27,8 @@ impl<'a> Recording<'a> {
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
         let &Sample { t, q, v, work, dissipated } = sample;
-        let rig = self.rig;
-        let energies = rig.energies(t, q, v);
+        let crane = self.crane;
+        let energies = crane.energies_at(t, q, v);
         if self.table.rows.is_empty() {
             self.energy_at_start = energies.total();
         }
@@ -36,16 +36,16 @@ impl<'a> Recording<'a> {
         row.push(t);
         row.extend_from_slice(q);
         row.extend_from_slice(v);
-        for ([position, _], effort) in rig.drive_motions(t).into_iter().zip(rig.drive_efforts(t, q, v)) {
+        for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(crane.drive_efforts_at(t, q, v)) {
             row.extend([position, effort]);
         }
-        for (position, velocity) in rig.points(q).iter().zip(rig.point_velocities(q, v)) {
+        for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {
             row.extend(position.iter().chain(&velocity));
         }
-        for reaction in rig.support_reactions(q, v) {
+        for reaction in crane.support_reactions_at(q, v) {
             row.extend(&reaction);
         }
-        row.extend(rig.element_moments(q, v));
+        row.extend(crane.element_moments_at(q, v));
         row.extend([energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives]);
         row.extend([work, dissipated, energies.total() - self.energy_at_start - work + dissipated]);
         self.table.rows.push(row);
@@ -60,18 +60,18 @@ impl<'a> Recording<'a> {
 fn columns(description: &Description) -> Table {
     let mut table = Table::default();
     table.add("t", "s");
-    for coordinate in description.coordinates {
-        table.add(coordinate.name, coordinate.kind.unit());
+    for coordinate in &description.coordinates {
+        table.add(coordinate.name.as_str(), coordinate.kind.unit());
     }
-    for coordinate in description.coordinates {
+    for coordinate in &description.coordinates {
         table.add(format!("{}_rate", coordinate.name), format!("{}/s", coordinate.kind.unit()));
     }
-    for drive in description.drives {
+    for drive in &description.drives {
         let coordinate = &description.coordinates[drive.coordinate];
         table.add(format!("{}_prescribed", coordinate.name), coordinate.kind.unit());
-        table.add(drive_effort(coordinate.name, coordinate.kind), coordinate.kind.force_unit());
+        table.add(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
     }
-    for point in description.points {
+    for point in &description.points {
         for axis in ["x", "y", "z"] {
             table.add(format!("{point}_{axis}"), "m");
         }
@@ -79,7 +79,7 @@ fn columns(description: &Description) -> Table {
             table.add(format!("{point}_v{axis}"), "m/s");
         }
     }
-    for support in description.supports {
+    for support in &description.supports {
         for axis in ["x", "y", "z"] {
             table.add(format!("{}_reaction_{axis}", support.name), "N");
         }

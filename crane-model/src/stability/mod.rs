@@ -6,6 +6,7 @@
 mod boundary;
 mod function;
 mod limit;
+mod method;
 mod words;
 
 pub use function::StabilityFunction;

@@ -26,8 +26,8 @@ pub fn cause(description: &Description, mode: &DampedMode) -> String {
 }
 
 /// What a coordinate does, and the number of its element if it belongs to a flexible link.
-fn moving(description: &Description, coordinate: usize) -> (String, Option<&'static str>) {
-    let name = description.coordinates[coordinate].name;
+fn moving(description: &Description, coordinate: usize) -> (String, Option<&str>) {
+    let name = &description.coordinates[coordinate].name;
     match description.coordinates[coordinate].role {
         CoordinateRole::Base => (format!("base ({name})"), None),
         CoordinateRole::Driven | CoordinateRole::Prescribed => (format!("drive of {name}"), None),
@@ -35,7 +35,7 @@ fn moving(description: &Description, coordinate: usize) -> (String, Option<&'sta
         CoordinateRole::Element => {
             // The rotations of an element come in a row; the first body that a coordinate moves carries it.
             let body = description.bodies.iter().find(|body| body.degrees_of_freedom > coordinate);
-            let (link, body) = body.map_or(("", name), |body| (body.link, body.name));
+            let (link, body) = body.map_or(("", name.as_str()), |body| (&body.link, &body.name));
             let what = match name.rsplit('_').next() {
                 Some("psi") => "bending in x-y",
                 Some("theta") => "bending in x-z",

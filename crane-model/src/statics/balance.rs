@@ -1,8 +1,8 @@
 //! How far a pose is from equilibrium, in one number.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector};
 
-use crate::{CoordinateKind, Statics};
+use crate::{CoordinateKind, dyn_crane::DynStatics};
 
 /// Least scale of the forces against that of the moments, 1/m, and the other way about, m: where all moments cancel, forces
 /// at levers of some metres leave their rounding.
@@ -13,18 +13,21 @@ const LEAST: f64 = 1e-5;
 /// Every row of `r = ∂E_p/∂q = ∂E_g/∂q − f` balances gravity against springs. A row in N cannot be compared with a row in
 /// N m, and one alone may balance nothing at all (a passive hinge in equilibrium: 0 = 0). So the scale of a translation is
 /// the greatest force that any translation balances at the guess, that of a rotation the greatest moment of any rotation.
-pub(super) struct Balance<const N: usize> {
-    scale: SVector<f64, N>,
+pub(super) struct Balance {
+    scale: DVector<f64>,
 }
 
-impl<const N: usize> Balance<N> {
+impl Balance {
     /// Scales from the terms of the balance at pose `q`.
-    pub(super) fn at<C: Statics<N>>(crane: &C, q: &SVector<f64, N>) -> Self {
-        let coordinates = crane.description().coordinates;
-        let springs = crane.forces(0.0, q, &SVector::zeros());
-        let gravity = crane.static_residual(q) + springs;
+    pub(super) fn at(crane: &dyn DynStatics, q: &DVector<f64>) -> Self {
+        let coordinates = &crane.description().coordinates;
+        let n = q.len();
+        let (mut springs, mut gravity) = (DVector::zeros(n), DVector::zeros(n));
+        crane.forces(0.0, q.as_slice(), &vec![0.0; n], springs.as_mut_slice());
+        crane.static_residual(q.as_slice(), gravity.as_mut_slice());
+        gravity += &springs;
         let greatest = |kind: CoordinateKind| {
-            (0..N)
+            (0..n)
                 .filter(|&i| coordinates[i].kind == kind)
                 .map(|i| springs[i].abs().max(gravity[i].abs()))
                 .fold(0.0, f64::max)
@@ -33,7 +36,7 @@ impl<const N: usize> Balance<N> {
         // Without gravity and springs there is nothing to compare with.
         let least = |other: f64| if force.max(moment) > 0.0 { LEAST * other } else { 1.0 };
         let (force, moment) = (force.max(least(moment)), moment.max(least(force)));
-        let scale = SVector::from_fn(|i, _| match coordinates[i].kind {
+        let scale = DVector::from_fn(n, |i, _| match coordinates[i].kind {
             CoordinateKind::Translation => force,
             CoordinateKind::Rotation => moment,
         });
@@ -41,12 +44,12 @@ impl<const N: usize> Balance<N> {
     }
 
     /// `‖r/scale‖`, dimensionless: 0 in equilibrium, about 1 where springs do not carry the weight yet.
-    pub(super) fn norm(&self, residual: &SVector<f64, N>) -> f64 {
+    pub(super) fn norm(&self, residual: &DVector<f64>) -> f64 {
         self.scaled(residual).norm()
     }
 
     /// `r/scale`.
-    pub(super) fn scaled(&self, residual: &SVector<f64, N>) -> SVector<f64, N> {
+    pub(super) fn scaled(&self, residual: &DVector<f64>) -> DVector<f64> {
         residual.component_div(&self.scale)
     }
 
@@ -57,7 +60,7 @@ impl<const N: usize> Balance<N> {
 
     /// The least scaled residual that poses in double precision have: coordinates are rounded, and stiff springs make forces
     /// of that.
-    pub(super) fn rounding(&self, stiffness: &SMatrix<f64, N, N>, q: &SVector<f64, N>) -> f64 {
+    pub(super) fn rounding(&self, stiffness: &DMatrix<f64>, q: &DVector<f64>) -> f64 {
         /// Roundings of a coordinate and of the sums that it goes through.
         const ROUNDINGS: f64 = 4.0;
         ROUNDINGS * f64::EPSILON * self.norm(&(stiffness.abs() * q.abs()))
@@ -65,7 +68,7 @@ impl<const N: usize> Balance<N> {
 
     /// Springs that hold the crane against all that balances here within about 1 rad and 1 m, and no coordinate by less than
     /// its own stiffness. N m/rad and N/m.
-    pub(super) fn springs(&self, stiffness: &SMatrix<f64, N, N>) -> SVector<f64, N> {
-        SVector::from_fn(|i, _| self.scale[i] + stiffness[(i, i)].abs())
+    pub(super) fn springs(&self, stiffness: &DMatrix<f64>) -> DVector<f64> {
+        DVector::from_fn(self.scale.len(), |i, _| self.scale[i] + stiffness[(i, i)].abs())
     }
 }

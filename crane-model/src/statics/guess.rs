@@ -2,7 +2,10 @@
 
 use nalgebra::SVector;
 
-use crate::CraneModel;
+use crate::{
+    CraneModel,
+    dyn_crane::{DynModel, Instance},
+};
 
 /// A guess is the drive's position up to this, m or rad: above rounding, below what a spec would tell apart.
 const ROUNDING: f64 = 1e-9;
@@ -11,22 +14,21 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// A driven coordinate whose guess is the drive's position at t = 0 follows that position as parameters change; what the
 /// spec guesses otherwise stays.
-pub fn guess<const N: usize, C: CraneModel<N> + Clone>(crane: &C) -> SVector<f64, N> {
+pub fn guess<const N: usize, C: CraneModel<N>>(crane: &C) -> SVector<f64, N> {
+    SVector::from_vec(guess_dyn(&Instance::<N, _>(crane)))
+}
+
+/// As [`guess`], of a crane of any size.
+pub fn guess_dyn(crane: &(impl DynModel + ?Sized)) -> Vec<f64> {
     let description = crane.description();
-    let mut q = SVector::from_fn(|i, _| description.guess[i]);
-    let mut at_defaults = crane.clone();
-    let defaults: Vec<f64> = description.parameters.iter().map(|parameter| parameter.default).collect();
-    // The spec's own values keep its rules.
-    let _ = at_defaults.set_parameters(&defaults);
-    let [own, default] = [crane, &at_defaults].map(|crane| {
-        let mut motions = vec![[0.0; 2]; description.drives.len()];
-        crane.drive_motions(0.0, &mut motions);
-        motions
-    });
-    for (drive, ([own, _], [default, _])) in description.drives.iter().zip(own.iter().zip(&default)) {
-        if (q[drive.coordinate] - default).abs() < ROUNDING {
-            // A difference, so that default parameters leave the guess as it is to the last bit.
-            q[drive.coordinate] += own - default;
+    let mut q = description.guess.to_vec();
+    let mut motions = vec![[0.0; 2]; description.drives.len()];
+    crane.drive_motions(0.0, &mut motions);
+    for (drive, [position, _]) in description.drives.iter().zip(&motions) {
+        let (guess, moved) = (&mut q[drive.coordinate], position - drive.start);
+        // The guess of default parameters stays as it is to the last bit.
+        if (*guess - drive.start).abs() < ROUNDING && moved.abs() > ROUNDING {
+            *guess += moved;
         }
     }
     q

@@ -5,9 +5,13 @@ mod continuation;
 mod equilibrium;
 mod guess;
 mod newton;
+mod settings;
+mod solve;
 mod status;
 mod tangent;
 
-pub use equilibrium::{Equilibrium, Iteration, Settings, solve, solve_at};
-pub use guess::guess;
+pub use equilibrium::{Equilibrium, Iteration};
+pub use guess::{guess, guess_dyn};
+pub use settings::Settings;
+pub use solve::{solve, solve_at, solve_at_dyn, solve_dyn};
 pub use status::Status;

@@ -1,36 +1,50 @@
 //! The Newton–Raphson iteration.
 
-use nalgebra::SVector;
+use nalgebra::DVector;
 
-use super::{Equilibrium, Iteration, Settings, Status, balance::Balance, tangent::Tangent};
-use crate::{CoordinateKind, Statics};
+use super::{
+    Equilibrium, Iteration, Settings, Status,
+    balance::Balance,
+    tangent::{Tangent, stiffness_at},
+};
+use crate::{CoordinateKind, dyn_crane::DynStatics};
 
 /// Halvings of a step before it is given up: 1e-6 of a Newton step no longer makes progress.
 const HALVINGS: u32 = 20;
 /// Greatest rotation in a step, rad: far from equilibrium the tangent says nothing about poses further away.
 const GREATEST_ROTATION: f64 = 1.0;
 
+/// Writes the residual at a pose.
+pub(super) type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) + 'a;
+
+/// The residual at a pose.
+pub(super) fn residual_of(residual_at: &mut Residual<'_>, q: &DVector<f64>) -> DVector<f64> {
+    let mut residual = DVector::zeros(q.len());
+    residual_at(q.as_slice(), residual.as_mut_slice());
+    residual
+}
+
 /// The iteration on any residual with the crane's tangent stiffness, from the pose `q`.
-pub(super) fn iterate<const N: usize, C: Statics<N>>(
-    crane: &C,
-    mut q: SVector<f64, N>,
+pub(super) fn iterate(
+    crane: &dyn DynStatics,
+    mut q: DVector<f64>,
     settings: &Settings,
-    balance: &Balance<N>,
-    residual_at: &mut impl FnMut(&SVector<f64, N>) -> SVector<f64, N>,
+    balance: &Balance,
+    residual_at: &mut Residual<'_>,
 ) -> Equilibrium {
     let load_steps = None;
-    if N == 0 {
+    if q.is_empty() {
         // Nothing can move; an empty matrix has no eigenvalues to look at.
         let history = vec![Iteration { residual: 0.0, fraction: 0.0 }];
         return Equilibrium { status: Status::Converged, q: Vec::new(), history, load_steps };
     }
     let description = crane.description();
-    let mut residual = residual_at(&q);
+    let mut residual = residual_of(residual_at, &q);
     let mut norm = balance.norm(&residual);
     let mut history = vec![Iteration { residual: norm, fraction: 0.0 }];
 
     let status = loop {
-        let stiffness = crane.tangent_stiffness(&q);
+        let stiffness = stiffness_at(crane, &q);
         let Some(tangent) = Tangent::new(&stiffness, description).filter(|_| norm.is_finite()) else {
             break Status::Overflow;
         };
@@ -42,8 +56,8 @@ pub(super) fn iterate<const N: usize, C: Statics<N>>(
         }
         let step = limited(tangent.step(&residual), |i| description.coordinates[i].kind);
         let improved = (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
-            let pose = q + step * fraction;
-            let residual = residual_at(&pose);
+            let pose = &q + &step * fraction;
+            let residual = residual_of(residual_at, &pose);
             let trial = balance.norm(&residual);
             (trial < norm).then_some((pose, residual, trial, fraction))
         });
@@ -60,7 +74,8 @@ pub(super) fn iterate<const N: usize, C: Statics<N>>(
 }
 
 /// The step, shortened until no coordinate turns by more than [`GREATEST_ROTATION`].
-fn limited<const N: usize>(step: SVector<f64, N>, kind: impl Fn(usize) -> CoordinateKind) -> SVector<f64, N> {
-    let rotation = (0..N).filter(|&i| kind(i) == CoordinateKind::Rotation).map(|i| step[i].abs()).fold(0.0, f64::max);
+fn limited(step: DVector<f64>, kind: impl Fn(usize) -> CoordinateKind) -> DVector<f64> {
+    let rotation =
+        (0..step.len()).filter(|&i| kind(i) == CoordinateKind::Rotation).map(|i| step[i].abs()).fold(0.0, f64::max);
     if rotation > GREATEST_ROTATION { step * (GREATEST_ROTATION / rotation) } else { step }
 }

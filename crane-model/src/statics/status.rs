@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::Text;
+
 /// How a static solution ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -10,13 +12,13 @@ pub enum Status {
     /// An equilibrium that the crane leaves at the slightest touch: the tangent stiffness has a negative direction.
     Unstable {
         /// Coordinates that lead the motion away from it.
-        coordinates: Vec<&'static str>,
+        coordinates: Vec<Text>,
     },
     /// Nothing holds the crane in some direction: the tangent stiffness is singular, at an equilibrium or where no step
     /// makes the residual smaller.
     Singular {
         /// Coordinates that move in that direction.
-        coordinates: Vec<&'static str>,
+        coordinates: Vec<Text>,
     },
     /// Forces or stiffnesses at the guess are no finite numbers.
     Overflow,

@@ -1,9 +1,9 @@
 //! Tangent stiffness in its principal directions.
 
-use nalgebra::{DMatrix, DVector, SMatrix, SVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::Status;
-use crate::{CoordinateKind, Description};
+use crate::{CoordinateKind, Description, Text, dyn_crane::DynStatics};
 
 /// A diagonal entry below this part of the greatest of its kind (N/m or N m/rad) counts as no stiffness of its own. Real
 /// cranes span about 1e9 (a chassis against a hinge), those with drives made rigid 1e12; rounding leaves about 1e-16.
@@ -16,25 +16,26 @@ const SHARE: f64 = 0.3;
 /// `K = S⁻¹ U Λ Uᵀ S⁻¹`, with `S = diag(1/√|K_ii|)`: m and rad become comparable, and relative coordinates nearly decouple.
 ///
 /// One factorisation says all: the Newton step, whether the equilibrium is stable, and which coordinates are to blame.
-pub(super) struct Tangent<const N: usize> {
-    scale: SVector<f64, N>,
+pub(super) struct Tangent {
+    scale: DVector<f64>,
     values: DVector<f64>,
     vectors: DMatrix<f64>,
     free: f64,
 }
 
-impl<const N: usize> Tangent<N> {
+impl Tangent {
     /// Factorises `K`; `None` unless all its elements are finite.
-    pub(super) fn new(stiffness: &SMatrix<f64, N, N>, description: &Description) -> Option<Self> {
+    pub(super) fn new(stiffness: &DMatrix<f64>, description: &Description) -> Option<Self> {
         if !stiffness.iter().all(|x| x.is_finite()) {
             return None;
         }
+        let n = stiffness.nrows();
         let kind = |i: usize| description.coordinates[i].kind;
         let greatest = |of: CoordinateKind| {
-            (0..N).filter(|&i| kind(i) == of).map(|i| stiffness[(i, i)].abs()).fold(f64::MIN_POSITIVE, f64::max)
+            (0..n).filter(|&i| kind(i) == of).map(|i| stiffness[(i, i)].abs()).fold(f64::MIN_POSITIVE, f64::max)
         };
         let (translation, rotation) = (greatest(CoordinateKind::Translation), greatest(CoordinateKind::Rotation));
-        let scale = SVector::from_fn(|i, _| {
+        let scale = DVector::from_fn(n, |i, _| {
             let least = LEAST_STIFFNESS
                 * match kind(i) {
                     CoordinateKind::Translation => translation,
@@ -42,21 +43,19 @@ impl<const N: usize> Tangent<N> {
                 };
             stiffness[(i, i)].abs().max(least).sqrt().recip()
         });
-        let scaled = DMatrix::from_fn(N, N, |i, j| stiffness[(i, j)] * scale[i] * scale[j]);
+        let scaled = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] * scale[i] * scale[j]);
         let SymmetricEigen { eigenvalues: values, eigenvectors: vectors } = scaled.symmetric_eigen();
         let free = FREE * values.amax().max(f64::MIN_POSITIVE);
         Some(Self { scale, values, vectors, free })
     }
 
     /// Newton step `−K⁻¹ r`; nearly free directions are given the least stiffness that is not free.
-    pub(super) fn step(&self, residual: &SVector<f64, N>) -> SVector<f64, N> {
-        let scaled = DVector::from_fn(N, |i, _| residual[i] * self.scale[i]);
-        let mut along = self.vectors.tr_mul(&scaled);
+    pub(super) fn step(&self, residual: &DVector<f64>) -> DVector<f64> {
+        let mut along = self.vectors.tr_mul(&residual.component_mul(&self.scale));
         for (component, &value) in along.iter_mut().zip(&self.values) {
             *component /= if value.abs() < self.free { self.free.copysign(value) } else { value };
         }
-        let step = &self.vectors * along;
-        SVector::from_fn(|i, _| -step[i] * self.scale[i])
+        -(&self.vectors * along).component_mul(&self.scale)
     }
 
     /// What kind of equilibrium it is.
@@ -68,8 +67,8 @@ impl<const N: usize> Tangent<N> {
     }
 
     /// Coordinates of the directions that nothing holds, if there are such.
-    pub(super) fn free_directions(&self, names: &Description) -> Option<Vec<&'static str>> {
-        let free = (0..N).filter(|&k| self.values[k].abs() < self.free);
+    pub(super) fn free_directions(&self, names: &Description) -> Option<Vec<Text>> {
+        let free = (0..self.values.len()).filter(|&k| self.values[k].abs() < self.free);
         let mut coordinates: Vec<_> = free.flat_map(|k| self.names_of(k, names)).collect();
         coordinates.sort_unstable();
         coordinates.dedup();
@@ -77,16 +76,23 @@ impl<const N: usize> Tangent<N> {
     }
 
     /// Coordinates of the direction of the most negative stiffness, if there is one.
-    fn negative_direction(&self, names: &Description) -> Option<Vec<&'static str>> {
+    fn negative_direction(&self, names: &Description) -> Option<Vec<Text>> {
         let k = self.values.imin();
         (self.values[k] < -self.free).then(|| self.names_of(k, names))
     }
 
-    fn names_of(&self, k: usize, names: &Description) -> Vec<&'static str> {
+    fn names_of(&self, k: usize, names: &Description) -> Vec<Text> {
         let direction = self.vectors.column(k);
         let least = SHARE * direction.amax();
-        let mut share: Vec<usize> = (0..N).filter(|&i| direction[i].abs() >= least).collect();
+        let mut share: Vec<usize> = (0..direction.len()).filter(|&i| direction[i].abs() >= least).collect();
         share.sort_by(|&i, &j| direction[j].abs().total_cmp(&direction[i].abs()));
-        share.into_iter().map(|i| names.coordinates[i].name).collect()
+        share.into_iter().map(|i| names.coordinates[i].name.clone()).collect()
     }
+}
+
+/// The tangent stiffness at a pose.
+pub(super) fn stiffness_at(crane: &dyn DynStatics, q: &DVector<f64>) -> DMatrix<f64> {
+    let mut stiffness = DMatrix::zeros(q.len(), q.len());
+    crane.tangent_stiffness(q.as_slice(), stiffness.as_mut_slice());
+    stiffness
 }

@@ -14,7 +14,7 @@ static DESCRIPTION: Description = description("fixed", &[], &[]);
 pub struct Fixed;
 
 impl CraneModel<0> for Fixed {
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         &DESCRIPTION
     }
 

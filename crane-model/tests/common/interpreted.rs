@@ -57,7 +57,7 @@ fn symmetric<const N: usize>(upper: &[f64]) -> SMatrix<f64, N, N> {
 }
 
 impl<const N: usize> CraneModel<N> for Interpreted<N> {
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         &DESCRIPTION
     }
 

@@ -1,28 +1,31 @@
 //! A mass on a driven spring and damper: `m z̈ = s (z_dr − z) + d (ż_dr − ż) − m g`, `z_dr = z_0 + a sin Ωt`. Linear, so that its
 //! motion is known in closed form.
 
+use std::sync::LazyLock;
+
 use crane_model::{
     Bound, CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Driven, CraneModel, Description, DriveInfo,
-    Dynamics, Linearisation, Linearise, ParameterError, ParameterInfo, Statics,
+    Dynamics, Linearisation, Linearise, List, ParameterError, ParameterInfo, Statics, Text,
 };
 use nalgebra::{Complex, Matrix1, Matrix4, Vector1};
 
 use super::{GRAVITY, coordinate, description};
 
 const COORDINATES: &[CoordinateInfo] = &[coordinate("lift_z", Translation, Driven)];
-static DESCRIPTION: Description = Description {
-    drives: &[DriveInfo { coordinate: 0 }],
-    parameters: &[ParameterInfo {
-        name: "height",
-        unit: "m",
-        about: "where the support starts",
+static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
+    drives: List::Static(&[DriveInfo { coordinate: 0, start: 0.0, pieces: 0 }]),
+    parameters: List::Static(&[ParameterInfo {
+        name: Text::Static("height"),
+        unit: Text::Static("m"),
+        about: Text::Static("where the support starts"),
         default: 0.0,
         least: Bound::LEAST,
         greatest: Bound::GREATEST,
-    }],
+    }]),
     ..description("lift", COORDINATES, &[0.0])
-};
-static GUESSED: Description = Description { guess: &[0.5], ..DESCRIPTION };
+});
+static GUESSED: LazyLock<Description> =
+    LazyLock::new(|| Description { guess: List::Static(&[0.5]), ..DESCRIPTION.clone() });
 
 /// Mass, spring, damper, moved support.
 #[derive(Clone, Copy)]
@@ -87,7 +90,7 @@ impl Lift {
 }
 
 impl CraneModel<1> for Lift {
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         self.description
     }
 

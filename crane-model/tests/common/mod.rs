@@ -12,7 +12,7 @@ pub use lift::Lift;
 pub use pendulum::DoublePendulum;
 pub use sledge::Sledge;
 
-use crane_model::{CoordinateInfo, CoordinateKind, CoordinateRole, Description};
+use crane_model::{CoordinateInfo, CoordinateKind, CoordinateRole, Description, List, Text};
 
 /// Gravity, m/s².
 pub const GRAVITY: f64 = 9.81;
@@ -24,17 +24,17 @@ pub const fn description(
     guess: &'static [f64],
 ) -> Description {
     Description {
-        name,
-        title: name,
-        spec_hash: "by hand",
-        parameters: &[],
-        coordinates,
-        bodies: &[],
-        supports: &[],
-        drives: &[],
-        points: &[],
+        name: Text::Static(name),
+        title: Text::Static(name),
+        spec_hash: Text::Static("by hand"),
+        parameters: List::Static(&[]),
+        coordinates: List::Static(coordinates),
+        bodies: List::Static(&[]),
+        supports: List::Static(&[]),
+        drives: List::Static(&[]),
+        points: List::Static(&[]),
         statics: true,
-        guess,
+        guess: List::Static(guess),
         duration: 10.0,
         step: 1e-3,
         output: 0.01,
@@ -43,5 +43,5 @@ pub const fn description(
 
 /// A coordinate.
 pub const fn coordinate(name: &'static str, kind: CoordinateKind, role: CoordinateRole) -> CoordinateInfo {
-    CoordinateInfo { name, kind, role }
+    CoordinateInfo { name: Text::Static(name), kind, role }
 }

@@ -75,7 +75,7 @@ impl DoublePendulum {
 }
 
 impl CraneModel<2> for DoublePendulum {
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         self.description
     }
 

@@ -1,8 +1,10 @@
 //! A block on springs whose base moves along x and z, its axes turned about y, under live gravity: its weight is known.
 
+use std::sync::LazyLock;
+
 use crane_model::{
     BodyInfo, Bound, CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Base, CraneModel, Description,
-    Dynamics, Linearisation, Linearise, ParameterError, ParameterInfo, Statics, TransformDerivatives,
+    Dynamics, Linearisation, Linearise, List, ParameterError, ParameterInfo, Statics, Text, TransformDerivatives,
 };
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2, Vector3};
 
@@ -10,18 +12,24 @@ use super::{GRAVITY, coordinate, description};
 
 const COORDINATES: &[CoordinateInfo] =
     &[coordinate("sledge_x", Translation, Base), coordinate("sledge_z", Translation, Base)];
-static DESCRIPTION: Description = Description {
-    parameters: &[ParameterInfo {
-        name: "gravity",
-        unit: "m/s²",
-        about: "downwards",
+static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
+    parameters: List::Static(&[ParameterInfo {
+        name: Text::Static("gravity"),
+        unit: Text::Static("m/s²"),
+        about: Text::Static("downwards"),
         default: GRAVITY,
         least: Bound::LEAST,
         greatest: Bound::GREATEST,
-    }],
-    bodies: &[BodyInfo { name: "sledge", link: "sledge", mass: MASS, length: 0.0, degrees_of_freedom: 2 }],
+    }]),
+    bodies: List::Static(&[BodyInfo {
+        name: Text::Static("sledge"),
+        link: Text::Static("sledge"),
+        mass: MASS,
+        length: 0.0,
+        degrees_of_freedom: 2,
+    }]),
     ..description("sledge", COORDINATES, &[0.0, 0.0])
-};
+});
 /// Mass, kg.
 const MASS: f64 = 20.0;
 /// Springs along both axes, N/m.
@@ -56,7 +64,7 @@ impl Sledge {
 }
 
 impl CraneModel<2> for Sledge {
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         &DESCRIPTION
     }
 

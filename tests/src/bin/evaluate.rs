@@ -70,17 +70,17 @@ fn find(name: &str) -> Result<Entry, String> {
 
 fn layout(entry: &Entry) -> serde_json::Value {
     let crane = entry.description;
-    let parameter = |p: &crane_model::ParameterInfo| json!({"name": p.name, "default": p.default});
-    let body = |b: &crane_model::BodyInfo| json!({"name": b.name, "degrees_of_freedom": b.degrees_of_freedom});
+    let parameter = |p: &crane_model::ParameterInfo| json!({"name": p.name.as_str(), "default": p.default});
+    let body = |b: &crane_model::BodyInfo| json!({"name": b.name.as_str(), "degrees_of_freedom": b.degrees_of_freedom});
     let quantity = |q: crane_tests::quantities::Quantity| json!({"name": q.name, "length": q.len(), "shape": q.shape});
     json!({
-        "name": crane.name,
+        "name": crane.name.as_str(),
         "spec": entry.spec(),
-        "coordinates": crane.coordinates.iter().map(|c| c.name).collect::<Vec<_>>(),
+        "coordinates": crane.coordinates.iter().map(|c| c.name.as_str()).collect::<Vec<_>>(),
         "parameters": crane.parameters.iter().map(parameter).collect::<Vec<_>>(),
         "bodies": crane.bodies.iter().map(body).collect::<Vec<_>>(),
-        "points": crane.points,
-        "supports": crane.supports.iter().map(|s| s.name).collect::<Vec<_>>(),
+        "points": crane.points.iter().map(|name| name.as_str()).collect::<Vec<_>>(),
+        "supports": crane.supports.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(),
         "drives": crane.drives.iter().map(|d| d.coordinate).collect::<Vec<_>>(),
         "quantities": quantities(crane).into_iter().map(quantity).collect::<Vec<_>>(),
     })

@@ -1,6 +1,6 @@
 //! What a pose or a run does that the model does not hold for.
 
-use crane_model::{CoordinateRole, Description, results::Table, rig::Rig};
+use crane_model::{CoordinateRole, Description, dyn_crane::DynCrane, results::Table};
 use nalgebra::Vector3;
 
 use crate::extremes::Extremes;
@@ -12,30 +12,31 @@ pub const BEND: f64 = 20.0;
 const ROUNDING: f64 = 1e-9;
 
 /// Feet that pull the crane down, and elements bent beyond `bend` degrees, at a pose at rest.
-pub fn of_pose(rig: &dyn Rig, q: &[f64], bend: f64) -> Vec<String> {
+pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let description = rig.description();
-    let reactions = rig.support_reactions(q, &vec![0.0; q.len()]);
+    let reactions = rig.support_reactions_at(q, &vec![0.0; q.len()]);
     let greatest = reactions.iter().map(Vector3::amax).fold(0.0, f64::max);
-    let forces = description.supports.iter().zip(&reactions).map(|(support, force)| (support.name, force.z, None));
+    let forces =
+        description.supports.iter().zip(&reactions).map(|(support, force)| (support.name.as_str(), force.z, None));
     let pulls: Vec<_> = forces.filter(|(_, force, _)| *force < -ROUNDING * greatest).collect();
     let angles =
         description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role == CoordinateRole::Element);
-    let bent = angles.map(|(coordinate, angle)| (coordinate.name, *angle));
+    let bent = angles.map(|(coordinate, angle)| (coordinate.name.as_str(), *angle));
     pulled(&pulls).into_iter().chain(bent_beyond(bent, bend)).collect()
 }
 
 /// The same over a run.
 pub fn of_run(description: &Description, table: &Table, bend: f64) -> Vec<String> {
     let reaction = |name: &str| Extremes::of(table, &format!("{name}_reaction_z"));
-    let greatest = description.supports.iter().map(|support| reaction(support.name).size()).fold(0.0, f64::max);
+    let greatest = description.supports.iter().map(|support| reaction(&support.name).size()).fold(0.0, f64::max);
     let pulls = description.supports.iter().filter_map(|support| {
-        let Extremes { minimum, time_of_minimum, .. } = reaction(support.name);
-        (minimum < -ROUNDING * greatest).then_some((support.name, minimum, Some(time_of_minimum)))
+        let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
+        (minimum < -ROUNDING * greatest).then_some((support.name.as_str(), minimum, Some(time_of_minimum)))
     });
     let elements = description.coordinates.iter().filter(|coordinate| coordinate.role == CoordinateRole::Element);
     let bent = elements.map(|coordinate| {
-        let Extremes { minimum, maximum, .. } = Extremes::of(table, coordinate.name);
-        (coordinate.name, if -minimum > maximum { minimum } else { maximum })
+        let Extremes { minimum, maximum, .. } = Extremes::of(table, &coordinate.name);
+        (coordinate.name.as_str(), if -minimum > maximum { minimum } else { maximum })
     });
     pulled(&pulls.collect::<Vec<_>>()).into_iter().chain(bent_beyond(bent, bend)).collect()
 }

@@ -10,9 +10,9 @@ use std::{
 };
 
 use crane_model::{
-    dynamics::{self, Method, ensemble::LANES},
+    dyn_crane::{DynCrane, Member},
+    dynamics::{self, InitialState, Method, ensemble::LANES},
     results::{Column, Peaks},
-    rig::{Member, Rig},
 };
 
 use crate::{
@@ -58,7 +58,7 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
     let done = rows.iter().filter(|row| row.status == DONE).count();
     let simulated: f64 = rows.iter().map(|row| row.time).sum();
     let mut report = Report::default();
-    report.fact("crane", description.name, "");
+    report.fact("crane", description.name.as_str(), "");
     report.fact("cranes", rows.len(), "");
     report.fact("reached the end", done, "");
     report.fact("step", settings.step_taken(), "s");
@@ -73,7 +73,11 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
 
 /// Settings of all runs, and whose step it is: stable for the first and the last row that rest, the spec's at most unless
 /// another is asked for.
-fn settings(timing: &Timing, rig: &dyn Rig, table: &ParameterTable) -> Outcome<(dynamics::Settings, &'static str)> {
+fn settings(
+    timing: &Timing,
+    rig: &dyn DynCrane,
+    table: &ParameterTable,
+) -> Outcome<(dynamics::Settings, &'static str)> {
     let startable = |row: &Vec<f64>| {
         let crane = table.crane(rig, row)?;
         Start::of(crane.as_ref()).map(|start| (crane, start))
@@ -101,7 +105,7 @@ fn settings(timing: &Timing, rig: &dyn Rig, table: &ParameterTable) -> Outcome<(
 }
 
 /// Runs batches of cranes on threads, each taking the next when it is done with one; the rows in order.
-fn run(rig: &dyn Rig, table: &ParameterTable, settings: &dynamics::Settings, threads: usize) -> Vec<Row> {
+fn run(rig: &dyn DynCrane, table: &ParameterTable, settings: &dynamics::Settings, threads: usize) -> Vec<Row> {
     let bar = batches(table.rows.len().div_ceil(LANES));
     let waiting = Mutex::new(table.rows.chunks(LANES).enumerate());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -124,7 +128,7 @@ fn run(rig: &dyn Rig, table: &ParameterTable, settings: &dynamics::Settings, thr
 }
 
 /// Runs the cranes of some rows, those that rest, side by side.
-fn batch(rig: &dyn Rig, table: &ParameterTable, rows: &[Vec<f64>], settings: &dynamics::Settings) -> Vec<Row> {
+fn batch(rig: &dyn DynCrane, table: &ParameterTable, rows: &[Vec<f64>], settings: &dynamics::Settings) -> Vec<Row> {
     let mut told: Vec<Row> = rows.iter().map(|_| Row { peaks: None, time: 0.0, status: DONE.to_owned() }).collect();
     let (mut places, mut cranes, mut members) = (Vec::new(), Vec::new(), Vec::new());
     for (place, row) in rows.iter().enumerate() {
@@ -132,7 +136,7 @@ fn batch(rig: &dyn Rig, table: &ParameterTable, rows: &[Vec<f64>], settings: &dy
         match crane.and_then(|crane| Start::of(crane.as_ref()).map(|start| (crane, start))) {
             Ok((crane, start)) => {
                 let parameters = (0..rig.description().parameters.len()).map(|index| crane.parameter(index)).collect();
-                members.push(Member { parameters, start: start.q });
+                members.push(Member { parameters, start: InitialState::at_rest(start.q) });
                 cranes.push(crane);
                 places.push(place);
             }
@@ -162,10 +166,10 @@ fn batch(rig: &dyn Rig, table: &ParameterTable, rows: &[Vec<f64>], settings: &dy
 }
 
 /// Writes parameters, peaks, time reached and status of every crane.
-fn write(path: &Path, rig: &dyn Rig, table: &ParameterTable, rows: &[Row]) -> Outcome<()> {
+fn write(path: &Path, rig: &dyn DynCrane, table: &ParameterTable, rows: &[Row]) -> Outcome<()> {
     let description = rig.description();
     let parameters = table.columns.iter().map(|&index| &description.parameters[index]);
-    let parameters = parameters.map(|info| Column { name: info.name.to_owned(), unit: info.unit.to_owned() });
+    let parameters = parameters.map(|info| Column { name: info.name.to_string(), unit: info.unit.to_string() });
     let peaks = Peaks::columns(description);
     let time = Column { name: "time".to_owned(), unit: "s".to_owned() };
     let header: Vec<String> = parameters.chain(peaks.clone()).chain([time]).map(|column| column.to_string()).collect();

@@ -2,7 +2,7 @@
 
 use std::{fs, io::Write};
 
-use crane_model::{Description, rig::Rig};
+use crane_model::{Description, dyn_crane::DynCrane};
 use nalgebra::Matrix4;
 use serde_json::{Map, Value};
 
@@ -67,25 +67,25 @@ fn parse(text: &str) -> Option<Vec<f64>> {
     words.map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect()
 }
 
-fn arrays(rig: &dyn Rig, q: &[f64], v: &[f64]) -> Vec<Array> {
-    let bodies = rig.description().bodies;
+fn arrays(rig: &dyn DynCrane, q: &[f64], v: &[f64]) -> Vec<Array> {
+    let bodies = &rig.description().bodies;
     let n = q.len();
     let first = bodies.iter().enumerate().flat_map(|(p, body)| (0..body.degrees_of_freedom).map(move |i| vec![p, i]));
     let second = bodies.iter().enumerate().flat_map(|(p, body)| {
         let count = body.degrees_of_freedom;
         (0..count).flat_map(move |m| (m..count).map(move |n| vec![p, m, n]))
     });
-    let mass = rig.mass_matrix(q);
+    let mass = rig.mass_matrix_at(q);
     vec![
         Array { name: "q", shape: vec![n], data: q.to_vec() },
         Array { name: "v", shape: vec![n], data: v.to_vec() },
-        matrices("transforms", &rig.transforms(q)),
-        matrices("transform_derivatives", &rig.transform_derivatives(q)),
+        matrices("transforms", &rig.transforms_at(q)),
+        matrices("transform_derivatives", &rig.transform_derivatives_at(q)),
         index("transform_derivatives_index", first.collect(), 2),
-        matrices("transform_second_derivatives", &rig.transform_second_derivatives(q)),
+        matrices("transform_second_derivatives", &rig.transform_second_derivatives_at(q)),
         index("transform_second_derivatives_index", second.collect(), 3),
         Array { name: "mass_matrix", shape: vec![n, n], data: mass.transpose().as_slice().to_vec() },
-        Array { name: "bias", shape: vec![n], data: rig.bias(q, v).as_slice().to_vec() },
+        Array { name: "bias", shape: vec![n], data: rig.bias_at(q, v).as_slice().to_vec() },
     ]
 }
 
@@ -102,10 +102,10 @@ fn index(name: &'static str, rows: Vec<Vec<usize>>, width: usize) -> Array {
 
 fn json(description: &Description, arrays: &[Array]) -> Value {
     let mut object = Map::new();
-    object.insert("crane".to_owned(), description.name.into());
-    object.insert("spec_hash".to_owned(), description.spec_hash.into());
-    object.insert("coordinates".to_owned(), description.coordinates.iter().map(|c| c.name).collect());
-    object.insert("bodies".to_owned(), description.bodies.iter().map(|body| body.name).collect());
+    object.insert("crane".to_owned(), description.name.as_str().into());
+    object.insert("spec_hash".to_owned(), description.spec_hash.as_str().into());
+    object.insert("coordinates".to_owned(), description.coordinates.iter().map(|c| c.name.as_str()).collect());
+    object.insert("bodies".to_owned(), description.bodies.iter().map(|body| body.name.as_str()).collect());
     object.extend(arrays.iter().map(|array| (array.name.to_owned(), array.json())));
     object.into()
 }

@@ -100,11 +100,11 @@ pub fn columns(description: &Description) -> Vec<Kind> {
     let efforts = |unit: &str| -> Vec<String> {
         let coordinates = description.drives.iter().map(|drive| &description.coordinates[drive.coordinate]);
         let of_unit = coordinates.filter(|coordinate| coordinate.kind.force_unit() == unit);
-        of_unit.map(|coordinate| drive_effort(coordinate.name, coordinate.kind)).collect()
+        of_unit.map(|coordinate| drive_effort(&coordinate.name, coordinate.kind)).collect()
     };
     let each_axis =
         |name: String| ["x", "y", "z"].map(|axis| format!("{name}_{axis}")).into_iter().collect::<Vec<String>>();
-    let points = description.points.iter().flat_map(|point| each_axis((*point).to_owned())).collect();
+    let points = description.points.iter().flat_map(|point| each_axis(point.to_string())).collect();
     let supports = description.supports.iter().map(|support| format!("{}_reaction_z", support.name));
     vec![
         Kind::new(efforts("N m"), "N m", Size::Peak),

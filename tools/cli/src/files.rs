@@ -7,7 +7,7 @@ use std::{
     process,
 };
 
-use crane_model::{dynamics, results::Table, rig::Rig};
+use crane_model::{dyn_crane::DynCrane, dynamics, results::Table};
 use serde_json::{Map, Value, json};
 
 use crate::{
@@ -83,20 +83,20 @@ fn differences(recorded: &Recorded, verification: &Verification) -> Map<String, 
 }
 
 /// What a run was: enough to repeat it.
-pub fn record(rig: &dyn Rig, settings: &dynamics::Settings, recorded: &Recorded) -> Value {
+pub fn record(rig: &dyn DynCrane, settings: &dynamics::Settings, recorded: &Recorded) -> Value {
     let description = rig.description();
     let parameters: Map<String, Value> = description
         .parameters
         .iter()
         .enumerate()
         .map(|(index, parameter)| {
-            (parameter.name.to_owned(), json!({"value": rig.parameter(index), "unit": parameter.unit}))
+            (parameter.name.to_string(), json!({"value": rig.parameter(index), "unit": parameter.unit.as_str()}))
         })
         .collect();
     json!({
-        "crane": description.name,
-        "title": description.title,
-        "spec_hash": description.spec_hash,
+        "crane": description.name.as_str(),
+        "title": description.title.as_str(),
+        "spec_hash": description.spec_hash.as_str(),
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "method": settings.method.title(),

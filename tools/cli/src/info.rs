@@ -15,7 +15,11 @@ pub fn list(format: Format, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let mut grid = Grid::new("cranes", "Cranes", &["name", "coordinates", "title"]);
     for rig in (fleet.all)() {
         let description = rig.description();
-        grid.row([description.name.into(), description.coordinates.len().into(), description.title.into()]);
+        grid.row([
+            description.name.as_str().into(),
+            description.coordinates.len().into(),
+            description.title.as_str().into(),
+        ]);
     }
     let mut report = Report::default();
     report.grid(grid);
@@ -27,9 +31,9 @@ pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     let rig = options.crane.open(fleet)?;
     let description = rig.description();
     let mut report = Report::default();
-    report.fact("crane", description.name, "");
-    report.fact("title", description.title, "");
-    report.fact("spec hash", description.spec_hash, "");
+    report.fact("crane", description.name.as_str(), "");
+    report.fact("title", description.title.as_str(), "");
+    report.fact("spec hash", description.spec_hash.as_str(), "");
     report.fact("coordinates", description.coordinates.len(), "");
     report.fact("start", if description.statics { EQUILIBRIUM } else { GUESS }, "");
     report.fact("duration", description.duration, "s");
@@ -40,11 +44,11 @@ pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
         Grid::new("parameters", "Live parameters (`--set name=value`)", &["name", "value", "default", "unit", "about"]);
     for (index, parameter) in description.parameters.iter().enumerate() {
         parameters.row([
-            parameter.name.into(),
+            parameter.name.as_str().into(),
             rig.parameter(index).into(),
             parameter.default.into(),
-            parameter.unit.into(),
-            parameter.about.into(),
+            parameter.unit.as_str().into(),
+            parameter.about.as_str().into(),
         ]);
     }
     report.grid(parameters);
@@ -54,7 +58,7 @@ pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     for (index, coordinate) in description.coordinates.iter().enumerate() {
         coordinates.row([
             index.into(),
-            coordinate.name.into(),
+            coordinate.name.as_str().into(),
             coordinate.kind.unit().into(),
             coordinate.role.name().into(),
             guess[index].into(),
@@ -67,30 +71,36 @@ pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
         "Bodies (mass with default parameters)",
         &["name", "link", "mass kg", "length m", "moved by"],
     );
-    for body in description.bodies {
+    for body in &description.bodies {
         let length = (body.length > 0.0).then_some(body.length);
         let moved = format!("{} coordinates", body.degrees_of_freedom);
-        bodies.row([body.name.into(), body.link.into(), body.mass.into(), length.into(), moved.into()]);
+        bodies.row([
+            body.name.as_str().into(),
+            body.link.as_str().into(),
+            body.mass.into(),
+            length.into(),
+            moved.into(),
+        ]);
     }
     report.grid(bodies);
 
     let mut supports = Grid::new("supports", "Supports", &["name", "x m", "y m", "z m"]);
-    for support in description.supports {
+    for support in &description.supports {
         let [x, y, z] = support.position.map(Cell::from);
-        supports.row([support.name.into(), x, y, z]);
+        supports.row([support.name.as_str().into(), x, y, z]);
     }
     report.grid(supports);
 
     let mut drives = Grid::new("drives", "Drives at t = 0", &["coordinate", "position", "unit"]);
-    for (drive, [position, _]) in description.drives.iter().zip(rig.drive_motions(0.0)) {
+    for (drive, [position, _]) in description.drives.iter().zip(rig.drive_motions_at(0.0)) {
         let coordinate = &description.coordinates[drive.coordinate];
-        drives.row([coordinate.name.into(), position.into(), coordinate.kind.unit().into()]);
+        drives.row([coordinate.name.as_str().into(), position.into(), coordinate.kind.unit().into()]);
     }
     report.grid(drives);
 
     let mut points = Grid::new("points", "Points of interest", &["name"]);
-    for point in description.points {
-        points.row([(*point).into()]);
+    for point in &description.points {
+        points.row([point.as_str().into()]);
     }
     report.grid(points);
     report.print(options.format, out)

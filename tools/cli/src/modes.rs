@@ -21,11 +21,11 @@ use crate::{
 pub fn modes(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.crane.open(fleet)?;
     let description = rig.description();
-    let case = Case::new(description.name, rig.as_ref());
+    let case = Case::new(&description.name, rig.as_ref());
     case.stable()?;
-    let modes = damped(&rig.small_motions(&case.equilibrium.q))?;
+    let modes = damped(&rig.small_motions_at(&case.equilibrium.q))?;
     let mut report = Report::default();
-    report.fact("crane", description.name, "");
+    report.fact("crane", description.name.as_str(), "");
     let step = limit(&modes, &Method::Rk4.stability()).map(|limit| limit.step);
     report.fact("largest stable step", Cell::from(step), "s");
     report.grid(undamped_modes(&case)?);
@@ -36,7 +36,7 @@ pub fn modes(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<
 /// Undamped modes about an equilibrium as a table.
 pub fn undamped_modes(case: &Case<'_>) -> Outcome<Grid> {
     let mut grid = Grid::new("undamped", "Undamped modes", &["mode", "frequency Hz", "omega rad/s", "dominated by"]);
-    for (index, mode) in undamped(&case.rig.small_motions(&case.equilibrium.q))?.iter().enumerate() {
+    for (index, mode) in undamped(&case.rig.small_motions_at(&case.equilibrium.q))?.iter().enumerate() {
         let omega = mode.frequency().map(|_| mode.omega_squared.sqrt());
         let names = names(case.rig.description(), &mode.dominating);
         grid.row([(index + 1).into(), mode.frequency().into(), omega.into(), names]);
@@ -66,6 +66,6 @@ pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
 }
 
 fn names(description: &Description, coordinates: &[usize]) -> Cell {
-    let names: Vec<&str> = coordinates.iter().map(|&index| description.coordinates[index].name).collect();
+    let names: Vec<&str> = coordinates.iter().map(|&index| description.coordinates[index].name.as_str()).collect();
     names.join(", ").into()
 }

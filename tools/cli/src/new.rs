@@ -27,7 +27,7 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let name = package.replace('-', "_");
     let from = fleet.crane(&options.from.replace('-', "_"))?;
     let description = from.description();
-    let spec = fleet.spec(description.name).unwrap_or_default();
+    let spec = fleet.spec(&description.name).unwrap_or_default();
 
     if options.folder.exists() {
         return Err(Problem::usage(
@@ -39,8 +39,8 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let values = [
         ("{{package}}", package.as_str()),
         ("{{name}}", &name),
-        ("{{title}}", description.title),
-        ("{{from}}", description.name),
+        ("{{title}}", description.title.as_str()),
+        ("{{from}}", &description.name),
         ("{{model}}", &model.to_string_lossy()),
         ("{{codegen}}", &codegen.to_string_lossy()),
     ];
@@ -48,7 +48,7 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
         let text = values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
         write(&options.folder.join(file), &text)?;
     }
-    write(&options.folder.join(SPEC), &renamed(spec, description.name, &name))?;
+    write(&options.folder.join(SPEC), &renamed(spec, &description.name, &name))?;
     write(&options.folder.join(SCHEMA.0), SCHEMA.1)?;
     writeln!(
         out,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crane_model::{Description, rig::Rig};
+use crane_model::{Description, dyn_crane::DynCrane};
 
 use crate::{
     problem::{Outcome, Problem},
@@ -69,7 +69,7 @@ impl ParameterTable {
     }
 
     /// The crane of a row: what has no column is as in `rig`.
-    pub fn crane(&self, rig: &dyn Rig, row: &[f64]) -> Outcome<Box<dyn Rig>> {
+    pub fn crane(&self, rig: &dyn DynCrane, row: &[f64]) -> Outcome<Box<dyn DynCrane>> {
         let mut crane = rig.boxed_clone();
         let settings: Vec<(usize, f64)> = self.columns.iter().copied().zip(row.iter().copied()).collect();
         set(crane.as_mut(), &settings)?;
@@ -97,9 +97,9 @@ impl Place<'_> {
             None => (header, None),
         };
         let index = parameter(name, description).map_err(|(title, help)| self.problem(&title, help))?;
-        let wanted = description.parameters[index].unit;
+        let wanted = &description.parameters[index].unit;
         match unit {
-            Some(unit) if unit != wanted => {
+            Some(unit) if *wanted != unit => {
                 Err(self
                     .problem(&format!("{name} is in {wanted}, not in {unit}"), format!("write `{name} [{wanted}]`")))
             }

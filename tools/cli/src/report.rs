@@ -197,15 +197,15 @@ impl Grid {
 /// Facts and tables in order.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
-    facts: Vec<(&'static str, Cell, &'static str)>,
+    facts: Vec<(String, Cell, &'static str)>,
     cautions: Vec<String>,
     grids: Vec<Grid>,
 }
 
 impl Report {
     /// Adds a fact with its unit.
-    pub fn fact(&mut self, name: &'static str, value: impl Into<Cell>, unit: &'static str) {
-        self.facts.push((name, value.into(), unit));
+    pub fn fact(&mut self, name: impl Into<String>, value: impl Into<Cell>, unit: &'static str) {
+        self.facts.push((name.into(), value.into(), unit));
     }
 
     /// Adds a warning, if there is one.
@@ -233,7 +233,7 @@ impl Report {
         let facts: Vec<_> = self
             .facts
             .iter()
-            .map(|(name, value, unit)| [name, value.text().as_str(), unit].map(str::to_owned))
+            .map(|(name, value, unit)| [name.as_str(), value.text().as_str(), unit].map(str::to_owned))
             .chain(self.cautions.iter().map(|words| ["caution", words, ""].map(str::to_owned)))
             .collect();
         json!({"facts": facts, "grids": self.grids.iter().map(Grid::page).collect::<Vec<_>>()})

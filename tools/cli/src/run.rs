@@ -6,10 +6,10 @@ use std::{
 };
 
 use crane_model::{
-    dynamics::{self, Cause, Method, Run},
+    dyn_crane::DynCrane,
+    dynamics::{self, Cause, InitialState, Method, Run},
     modes::{self, DampedMode},
     results::{Recording, Table},
-    rig::Rig,
     stability::{Limit, cause, limit},
     statics::Settings,
 };
@@ -48,10 +48,10 @@ pub struct Start {
 
 impl Start {
     /// The static equilibrium where the crane's spec asks for statics, otherwise its guess.
-    pub fn of(rig: &dyn Rig) -> Outcome<Self> {
+    pub fn of(rig: &dyn DynCrane) -> Outcome<Self> {
         let description = rig.description();
         if description.statics {
-            Case::new(description.name, rig).start()
+            Case::new(&description.name, rig).start()
         } else {
             Ok(Self { q: rig.guess(), what: GUESS })
         }
@@ -115,7 +115,7 @@ pub const SAFE: f64 = 0.9;
 
 impl Timing {
     /// Settings of a run from `start`: the crane's own unless given here, with a stable step unless forced.
-    pub fn settings(&self, rig: &dyn Rig, start: &Start, default: Method) -> Outcome<dynamics::Settings> {
+    pub fn settings(&self, rig: &dyn DynCrane, start: &Start, default: Method) -> Outcome<dynamics::Settings> {
         let own = dynamics::Settings::of(rig.description());
         let method = self.method.unwrap_or(if self.step.is_some() { Method::Rk4 } else { default });
         let mut settings = dynamics::Settings { method, audit: true, ..own };
@@ -193,7 +193,7 @@ impl Timing {
 }
 
 /// A step beyond the limit that holds at time `t`.
-fn unstable(rig: &dyn Rig, step: f64, t: f64, limit: &Limit) -> Problem {
+fn unstable(rig: &dyn DynCrane, step: f64, t: f64, limit: &Limit) -> Problem {
     let description = rig.description();
     Problem::failed(
         format!(
@@ -238,10 +238,10 @@ impl Bound {
 
 /// The start and `count` further poses evenly in time, each where the crane would rest if its drives stopped there. As far
 /// as there are such: without statics, or where the crane would fall, the poses end.
-pub fn manoeuvre(rig: &dyn Rig, start: &Start, count: u16) -> Outcome<Vec<Pose>> {
+pub fn manoeuvre(rig: &dyn DynCrane, start: &Start, count: u16) -> Outcome<Vec<Pose>> {
     let description = rig.description();
     let mut q = start.q.clone();
-    let mut poses = vec![Pose { t: 0.0, modes: modes::damped(&rig.small_motions(&q))? }];
+    let mut poses = vec![Pose { t: 0.0, modes: modes::damped(&rig.small_motions_at(&q))? }];
     if start.what == EQUILIBRIUM {
         for index in 1..=count {
             let t = description.duration * f64::from(index) / f64::from(count);
@@ -250,14 +250,14 @@ pub fn manoeuvre(rig: &dyn Rig, start: &Start, count: u16) -> Outcome<Vec<Pose>>
                 break;
             }
             q = equilibrium.q;
-            poses.push(Pose { t, modes: modes::damped(&rig.small_motions(&q))? });
+            poses.push(Pose { t, modes: modes::damped(&rig.small_motions_at(&q))? });
         }
     }
     Ok(poses)
 }
 
 /// What limits the step along the manoeuvre; `None` where nothing does or there are no modes.
-fn step_limit(rig: &dyn Rig, start: &Start) -> Option<Bound> {
+fn step_limit(rig: &dyn DynCrane, start: &Start) -> Option<Bound> {
     Bound::of(&manoeuvre(rig, start, POSES).ok()?, Method::Rk4)
 }
 
@@ -283,15 +283,20 @@ pub fn styled(bar: ProgressBar) -> ProgressBar {
 }
 
 /// Runs from `start` and records every result.
-pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: &ProgressBar) -> Outcome<Recorded> {
-    let name = rig.description().name;
+pub fn record(
+    rig: &dyn DynCrane,
+    start: &Start,
+    settings: &dynamics::Settings,
+    bar: &ProgressBar,
+) -> Outcome<Recorded> {
+    let name = &rig.description().name;
     let begin = Instant::now();
     let description = rig.description();
     let mut recording = Recording::new(rig);
     let mut shown = 0;
     let (mut singular, mut tilted) = (None, None);
     let run = rig
-        .simulate(&start.q, settings, &mut |sample| {
+        .simulate(&InitialState::at_rest(start.q.clone()), settings, &mut |sample| {
             recording.push(sample);
             singular = singular.take().or_else(|| description.near_singular(sample.q));
             tilted = tilted.take().or_else(|| description.large_tilt(sample.q));
@@ -337,7 +342,7 @@ pub fn record(rig: &dyn Rig, start: &Start, settings: &dynamics::Settings, bar: 
 
 /// Runs from `start`, once more to estimate the error if `verify`, and says what the run did that the model does not hold for.
 pub fn record_checked(
-    rig: &dyn Rig,
+    rig: &dyn DynCrane,
     start: &Start,
     settings: &dynamics::Settings,
     (verify, limits): (bool, &Limits),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crane_model::{Description, ParameterError, Refusal, rig::Rig};
+use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
 
 use crate::{
     arguments::{Choice, Parameters},
@@ -13,7 +13,7 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub struct Fleet {
     /// All of them, with the parameters of their specs.
-    pub all: fn() -> Vec<Box<dyn Rig>>,
+    pub all: fn() -> Vec<Box<dyn DynCrane>>,
     /// Names and specs (YAML), as far as they are known.
     pub specs: &'static [(&'static str, &'static str)],
 }
@@ -31,12 +31,12 @@ impl Fleet {
     }
 
     /// A crane by its name.
-    pub(super) fn crane(&self, name: &str) -> Outcome<Box<dyn Rig>> {
-        let all = (self.all)();
-        let names: Vec<&str> = all.iter().map(|rig| rig.description().name).collect();
-        if let Some(rig) = all.into_iter().find(|rig| rig.description().name == name) {
-            return Ok(rig);
+    pub(super) fn crane(&self, name: &str) -> Outcome<Box<dyn DynCrane>> {
+        let mut all = (self.all)();
+        if let Some(index) = all.iter().position(|rig| rig.description().name == name) {
+            return Ok(all.swap_remove(index));
         }
+        let names: Vec<&str> = all.iter().map(|rig| rig.description().name.as_str()).collect();
         let file = format!("{name}.yaml");
         let help = if Path::new(&file).exists() {
             format!("did you mean the file `{file}`?")
@@ -49,22 +49,23 @@ impl Fleet {
 
 impl Choice {
     /// The crane with its parameters.
-    pub fn open(&self, fleet: &Fleet) -> Outcome<Box<dyn Rig>> {
+    pub fn open(&self, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
         self.parameters.crane(&self.name, fleet)
     }
 }
 
 impl Parameters {
     /// A crane with these parameters.
-    pub fn crane(&self, name: &str, fleet: &Fleet) -> Outcome<Box<dyn Rig>> {
+    pub fn crane(&self, name: &str, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
         let mut rig = fleet.crane(name)?;
         self.apply(rig.as_mut())?;
         Ok(rig)
     }
 
-    fn apply(&self, rig: &mut dyn Rig) -> Outcome<()> {
+    fn apply(&self, rig: &mut dyn DynCrane) -> Outcome<()> {
         let description = rig.description();
-        set(rig, &self.read(description.name, &known(description))?)
+        let settings = self.read(&description.name, &known(description))?;
+        set(rig, &settings)
     }
 
     /// Places of the parameters that are set, and their values; `known`: names and units of those that the crane has.
@@ -91,7 +92,7 @@ impl Parameters {
 }
 
 /// Sets live parameters, by their places in the description, all at once.
-pub fn set(rig: &mut dyn Rig, settings: &[(usize, f64)]) -> Outcome<()> {
+pub fn set(rig: &mut dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<()> {
     let mut values: Vec<f64> = (0..rig.description().parameters.len()).map(|index| rig.parameter(index)).collect();
     for &(index, value) in settings {
         values[index] = value;
@@ -104,22 +105,22 @@ pub fn set(rig: &mut dyn Rig, settings: &[(usize, f64)]) -> Outcome<()> {
 
 /// What is wrong with the value of a parameter, and what to write instead.
 pub fn told(refused: &ParameterError) -> (String, String) {
-    let Refusal { code, title, help } = refused.refusal;
-    let title = match refused.given {
+    let Refusal { code, title, help } = &refused.refusal;
+    let title = match &refused.given {
         Some((parameter, value)) => format!("parameter `{parameter}`: {title} {value} [{code}]"),
         None => format!("{title} [{code}]"),
     };
-    (title, help.to_owned())
+    (title, help.to_string())
 }
 
 /// Names and units of a crane's live parameters.
-fn known(description: &Description) -> Vec<(&'static str, &'static str)> {
-    description.parameters.iter().map(|parameter| (parameter.name, parameter.unit)).collect()
+fn known(description: &Description) -> Vec<(&str, &str)> {
+    description.parameters.iter().map(|parameter| (parameter.name.as_str(), parameter.unit.as_str())).collect()
 }
 
 /// Place of a live parameter by its name; else what is wrong and what to write.
 pub fn parameter(name: &str, description: &Description) -> Result<usize, (String, String)> {
-    place(name, description.name, &known(description))
+    place(name, &description.name, &known(description))
 }
 
 fn place(name: &str, crane: &str, known: &[(&str, &str)]) -> Result<usize, (String, String)> {

@@ -3,10 +3,11 @@
 use std::{io::Write, path::Path};
 
 use crane_model::{
-    CoordinateKind, Description, dynamics,
+    CoordinateKind, Description,
+    dyn_crane::DynCrane,
+    dynamics,
     dynamics::Method,
     results::{Table, drive_effort},
-    rig::Rig,
 };
 
 use crate::{
@@ -34,7 +35,7 @@ pub struct Trace<'a> {
 pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.analysis.crane.open(fleet)?;
     let rig = rig.as_ref();
-    let name = rig.description().name;
+    let name = &rig.description().name;
     let start = Start::of(rig)?;
     let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;
     files::folder(&options.folder.out)?;
@@ -48,7 +49,7 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     written.extend(write_figures(&options.folder.out, &format!("{name}_"), rig.description(), &traces)?);
 
     let mut report = Report::default();
-    report.fact("crane", name, "");
+    report.fact("crane", name.as_str(), "");
     report.fact("start", recorded.start, "");
     report.fact("method", settings.method.title(), "");
     if settings.method.is_adaptive() {
@@ -81,11 +82,11 @@ pub fn file_list(folder: &Path, written: &[String]) -> Grid {
 /// Writes results and record of a run; their file names.
 pub fn write_run(
     folder: &Path,
-    rig: &dyn Rig,
+    rig: &dyn DynCrane,
     settings: &dynamics::Settings,
     recorded: &Recorded,
 ) -> Outcome<Vec<String>> {
-    let name = rig.description().name;
+    let name = &rig.description().name;
     let (csv, json) = (format!("{name}.csv"), format!("{name}.json"));
     files::write_csv(&folder.join(&csv), &recorded.table)?;
     files::write_text(&folder.join(&json), &format!("{:#}\n", files::record(rig, settings, recorded)))?;
@@ -165,7 +166,7 @@ fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
 fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
     let panel = |drive: &crane_model::DriveInfo| {
         let coordinate = &description.coordinates[drive.coordinate];
-        let effort = drive_effort(coordinate.name, coordinate.kind);
+        let effort = drive_effort(&coordinate.name, coordinate.kind);
         let (symbol, unit) = match coordinate.kind {
             CoordinateKind::Translation => ("force", "kN"),
             CoordinateKind::Rotation => ("torque", "kN m"),
@@ -182,7 +183,7 @@ fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
             .collect();
         Panel {
             x: "t [s]".to_owned(),
-            y: format!("{}, {symbol} [{unit}]", spoken(coordinate.name)),
+            y: format!("{}, {symbol} [{unit}]", spoken(&coordinate.name)),
             equal: false,
             logarithmic: false,
             curves,

@@ -31,7 +31,7 @@ pub fn stability(options: &Stability, fleet: &Fleet, out: &mut dyn Write) -> Out
     let modes = poses.first().map_or(&[][..], |pose| &pose.modes);
 
     let mut report = Report::default();
-    report.fact("crane", description.name, "");
+    report.fact("crane", description.name.as_str(), "");
     report.fact("start", start.what, "");
     report.grid(limits(description, &poses));
     if poses.len() > 1 {

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use crane_model::{
     CoordinateInfo,
-    rig::Rig,
+    dyn_crane::DynCrane,
     statics::{Equilibrium, Settings},
 };
 
@@ -24,25 +24,25 @@ pub struct Case<'a> {
     /// Heading of its column.
     pub label: &'a str,
     /// The crane.
-    pub rig: &'a dyn Rig,
+    pub rig: &'a dyn DynCrane,
     /// Where it rests.
     pub equilibrium: Equilibrium,
 }
 
 impl<'a> Case<'a> {
     /// Solves statics.
-    pub fn new(label: &'a str, rig: &'a dyn Rig) -> Self {
+    pub fn new(label: &'a str, rig: &'a dyn DynCrane) -> Self {
         Self { label, rig, equilibrium: rig.equilibrium(&Settings::default()) }
     }
 
     /// A problem unless the equilibrium is stable, and of a crane whose masses are above zero.
     pub fn stable(&self) -> Outcome<()> {
-        let (name, q) = (self.rig.description().name, &self.equilibrium.q);
+        let (name, q) = (&self.rig.description().name, &self.equilibrium.q);
         if !self.equilibrium.is_stable() {
             return Err(Problem::equilibrium(name, &self.equilibrium));
         }
         // A load that pulls upwards rests as well, but moves nowhere.
-        if !q.is_empty() && self.rig.mass_matrix(q).cholesky().is_none() {
+        if !q.is_empty() && self.rig.mass_matrix_at(q).cholesky().is_none() {
             return Err(Problem::failed(
                 format!("{name}: the mass matrix is not positive definite: a mass or an inertia is not above zero"),
                 "give masses in kg and inertias in kg m² above zero; a parameter may have taken one away",
@@ -57,8 +57,8 @@ impl<'a> Case<'a> {
         Ok(Start { q: self.equilibrium.q.clone(), what: EQUILIBRIUM })
     }
 
-    fn coordinates(&self) -> &'static [CoordinateInfo] {
-        self.rig.description().coordinates
+    fn coordinates(&self) -> &[CoordinateInfo] {
+        &self.rig.description().coordinates
     }
 
     /// Velocity at rest.
@@ -90,7 +90,11 @@ pub fn tables(cases: &[Case<'_>], limits: &Limits) -> Report {
     for case in cases {
         let Case { equilibrium, .. } = case;
         let residual = equilibrium.residual();
-        report.fact(case.rig.description().name, format!("{equilibrium}, {residual:.1e} of the forces left over"), "");
+        report.fact(
+            case.rig.description().name.as_str(),
+            format!("{equilibrium}, {residual:.1e} of the forces left over"),
+            "",
+        );
         let description = case.rig.description();
         for caution in [description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q)] {
             report.caution(caution);
@@ -121,10 +125,10 @@ pub fn caution_of_runs<'a>(report: &mut Report, runs: impl ExactSizeIterator<Ite
 pub fn deflection(rigid: &Case<'_>, flexible: &Case<'_>) -> Grid {
     let title = format!("Deflection of the load points due to flexibility ({} − {})", flexible.label, rigid.label);
     let mut grid = Grid::new("deflection", title, &["point", "x", "y", "z", "distance", "unit"]);
-    let [from, to] = [rigid, flexible].map(|case| case.rig.points(&case.equilibrium.q));
+    let [from, to] = [rigid, flexible].map(|case| case.rig.points_at(&case.equilibrium.q));
     for (name, (from, to)) in flexible.rig.description().points.iter().zip(from.iter().zip(&to)) {
         let way = (to - from) * 1e3;
-        grid.row([(*name).into(), way.x.into(), way.y.into(), way.z.into(), way.norm().into(), "mm".into()]);
+        grid.row([name.as_str().into(), way.x.into(), way.y.into(), way.z.into(), way.norm().into(), "mm".into()]);
     }
     grid
 }
@@ -142,9 +146,12 @@ fn widest<'c, 'a>(cases: &'c [Case<'a>]) -> Option<&'c Case<'a>> {
 fn pose(cases: &[Case<'_>]) -> Grid {
     let mut grid = Grid::new("pose", "Pose", &headers(&["coordinate"], cases));
     for coordinate in widest(cases).map_or(&[][..], Case::coordinates) {
-        let values = cases.iter().map(|case| Cell::from(case.value(coordinate.name, &case.equilibrium.q)));
-        let row: Vec<Cell> =
-            [coordinate.name.into()].into_iter().chain(values).chain([coordinate.kind.unit().into()]).collect();
+        let values = cases.iter().map(|case| Cell::from(case.value(&coordinate.name, &case.equilibrium.q)));
+        let row: Vec<Cell> = [coordinate.name.as_str().into()]
+            .into_iter()
+            .chain(values)
+            .chain([coordinate.kind.unit().into()])
+            .collect();
         grid.row(row);
     }
     grid
@@ -153,13 +160,13 @@ fn pose(cases: &[Case<'_>]) -> Grid {
 fn drives(cases: &[Case<'_>]) -> Grid {
     let mut grid = Grid::new("drives", "Torques and forces of the drives", &headers(&["drive"], cases));
     let efforts: Vec<Vec<f64>> =
-        cases.iter().map(|case| case.rig.drive_efforts(0.0, &case.equilibrium.q, &case.rest())).collect();
+        cases.iter().map(|case| case.rig.drive_efforts_at(0.0, &case.equilibrium.q, &case.rest())).collect();
     let Some(first) = cases.first() else { return grid };
     for (index, drive) in first.rig.description().drives.iter().enumerate() {
         let coordinate = &first.coordinates()[drive.coordinate];
         let values = efforts.iter().map(|efforts| Cell::from(efforts.get(index).copied()));
         let unit = coordinate.kind.force_unit();
-        let row: Vec<Cell> = [coordinate.name.into()].into_iter().chain(values).chain([unit.into()]).collect();
+        let row: Vec<Cell> = [coordinate.name.as_str().into()].into_iter().chain(values).chain([unit.into()]).collect();
         grid.row(row);
     }
     grid
@@ -168,24 +175,26 @@ fn drives(cases: &[Case<'_>]) -> Grid {
 fn reactions(cases: &[Case<'_>]) -> Grid {
     let mut grid = vectors("reactions", "Support reactions", "support", cases);
     let reactions: Vec<_> =
-        cases.iter().map(|case| case.rig.support_reactions(&case.equilibrium.q, &case.rest())).collect();
-    let supports = cases.first().map_or(&[][..], |case| case.rig.description().supports);
+        cases.iter().map(|case| case.rig.support_reactions_at(&case.equilibrium.q, &case.rest())).collect();
+    let supports = cases.first().map_or(&[][..], |case| case.rig.description().supports.as_slice());
     for (index, support) in supports.iter().enumerate() {
         let forces = reactions.iter().map(|of| of.get(index).map_or([None; 3], |force| (*force).map(Some).into()));
-        grid.row(vector_row(support.name, forces, "N"));
+        grid.row(vector_row(&support.name, forces, "N"));
     }
     if !supports.is_empty() {
         let sums = reactions.iter().map(|of| <[f64; 3]>::from(of.iter().sum::<Vector3<f64>>()));
         grid.row(vector_row("Σ supports", sums, "N"));
-        grid.row(vector_row("weight", cases.iter().map(|case| case.rig.weight(&case.equilibrium.q)), "N"));
+        grid.row(vector_row("weight", cases.iter().map(|case| case.rig.weight_at(&case.equilibrium.q)), "N"));
     }
     grid
 }
 
 fn points(cases: &[Case<'_>]) -> Grid {
     let mut grid = vectors("points", "Points of interest", "point", cases);
-    let positions: Vec<_> = cases.iter().map(|case| case.rig.points(&case.equilibrium.q)).collect();
-    for (index, name) in cases.first().map_or(&[][..], |case| case.rig.description().points).iter().enumerate() {
+    let positions: Vec<_> = cases.iter().map(|case| case.rig.points_at(&case.equilibrium.q)).collect();
+    for (index, name) in
+        cases.first().map_or(&[][..], |case| case.rig.description().points.as_slice()).iter().enumerate()
+    {
         let places = positions.iter().map(|of| of.get(index).map_or([None; 3], |place| (*place).map(Some).into()));
         grid.row(vector_row(name, places, "m"));
     }

@@ -11,7 +11,7 @@ const MAY_IMPORT: [(&str, &[&str]); 11] = [
     ("read", &["diagnostic", "spec"]),
     ("validate", &["chain", "diagnostic", "expand", "spec"]),
     ("expand", &["chain"]),
-    ("exchange", &["chain", "diagnostic", "expand"]),
+    ("exchange", &["chain", "diagnostic"]),
     ("mechanics", &["chain", "symbolic"]),
     ("lower", &["symbolic"]),
     ("emit", &["chain", "lower", "report", "symbolic"]),

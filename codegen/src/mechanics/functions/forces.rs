@@ -103,6 +103,17 @@ impl<'g> Derivation<'g> {
                 drives::motions(model, chain.drives.iter()),
             ),
         ];
+        let pieces = drives::pieces(model);
+        if !pieces.is_empty() {
+            functions.push(function(
+                "drive_pieces",
+                "Begin and end of the pieces in which the drives' motions are smooth, drive by drive, s.",
+                "t_begin, t_end",
+                &[],
+                Shape::Pairs(pieces.len() / 2),
+                pieces,
+            ));
+        }
         if self.rigid {
             functions.push(function(
                 "prescribed_motions",

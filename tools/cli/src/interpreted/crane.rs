@@ -20,7 +20,7 @@ use crane_model::{
 /// A crane of `N` coordinates, with every analysis.
 #[derive(Clone, Debug)]
 pub struct Interpreted<const N: usize> {
-    description: &'static Description,
+    description: Description,
     routines: Arc<HashMap<&'static str, Routine>>,
     parameters: Vec<f64>,
     /// Coordinates that rigid drives prescribe.
@@ -98,8 +98,8 @@ fn symmetric<const M: usize>(upper: &[f64]) -> SMatrix<f64, M, M> {
 }
 
 impl<const N: usize> CraneModel<N> for Interpreted<N> {
-    fn description(&self) -> &'static Description {
-        self.description
+    fn description(&self) -> &Description {
+        &self.description
     }
 
     fn parameter(&self, index: usize) -> f64 {
@@ -160,6 +160,10 @@ impl<const N: usize> CraneModel<N> for Interpreted<N> {
         for (&j, motion) in self.prescribed.iter().zip(motions.chunks(2)) {
             (q[j], v[j]) = (motion[0], motion[1]);
         }
+    }
+
+    fn drive_pieces(&self, out: &mut [[f64; 2]]) {
+        self.pairs("drive_pieces", Inputs::default(), out);
     }
 
     fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {

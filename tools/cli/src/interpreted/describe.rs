@@ -1,26 +1,28 @@
 //! What an interpreted crane says about itself.
 
-use crane_codegen::chain::{self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, SupportKinematics, Value};
-
-use crane_model::{
-    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, Refusal,
-    SupportInfo,
+use crane_codegen::chain::{
+    self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Drive, SupportKinematics, Value,
 };
 
-/// The description of a chain, as the compiler writes it. It stays for the rest of the process, as compiled ones do.
-pub fn describe(chain: &Chain) -> &'static Description {
+use crane_model::{
+    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, List, ParameterInfo,
+    Refusal, SupportInfo, Text,
+};
+
+/// The description of a chain, as the compiler writes it.
+pub fn describe(chain: &Chain) -> Description {
     let defaults = chain.parameter_defaults();
     let at_defaults = |value: &Value| value.at(&defaults);
     let parameters = chain.parameters.iter().map(|p| ParameterInfo {
-        name: text(&p.name),
-        unit: text(&p.unit),
-        about: text(&p.about),
+        name: Text::from(p.name.clone()),
+        unit: Text::from(p.unit.clone()),
+        about: Text::from(p.about.clone()),
         default: p.default,
         least: p.least.as_ref().map_or(Bound::LEAST, bound),
         greatest: Bound::GREATEST,
     });
     let coordinates = chain.coordinates.iter().enumerate().map(|(index, coordinate)| CoordinateInfo {
-        name: text(&coordinate.name),
+        name: Text::from(coordinate.name.clone()),
         kind: match coordinate.kind {
             Kind::Translation => CoordinateKind::Translation,
             Kind::Rotation => CoordinateKind::Rotation,
@@ -28,34 +30,38 @@ pub fn describe(chain: &Chain) -> &'static Description {
         role: role(chain, index),
     });
     let bodies = chain.bodies.iter().enumerate().map(|(index, body)| BodyInfo {
-        name: text(&body.name),
-        link: text(&body.link),
+        name: Text::from(body.name.clone()),
+        link: Text::from(body.link.clone()),
         mass: body.inertia.as_ref().map_or(0.0, |inertia| at_defaults(&inertia.mass)),
         length: at_defaults(&body.length),
         degrees_of_freedom: chain.degrees_of_freedom(BodyId(index)),
     });
     let supports = chain.supports.iter().map(|support| SupportInfo {
-        name: text(&support.name),
+        name: Text::from(support.name.clone()),
         position: support.position.each_ref().map(at_defaults),
         linear: support.kinematics == SupportKinematics::Linear,
     });
-    let description = Description {
-        name: text(&chain.name),
-        title: text(&chain.title),
-        spec_hash: text(&chain.spec_hash),
-        parameters: list(parameters),
-        coordinates: list(coordinates),
-        bodies: list(bodies),
-        supports: list(supports),
-        drives: list(chain.drives.iter().map(|drive| DriveInfo { coordinate: drive.coordinate.0 })),
-        points: list(chain.points.iter().map(|point| text(&point.name))),
+    let drive = |drive: &Drive| DriveInfo {
+        coordinate: drive.coordinate.0,
+        start: drive.profile.start(&defaults),
+        pieces: drive.profile.pieces().len(),
+    };
+    Description {
+        name: Text::from(chain.name.clone()),
+        title: Text::from(chain.title.clone()),
+        spec_hash: Text::from(chain.spec_hash.clone()),
+        parameters: List::from_iter(parameters),
+        coordinates: List::from_iter(coordinates),
+        bodies: List::from_iter(bodies),
+        supports: List::from_iter(supports),
+        drives: List::from_iter(chain.drives.iter().map(drive)),
+        points: List::from_iter(chain.points.iter().map(|point| Text::from(point.name.clone()))),
         statics: chain.analyses.statics,
-        guess: list(chain.guess.iter().copied()),
+        guess: List::from_iter(chain.guess.iter().copied()),
         duration: chain.run.duration,
         step: chain.run.step,
         output: chain.run.output,
-    };
-    Box::leak(Box::new(description))
+    }
 }
 
 fn bound(bound: &chain::Bound) -> Bound {
@@ -63,7 +69,7 @@ fn bound(bound: &chain::Bound) -> Bound {
     Bound {
         value: bound.value,
         allowed: bound.allowed,
-        refusal: Refusal { code, title: text(title), help: text(help) },
+        refusal: Refusal { code: Text::Static(code), title: title.clone().into(), help: help.clone().into() },
     }
 }
 
@@ -79,12 +85,4 @@ fn role(chain: &Chain, index: usize) -> CoordinateRole {
     } else {
         CoordinateRole::Passive
     }
-}
-
-fn text(text: &str) -> &'static str {
-    text.to_owned().leak()
-}
-
-fn list<T>(items: impl Iterator<Item = T>) -> &'static [T] {
-    items.collect::<Vec<T>>().leak()
 }

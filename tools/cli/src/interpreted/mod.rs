@@ -9,14 +9,14 @@ mod routine;
 use crane_codegen::chain::Chain;
 
 use crane::Interpreted;
-use crane_model::rig::{Instance, Rig};
+use crane_model::dyn_crane::{DynCrane, Instance};
 
 macro_rules! sizes {
     ($($size:literal)*) => {
         /// The crane of a chain; `None` unless its number of coordinates is one of those that are listed here.
-        pub fn interpret(chain: &Chain) -> Option<Box<dyn Rig>> {
+        pub fn interpret(chain: &Chain) -> Option<Box<dyn DynCrane>> {
             match chain.coordinates.len() {
-                $($size => Some(Box::new(Instance(Interpreted::<$size>::new(chain)))),)*
+                $($size => Some(Box::new(Instance(Box::new(Interpreted::<$size>::new(chain))))),)*
                 _ => None,
             }
         }

@@ -24,14 +24,14 @@ pub fn data(case: &Case<'_>, run: &Recorded) -> Outcome<Value> {
                 role => role,
             };
             json!({
-                "name": coordinate.name, "role": role.name(),
+                "name": coordinate.name.as_str(), "role": role.name(),
                 "unit": coordinate.kind.unit(), "force_unit": coordinate.kind.force_unit(),
             })
         })
         .collect();
     Ok(json!({
-        "name": description.name,
-        "title": description.title,
+        "name": description.name.as_str(),
+        "title": description.title.as_str(),
         "label": case.label,
         "coordinates": coordinates,
         "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
@@ -46,10 +46,10 @@ fn modes(case: &Case<'_>) -> Outcome<Vec<Value>> {
     if !case.equilibrium.is_stable() {
         return Ok(Vec::new());
     }
-    let coordinates = case.rig.description().coordinates;
-    let modes = undamped(&case.rig.small_motions(&case.equilibrium.q))?;
+    let coordinates = &case.rig.description().coordinates;
+    let modes = undamped(&case.rig.small_motions_at(&case.equilibrium.q))?;
     let mode = |mode: &crane_model::modes::Mode| {
-        let names: Vec<&str> = mode.dominating.iter().map(|&index| coordinates[index].name).collect();
+        let names: Vec<&str> = mode.dominating.iter().map(|&index| coordinates[index].name.as_str()).collect();
         json!({"frequency": mode.frequency(), "shape": mode.shape.as_slice(), "moves": names})
     };
     Ok(modes.iter().map(mode).collect())

@@ -9,8 +9,8 @@ pub mod twin;
 use std::{io::Write, path::Path};
 
 use crane_model::{
+    dyn_crane::DynCrane,
     dynamics::{Method, Settings},
-    rig::Rig,
 };
 use serde_json::{Value, json};
 
@@ -46,10 +46,10 @@ pub fn report(options: &Page, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
 }
 
 /// A crane and its rigid twin in equilibrium, the twin first.
-pub fn cases<'a>(rig: &'a dyn Rig, twin: Option<&'a dyn Rig>) -> Vec<Case<'a>> {
+pub fn cases<'a>(rig: &'a dyn DynCrane, twin: Option<&'a dyn DynCrane>) -> Vec<Case<'a>> {
     match twin {
         Some(twin) => vec![Case::new("rigid", twin), Case::new("flexible", rig)],
-        None => vec![Case::new(rig.description().name, rig)],
+        None => vec![Case::new(&rig.description().name, rig)],
     }
 }
 
@@ -75,7 +75,7 @@ fn data(
     let mut cranes = Vec::new();
     for ((case, settings), run) in cases.iter().zip(settings).zip(runs) {
         let mut crane = crane::data(case, run)?;
-        crane["outlines"] = exchange::outlines(fleet.spec(case.rig.description().name));
+        crane["outlines"] = exchange::outlines(fleet.spec(&case.rig.description().name));
         crane["record"] = files::record(case.rig, settings, run);
         cranes.push(crane);
     }
@@ -83,7 +83,7 @@ fn data(
         "cranes": cranes,
         "tables": all_tables(cases, limits, runs)?.page(),
         "command": own::typed(),
-        "spec": cases.last().and_then(|case| fleet.spec(case.rig.description().name)),
+        "spec": cases.last().and_then(|case| fleet.spec(&case.rig.description().name)),
     }))
 }
 

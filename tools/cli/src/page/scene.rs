@@ -4,27 +4,30 @@
 //! exponentials (R. W. Brockett, Robotic manipulators and the product of exponentials formula, 1984). Exact for any chain,
 //! so that the page can draw any pose, exaggerated and modal ones too.
 
-use crane_model::rig::Rig;
+use crane_model::dyn_crane::DynCrane;
 use nalgebra::{Matrix4, Vector3};
 use serde_json::{Value, json};
 
 /// Frames, screws, supports and points of a crane about pose `q`.
-pub fn scene(rig: &dyn Rig, q: &[f64]) -> Value {
+pub fn scene(rig: &dyn DynCrane, q: &[f64]) -> Value {
     let description = rig.description();
-    let frames = rig.transforms(q);
+    let frames = rig.transforms_at(q);
     let bodies: Vec<Value> = description
         .bodies
         .iter()
         .zip(&frames)
         .map(|(body, frame)| {
             json!({
-                "name": body.name, "link": body.link, "mass": body.mass, "length": body.length,
+                "name": body.name.as_str(), "link": body.link.as_str(), "mass": body.mass, "length": body.length,
                 "moved_by": body.degrees_of_freedom, "frame": rows(frame),
             })
         })
         .collect();
-    let supports: Vec<Value> =
-        description.supports.iter().map(|support| json!({"name": support.name, "at": support.position})).collect();
+    let supports: Vec<Value> = description
+        .supports
+        .iter()
+        .map(|support| json!({"name": support.name.as_str(), "at": support.position}))
+        .collect();
     json!({"pose": q, "bodies": bodies, "screws": screws(rig, q, &frames), "supports": supports, "points": points(rig, q)})
 }
 
@@ -34,8 +37,8 @@ fn rows(frame: &Matrix4<f64>) -> Vec<f64> {
 }
 
 /// Screws of all coordinates in the world frame at pose `q`, `ξ̂ = ∂T/∂q_j T⁻¹`: direction ω, then velocity at the origin.
-fn screws(rig: &dyn Rig, q: &[f64], frames: &[Matrix4<f64>]) -> Vec<[f64; 6]> {
-    let derivatives = rig.transform_derivatives(q);
+fn screws(rig: &dyn DynCrane, q: &[f64], frames: &[Matrix4<f64>]) -> Vec<[f64; 6]> {
+    let derivatives = rig.transform_derivatives_at(q);
     let mut screws = Vec::with_capacity(q.len());
     let mut first = 0;
     for (body, frame) in rig.description().bodies.iter().zip(frames) {
@@ -58,14 +61,14 @@ fn inverse(frame: &Matrix4<f64>) -> Matrix4<f64> {
 }
 
 /// Points of interest with the body that carries each: the one in whose frame it stays where it is when everything moves.
-fn points(rig: &dyn Rig, q: &[f64]) -> Vec<Value> {
+fn points(rig: &dyn DynCrane, q: &[f64]) -> Vec<Value> {
     /// Way from the pose, m and rad: any that moves all coordinates, no two alike.
     const WAY: f64 = 0.1;
     let other: Vec<f64> = q.iter().enumerate().map(|(i, q)| q + WAY / (1.0 + i as f64)).collect();
     let local = |q: &[f64]| -> Vec<Vec<Vector3<f64>>> {
-        let inverses: Vec<Matrix4<f64>> = rig.transforms(q).iter().map(inverse).collect();
+        let inverses: Vec<Matrix4<f64>> = rig.transforms_at(q).iter().map(inverse).collect();
         let place = |point: &Vector3<f64>| inverses.iter().map(|inverse| (inverse * point.push(1.0)).xyz()).collect();
-        rig.points(q).iter().map(place).collect()
+        rig.points_at(q).iter().map(place).collect()
     };
     rig.description()
         .points
@@ -74,7 +77,7 @@ fn points(rig: &dyn Rig, q: &[f64]) -> Vec<Value> {
         .map(|(name, (here, there))| {
             let moved = |body: usize| (here[body] - there[body]).norm();
             let body = (0..here.len()).min_by(|&a, &b| moved(a).total_cmp(&moved(b))).unwrap_or(0);
-            json!({"name": name, "body": body, "at": here.get(body).map(|place| <[f64; 3]>::from(*place))})
+            json!({"name": name.as_str(), "body": body, "at": here.get(body).map(|place| <[f64; 3]>::from(*place))})
         })
         .collect()
 }

@@ -1,12 +1,12 @@
 //! The rigid crane to compare a flexible one with.
 
-use crane_model::{CoordinateRole, ParameterInfo, rig::Rig};
+use crane_model::{CoordinateRole, ParameterInfo, dyn_crane::DynCrane};
 
 use crate::Fleet;
 
 /// The crane of the fleet that is `rig` but for its elements, with the same parameters.
-pub fn rigid(rig: &dyn Rig, fleet: &Fleet) -> Option<Box<dyn Rig>> {
-    let parameters = rig.description().parameters;
+pub fn rigid(rig: &dyn DynCrane, fleet: &Fleet) -> Option<Box<dyn DynCrane>> {
+    let parameters = &rig.description().parameters;
     (fleet.all)().into_iter().find_map(|mut other| {
         let own = |(index, parameter): (usize, &ParameterInfo)| match parameters
             .iter()
@@ -23,14 +23,14 @@ pub fn rigid(rig: &dyn Rig, fleet: &Fleet) -> Option<Box<dyn Rig>> {
 
 /// Whether `other` has the joints, drives, supports and points of `rig`, in the same places and with the same laws, and no
 /// elements: compared at a pose off the drives' positions.
-fn is_rigid(rig: &dyn Rig, other: &dyn Rig) -> bool {
+fn is_rigid(rig: &dyn DynCrane, other: &dyn DynCrane) -> bool {
     /// Way off the guess, m and rad.
     const OFF: f64 = 0.1;
     let (own, rigid) = (rig.description(), other.description());
     let joints: Vec<usize> =
         (0..own.coordinates.len()).filter(|&index| own.coordinates[index].role != CoordinateRole::Element).collect();
-    let same_joints = joints.iter().map(|&index| &own.coordinates[index]).eq(rigid.coordinates);
-    let same_supports = own.supports.iter().map(|s| s.name).eq(rigid.supports.iter().map(|s| s.name));
+    let same_joints = joints.iter().map(|&index| &own.coordinates[index]).eq(&rigid.coordinates);
+    let same_supports = own.supports.iter().map(|s| &s.name).eq(rigid.supports.iter().map(|s| &s.name));
     if joints.len() == own.coordinates.len() || !same_joints || !same_supports || own.points != rigid.points {
         return false;
     }
@@ -39,10 +39,10 @@ fn is_rigid(rig: &dyn Rig, other: &dyn Rig) -> bool {
     for (&index, &value) in joints.iter().zip(&pose) {
         straight[index] = value;
     }
-    let numbers = |rig: &dyn Rig, q: &[f64]| -> Vec<f64> {
+    let numbers = |rig: &dyn DynCrane, q: &[f64]| -> Vec<f64> {
         let rest = vec![0.0; q.len()];
-        let places = rig.points(q).into_iter().chain(rig.support_reactions(q, &rest));
-        places.flat_map(<[f64; 3]>::from).chain(rig.drive_efforts(0.0, q, &rest)).collect()
+        let places = rig.points_at(q).into_iter().chain(rig.support_reactions_at(q, &rest));
+        places.flat_map(<[f64; 3]>::from).chain(rig.drive_efforts_at(0.0, q, &rest)).collect()
     };
     alike(&numbers(rig, &straight), &numbers(other, &pose))
 }

@@ -9,6 +9,7 @@ use super::{
     subject::{Subject, balanced, timing},
 };
 use crane_model::{
+    Text,
     dynamics::Method,
     statics::{Equilibrium, Status},
 };
@@ -115,7 +116,7 @@ impl Expected {
     }
 
     fn meets(self, equilibrium: &Equilibrium) -> bool {
-        let all = |names: &[&str], found: &[&str]| names.iter().all(|name| found.contains(name));
+        let all = |names: &[&str], found: &[Text]| names.iter().all(|name| found.iter().any(|found| found == name));
         match (self, &equilibrium.status) {
             (Expected::Stable, Status::Converged) => true,
             (Expected::Unstable(names), Status::Unstable { coordinates })
@@ -149,7 +150,7 @@ fn fallen(spec: Spec) -> Case {
         let subject = Subject::new(&spec)?;
         let rest = subject.rest()?;
         let boom = subject.index("boom_psi")?;
-        let weights = subject.rig.bias(&rest.q, &vec![0.0; rest.q.len()]);
+        let weights = subject.rig.bias_at(&rest.q, &vec![0.0; rest.q.len()]);
         let turned = (rest.q[boom] + PI).rem_euclid(2.0 * PI) - PI;
         // Gravity's moment about the pin is zero: the common centre of mass is below it.
         let right = weights[boom].abs() < 1e-4 * GRAVITY * 1e4 && turned < 0.0;

@@ -81,9 +81,9 @@ fn drives(spec: Spec, factor: f64) -> Case {
         let subject = Subject::new(&spec.scaled("drives", "stiffness:", factor))?;
         let rest = subject.rest()?;
         let boom = subject.index("boom_psi")?;
-        let drives = subject.rig.description().drives;
+        let drives = &subject.rig.description().drives;
         let place = drives.iter().position(|drive| drive.coordinate == boom).ok_or("no drive of the boom")?;
-        let torque = subject.rig.drive_efforts(0.0, &rest.q, &vec![0.0; rest.q.len()])[place];
+        let torque = subject.rig.drive_efforts_at(0.0, &rest.q, &vec![0.0; rest.q.len()])[place];
         // Sag of some centimetres and tilt of the truck shorten and lengthen the levers by about a percent.
         let right = if stiff { (torque / LEVEL_MOMENT - 1.0).abs() < 0.02 } else { torque < 1.001 * LEVEL_MOMENT };
         expect(right, format!("{rest}; {:.1} kN m, boom at {:.4} rad", torque / 1e3, rest.q[boom]))
@@ -112,7 +112,7 @@ fn single_element(spec: Spec, factor: f64) -> Case {
         let subject = Subject::new(&spec.scaled("materials", "E:", factor).scaled("materials", "G:", factor))?;
         let rest = subject.rest()?;
         let description = subject.rig.description();
-        let tip = subject.rig.points(&rest.q)[1];
+        let tip = subject.rig.points_at(&rest.q)[1];
         let found = rest.q[subject.index("beam_1_theta")?];
         let caution = description.near_singular(&rest.q);
         let right = (tip.z + sunk).abs() < 1e-8 && (found - angle).abs() < 1e-8 && caution.is_some() == near;
@@ -140,7 +140,7 @@ fn supports(spec: Spec, factor: f64) -> Case {
             return expect(caution.is_some(), format!("{equilibrium}{happened}"));
         }
         let rest = subject.rest()?;
-        let reactions = subject.rig.support_reactions(&rest.q, &vec![0.0; rest.q.len()]);
+        let reactions = subject.rig.support_reactions_at(&rest.q, &vec![0.0; rest.q.len()]);
         let pressed = reactions.iter().map(|force| force.z).sum::<f64>() / (factor * GROUND);
         // Newton leaves 1e-10 of the forces.
         expect((pressed / sunk - 1.0).abs() < 1e-8, format!("{rest}; {pressed:.4e} m"))
@@ -154,7 +154,7 @@ fn damping(spec: Spec, beta: f64) -> Case {
     let expected = "every mode below critical has ζ = β ω/2 to 1e-6, all others creep";
     Case::new("damping of elements", format!("cantilever β = {beta:e}, modes"), expected, move || {
         let subject = Subject::new(&spec)?;
-        let motions = subject.rig.small_motions(&subject.rest()?.q);
+        let motions = subject.rig.small_motions_at(&subject.rest()?.q);
         let (free, modes) = (undamped(&motions), damped(&motions));
         let (free, modes) = (free.map_err(|e| e.to_string())?, modes.map_err(|e| e.to_string())?);
         let below: Vec<f64> =

@@ -8,8 +8,8 @@ use super::{
     spec::Spec,
 };
 use crane_model::{
+    dyn_crane::DynCrane,
     dynamics::Method,
-    rig::Rig,
     statics::{Equilibrium, Settings},
 };
 
@@ -23,7 +23,7 @@ use crate::{
 /// A crane under test.
 pub struct Subject {
     /// The crane.
-    pub rig: Box<dyn Rig>,
+    pub rig: Box<dyn DynCrane>,
 }
 
 impl Subject {
@@ -50,7 +50,7 @@ impl Subject {
 
     /// Index of a coordinate.
     pub fn index(&self, name: &str) -> Result<usize, String> {
-        let coordinates = self.rig.description().coordinates;
+        let coordinates = &self.rig.description().coordinates;
         coordinates.iter().position(|c| c.name == name).ok_or_else(|| format!("no coordinate {name}"))
     }
 

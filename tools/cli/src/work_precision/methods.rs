@@ -3,8 +3,8 @@
 use indicatif::ProgressBar;
 
 use crane_model::{
+    dyn_crane::DynCrane,
     dynamics::{Method, Run, Settings, Statistics},
-    rig::Rig,
 };
 
 use crate::{
@@ -87,7 +87,7 @@ pub fn with(base: &Settings, method: Method, setting: Setting) -> Settings {
 
 /// Runs of every method with every setting, as far as they end.
 pub fn series(
-    rig: &dyn Rig,
+    rig: &dyn DynCrane,
     start: &[f64],
     base: &Settings,
     reference: &Trace,

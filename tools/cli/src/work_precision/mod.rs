@@ -16,8 +16,8 @@ use crane_codegen::{SourceFile, chain::Chain};
 
 use crane_model::{
     Description,
+    dyn_crane::DynCrane,
     dynamics::{Method, Settings},
-    rig::Rig,
 };
 
 use crate::{
@@ -40,8 +40,9 @@ pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Writ
         let (Chain { name, .. }, text) = own::load(file)?;
         (name, text)
     } else {
-        let name = fleet.crane(&choice.name)?.description().name;
-        (name.to_owned(), fleet.spec(name).unwrap_or_default().to_owned())
+        let name = fleet.crane(&choice.name)?.description().name.to_string();
+        let text = fleet.spec(&name).unwrap_or_default().to_owned();
+        (name, text)
     };
     let counts = options.sections.0.as_slice();
     let known: Vec<&str> = fleet.specs.iter().map(|(name, _)| *name).collect();
@@ -68,7 +69,7 @@ fn others(crane: &str, text: &str, counts: &[usize]) -> Vec<(String, String)> {
 
 /// What was found, with everything that is written.
 struct Found<'a> {
-    description: &'static Description,
+    description: &'a Description,
     facts: Report,
     grids: Vec<Grid>,
     figures: Vec<(&'a str, Vec<figures::Panel>)>,
@@ -92,7 +93,7 @@ fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn
     let points = [points, yardstick::series(rig, &start.q, &base, &reference.solution.trace, repeats)].concat();
 
     let mut facts = Report::default();
-    facts.fact("crane", description.name, "");
+    facts.fact("crane", description.name.as_str(), "");
     facts.fact("start", start.what, "");
     facts.fact("duration", base.duration, "s");
     facts.fact("longest way of a point", reference.solution.trace.size(), "m");
@@ -109,7 +110,7 @@ fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn
     if !counts.is_empty() {
         let variants = counts.iter().map(|&count| {
             announce(&bar, count);
-            let rig = options.analysis.crane.parameters.crane(&variants::name(description.name, count), fleet)?;
+            let rig = options.analysis.crane.parameters.crane(&variants::name(&description.name, count), fleet)?;
             variant(rig.as_ref(), &self::start(rig.as_ref())?, &base, count, repeats)
         });
         let variants: Vec<Variant> = variants.collect::<Outcome<_>>()?;
@@ -125,12 +126,12 @@ fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn
 }
 
 /// Where runs start: at rest in equilibrium, or at the guess where no drive would move the crane from there.
-fn start(rig: &dyn Rig) -> Outcome<Start> {
+fn start(rig: &dyn DynCrane) -> Outcome<Start> {
     if rig.description().drives.is_empty() { Ok(Start { q: rig.guess(), what: GUESS }) } else { Start::of(rig) }
 }
 
 /// The run to be studied.
-fn base(options: &WorkPrecision, description: &'static Description) -> Outcome<Settings> {
+fn base(options: &WorkPrecision, description: &Description) -> Outcome<Settings> {
     let own = Settings::of(description);
     let duration = options.duration.unwrap_or(own.duration);
     if !(duration.is_finite() && duration > 0.0) {
@@ -144,7 +145,7 @@ fn base(options: &WorkPrecision, description: &'static Description) -> Outcome<S
 
 /// Writes tables and figures, and prints what was found.
 fn deliver(options: &WorkPrecision, found: Found<'_>, out: &mut dyn Write) -> Outcome<()> {
-    let name = found.description.name;
+    let name = &found.description.name;
     files::folder(&options.out)?;
     let mut written = Vec::new();
     for grid in &found.grids {

@@ -36,7 +36,7 @@ const TEXTS: [(&str, &str, &str); 5] = [
 
 /// Writes the page, and its figures into `images` beside it.
 pub fn write(file: &Path, found: &Found<'_>) -> Outcome<()> {
-    let name = found.description.name;
+    let name = &found.description.name;
     let mut text = format!(
         "# Error against run time\n\nWhat accuracy costs on the crane `{name}`: of the methods that integrate its motion, and of the \
          number of sections that stand for its flexible links. This page is written by `crane work-precision {name} --page …`; \

@@ -1,8 +1,8 @@
 //! The motion that all errors are measured against, found by two methods that must agree.
 
 use crane_model::{
+    dyn_crane::DynCrane,
     dynamics::{Method, Settings},
-    rig::Rig,
 };
 
 use crate::{
@@ -34,7 +34,7 @@ pub struct Reference {
 ///
 /// # Errors
 /// They do not agree with any of their settings.
-pub fn reference(rig: &dyn Rig, start: &[f64], base: &Settings, step: f64) -> Outcome<Reference> {
+pub fn reference(rig: &dyn DynCrane, start: &[f64], base: &Settings, step: f64) -> Outcome<Reference> {
     let by = |method, tolerance, step| timed(rig, start, &Settings { method, step, tolerance, ..*base }, 1);
     let mut step = step;
     let mut classical = by(Method::Rk4, f64::NAN, step)?;
@@ -50,7 +50,7 @@ pub fn reference(rig: &dyn Rig, start: &[f64], base: &Settings, step: f64) -> Ou
                 classical = by(Method::Rk4, f64::NAN, step)?;
                 pair
             }
-            (None, _) => return Err(disagreement(rig.description().name, base, nearest.as_ref())),
+            (None, _) => return Err(disagreement(&rig.description().name, base, nearest.as_ref())),
         };
         if let Some((tolerance, solution)) = &pair {
             let agreement = solution.trace.errors(&classical.trace);

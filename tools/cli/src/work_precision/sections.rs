@@ -4,9 +4,9 @@ use indicatif::ProgressBar;
 use nalgebra::Vector3;
 
 use crane_model::{
+    dyn_crane::DynCrane,
     dynamics::{Method, Settings},
     modes::{NoModes, damped, undamped},
-    rig::Rig,
     stability::limit,
 };
 
@@ -57,9 +57,15 @@ pub struct Candidate {
 }
 
 /// Statics, modes and runs of a crane. A run may start elsewhere than where the crane rests.
-pub fn variant(rig: &dyn Rig, start: &Start, base: &Settings, sections: usize, repeats: usize) -> Outcome<Variant> {
+pub fn variant(
+    rig: &dyn DynCrane,
+    start: &Start,
+    base: &Settings,
+    sections: usize,
+    repeats: usize,
+) -> Outcome<Variant> {
     let equilibrium = Start::of(rig)?;
-    let small = rig.small_motions(&equilibrium.q);
+    let small = rig.small_motions_at(&equilibrium.q);
     let modes = undamped(&small).map_err(|error: NoModes| Problem::from(error))?;
     let frequencies = modes.iter().filter_map(crane_model::modes::Mode::frequency).take(FREQUENCIES).collect();
     let rest = Trace::points(rig, &equilibrium.q);
@@ -68,7 +74,7 @@ pub fn variant(rig: &dyn Rig, start: &Start, base: &Settings, sections: usize, r
 
     let tight = timed(rig, &start.q, &with(base, Method::RECOMMENDED, Setting::Tolerance(TIGHT)), 1)?;
     let evaluation = tight.wall / tight.run.statistics.evaluations as f64;
-    let damped = damped(&rig.small_motions(&start.q))?;
+    let damped = damped(&rig.small_motions_at(&start.q))?;
     let mut runs = Vec::new();
     for method in Method::ALL {
         let limit = limit(&damped, &method.stability()).map_or(base.output, |limit| limit.step);

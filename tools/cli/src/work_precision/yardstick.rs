@@ -10,8 +10,8 @@ use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod, error::Diffs
 use nalgebra::{DMatrix, DVectorView};
 
 use crane_model::{
+    dyn_crane::DynCrane,
     dynamics::{Settings, Statistics},
-    rig::Rig,
 };
 
 use crate::work_precision::{
@@ -31,7 +31,7 @@ const LONG: f64 = 3.0;
 
 /// A run from `start` at rest by a method of the library: results, wall time and counts.
 fn run(
-    rig: &dyn Rig,
+    rig: &dyn DynCrane,
     start: &[f64],
     base: &Settings,
     method: &str,
@@ -45,13 +45,13 @@ fn run(
         evaluations.set(evaluations.get() + 1);
         let (q, v) = y.split_at(n);
         slope[..n].copy_from_slice(v);
-        slope[n..].copy_from_slice(rig.accelerations(t, q, v).as_slice());
+        slope[n..].copy_from_slice(rig.accelerations_at(t, q, v).as_slice());
     };
     let multiply = |y: &[f64], _: &[f64], _: f64, x: &[f64], product: &mut [f64]| {
         let mut linearised = linearised.borrow_mut();
         if linearised.0 != y[..n] {
             // At rest in the same pose; zero where the mass matrix is not positive definite.
-            let matrix = rig.small_motions(&y[..n]).state_matrix();
+            let matrix = rig.small_motions_at(&y[..n]).state_matrix();
             *linearised = (y[..n].to_vec(), matrix.unwrap_or_else(|_| DMatrix::zeros(2 * n, 2 * n)));
         }
         product.copy_from_slice((&linearised.1 * DVectorView::from_slice(x, 2 * n)).as_slice());
@@ -96,7 +96,7 @@ fn run(
 }
 
 /// Runs of the library's methods with every tolerance, as far as they end.
-pub fn series(rig: &dyn Rig, start: &[f64], base: &Settings, reference: &Trace, repeats: usize) -> Vec<Point> {
+pub fn series(rig: &dyn DynCrane, start: &[f64], base: &Settings, reference: &Trace, repeats: usize) -> Vec<Point> {
     let mut points = Vec::new();
     for method in METHODS {
         for tolerance in TOLERANCES {

@@ -1,7 +1,7 @@
 //! Declaration of generated cranes.
 
-/// Declares generated cranes: a module for each, from `$OUT_DIR/<name>.rs`, and `all`, a [`Rig`](crate::rig::Rig) of each
-/// with the parameters of its spec.
+/// Declares generated cranes: a module for each, from `$OUT_DIR/<name>.rs`, and `all`, a
+/// [`DynCrane`](crate::dyn_crane::DynCrane) of each with the parameters of its spec.
 ///
 /// A crate of its own can use it too: its build script writes `<name>.rs` and the crate says
 /// `crane_model::cranes! { my_crane }`.
@@ -18,8 +18,8 @@ macro_rules! cranes {
         )*
 
         /// All cranes declared here, in order of name, with the parameters of their specs.
-        pub fn all() -> Vec<Box<dyn $crate::rig::Rig>> {
-            vec![$($crate::rig::boxed::<{ $name::N }, $name::Crane>()),*]
+        pub fn all() -> Vec<Box<dyn $crate::dyn_crane::DynCrane>> {
+            vec![$($crate::dyn_crane::boxed::<{ $name::N }, $name::Crane>()),*]
         }
     };
 }

@@ -1,32 +1,36 @@
-//! What a generated crane says about itself.
+//! What a crane says about itself.
+
+mod shared;
+
+pub use shared::{List, Text};
 
 use crate::Bound;
 
-/// Names, units and settings of a crane; constants of the generated module.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Names, units and settings of a crane: constants of a generated module, or owned by a crane made at run time.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// Name of the crane.
-    pub name: &'static str,
+    pub name: Text,
     /// One line for people.
-    pub title: &'static str,
+    pub title: Text,
     /// Hash of the YAML text it was compiled from.
-    pub spec_hash: &'static str,
+    pub spec_hash: Text,
     /// Live parameters.
-    pub parameters: &'static [ParameterInfo],
+    pub parameters: List<ParameterInfo>,
     /// Generalized coordinates in the order of `q`.
-    pub coordinates: &'static [CoordinateInfo],
+    pub coordinates: List<CoordinateInfo>,
     /// Bodies from base to tip.
-    pub bodies: &'static [BodyInfo],
+    pub bodies: List<BodyInfo>,
     /// Supports.
-    pub supports: &'static [SupportInfo],
+    pub supports: List<SupportInfo>,
     /// Drives.
-    pub drives: &'static [DriveInfo],
+    pub drives: List<DriveInfo>,
     /// Names of the points of interest.
-    pub points: &'static [&'static str],
+    pub points: List<Text>,
     /// Whether the spec asks for statics: a run then starts from the static equilibrium, otherwise from the guess.
     pub statics: bool,
     /// Where the static solution starts, or the run without statics, with default parameters, m and rad.
-    pub guess: &'static [f64],
+    pub guess: List<f64>,
     /// Simulated time, s.
     pub duration: f64,
     /// Step of the integrator, s.
@@ -50,10 +54,10 @@ impl Description {
             self.coordinates.iter().any(|coordinate| coordinate.name == name && coordinate.role == role)
         };
         self.coordinates.iter().zip(q).find_map(|(coordinate, angle)| {
-            let CoordinateInfo { name, role, .. } = *coordinate;
+            let CoordinateInfo { name, role, .. } = coordinate;
             let body = name.strip_suffix("_theta")?;
             let all = matches!(role, CoordinateRole::Base | CoordinateRole::Element)
-                && ["psi", "phi"].iter().all(|other| turns(&format!("{body}_{other}"), role));
+                && ["psi", "phi"].iter().all(|other| turns(&format!("{body}_{other}"), *role));
             (all && angle.cos().abs() < NEAR_SINGULAR.sin()).then(|| {
                 let degrees = angle.to_degrees();
                 format!("{name} is {degrees:.2}°: near ±90° {body}_psi and {body}_phi turn about one axis, and digits are lost")
@@ -65,8 +69,8 @@ impl Description {
     pub fn large_tilt(&self, q: &[f64]) -> Option<String> {
         let linear = self.supports.iter().any(|support| support.linear);
         self.coordinates.iter().zip(q).filter(|_| linear).find_map(|(coordinate, angle)| {
-            let CoordinateInfo { name, role, kind } = *coordinate;
-            let turned = (role, kind) == (CoordinateRole::Base, CoordinateKind::Rotation) && angle.abs() > LARGE_TILT;
+            let CoordinateInfo { name, role, kind } = coordinate;
+            let turned = (*role, *kind) == (CoordinateRole::Base, CoordinateKind::Rotation) && angle.abs() > LARGE_TILT;
             turned.then(|| {
                 format!("{name} is {angle:.3} rad: supports with `kinematics: linear` hold up to about {LARGE_TILT} rad only")
             })
@@ -75,14 +79,14 @@ impl Description {
 }
 
 /// A live parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ParameterInfo {
     /// Name.
-    pub name: &'static str,
+    pub name: Text,
     /// Unit.
-    pub unit: &'static str,
+    pub unit: Text,
     /// What it is.
-    pub about: &'static str,
+    pub about: Text,
     /// Value unless set.
     pub default: f64,
     /// The least value that every use of the parameter allows.
@@ -92,10 +96,10 @@ pub struct ParameterInfo {
 }
 
 /// A generalized coordinate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CoordinateInfo {
     /// Name.
-    pub name: &'static str,
+    pub name: Text,
     /// Motion along or about an axis.
     pub kind: CoordinateKind,
     /// Who owns it.
@@ -158,12 +162,12 @@ impl CoordinateRole {
 }
 
 /// A body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BodyInfo {
     /// Name.
-    pub name: &'static str,
+    pub name: Text,
     /// Link it belongs to.
-    pub link: &'static str,
+    pub link: Text,
     /// Mass with default parameters, kg; 0 for a massless frame.
     pub mass: f64,
     /// Length along x of a rigid finite element, m; 0 otherwise.
@@ -173,10 +177,10 @@ pub struct BodyInfo {
 }
 
 /// A support.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SupportInfo {
     /// Name.
-    pub name: &'static str,
+    pub name: Text,
     /// Attachment point in the base's frame with default parameters, m.
     pub position: [f64; 3],
     /// Whether its elongation is linear in the base's coordinates, `kinematics: linear`.
@@ -184,8 +188,12 @@ pub struct SupportInfo {
 }
 
 /// A drive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveInfo {
     /// Index of the driven coordinate in `q`.
     pub coordinate: usize,
+    /// Prescribed position at t = 0 with default parameters, m or rad.
+    pub start: f64,
+    /// In how many pieces its motion is smooth.
+    pub pieces: usize,
 }

@@ -1,0 +1,247 @@
+//! A crane with its number of coordinates in the type, on slices.
+
+use std::ops::{Deref, DerefMut};
+
+use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector3};
+
+use super::{
+    DynBlock, DynCrane, DynDerivatives, DynDynamics, DynEnsemble, DynImplicit, DynLinearise, DynModel, DynStatics,
+    DynSystem,
+};
+use crate::{
+    CraneModel, Description, Dynamics, Ensemble, Implicit, LaneDynamics, Linearisation, Linearise, ParameterError,
+    Statics, TransformDerivatives, support::lanes::f64x8,
+};
+
+/// A crane compiled with every analysis.
+pub trait Crane<const N: usize>:
+    Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone
+{
+}
+
+impl<const N: usize, C> Crane<N> for C where
+    C: Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone
+{
+}
+
+/// A crane of `N` coordinates on slices, held by a reference or by a box: `Instance(&crane)`, `Instance(Box::new(crane))`.
+///
+/// It has each of the traits here whose twin the crane has.
+#[derive(Clone, Copy, Debug)]
+pub struct Instance<const N: usize, H>(pub H);
+
+/// A crane with the parameters of its spec behind a pointer.
+pub fn boxed<const N: usize, C: Crane<N> + Default + Send + Sync + 'static>() -> Box<dyn DynCrane> {
+    Box::new(Instance::<N, _>(Box::new(C::default())))
+}
+
+#[inline]
+fn vector<T: nalgebra::Scalar + Copy, const N: usize>(slice: &[T]) -> SVector<T, N> {
+    SVector::from(<[T; N]>::try_from(slice).expect("as many numbers as coordinates"))
+}
+
+impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H> {
+    fn description(&self) -> &Description {
+        self.0.description()
+    }
+
+    fn parameter(&self, index: usize) -> f64 {
+        self.0.parameter(index)
+    }
+
+    fn transforms(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
+        self.0.transforms(&vector(q), out);
+    }
+
+    fn points(&self, q: &[f64], out: &mut [Vector3<f64>]) {
+        self.0.points(&vector(q), out);
+    }
+
+    fn point_velocities(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
+        self.0.point_velocities(&vector(q), &vector(v), out);
+    }
+
+    fn forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.forces(t, &vector(q), &vector(v)).as_slice());
+    }
+
+    fn element_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.element_forces(&vector(q), &vector(v)).as_slice());
+    }
+
+    fn drive_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.drive_forces(t, &vector(q), &vector(v)).as_slice());
+    }
+
+    fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
+        self.0.support_reactions(&vector(q), &vector(v), out);
+    }
+
+    fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
+        self.0.drive_motions(t, out);
+    }
+
+    fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
+        let (mut pose, mut rates) = (vector(q), vector(v));
+        self.0.prescribe(t, &mut pose, &mut rates);
+        q.copy_from_slice(pose.as_slice());
+        v.copy_from_slice(rates.as_slice());
+    }
+
+    fn drive_pieces(&self, out: &mut [[f64; 2]]) {
+        self.0.drive_pieces(out);
+    }
+
+    fn gravity_energy(&self, q: &[f64]) -> f64 {
+        self.0.gravity_energy(&vector(q))
+    }
+
+    fn support_energy(&self, q: &[f64]) -> f64 {
+        self.0.support_energy(&vector(q))
+    }
+
+    fn element_energy(&self, q: &[f64]) -> f64 {
+        self.0.element_energy(&vector(q))
+    }
+
+    fn drive_energy(&self, t: f64, q: &[f64]) -> f64 {
+        self.0.drive_energy(t, &vector(q))
+    }
+
+    fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        self.0.drive_power(t, &vector(q), &vector(v))
+    }
+
+    fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        self.0.dissipation(t, &vector(q), &vector(v))
+    }
+
+    fn size(&self) -> usize {
+        N
+    }
+}
+
+impl<const N: usize, H: Deref<Target: Statics<N>>> DynStatics for Instance<N, H> {
+    fn static_residual(&self, q: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.static_residual(&vector(q)).as_slice());
+    }
+
+    fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.tangent_stiffness(&vector(q)).as_slice());
+    }
+
+    fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.drive_forces_at_rest(&vector(q)).as_slice());
+    }
+}
+
+impl<const N: usize, H: Deref<Target: Dynamics<N>>> DynDynamics for Instance<N, H> {
+    fn mass_matrix(&self, q: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.mass_matrix(&vector(q)).as_slice());
+    }
+
+    fn bias(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.bias(&vector(q), &vector(v)).as_slice());
+    }
+
+    fn forward_dynamics(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.forward_dynamics(t, &vector(q), &vector(v)).as_slice());
+    }
+
+    fn kinetic_energy(&self, q: &[f64], v: &[f64]) -> f64 {
+        self.0.kinetic_energy(&vector(q), &vector(v))
+    }
+}
+
+impl<const N: usize, H: Deref<Target: Implicit<N> + Sized>> DynImplicit for Instance<N, H> {
+    fn system(&self) -> Box<dyn DynSystem + '_> {
+        Box::new(System::<N, H::Target> { crane: &self.0, factors: None })
+    }
+
+    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
+        self.0.joint_impedances(out);
+    }
+
+    fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64> {
+        self.0.base_stiffness(&vector(q))
+    }
+
+    fn base_damping(&self, q: &[f64]) -> Matrix6<f64> {
+        self.0.base_damping(&vector(q))
+    }
+}
+
+/// Factors of a system.
+struct System<'a, const N: usize, C: Implicit<N>> {
+    crane: &'a C,
+    factors: Option<C::Factors>,
+}
+
+impl<const N: usize, C: Implicit<N>> DynSystem for System<'_, N, C> {
+    fn factorise(&mut self, q: &[f64], resistance: &[f64], base: &Matrix6<f64>) {
+        self.factors = Some(self.crane.factorise(&vector(q), &vector(resistance), base));
+    }
+
+    fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+        match &self.factors {
+            Some(factors) => out.copy_from_slice(self.crane.solve(factors, &vector(r)).as_slice()),
+            None => out.fill(f64::NAN),
+        }
+    }
+}
+
+impl<const N: usize, H: Deref<Target: Linearise<N>>> DynLinearise for Instance<N, H> {
+    fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
+        let Linearisation { mass: a, stiffness: k, damping: d } = self.0.linearise(&vector(q));
+        let write = |out: &mut [f64], matrix: &SMatrix<f64, N, N>| out.copy_from_slice(matrix.as_slice());
+        write(mass, &a);
+        write(stiffness, &k);
+        write(damping, &d);
+    }
+}
+
+impl<const N: usize, H: Deref<Target: Ensemble<N> + Clone>> DynEnsemble for Instance<N, H> {
+    fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
+        let mut cranes: [H::Target; 8] = std::array::from_fn(|_| self.0.deref().clone());
+        for (crane, parameters) in cranes.iter_mut().zip(parameters) {
+            crane.set_parameters(parameters)?;
+        }
+        Ok(Box::new(Block::<N, _>(H::Target::lanes(cranes.each_ref()))))
+    }
+}
+
+/// Eight cranes.
+pub(crate) struct Block<const N: usize, L>(pub L);
+
+impl<const N: usize, L: LaneDynamics<N>> DynBlock for Block<N, L> {
+    fn forward_dynamics(&mut self, t: f64, q: &[f64x8], v: &[f64x8], out: &mut [f64x8]) {
+        out.copy_from_slice(self.0.forward_dynamics(f64x8::splat(t), &vector(q), &vector(v)).as_slice());
+    }
+}
+
+impl<const N: usize, H: Deref<Target: TransformDerivatives<N>>> DynDerivatives for Instance<N, H> {
+    fn transform_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
+        self.0.transform_derivatives(&vector(q), out);
+    }
+
+    fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
+        self.0.transform_second_derivatives(&vector(q), out);
+    }
+}
+
+impl<const N: usize, H> DynCrane for Instance<N, H>
+where
+    H: DerefMut<Target: Crane<N>> + Clone + Send + Sync + 'static,
+{
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
+        self.0.set_parameter(index, value)
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
+        self.0.set_parameters(values)
+    }
+
+    fn boxed_clone(&self) -> Box<dyn DynCrane> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,205 @@
+//! Cranes of any size through one pointer: the traits of a generated crane on slices.
+//!
+//! Statics, integrators, modes and stability are written over these traits, once for all cranes. A trait here is the twin of a
+//! trait with a number of coordinates in its type; [`Instance`] makes it of that one.
+//!
+//! | here | twin | who asks for it |
+//! |---|---|---|
+//! | [`DynModel`] | [`CraneModel`](crate::CraneModel) | everything |
+//! | [`DynStatics`] | [`Statics`](crate::Statics) | equilibria |
+//! | [`DynDynamics`] | [`Dynamics`](crate::Dynamics) | explicit methods |
+//! | [`DynImplicit`] | [`Implicit`](crate::Implicit) | implicit methods |
+//! | [`DynLinearise`] | [`Linearise`](crate::Linearise) | modes, stability |
+//! | [`DynEnsemble`] | [`Ensemble`](crate::Ensemble) | runs of many cranes |
+//! | [`DynDerivatives`] | [`TransformDerivatives`](crate::TransformDerivatives) | tables of derivatives |
+//! | [`DynCrane`] | all of them | the command |
+//!
+//! # Slices
+//! `q`, `v`, `r` and results per coordinate have as many numbers as [`Description::coordinates`], in that order; lists of
+//! bodies, points, supports and drives as many as the description has. Results overwrite whatever stands in `out`. Symmetric
+//! matrices are written in full. A method may panic where a slice has another length. None allocates when it is called again
+//! and again: room that it needs is kept.
+
+mod declare;
+mod instance;
+mod quantities;
+
+use nalgebra::{Matrix4, Matrix6, Vector3};
+
+pub(crate) use instance::Block;
+pub use instance::{Crane, Instance, boxed};
+pub use quantities::{Energies, Member};
+
+use crate::{Description, ParameterError, support::lanes::f64x8};
+
+/// Poses, forces and potential energy of a crane: [`CraneModel`](crate::CraneModel) on slices.
+pub trait DynModel {
+    /// Names, units and settings.
+    fn description(&self) -> &Description;
+
+    /// Value of a live parameter, by its place in the description.
+    fn parameter(&self, index: usize) -> f64;
+
+    /// Transforms T of all bodies into the world frame.
+    fn transforms(&self, q: &[f64], out: &mut [Matrix4<f64>]);
+
+    /// Positions of the points of interest, m.
+    fn points(&self, q: &[f64], out: &mut [Vector3<f64>]);
+
+    /// Velocities of the points of interest, m/s.
+    fn point_velocities(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
+
+    /// Generalized forces of everything but inertia and gravity.
+    fn forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
+
+    /// Generalized forces of the springs and dampers between rigid elements.
+    fn element_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]);
+
+    /// Generalized forces of the drives.
+    fn drive_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
+
+    /// Forces of the supports on the crane, world frame, N.
+    fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
+
+    /// Prescribed position and rate of every drive.
+    fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]);
+
+    /// Sets the coordinates that rigid drives prescribe, and their rates, as they are at time t.
+    fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]);
+
+    /// Begin and end of the pieces in which the drives' motions are smooth, s; one pair per piece, drive by drive.
+    fn drive_pieces(&self, out: &mut [[f64; 2]]);
+
+    /// Potential energy of gravity, J.
+    fn gravity_energy(&self, q: &[f64]) -> f64;
+
+    /// Energy of the supports' springs, J.
+    fn support_energy(&self, q: &[f64]) -> f64;
+
+    /// Energy of the elements' springs, J.
+    fn element_energy(&self, q: &[f64]) -> f64;
+
+    /// Energy of the drives' springs, J.
+    fn drive_energy(&self, t: f64, q: &[f64]) -> f64;
+
+    /// Power that the drives' motions put in, W.
+    fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
+
+    /// Power that all dampers take out, W.
+    fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
+
+    /// Number of coordinates.
+    fn size(&self) -> usize {
+        self.description().coordinates.len()
+    }
+}
+
+/// Equilibrium at t = 0: [`Statics`](crate::Statics) on slices.
+pub trait DynStatics: DynModel {
+    /// `∂E_p/∂q` at t = 0.
+    fn static_residual(&self, q: &[f64], out: &mut [f64]);
+
+    /// `∂²E_p/∂q²` at t = 0, n × n.
+    fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]);
+
+    /// Generalized forces of the drives that hold the crane at rest at t = 0, of rigid drives too.
+    fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]);
+}
+
+/// Equations of motion: [`Dynamics`](crate::Dynamics) on slices.
+pub trait DynDynamics: DynModel {
+    /// Mass matrix A, n × n.
+    fn mass_matrix(&self, q: &[f64], out: &mut [f64]);
+
+    /// Bias e: velocity and gravity forces.
+    fn bias(&self, q: &[f64], v: &[f64], out: &mut [f64]);
+
+    /// Accelerations q̈.
+    fn forward_dynamics(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
+
+    /// Kinetic energy, J.
+    fn kinetic_energy(&self, q: &[f64], v: &[f64]) -> f64;
+}
+
+/// What an implicit step needs: [`Implicit`](crate::Implicit) on slices.
+pub trait DynImplicit: DynDynamics {
+    /// Room for the factors of a system of this crane; made once per run.
+    fn system(&self) -> Box<dyn DynSystem + '_>;
+
+    /// Stiffness and damping of elements, drives and joints on single coordinates; zero for the base's. `out`: one pair per
+    /// coordinate.
+    fn joint_impedances(&self, out: &mut [[f64; 2]]);
+
+    /// Stiffness over the base's coordinates.
+    fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64>;
+
+    /// Damping over the base's coordinates.
+    fn base_damping(&self, q: &[f64]) -> Matrix6<f64>;
+}
+
+/// Systems `(A(q) + D̂) x = r` of a crane, one after the other.
+pub trait DynSystem {
+    /// Factorises `A(q) + D̂`, as [`Implicit::factorise`](crate::Implicit::factorise).
+    fn factorise(&mut self, q: &[f64], resistance: &[f64], base: &Matrix6<f64>);
+
+    /// x of the system that was factorised last; NaN before the first.
+    fn solve(&mut self, r: &[f64], out: &mut [f64]);
+}
+
+/// Small motions about a pose at rest: [`Linearise`](crate::Linearise) on slices.
+pub trait DynLinearise: DynModel {
+    /// A, K and D at a pose, each n × n.
+    fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]);
+}
+
+/// Cranes that move several at a time, each with its own state and parameters: [`Ensemble`](crate::Ensemble) on slices.
+pub trait DynEnsemble: DynDynamics {
+    /// How many cranes a block holds: a multiple of eight.
+    fn lanes(&self) -> usize {
+        8
+    }
+
+    /// A block of cranes that differ from this one in their parameters: one slice per lane, the values in the order of the
+    /// description.
+    ///
+    /// # Errors
+    /// The parameters of a lane break a rule of the spec language.
+    fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError>;
+}
+
+/// Several cranes that are evaluated together.
+///
+/// With w = lanes/8 vectors per number, lane l of coordinate i is element `l % 8` of vector `i w + l / 8`.
+pub trait DynBlock {
+    /// Accelerations q̈ of every lane.
+    fn forward_dynamics(&mut self, t: f64, q: &[f64x8], v: &[f64x8], out: &mut [f64x8]);
+}
+
+/// Derivatives of the transforms: [`TransformDerivatives`](crate::TransformDerivatives) on slices.
+pub trait DynDerivatives: DynModel {
+    /// `∂T/∂q_j`, body by body, for the coordinates j that move it.
+    fn transform_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]);
+
+    /// `∂²T/∂q_m∂q_n`, body by body, for the pairs m ≤ n of the coordinates that move it.
+    fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]);
+}
+
+/// A crane with every analysis.
+///
+/// What is computed from these, as lists and matrices of their own, stands with [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
+pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynEnsemble + DynDerivatives + Send + Sync {
+    /// Sets a live parameter. An index out of range changes nothing.
+    ///
+    /// # Errors
+    /// The value breaks a rule of the spec language; the crane stays as it is.
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError>;
+
+    /// Sets the first live parameters together: [`CraneModel::set_parameters`](crate::CraneModel::set_parameters).
+    ///
+    /// # Errors
+    /// A value breaks a rule of the spec language; the crane stays as it is.
+    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError>;
+
+    /// A crane of its own with the same parameters.
+    fn boxed_clone(&self) -> Box<dyn DynCrane>;
+}

@@ -1,0 +1,219 @@
+//! What is computed of a crane as lists and matrices of their own, for whoever picks a crane at run time.
+
+use std::ops::ControlFlow;
+
+use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
+
+use super::{DynCrane, DynModel};
+use crate::{
+    CoordinateKind, CoordinateRole, ParameterError, dynamics,
+    dynamics::{InitialState, Run, Sample, Stopped},
+    modes::SmallMotions,
+    statics,
+    statics::Equilibrium,
+};
+
+/// Energies of a crane, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// Kinetic energy, Eq. (4).
+    pub kinetic: f64,
+    /// Potential energy of gravity, Eq. (6).
+    pub gravity: f64,
+    /// Springs of the supports, Eq. (17).
+    pub supports: f64,
+    /// Springs between rigid elements, Eq. (14).
+    pub elements: f64,
+    /// Springs of the drives, Eq. (19).
+    pub drives: f64,
+}
+
+impl Energies {
+    /// Kinetic and potential energy together.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.gravity + self.supports + self.elements + self.drives
+    }
+}
+
+/// A crane of an ensemble.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Member {
+    /// Values of its live parameters, in the order of the description.
+    pub parameters: Vec<f64>,
+    /// Pose and rates at t = 0.
+    pub start: InitialState,
+}
+
+/// Numbers per coordinate, written by `write`.
+fn numbers(crane: &(impl DynModel + ?Sized), write: impl FnOnce(&mut [f64])) -> Vec<f64> {
+    let mut out = vec![0.0; crane.size()];
+    write(&mut out);
+    out
+}
+
+/// # Panics
+/// Where `q`, `v` or a start has not as many numbers as the crane has coordinates.
+impl dyn DynCrane + '_ {
+    /// Transforms of all bodies into the world frame.
+    pub fn transforms_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
+        let mut out = vec![Matrix4::identity(); self.description().bodies.len()];
+        self.transforms(q, &mut out);
+        out
+    }
+
+    /// `∂T/∂q_j`, body by body, for the coordinates j that move it.
+    pub fn transform_derivatives_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
+        let count = self.description().bodies.iter().map(|body| body.degrees_of_freedom).sum();
+        let mut out = vec![Matrix4::zeros(); count];
+        self.transform_derivatives(q, &mut out);
+        out
+    }
+
+    /// `∂²T/∂q_m∂q_n`, body by body, for the pairs m ≤ n of the coordinates that move it.
+    pub fn transform_second_derivatives_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
+        let pairs = |n: usize| n * (n + 1) / 2;
+        let count = self.description().bodies.iter().map(|body| pairs(body.degrees_of_freedom)).sum();
+        let mut out = vec![Matrix4::zeros(); count];
+        self.transform_second_derivatives(q, &mut out);
+        out
+    }
+
+    /// Positions of the points of interest, m.
+    pub fn points_at(&self, q: &[f64]) -> Vec<Vector3<f64>> {
+        let mut out = vec![Vector3::zeros(); self.description().points.len()];
+        self.points(q, &mut out);
+        out
+    }
+
+    /// Velocities of the points of interest, m/s.
+    pub fn point_velocities_at(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>> {
+        let mut out = vec![Vector3::zeros(); self.description().points.len()];
+        self.point_velocities(q, v, &mut out);
+        out
+    }
+
+    /// Mass matrix A.
+    pub fn mass_matrix_at(&self, q: &[f64]) -> DMatrix<f64> {
+        let mut out = DMatrix::zeros(self.size(), self.size());
+        self.mass_matrix(q, out.as_mut_slice());
+        out
+    }
+
+    /// Velocity and gravity forces e.
+    pub fn bias_at(&self, q: &[f64], v: &[f64]) -> DVector<f64> {
+        numbers(self, |out| self.bias(q, v, out)).into()
+    }
+
+    /// Accelerations q̈, m/s² and rad/s².
+    pub fn accelerations_at(&self, t: f64, q: &[f64], v: &[f64]) -> DVector<f64> {
+        numbers(self, |out| self.forward_dynamics(t, q, v, out)).into()
+    }
+
+    /// Torques and forces of the drives, in their order: N m and N.
+    pub fn drive_efforts_at(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let forces = numbers(self, |out| self.drive_forces(t, q, v, out));
+        self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
+    }
+
+    /// Prescribed positions and rates of the drives.
+    pub fn drive_motions_at(&self, t: f64) -> Vec<[f64; 2]> {
+        let mut out = vec![[0.0; 2]; self.description().drives.len()];
+        self.drive_motions(t, &mut out);
+        out
+    }
+
+    /// Moments that the springs and dampers between rigid elements transmit, `k q + d q̇`, one per coordinate of an element in
+    /// the order of `q`: positive where they resist a positive deformation. N m.
+    pub fn element_moments_at(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let forces = numbers(self, |out| self.element_forces(q, v, out));
+        let coordinates = self.description().coordinates.iter().zip(&forces);
+        coordinates
+            .filter(|(coordinate, _)| coordinate.role == CoordinateRole::Element)
+            .map(|(_, force)| -force)
+            .collect()
+    }
+
+    /// Forces of the supports on the crane, N.
+    pub fn support_reactions_at(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>> {
+        let mut out = vec![Vector3::zeros(); self.description().supports.len()];
+        self.support_reactions(q, v, &mut out);
+        out
+    }
+
+    /// Weight of the crane with its load, world frame, N; unknown along an axis that the base cannot move along.
+    ///
+    /// A translation of the base moves everything alike: its generalized force of gravity, the bias at rest, is the part
+    /// of the weight along it.
+    pub fn weight_at(&self, q: &[f64]) -> [Option<f64>; 3] {
+        /// A base moves along an axis where its directions hold all of it but for rounding.
+        const ROUNDING: f64 = 1e-9;
+        let (bias, derivatives) = (self.bias_at(q, &vec![0.0; q.len()]), self.transform_derivatives_at(q));
+        let (mut weight, mut held) = (Vector3::zeros(), Vector3::zeros());
+        // The derivatives of the base come first, one per coordinate.
+        for ((coordinate, derivative), force) in self.description().coordinates.iter().zip(&derivatives).zip(&bias) {
+            if (coordinate.role, coordinate.kind) == (CoordinateRole::Base, CoordinateKind::Translation) {
+                let direction = derivative.fixed_view::<3, 1>(0, 3);
+                weight += direction * *force;
+                held += direction.component_mul(&direction);
+            }
+        }
+        [0, 1, 2].map(|axis| (held[axis] > 1.0 - ROUNDING).then_some(weight[axis]))
+    }
+
+    /// Energies by part.
+    pub fn energies_at(&self, t: f64, q: &[f64], v: &[f64]) -> Energies {
+        Energies {
+            kinetic: self.kinetic_energy(q, v),
+            gravity: self.gravity_energy(q),
+            supports: self.support_energy(q),
+            elements: self.element_energy(q),
+            drives: self.drive_energy(t, q),
+        }
+    }
+
+    /// The guess for the present parameters: [`statics::guess`].
+    pub fn guess(&self) -> Vec<f64> {
+        statics::guess_dyn(self)
+    }
+
+    /// Static equilibrium from the guess: [`statics::solve`].
+    pub fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {
+        statics::solve_dyn(self, settings)
+    }
+
+    /// Equilibrium with the drives as at time `t`, from pose `q`: [`statics::solve_at`].
+    pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
+        statics::solve_at_dyn(self, t, q, settings)
+    }
+
+    /// Coefficients of small motions about a pose at rest.
+    pub fn small_motions_at(&self, q: &[f64]) -> SmallMotions {
+        SmallMotions::of(self, q)
+    }
+
+    /// A run: [`dynamics::simulate`].
+    ///
+    /// # Errors
+    /// [`Stopped`] where the run ends before its time.
+    pub fn simulate(
+        &self,
+        start: &InitialState,
+        settings: &dynamics::Settings,
+        observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
+    ) -> Result<Run, Stopped> {
+        dynamics::simulate_dyn(self, start, settings, observe)
+    }
+
+    /// Runs of cranes that differ in their parameters, several at a time: [`dynamics::ensemble::simulate`].
+    ///
+    /// # Errors
+    /// The parameters of a member break a rule of the spec language.
+    pub fn simulate_ensemble(
+        &self,
+        members: &[Member],
+        settings: &dynamics::Settings,
+        observe: &mut dyn FnMut(usize, &Sample<'_>),
+    ) -> Result<Vec<Result<Run, Stopped>>, ParameterError> {
+        dynamics::ensemble::simulate_dyn(self, members, settings, observe)
+    }
+}

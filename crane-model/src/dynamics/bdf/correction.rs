@@ -1,0 +1,78 @@
+//! Newton's iteration for the next state.
+
+use super::{GAMMAS, ORDER, history::History};
+use crate::{
+    dyn_crane::DynImplicit,
+    dynamics::{equations::Equations, motion::add, state::NotFinite, system::System},
+};
+
+/// Newton's iteration for the next state.
+pub(super) struct Correction<'a> {
+    pub system: System<'a>,
+    /// Time of the next state, s.
+    t: f64,
+    /// c, s.
+    c: f64,
+    /// ψ/c.
+    past: Vec<f64>,
+    /// `y⁰ + d` as far as the iteration is.
+    pub end: Vec<f64>,
+    /// d.
+    pub d: Vec<f64>,
+    /// What the last step of the iteration added.
+    pub improvement: Vec<f64>,
+    rhs: Vec<f64>,
+}
+
+impl<'a> Correction<'a> {
+    /// Room for motions of so many numbers.
+    pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
+        let zeros = || vec![0.0; len];
+        Self {
+            system: System::new(crane),
+            t: 0.0,
+            c: f64::NAN,
+            past: zeros(),
+            end: zeros(),
+            d: zeros(),
+            improvement: zeros(),
+            rhs: zeros(),
+        }
+    }
+
+    /// Begins with the prediction.
+    pub fn predict(&mut self, equations: &Equations<'_>, history: &History) {
+        history.sum(&[1.0; ORDER + 1], &mut self.end);
+        history.sum(&GAMMAS.map(|gamma| gamma / history.h), &mut self.past);
+        self.d.fill(0.0);
+        self.t = history.t + history.h;
+        self.c = history.h / GAMMAS[history.order];
+        self.system.factorise(equations.state(&self.end).0, self.c);
+    }
+
+    /// One step of the iteration. Integrals wait for its end.
+    pub fn improve(&mut self, equations: &mut Equations<'_>) -> Result<(), NotFinite> {
+        let Self { past, end, d, rhs, improvement, .. } = self;
+        let n = equations.n;
+        let (q, v) = equations.state(end);
+        rhs[..n].copy_from_slice(v);
+        equations.accelerate(self.t, q, v, &mut rhs[n..2 * n])?;
+        // f − (ψ + d)/c; nothing for integrals.
+        add(&mut rhs[..2 * n], -1.0, past);
+        add(&mut rhs[..2 * n], -self.c.recip(), d);
+        rhs[2 * n..].fill(0.0);
+        self.system.solve(rhs, None, improvement);
+        add(end, 1.0, improvement);
+        add(d, 1.0, improvement);
+        Ok(())
+    }
+
+    /// Integrals over the step, of what the state found says: at its prediction stiff springs are far from balance.
+    pub fn integrate(&mut self, equations: &Equations<'_>) {
+        equations.powers(self.t, &self.end, &mut self.rhs);
+        for i in 2 * equations.n..self.end.len() {
+            self.d[i] = (self.rhs[i] - self.past[i]) * self.c;
+            self.end[i] += self.d[i];
+        }
+    }
+}

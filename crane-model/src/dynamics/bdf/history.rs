@@ -1,0 +1,131 @@
+//! The last states at equal distances, as backward differences.
+
+use super::ORDER;
+use crate::dynamics::motion::add;
+
+/// Weights of the differences up to the highest order.
+pub(super) type Weights = [f64; ORDER + 1];
+
+/// The last states at equal distances, as backward differences.
+pub(super) struct History {
+    /// `∇ᵐy`, m = 0 … k; beyond, what tells the error of the next higher order.
+    pub differences: [Vec<f64>; ORDER + 3],
+    /// k.
+    pub order: usize,
+    /// Time of the last state, s.
+    pub t: f64,
+    /// Distance of the states, s.
+    pub h: f64,
+    /// Room for the differences before a change of distance.
+    old: [Vec<f64>; ORDER + 1],
+}
+
+impl History {
+    /// Room for motions of so many numbers.
+    pub fn new(len: usize) -> Self {
+        let differences = std::array::from_fn(|_| vec![0.0; len]);
+        Self { differences, order: 1, t: 0.0, h: 0.0, old: std::array::from_fn(|_| vec![0.0; len]) }
+    }
+
+    /// Begins with a state alone, and its slope.
+    pub fn begin(&mut self, t: f64, start: &[f64], slope: &[f64], h: f64) {
+        (self.order, self.t, self.h) = (1, t, h);
+        let [value, first, higher @ ..] = &mut self.differences;
+        value.copy_from_slice(start);
+        first.fill(0.0);
+        add(first, h, slope);
+        higher.iter_mut().for_each(|difference| difference.fill(0.0));
+    }
+
+    /// As [`begin`](Self::begin), with the last state.
+    pub fn begin_again(&mut self, slope: &[f64]) {
+        let start = std::mem::take(&mut self.differences[0]);
+        let [_, first, higher @ ..] = &mut self.differences;
+        first.fill(0.0);
+        add(first, self.h, slope);
+        higher.iter_mut().for_each(|difference| difference.fill(0.0));
+        self.differences[0] = start;
+        self.order = 1;
+    }
+
+    /// Begins with some states, the last first.
+    pub fn through(&mut self, past: &[Vec<f64>], t: f64, h: f64) {
+        (self.order, self.t, self.h) = (past.len().clamp(1, ORDER), t, h);
+        let values = &mut self.differences[..self.order];
+        for (value, state) in values.iter_mut().zip(past) {
+            value.copy_from_slice(state);
+        }
+        for m in 1..values.len() {
+            for place in (m..values.len()).rev() {
+                let (before, at) = values.split_at_mut(place);
+                for (at, before) in at[0].iter_mut().zip(&before[place - 1]) {
+                    *at = before - *at;
+                }
+            }
+        }
+    }
+
+    /// `Σ weight ∇ᵐy`, m = 0 … k.
+    pub fn sum(&self, weights: &Weights, out: &mut [f64]) {
+        out.fill(0.0);
+        for (weight, difference) in weights[..=self.order].iter().zip(&self.differences) {
+            if *weight != 0.0 {
+                add(out, *weight, difference);
+            }
+        }
+    }
+
+    /// Goes on to the next state, which is `d` from its prediction.
+    pub fn push(&mut self, d: &[f64]) {
+        let k = self.order;
+        self.t += self.h;
+        let (before, next) = self.differences.split_at_mut(k + 2);
+        for ((next, before), d) in next[0].iter_mut().zip(&mut before[k + 1]).zip(d) {
+            *next = d - *before;
+            *before = *d;
+        }
+        for m in (0..=k).rev() {
+            let (lower, higher) = self.differences.split_at_mut(m + 1);
+            add(&mut lower[m], 1.0, &higher[0]);
+        }
+    }
+
+    /// The state at `t`, by the polynomial through the last states.
+    pub fn at(&self, t: f64, out: &mut [f64]) {
+        self.sum(&newton_polynomials((t - self.t) / self.h), out);
+    }
+
+    /// Goes over to states at another distance, on the same polynomial.
+    pub fn rescale(&mut self, factor: f64) {
+        let k = self.order;
+        // The polynomial's values at the new distances, by the weights of the old differences, and differences of those.
+        let mut weights: [Weights; ORDER + 1] = std::array::from_fn(|m| newton_polynomials(-factor * m as f64));
+        for m in 1..=k {
+            for place in (m..=k).rev() {
+                weights[place] = std::array::from_fn(|i| weights[place - 1][i] - weights[place][i]);
+            }
+        }
+        for m in 1..=k {
+            self.old[m].copy_from_slice(&self.differences[m]);
+        }
+        for m in 1..=k {
+            let difference = &mut self.differences[m];
+            difference.fill(0.0);
+            for (weight, old) in weights[m][m..=k].iter().zip(&self.old[m..]) {
+                if *weight != 0.0 {
+                    add(difference, *weight, old);
+                }
+            }
+        }
+        self.h *= factor;
+    }
+}
+
+/// `Πⱼ (part + j)/(j + 1)`, j = 0 … m−1: what multiplies `∇ᵐy` at `t + part h`.
+fn newton_polynomials(part: f64) -> Weights {
+    let mut weights = [1.0; ORDER + 1];
+    for m in 1..=ORDER {
+        weights[m] = weights[m - 1] * (part + (m - 1) as f64) / m as f64;
+    }
+    weights
+}

@@ -1,0 +1,137 @@
+//! The classical Runge–Kutta method with constant steps that end at every result.
+
+use nalgebra::Vector2;
+
+use super::{
+    Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped, equations::Equations, rk4, roughness::Roughness,
+    settings::divided, state::NotFinite, stopped::Place,
+};
+use crate::dyn_crane::DynDynamics;
+
+/// A motion by [`rk4`].
+pub struct Rk4<'a> {
+    equations: Equations<'a>,
+    settings: Settings,
+    roughness: Roughness,
+    motion: Vec<f64>,
+    /// Rates at the beginning of a step.
+    before: Vec<f64>,
+    room: Vec<f64>,
+    steps: Equal,
+    done: usize,
+}
+
+/// Steps of equal length up to a time ahead.
+#[derive(Clone, Copy, Debug, Default)]
+struct Equal {
+    /// Where they begin and end, s.
+    begin: f64,
+    end: f64,
+    /// How many there are, and how many are done.
+    count: usize,
+    done: usize,
+}
+
+impl Equal {
+    /// Beginning and length of the next, s.
+    fn next(&self) -> (f64, f64) {
+        let h = (self.end - self.begin) / self.count as f64;
+        (self.begin + h * self.done as f64, h)
+    }
+
+    /// The time reached, s.
+    fn reached(&self) -> f64 {
+        if self.done == self.count { self.end } else { self.next().0 }
+    }
+}
+
+impl<'a> Rk4<'a> {
+    /// Steps as the settings want them.
+    pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
+        let equations = Equations::new(crane, settings.audit);
+        let n = equations.n;
+        Self {
+            motion: vec![0.0; equations.len()],
+            before: vec![0.0; n],
+            room: vec![0.0; rk4::ROOM * n],
+            equations,
+            settings: *settings,
+            roughness: Roughness::new(Vec::new()),
+            steps: Equal::default(),
+            done: 0,
+        }
+    }
+
+    fn place<'s>(&'s self, t: f64, h: f64) -> Place<'s> {
+        let (q, _) = self.equations.state(&self.motion);
+        Place { method: Method::Rk4, t, h, q, description: self.equations.crane.description() }
+    }
+
+    /// A motion that grows from step to step, if it does, or else what is said.
+    fn rough(&self, place: &Place<'_>, otherwise: impl FnOnce(&Place<'_>) -> Stopped) -> Stopped {
+        let rough = self.roughness.roughest().map(|coordinate| place.stopped(Cause::Step, coordinate));
+        rough.unwrap_or_else(|| otherwise(place))
+    }
+}
+
+impl Stepper for Rk4<'_> {
+    fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
+        self.motion.copy_from_slice(motion);
+        let n = self.equations.n;
+        let mut mass = vec![0.0; n * n];
+        self.equations.crane.mass_matrix(&motion[..n], &mut mass);
+        self.roughness = Roughness::new(mass.iter().step_by(n + 1).copied().collect());
+        self.steps = Equal { begin: t, end: t, count: 0, done: 0 };
+        Ok(())
+    }
+
+    fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
+        let Self { equations, motion, before, room, steps, .. } = self;
+        if steps.done == steps.count {
+            let (begin, end) = (steps.end, ahead.result.min(ahead.stop));
+            *steps = Equal { begin, end, count: divided(end - begin, self.settings.step).0, done: 0 };
+        }
+        let (t, h) = steps.next();
+        let n = equations.n;
+        before.copy_from_slice(&motion[n..2 * n]);
+        let mut powers = [Vector2::zeros(); rk4::STAGES];
+        let (pose, rest) = motion.split_at_mut(n);
+        let (rates, integrals) = rest.split_at_mut(n);
+        let audit = !integrals.is_empty();
+        let advanced = rk4::advance(t, h, [pose, rates], room, |stage, t, q, v, out| {
+            if audit {
+                powers[stage] = equations.powers_at(t, q, v).into();
+            }
+            equations.accelerate(t, q, v, out)
+        });
+        for (integral, increment) in integrals.iter_mut().zip(&rk4::increments(&powers, h)) {
+            *integral += increment;
+        }
+        if let Err(NotFinite) = advanced {
+            let place = self.place(t, h);
+            return Err(self.rough(&place, |place| place.failed(Cause::Growth, self.equations.crane)));
+        }
+        let (q, v) = equations.state(motion);
+        let grows = self.roughness.grows(h, before, &room[..n], v);
+        if grows || !q.iter().all(|x| x.abs() <= self.settings.bound) {
+            let place = self.place(t, h);
+            return Err(self.rough(&place, |place| place.furthest(Cause::Growth)));
+        }
+        self.steps.done += 1;
+        self.done += 1;
+        Ok(self.steps.reached())
+    }
+
+    fn motion(&self) -> &[f64] {
+        &self.motion
+    }
+
+    /// Every result is the end of a step.
+    fn interpolate(&self, _: f64, motion: &mut [f64]) {
+        motion.copy_from_slice(&self.motion);
+    }
+
+    fn statistics(&self) -> Statistics {
+        Statistics { steps: self.done, evaluations: self.equations.evaluations, ..Statistics::default() }
+    }
+}

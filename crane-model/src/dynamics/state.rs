@@ -1,0 +1,72 @@
+//! Pose and rates, and the acceleration that belongs to them.
+
+use nalgebra::SVector;
+
+use crate::Dynamics;
+
+/// An acceleration is not finite: a body without inertia, or a pose that is not a number any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotFinite;
+
+/// Pose and rates of a crane with `N` coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<const N: usize> {
+    /// Generalized coordinates, m and rad.
+    pub q: SVector<f64, N>,
+    /// Their rates, m/s and rad/s.
+    pub v: SVector<f64, N>,
+}
+
+impl<const N: usize> State<N> {
+    /// Pose `q` at rest.
+    pub fn at_rest(q: SVector<f64, N>) -> Self {
+        Self { q, v: SVector::zeros() }
+    }
+}
+
+/// Acceleration `q̈ = A⁻¹(e + f)`, Eq. (23), m/s² and rad/s².
+///
+/// # Errors
+/// It is not finite.
+#[inline]
+pub fn acceleration<const N: usize, C: Dynamics<N>>(
+    crane: &C,
+    t: f64,
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+) -> Result<SVector<f64, N>, NotFinite> {
+    let a = crane.forward_dynamics(t, q, v);
+    finite(a.as_slice()).map(|()| a)
+}
+
+/// Whether all numbers are finite.
+#[inline]
+pub(super) fn finite(numbers: &[f64]) -> Result<(), NotFinite> {
+    if numbers.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(NotFinite) }
+}
+
+/// Pose and rates from which a run starts, of a crane of any size.
+#[cfg(feature = "std")]
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InitialState {
+    /// Generalized coordinates, m and rad.
+    pub q: Vec<f64>,
+    /// Their rates, m/s and rad/s.
+    pub v: Vec<f64>,
+}
+
+#[cfg(feature = "std")]
+impl InitialState {
+    /// Pose `q` at rest.
+    pub fn at_rest(q: Vec<f64>) -> Self {
+        let v = vec![0.0; q.len()];
+        Self { q, v }
+    }
+}
+
+#[cfg(feature = "std")]
+impl<const N: usize> From<&State<N>> for InitialState {
+    fn from(state: &State<N>) -> Self {
+        Self { q: state.q.as_slice().to_vec(), v: state.v.as_slice().to_vec() }
+    }
+}

@@ -1,0 +1,67 @@
+//! What all methods have in common: one step, the motion within it, and what it took.
+
+use super::{Statistics, Stopped};
+
+/// A motion that proceeds step by step. It holds its crane, its state and all the room that it needs: no step allocates.
+///
+/// A motion is one slice: coordinates, rates and, where a run is audited, the work of the drives and what the dampers took out.
+pub trait Stepper {
+    /// Sets out from a motion at time `t`, s.
+    ///
+    /// # Errors
+    /// [`Stopped`] where the accelerations there are not finite.
+    fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped>;
+
+    /// Takes a step towards a time ahead, and returns the time reached, s.
+    ///
+    /// # Errors
+    /// [`Stopped`] where the motion grows from step to step or no step meets the tolerance.
+    fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped>;
+
+    /// Motion at the time reached.
+    fn motion(&self) -> &[f64];
+
+    /// Motion at a time within the last step.
+    fn interpolate(&self, t: f64, motion: &mut [f64]);
+
+    /// What was done so far.
+    fn statistics(&self) -> Statistics;
+}
+
+/// Times ahead of a step, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ahead {
+    /// The next result: a method with constant steps ends a step there, others interpolate.
+    pub result: f64,
+    /// The next time that no step may pass; infinite without one.
+    pub stop: f64,
+}
+
+/// A stepper by the one that it holds.
+macro_rules! forward {
+    ($stepper:ident) => {
+        impl Stepper for $stepper<'_> {
+            fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
+                self.0.start(t, motion)
+            }
+
+            fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
+                self.0.step(ahead)
+            }
+
+            fn motion(&self) -> &[f64] {
+                self.0.motion()
+            }
+
+            fn interpolate(&self, t: f64, motion: &mut [f64]) {
+                self.0.interpolate(t, motion);
+            }
+
+            fn statistics(&self) -> Statistics {
+                self.0.statistics()
+            }
+        }
+    };
+}
+
+pub(super) use forward;

@@ -1,0 +1,32 @@
+//! Times that no step passes: between them the drives' motions are smooth.
+
+use crate::dyn_crane::DynModel;
+
+/// Times within a run, in order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Stops(Vec<f64>);
+
+impl Stops {
+    /// Times nearer than this, as a part of the run, are one: no step is as short.
+    const NEAR: f64 = 1e-9;
+
+    /// Where pieces of the motions of some cranes begin and end, within a run of so many seconds.
+    pub fn of<'a>(cranes: impl IntoIterator<Item = &'a dyn DynModel>, duration: f64) -> Self {
+        let mut times = Vec::new();
+        for crane in cranes {
+            let count = crane.description().drives.iter().map(|drive| drive.pieces).sum();
+            let mut pieces = vec![[f64::NAN; 2]; count];
+            crane.drive_pieces(&mut pieces);
+            let near = Self::NEAR * duration;
+            times.extend(pieces.into_iter().flatten().filter(|time| *time > near && *time < duration - near));
+        }
+        times.sort_by(f64::total_cmp);
+        times.dedup_by(|later, earlier| *later - *earlier < Self::NEAR * duration);
+        Self(times)
+    }
+
+    /// The first after a time, s; infinite without one.
+    pub fn after(&self, t: f64) -> f64 {
+        self.0.get(self.0.partition_point(|stop| *stop <= t)).copied().unwrap_or(f64::INFINITY)
+    }
+}

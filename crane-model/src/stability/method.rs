@@ -1,0 +1,17 @@
+//! The stability functions of the methods.
+
+use super::StabilityFunction::{self, Backward, Rational};
+use crate::dynamics::{Method, dormand_prince, rk4, rosenbrock};
+
+impl Method {
+    /// R(z), by which a step multiplies a small motion; of an implicit method with the exact Jacobian. Of backward differences that of
+    /// order 2, to which they return where a motion grows at a higher one.
+    pub const fn stability(self) -> StabilityFunction {
+        match self {
+            Method::Rk4 => Rational { numerator: &rk4::STABILITY, denominator: &[1.0] },
+            Method::DormandPrince => Rational { numerator: &dormand_prince::STABILITY, denominator: &[1.0] },
+            Method::Rosenbrock => Rational { numerator: &rosenbrock::NUMERATOR, denominator: &rosenbrock::DENOMINATOR },
+            Method::Bdf => Backward,
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Static equilibrium: Newton's method, and continuation where that fails.
+
+use nalgebra::{DVector, SVector};
+
+use super::{
+    Equilibrium, Settings, Status,
+    balance::Balance,
+    continuation, guess_dyn, newton,
+    tangent::{Tangent, stiffness_at},
+};
+use crate::{
+    CoordinateKind, Statics,
+    dyn_crane::{DynStatics, Instance},
+};
+
+/// Solves `∂E_p/∂q = 0` at t = 0, Eq. (23) with `q̇ = q̈ = 0`, from the [`guess`].
+///
+/// Newton–Raphson on `r(q) = ∂E_p/∂q` with `K = ∂²E_p/∂q²`: `q ← q − α K⁻¹ r`, α = 1, halved until the residual falls.
+/// The residual is measured as `‖r/scale‖`, the scale of a translation being the greatest force that any translation
+/// balances at the guess, that of a rotation the greatest moment: N and N m become comparable. Any equilibrium is found,
+/// a stable one or not; the tangent stiffness there tells which.
+///
+/// Where that fails, or leads from a guess that would stand to a pose that would not, the load is applied in steps from
+/// the guess on, and [`Equilibrium::load_steps`] says so. Springs hold the crane at the guess and are taken away as its load
+/// comes on:
+///
+/// ```text
+/// H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0,   λ from 0 to 1
+/// ```
+///
+/// a path without end where potential energy grows with distance from the guess, so that it reaches an equilibrium for
+/// almost every guess. It is followed by arclength, since λ may fall on the way.
+/// S. N. Chow, J. Mallet-Paret, J. A. Yorke, Finding zeroes of maps, Math. Comp. 32 (1978) 887; H. B. Keller, Numerical
+/// solution of bifurcation and nonlinear eigenvalue problems, in Applications of Bifurcation Theory, Academic Press 1977.
+pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> Equilibrium {
+    solve_dyn(&Instance::<N, _>(crane), settings)
+}
+
+/// As [`solve`], of a crane of any size.
+pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
+    search(crane, guess_dyn(crane).into(), settings, &mut |q, out| crane.static_residual(q, out))
+}
+
+/// As [`solve`], with the drives where their motions are at time `t`, s, and from the pose `q`: where the crane would rest
+/// if its motion froze. Poses along a manoeuvre, each from the one before.
+pub fn solve_at<const N: usize, C: Statics<N>>(
+    crane: &C,
+    t: f64,
+    q: SVector<f64, N>,
+    settings: &Settings,
+) -> Equilibrium {
+    solve_at_dyn(&Instance::<N, _>(crane), t, q.as_slice(), settings)
+}
+
+/// As [`solve_at`], of a crane of any size.
+pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settings) -> Equilibrium {
+    let drives = &crane.description().drives;
+    let mut motions = vec![[0.0; 2]; drives.len()];
+    let (mut rates, mut forces) = (vec![0.0; q.len()], vec![0.0; q.len()]);
+    // Adds forces of the drives' springs: at the prescribed rates the dampers are at rest.
+    let mut add_springs = |sign: f64, t: f64, q: &[f64], out: &mut [f64]| {
+        crane.drive_motions(t, &mut motions);
+        for (drive, [_, rate]) in drives.iter().zip(&motions) {
+            rates[drive.coordinate] = *rate;
+        }
+        crane.drive_forces(t, q, &rates, &mut forces);
+        for (out, force) in out.iter_mut().zip(&forces) {
+            *out += sign * force;
+        }
+    };
+    search(crane, DVector::from_column_slice(q), settings, &mut |q, out| {
+        crane.static_residual(q, out);
+        add_springs(1.0, 0.0, q, out);
+        add_springs(-1.0, t, q, out);
+    })
+}
+
+/// Newton's method, then continuation, on any residual with the crane's tangent stiffness.
+fn search(
+    crane: &dyn DynStatics,
+    start: DVector<f64>,
+    settings: &Settings,
+    residual_at: &mut newton::Residual<'_>,
+) -> Equilibrium {
+    let balance = Balance::at(crane, &start);
+    let first = newton::iterate(crane, start.clone(), settings, &balance, residual_at);
+    if settings.load_steps == 0 || !missed(crane, &start, settings, &first) {
+        return first;
+    }
+    let mut load_steps = 0;
+    let mut arrive = |q: DVector<f64>, steps: usize, residual_at: &mut newton::Residual<'_>| {
+        load_steps = steps;
+        let found = newton::iterate(crane, q, settings, &balance, residual_at);
+        found.is_stable().then_some(found)
+    };
+    let found = continuation::follow(crane, &start, settings.load_steps, &balance, residual_at, &mut arrive);
+    found.map_or(first, |found| Equilibrium { load_steps: Some(load_steps), ..found })
+}
+
+/// Rotation by which an equilibrium may differ from the guess and still be the one that was meant, rad.
+const MEANT: f64 = 0.5;
+
+/// Whether there may be a stable equilibrium that Newton's method did not find: no equilibrium was found, or an unstable one
+/// far from the guess or from a guess that is stable itself.
+fn missed(crane: &dyn DynStatics, start: &DVector<f64>, settings: &Settings, found: &Equilibrium) -> bool {
+    let description = crane.description();
+    let meant = || {
+        let kinds = description.coordinates.iter().map(|coordinate| coordinate.kind);
+        let turned = kinds.zip(start.iter().zip(&found.q)).filter(|(kind, _)| *kind == CoordinateKind::Rotation);
+        turned.map(|(_, (from, to))| (to - from).abs()).fold(0.0, f64::max) < MEANT
+    };
+    let stable = || {
+        Tangent::new(&stiffness_at(crane, start), description)
+            .is_some_and(|tangent| tangent.status(description) == Status::Converged)
+    };
+    match found.status {
+        Status::Converged | Status::Overflow => false,
+        // Also said of poses where no step helps; at an equilibrium it is the truth.
+        Status::Singular { .. } => !found.at_rest(settings),
+        Status::NotConverged => true,
+        Status::Unstable { .. } => !meant() || stable(),
+    }
+}
