@@ -38,7 +38,7 @@
 //   factorise                           95       711
 //   solve                               61       138
 //   joint_impedances                     0         7
-//   static_residual                     53       392
+//   static_residual                     53       364
 //   tangent_stiffness                   51       338
 //   linearise                          165       793
 
