@@ -1,9 +1,37 @@
-//! A crane from a spec without rustc: its functions as bytecode, for one state or eight at a time.
+//! A crane from a spec without rustc, for any number of coordinates: its functions as bytecode, for one state or eight at a time.
+//!
+//! ```
+//! use crane_codegen::SourceFile;
+//! use crane_live::LiveCrane;
+//! use crane_model::dyn_crane::{DynDynamics, DynModel};
+//!
+//! let text = "
+//! format: 1
+//! name: pendulum
+//! links:
+//!   - name: rod
+//!     joint: {revolute: {axis: y}}
+//!     mass: 2
+//!     com: [0.5, 0, 0]
+//!     inertia: {Ixx: 0.001, Iyy: 0.05, Izz: 0.05}
+//! ";
+//! let crane = LiveCrane::from_spec(&SourceFile::new("pendulum.yaml", text))?;
+//! let mut acceleration = vec![0.0; crane.size()];
+//! crane.forward_dynamics(0.0, &[0.0], &[0.0], &mut acceleration);
+//! // m g l / (J + m l²)
+//! assert!((acceleration[0] - 2.0 * 9.81 * 0.5 / (0.05 + 2.0 * 0.25)).abs() < 1e-12);
+//! # Ok::<(), crane_codegen::Diagnostics>(())
+//! ```
 
 pub mod assemble;
 pub mod bytecode;
+mod closing;
+mod crane;
+mod describe;
 pub mod layout;
+mod library;
 pub mod machine;
 mod routine;
 
+pub use crane::LiveCrane;
 pub use routine::Routine;

@@ -1,0 +1,67 @@
+//! Results from the factors that functions leave where a result is too long to be written out.
+
+use crane_codegen::symbolic::Point;
+use crane_model::nalgebra::{Matrix4, Vector3};
+use crane_model::support::fma;
+
+/// A full mass matrix from axes, linear and angular momenta and ways to the next point of all coordinates, in the order of
+/// operations of compiled cranes: `a_ij = n_i · L_j` where coordinate i turns, `n_i · P_j` where it slides, L_j about the point
+/// of i. The angular momenta are moved on the way.
+pub fn mass_matrix(points: &[Point], columns: &mut [f64], out: &mut [f64]) {
+    let n: usize = points.iter().map(|point| point.coordinates).sum();
+    let (axes, rest) = columns.split_at_mut(3 * n);
+    let (linear, rest) = rest.split_at_mut(3 * n);
+    let (angular, ways) = rest.split_at_mut(3 * n);
+    let (axes, linear, ways) = (axes.as_chunks::<3>().0, linear.as_chunks::<3>().0, ways.as_chunks::<3>().0);
+    let angular = angular.as_chunks_mut::<3>().0;
+    let mut end = n;
+    for point in points.iter().rev() {
+        let begin = end - point.coordinates;
+        for i in (begin..end).rev() {
+            for j in i..n {
+                if j > i {
+                    angular[j] = moved(ways[i], linear[j], angular[j]);
+                }
+                let entry = along(axes[i], if point.turns { angular[j] } else { linear[j] });
+                out[i + n * j] = entry;
+                out[j + n * i] = entry;
+            }
+        }
+        end = begin;
+    }
+}
+
+/// `L + way × P`
+fn moved([wx, wy, wz]: [f64; 3], [px, py, pz]: [f64; 3], [lx, ly, lz]: [f64; 3]) -> [f64; 3] {
+    [fma(wy, pz, fma(-wz, py, lx)), fma(wz, px, fma(-wx, pz, ly)), fma(wx, py, fma(-wy, px, lz))]
+}
+
+/// `n · x`
+fn along(n: [f64; 3], x: [f64; 3]) -> f64 {
+    fma(n[0], x[0], fma(n[1], x[1], n[2] * x[2]))
+}
+
+/// `∂²T/∂q_m∂q_n = Ω_m ∂T/∂q_n`, body by body, m ≤ n, from the axes of all coordinates and three rows of every first derivative;
+/// `degrees`: how many coordinates move each body.
+pub fn second_derivatives(degrees: &[usize], coordinates: usize, factors: &[f64], out: &mut [Matrix4<f64>]) {
+    let (axes, first) = factors.split_at(3 * coordinates);
+    let (axes, first) = (axes.as_chunks::<3>().0, first.as_chunks::<12>().0);
+    let mut start = 0;
+    let mut out = out.iter_mut();
+    for &count in degrees {
+        for m in 0..count {
+            for n in m..count {
+                if let Some(place) = out.next() {
+                    *place = turned(Vector3::from(axes[m]), &first[start + n]);
+                }
+            }
+        }
+        start += count;
+    }
+}
+
+/// `ω ×` every column of a matrix of three rows, stored row by row.
+fn turned(axis: Vector3<f64>, rows: &[f64; 12]) -> Matrix4<f64> {
+    let column = |k: usize| axis.cross(&Vector3::new(rows[k], rows[4 + k], rows[8 + k])).push(0.0);
+    Matrix4::from_columns(&[column(0), column(1), column(2), column(3)])
+}

@@ -1,0 +1,426 @@
+//! A crane from a chain, behind the traits that all algorithms use.
+
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crane_codegen::chain::Chain;
+use crane_codegen::symbolic::Shape;
+use crane_codegen::{Diagnostics, SourceFile, compile};
+use crane_model::dyn_crane::{
+    DynBlock, DynCrane, DynDerivatives, DynDynamics, DynEnsemble, DynImplicit, DynLinearise, DynModel, DynStatics,
+    DynSystem,
+};
+use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
+use crane_model::support::lanes::f64x8;
+use crane_model::{Description, ParameterError};
+
+use crate::closing::{mass_matrix, second_derivatives};
+use crate::describe::{describe, refusal};
+use crate::library::{Library, Name};
+use crate::machine::{Arguments, Machine};
+use crate::routine::Routine;
+
+/// A crane of any number of coordinates that is ready without rustc.
+///
+/// What it computes is derived when it is first asked for. Clones share that, and have parameters of their own.
+pub struct LiveCrane {
+    library: Arc<Library>,
+    description: Description,
+    parameters: Vec<f64>,
+    /// Room for a call of every function, kept from the last.
+    rooms: [Mutex<Option<Room>>; Name::ALL.len()],
+}
+
+/// What a call of a function needs besides its arguments.
+struct Room {
+    machine: Machine<f64>,
+    /// For results that go elsewhere than they stand.
+    results: Vec<f64>,
+}
+
+impl LiveCrane {
+    /// The crane of a spec.
+    ///
+    /// # Errors
+    /// All mistakes of the spec at once.
+    pub fn from_spec(source: &SourceFile) -> Result<Self, Diagnostics> {
+        compile::load(source).map(Self::new)
+    }
+
+    /// The crane of a chain, with the parameters of its spec.
+    #[must_use]
+    pub fn new(chain: Chain) -> Self {
+        let (description, parameters) = (describe(&chain), chain.parameter_defaults());
+        Self { library: Arc::new(Library::new(chain)), description, parameters, rooms: no_rooms() }
+    }
+
+    /// The chain that it was made of.
+    #[must_use]
+    pub fn chain(&self) -> &Chain {
+        self.library.chain()
+    }
+
+    /// Calls a function and shows its results; nothing where the scene does not need it.
+    fn call<R>(
+        &self,
+        name: Name,
+        arguments: &Arguments<'_, f64>,
+        show: impl FnOnce(&Routine, &mut [f64]) -> R,
+    ) -> Option<R> {
+        let routine = self.library.routine(name)?;
+        let place = &self.rooms[name as usize];
+        let kept = place.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let mut room = kept.unwrap_or_else(|| self.room(routine));
+        routine.run(&mut room.machine, arguments, &mut room.results);
+        let shown = show(routine, &mut room.results);
+        *place.lock().unwrap_or_else(PoisonError::into_inner) = Some(room);
+        Some(shown)
+    }
+
+    /// Whether all parameters together may have these values.
+    fn check(&self, parameters: &[f64]) -> Result<(), ParameterError> {
+        for (info, value) in self.description.parameters.iter().zip(parameters) {
+            info.check(*value)?;
+        }
+        match self.chain().broken_relation(parameters) {
+            Some(relation) => Err(ParameterError { given: None, refusal: refusal(&relation.refusal) }),
+            None => Ok(()),
+        }
+    }
+
+    /// All parameters, of which the first have these values.
+    fn with_first(&self, values: &[f64]) -> Result<Vec<f64>, ParameterError> {
+        let mut parameters = self.parameters.clone();
+        copy(values, &mut parameters);
+        self.check(&parameters)?;
+        Ok(parameters)
+    }
+
+    fn room(&self, routine: &Routine) -> Room {
+        Room { machine: routine.machine(&self.parameters), results: vec![0.0; routine.results()] }
+    }
+
+    fn scalar(&self, name: Name, arguments: &Arguments<'_, f64>) -> f64 {
+        self.call(name, arguments, |_, results| results.first().copied().unwrap_or(0.0)).unwrap_or(0.0)
+    }
+
+    fn numbers(&self, name: Name, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
+        let called = self.call(name, arguments, |_, results| copy(results, out));
+        if called.is_none() {
+            out.fill(0.0);
+        }
+    }
+
+    fn vectors(&self, name: Name, arguments: &Arguments<'_, f64>, out: &mut [Vector3<f64>]) {
+        let vector = |vector: &[f64; 3]| Vector3::from(*vector);
+        let called = self.call(name, arguments, |_, results| copy_as(results.as_chunks().0, vector, out));
+        if called.is_none() {
+            out.fill(Vector3::zeros());
+        }
+    }
+
+    fn pairs(&self, name: Name, arguments: &Arguments<'_, f64>, out: &mut [[f64; 2]]) {
+        let called = self.call(name, arguments, |_, results| copy_as(results.as_chunks().0, |pair| *pair, out));
+        if called.is_none() {
+            out.fill([0.0; 2]);
+        }
+    }
+
+    fn matrices(&self, name: Name, arguments: &Arguments<'_, f64>, out: &mut [Matrix4<f64>]) {
+        let called = self.call(name, arguments, |_, results| {
+            copy_as(results.as_chunks::<16>().0, |matrix| Matrix4::from_column_slice(matrix), out);
+        });
+        if called.is_none() {
+            out.fill(Matrix4::zeros());
+        }
+    }
+
+    fn over_the_base(&self, name: Name, q: &[f64]) -> Matrix6<f64> {
+        self.call(name, &at(q), |_, results| Matrix6::from_column_slice(results)).unwrap_or_default()
+    }
+}
+
+fn no_rooms() -> [Mutex<Option<Room>>; Name::ALL.len()] {
+    std::array::from_fn(|_| Mutex::new(None))
+}
+
+fn copy(results: &[f64], out: &mut [f64]) {
+    out.iter_mut().zip(results).for_each(|(place, result)| *place = *result);
+}
+
+fn copy_as<T, R>(results: &[T], as_is: impl Fn(&T) -> R, out: &mut [R]) {
+    out.iter_mut().zip(results).for_each(|(place, result)| *place = as_is(result));
+}
+
+/// A pose.
+fn at(q: &[f64]) -> Arguments<'_, f64> {
+    Arguments { q, ..Arguments::none() }
+}
+
+/// A state.
+fn state<'a>(t: f64, q: &'a [f64], v: &'a [f64]) -> Arguments<'a, f64> {
+    Arguments { t, q, v, ..Arguments::none() }
+}
+
+impl Clone for LiveCrane {
+    fn clone(&self) -> Self {
+        Self {
+            library: Arc::clone(&self.library),
+            description: self.description.clone(),
+            parameters: self.parameters.clone(),
+            rooms: no_rooms(),
+        }
+    }
+}
+
+impl fmt::Debug for LiveCrane {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = f.debug_struct("LiveCrane");
+        debug.field("name", &self.description.name).field("parameters", &self.parameters).finish_non_exhaustive()
+    }
+}
+
+impl DynModel for LiveCrane {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn parameter(&self, index: usize) -> f64 {
+        self.parameters.get(index).copied().unwrap_or(f64::NAN)
+    }
+
+    fn transforms(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
+        self.matrices(Name::Transforms, &at(q), out);
+    }
+
+    fn points(&self, q: &[f64], out: &mut [Vector3<f64>]) {
+        self.vectors(Name::Points, &at(q), out);
+    }
+
+    fn point_velocities(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
+        self.vectors(Name::PointVelocities, &state(0.0, q, v), out);
+    }
+
+    fn forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        self.numbers(Name::Forces, &state(t, q, v), out);
+    }
+
+    fn element_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
+        self.numbers(Name::ElementForces, &state(0.0, q, v), out);
+    }
+
+    fn drive_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        self.numbers(Name::DriveForces, &state(t, q, v), out);
+    }
+
+    fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
+        self.vectors(Name::SupportReactions, &state(0.0, q, v), out);
+    }
+
+    fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
+        self.pairs(Name::DriveMotions, &Arguments { t, ..Arguments::none() }, out);
+    }
+
+    fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
+        self.call(Name::PrescribedMotions, &Arguments { t, ..Arguments::none() }, |_, results| {
+            for (drive, [position, rate]) in self.chain().rigid_drives().zip(results.as_chunks().0) {
+                (q[drive.coordinate.0], v[drive.coordinate.0]) = (*position, *rate);
+            }
+        });
+    }
+
+    fn drive_pieces(&self, out: &mut [[f64; 2]]) {
+        self.pairs(Name::DrivePieces, &Arguments::none(), out);
+    }
+
+    fn gravity_energy(&self, q: &[f64]) -> f64 {
+        self.scalar(Name::GravityEnergy, &at(q))
+    }
+
+    fn support_energy(&self, q: &[f64]) -> f64 {
+        self.scalar(Name::SupportEnergy, &at(q))
+    }
+
+    fn element_energy(&self, q: &[f64]) -> f64 {
+        self.scalar(Name::ElementEnergy, &at(q))
+    }
+
+    fn drive_energy(&self, t: f64, q: &[f64]) -> f64 {
+        self.scalar(Name::DriveEnergy, &Arguments { t, ..at(q) })
+    }
+
+    fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        self.scalar(Name::DrivePower, &state(t, q, v))
+    }
+
+    fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        self.scalar(Name::Dissipation, &state(t, q, v))
+    }
+}
+
+impl DynStatics for LiveCrane {
+    fn static_residual(&self, q: &[f64], out: &mut [f64]) {
+        self.numbers(Name::StaticResidual, &at(q), out);
+    }
+
+    fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]) {
+        self.numbers(Name::TangentStiffness, &at(q), out);
+    }
+
+    fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {
+        if self.call(Name::DriveForcesAtRest, &at(q), |_, results| copy(results, out)).is_none() {
+            // At the rates of their motions the dampers rest.
+            let (mut v, mut motions) = (vec![0.0; q.len()], vec![[0.0; 2]; self.description.drives.len()]);
+            self.drive_motions(0.0, &mut motions);
+            for (drive, [_, rate]) in self.description.drives.iter().zip(motions) {
+                v[drive.coordinate] = rate;
+            }
+            self.drive_forces(0.0, q, &v, out);
+        }
+    }
+}
+
+impl DynDynamics for LiveCrane {
+    fn mass_matrix(&self, q: &[f64], out: &mut [f64]) {
+        self.call(Name::MassMatrix, &at(q), |routine, results| match routine.shape() {
+            Shape::Columns { points, .. } => mass_matrix(points, results, out),
+            _ => copy(results, out),
+        });
+    }
+
+    fn bias(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
+        self.numbers(Name::Bias, &state(0.0, q, v), out);
+    }
+
+    fn forward_dynamics(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        self.numbers(Name::ForwardDynamics, &state(t, q, v), out);
+    }
+
+    fn kinetic_energy(&self, q: &[f64], v: &[f64]) -> f64 {
+        self.scalar(Name::KineticEnergy, &state(0.0, q, v))
+    }
+}
+
+impl DynImplicit for LiveCrane {
+    fn system(&self) -> Box<dyn DynSystem + '_> {
+        let ready = |name: Name| {
+            let routine = self.library.routine(name)?;
+            Some((routine, routine.machine(&self.parameters)))
+        };
+        let factors = self.library.routine(Name::Factorise).map_or(0, Routine::results);
+        Box::new(System {
+            factorise: ready(Name::Factorise),
+            solve: ready(Name::Solve),
+            factors: vec![f64::NAN; factors],
+        })
+    }
+
+    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
+        self.pairs(Name::JointImpedances, &Arguments::none(), out);
+    }
+
+    fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64> {
+        self.over_the_base(Name::BaseStiffness, q)
+    }
+
+    fn base_damping(&self, q: &[f64]) -> Matrix6<f64> {
+        self.over_the_base(Name::BaseDamping, q)
+    }
+}
+
+/// A function and room for its calls.
+type Ready<'a, T> = Option<(&'a Routine, Machine<T>)>;
+
+/// Systems with the factors of the last one.
+struct System<'a> {
+    factorise: Ready<'a, f64>,
+    solve: Ready<'a, f64>,
+    factors: Vec<f64>,
+}
+
+impl DynSystem for System<'_> {
+    fn factorise(&mut self, q: &[f64], resistance: &[f64], base: &Matrix6<f64>) {
+        if let Some((routine, machine)) = &mut self.factorise {
+            let arguments = Arguments { resistance, base: base.as_slice(), ..at(q) };
+            routine.run(machine, &arguments, &mut self.factors);
+        }
+    }
+
+    fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+        if let Some((routine, machine)) = &mut self.solve {
+            routine.run(machine, &Arguments { factors: &self.factors, right: r, ..Arguments::none() }, out);
+        }
+    }
+}
+
+impl DynLinearise for LiveCrane {
+    fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
+        self.call(Name::Linearise, &at(q), |_, results| {
+            let mut rest: &[f64] = results;
+            for matrix in [mass, stiffness, damping] {
+                let (own, others) = rest.split_at(matrix.len().min(rest.len()));
+                copy(own, matrix);
+                rest = others;
+            }
+        });
+    }
+}
+
+impl DynEnsemble for LiveCrane {
+    fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
+        let lanes = parameters.iter().map(|values| self.with_first(values)).collect::<Result<Vec<_>, _>>()?;
+        // Lanes that nobody looks at are like this crane.
+        let of = |lane: usize| lanes.get(lane).unwrap_or(&self.parameters);
+        let eight = |index: usize| f64x8::new(std::array::from_fn(|lane| of(lane)[index]));
+        let parameters: Vec<f64x8> = (0..self.parameters.len()).map(eight).collect();
+        let routine = self.library.routine(Name::ForwardDynamics);
+        Ok(Box::new(Block { ready: routine.map(|routine| (routine, routine.machine(&parameters))) }))
+    }
+}
+
+/// Eight cranes.
+struct Block<'a> {
+    ready: Ready<'a, f64x8>,
+}
+
+impl DynBlock for Block<'_> {
+    fn forward_dynamics(&mut self, t: f64, q: &[f64x8], v: &[f64x8], out: &mut [f64x8]) {
+        if let Some((routine, machine)) = &mut self.ready {
+            routine.run(machine, &Arguments { t: f64x8::splat(t), q, v, ..Arguments::none() }, out);
+        }
+    }
+}
+
+impl DynDerivatives for LiveCrane {
+    fn transform_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
+        self.matrices(Name::TransformDerivatives, &at(q), out);
+    }
+
+    fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
+        self.call(Name::TransformSecondDerivatives, &at(q), |routine, results| match routine.shape() {
+            Shape::Turned { degrees, rotations } => second_derivatives(degrees, rotations.len(), results, out),
+            _ => copy_as(results.as_chunks::<16>().0, |matrix| Matrix4::from_column_slice(matrix), out),
+        });
+    }
+}
+
+impl DynCrane for LiveCrane {
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
+        let mut values = self.parameters.clone();
+        if let Some(parameter) = values.get_mut(index) {
+            *parameter = value;
+        }
+        self.set_parameters(&values)
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
+        self.parameters = self.with_first(values)?;
+        // Constants made of parameters stand in the rooms.
+        self.rooms = no_rooms();
+        Ok(())
+    }
+
+    fn boxed_clone(&self) -> Box<dyn DynCrane> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,86 @@
+//! What a live crane says about itself.
+
+use crane_codegen::chain::{self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, SupportKinematics, Value};
+use crane_model::{
+    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, Refusal,
+    SupportInfo,
+};
+
+/// The description of a chain, as the compiler writes it.
+pub fn describe(chain: &Chain) -> Description {
+    let defaults = chain.parameter_defaults();
+    let at_defaults = |value: &Value| value.at(&defaults);
+    let parameters = chain.parameters.iter().map(|parameter| ParameterInfo {
+        name: parameter.name.clone().into(),
+        unit: parameter.unit.clone().into(),
+        about: parameter.about.clone().into(),
+        default: parameter.default,
+        least: parameter.least.as_ref().map_or(Bound::LEAST, bound),
+        greatest: Bound::GREATEST,
+    });
+    let coordinates = chain.coordinates.iter().enumerate().map(|(index, coordinate)| CoordinateInfo {
+        name: coordinate.name.clone().into(),
+        kind: match coordinate.kind {
+            Kind::Translation => CoordinateKind::Translation,
+            Kind::Rotation => CoordinateKind::Rotation,
+        },
+        role: role(chain, index),
+    });
+    let bodies = chain.bodies.iter().enumerate().map(|(index, body)| BodyInfo {
+        name: body.name.clone().into(),
+        link: body.link.clone().into(),
+        mass: body.inertia.as_ref().map_or(0.0, |inertia| at_defaults(&inertia.mass)),
+        length: at_defaults(&body.length),
+        degrees_of_freedom: chain.degrees_of_freedom(BodyId(index)),
+    });
+    let supports = chain.supports.iter().map(|support| SupportInfo {
+        name: support.name.clone().into(),
+        position: support.position.each_ref().map(at_defaults),
+        linear: support.kinematics == SupportKinematics::Linear,
+    });
+    let drives = chain.drives.iter().map(|drive| DriveInfo {
+        coordinate: drive.coordinate.0,
+        start: drive.profile.start(&defaults),
+        pieces: drive.profile.pieces().len(),
+    });
+    Description {
+        name: chain.name.clone().into(),
+        title: chain.title.clone().into(),
+        spec_hash: chain.spec_hash.clone().into(),
+        parameters: parameters.collect(),
+        coordinates: coordinates.collect(),
+        bodies: bodies.collect(),
+        supports: supports.collect(),
+        drives: drives.collect(),
+        points: chain.points.iter().map(|point| point.name.clone().into()).collect(),
+        statics: chain.analyses.statics,
+        guess: chain.guess.iter().copied().collect(),
+        duration: chain.run.duration,
+        step: chain.run.step,
+        output: chain.run.output,
+    }
+}
+
+fn bound(bound: &chain::Bound) -> Bound {
+    Bound { value: bound.value, allowed: bound.allowed, refusal: refusal(&bound.refusal) }
+}
+
+/// What the compiler says of parameters that break a rule.
+pub fn refusal(refusal: &chain::Refusal) -> Refusal {
+    let chain::Refusal { code, title, help } = refusal;
+    Refusal { code: (*code).into(), title: title.clone().into(), help: help.clone().into() }
+}
+
+fn role(chain: &Chain, index: usize) -> CoordinateRole {
+    if chain.base.iter().flatten().any(|id| id.0 == index) {
+        CoordinateRole::Base
+    } else if chain.is_prescribed(CoordinateId(index)) {
+        CoordinateRole::Prescribed
+    } else if chain.drives.iter().any(|drive| drive.coordinate.0 == index) {
+        CoordinateRole::Driven
+    } else if chain.elements.iter().any(|element| element.coordinate.0 == index) {
+        CoordinateRole::Element
+    } else {
+        CoordinateRole::Passive
+    }
+}

@@ -1,0 +1,55 @@
+//! A call in a loop allocates nothing, and a dropped crane leaves nothing.
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynDynamics, DynEnsemble, DynImplicit, DynModel, DynStatics};
+use crane_model::nalgebra::{Matrix6, Vector3};
+use crane_model::support::lanes::f64x8;
+
+fn crane() -> LiveCrane {
+    let path = format!("{}/../../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap();
+    LiveCrane::from_spec(&SourceFile::new(&path, &text)).unwrap()
+}
+
+#[test]
+fn a_second_call_allocates_nothing() {
+    let crane = crane();
+    let n = crane.size();
+    let (q, v) = (crane.description().guess.to_vec(), vec![0.1; n]);
+    let (mut out, mut square) = (vec![0.0; n], vec![0.0; n * n]);
+    let mut points = vec![Vector3::zeros(); crane.description().points.len()];
+    let mut system = crane.system();
+    let mut block = crane.block(&[]).unwrap();
+    let lanes = |x: &[f64]| -> Vec<f64x8> { x.iter().map(|x| f64x8::splat(*x)).collect() };
+    let (q8, v8, mut out8) = (lanes(&q), lanes(&v), lanes(&out));
+    let mut calls = || {
+        crane.forward_dynamics(0.1, &q, &v, &mut out);
+        crane.static_residual(&q, &mut out);
+        crane.tangent_stiffness(&q, &mut square);
+        crane.mass_matrix(&q, &mut square);
+        crane.points(&q, &mut points);
+        crane.dissipation(0.1, &q, &v);
+        system.factorise(&q, &v, &Matrix6::identity());
+        system.solve(&v, &mut out);
+        block.forward_dynamics(0.1, &q8, &v8, &mut out8);
+    };
+    calls();
+    let counted = allocation_counter::measure(calls);
+    assert_eq!(counted.count_total, 0);
+}
+
+#[test]
+fn a_crane_leaves_nothing_behind() {
+    let used = || {
+        let crane = crane();
+        let mut out = vec![0.0; crane.size()];
+        crane.forward_dynamics(0.1, &crane.description().guess, &out.clone(), &mut out);
+        drop(crane.clone());
+    };
+    // What the libraries beneath keep for the process.
+    used();
+    let counted = allocation_counter::measure(used);
+    assert!(counted.count_total > 0);
+    assert_eq!((counted.count_current, counted.bytes_current), (0, 0));
+}
