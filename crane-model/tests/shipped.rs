@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use crane_model::{
+    CraneModel,
     dyn_crane::{self, DynCrane},
     dynamics::{InitialState, Method, Settings, Statistics, rk4, simulate},
     modes,
@@ -22,6 +23,27 @@ fn every_crane_rests_in_a_stable_equilibrium_within_five_steps() {
         let at_rest = modes::undamped(&rig.small_motions_at(&equilibrium.q)).expect("a positive definite mass matrix");
         assert!(at_rest.iter().all(|mode| mode.omega_squared > 0.0), "{name}");
     }
+}
+
+#[test]
+fn live_parameters_keep_the_rules_of_the_spec() {
+    use cranes::knuckle_boom::{Crane, N, PARAMETERS, Params};
+    let refused = Crane::new(Params { payload: -10.0 }).expect_err("a negative mass");
+    let said = "parameter `payload`: the mass of body `load` must not be below zero, and is -10 [E032]; \
+                write 0 or a number above, in kg";
+    assert_eq!(refused.to_string(), said);
+    let mut crane = Crane::default();
+    for payload in [-1e-6, f64::NAN, f64::INFINITY, 1e19, 1e-31] {
+        assert!(CraneModel::<N>::set_parameter(&mut crane, 0, payload).is_err(), "{payload}");
+        assert!(CraneModel::<N>::set_parameters(&mut crane, &[payload]).is_err(), "{payload}");
+        assert_eq!(crane, Crane::default(), "what is refused changes nothing");
+    }
+    // The block hangs on the joint as well, so the load may be gone.
+    for payload in [0.0, 1e-30, 500.0, 1e18] {
+        assert_eq!(CraneModel::<N>::set_parameter(&mut crane, 0, payload), Ok(()));
+        assert_eq!(crane.params().payload, payload);
+    }
+    assert_eq!((PARAMETERS[0].least.value, PARAMETERS[0].least.allowed), (0.0, true));
 }
 
 #[test]

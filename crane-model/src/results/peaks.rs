@@ -1,4 +1,4 @@
-//! What is left of a run when only the greatest and the last values are of interest.
+//! What is left of a run when only the extremes and the last values are of interest.
 
 use crate::{
     Description,
@@ -7,16 +7,24 @@ use crate::{
     results::{Column, Table, drive_effort},
 };
 
-/// Greatest and last values over the samples of a run.
+/// Extremes, signed, with their times, and last values over the samples of a run.
 ///
-/// Columns: of a point `<point>_x_max`, `_y_max`, `_z_max` and `<point>_x_end`, `_y_end`, `_z_end`; of a drive
-/// `<coordinate>_drive_torque_peak` or `_drive_force_peak`; of a support `<support>_reaction_x_peak`, `_y_peak`, `_z_peak`. A
-/// maximum is signed, a peak is the greatest size.
+/// Columns, `_min`, `_min_time`, `_max`, `_max_time` of each: of a point `<point>_x`, `_y`, `_z`; of a drive
+/// `<coordinate>_drive_torque` or `_drive_force`; of a support `<support>_reaction_x`, `_y`, `_z`. At last `_end` of every
+/// coordinate of every point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {
-    highest: Vec<f64>,
+    extremes: Vec<Extremes>,
     last: Vec<f64>,
-    largest: Vec<f64>,
+}
+
+/// The least and the greatest value of one quantity, and when it had them first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Extremes {
+    minimum: f64,
+    time_of_minimum: f64,
+    maximum: f64,
+    time_of_maximum: f64,
 }
 
 impl Peaks {
@@ -24,23 +32,23 @@ impl Peaks {
     pub fn columns(description: &Description) -> Vec<Column> {
         const AXES: [&str; 3] = ["x", "y", "z"];
         let mut table = Table::default();
-        for what in ["max", "end"] {
-            for point in &description.points {
-                for axis in AXES {
-                    table.add(format!("{point}_{axis}_{what}"), "m");
-                }
+        let mut add = |name: String, unit: &'static str| {
+            for (what, unit) in [("min", unit), ("min_time", "s"), ("max", unit), ("max_time", "s")] {
+                table.add(format!("{name}_{what}"), unit);
             }
-        }
+        };
+        let places = || description.points.iter().flat_map(|point| AXES.map(|axis| format!("{point}_{axis}")));
+        places().for_each(|place| add(place, "m"));
         for drive in &description.drives {
             let coordinate = &description.coordinates[drive.coordinate];
-            let effort = drive_effort(&coordinate.name, coordinate.kind);
-            table.add(format!("{effort}_peak"), coordinate.kind.force_unit());
+            add(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
         }
         for support in &description.supports {
             for axis in AXES {
-                table.add(format!("{}_reaction_{axis}_peak", support.name), "N");
+                add(format!("{}_reaction_{axis}", support.name), "N");
             }
         }
+        places().for_each(|place| table.add(format!("{place}_end"), "m"));
         table.columns
     }
 
@@ -50,23 +58,50 @@ impl Peaks {
         self.last.clear();
         self.last.extend(crane.points_at(q).iter().flatten());
         let reactions = crane.support_reactions_at(q, v);
-        let forces = crane.drive_efforts_at(t, q, v).into_iter().chain(reactions.iter().flatten().copied());
-        raise(&mut self.highest, self.last.iter().copied());
-        raise(&mut self.largest, forces.map(f64::abs));
+        let efforts = crane.drive_efforts_at(t, q, v);
+        let values = self.last.iter().copied().chain(efforts).chain(reactions.iter().flatten().copied());
+        for (index, value) in values.enumerate() {
+            match self.extremes.get_mut(index) {
+                Some(extremes) => extremes.widen(t, value),
+                None => self.extremes.push(Extremes::at(t, value)),
+            }
+        }
     }
 
     /// Values in the order of [`Peaks::columns`]; none without samples.
     pub fn values(&self) -> impl Iterator<Item = f64> {
-        self.highest.iter().chain(&self.last).chain(&self.largest).copied()
+        let extremes = self.extremes.iter();
+        let extremes = extremes.flat_map(|e| [e.minimum, e.time_of_minimum, e.maximum, e.time_of_maximum]);
+        extremes.chain(self.last.iter().copied())
     }
 }
 
-/// Raises every number of `greatest` to that of `values`.
-fn raise(greatest: &mut Vec<f64>, values: impl Iterator<Item = f64>) {
-    for (index, value) in values.enumerate() {
-        match greatest.get_mut(index) {
-            Some(greatest) => *greatest = greatest.max(value),
-            None => greatest.push(value),
+impl Extremes {
+    fn at(t: f64, value: f64) -> Self {
+        Self { minimum: value, time_of_minimum: t, maximum: value, time_of_maximum: t }
+    }
+
+    fn widen(&mut self, t: f64, value: f64) {
+        if value < self.minimum {
+            (self.minimum, self.time_of_minimum) = (value, t);
         }
+        if value > self.maximum {
+            (self.maximum, self.time_of_maximum) = (value, t);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extremes_keep_their_signs_and_first_times() {
+        let mut extremes = Extremes::at(0.0, -1.0);
+        for (t, value) in [(1.0, -3.0), (2.0, 2.0), (3.0, -3.0), (4.0, 2.0)] {
+            extremes.widen(t, value);
+        }
+        let expected = Extremes { minimum: -3.0, time_of_minimum: 1.0, maximum: 2.0, time_of_maximum: 2.0 };
+        assert_eq!(extremes, expected);
     }
 }

@@ -85,11 +85,14 @@ pub enum Action {
     Eval(Eval),
     /// A crate for a crane of one's own, begun from a shipped one
     New(New),
-    /// Whether a spec is sound, or every mistake in it
+    /// Check a spec: every mistake in it, or what is implausible
     Check {
         /// The crane's YAML file
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
         spec: PathBuf,
+        /// Fail on warnings, too
+        #[arg(long)]
+        strict: bool,
     },
     /// The chain of a spec: bodies, coordinates, what is left out and why, what each function costs
     Explain {
@@ -116,7 +119,17 @@ pub enum Action {
 impl Action {
     /// The YAML file that is named in place of a crane.
     pub fn spec(&self) -> Option<&Path> {
-        let choice = match self {
+        self.crane()?.file()
+    }
+
+    /// Whether warnings about that file end the command.
+    pub fn is_strict(&self) -> bool {
+        self.crane().is_some_and(|choice| choice.strict)
+    }
+
+    /// The crane of an action that a crane's own program can do.
+    fn crane(&self) -> Option<&Choice> {
+        Some(match self {
             Action::Run(options) | Action::Simulate(options) => &options.analysis.crane,
             Action::Statics(options) | Action::Modes(options) | Action::Info(options) => &options.crane,
             Action::Stability(options) => &options.analysis.crane,
@@ -132,8 +145,7 @@ impl Action {
             | Action::Import(_)
             | Action::List(_)
             | Action::Completions { .. } => return None,
-        };
-        choice.file()
+        })
     }
 }
 
@@ -153,6 +165,9 @@ pub struct Choice {
     /// Crane, or its YAML file; `crane list` shows all cranes
     #[arg(default_value = "eight_link_flexible", value_name = "CRANE")]
     pub name: String,
+    /// Fail where the YAML file has warnings
+    #[arg(long)]
+    pub strict: bool,
     #[command(flatten)]
     pub parameters: Parameters,
     #[command(flatten)]
@@ -193,6 +208,21 @@ pub struct Analysis {
     pub format: Format,
 }
 
+/// A length of time.
+fn seconds(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "write a number of seconds, such as 0.5".to_owned())
+}
+
+/// An error that is allowed.
+fn tolerance(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "write a number, such as 1e-4".to_owned())
+}
+
+/// A number of things, at least one.
+fn count(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| "write a whole number from 1 on, such as 4".to_owned())
+}
+
 /// Step of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
@@ -221,7 +251,7 @@ pub struct Timing {
     #[arg(long, value_name = "NAME")]
     pub method: Option<Method>,
     /// Error that an adaptive method allows a step, m and rad [default: 5e-5]
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = tolerance)]
     pub tolerance: Option<f64>,
     /// Greatest step of rk4, s; `auto`: the largest safe one [default: the crane's]
     #[arg(long, value_name = "SECONDS|auto", allow_negative_numbers = true)]
@@ -233,10 +263,10 @@ pub struct Timing {
     #[arg(long)]
     pub no_verify: bool,
     /// Simulated time, s [default: the crane's]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub duration: Option<f64>,
     /// Interval of recorded results, s [default: the crane's]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub output: Option<f64>,
 }
 
@@ -287,7 +317,7 @@ pub struct Ensemble {
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "table")]
     pub results: Option<PathBuf>,
     /// Threads that run the cranes of the table, eight at a time each [default: all of the machine]
-    #[arg(long, value_name = "COUNT", requires = "table")]
+    #[arg(long, value_name = "COUNT", requires = "table", value_parser = count)]
     pub threads: Option<NonZeroUsize>,
 }
 
@@ -372,7 +402,7 @@ pub struct WorkPrecision {
     #[arg(long, value_name = "COUNTS|none", default_value = "1,2,3,4,6,8,12,20,30")]
     pub sections: Counts,
     /// Simulated time, s [default: the crane's]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub duration: Option<f64>,
     /// Fewer steps and tolerances, each run once: to look whether it works
     #[arg(long)]

@@ -68,7 +68,14 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
     report.fact("cranes per second", rows.len() as f64 / wall, "");
     report.fact("real-time factor", simulated / wall, "");
     report.fact("written to", path.display().to_string(), "");
-    report.print(options.analysis.format, out)
+    report.print(options.analysis.format, out)?;
+    if done == rows.len() {
+        return Ok(());
+    }
+    Err(Problem::failed(
+        format!("{} of {} cranes did not reach the end", rows.len() - done, rows.len()),
+        format!("the column `status` of {} says why", path.display()),
+    ))
 }
 
 /// Settings of all runs, and whose step it is: stable for the first and the last row that rest, the spec's at most unless

@@ -7,7 +7,7 @@ use std::{
 
 use crane_codegen::{
     SourceFile,
-    chain::Chain,
+    chain::{Bound, Chain, Refusal},
     compile, exchange,
     outline::{self, Outline},
     read,
@@ -23,12 +23,13 @@ use crate::{
 
 /// Writes a crane as URDF, with its springs beside it, or as MJCF.
 pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let chain = chain(&options.crane.name, fleet)?;
+    let chain = chain(&options.crane.name, options.crane.strict, fleet)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
     for (index, value) in options.crane.parameters.read(&chain.name, &known)? {
         parameters[index] = value;
     }
+    keep_rules(&chain, &parameters)?;
     let suffix = if options.format == Language::Urdf { "urdf" } else { "xml" };
     let file = options.file.clone().unwrap_or_else(|| PathBuf::from(format!("{}.{suffix}", chain.name)));
     let texts = match options.format {
@@ -56,7 +57,7 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     files::write_text(file, &text)?;
     writeln!(out, "{} written", file.display())?;
     // What the robot's own numbers get wrong is to be mended there.
-    let (Chain { name, bodies, coordinates, .. }, _) = own::load(file)?;
+    let (Chain { name, bodies, coordinates, .. }, _) = own::load(file, false)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
     writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates; `crane run {file}` runs it")?;
     Ok(writeln!(out, "URDF knows no springs and no drives: give `drives:` and `damping:` to what would fall")?)
@@ -69,11 +70,28 @@ pub fn outlines(spec: Option<&str>) -> Value {
     found.into_iter().map(|Outline { link, size, round }| (link, json!({"size": size, "round": round}))).collect()
 }
 
+/// A problem where values of live parameters break a rule of the spec language.
+fn keep_rules(chain: &Chain, values: &[f64]) -> Outcome<()> {
+    let mut bounds = chain.parameters.iter().zip(values).filter_map(|(p, value)| Some((p, p.least.as_ref()?, *value)));
+    let below = bounds.find(|(_, least, value)| *value < least.value || (*value == least.value && !least.allowed));
+    let refused = match below {
+        Some((p, Bound { refusal, .. }, value)) => {
+            let Refusal { code, title, .. } = refusal;
+            Some((format!("parameter `{}`: {title} {value} [{code}]", p.name), refusal))
+        }
+        None => chain.broken_relation(values).map(|broken| {
+            let Refusal { code, title, .. } = &broken.refusal;
+            (format!("{title} [{code}]"), &broken.refusal)
+        }),
+    };
+    refused.map_or(Ok(()), |(title, refusal)| Err(Problem::usage(title, refusal.help.as_str())))
+}
+
 /// The chain of a shipped crane, or of a YAML file.
-fn chain(name: &str, fleet: &Fleet) -> Outcome<Chain> {
+fn chain(name: &str, strict: bool, fleet: &Fleet) -> Outcome<Chain> {
     match fleet.spec(name) {
         Some(text) => compile::load(&SourceFile::new(name, text)).map_err(|mistakes| own::drawn(&mistakes)),
-        None if Path::new(name).extension().is_some() => Ok(own::load(Path::new(name))?.0),
+        None if Path::new(name).extension().is_some() => Ok(own::load(Path::new(name), strict)?.0),
         // Not a crane: told so, with the nearest that is.
         None => {
             fleet.crane(name).and_then(|_| Err(Problem::failed(format!("the spec of {name} is not known here"), "")))

@@ -65,8 +65,8 @@ pub fn main(fleet: &Fleet) -> ExitCode {
 }
 
 fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    if let Some(spec) = arguments.action.as_ref().and_then(Action::spec) {
-        return own::run(spec);
+    if let Some((action, spec)) = arguments.action.as_ref().and_then(|action| Some((action, action.spec()?))) {
+        return own::run(spec, action.is_strict());
     }
     match &arguments.action {
         None if fleet.has(compare::CRANES) => compare::compare(&arguments.compare, fleet, out),
@@ -85,7 +85,7 @@ fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
         Some(Action::Info(options)) => info::info(options, fleet, out),
         Some(Action::Eval(options)) => eval::eval(options, fleet, out),
         Some(Action::New(options)) => new::new(options, fleet, out),
-        Some(Action::Check { spec }) => own::check(spec, out),
+        Some(Action::Check { spec, strict }) => own::check(spec, *strict, out),
         Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), out),
         Some(Action::Export(options)) => exchange::export(options, fleet, out),
         Some(Action::Import(options)) => exchange::import(options, out),

@@ -2,6 +2,8 @@
 
 use std::{io::Write, path::Path};
 
+use crane_codegen::{SourceFile, compile};
+
 use crate::{
     Fleet,
     arguments::New,
@@ -27,11 +29,18 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let name = package.replace('-', "_");
     let from = fleet.crane(&options.from.replace('-', "_"))?;
     let description = from.description();
-    let spec = fleet.spec(&description.name).unwrap_or_default();
+    let spec = renamed(fleet.spec(&description.name).unwrap_or_default(), &description.name, &name);
+    // Before anything is written: not every name of a crate can be that of a crane.
+    compile::load(&SourceFile::new(SPEC, spec.as_str())).map_err(|mistakes| {
+        let said =
+            mistakes.mistakes().first().map(|first| (format!("{}: {}", first.title, first.label), first.help.clone()));
+        let (title, help) = said.unwrap_or_default();
+        Problem::usage(title, help)
+    })?;
 
     if options.folder.exists() {
         return Err(Problem::usage(
-            format!("{} is there already", options.folder.display()),
+            format!("{} already exists", options.folder.display()),
             "name a folder that does not exist yet",
         ));
     }
@@ -48,7 +57,7 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
         let text = values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
         write(&options.folder.join(file), &text)?;
     }
-    write(&options.folder.join(SPEC), &renamed(spec, &description.name, &name))?;
+    write(&options.folder.join(SPEC), &spec)?;
     write(&options.folder.join(SCHEMA.0), SCHEMA.1)?;
     writeln!(
         out,
@@ -72,7 +81,7 @@ fn package(folder: &Path) -> Outcome<String> {
         Ok(name)
     } else {
         Err(Problem::usage(
-            format!("`{name}` is no name for a crate"),
+            format!("`{name}` is not a valid name for a crate"),
             "begin with a small letter and go on with small letters, digits, `-` or `_`, such as my-crane",
         ))
     }

@@ -11,13 +11,19 @@ use crate::{
     extremes::extremes,
     files,
     page::{cases, twin, write},
-    problem::Outcome,
+    problem::{Outcome, Problem},
     simulate::{Trace, file_list, summary, write_figures, write_run},
     statics::{caution_of_runs, deflection, tables},
 };
 
 /// Statics and motion of a crane, beside its rigid twin where there is one; results, figures and the report.
 pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    if options.ensemble.table.is_some() {
+        return Err(Problem::usage(
+            "`run` runs one crane, not those of `--ensemble`",
+            "write `crane simulate` instead",
+        ));
+    }
     let rig = options.analysis.crane.open(fleet)?;
     let (rig, twin) = (rig.as_ref(), twin::rigid(rig.as_ref(), fleet));
     let cases = cases(rig, twin.as_deref());

@@ -10,7 +10,7 @@ use std::{
     time::{Instant, SystemTime},
 };
 
-use crane_codegen::{Diagnostics, SourceFile, build, chain::Chain, compile, explain, picture::picture};
+use crane_codegen::{Checked, Diagnostics, SourceFile, build, chain::Chain, compile, explain, picture::picture};
 
 use crate::{
     files,
@@ -38,15 +38,15 @@ pub fn root() -> &'static Path {
 }
 
 /// Says whether a spec is sound.
-pub fn check(spec: &Path, out: &mut dyn Write) -> Outcome<()> {
-    let Chain { name, bodies, coordinates, spec_hash, .. } = load(spec)?.0;
+pub fn check(spec: &Path, strict: bool, out: &mut dyn Write) -> Outcome<()> {
+    let Chain { name, bodies, coordinates, spec_hash, .. } = load(spec, strict)?.0;
     let (bodies, coordinates) = (bodies.len(), coordinates.len());
     Ok(writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?)
 }
 
 /// Prints the chain of a spec, and draws it where that is asked for.
 pub fn explain(spec: &Path, svg: Option<&Path>, out: &mut dyn Write) -> Outcome<()> {
-    let (chain, _) = load(spec)?;
+    let (chain, _) = load(spec, false)?;
     if let Some(file) = svg {
         files::write_text(file, &picture(&chain))?;
     }
@@ -55,8 +55,8 @@ pub fn explain(spec: &Path, svg: Option<&Path>, out: &mut dyn Write) -> Outcome<
 }
 
 /// Does what the arguments of this process ask for, with the crane of a spec in place of the file's name.
-pub fn run(spec: &Path) -> Outcome<()> {
-    let (Chain { name, spec_hash, .. }, text) = load(spec)?;
+pub fn run(spec: &Path, strict: bool) -> Outcome<()> {
+    let (Chain { name, spec_hash, .. }, text) = load(spec, strict)?;
     let package = format!("crane-{name}-{spec_hash}");
     run_with(&package, spec.as_os_str(), &[(name, text)])
 }
@@ -80,8 +80,8 @@ pub fn typed() -> String {
     })
 }
 
-/// A sound chain and its text, or every mistake.
-pub(super) fn load(spec: &Path) -> Outcome<(Chain, String)> {
+/// A sound chain and its text, or every mistake. Warnings are drawn; `strict`: they are mistakes.
+pub(super) fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
     // The name of a shipped crane, or a file without its extension.
     let meant = root().join("specs").join(spec).with_extension("yaml");
     let help = if meant != spec && meant.exists() {
@@ -90,7 +90,13 @@ pub(super) fn load(spec: &Path) -> Outcome<(Chain, String)> {
         "name a YAML file that describes a crane".to_owned()
     };
     let source = open(spec, &help)?;
-    let chain = compile::load(&source).map_err(|mistakes| drawn(&mistakes))?;
+    let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| drawn(&mistakes))?;
+    if !warnings.is_empty() {
+        let problem = drawn(&warnings);
+        if strict {
+            return Err(problem);
+        }
+    }
     Ok((chain, source.text))
 }
 
@@ -102,7 +108,7 @@ pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
     })
 }
 
-/// Draws mistakes on standard error.
+/// Draws mistakes or warnings on standard error.
 pub(super) fn drawn(mistakes: &Diagnostics) -> Problem {
     // Drawn already; a reader of standard error that has gone misses it.
     let _ = writeln!(std::io::stderr(), "{}", mistakes.to_string().trim_end());

@@ -43,10 +43,17 @@ impl Problem {
 
     /// A file or folder could not be used.
     pub fn file(path: &Path, error: &io::Error) -> Self {
-        Self::failed(
-            format!("cannot use {}: {error}", path.display()),
-            "name a file or folder that exists and is yours to use",
-        )
+        let help = match error.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+                "free some space, or name a place on another disk"
+            }
+            io::ErrorKind::IsADirectory | io::ErrorKind::ResourceBusy => "name a file, not a folder",
+            io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "name a folder, not a file",
+            io::ErrorKind::NotFound => "check the path: a folder on the way to it does not exist",
+            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "name a place where you may write",
+            _ => "check that the path exists and that you may write there",
+        };
+        Self::failed(format!("cannot use {}: {error}", path.display()), help)
     }
 
     /// No stable equilibrium to start from.

@@ -35,26 +35,26 @@ impl<'a> Case<'a> {
         Self { label, rig, equilibrium: rig.equilibrium(&Settings::default()) }
     }
 
-    /// A problem unless the equilibrium is stable, and of a crane whose masses are above zero.
+    /// A problem unless the equilibrium is stable.
     pub fn stable(&self) -> Outcome<()> {
-        let (name, q) = (&self.rig.description().name, &self.equilibrium.q);
-        if !self.equilibrium.is_stable() {
-            return Err(Problem::equilibrium(name, &self.equilibrium));
+        if self.equilibrium.is_stable() {
+            Ok(())
+        } else {
+            Err(Problem::equilibrium(&self.rig.description().name, &self.equilibrium))
         }
-        // A load that pulls upwards rests as well, but moves nowhere.
-        if !q.is_empty() && self.rig.mass_matrix_at(q).cholesky().is_none() {
-            return Err(Problem::failed(
-                format!("{name}: the mass matrix is not positive definite: a mass or an inertia is not above zero"),
-                "give masses in kg and inertias in kg m² above zero; a parameter may have taken one away",
-            ));
-        }
-        Ok(())
     }
 
-    /// Where a run from this equilibrium starts: a problem unless it is stable.
+    /// Where a run from this equilibrium starts: a problem unless it is stable, and the crane can be moved.
     pub fn start(&self) -> Outcome<Start> {
         self.stable()?;
-        Ok(Start { q: self.equilibrium.q.clone(), what: EQUILIBRIUM })
+        let (name, q) = (&self.rig.description().name, &self.equilibrium.q);
+        if !q.is_empty() && self.rig.mass_matrix_at(q).cholesky().is_none() {
+            return Err(Problem::failed(
+                format!("{name}: the mass matrix is not positive definite, so nothing can be moved"),
+                "give every link a mass in kg and an inertia in kg m² that count beside those of the others",
+            ));
+        }
+        Ok(Start { q: q.clone(), what: EQUILIBRIUM })
     }
 
     fn coordinates(&self) -> &[CoordinateInfo] {

@@ -19,7 +19,7 @@ fn text(bytes: &[u8]) -> String {
 
 /// A shipped spec, changed, as a file.
 fn spec(name: &str, from: &str, to: &str) -> String {
-    let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../specs/knuckle_boom.yaml");
+    let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../specs/knuckle_boom.yaml");
     let shipped = fs::read_to_string(shipped).expect("a spec");
     assert!(shipped.contains(from));
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -49,6 +49,28 @@ fn a_sound_spec_is_told_so_and_mistakes_are_drawn() {
 }
 
 #[test]
+fn warnings_are_drawn_and_end_a_strict_command() {
+    let light = spec("light.yaml", "value: 800", "value: 0.8");
+    let warned = "warning[W010]: the mass of body `load` is 0.8 kg";
+    let checked = crane(&["check", &light]);
+    let message = text(&checked.stderr);
+    assert!(
+        checked.status.success() && message.contains(warned) && message.contains("light.yaml: 1 warning"),
+        "{message}"
+    );
+    assert!(text(&checked.stdout).starts_with("knuckle_boom: sound"));
+    for command in ["check", "statics", "run"] {
+        let strict = crane(&[command, "--strict", &light]);
+        assert_eq!(strict.status.code(), Some(1), "{command}: {}", text(&strict.stderr));
+        assert!(
+            text(&strict.stderr).contains(warned) && strict.stdout.is_empty(),
+            "{command}: {}",
+            text(&strict.stderr)
+        );
+    }
+}
+
+#[test]
 fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
     // Another hash, the same crane.
     let file = spec("knuckle.yaml", "title: Planar", "title: A planar");
@@ -72,7 +94,7 @@ fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
 
 #[test]
 fn the_error_of_sections_obeys_the_law_of_a_cantilever() {
-    let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../specs/cantilever.yaml");
+    let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../specs/cantilever.yaml");
     let shipped = fs::read_to_string(shipped).expect("a spec");
     // At the tip alone: a point on an element follows another law.
     let middle = "  - {name: middle, link: beam, at: [1, 0, 0]}\n";

@@ -108,7 +108,7 @@ function deflection(overTime, crane, rigid) {
   });
 }
 
-/** Moments along flexible links now, with the greatest and the least of the run; and over time at the root. */
+/** Moments along flexible links now, with maximum and minimum of the run; and over time at the root. */
 function moments(add, overTime, crane, time) {
   const { bodies } = crane.scene;
   const along = [];
@@ -129,8 +129,8 @@ function moments(add, overTime, crane, time) {
         x: { label: "along the link", unit: "m", values: joints.map((joint) => joint.x) }, y: { label: "moment", unit, factor },
         curves: [
           { label: "now", colour: 0, values: joints.map(({ values }) => values[0]) },
-          { label: "greatest", colour: 1, dashed: true, values: ranges.map((r) => r[1]) },
-          { label: "least", colour: 2, dashed: true, values: ranges.map((r) => r[0]) },
+          { label: "maximum", colour: 1, dashed: true, values: ranges.map((r) => r[1]) },
+          { label: "minimum", colour: 2, dashed: true, values: ranges.map((r) => r[0]) },
         ],
       });
       along.push({ plot, joints });

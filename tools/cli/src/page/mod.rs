@@ -63,6 +63,9 @@ pub fn write(
 ) -> Outcome<()> {
     let data = data(fleet, cases, settings, runs)?.to_string();
     // No text of a spec ends the script element that holds the data.
+    if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        files::folder(folder)?;
+    }
     files::write_text(file, &PAGE.replacen(PLACE, &data.replace('<', "\\u003c"), 1))
 }
 

@@ -37,7 +37,7 @@ use sections::{Limit, Variant, announce, variant};
 pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let choice = &options.analysis.crane;
     let (crane, text) = if let Some(file) = choice.file() {
-        let (Chain { name, .. }, text) = own::load(file)?;
+        let (Chain { name, .. }, text) = own::load(file, options.analysis.crane.strict)?;
         (name, text)
     } else {
         let name = fleet.crane(&choice.name)?.description().name.to_string();
