@@ -111,3 +111,33 @@ fn implicit_methods_hold_their_tolerance_on_the_reference_crane() {
         assert!(tolerance < 1e-4 || 20 * statistics.evaluations < constant.evaluations, "{statistics:?}");
     }
 }
+
+/// Greatest effort of each drive over a run of four seconds, N or N m.
+fn peaks(rig: &dyn DynCrane, method: Method, tolerance: f64) -> Vec<f64> {
+    let start = InitialState::at_rest(rig.equilibrium(&statics::Settings::default()).q);
+    let own = Settings::of(rig.description());
+    let settings = Settings { method, tolerance, duration: own.duration.min(4.0), output: 0.01, ..own };
+    let mut peaks = vec![0.0_f64; rig.description().drives.len()];
+    rig.simulate(&start, &settings, &mut |sample| {
+        for (peak, effort) in peaks.iter_mut().zip(rig.drive_efforts_at(sample.t, sample.q, sample.v)) {
+            *peak = peak.max(effort.abs());
+        }
+        ControlFlow::Continue(())
+    })
+    .expect("a stable run");
+    peaks
+}
+
+#[test]
+fn efforts_of_drives_are_right_to_a_thousandth_at_the_default_tolerance() {
+    for rig in cranes::all() {
+        let description = rig.description();
+        let exact = peaks(rig.as_ref(), Method::Bdf, 1e-8);
+        for method in [Method::Bdf, Method::Rosenbrock] {
+            let found = peaks(rig.as_ref(), method, Settings::of(description).tolerance);
+            let errors: Vec<f64> = found.iter().zip(&exact).map(|(found, exact)| found / exact - 1.0).collect();
+            println!("{} {method}: {errors:?}", description.name);
+            assert!(errors.iter().all(|error| error.abs() < 1e-3), "{} {method}: {errors:?}", description.name);
+        }
+    }
+}

@@ -115,6 +115,12 @@ impl dyn DynCrane + '_ {
         self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
     }
 
+    /// Torques and forces of the drives that hold the crane at rest at t = 0, of rigid drives too: N m and N.
+    pub fn drive_efforts_at_rest(&self, q: &[f64]) -> Vec<f64> {
+        let forces = numbers(self, |out| self.drive_forces_at_rest(q, out));
+        self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
+    }
+
     /// Prescribed positions and rates of the drives.
     pub fn drive_motions_at(&self, t: f64) -> Vec<[f64; 2]> {
         let mut out = vec![[0.0; 2]; self.description().drives.len()];

@@ -1,8 +1,8 @@
 //! Steps as long as a tolerance allows, of methods that look back no further than one step.
 
 use super::{
-    Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped, equations::Equations, motion, state::NotFinite,
-    step::Step, stopped::Place,
+    Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped, equations::Equations, norm::Norm,
+    state::NotFinite, step::Step, stopped::Place,
 };
 
 /// First step tried, s: a crane starts gently, and steps may grow threefold.
@@ -34,25 +34,29 @@ pub(super) trait Formula {
 pub(super) struct Adaptive<'a, F> {
     formula: F,
     equations: Equations<'a>,
-    tolerance: f64,
+    norm: Norm,
     /// Step to try next, s.
     next: f64,
+    /// Whether the step before was tried in vain: a step does not grow right after.
+    again: bool,
     step: Step,
+    /// Motion at the time reached.
+    motion: Vec<f64>,
     steps: usize,
     rejections: usize,
 }
 
 impl<'a, F: Formula> Adaptive<'a, F> {
-    /// With the tolerance of the settings.
-    pub fn new(formula: F, equations: Equations<'a>, settings: &Settings) -> Self {
-        let step = Step::new(equations.len());
-        Self { formula, equations, tolerance: settings.tolerance, next: FIRST, step, steps: 0, rejections: 0 }
+    /// With a measure of errors.
+    pub fn new(formula: F, equations: Equations<'a>, norm: Norm) -> Self {
+        let (step, motion) = (Step::new(equations.len()), vec![0.0; equations.len()]);
+        Self { formula, equations, norm, next: FIRST, again: false, step, motion, steps: 0, rejections: 0 }
     }
 
     /// No step leads on.
-    fn stuck(&self, t: f64, h: f64, motion: &[f64]) -> Stopped {
-        let Equations { crane, .. } = self.equations;
-        let (q, _) = self.equations.state(motion);
+    fn stuck(&self, t: f64, h: f64) -> Stopped {
+        let Equations { crane, n, .. } = self.equations;
+        let q = &self.motion[..n];
         Place { method: F::METHOD, t, h, q, description: crane.description() }.failed(Cause::Tolerance, crane)
     }
 
@@ -60,24 +64,41 @@ impl<'a, F: Formula> Adaptive<'a, F> {
     fn judge(&mut self, tried: Result<(), NotFinite>) -> bool {
         let Step { length, end, error, .. } = &self.step;
         let error = match tried {
-            Ok(()) => motion::size(self.equations.n, end, error) / self.tolerance,
+            Ok(()) => self.norm.size(end, error),
             Err(NotFinite) => f64::INFINITY,
         };
         let ideal = SAFETY * error.powf(-1.0 / F::METHOD.order() as f64);
         let meets = error <= 1.0;
-        let next = length * ideal.clamp(RATIO.0, if meets { RATIO.1 } else { 1.0 });
+        let next = length * ideal.clamp(RATIO.0, if meets && !self.again { RATIO.1 } else { 1.0 });
+        self.again = !meets;
         // A step cut short by a stop says nothing against the length that was meant.
         self.next = if meets && *length < self.next { next.max(self.next) } else { next }.min(LONGEST);
         meets
     }
 }
 
+impl<F: Formula> Adaptive<'_, F> {
+    /// Goes over to the end of a step.
+    fn accept(&mut self, reached: f64) {
+        let n = self.equations.n;
+        self.motion.copy_from_slice(&self.step.end);
+        self.equations.restore(reached, &mut self.motion);
+        self.norm.note(&self.step.end, &self.step.error);
+        let (q, v) = self.motion[..2 * n].split_at(n);
+        self.norm.note_rounding(q, v);
+    }
+}
+
 impl<F: Formula> Stepper for Adaptive<'_, F> {
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
         (self.step.t, self.step.length, self.next) = (t, 0.0, FIRST);
-        self.step.end.copy_from_slice(motion);
-        let [_, slope] = &mut self.step.slopes;
-        self.equations.slope(t, motion, slope).map_err(|NotFinite| self.stuck(t, FIRST, motion))
+        self.motion.copy_from_slice(motion);
+        let Step { end, slopes: [_, slope], .. } = &mut self.step;
+        end.copy_from_slice(motion);
+        self.equations.count(t, end);
+        self.norm.start(&mut self.equations, t, end);
+        self.equations.guides.step_within(t, t + FIRST);
+        self.equations.slope(t, end, slope).map_err(|NotFinite| self.stuck(t, FIRST))
     }
 
     fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
@@ -85,25 +106,32 @@ impl<F: Formula> Stepper for Adaptive<'_, F> {
         let t = self.step.t;
         loop {
             if self.next < LEAST * ahead.result {
-                return Err(self.stuck(t, self.next, &self.step.start));
+                return Err(self.stuck(t, self.next));
             }
             let stops = t + self.next * (1.0 + SLIVER) >= ahead.stop;
             self.step.length = if stops { ahead.stop - t } else { self.next };
+            self.equations.guides.step_within(t, self.step.reached());
             let tried = self.formula.attempt(&mut self.equations, &mut self.step);
             if self.judge(tried) {
                 self.steps += 1;
-                return Ok(if stops { ahead.stop } else { self.step.reached() });
+                let reached = if stops { ahead.stop } else { self.step.reached() };
+                self.accept(reached);
+                return Ok(reached);
             }
             self.rejections += 1;
         }
     }
 
     fn motion(&self) -> &[f64] {
-        &self.step.end
+        &self.motion
     }
 
-    fn interpolate(&self, t: f64, motion: &mut [f64]) {
+    fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
         self.step.at(t, motion);
+        for coordinate in self.equations.guides.coordinates() {
+            motion[self.equations.n + coordinate] = self.step.rate_at(t, self.equations.n, coordinate);
+        }
+        self.equations.restore(t, motion);
     }
 
     fn statistics(&self) -> Statistics {
@@ -113,5 +141,9 @@ impl<F: Formula> Stepper for Adaptive<'_, F> {
             evaluations: self.equations.evaluations,
             factorisations: self.formula.factorisations(),
         }
+    }
+
+    fn efforts(&self) -> Vec<EffortAccuracy> {
+        self.norm.efforts().collect()
     }
 }

@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::{
-    Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped, equations::Equations, rk4, roughness::Roughness,
-    settings::divided, state::NotFinite, stopped::Place,
+    Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped, equations::Equations, guides::Guides, rk4,
+    roughness::Roughness, settings::divided, state::NotFinite, stopped::Place,
 };
 use crate::dyn_crane::DynDynamics;
 
@@ -48,7 +48,7 @@ impl Equal {
 impl<'a> Rk4<'a> {
     /// Steps as the settings want them.
     pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, settings.audit);
+        let equations = Equations::new(crane, Guides::rigid(crane), settings.audit);
         let n = equations.n;
         Self {
             motion: vec![0.0; equations.len()],
@@ -63,7 +63,7 @@ impl<'a> Rk4<'a> {
     }
 
     fn place<'s>(&'s self, t: f64, h: f64) -> Place<'s> {
-        let (q, _) = self.equations.state(&self.motion);
+        let q = &self.motion[..self.equations.n];
         Place { method: Method::Rk4, t, h, q, description: self.equations.crane.description() }
     }
 
@@ -104,6 +104,9 @@ impl Stepper for Rk4<'_> {
             }
             equations.accelerate(t, q, v, out)
         });
+        if advanced.is_ok() {
+            equations.crane.prescribe(t + h, pose, rates);
+        }
         for (integral, increment) in integrals.iter_mut().zip(&rk4::increments(&powers, h)) {
             *integral += increment;
         }
@@ -111,9 +114,8 @@ impl Stepper for Rk4<'_> {
             let place = self.place(t, h);
             return Err(self.rough(&place, |place| place.failed(Cause::Growth, self.equations.crane)));
         }
-        let (q, v) = equations.state(motion);
-        let grows = self.roughness.grows(h, before, &room[..n], v);
-        if grows || !q.iter().all(|x| x.abs() <= self.settings.bound) {
+        let grows = self.roughness.grows(h, before, &room[..n], &motion[n..2 * n]);
+        if grows || !motion[..n].iter().all(|x| x.abs() <= self.settings.bound) {
             let place = self.place(t, h);
             return Err(self.rough(&place, |place| place.furthest(Cause::Growth)));
         }
@@ -127,7 +129,7 @@ impl Stepper for Rk4<'_> {
     }
 
     /// Every result is the end of a step.
-    fn interpolate(&self, _: f64, motion: &mut [f64]) {
+    fn interpolate(&mut self, _: f64, motion: &mut [f64]) {
         motion.copy_from_slice(&self.motion);
     }
 

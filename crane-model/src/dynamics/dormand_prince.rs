@@ -18,10 +18,12 @@
 //! second-order form the stages of q are the rates of the stages, so that no slope of q is computed.
 
 use super::{
-    Method, Settings, Statistics, Stepper, Stopped,
+    EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
     adaptive::{Adaptive, Formula},
     equations::Equations,
+    guides::Guides,
     motion::add_all,
+    norm::Norm,
     state::{NotFinite, State},
     step::Step,
     stepper::{Ahead, forward},
@@ -71,7 +73,7 @@ pub fn step<const N: usize, C: Dynamics<N>>(
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
     let crane = Instance::<N, _>(crane);
-    let mut equations = Equations::new(&crane, false);
+    let mut equations = Equations::new(&crane, Guides::rigid(&crane), false);
     typed::step(&mut equations, t, h, state, &mut Tableau::new(2 * N))
 }
 
@@ -81,8 +83,9 @@ pub struct DormandPrince<'a>(Adaptive<'a, Tableau>);
 impl<'a> DormandPrince<'a> {
     /// With the tolerance of the settings.
     pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, settings.audit);
-        Self(Adaptive::new(Tableau::new(equations.len()), equations, settings))
+        let equations = Equations::new(crane, Guides::rigid(crane), settings.audit);
+        let norm = Norm::new(equations.n, settings.tolerance);
+        Self(Adaptive::new(Tableau::new(equations.len()), equations, norm))
     }
 }
 

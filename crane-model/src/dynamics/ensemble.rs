@@ -12,7 +12,7 @@ use super::{
     stopped::Place, stops::Stops,
 };
 use crate::{
-    Description, Ensemble, LaneDynamics, ParameterError,
+    CoordinateRole, Description, Ensemble, LaneDynamics, ParameterError,
     dyn_crane::{Block, DynBlock, DynCrane, DynModel, Instance, Member},
     support::lanes::f64x8,
 };
@@ -70,9 +70,9 @@ pub fn simulate<const N: usize, C: Ensemble<N>>(
         let mut block = Block::<N, _>(C::lanes(std::array::from_fn(|lane| &cranes[lane.min(cranes.len() - 1)].0)));
         let starts: Vec<InitialState> = cranes.iter().map(|(_, start)| start.into()).collect();
         let models: Vec<_> = cranes.iter().map(|(crane, _)| Instance::<N, _>(crane)).collect();
-        let stops = Stops::of(models.iter().map(|model| model as &dyn DynModel), settings.duration);
-        let batch = Batch::new(&mut block, LANES, starts.iter(), cranes[0].0.description());
-        results.extend(batch.run(settings, &stops, &mut |lane, sample| observe(index * LANES + lane, sample)));
+        let models = models.iter().map(|model| model as &dyn DynModel).collect();
+        let batch = Batch::new(&mut block, LANES, starts.iter(), models);
+        results.extend(batch.run(settings, &mut |lane, sample| observe(index * LANES + lane, sample)));
     }
     results
 }
@@ -98,9 +98,9 @@ pub fn simulate_dyn(
         let starts = members.iter().map(|member| &member.start);
         let models: Vec<_> =
             members.iter().map(|member| with_parameters(crane, &member.parameters)).collect::<Result<_, _>>()?;
-        let stops = Stops::of(models.iter().map(|model| model.as_ref() as &dyn DynModel), settings.duration);
-        let batch = Batch::new(block.as_mut(), lanes, starts, crane.description());
-        results.extend(batch.run(settings, &stops, &mut |lane, sample| observe(index * lanes + lane, sample)));
+        let models = models.iter().map(|model| model.as_ref() as &dyn DynModel).collect();
+        let batch = Batch::new(block.as_mut(), lanes, starts, models);
+        results.extend(batch.run(settings, &mut |lane, sample| observe(index * lanes + lane, sample)));
     }
     Ok(results)
 }
@@ -116,8 +116,12 @@ fn with_parameters(crane: &dyn DynCrane, parameters: &[f64]) -> Result<Box<dyn D
 struct Batch<'a> {
     block: &'a mut dyn DynBlock,
     description: &'a Description,
-    /// Cranes; copies of the last one fill the lanes behind them, and nobody looks at those.
-    count: usize,
+    /// The cranes one by one; copies of the last one fill the lanes behind them, and nobody looks at those.
+    models: Vec<&'a dyn DynModel>,
+    /// Whether rigid drives prescribe coordinates.
+    prescribes: bool,
+    /// Pose and rates of a lane.
+    own: [Vec<f64>; 2],
     /// w.
     vectors: usize,
     q: Vec<f64x8>,
@@ -131,10 +135,11 @@ impl<'a> Batch<'a> {
         block: &'a mut dyn DynBlock,
         lanes: usize,
         starts: impl ExactSizeIterator<Item = &'s InitialState> + Clone,
-        description: &'a Description,
+        models: Vec<&'a dyn DynModel>,
     ) -> Self {
+        let description = models[0].description();
         let (n, vectors) = (description.coordinates.len(), lanes / LANES);
-        let count = starts.len();
+        let prescribes = description.coordinates.iter().any(|info| info.role == CoordinateRole::Prescribed);
         let mut start = [(); 2].map(|()| vec![f64x8::splat(0.0); n * vectors]);
         for (lane, state) in starts.clone().chain(starts.last().into_iter().cycle()).take(lanes).enumerate() {
             for (lanes, numbers) in start.iter_mut().zip([&state.q, &state.v]) {
@@ -146,7 +151,10 @@ impl<'a> Batch<'a> {
         }
         let [q, v] = start.clone();
         let room = vec![f64x8::splat(0.0); rk4::ROOM * q.len()];
-        Self { block, description, count, vectors, q, v, start, room }
+        let own = [vec![0.0; n], vec![0.0; n]];
+        let mut batch = Self { block, description, models, prescribes, own, vectors, q, v, start, room };
+        batch.prescribe(0.0);
+        batch
     }
 
     /// Numbers of a lane.
@@ -177,6 +185,25 @@ impl<'a> Batch<'a> {
         }
     }
 
+    /// Sets the coordinates of rigid drives, crane by crane.
+    fn prescribe(&mut self, t: f64) {
+        if !self.prescribes {
+            return;
+        }
+        let [mut q, mut v] = std::mem::take(&mut self.own);
+        for lane in 0..self.models.len() {
+            self.lane(lane, &self.q, &mut q);
+            self.lane(lane, &self.v, &mut v);
+            self.models[lane].prescribe(t, &mut q, &mut v);
+            for (lanes, own) in [(&mut self.q, &q), (&mut self.v, &v)] {
+                for (vectors, x) in lanes.chunks_mut(self.vectors).zip(own) {
+                    vectors[lane / LANES].as_mut_array()[lane % LANES] = *x;
+                }
+            }
+        }
+        self.own = [q, v];
+    }
+
     fn step(&mut self, t: f64, h: f64) {
         let Self { block, q, v, room, .. } = self;
         let Ok(()) = rk4::advance(t, h, [q, v], room, |_, t, q, v, out| {
@@ -186,14 +213,11 @@ impl<'a> Batch<'a> {
     }
 
     /// Steps are as long as intervals of results and stops allow.
-    fn run(
-        mut self,
-        settings: &Settings,
-        stops: &Stops,
-        observe: &mut dyn FnMut(usize, &Sample<'_>),
-    ) -> Vec<Result<Run, Stopped>> {
-        let run = Run { statistics: Statistics::default(), step: settings.step_taken(), time: 0.0 };
-        let mut results = vec![Ok(run); self.count];
+    fn run(mut self, settings: &Settings, observe: &mut dyn FnMut(usize, &Sample<'_>)) -> Vec<Result<Run, Stopped>> {
+        let run =
+            Run { statistics: Statistics::default(), step: settings.step_taken(), time: 0.0, efforts: Vec::new() };
+        let mut results = vec![Ok(run); self.models.len()];
+        let stops = Stops::of(self.models.iter().copied(), settings.duration);
         let n = self.description.coordinates.len();
         let (mut q, mut v) = (vec![0.0; n], vec![0.0; n]);
         let intervals = divided(settings.duration, settings.output).0;
@@ -224,6 +248,7 @@ impl<'a> Batch<'a> {
         for k in 0..steps {
             let t = begin + h * k as f64;
             self.step(t, h);
+            self.prescribe(t + h);
             if !self.all_bounded(settings.bound) {
                 self.stop_lanes(t, h, settings.bound, results);
             }

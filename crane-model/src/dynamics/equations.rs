@@ -1,25 +1,33 @@
 //! The equations of motion as one of first order, with what is integrated along.
 
-use super::state::{NotFinite, finite};
+use super::{
+    guides::Guides,
+    state::{NotFinite, finite},
+};
 use crate::dyn_crane::DynDynamics;
 
 /// Integrals along an audited motion: work of the drives, energy that the dampers took out.
 const INTEGRALS: usize = 2;
 
-/// A crane and how often it was asked for its accelerations.
+/// A crane, what its motions are counted from, and how often it was asked for its accelerations.
 pub(super) struct Equations<'a> {
     pub crane: &'a dyn DynDynamics,
     /// Number of coordinates.
     pub n: usize,
     audit: bool,
+    /// What the numbers that are integrated count from.
+    pub guides: Guides,
     /// Evaluations of the accelerations so far.
     pub evaluations: usize,
+    /// Pose and rates of the motion that was asked for last.
+    state: Vec<f64>,
 }
 
 impl<'a> Equations<'a> {
     /// Of a crane, with or without integrals.
-    pub fn new(crane: &'a dyn DynDynamics, audit: bool) -> Self {
-        Self { crane, n: crane.size(), audit, evaluations: 0 }
+    pub fn new(crane: &'a dyn DynDynamics, guides: Guides, audit: bool) -> Self {
+        let n = crane.size();
+        Self { crane, n, audit, guides, evaluations: 0, state: vec![0.0; 2 * n] }
     }
 
     /// Numbers of a motion: coordinates, rates and integrals.
@@ -27,9 +35,21 @@ impl<'a> Equations<'a> {
         2 * self.n + if self.audit { INTEGRALS } else { 0 }
     }
 
-    /// Coordinates and rates of a motion.
-    pub fn state<'m>(&self, motion: &'m [f64]) -> (&'m [f64], &'m [f64]) {
-        motion[..2 * self.n].split_at(self.n)
+    /// Counts a motion from the guides.
+    pub fn count(&mut self, t: f64, motion: &mut [f64]) {
+        self.guides.count(self.crane, t, self.n, motion);
+    }
+
+    /// The motion itself, of one that counts from the guides.
+    pub fn restore(&mut self, t: f64, motion: &mut [f64]) {
+        self.guides.add(self.crane, t, 1.0, self.n, motion);
+    }
+
+    /// Pose and rates of a motion that counts from the guides.
+    pub fn state(&mut self, t: f64, motion: &[f64]) -> (&[f64], &[f64]) {
+        self.state.copy_from_slice(&motion[..2 * self.n]);
+        self.guides.add(self.crane, t, 1.0, self.n, &mut self.state);
+        self.state.split_at(self.n)
     }
 
     /// Accelerations at a pose and its rates.
@@ -44,20 +64,31 @@ impl<'a> Equations<'a> {
         [self.crane.drive_power(t, q, v), self.crane.dissipation(t, q, v)]
     }
 
-    /// Slope of a motion: rates, accelerations and powers.
+    /// Slope of a motion that counts from the guides: rates, accelerations and powers.
     pub fn slope(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
-        let n = self.n;
-        let (q, v) = self.state(motion);
-        out[..n].copy_from_slice(v);
-        self.accelerate(t, q, v, &mut out[n..2 * n])?;
+        self.derivative(t, motion, out)?;
         self.powers(t, motion, out);
         Ok(())
     }
 
-    /// Powers of a motion into the last numbers of a slope, where it has them.
-    pub fn powers(&self, t: f64, motion: &[f64], slope: &mut [f64]) {
-        let (q, v) = self.state(motion);
+    /// Rates and accelerations of a motion that counts from the guides.
+    pub fn derivative(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
+        let n = self.n;
+        out[..n].copy_from_slice(&motion[n..2 * n]);
+        self.state(t, motion);
+        self.evaluations += 1;
+        let (q, v) = self.state.split_at(n);
+        let accelerations = &mut out[n..2 * n];
+        self.crane.forward_dynamics(t, q, v, accelerations);
+        self.guides.take_accelerations(self.crane, t, accelerations);
+        finite(accelerations)
+    }
+
+    /// Powers of a motion that counts from the guides into the last numbers of a slope, where it has them.
+    pub fn powers(&mut self, t: f64, motion: &[f64], slope: &mut [f64]) {
         if self.audit {
+            self.state(t, motion);
+            let (q, v) = self.state.split_at(self.n);
             slope[2 * self.n..].copy_from_slice(&self.powers_at(t, q, v));
         }
     }

@@ -13,9 +13,13 @@ pub mod ensemble;
 #[cfg(feature = "std")]
 mod equations;
 #[cfg(feature = "std")]
+mod guides;
+#[cfg(feature = "std")]
 mod method;
 #[cfg(feature = "std")]
 mod motion;
+#[cfg(feature = "std")]
+mod norm;
 pub mod rk4;
 #[cfg(feature = "std")]
 pub mod rosenbrock;
@@ -47,6 +51,8 @@ mod typed;
 pub use constant::Rk4;
 #[cfg(feature = "std")]
 pub use method::{Method, UnknownMethod};
+#[cfg(feature = "std")]
+pub use norm::EffortAccuracy;
 #[cfg(feature = "std")]
 pub use run::{Run, Sample};
 #[cfg(feature = "std")]

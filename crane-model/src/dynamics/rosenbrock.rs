@@ -3,10 +3,11 @@
 //! For `ẏ = f(t, y)` and **any** matrix J a step from y to `y + Σ mᵢ uᵢ` solves, stage by stage,
 //!
 //! ```text
-//! (I/(hγ) − J) uᵢ = f(t + αᵢh, y + Σⱼ aᵢⱼ uⱼ) + Σⱼ (cᵢⱼ/h) uⱼ + γᵢ h ḟ      j < i
+//! (I/(hγ) − J) uᵢ = f(t + αᵢh, y + Σⱼ aᵢⱼ uⱼ) + Σⱼ (cᵢⱼ/h) uⱼ      j < i
 //! ```
 //!
-//! The order does not depend on J: an inexact Jacobian costs accuracy in the stiff parts alone. Six stages, γ = 1/4, order 4,
+//! The order does not depend on J: an inexact Jacobian costs accuracy in the stiff parts alone. Nor does it depend on ∂f/∂t, which is
+//! left out: driven coordinates count from their drives' motions, so that no stiff spring is forced (`guides`). Six stages, γ = 1/4, order 4,
 //! R(∞) = 0, and with `J = ∂f/∂y` A(α)-stable with α = 89.8°: only modes damped by less than 0.35 % can grow, by less than 0.65 %
 //! a step, in steps that do not resolve them.
 //! A. Rahunanthan, D. Stanescu, High-order W-methods, J. Comput. Appl. Math. 233 (2010) 1798; the form
@@ -20,10 +21,12 @@
 //! of half the size, which the O(n) recursion solves (`system.rs`).
 
 use super::{
-    Method, Settings, Statistics, Stepper, Stopped,
+    EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
     adaptive::{Adaptive, Formula},
     equations::Equations,
+    guides::Guides,
     motion::add_all,
+    norm::Norm,
     state::{NotFinite, State},
     step::Step,
     stepper::{Ahead, forward},
@@ -85,18 +88,6 @@ const ERROR: [f64; STAGES] = [
     0.785_172_446_615_594_3,
     0.6,
 ];
-/// γᵢ, of the explicit dependence on time.
-const GAMMAS: [f64; STAGES] = [
-    0.25,
-    0.083_669_118_429_289_4,
-    0.054_471_862_351_635_1,
-    -0.340_228_972_235_586_4,
-    0.033_765_158_833_952_9,
-    -0.090_307_426_761_854,
-];
-/// Part of a step by which the forces' dependence on time is differenced: its error is of second order in it, and rounding one
-/// part in 1e13 of the forces.
-const DIFFERENCE: f64 = 1e-3;
 /// αᵢ.
 const NODES: [f64; STAGES] = [
     0.0,
@@ -118,7 +109,8 @@ pub fn step<const N: usize, C: Implicit<N>>(
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
     let crane = Instance::<N, _>(crane);
-    let mut equations = Equations::new(&crane, false);
+    let guides = Guides::of(&crane);
+    let mut equations = Equations::new(&crane, guides, false);
     typed::step(&mut equations, t, h, state, &mut Stages::new(&crane, 2 * N))
 }
 
@@ -128,8 +120,9 @@ pub struct Rosenbrock<'a>(Adaptive<'a, Stages<'a>>);
 impl<'a> Rosenbrock<'a> {
     /// With the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, settings.audit);
-        Self(Adaptive::new(Stages::new(crane, equations.len()), equations, settings))
+        let equations = Equations::new(crane, Guides::of(crane), settings.audit);
+        let norm = Norm::with_efforts(crane, settings.tolerance);
+        Self(Adaptive::new(Stages::new(crane, equations.len()), equations, norm))
     }
 }
 
@@ -142,36 +135,14 @@ pub(super) struct Stages<'a> {
     stages: [Vec<f64>; STAGES],
     place: Vec<f64>,
     rhs: Vec<f64>,
-    /// `h ∂f/∂t`, and room for it.
-    drift: Vec<f64>,
-    force: Vec<f64>,
 }
 
 impl<'a> Stages<'a> {
     /// Room for motions of so many numbers.
     pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
-        let (zeros, pose) = (|| vec![0.0; len], || vec![0.0; crane.size()]);
+        let zeros = || vec![0.0; len];
         let stages = std::array::from_fn(|_| zeros());
-        Self { system: System::new(crane), stages, place: zeros(), rhs: zeros(), drift: pose(), force: pose() }
-    }
-
-    /// Differences the forces at the beginning of a step by time.
-    fn difference(&mut self, equations: &Equations<'_>, step: &Step) {
-        let (q, v) = equations.state(&step.start);
-        let by = step.length * DIFFERENCE;
-        equations.crane.forces(step.t + by, q, v, &mut self.drift);
-        equations.crane.forces(step.t - by, q, v, &mut self.force);
-        for (drift, before) in self.drift.iter_mut().zip(&self.force) {
-            *drift = (*drift - before) / (2.0 * DIFFERENCE);
-        }
-    }
-
-    /// Solves for a stage.
-    fn solve(&mut self, stage: usize) {
-        for (force, drift) in self.force.iter_mut().zip(&self.drift) {
-            *force = drift * GAMMAS[stage];
-        }
-        self.system.solve(&self.rhs, Some(&self.force), &mut self.stages[stage]);
+        Self { system: System::new(crane), stages, place: zeros(), rhs: zeros() }
     }
 }
 
@@ -181,16 +152,14 @@ impl Formula for Stages<'_> {
     /// Integrals go along; J is zero for them.
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
         let h = step.length;
-        self.system.factorise(equations.state(&step.start).0, h * GAMMA);
-        self.difference(equations, step);
-        self.rhs.copy_from_slice(&step.slopes[0]);
-        self.solve(0);
+        self.system.factorise(equations.state(step.t, &step.start).0, h * GAMMA);
+        self.system.solve(&step.slopes[0], &mut self.stages[0]);
         for i in 1..STAGES {
             self.place.copy_from_slice(&step.start);
             add_all(&mut self.place, 1.0, A[i], self.stages.iter());
             equations.slope(step.t + NODES[i] * h, &self.place, &mut self.rhs)?;
             add_all(&mut self.rhs, h.recip(), C[i], self.stages.iter());
-            self.solve(i);
+            self.system.solve(&self.rhs, &mut self.stages[i]);
         }
         step.end.copy_from_slice(&step.start);
         add_all(&mut step.end, 1.0, &WEIGHTS, self.stages.iter());

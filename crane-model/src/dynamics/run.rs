@@ -1,6 +1,6 @@
 //! What a run shows and what it took.
 
-use super::Statistics;
+use super::{EffortAccuracy, Statistics};
 
 /// One moment of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Sample<'a> {
 }
 
 /// What a run took.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// What it did.
     pub statistics: Statistics,
@@ -26,4 +26,6 @@ pub struct Run {
     pub step: f64,
     /// Time reached, s.
     pub time: f64,
+    /// The drives' efforts and how far off they may be, by a method that looks at them.
+    pub efforts: Vec<EffortAccuracy>,
 }

@@ -79,6 +79,8 @@ pub fn run(
         place.stopped(Cause::MassMatrix, index)
     })?;
     let mut motion = [start.q.as_slice(), &start.v, if settings.audit { &[0.0; 2] } else { &[] }].concat();
+    let (pose, rates) = motion[..2 * n].split_at_mut(n);
+    crane.prescribe(0.0, pose, rates);
     stepper.start(0.0, &motion)?;
     let mut time = 0.0;
     let mut reached = 0.0;
@@ -114,7 +116,7 @@ pub fn run(
         (true, 1..) => time / statistics.steps as f64,
         _ => settings.step_taken(),
     };
-    Ok(Run { statistics, step, time })
+    Ok(Run { statistics, step, time, efforts: stepper.efforts() })
 }
 
 /// Checks that the mass matrix at a pose is positive definite: the recursion of O(n) divides by inertias one by one and would go on

@@ -57,4 +57,19 @@ impl Step {
         add(motion, -theta * theta * rest * self.length, last);
         add(motion, theta * theta * rest * rest, &self.bulge);
     }
+
+    /// Rate of a coordinate of `n` at a time within the step, as the slope of its cubic.
+    ///
+    /// The acceleration of a stiff spring does not enter: what it is off by at the ends, its damper would magnify.
+    pub fn rate_at(&self, t: f64, n: usize, coordinate: usize) -> f64 {
+        let [start, end] = [&self.start, &self.end].map(|motion| motion[coordinate]);
+        let rates = [&self.start, &self.end].map(|motion| motion[n + coordinate]);
+        if self.length <= 0.0 {
+            return rates[1];
+        }
+        let theta = (t - self.t) / self.length;
+        6.0 * theta * (1.0 - theta) * (end - start) / self.length
+            + (1.0 - 4.0 * theta + 3.0 * theta * theta) * rates[0]
+            + (3.0 * theta * theta - 2.0 * theta) * rates[1]
+    }
 }

@@ -1,6 +1,6 @@
 //! What all methods have in common: one step, the motion within it, and what it took.
 
-use super::{Statistics, Stopped};
+use super::{EffortAccuracy, Statistics, Stopped};
 
 /// A motion that proceeds step by step. It holds its crane, its state and all the room that it needs: no step allocates.
 ///
@@ -22,10 +22,15 @@ pub trait Stepper {
     fn motion(&self) -> &[f64];
 
     /// Motion at a time within the last step.
-    fn interpolate(&self, t: f64, motion: &mut [f64]);
+    fn interpolate(&mut self, t: f64, motion: &mut [f64]);
 
     /// What was done so far.
     fn statistics(&self) -> Statistics;
+
+    /// The efforts of the drives so far, where the method looks at them.
+    fn efforts(&self) -> Vec<EffortAccuracy> {
+        Vec::new()
+    }
 }
 
 /// Times ahead of a step, s.
@@ -53,12 +58,16 @@ macro_rules! forward {
                 self.0.motion()
             }
 
-            fn interpolate(&self, t: f64, motion: &mut [f64]) {
+            fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
                 self.0.interpolate(t, motion);
             }
 
             fn statistics(&self) -> Statistics {
                 self.0.statistics()
+            }
+
+            fn efforts(&self) -> Vec<EffortAccuracy> {
+                self.0.efforts()
             }
         }
     };

@@ -2,11 +2,11 @@
 //!
 //! On the second-order form `A q̈ = e + f`, the Jacobian holds stiffness and damping of springs and dampers alone,
 //! `J = [[0, I], [−A⁻¹K̂, −A⁻¹D̂]]`: gravity, velocity forces and the change of A are left out. Then
-//! `(I/c − J) u = (P, G + A⁻¹F)` with `u = (p, w)` comes down to one system with as many unknowns as coordinates, which the
+//! `(I/c − J) u = (P, G)` with `u = (p, w)` comes down to one system with as many unknowns as coordinates, which the
 //! O(n) recursion solves:
 //!
 //! ```text
-//! (A + cD̂ + c²K̂) z = −c² ((D̂ + cK̂) G + K̂ P) + c F,     w = c G + z,     p = c (w + P)
+//! (A + cD̂ + c²K̂) z = −c² ((D̂ + cK̂) G + K̂ P),     w = c G + z,     p = c (w + P)
 //! ```
 
 use nalgebra::Matrix6;
@@ -62,8 +62,8 @@ impl<'a> System<'a> {
         self.factorisations += 1;
     }
 
-    /// u for a right-hand side `(P, G, ·)` and a force F, if there is one.
-    pub fn solve(&mut self, rhs: &[f64], force: Option<&[f64]>, u: &mut [f64]) {
+    /// u for a right-hand side `(P, G, ·)`.
+    pub fn solve(&mut self, rhs: &[f64], u: &mut [f64]) {
         let (c, n) = (self.c, self.joints.len());
         let (p, g) = rhs[..2 * n].split_at(n);
         // D̂ G + K̂ (c G + P), first of single coordinates, then of the base.
@@ -76,8 +76,8 @@ impl<'a> System<'a> {
                 *right += damping[(row, column)] * g + stiffness[(row, column)] * (c * g + p);
             }
         }
-        for (i, right) in self.right.iter_mut().enumerate() {
-            *right = -c * c * *right + c * force.map_or(0.0, |force| force[i]);
+        for right in &mut self.right {
+            *right *= -c * c;
         }
         self.factors.solve(&self.right, &mut self.solution);
         let (of_q, rest) = u.split_at_mut(n);

@@ -31,5 +31,7 @@ pub fn guess_dyn(crane: &(impl DynModel + ?Sized)) -> Vec<f64> {
             *guess += moved;
         }
     }
+    let mut rates = vec![0.0; q.len()];
+    crane.prescribe(0.0, &mut q, &mut rates);
     q
 }

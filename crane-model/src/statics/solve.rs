@@ -9,7 +9,7 @@ use super::{
     tangent::{Tangent, stiffness_at},
 };
 use crate::{
-    CoordinateKind, Statics,
+    CoordinateKind, CoordinateRole, Description, DriveInfo, Statics,
     dyn_crane::{DynStatics, Instance},
 };
 
@@ -54,7 +54,10 @@ pub fn solve_at<const N: usize, C: Statics<N>>(
 
 /// As [`solve_at`], of a crane of any size.
 pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settings) -> Equilibrium {
-    let drives = &crane.description().drives;
+    let Description { drives, coordinates, .. } = crane.description();
+    // Rigid drives take their coordinates along, and leave no residual.
+    let springs = |drive: &&DriveInfo| coordinates[drive.coordinate].role != CoordinateRole::Prescribed;
+    let mut start = DVector::from_column_slice(q);
     let mut motions = vec![[0.0; 2]; drives.len()];
     let (mut rates, mut forces) = (vec![0.0; q.len()], vec![0.0; q.len()]);
     // Adds forces of the drives' springs: at the prescribed rates the dampers are at rest.
@@ -64,11 +67,12 @@ pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settin
             rates[drive.coordinate] = *rate;
         }
         crane.drive_forces(t, q, &rates, &mut forces);
-        for (out, force) in out.iter_mut().zip(&forces) {
-            *out += sign * force;
+        for drive in drives.iter().filter(springs) {
+            out[drive.coordinate] += sign * forces[drive.coordinate];
         }
     };
-    search(crane, DVector::from_column_slice(q), settings, &mut |q, out| {
+    crane.prescribe(t, start.as_mut_slice(), &mut vec![0.0; q.len()]);
+    search(crane, start, settings, &mut |q, out| {
         crane.static_residual(q, out);
         add_springs(1.0, 0.0, q, out);
         add_springs(-1.0, t, q, out);

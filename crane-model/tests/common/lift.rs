@@ -13,7 +13,7 @@ use super::{GRAVITY, coordinate, description};
 
 const COORDINATES: &[CoordinateInfo] = &[coordinate("lift_z", Translation, Driven)];
 static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
-    drives: List::Static(&[DriveInfo { coordinate: 0, start: 0.0, pieces: 0 }]),
+    drives: List::Static(&[DriveInfo { coordinate: 0, start: 0.0, pieces: 1 }]),
     parameters: List::Static(&[ParameterInfo {
         name: Text::Static("height"),
         unit: Text::Static("m"),
@@ -44,6 +44,8 @@ pub struct Lift {
     pub amplitude: f64,
     /// Circular frequency of the support, rad/s.
     pub frequency: f64,
+    /// When the support moves up and back again, s, and how long that takes, instead of all the time.
+    pub bump: Option<[f64; 2]>,
 }
 
 impl Default for Lift {
@@ -56,6 +58,7 @@ impl Default for Lift {
             damping: 40.0,
             amplitude: 0.1,
             frequency: 7.0,
+            bump: None,
         }
     }
 }
@@ -64,6 +67,11 @@ impl Lift {
     /// Starts at a guess of its own.
     pub fn guessed() -> Self {
         Self { description: &GUESSED, ..Self::default() }
+    }
+
+    /// Its support rests, moves up and back again within `duration`, s, and rests.
+    pub fn bumped(begin: f64, duration: f64) -> Self {
+        Self { bump: Some([begin, duration]), ..Self::default() }
     }
 
     /// Position at rest, m.
@@ -84,6 +92,13 @@ impl Lift {
     }
 
     fn support(&self, t: f64) -> [f64; 2] {
+        if let Some([begin, duration]) = self.bump {
+            // a (4 τ (1 − τ))³
+            let tau = ((t - begin) / duration).clamp(0.0, 1.0);
+            let bow = 4.0 * tau * (1.0 - tau);
+            let rate = 3.0 * bow.powi(2) * 4.0 * (1.0 - 2.0 * tau) / duration;
+            return [self.height + self.amplitude * bow.powi(3), self.amplitude * rate];
+        }
         let (sin, cos) = (self.frequency * t).sin_cos();
         [self.height + self.amplitude * sin, self.amplitude * self.frequency * cos]
     }
@@ -116,6 +131,12 @@ impl CraneModel<1> for Lift {
 
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
         out[0] = self.support(t);
+    }
+
+    fn drive_pieces(&self, out: &mut [[f64; 2]]) {
+        if let (Some([begin, duration]), [piece]) = (self.bump, out) {
+            *piece = [begin, begin + duration];
+        }
     }
 
     fn gravity_energy(&self, q: &Vector1<f64>) -> f64 {

@@ -159,8 +159,7 @@ fn pose(cases: &[Case<'_>]) -> Grid {
 
 fn drives(cases: &[Case<'_>]) -> Grid {
     let mut grid = Grid::new("drives", "Torques and forces of the drives", &headers(&["drive"], cases));
-    let efforts: Vec<Vec<f64>> =
-        cases.iter().map(|case| case.rig.drive_efforts_at(0.0, &case.equilibrium.q, &case.rest())).collect();
+    let efforts: Vec<Vec<f64>> = cases.iter().map(|case| case.rig.drive_efforts_at_rest(&case.equilibrium.q)).collect();
     let Some(first) = cases.first() else { return grid };
     for (index, drive) in first.rig.description().drives.iter().enumerate() {
         let coordinate = &first.coordinates()[drive.coordinate];

@@ -41,34 +41,33 @@ impl<'a> Correction<'a> {
     }
 
     /// Begins with the prediction.
-    pub fn predict(&mut self, equations: &Equations<'_>, history: &History) {
+    pub fn predict(&mut self, equations: &mut Equations<'_>, history: &History) {
         history.sum(&[1.0; ORDER + 1], &mut self.end);
         history.sum(&GAMMAS.map(|gamma| gamma / history.h), &mut self.past);
         self.d.fill(0.0);
         self.t = history.t + history.h;
         self.c = history.h / GAMMAS[history.order];
-        self.system.factorise(equations.state(&self.end).0, self.c);
+        equations.guides.step_within(history.t, self.t);
+        self.system.factorise(equations.state(self.t, &self.end).0, self.c);
     }
 
     /// One step of the iteration. Integrals wait for its end.
     pub fn improve(&mut self, equations: &mut Equations<'_>) -> Result<(), NotFinite> {
         let Self { past, end, d, rhs, improvement, .. } = self;
         let n = equations.n;
-        let (q, v) = equations.state(end);
-        rhs[..n].copy_from_slice(v);
-        equations.accelerate(self.t, q, v, &mut rhs[n..2 * n])?;
+        equations.derivative(self.t, end, rhs)?;
         // f − (ψ + d)/c; nothing for integrals.
         add(&mut rhs[..2 * n], -1.0, past);
         add(&mut rhs[..2 * n], -self.c.recip(), d);
         rhs[2 * n..].fill(0.0);
-        self.system.solve(rhs, None, improvement);
+        self.system.solve(rhs, improvement);
         add(end, 1.0, improvement);
         add(d, 1.0, improvement);
         Ok(())
     }
 
     /// Integrals over the step, of what the state found says: at its prediction stiff springs are far from balance.
-    pub fn integrate(&mut self, equations: &Equations<'_>) {
+    pub fn integrate(&mut self, equations: &mut Equations<'_>) {
         equations.powers(self.t, &self.end, &mut self.rhs);
         for i in 2 * equations.n..self.end.len() {
             self.d[i] = (self.rhs[i] - self.past[i]) * self.c;

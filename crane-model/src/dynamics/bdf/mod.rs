@@ -21,10 +21,11 @@ mod correction;
 mod history;
 
 use super::{
-    Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped,
+    Ahead, Cause, EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
     adaptive::{FIRST, LEAST, LONGEST, SAFETY, SLIVER},
     equations::Equations,
-    motion::size,
+    guides::Guides,
+    norm::Norm,
     state::{NotFinite, State},
     stopped::Place,
     typed::{motion_of, state_of},
@@ -71,16 +72,22 @@ pub fn step<const N: usize, C: Implicit<N>>(
     /// What is left of a step, relative to 1 m and rad and to where it leads.
     const EXACT: f64 = 1e-14;
     let crane = Instance::<N, _>(crane);
-    let mut equations = Equations::new(&crane, false);
+    let mut equations = Equations::new(&crane, Guides::of(&crane), false);
     let mut history = History::new(2 * N);
-    history.through(&past.iter().map(motion_of).collect::<Vec<_>>(), t, h);
+    let mut past: Vec<_> = past.iter().map(motion_of).collect();
+    for (k, motion) in past.iter_mut().enumerate() {
+        equations.count(t - h * k as f64, motion);
+    }
+    history.through(&past, t, h);
     let mut correction = Correction::new(&crane, 2 * N);
-    correction.predict(&equations, &history);
+    correction.predict(&mut equations, &history);
+    let norm = Norm::new(N, EXACT);
     let origin = vec![0.0; 2 * N];
     for _ in 0..MANY {
         correction.improve(&mut equations)?;
-        let scale = 1.0 + size(N, &origin, &correction.end);
-        if size(N, &correction.end, &correction.improvement) < EXACT * scale {
+        let scale = 1.0 + EXACT * norm.size(&origin, &correction.end);
+        if norm.size(&correction.end, &correction.improvement) < scale {
+            equations.restore(t + h, &mut correction.end);
             return Ok(state_of(&correction.end));
         }
     }
@@ -126,14 +133,16 @@ pub struct Bdf<'a> {
     correction: Correction<'a>,
     control: Control,
     slope: Vec<f64>,
+    /// Motion at the time reached.
+    motion: Vec<f64>,
     steps: usize,
     rejections: usize,
 }
 
 /// Choice of order and length.
 struct Control {
-    /// What a step may be off.
-    tolerance: f64,
+    /// The measure of what a step may be off.
+    norm: Norm,
     /// Steps since order or length changed.
     alike: usize,
     contraction: Contraction,
@@ -142,7 +151,8 @@ struct Control {
 impl<'a> Bdf<'a> {
     /// With the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, settings.audit);
+        let equations = Equations::new(crane, Guides::of(crane), settings.audit);
+        let norm = Norm::with_efforts(crane, SHARE * settings.tolerance);
         let len = equations.len();
         let contraction = Contraction { ratio: 1.0, h: 1.0, age: Contraction::LIFETIME };
         Self {
@@ -150,8 +160,9 @@ impl<'a> Bdf<'a> {
             crane,
             history: History::new(len),
             correction: Correction::new(crane, len),
-            control: Control { tolerance: SHARE * settings.tolerance, alike: 0, contraction },
+            control: Control { norm, alike: 0, contraction },
             slope: vec![0.0; len],
+            motion: vec![0.0; len],
             steps: 0,
             rejections: 0,
         }
@@ -159,8 +170,8 @@ impl<'a> Bdf<'a> {
 
     /// No step leads on from the last state.
     fn stuck(&self) -> Stopped {
-        let History { t, h, differences: [last, ..], .. } = &self.history;
-        let (q, _) = self.equations.state(last);
+        let History { t, h, .. } = &self.history;
+        let q = &self.motion[..self.equations.n];
         let place = Place { method: Method::Bdf, t: *t, h: *h, q, description: self.crane.description() };
         place.failed(Cause::Tolerance, self.crane)
     }
@@ -178,6 +189,15 @@ impl<'a> Bdf<'a> {
         }
     }
 
+    /// Goes over to the state reached.
+    fn accept(&mut self) {
+        let n = self.equations.n;
+        self.motion.copy_from_slice(&self.history.differences[0]);
+        self.equations.restore(self.history.t, &mut self.motion);
+        let (q, v) = self.motion[..2 * n].split_at(n);
+        self.control.norm.note_rounding(q, v);
+    }
+
     /// Tries a step, and tells whether it meets the tolerance; chooses order and length of the next in any case. `again` is a step
     /// that was shortened already.
     fn attempt(&mut self, again: bool) -> bool {
@@ -186,7 +206,7 @@ impl<'a> Bdf<'a> {
         correction.predict(equations, history);
         let error = if control.converges(equations, history.h, correction) {
             correction.integrate(equations);
-            control.error(equations.n, &correction.end, &correction.d, order)
+            control.error(&correction.end, &correction.d, order)
         } else {
             f64::INFINITY
         };
@@ -194,13 +214,14 @@ impl<'a> Bdf<'a> {
             ideal(error, order).clamp(RATIO.0, if again { AGAIN } else { 1.0 })
         } else {
             history.push(&correction.d);
+            control.norm.note(&correction.end, &correction.d);
             control.alike += 1;
             control.contraction.age += 1;
             if control.alike <= order {
                 return true;
             }
             let orders = (order.max(2) - 1..=(order + 1).min(ORDER)).map(|order| {
-                let error = control.error(equations.n, &correction.end, &history.differences[order + 1], order);
+                let error = control.error(&correction.end, &history.differences[order + 1], order);
                 (ideal(error, order), order)
             });
             let ratio;
@@ -215,8 +236,13 @@ impl<'a> Bdf<'a> {
 
 impl Stepper for Bdf<'_> {
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
-        let slope = self.equations.slope(t, motion, &mut self.slope);
-        self.history.begin(t, motion, &self.slope, FIRST);
+        self.motion.copy_from_slice(motion);
+        let mut start = motion.to_vec();
+        self.equations.count(t, &mut start);
+        self.control.norm.start(&mut self.equations, t, &start);
+        self.equations.guides.step_within(t, t + FIRST);
+        let slope = self.equations.slope(t, &start, &mut self.slope);
+        self.history.begin(t, &start, &self.slope, FIRST);
         self.control.alike = 0;
         slope.map_err(|NotFinite| self.stuck())
     }
@@ -231,7 +257,9 @@ impl Stepper for Bdf<'_> {
                 return Err(self.stuck());
             }
             if failures % PATIENCE == 0 {
-                let slope = self.equations.slope(self.history.t, &self.history.differences[0], &mut self.slope);
+                let History { t, h, differences: [last, ..], .. } = &self.history;
+                self.equations.guides.step_within(*t, t + h);
+                let slope = self.equations.slope(*t, last, &mut self.slope);
                 slope.map_err(|NotFinite| self.stuck())?;
                 self.history.begin_again(&self.slope);
                 self.control.alike = 0;
@@ -242,15 +270,17 @@ impl Stepper for Bdf<'_> {
         if (ahead.stop - self.history.t).abs() < LEAST * ahead.stop {
             self.history.t = ahead.stop;
         }
+        self.accept();
         Ok(self.history.t)
     }
 
     fn motion(&self) -> &[f64] {
-        &self.history.differences[0]
+        &self.motion
     }
 
-    fn interpolate(&self, t: f64, motion: &mut [f64]) {
+    fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
         self.history.at(t, motion);
+        self.equations.restore(t, motion);
     }
 
     fn statistics(&self) -> Statistics {
@@ -261,6 +291,10 @@ impl Stepper for Bdf<'_> {
             factorisations: self.correction.system.factorisations,
         }
     }
+
+    fn efforts(&self) -> Vec<EffortAccuracy> {
+        self.control.norm.efforts().collect()
+    }
 }
 
 impl Control {
@@ -269,7 +303,7 @@ impl Control {
         let mut before = None;
         for _ in 0..NEWTON {
             let Ok(()) = correction.improve(equations) else { return false };
-            let size = size(equations.n, &correction.end, &correction.improvement) / self.tolerance;
+            let size = self.norm.size(&correction.end, &correction.improvement);
             let ratio = before.map_or(self.contraction.expected(h), |before| size / before);
             if before.is_some() {
                 self.contraction = Contraction { ratio, h, age: 0 };
@@ -286,8 +320,8 @@ impl Control {
     }
 
     /// Error of a step of some order to `end`, with `∇ᵏ⁺¹` of that order, in units of what a step is allowed.
-    fn error(&self, n: usize, end: &[f64], next: &[f64], order: usize) -> f64 {
-        size(n, end, next) / self.tolerance / (order + 1) as f64
+    fn error(&self, end: &[f64], next: &[f64], order: usize) -> f64 {
+        self.norm.size(end, next) / (order + 1) as f64
     }
 }
 

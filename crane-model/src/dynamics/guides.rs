@@ -1,0 +1,146 @@
+//! Motions of the drives, from which driven coordinates are counted.
+//!
+//! A stiff drive follows its prescribed motion `p(t)` closely, `q = p + u`, and its effort `−s u − d u̇` is made of what is left.
+//! Any error of q, however small, is multiplied by the stiffness; so implicit methods integrate u, and `q = p + u` holds at every
+//! stage and wherever a result is interpolated. Then a stiff drive is not forced at all: what drives u are accelerations `−p̈`,
+//! beside which stiffness does not count. The deviation of a rigid drive is zero, by every method.
+
+use crate::{CoordinateRole, Description, dyn_crane::DynModel};
+
+/// Coordinates that count from the motions of their drives.
+pub(super) struct Guides {
+    guided: Vec<Guided>,
+    /// `p`, `ṗ` of all drives at the time asked for last, and at two times near it.
+    motions: Vec<[f64; 2]>,
+    near: [Vec<[f64; 2]>; 2],
+    /// The step that is taken, s.
+    within: [f64; 2],
+}
+
+/// A coordinate that counts from a motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Guided {
+    pub coordinate: usize,
+    /// Place of its drive.
+    drive: usize,
+    /// Whether the drive is rigid.
+    rigid: bool,
+}
+
+impl Guides {
+    /// Part of a step by which rates are differenced: the error is of second order in it.
+    const DIFFERENCE: f64 = 1e-3;
+    /// Least time between rates that are differenced, s: rounding of a rate leaves 1e-8 m/s² or rad/s².
+    const LEAST: f64 = 1e-8;
+
+    /// All driven coordinates, unless the rate of a motion jumps: a coordinate that gives way does not follow a jump.
+    pub fn of(crane: &dyn DynModel) -> Self {
+        let jumps = jumps(crane);
+        Self::new(crane, |drive, rigid| rigid || !jumps[drive])
+    }
+
+    /// The coordinates of rigid drives alone.
+    pub fn rigid(crane: &dyn DynModel) -> Self {
+        Self::new(crane, |_, rigid| rigid)
+    }
+
+    fn new(crane: &dyn DynModel, counts: impl Fn(usize, bool) -> bool) -> Self {
+        let Description { drives, coordinates, .. } = crane.description();
+        let guided = drives.iter().enumerate().map(|(drive, info)| {
+            let rigid = coordinates[info.coordinate].role == CoordinateRole::Prescribed;
+            Guided { coordinate: info.coordinate, drive, rigid }
+        });
+        let guided = guided.filter(|guided| counts(guided.drive, guided.rigid)).collect();
+        let motions = vec![[0.0; 2]; drives.len()];
+        Self { guided, near: [motions.clone(), motions.clone()], motions, within: [0.0; 2] }
+    }
+
+    /// The coordinates that count from a motion.
+    pub fn coordinates(&self) -> impl Iterator<Item = usize> {
+        self.guided.iter().map(|guided| guided.coordinate)
+    }
+
+    /// Says that a step goes from `begin` to `end`, s.
+    pub fn step_within(&mut self, begin: f64, end: f64) {
+        self.within = [begin, end];
+    }
+
+    /// Counts a motion of `n` coordinates from the drives' motions.
+    pub fn count(&mut self, crane: &dyn DynModel, t: f64, n: usize, motion: &mut [f64]) {
+        self.add(crane, t, -1.0, n, motion);
+        for guided in self.guided.iter().filter(|guided| guided.rigid) {
+            motion[guided.coordinate] = 0.0;
+            motion[n + guided.coordinate] = 0.0;
+        }
+    }
+
+    /// Adds `sign (p, ṗ)` to a motion of `n` coordinates.
+    pub fn add(&mut self, crane: &dyn DynModel, t: f64, sign: f64, n: usize, motion: &mut [f64]) {
+        if self.guided.is_empty() {
+            return;
+        }
+        crane.drive_motions(t, &mut self.motions);
+        for guided in &self.guided {
+            let [position, rate] = self.motions[guided.drive];
+            motion[guided.coordinate] += sign * position;
+            motion[n + guided.coordinate] += sign * rate;
+        }
+    }
+
+    /// Takes `p̈` from accelerations; it is differenced on this side of the ends of the step, where a motion may be less smooth.
+    pub fn take_accelerations(&mut self, crane: &dyn DynModel, t: f64, accelerations: &mut [f64]) {
+        if self.guided.is_empty() {
+            return;
+        }
+        let [begin, end] = self.within;
+        let by = ((end - begin) * Self::DIFFERENCE).max(Self::LEAST);
+        // Weights of the rates at three times; in the middle of the step the first does not count.
+        let (shifts, weights) = if t - by < begin {
+            ([by, 2.0 * by], [-3.0, 4.0, -1.0])
+        } else if t + by > end {
+            ([-by, -2.0 * by], [3.0, -4.0, 1.0])
+        } else {
+            ([by, -by], [0.0, 1.0, -1.0])
+        };
+        crane.drive_motions(t, &mut self.motions);
+        for (shift, near) in shifts.iter().zip(&mut self.near) {
+            crane.drive_motions(t + shift, near);
+        }
+        for guided in &self.guided {
+            let rates = [&self.motions, &self.near[0], &self.near[1]].map(|motions| motions[guided.drive][1]);
+            let sum: f64 = rates.iter().zip(weights).map(|(rate, weight)| rate * weight).sum();
+            let acceleration = &mut accelerations[guided.coordinate];
+            *acceleration = if guided.rigid { 0.0 } else { *acceleration - sum / (2.0 * by) };
+        }
+    }
+}
+
+/// Whether the rate of each drive's motion jumps where one of its pieces begins or ends.
+fn jumps(crane: &dyn DynModel) -> Vec<bool> {
+    /// Times beside a jump, s: no motion of a crane changes its rate by itself in so short a time.
+    const BESIDE: f64 = 1e-7;
+    /// A change of rate is a jump where it is so many times what the motion does beside it.
+    const STEEP: f64 = 10.0;
+    /// Rates below this, m/s and rad/s, are rounding.
+    const REST: f64 = 1e-12;
+    let drives = &crane.description().drives;
+    let mut pieces = vec![[f64::NAN; 2]; drives.iter().map(|drive| drive.pieces).sum()];
+    crane.drive_pieces(&mut pieces);
+    let mut rest = pieces.as_slice();
+    let own = drives.iter().map(|drive| {
+        let (own, others) = rest.split_at(drive.pieces);
+        rest = others;
+        own.as_flattened()
+    });
+    let mut motions = vec![[0.0; 2]; drives.len()];
+    let mut rate = |drive: usize, t: f64| {
+        crane.drive_motions(t, &mut motions);
+        motions[drive][1]
+    };
+    let mut jumps_at = |drive: usize, t: f64| {
+        let [far_before, before, after, far_after] = [-2.0, -1.0, 1.0, 2.0].map(|k| rate(drive, t + k * BESIDE));
+        let beside = (far_after - after).abs() + (before - far_before).abs();
+        (after - before).abs() > STEEP * beside + REST
+    };
+    own.enumerate().map(|(drive, times)| times.iter().any(|&t| jumps_at(drive, t))).collect()
+}

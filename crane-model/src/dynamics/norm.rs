@@ -1,0 +1,180 @@
+//! How large an error of a motion is, in units of the tolerance.
+
+use super::equations::Equations;
+use crate::{CoordinateKind, dyn_crane::DynImplicit};
+
+/// What an error of a rate counts against one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
+const RATE: f64 = 0.2;
+/// Part of a drive's effort that counts as much as an error of 1 m or rad.
+const EFFORT: f64 = 20.0;
+/// Least scale of an effort, as a part of the greatest force or moment by which the crane's weight acts on a coordinate.
+const LEAST: f64 = 0.01;
+/// Stiffness over the scale of an effort that nothing else is known of, 1/m or 1/rad.
+const UNKNOWN: f64 = 2e3;
+/// Roundings of a coordinate and of the sums that it goes through.
+const ROUNDINGS: f64 = 4.0;
+/// How much stages that build on each other magnify rounding at most: their coefficients are up to 40.
+const MAGNIFIED: f64 = 1e3;
+
+/// The measure of errors: of coordinates, rates and the efforts of drives.
+pub(super) struct Norm {
+    n: usize,
+    /// Error that a step may make, m and rad.
+    tolerance: f64,
+    efforts: Vec<Effort>,
+}
+
+/// The effort of a drive, `−s u − d u̇` with the deviation u from its motion.
+#[derive(Clone, Copy, Debug)]
+struct Effort {
+    coordinate: usize,
+    /// s and d.
+    stiffness: f64,
+    damping: f64,
+    /// What errors are measured by.
+    scale: f64,
+    /// Greatest so far.
+    peak: f64,
+    /// Greatest error of a step so far, and what rounding leaves.
+    error: f64,
+    rounding: f64,
+}
+
+/// The effort of a drive over a run, and how far off it may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EffortAccuracy {
+    /// Its coordinate.
+    pub coordinate: usize,
+    /// Greatest effort at the end of a step, N or N m.
+    pub peak: f64,
+    /// Estimated error, N or N m.
+    pub error: f64,
+}
+
+impl Norm {
+    /// Of coordinates and rates alone.
+    pub fn new(n: usize, tolerance: f64) -> Self {
+        Self { n, tolerance, efforts: Vec::new() }
+    }
+
+    /// Also of the drives' efforts, of a motion that counts from the drives' motions.
+    pub fn with_efforts(crane: &dyn DynImplicit, tolerance: f64) -> Self {
+        let n = crane.size();
+        let mut impedances = vec![[0.0; 2]; n];
+        crane.joint_impedances(&mut impedances);
+        let effort = |coordinate: usize| {
+            let [stiffness, damping] = impedances[coordinate];
+            Effort { coordinate, stiffness, damping, scale: 0.0, peak: 0.0, error: 0.0, rounding: 0.0 }
+        };
+        let drives = crane.description().drives.iter().map(|drive| effort(drive.coordinate));
+        let drives = drives.filter(|effort| effort.stiffness > 0.0);
+        Self { n, tolerance, efforts: drives.collect() }
+    }
+
+    /// Sets out from a pose: the crane's weight there says what efforts are to be expected.
+    pub fn start(&mut self, equations: &mut Equations<'_>, t: f64, motion: &[f64]) {
+        if self.efforts.is_empty() {
+            return;
+        }
+        let (crane, n) = (equations.crane, self.n);
+        let mut weight = vec![0.0; n];
+        let (q, v) = equations.state(t, motion);
+        crane.bias(q, &vec![0.0; n], &mut weight);
+        let (q, v) = (q.to_vec(), v.to_vec());
+        let coordinates = &crane.description().coordinates;
+        let greatest = |kind: CoordinateKind| {
+            let alike = coordinates.iter().zip(&weight).filter(|(coordinate, _)| coordinate.kind == kind);
+            alike.map(|(_, force)| force.abs()).fold(0.0, f64::max)
+        };
+        for effort in &mut self.efforts {
+            let least = LEAST * greatest(coordinates[effort.coordinate].kind);
+            effort.scale = if least > 0.0 { least } else { effort.stiffness / UNKNOWN };
+        }
+        self.note(motion, &vec![0.0; motion.len()]);
+        self.note_rounding(&q, &v);
+    }
+
+    /// Size of an error of a motion: the greatest of `|δq|` in m and rad, `|δv|/(1 + |v|)` times [`RATE`], and of efforts over
+    /// their scales, over the tolerance; infinite where one is not a number.
+    pub fn size(&self, motion: &[f64], error: &[f64]) -> f64 {
+        let mut greatest = Greatest::default();
+        for error in &error[..self.n] {
+            greatest.note(error.abs());
+        }
+        for (error, rate) in error[self.n..2 * self.n].iter().zip(&motion[self.n..2 * self.n]) {
+            greatest.note(error.abs() * RATE / (1.0 + rate.abs()));
+        }
+        for effort in &self.efforts {
+            greatest.note(effort.of(self.n, error, f64::abs) / (EFFORT * effort.scale));
+        }
+        greatest.value() / self.tolerance
+    }
+
+    /// Notes the efforts after a step that was done, and its error.
+    pub fn note(&mut self, motion: &[f64], error: &[f64]) {
+        let n = self.n;
+        for effort in &mut self.efforts {
+            effort.peak = effort.peak.max(effort.of(n, motion, |x| x).abs());
+            effort.error = effort.error.max(effort.of(n, error, f64::abs));
+            effort.scale = effort.scale.max(effort.peak);
+        }
+    }
+
+    /// Notes what rounding of a pose and its rates leaves of the efforts: no step is short enough to be better.
+    pub fn note_rounding(&mut self, q: &[f64], v: &[f64]) {
+        for effort in &mut self.efforts {
+            let Effort { coordinate, stiffness, damping, .. } = *effort;
+            let rounding = ROUNDINGS * f64::EPSILON * (stiffness * q[coordinate].abs() + damping * v[coordinate].abs());
+            effort.rounding = effort.rounding.max(rounding);
+            effort.scale = effort.scale.max(MAGNIFIED * rounding / (EFFORT * self.tolerance));
+        }
+    }
+
+    /// The efforts so far.
+    pub fn efforts(&self) -> impl Iterator<Item = EffortAccuracy> {
+        self.efforts.iter().map(|effort| EffortAccuracy {
+            coordinate: effort.coordinate,
+            peak: effort.peak,
+            error: effort.error + effort.rounding,
+        })
+    }
+}
+
+impl Effort {
+    /// `s x + d ẋ` of a motion, each by its `part`.
+    #[inline]
+    fn of(&self, n: usize, motion: &[f64], part: fn(f64) -> f64) -> f64 {
+        self.stiffness * part(motion[self.coordinate]) + self.damping * part(motion[n + self.coordinate])
+    }
+}
+
+/// The greatest of some sizes; several comparisons at once become vector instructions.
+#[derive(Clone, Copy, Debug)]
+struct Greatest {
+    lanes: [f64; Greatest::LANES],
+    finite: [bool; Greatest::LANES],
+    next: usize,
+}
+
+impl Default for Greatest {
+    fn default() -> Self {
+        Self { lanes: [0.0; Self::LANES], finite: [true; Self::LANES], next: 0 }
+    }
+}
+
+impl Greatest {
+    const LANES: usize = 8;
+
+    #[inline]
+    fn note(&mut self, size: f64) {
+        let lane = self.next % Self::LANES;
+        self.next += 1;
+        self.lanes[lane] = if size > self.lanes[lane] { size } else { self.lanes[lane] };
+        self.finite[lane] &= size < f64::INFINITY;
+    }
+
+    fn value(&self) -> f64 {
+        let greatest = self.lanes.into_iter().fold(0.0, f64::max);
+        if self.finite.into_iter().all(|finite| finite) { greatest } else { f64::INFINITY }
+    }
+}
