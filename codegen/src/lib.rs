@@ -14,7 +14,6 @@ pub mod chain;
 pub mod compile;
 pub mod diagnostic;
 pub mod emit;
-#[cfg(feature = "exchange")]
 pub mod exchange;
 mod expand;
 pub mod explain;

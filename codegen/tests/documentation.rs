@@ -121,7 +121,6 @@ fn links_between_pages_lead_somewhere() {
     }
 }
 
-#[cfg(feature = "exchange")]
 #[test]
 fn every_rule_of_imports_is_documented() {
     let page = std::fs::read_to_string(root().join("docs/manual/exchange.md")).expect("a page");

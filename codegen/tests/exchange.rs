@@ -2,8 +2,6 @@
 //!
 //! That other programs compute the same of these files is checked by `tools/peers/exchange.py`.
 
-#![cfg(feature = "exchange")]
-
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

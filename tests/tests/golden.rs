@@ -58,7 +58,7 @@ fn operations_table_of_the_documentation() {
         "# Operations of the generated functions\n\n\
          Floating-point operations of one call, an angle's sine and cosine counted as one; all functions of all shipped \
          cranes,\nalso those that a spec's `analyses` do not ask for. An empty cell: the scene does not need the \
-         function.\n\nMade by `cargo run -p crane-codegen -- operations specs/*.yaml`.\n\n{}",
+         function.\n\nMade by `cargo run --release -- operations specs/*.yaml`.\n\n{}",
         explain::operations_table(&reports)
     );
     assert_golden(&workspace::root().join("docs/OPERATIONS.md"), &text);

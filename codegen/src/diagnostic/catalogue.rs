@@ -49,7 +49,6 @@ macro_rules! catalogue {
     };
 }
 
-#[cfg(feature = "exchange")]
 pub(crate) use catalogue;
 
 catalogue! {

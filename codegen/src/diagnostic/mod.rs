@@ -5,7 +5,6 @@ mod draw;
 mod nearest;
 mod source;
 
-#[cfg(feature = "exchange")]
 pub(crate) use catalogue::catalogue;
 pub use catalogue::{CATALOGUE, Rule};
 pub(crate) use catalogue::{printable, rule};

@@ -103,6 +103,16 @@ pub enum Action {
         #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
         svg: Option<PathBuf>,
     },
+    /// Write the crane's Rust module, for a program of your own
+    Generate(Generate),
+    /// Print a Markdown table of operations: one row per function, one column per spec
+    Operations {
+        /// The cranes' YAML files
+        #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        specs: Vec<PathBuf>,
+    },
+    /// Print the JSON Schema of the spec language, for editors
+    Schema,
     /// A crane as URDF, its springs beside it, or as MJCF, for Pinocchio, `MuJoCo`, ROS and others
     Export(Export),
     /// A spec from URDF: a chain of joints of one axis each
@@ -141,6 +151,9 @@ impl Action {
             | Action::Stress(_)
             | Action::Check { .. }
             | Action::Explain { .. }
+            | Action::Generate(_)
+            | Action::Operations { .. }
+            | Action::Schema
             | Action::Export(_)
             | Action::Import(_)
             | Action::List(_)
@@ -342,6 +355,20 @@ pub struct New {
     /// Shipped crane to begin from
     #[arg(long, value_name = "CRANE", default_value = "knuckle_boom")]
     pub from: String,
+}
+
+/// The Rust module of a crane.
+#[derive(Debug, Args)]
+pub struct Generate {
+    /// The crane's YAML file
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub spec: PathBuf,
+    /// File to write [default: standard output]
+    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+    /// Generate everything there is, also what the spec's `analyses` do not ask for
+    #[arg(long)]
+    pub all: bool,
 }
 
 /// Stability of time steps.

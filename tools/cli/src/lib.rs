@@ -20,6 +20,7 @@ mod exchange;
 mod extremes;
 mod figures;
 mod files;
+mod generate;
 mod info;
 mod interpreted;
 mod modes;
@@ -87,6 +88,9 @@ fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
         Some(Action::New(options)) => new::new(options, fleet, out),
         Some(Action::Check { spec, strict }) => own::check(spec, *strict, out),
         Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), out),
+        Some(Action::Generate(options)) => generate::generate(options, out),
+        Some(Action::Operations { specs }) => generate::operations(specs, out),
+        Some(Action::Schema) => generate::schema(out),
         Some(Action::Export(options)) => exchange::export(options, fleet, out),
         Some(Action::Import(options)) => exchange::import(options, out),
         Some(Action::List(options)) => info::list(options.format, fleet, out),

@@ -120,3 +120,38 @@ fn the_error_of_sections_obeys_the_law_of_a_cantilever() {
     assert!((off(0) / off(1) - 4.0).abs() < 1e-9, "{} {}", off(0), off(1));
     assert!(!report["advice"].as_array().expect("rows").is_empty());
 }
+
+#[test]
+fn the_module_of_a_spec_is_the_same_from_any_folder() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let elsewhere = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("elsewhere");
+    fs::create_dir_all(&elsewhere).expect("a folder");
+    let path = root.join("specs/eight_link_rigid.yaml");
+    let path = path.to_str().expect("a path");
+    let at = |folder: &PathBuf, arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_crane"))
+            .args(arguments)
+            .current_dir(folder)
+            .output()
+            .expect("the command starts")
+    };
+    let written = at(&elsewhere, &["generate", path, "-o", "crane.rs"]);
+    assert!(written.status.success(), "{}", text(&written.stderr));
+    let printed = at(&root, &["generate", "specs/eight_link_rigid.yaml"]);
+    assert!(text(&printed.stdout) == fs::read_to_string(elsewhere.join("crane.rs")).expect("a module"));
+}
+
+#[test]
+fn explain_shows_chain_coordinates_omissions_and_costs() {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let shown = crane(&["explain", &format!("{root}/../../specs/eight_link_flexible.yaml")]);
+    let shown = text(&shown.stdout);
+    for expected in [
+        "boom_4                     51.013     20  T(0.8750, 0.0000, 0.0000) Rz(boom_4_psi) Ry(boom_4_theta) Rx(boom_4_phi)",
+        "telescope_z              m          2.000000",
+        "∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives",
+        "unsimplified",
+    ] {
+        assert!(shown.contains(expected), "{expected}\n{shown}");
+    }
+}

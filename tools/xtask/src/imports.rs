@@ -38,7 +38,7 @@ const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 6] = [
 ];
 
 /// Modules of the compiler that alone may touch files, the environment or the process.
-const MAY_TOUCH_THE_WORLD: [&str; 2] = ["codegen/src/build.rs", "codegen/src/main.rs"];
+const MAY_TOUCH_THE_WORLD: [&str; 1] = ["codegen/src/build.rs"];
 
 /// Every breach of the rules.
 pub fn check() -> Result<(), String> {

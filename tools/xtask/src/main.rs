@@ -88,28 +88,22 @@ fn lint() -> Vec<Step> {
         Step::cargo("formatting", &["fmt", "--all", "--", "--check"]),
         Step::check("import rules", imports::check),
         Step::check("docs/EQUATIONS.md is current", equations::check),
-        Step::cargo(
-            "clippy",
-            &["clippy", "--release", "--workspace", "--all-targets", "--features", CLI, "--", "-D", "warnings"],
-        )
-        .with(SECTIONS, "0"),
+        Step::cargo("clippy", &["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
+            .with(SECTIONS, "0"),
         // A workspace of its own, which no other step would notice.
         Step::cargo("fuzz target", &["check", "--release", "--manifest-path", "codegen/fuzz/Cargo.toml"]),
-        Step::cargo("documentation", &["doc", "--release", "--workspace", "--no-deps", "--features", CLI])
+        Step::cargo("documentation", &["doc", "--release", "--workspace", "--no-deps"])
             .with("RUSTDOCFLAGS", "-D warnings")
             .with(SECTIONS, "0"),
     ]
 }
-
-/// Features of the commands, on in every step so that nothing is built twice.
-const CLI: &str = "crane-codegen/cli";
 
 /// Which cranes the benchmarks compile: to look at them the smallest will do.
 const SECTIONS: &str = "CRANE_BENCH_SECTIONS";
 
 fn tests() -> Vec<Step> {
     vec![
-        Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench", "--features", CLI]),
+        Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench"]),
         Step::check("tests with fused multiply-adds", fused::check),
         Step::cargo("the default run", &["run", "--release"]),
         Step::check("packages of the report page", report::prepare),
@@ -140,7 +134,7 @@ fn oracles() -> Vec<Step> {
         Step::check("Python environment", oracles::prepare),
         Step::cargo(
             "the program that evaluates generated code",
-            &["build", "--release", "--workspace", "--exclude", "crane-bench", "--features", CLI, "--bins"],
+            &["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins"],
         ),
         Step::check("CasADi's own checks notice errors", oracles::self_test),
         Step::check("generated code against CasADi", oracles::check),
@@ -159,20 +153,7 @@ fn bless() -> Vec<Step> {
             .with("INSTA_UPDATE", "always")
     };
     // The test that compares them compiles them, so the command writes them.
-    let golden = |title, spec, module| {
-        let command = [
-            "run",
-            "--release",
-            "--package",
-            "crane-codegen",
-            "--features",
-            "crane-codegen/cli",
-            "--bin",
-            "crane-codegen",
-            "--",
-        ];
-        Step::cargo(title, &[&command[..], &["generate", spec, "-o", module]].concat())
-    };
+    let golden = |title, spec, module| Step::cargo(title, &["run", "--release", "--", "generate", spec, "-o", module]);
     vec![
         golden("double pendulum", "specs/double_pendulum.yaml", "tests/golden/double_pendulum.rs"),
         golden("knuckle boom", "specs/knuckle_boom.yaml", "tests/golden/knuckle_boom.rs"),

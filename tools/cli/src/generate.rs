@@ -1,0 +1,51 @@
+//! `crane generate`, `operations` and `schema`: what the compiler writes.
+
+use std::{io::Write, path::PathBuf};
+
+use crane_codegen::{
+    chain::Analyses,
+    compile::{self, Compiled},
+    explain, json_schema,
+};
+
+use crate::{
+    arguments::Generate,
+    files,
+    own::{drawn, load, open},
+    problem::Outcome,
+};
+
+/// Writes the Rust module of a crane.
+pub fn generate(options: &Generate, out: &mut dyn Write) -> Outcome<()> {
+    let source = open(&options.spec, "name a YAML file that describes a crane")?;
+    let analyses = options.all.then_some(Analyses::ALL);
+    let Compiled { code, warnings } = compile::compile(&source, analyses).map_err(|mistakes| drawn(&mistakes))?;
+    if !warnings.is_empty() {
+        // A reader of standard error that has gone misses them.
+        let _ = writeln!(std::io::stderr(), "{}", warnings.to_string().trim_end());
+    }
+    if let Some(warning) = code.report.warning(&code.name) {
+        // A reader of standard error that has gone misses it.
+        let _ = writeln!(std::io::stderr(), "warning: {warning}");
+    }
+    let Some(file) = &options.file else { return Ok(out.write_all(code.text.as_bytes())?) };
+    files::write_text(file, &code.text)?;
+    let (functions, lines) = (code.report.costs.len(), code.text.lines().count());
+    Ok(writeln!(out, "{}: {functions} functions, {lines} lines", file.display())?)
+}
+
+/// Prints a Markdown table of operations: one row per function, one column per spec.
+pub fn operations(specs: &[PathBuf], out: &mut dyn Write) -> Outcome<()> {
+    let report = |spec: &PathBuf| {
+        let (chain, _) = load(spec)?;
+        let report = compile::report(&chain, Analyses::ALL);
+        Ok((chain.name, report))
+    };
+    let reports = specs.iter().map(report).collect::<Outcome<Vec<_>>>()?;
+    Ok(out.write_all(explain::operations_table(&reports).as_bytes())?)
+}
+
+/// Prints the JSON Schema of the spec language, for editors.
+pub fn schema(out: &mut dyn Write) -> Outcome<()> {
+    Ok(out.write_all(json_schema().as_bytes())?)
+}
