@@ -41,6 +41,10 @@ fn describe(chain: &Chain, step: &Step, parameters: &[f64]) -> String {
             let angle = sin.at(parameters).atan2(cos.at(parameters)).to_degrees();
             format!("R{}({angle:.2}°)", letter(*axis))
         }
+        Step::RotationVector(ids) => {
+            let names = ids.map(|id| chain.coordinates[id.0].name.as_str());
+            format!("exp({})", names.join(", "))
+        }
         Step::Move(id) => {
             let coordinate = &chain.coordinates[id.0];
             let motion = if coordinate.kind == CoordinateKind::Rotation { "R" } else { "T" };

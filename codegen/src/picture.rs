@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use crate::chain::{Body, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Step, Vector};
+use crate::chain::{Body, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Vector};
 
 const BLUE: &str = "#0072b2";
 const VERMILLION: &str = "#d55e00";
@@ -74,7 +74,7 @@ fn poses(chain: &Chain) -> (Vec<Frame>, Vec<Joint>) {
     let mut joints = Vec::new();
     let frames = chain.bodies.iter().map(|body| {
         for step in &body.path {
-            if let Step::Move(id) = step {
+            for id in step.coordinates() {
                 joints.push(Joint { coordinate: *id, at: frame.origin });
             }
             frame = frame.after(step, chain, &chain.guess, &defaults);

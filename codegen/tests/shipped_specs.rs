@@ -125,6 +125,7 @@ fn position(chain: &Chain, name: &str) -> Vector {
         match step {
             Step::Translate(by) => by.iter().zip(&mut r).for_each(|(by, r)| *r += by.at(&parameters)),
             Step::Rotate { axis, sin, cos } => turn(&mut r, axis.index(), (sin.at(&parameters), cos.at(&parameters))),
+            Step::RotationVector(ids) => assert!(ids.iter().all(|id| chain.guess[id.0] == 0.0), "elements undeformed"),
             Step::Move(id) => {
                 let (coordinate, q) = (&chain.coordinates[id.0], chain.guess[id.0]);
                 match coordinate.kind {

@@ -22,6 +22,8 @@ struct Writer {
     coordinates: Vec<(String, bool)>,
     /// Whether it has drives and dampers.
     driven: bool,
+    /// Flexible links whose sections have the paper's joint: the first, the second, both or none, by the seed.
+    paper: [bool; 2],
 }
 
 /// What the base can do.
@@ -34,7 +36,13 @@ enum Base {
 
 impl Writer {
     fn new(seed: u64, driven: bool) -> Self {
-        Writer { rng: Rng::with_seed(seed), text: String::new(), coordinates: Vec::new(), driven }
+        Writer {
+            rng: Rng::with_seed(seed),
+            text: String::new(),
+            coordinates: Vec::new(),
+            driven,
+            paper: [seed / 2 % 2 == 1, seed / 4 % 2 == 1],
+        }
     }
 
     fn crane(mut self, seed: u64) -> String {
@@ -145,6 +153,9 @@ impl Writer {
         self.placement_and_joint(name, "revolute", false);
         self.line("    beam:");
         self.line("      length: 1.2");
+        if self.paper[usize::from(name == "second")] {
+            self.line("      section_joint: paper");
+        }
         if one_by_one {
             self.line("      elements:");
             for length in [0.5, 0.7] {

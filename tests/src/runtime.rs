@@ -38,6 +38,9 @@ impl Scalar for Runtime {
         let ([sin], [cos]) = support::sin_cos([self.0]);
         (Runtime(sin), Runtime(cos))
     }
+    fn stumpff(&self, k: u8) -> Self {
+        Runtime(support::stumpff([self.0])[usize::from(k)][0])
+    }
     fn min(self, other: Self) -> Self {
         Runtime(self.0.min(other.0))
     }

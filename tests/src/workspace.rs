@@ -32,11 +32,24 @@ pub fn chain(name: &str) -> Chain {
 /// The chain of the reference crane with another number of sections.
 #[must_use]
 pub fn reference(sections: usize) -> Chain {
+    chain_of("reference", &reference_text(sections))
+}
+
+/// The reference crane with another number of sections, and symmetric joints between them.
+#[must_use]
+pub fn reference_symmetric(sections: usize) -> Chain {
+    let mut text = reference_text(sections);
+    assert!(text.contains("section_joint: paper"), "the reference crane has the paper's joints");
+    text = text.replace("section_joint: paper", "section_joint: symmetric");
+    chain_of("reference_symmetric", &text)
+}
+
+fn reference_text(sections: usize) -> String {
     let path = root().join("specs/eight_link_flexible.yaml");
     let text = std::fs::read_to_string(&path).expect("the spec is there");
     let changed = text.replace("sections: 4", &format!("sections: {sections}"));
-    assert_ne!(changed, text, "the reference crane has 4 sections");
-    chain_of("reference", &changed)
+    assert!(sections == 4 || changed != text, "the reference crane has 4 sections");
+    changed
 }
 
 /// The chain of a spec's text.

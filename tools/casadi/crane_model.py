@@ -8,7 +8,7 @@ from beams import DIRECTIONS, read_beam
 from crane_spec import CraneSpec
 from inertias import read_pseudo_inertia
 from profiles import read_profile
-from transforms import classic_dh, modified_dh, place, rotate, translate, translate_along
+from transforms import classic_dh, modified_dh, place, rotate, rotate_by_vector, translate, translate_along
 
 ROTATIONS = {"psi": "z", "theta": "y", "phi": "x"}
 TRANSLATIONS = {"x": "x", "y": "y", "z": "z"}
@@ -28,6 +28,7 @@ class Coordinate:
     is_rotation: bool
     is_element: bool
     is_base: bool
+    is_in_vector: bool = False
 
 
 @dataclass
@@ -179,10 +180,18 @@ def read_beam_bodies(crane, name, transform, written):
     for index, (length, pseudo_inertia) in enumerate(zip(beam.lengths, beam.pseudo_inertias)):
         element = f"{name}_{index}"
         if index > 0:
-            for symbol in DIRECTIONS:
-                transform = transform @ crane.move(element, symbol, is_element=True)
+            motions = [crane.move(element, symbol, is_element=True) for symbol in DIRECTIONS]
+            rotations = crane.coordinates[-3:]
+            if written.get("section_joint", "symmetric") == "paper":
+                for motion in motions:
+                    transform = transform @ motion
+            else:
+                for coordinate in rotations:
+                    coordinate.is_in_vector = True
+                transform = transform @ rotate_by_vector(ca.vertcat(*[c.q for c in reversed(rotations)]))
+            for coordinate, symbol in zip(rotations, DIRECTIONS):
                 stiffness, damping = beam.stiffness[index - 1][symbol], beam.damping[index - 1][symbol]
-                crane.elements.append(Spring(crane.coordinates[-1], stiffness, damping))
+                crane.elements.append(Spring(coordinate, stiffness, damping))
         body_name = name if written.get("sections") == "rigid" else element
         span.bodies.append(crane.add_body(body_name, transform, pseudo_inertia))
         span.starts.append(start)

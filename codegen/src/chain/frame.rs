@@ -80,13 +80,55 @@ impl Frame {
                     }
                 }
             }
+            Step::RotationVector(ids) => {
+                let mut rho = [0.0; 3];
+                for id in ids {
+                    rho[chain.coordinates[id.0].axis.index()] = q[id.0];
+                }
+                self.turned_by(rho)
+            }
         }
+    }
+
+    /// Turned by a rotation vector given in it.
+    fn turned_by(self, rho: Vector) -> Frame {
+        let angle = libm::sqrt(rho.iter().map(|x| x * x).sum());
+        if angle == 0.0 {
+            return self;
+        }
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        let [x, y, z] = rho.map(|component| component / angle);
+        let v = 1.0 - cos;
+        let columns = [
+            [cos + v * x * x, v * x * y + sin * z, v * x * z - sin * y],
+            [v * x * y - sin * z, cos + v * y * y, v * y * z + sin * x],
+            [v * x * z + sin * y, v * y * z - sin * x, cos + v * z * z],
+        ];
+        Frame { axes: columns.map(|column| self.direction(column)), ..self }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_rotation_vector_along_one_axis_is_a_turn_about_it() {
+        for (axis, rho) in [(Axis::X, [0.7, 0.0, 0.0]), (Axis::Y, [0.0, 0.7, 0.0]), (Axis::Z, [0.0, 0.0, 0.7])] {
+            let (vector, turned) =
+                (Frame::WORLD.turned_by(rho), Frame::WORLD.turned(axis, 0.7_f64.sin(), 0.7_f64.cos()));
+            for (a, b) in vector.axes.iter().flatten().zip(turned.axes.iter().flatten()) {
+                assert!((a - b).abs() < 1e-15, "{axis:?}: {vector:?}");
+            }
+        }
+        // A third of a turn about (1, 1, 1) hands x to y, y to z, z to x.
+        let third = std::f64::consts::TAU / 3.0 / 3.0_f64.sqrt();
+        let axes = Frame::WORLD.turned_by([third; 3]).axes;
+        for (k, axis) in axes.iter().enumerate() {
+            assert!((axis[(k + 1) % 3] - 1.0).abs() < 1e-15, "{axes:?}");
+        }
+        assert_eq!(Frame::WORLD.turned_by([0.0; 3]), Frame::WORLD);
+    }
 
     #[test]
     fn a_frame_seen_from_itself_is_the_world() {

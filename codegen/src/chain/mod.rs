@@ -140,6 +140,21 @@ pub enum Step {
     },
     /// Translation by a coordinate along its axis, or rotation by it about its axis.
     Move(CoordinateId),
+    /// Rotation by the vector ρ whose components are three coordinates, one along each axis: `exp([ρ]×)`. They follow each
+    /// other in q.
+    RotationVector([CoordinateId; 3]),
+}
+
+impl Step {
+    /// The coordinates that it moves by.
+    #[must_use]
+    pub fn coordinates(&self) -> &[CoordinateId] {
+        match self {
+            Step::Translate(_) | Step::Rotate { .. } => &[],
+            Step::Move(id) => std::slice::from_ref(id),
+            Step::RotationVector(ids) => ids,
+        }
+    }
 }
 
 /// Pseudo-inertia `H = ∫ r rᵀ dm`, `r = [x y z 1]ᵀ`, about the origin of the body's frame, Eq. (4).
@@ -305,7 +320,14 @@ impl Chain {
     /// Number of coordinates of the chain up to and including a body: `n_dof(p)`, Eq. (2).
     #[must_use]
     pub fn degrees_of_freedom(&self, body: BodyId) -> usize {
-        self.bodies[..=body.0].iter().flat_map(|b| &b.path).filter(|s| matches!(s, Step::Move(_))).count()
+        self.bodies[..=body.0].iter().flat_map(|b| &b.path).map(|step| step.coordinates().len()).sum()
+    }
+
+    /// Whether a coordinate is a component of a rotation vector.
+    #[must_use]
+    pub fn turns_by_vector(&self, id: CoordinateId) -> bool {
+        let mut steps = self.bodies.iter().flat_map(|body| &body.path);
+        steps.any(|step| matches!(step, Step::RotationVector(ids) if ids.contains(&id)))
     }
 
     /// Rigid drives: their coordinates are prescribed, and no unknowns.

@@ -95,6 +95,8 @@ fn role(chain: &Chain, coordinate: usize) -> TokenStream {
         "Prescribed"
     } else if chain.drives.iter().any(|d| d.coordinate.0 == coordinate) {
         "Driven"
+    } else if chain.turns_by_vector(CoordinateId(coordinate)) {
+        "ElementVector"
     } else if chain.elements.iter().any(|e| e.coordinate.0 == coordinate) {
         "Element"
     } else {

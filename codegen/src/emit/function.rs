@@ -263,6 +263,27 @@ impl Writer<'_> {
                         statements.extend(rounds::patterns("cosines", &cosines, names));
                     }
                 }
+                Statement::Stumpff(arguments) => {
+                    statements.append(&mut pending);
+                    statements.push(comment("Stumpff's functions"));
+                    let of = arguments.iter().map(|known| self.expression(known.argument, names, used));
+                    let of: Vec<Expr> = of.collect();
+                    let orders =
+                        (0..Op::STUMPFF_ORDERS).map(|k| arguments.iter().map(|known| known.values[k]).collect());
+                    let orders: Vec<Vec<Option<ExprId>>> = orders.collect();
+                    if self.block.rolled.loops.is_empty() {
+                        let patterns = orders.iter().map(|values| row_pattern(values, names));
+                        let patterns: Vec<_> = patterns.collect();
+                        statements.push(parse_quote!(let [#(#patterns),*] = stumpff([#(#of),*]);));
+                    } else {
+                        statements.push(parse_quote!(let stumpff_of = stumpff([#(#of),*]);));
+                        let patterns = orders.iter().map(|values| row_pattern(values, names));
+                        let patterns: Vec<_> = patterns.collect();
+                        if orders.iter().flatten().any(Option::is_some) {
+                            statements.push(parse_quote!(let [#(#patterns),*] = stumpff_of;));
+                        }
+                    }
+                }
                 Statement::Loop { of, body } => {
                     statements.append(&mut pending);
                     group = None;
@@ -390,6 +411,10 @@ pub fn operation(op: Op, number: Number, of: &mut dyn FnMut(ExprId) -> Expr) -> 
         Op::Max(a, b) => method(of(a), "max", of(b)),
         Op::Sin(a) => field_of_pair(&of(a), 0),
         Op::Cos(a) => field_of_pair(&of(a), 1),
+        Op::Stumpff(k, a) => {
+            let argument = of(a);
+            element(element(call("stumpff", [parse_quote!([#argument])]), usize::from(k)), 0)
+        }
         Op::Constant(c) => number.literal(c.value()),
         Op::Symbol(_) => unreachable!("inputs are read, not computed"),
     }
@@ -410,6 +435,16 @@ pub fn local(name: &str, value: &Expr) -> Stmt {
 /// The name of a value, or `_` where it is not needed.
 pub fn pattern(id: Option<ExprId>, names: &mut Names) -> TokenStream {
     id.map_or_else(|| quote!(_), |id| Ident::new(&names.of(id), Span::call_site()).into_token_stream())
+}
+
+/// The names of several values, or `_` where none is needed.
+fn row_pattern(ids: &[Option<ExprId>], names: &mut Names) -> TokenStream {
+    if ids.iter().all(Option::is_none) {
+        return quote!(_);
+    }
+    let patterns = ids.iter().map(|id| pattern(*id, names));
+    let patterns: Vec<_> = patterns.collect();
+    quote!([#(#patterns),*])
 }
 
 /// Which inputs a piece reads.

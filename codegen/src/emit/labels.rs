@@ -62,10 +62,13 @@ impl<'a> Labels<'a> {
             }
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
             Shape::Transforms { counts, .. } => Some(self.transform(function.name, counts, slot / 12)),
-            Shape::Turned { degrees, rotations } => {
+            Shape::Turned { degrees, rotations, .. } => {
                 let axes = 3 * rotations.len();
                 if slot < axes {
                     return Some("Axes of rotation".into());
+                }
+                if slot >= axes + 12 * degrees.iter().sum::<usize>() {
+                    return Some("Curvatures".into());
                 }
                 Some(self.transform("transform_derivatives", degrees, (slot - axes) / 12))
             }

@@ -8,7 +8,7 @@ use super::labels::Labels;
 use super::number::Number;
 use super::parameters;
 use crate::chain::Chain;
-use crate::lower::Blocks;
+use crate::lower::{Block, Blocks, Statement};
 
 /// Functions that a simulation of many cranes calls in every step.
 const FUNCTIONS: [&str; 1] = ["forward_dynamics"];
@@ -36,11 +36,15 @@ pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
     let fields = if live { quote!({ constants: Constants }) } else { quote!(;) };
     let constants = blocks.functions.iter().any(|b| b.function.name == "forward_dynamics" && b.reads_parameters);
     let constants = constants.then(|| quote!(, &self.constants));
+    let takes_stumpff =
+        |block: &Block| block.pieces.iter().flatten().any(|statement| matches!(statement, Statement::Stumpff(_)));
+    let in_lanes = || blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.name));
+    let stumpff = in_lanes().any(takes_stumpff).then(|| quote!(, stumpff));
     let mut module: ItemMod = parse_quote! {
         #[doc = " Eight cranes a call."]
         pub mod lanes {
             use ::crane_model::nalgebra::SVector;
-            use ::crane_model::support::lanes::{f64x8, fma, sin_cos, splat};
+            use ::crane_model::support::lanes::{f64x8, fma, sin_cos, splat #stumpff};
             use ::crane_model::LaneDynamics;
             use super::N;
         }

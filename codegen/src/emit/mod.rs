@@ -84,7 +84,17 @@ fn imports(items: &[syn::Item]) -> String {
         ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),
         (
             "::crane_model::support",
-            &["MassAndBias", "MassColumns", "Point", "TransformFactors", "fill", "fma", "sin_cos", "symmetric"],
+            &[
+                "MassAndBias",
+                "MassColumns",
+                "Point",
+                "TransformFactors",
+                "fill",
+                "fma",
+                "sin_cos",
+                "stumpff",
+                "symmetric",
+            ],
         ),
         (
             "::crane_model",

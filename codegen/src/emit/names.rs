@@ -26,6 +26,8 @@ const TAKEN: &[&str] = &[
     "sines",
     "cosines",
     "sin_cos",
+    "stumpff",
+    "stumpff_of",
     "symmetric",
     "max",
     "min",

@@ -73,6 +73,7 @@ impl Writer<'_> {
             Source::Input(argument, slots) => place(self.argument(*argument, used), &at(*slots)),
             Source::Sine(places) => place(variable("sines"), &at(*places)),
             Source::Cosine(places) => place(variable("cosines"), &at(*places)),
+            Source::Stumpff(k, places) => place(element(variable("stumpff_of"), usize::from(*k)), &at(*places)),
             Source::Carried(place) => element(owned("carried", *of), *place),
             Source::Kept { of, slot, round } => element(place(owned("kept", *of), &at(*round)), *slot),
             Source::Gathered(column) => element(place(owned("gathered", *of), &variable("k")), *column),

@@ -83,9 +83,11 @@ impl<'f> Storage<'f> {
             }
             Shape::MassAndBias(_) => quote!(MassAndBias<N>),
             Shape::Record(_, fields) => array(&quote!([[f64; N]; N]), fields.len()),
-            Shape::Turned { degrees, .. } => {
+            Shape::Turned { degrees, vectors, .. } => {
                 let total = integer(degrees.iter().sum());
-                quote!(TransformFactors<N, #total>)
+                // Without rotation vectors the parameter has its default.
+                let vectors = (!vectors.is_empty()).then(|| integer(vectors.len())).map(|count| quote!(, #count));
+                quote!(TransformFactors<N, #total #vectors>)
             }
             _ => self.public_type(),
         }
@@ -141,9 +143,13 @@ impl<'f> Storage<'f> {
                     #name { #(#names),* }
                 }
             }
-            Shape::Turned { degrees, .. } => {
+            Shape::Turned { degrees, vectors, .. } => {
                 let degrees = degrees.iter().map(|n| integer(*n));
-                quote!(factors.second_derivatives(&[#(#degrees),*], out);)
+                let set = (!vectors.is_empty()).then(|| {
+                    let vectors = vectors.iter().map(|first| integer(*first));
+                    quote!(factors.vectors = [#(#vectors),*];)
+                });
+                quote!(#set factors.second_derivatives(&[#(#degrees),*], out);)
             }
             _ => quote!(out),
         }
@@ -188,9 +194,10 @@ impl<'f> Storage<'f> {
             Shape::Vectors(_) => slot / 3,
             Shape::Pairs(_) => slot / 2,
             Shape::Transforms { .. } => slot / 12,
-            Shape::Turned { rotations, .. } => {
+            Shape::Turned { rotations, degrees, .. } => {
                 let axes = 3 * rotations.len();
-                if slot < axes { 0 } else { 1 + (slot - axes) / 12 }
+                let matrices = degrees.iter().sum::<usize>();
+                if slot < axes { 0 } else { (1 + (slot - axes) / 12).min(1 + matrices) }
             }
             Shape::Record(_, fields) => {
                 let (index, rest) = field_of(fields, slot);
@@ -253,9 +260,13 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
         Shape::Vectors(_) => field(element(out, slot / 3), ["x", "y", "z"][slot % 3]),
         Shape::Pairs(_) => element(element(out, slot / 2), slot % 2),
         Shape::Transforms { .. } => matrix_slot(out, slot),
-        Shape::Turned { rotations, .. } => {
+        Shape::Turned { rotations, degrees, .. } => {
             let axes = 3 * rotations.len();
-            if slot < axes {
+            let shares = axes + 12 * degrees.iter().sum::<usize>();
+            if let Some(slot) = slot.checked_sub(shares) {
+                let vector = element(field(out, "shares"), slot / 18);
+                element(element(vector, slot % 18 / 3), slot % 3)
+            } else if slot < axes {
                 field(element(field(out, "axes"), slot / 3), ["x", "y", "z"][slot % 3])
             } else {
                 matrix_slot(field(out, "first"), slot - axes)

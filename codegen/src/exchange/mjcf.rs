@@ -6,7 +6,7 @@ use super::mass::Lump;
 use super::rotation::quaternion;
 use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
-use super::{RADIUS, bars, origin, placements};
+use super::{RADIUS, approximations, bars, hinged, origin, placements};
 use crate::chain::{Chain, CoordinateId, CoordinateKind, Frame, Step, Support, SupportKinematics};
 
 /// `MuJoCo` refuses what moves without mass or inertia: a massless frame, a point, gets this much, kg or kg m². That is
@@ -56,6 +56,9 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
         });
     }
     let mut xml = Xml::new(&origin(chain, parameters));
+    if let Some(text) = approximations(chain) {
+        xml.comment(&text);
+    }
     xml.open("mujoco", &[("model", chain.name.clone())]);
     xml.leaf("compiler", &[("angle", "radian".into()), ("inertiafromgeom", "false".into())]);
     let gravity = chain.gravity.each_ref().map(|value| value.at(parameters));
@@ -110,13 +113,14 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
         ];
         xml.open("body", &attributes);
         let mut frame = Frame::WORLD;
-        for step in &body.path {
+        let path = hinged(&body.path);
+        for step in &path {
             if let Step::Move(id) = step {
                 joint(xml, chain, *id, &placement.local(&frame), parameters);
             }
             frame = frame.after(step, chain, &rest, parameters);
         }
-        let moves = body.path.iter().any(|step| matches!(step, Step::Move(_)));
+        let moves = path.iter().any(|step| matches!(step, Step::Move(_)));
         match &body.inertia {
             Some(inertia) => inertial(xml, &Lump::of(inertia, parameters)),
             None if moves => inertial(xml, &Lump { mass: LEAST, com: [0.0; 3], tensor: [0.0; 6] }),

@@ -29,6 +29,29 @@ fn origin(chain: &Chain, parameters: &[f64]) -> String {
     text
 }
 
+/// The path with a hinge for each coordinate of a rotation vector, in the order of the coordinates: neither format has a joint
+/// that turns by a vector with a spring on each component. To second order in the angles it is the same.
+fn hinged(path: &[Step]) -> Vec<Step> {
+    let hinges = |step: &Step| match step {
+        Step::RotationVector(ids) => ids.map(Step::Move).to_vec(),
+        other => vec![other.clone()],
+    };
+    path.iter().flat_map(hinges).collect()
+}
+
+/// What is lost in an export, for the head of the file and the screen; none if nothing is.
+#[must_use]
+pub fn approximations(chain: &Chain) -> Option<String> {
+    let symmetric = |body: &&Body| body.path.iter().any(|step| matches!(step, Step::RotationVector(_)));
+    let count = chain.bodies.iter().filter(symmetric).count();
+    (count > 0).then(|| {
+        format!(
+            "{count} symmetric section joints are three hinges each, psi, theta, phi in this order: the same pose up to \
+             products of their angles. Write `section_joint: paper` for a crane that is exported exactly."
+        )
+    })
+}
+
 /// Poses of all bodies at `q = 0`, each in the frame of the body before it.
 fn placements(chain: &Chain, parameters: &[f64]) -> Vec<Frame> {
     let rest = vec![0.0; chain.coordinates.len()];

@@ -3,7 +3,7 @@
 use super::mass::Lump;
 use super::rotation::{along_z, length, roll_pitch_yaw};
 use super::xml::{Xml, number_text, numbers};
-use super::{RADIUS, bars, origin, placements};
+use super::{RADIUS, approximations, bars, hinged, origin, placements};
 use crate::chain::{Chain, CoordinateKind, Frame, Step, Vector};
 
 /// URDF asks for limits of a joint that is not `continuous`, which would be two coordinates in Pinocchio. The crane has none:
@@ -21,6 +21,9 @@ pub(super) const NO_LIMIT: [f64; 3] = [1e3, 1e3, 1e9];
 pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
     let mut xml = Xml::new(&origin(chain, parameters));
     xml.open("robot", &[("name", chain.name.clone())]);
+    if let Some(text) = approximations(chain) {
+        xml.comment(&text);
+    }
     xml.comment("Joints have no stiffness and no damping here: the file of springs beside this one has them.");
     // A crane may have a link of the world's name.
     let taken = chain.bodies.iter().any(|body| body.name == WORLD);
@@ -30,14 +33,15 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
     let mut parent = ground;
     for (body, bar) in chain.bodies.iter().zip(bars) {
         let mut placement = Frame::WORLD;
-        for (index, step) in body.path.iter().enumerate() {
+        let path = hinged(&body.path);
+        for (index, step) in path.iter().enumerate() {
             let Step::Move(id) = step else {
                 placement = placement.after(step, chain, &[], parameters);
                 continue;
             };
             let coordinate = &chain.coordinates[id.0];
             let kind = if coordinate.kind == CoordinateKind::Rotation { "revolute" } else { "prismatic" };
-            let is_last = index + 1 == body.path.len();
+            let is_last = index + 1 == path.len();
             let child = if is_last { body.name.clone() } else { format!("{}_frame", coordinate.name) };
             let mut axis = [0.0; 3];
             axis[coordinate.axis.index()] = 1.0;

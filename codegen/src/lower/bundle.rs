@@ -1,7 +1,7 @@
 //! Values that are used once and have no name of their own stand inside the expression that uses them.
 
 use super::Constants;
-use crate::symbolic::{ExprId, Op, Program};
+use crate::symbolic::{ExprId, Program};
 
 /// Operations in one statement at most: about one line of text.
 const LARGEST_EXPRESSION: usize = 7;
@@ -63,9 +63,5 @@ pub(super) fn bundle(
 
 fn may_be_inlined(program: &Program, constants: &Constants, id: ExprId, uses: usize) -> bool {
     let op = program.op(id);
-    uses == 1
-        && !op.is_leaf()
-        && !matches!(op, Op::Sin(_) | Op::Cos(_))
-        && !program.names.contains_key(&id)
-        && !constants.is_stored(id)
+    uses == 1 && !op.is_leaf() && !op.is_elementary() && !program.names.contains_key(&id) && !constants.is_stored(id)
 }

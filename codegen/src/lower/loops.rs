@@ -16,6 +16,8 @@ pub enum Source {
     Sine(Progression),
     /// The cosine of the angle at `first + k step`.
     Cosine(Progression),
+    /// Stumpff's function of this order of the argument at `first + k step`.
+    Stumpff(u8, Progression),
     /// What the round before hands over.
     Carried(usize),
     /// What another loop kept in its round `first + k step`.

@@ -97,6 +97,7 @@ fn class(program: &Program, id: ExprId) -> usize {
         Op::Symbol(symbol) => 1 + program.symbol(symbol).argument as usize,
         Op::Sin(_) => 100,
         Op::Cos(_) => 101,
+        Op::Stumpff(k, _) => 103 + usize::from(k),
         _ => 102,
     }
 }

@@ -78,6 +78,8 @@ pub enum Statement {
     Input(ExprId),
     /// Sines and cosines of all angles: `let ([sin_psi, …], [cos_psi, …]) = sin_cos([psi, …]);`
     SinCos(Vec<Angle>),
+    /// Stumpff's functions of all arguments: `let [[c0, …], [c1, …], …] = stumpff([x, …]);`
+    Stumpff(Vec<StumpffArgument>),
     /// Computes a value: `let t017 = …;`
     Let(ExprId),
     /// A sweep comes to a body: `// Outward: boom_1`. None when all sweeps are done.
@@ -136,6 +138,15 @@ pub struct Angle {
     pub sin: Option<ExprId>,
     /// Node of its cosine.
     pub cos: Option<ExprId>,
+}
+
+/// An argument of Stumpff's functions and what is needed of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StumpffArgument {
+    /// The argument.
+    pub argument: ExprId,
+    /// Nodes of c_0, c_1, ….
+    pub values: [Option<ExprId>; Op::STUMPFF_ORDERS],
 }
 
 /// Lowers a program; equal work at `least_rounds` bodies in a row becomes a loop.

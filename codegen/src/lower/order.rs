@@ -1,4 +1,4 @@
-//! Order of statements: all angles first; then what sweeps derive, as they do, body by body, each result written as soon
+//! Order of statements: all angles and all arguments of Stumpff's functions first; then what sweeps derive, as they do, body by body, each result written as soon
 //! as it is known; the rest depth first from each output, so that a value stands near its use.
 //!
 //! In the order of its sweeps, where what does not depend on each other stands side by side, forward dynamics takes
@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use super::{Angle, Constants, Rolled, Source, Statement, Taking, variables_of};
+use super::{Angle, Constants, Rolled, Source, Statement, StumpffArgument, Taking, variables_of};
 use crate::symbolic::{Argument, ExprId, Function, Op, Program, Visit};
 
 /// One straight line for a function, its loops in it as statements.
@@ -30,6 +30,7 @@ pub(super) fn order(
         statements: vec![],
     };
     line.angles(&function.outputs);
+    line.stumpff(&function.outputs);
     line.follow(&rolled.visits);
     for (slot, value) in rolled.outputs.iter().enumerate() {
         if let Some(value) = value.filter(|value| line.unwritten.contains_key(value)) {
@@ -52,6 +53,22 @@ pub(super) fn angles(program: &Program, needed: &[bool]) -> Vec<Angle> {
         }
     }
     angles
+}
+
+/// All arguments of Stumpff's functions that are needed, in order of construction.
+pub(super) fn stumpff_arguments(program: &Program, needed: &[bool]) -> Vec<StumpffArgument> {
+    let mut places: HashMap<ExprId, usize> = HashMap::new();
+    let mut arguments: Vec<StumpffArgument> = Vec::new();
+    for id in program.ids().take(needed.len()).filter(|id| needed[id.index()]) {
+        if let Op::Stumpff(k, argument) = program.op(id) {
+            let place = *places.entry(argument).or_insert_with(|| {
+                arguments.push(StumpffArgument { argument, values: [None; Op::STUMPFF_ORDERS] });
+                arguments.len() - 1
+            });
+            arguments[place].values[usize::from(k)] = Some(id);
+        }
+    }
+    arguments
 }
 
 /// What the function itself computes or reads: not what stored constants are made of.
@@ -109,6 +126,26 @@ impl Line<'_> {
         }
         if !angles.is_empty() {
             self.statements.push(Statement::SinCos(angles));
+        }
+    }
+
+    /// Stumpff's functions of all arguments, in one pass. No argument is made of another's function.
+    fn stumpff(&mut self, outputs: &[ExprId]) {
+        let mut arguments = stumpff_arguments(self.program, &needed_here(self.program, self.constants, outputs));
+        for known in &arguments {
+            self.compute_variables(known.argument);
+        }
+        for id in arguments.iter().flat_map(|known| known.values).flatten() {
+            self.done[id.index()] = true;
+        }
+        // Loops take theirs by place.
+        let outside = needed_here(self.program, self.constants, &self.rolled.roots());
+        let named = |id: &ExprId| self.rolled.loops.is_empty() || outside[id.index()];
+        for known in &mut arguments {
+            known.values = known.values.map(|value| value.filter(named));
+        }
+        if !arguments.is_empty() {
+            self.statements.push(Statement::Stumpff(arguments));
         }
     }
 

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use super::loops::{Loop, Progression, Rolled, Source, Taking};
 use super::matching::{Match, matched};
-use super::{Angle, Constants, Place, order};
+use super::{Angle, Constants, Place, StumpffArgument, order};
 use crate::symbolic::{Argument, ExprId, Function, Op, Program, Shape, Symbol, Visit};
 
 /// Where the operands of all rounds at one place come from.
@@ -40,11 +40,13 @@ pub(super) fn roll(program: &mut Program, constants: &Constants, function: &Func
     let needed = order::needed_here(program, constants, &function.outputs);
     let rank = ranks(program, function, &needed);
     let angles = order::angles(program, &needed);
+    let stumpff = order::stumpff_arguments(program, &needed);
     let mut rolling = Rolling {
         program,
         constants,
         rank,
         angles,
+        stumpff,
         places: HashMap::new(),
         moved: HashMap::new(),
         rolled: Rolled::default(),
@@ -86,8 +88,8 @@ fn ranks(program: &Program, function: &Function, needed: &[bool]) -> Vec<usize> 
     }
     for index in (0..needed.len()).rev() {
         let op = program.operations[index];
-        if !needed[index] || op.is_leaf() || matches!(op, Op::Sin(_) | Op::Cos(_)) {
-            // Inputs, and sines and cosines, are there before every visit.
+        if !needed[index] || op.is_leaf() || op.is_elementary() {
+            // Inputs, and functions of angles and arguments, are there before every visit.
             rank[index] = usize::MAX;
             continue;
         }
@@ -104,6 +106,7 @@ struct Rolling<'a> {
     constants: &'a Constants,
     rank: Vec<usize>,
     angles: Vec<Angle>,
+    stumpff: Vec<StumpffArgument>,
     /// Expressions that loops compute: which loop, as which expression of its first visit, in which round.
     places: HashMap<ExprId, (usize, ExprId, usize)>,
     /// Expressions outside of loops in terms of what the loops leave.
@@ -185,6 +188,12 @@ impl Rolling<'_> {
         }
         if let Some(places) = angle(|angle| angle.cos) {
             return Some(Operands::From(Source::Cosine(places)));
+        }
+        if let Op::Stumpff(k, _) = ops[0] {
+            let place = |id: &ExprId| self.stumpff.iter().position(|known| known.values[usize::from(k)] == Some(*id));
+            if let Some(places) = progression(operands.iter().map(place)) {
+                return Some(Operands::From(Source::Stumpff(k, places)));
+            }
         }
         // The same expression of the round before, and anything from before the loop in the first.
         let before = |k: usize| matches[k - 1].template_of(operands[k]);
@@ -311,8 +320,7 @@ impl Rolling<'_> {
                 None
             } else if let Some(&(of, template, round)) = self.places.get(&id) {
                 Some(self.taken(id, of, template, round))
-            } else if self.constants.is_free(self.program, id) || op.is_leaf() || matches!(op, Op::Sin(_) | Op::Cos(_))
-            {
+            } else if self.constants.is_free(self.program, id) || op.is_leaf() || op.is_elementary() {
                 Some(id)
             } else {
                 let waiting: Vec<ExprId> = op.operands().filter(|operand| !self.moved.contains_key(operand)).collect();

@@ -61,6 +61,9 @@ impl Lives {
                 Statement::SinCos(angles) => {
                     angles.iter().flat_map(|known| operands(program, constants, inlined, known.angle)).collect()
                 }
+                Statement::Stumpff(arguments) => {
+                    arguments.iter().flat_map(|known| operands(program, constants, inlined, known.argument)).collect()
+                }
                 Statement::Let(id) => variables_of(program, constants, inlined, *id),
                 Statement::Output { value, .. } => operands(program, constants, inlined, *value),
                 Statement::Input(_)
@@ -155,6 +158,7 @@ fn defines(statement: &Statement) -> Vec<ExprId> {
     match statement {
         Statement::Input(id) | Statement::Let(id) | Statement::Fetch { value: id, .. } => vec![*id],
         Statement::SinCos(angles) => angles.iter().flat_map(|known| [known.sin, known.cos]).flatten().collect(),
+        Statement::Stumpff(arguments) => arguments.iter().flat_map(|known| known.values).flatten().collect(),
         Statement::At(_) | Statement::Output { .. } | Statement::Keep { .. } | Statement::Loop { .. } => vec![],
     }
 }

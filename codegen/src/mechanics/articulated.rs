@@ -115,6 +115,17 @@ impl<'g> Articulated<'g> {
         };
     }
 
+    /// Components in the frame before a rotation R.
+    pub fn rotate(&mut self, rotation: Rotation<'g>) {
+        *self = Articulated {
+            rotational: self.rotational.rotated(rotation),
+            coupling: self.coupling.rotated(rotation),
+            translational: self.translational.rotated(rotation),
+            moment: rotation.apply(self.moment),
+            force: rotation.apply(self.force),
+        };
+    }
+
     /// Components in the frame before a rotation R, of what a freed ball joint transmits: a force, and the moment n.
     pub fn rotate_force(&mut self, rotation: Rotation<'g>, moment: Vec3<'g>) {
         self.translational = self.translational.rotated(rotation);

@@ -57,16 +57,26 @@ pub fn columns<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Columns<'g> {
             }
             Factor::Prismatic { j, axis } => {
                 let (frame, by) = (frame_before(), Vec3::along(*axis, model.q[*j]));
-                columns.set(model, *j, (&frame, *axis), composite.sliding(*axis), way);
+                columns.set(model, *j, (&frame, frame.axis(*axis)), composite.sliding(*axis), way);
                 composite.shift(by);
                 way = frame.apply(by);
+            }
+            Factor::RotationVector { j, vector } => {
+                let frame = frame_before();
+                composite.rotate(vector.rotation());
+                let jacobian = vector.jacobian();
+                let axes = vector.by_coordinates([0, 1, 2].map(|k| jacobian.column(k)));
+                for (k, axis) in axes.into_iter().enumerate().rev() {
+                    columns.set(model, j + k, (&frame, frame.apply(axis)), composite.turning_about(axis), way);
+                    way = zero;
+                }
             }
             Factor::Turn(_) | Factor::Revolute { .. } | Factor::Ball { .. } => {
                 for (j, turn) in factor.turns().into_iter().rev() {
                     let frame = frame_before();
                     composite.turn(&turn);
                     if let Some(j) = j {
-                        columns.set(model, j, (&frame, turn.axis), composite.turning(turn.axis), way);
+                        columns.set(model, j, (&frame, frame.axis(turn.axis)), composite.turning(turn.axis), way);
                         way = zero;
                     }
                 }
@@ -85,6 +95,10 @@ fn frames<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Rotation<'g>> {
         match factor {
             Factor::Body(index) => sweep.leave(&model.chain.bodies[*index].name),
             Factor::Translate(_) | Factor::Prismatic { .. } => frames.push(frame),
+            Factor::RotationVector { vector, .. } => {
+                frames.push(frame);
+                frame = frame.times(vector.rotation());
+            }
             Factor::Turn(_) | Factor::Revolute { .. } | Factor::Ball { .. } => {
                 for (_, turn) in factor.turns() {
                     frames.push(frame);
@@ -126,6 +140,12 @@ impl<'g> Composite<'g> {
         self.second = turn.outward_symmetric(&self.second);
     }
 
+    /// The same before a rotation by its matrix.
+    fn rotate(&mut self, rotation: Rotation<'g>) {
+        self.first = rotation.apply(self.first);
+        self.second = self.second.rotated(rotation);
+    }
+
     /// From the origin at d back to the frame's own: `Σ + u dᵀ + d uᵀ` with `u = s + ½ m d`.
     fn shift(&mut self, d: Vec3<'g>) {
         self.second = self.second + Symmetric3::outer(self.first + (0.5 * self.mass) * d, d);
@@ -138,6 +158,11 @@ impl<'g> Composite<'g> {
         [unit.cross(self.first), self.second.tensor().row(axis.index())]
     }
 
+    /// Momenta P and L of a rotation about any axis n at unit rate: `n × s` and `I n`.
+    fn turning_about(&self, axis: Vec3<'g>) -> [Vec3<'g>; 2] {
+        [axis.cross(self.first), self.second.tensor().apply(axis)]
+    }
+
     /// Momenta P and L of a translation along an axis of the frame at unit rate: `m e` and `s × e`.
     fn sliding(&self, axis: Axis) -> [Vec3<'g>; 2] {
         let unit = Vec3::along(axis, self.mass.graph().constant(1.0));
@@ -146,16 +171,16 @@ impl<'g> Composite<'g> {
 }
 
 impl<'g> Columns<'g> {
-    /// Coordinate j moves along or about an axis of a frame, by whose components its momenta are given.
+    /// Coordinate j moves along or about an axis; its momenta are given by their components in a frame.
     fn set(
         &mut self,
         model: &Model<'g>,
         j: usize,
-        (frame, axis): (&Rotation<'g>, Axis),
+        (frame, axis): (&Rotation<'g>, Vec3<'g>),
         momenta: [Vec3<'g>; 2],
         way: Vec3<'g>,
     ) {
-        self.axes[j] = frame.axis(axis).named(&format!("axis_{}", model.chain.coordinates[j].name));
+        self.axes[j] = axis.named(&format!("axis_{}", model.chain.coordinates[j].name));
         [self.linear[j], self.angular[j]] = momenta.map(|momentum| frame.apply(momentum));
         self.shifts[j] = way;
     }

@@ -3,6 +3,7 @@
 use crate::chain::{Axis, CoordinateKind, Step};
 
 use super::model::Model;
+use super::rotation_vector::RotationVector;
 use super::turn::Turn;
 use super::vector::Vec3;
 
@@ -20,6 +21,8 @@ pub enum Factor<'g> {
     /// Three rotations through one point about three different axes, by coordinates `j`, `j + 1`, `j + 2`: what moves
     /// with them turns freely.
     Ball { j: usize, turns: [Turn<'g>; 3] },
+    /// Rotation by the vector of coordinates `j`, `j + 1`, `j + 2`.
+    RotationVector { j: usize, vector: Box<RotationVector<'g>> },
     /// The frame reached is that of a body.
     Body(usize),
 }
@@ -31,7 +34,7 @@ impl<'g> Factor<'g> {
             Factor::Turn(turn) => vec![(None, *turn)],
             Factor::Revolute { j, turn } => vec![(Some(*j), *turn)],
             Factor::Ball { j, turns } => turns.iter().enumerate().map(|(k, turn)| (Some(j + k), *turn)).collect(),
-            Factor::Translate(_) | Factor::Prismatic { .. } | Factor::Body(_) => vec![],
+            Factor::Translate(_) | Factor::Prismatic { .. } | Factor::RotationVector { .. } | Factor::Body(_) => vec![],
         }
     }
 }
@@ -47,6 +50,9 @@ pub fn factors<'g>(model: &Model<'g>) -> Vec<Factor<'g>> {
                 Step::Translate(by) => Factor::Translate(model.vector(by)),
                 Step::Rotate { axis, sin, cos } => {
                     Factor::Turn(Turn { axis: *axis, sin: model.number(sin), cos: model.number(cos) })
+                }
+                Step::RotationVector(ids) => {
+                    Factor::RotationVector { j: ids[0].0, vector: Box::new(RotationVector::new(model, ids)) }
                 }
                 Step::Move(id) => {
                     let j = id.0;

@@ -11,6 +11,7 @@ use super::articulated::{Articulated, BallResponse, Effort, Reaction, Response};
 use super::factors::Factor;
 use super::model::Model;
 use super::outward::{Velocities, velocities};
+use super::rotation_vector::RotationVector;
 use super::turn::Turn;
 use super::vector::{Rotation, Symmetric3, Vec3, plane};
 use crate::chain::Axis;
@@ -43,6 +44,7 @@ pub(super) enum Joint<'g> {
     /// Its acceleration is prescribed.
     Prescribed(Expr<'g>, Reaction<'g>),
     Ball(Ball<'g>, Box<BallResponse<'g>>),
+    RotationVector(Box<BallResponse<'g>>),
 }
 
 /// q̈ of all coordinates, and the efforts of those that are prescribed (hybrid dynamics).
@@ -113,6 +115,10 @@ pub(super) fn inward<'g>(
                 let response = ball.free(&mut articulated, [efforts[*j], efforts[j + 1], efforts[j + 2]]);
                 Joint::Ball(ball, Box::new(response))
             }
+            (Factor::RotationVector { j, vector }, Velocities::RotationVector { .. }) => {
+                let efforts = [efforts[*j], efforts[j + 1], efforts[j + 2]];
+                Joint::RotationVector(Box::new(free_rotation_vector(vector, &mut articulated, efforts)))
+            }
             _ => unreachable!("velocities were made from the same factors"),
         })
         .collect();
@@ -151,6 +157,15 @@ pub(super) fn outward<'g>(
                 (own, angular, linear) = ball.move_on(response, gyrations, angular, linear);
                 accelerations[*j..j + 3].copy_from_slice(&own);
             }
+            (
+                Factor::RotationVector { j, vector },
+                Velocities::RotationVector { rates, gyration },
+                Joint::RotationVector(response),
+            ) => {
+                let own;
+                [own, angular, linear] = move_by_vector(vector, response, (*rates, *gyration), (angular, linear));
+                accelerations[*j..j + 3].copy_from_slice(&vector.by_coordinates(own.0));
+            }
             (Factor::Body(index), ..) => {
                 let name = &model.chain.bodies[*index].name;
                 angular.named(&format!("alpha_{name}"));
@@ -179,9 +194,48 @@ impl<'g> Joint<'g> {
                 *own = *acceleration;
                 *effort = reaction.effort(angular, linear);
             }
-            Joint::None | Joint::Ball(..) => unreachable!("joints were made from the same factors"),
+            Joint::None | Joint::Ball(..) | Joint::RotationVector(_) => {
+                unreachable!("joints were made from the same factors")
+            }
         }
     }
+}
+
+/// Frees a rotation vector and leaves the articulated inertia in the frame before it.
+fn free_rotation_vector<'g>(
+    vector: &RotationVector<'g>,
+    articulated: &mut Articulated<'g>,
+    efforts: [Effort<'g>; 3],
+) -> BallResponse<'g> {
+    let along_axes = |of: fn(Effort<'g>) -> Expr<'g>| Vec3(vector.along_axes(efforts.map(of)));
+    let [before, after] = vector.moments(along_axes(|effort| effort.applied));
+    if efforts.iter().all(|effort| effort.resistance.is_zero()) {
+        let response = articulated.free_ball(after, None);
+        articulated.rotate_force(vector.rotation(), before);
+        return response;
+    }
+    let resistance = vector.resistance(along_axes(|effort| effort.resistance));
+    let response = articulated.free_ball(after, Some(resistance));
+    articulated.rotate(vector.rotation());
+    response
+}
+
+/// A rotation vector's own accelerations, and α and a after it.
+fn move_by_vector<'g>(
+    vector: &RotationVector<'g>,
+    response: &BallResponse<'g>,
+    (rates, gyration): (Vec3<'g>, Vec3<'g>),
+    (angular, linear): (Vec3<'g>, Vec3<'g>),
+) -> [Vec3<'g>; 3] {
+    let rotation = vector.rotation();
+    let linear = rotation.apply_transposed(linear);
+    let Some(own) = &response.angular else {
+        let after = response.rest - response.linear.apply(linear);
+        return [vector.accelerations(angular, after, gyration, rates), after, linear];
+    };
+    let before = rotation.apply_transposed(angular) + gyration + vector.spin_rate(rates);
+    let relative = response.rest - response.linear.apply(linear) - own.apply(before);
+    [vector.accelerations_at_rest(relative), before + relative, linear]
 }
 
 /// Three rotations through one point, `R_a(ψ) R_b(θ) R_c(φ)`.

@@ -1,7 +1,7 @@
 //! Potential energy of gravity and its derivatives; γ is the acceleration of gravity.
 
 use super::inertia::Inertias;
-use super::kinematics::Kinematics;
+use super::kinematics::{Curvature, Kinematics};
 use super::model::Model;
 use super::vector::SymmetricMatrix;
 use crate::symbolic::Expr;
@@ -25,7 +25,7 @@ pub fn gradient<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, inertias: &I
         .collect()
 }
 
-/// `∂²E_g/∂q_i∂q_j = −γ · Ω_i Ω_j s_j`, i ≤ j.
+/// `∂²E_g/∂q_i∂q_j = −γ · Ω_i Ω_j s_j`, i ≤ j, and what curvatures add.
 pub fn stiffness<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
@@ -39,6 +39,14 @@ pub fn stiffness<'g>(
         let torque = composite.linear_momentum(moving.omega, moving.upsilon).cross(gravity);
         for (i, before) in kinematics.generators[..=j].iter().enumerate() {
             matrix.add(i, j, -before.omega.dot(torque));
+        }
+    }
+    for curvature in &kinematics.curvatures {
+        let composite = &inertias.composites[curvature.body];
+        // −γ · (e × s) = −e · (s × γ), s about the joint's point.
+        let torque = (composite.first - composite.mass * curvature.pose.origin).cross(gravity);
+        for ((m, n), work) in Curvature::PAIRS.into_iter().zip(curvature.works(torque)) {
+            matrix.add(curvature.first + m, curvature.first + n, -work);
         }
     }
 }

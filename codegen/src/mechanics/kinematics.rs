@@ -9,11 +9,15 @@
 //! : paths of the bodies, q.
 //!
 //! Output
-//! : `T(p) = T(p−1) T̃(p)` [Urbaś 2016, Eq. (3)], and Ω_j, with which `∂T/∂q_j = Ω_j T`.
+//! : `T(p) = T(p−1) T̃(p)` [Urbaś 2016, Eq. (3)], and Ω_j, with which `∂T/∂q_j = Ω_j T`. Second derivatives are
+//!   `∂²T/∂q_m∂q_n = Ω_m Ω_n T`, m ≤ n; for two coordinates of one rotation vector, whose axes depend on each other both ways,
+//!   with a rotation about the same point more ([`Curvature`]).
 
 use crate::chain::{CoordinateId, CoordinateKind, Step};
+use crate::symbolic::Expr;
 
 use super::model::Model;
+use super::rotation_vector::RotationVector;
 use super::turn::Turn;
 use super::vector::{Rotation, Vec3};
 
@@ -39,6 +43,11 @@ pub struct Generator<'g> {
 }
 
 impl<'g> Generator<'g> {
+    /// A rotation about an axis through a point.
+    fn through(point: Vec3<'g>, omega: Vec3<'g>, body: usize) -> Self {
+        Generator { kind: CoordinateKind::Rotation, omega, upsilon: point.cross(omega), point, body }
+    }
+
     /// `Ω_j x` for a point x: its velocity at unit rate.
     pub fn velocity(&self, x: Vec3<'g>) -> Vec3<'g> {
         match self.kind {
@@ -53,18 +62,60 @@ impl<'g> Generator<'g> {
     }
 }
 
+/// A rotation vector whose second derivatives `∂²T/∂q_m∂q_n` have a rotation E_mn about the joint's point beside `Ω_m Ω_n T`.
+#[derive(Clone, Copy, Debug)]
+pub struct Curvature<'g> {
+    /// First of the three coordinates.
+    pub first: usize,
+    /// Index of the first body that it moves.
+    pub body: usize,
+    /// The frame before it.
+    pub pose: Pose<'g>,
+    vector: RotationVector<'g>,
+}
+
+impl<'g> Curvature<'g> {
+    /// Places m ≤ n among the three coordinates, row by row of a triangle.
+    pub const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+    /// Axes of two coordinates.
+    fn axes(&self, (m, n): (usize, usize)) -> (usize, usize) {
+        let axes = self.vector.by_coordinates([0, 1, 2]);
+        (axes[m], axes[n])
+    }
+
+    /// E_mn
+    pub fn generator(&self, pair: (usize, usize)) -> Generator<'g> {
+        let axis = self.vector.curvature(self.axes(pair));
+        Generator::through(self.pose.origin, self.pose.rotation.apply(axis), self.body)
+    }
+
+    /// E_mn as `Σ_k share_k Ω_k` over the coordinates k of the joint.
+    pub fn shares(&self, pair: (usize, usize)) -> [Expr<'g>; 3] {
+        self.vector.by_coordinates(self.vector.rates_of(self.vector.curvature(self.axes(pair))).0)
+    }
+
+    /// Work of a torque of the world at unit rate of each E_mn.
+    pub fn works(&self, torque: Vec3<'g>) -> [Expr<'g>; 6] {
+        let local = self.pose.rotation.apply_transposed(torque);
+        Self::PAIRS.map(|pair| self.vector.curvature_along(local, self.axes(pair)))
+    }
+}
+
 /// Poses and generators of a chain.
 pub struct Kinematics<'g> {
     /// T(p), one a body.
     pub poses: Vec<Pose<'g>>,
     /// Ω_j, one a coordinate.
     pub generators: Vec<Generator<'g>>,
+    /// One for each rotation vector.
+    pub curvatures: Vec<Curvature<'g>>,
 }
 
 impl<'g> Kinematics<'g> {
     pub fn new(model: &Model<'g>) -> Self {
         let mut pose = Pose { rotation: Rotation::identity(model.graph), origin: Vec3::zero(model.graph) };
-        let (mut poses, mut generators) = (Vec::new(), Vec::new());
+        let (mut poses, mut generators, mut curvatures) = (Vec::new(), Vec::new(), Vec::new());
         for (index, body) in model.chain.bodies.iter().enumerate() {
             for step in &body.path {
                 match step {
@@ -76,6 +127,12 @@ impl<'g> Kinematics<'g> {
                         generators.push(generator(model, pose, *id, index));
                         pose = moved(model, pose, *id);
                     }
+                    Step::RotationVector(ids) => {
+                        let vector = RotationVector::new(model, ids);
+                        generators.extend(generators_of(model, pose, (ids, &vector), index));
+                        curvatures.push(Curvature { first: ids[0].0, body: index, pose, vector });
+                        pose.rotation = pose.rotation.times(vector.rotation());
+                    }
                 }
             }
             for (column, axis) in pose.rotation.0.iter().zip(["x", "y", "z"]) {
@@ -84,7 +141,7 @@ impl<'g> Kinematics<'g> {
             pose.origin.named(&format!("{}_origin", body.name));
             poses.push(pose);
         }
-        Kinematics { poses, generators }
+        Kinematics { poses, generators, curvatures }
     }
 }
 
@@ -100,6 +157,23 @@ fn generator<'g>(model: &Model<'g>, pose: Pose<'g>, id: CoordinateId, body: usiz
         CoordinateKind::Translation => (Vec3::zero(model.graph), axis.named(&format!("upsilon_{}", coordinate.name))),
     };
     Generator { kind: coordinate.kind, omega, upsilon, point: pose.origin, body }
+}
+
+/// Ω_j of a rotation vector, its motion starting from `pose`.
+fn generators_of<'g>(
+    model: &Model<'g>,
+    pose: Pose<'g>,
+    (ids, vector): (&[CoordinateId; 3], &RotationVector<'g>),
+    body: usize,
+) -> [Generator<'g>; 3] {
+    let jacobian = vector.jacobian();
+    let axes = vector.by_coordinates([0, 1, 2].map(|k| pose.rotation.apply(jacobian.column(k))));
+    [0, 1, 2].map(|k| {
+        let name = &model.chain.coordinates[ids[k].0].name;
+        let generator = Generator::through(pose.origin, axes[k].named(&format!("omega_{name}")), body);
+        generator.upsilon.named(&format!("upsilon_{name}"));
+        generator
+    })
 }
 
 /// The pose after the elementary motion of a coordinate.

@@ -21,6 +21,7 @@ mod outward;
 mod points;
 mod profile;
 mod resisted;
+mod rotation_vector;
 mod rotors;
 mod springs;
 mod supports;

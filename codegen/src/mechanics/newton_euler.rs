@@ -27,6 +27,11 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
                     (alpha, a) = (turn.inward(alpha) + *gyration, turn.inward(a));
                 }
             }
+            (Factor::RotationVector { vector, .. }, Velocities::RotationVector { rates, gyration }) => {
+                let rotation = vector.rotation();
+                alpha = rotation.apply_transposed(alpha) + *gyration + vector.spin_rate(*rates);
+                a = rotation.apply_transposed(a);
+            }
             (_, Velocities::Translation { by, acceleration }) => a = a + alpha.cross(*by) + *acceleration,
             (Factor::Body(index), _) => sweep.leave(&model.chain.bodies[*index].name),
             _ => {}
@@ -58,6 +63,15 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
                     }
                     (force, moment) = (turn.outward(force), turn.outward(moment));
                 }
+            }
+            (Factor::RotationVector { j, vector }, _) => {
+                // Jᵀ R = J: what the moment does to the coordinates, by its components after the joint.
+                let efforts = vector.jacobian().apply(moment);
+                for (k, effort) in vector.by_coordinates(efforts.0).into_iter().enumerate() {
+                    bias[j + k] = -effort;
+                }
+                let rotation = vector.rotation();
+                (force, moment) = (rotation.apply(force), rotation.apply(moment));
             }
             (factor, Velocities::Translation { by, .. }) => {
                 if let Factor::Prismatic { j, axis } = factor {

@@ -22,6 +22,8 @@ pub enum Velocities<'g> {
     Revolute { gyration: Vec3<'g> },
     /// `ω × e q̇` at each of three rotations, each in its own frame.
     Ball { gyrations: [Vec3<'g>; 3] },
+    /// Rates of a rotation vector, the relative angular velocity w after it, and `ω × w`.
+    RotationVector { rates: Vec3<'g>, gyration: Vec3<'g> },
     /// The way d of a translation, and `ω × (ω × d)` with Coriolis' acceleration.
     Translation { by: Vec3<'g>, acceleration: Vec3<'g> },
     /// A constant rotation changes nothing but components.
@@ -68,6 +70,12 @@ pub fn along<'g>(model: &Model<'g>, omega: &mut Vec3<'g>, factor: &Factor<'g>, v
         Factor::Ball { j, turns } => {
             let mut gyration = |k: usize| rotate(&turns[k], v[j + k]);
             Velocities::Ball { gyrations: [gyration(0), gyration(1), gyration(2)] }
+        }
+        Factor::RotationVector { j, vector } => {
+            let rates = Vec3(vector.along_axes([v[*j], v[j + 1], v[j + 2]]));
+            let spin = vector.spin(rates);
+            *omega = vector.rotation().apply_transposed(*omega) + spin;
+            Velocities::RotationVector { rates, gyration: omega.cross(spin) }
         }
         Factor::Body(index) => {
             omega.named(&format!("omega_{}", model.chain.bodies[*index].name));

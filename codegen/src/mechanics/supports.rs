@@ -88,7 +88,7 @@ fn at_rest<'g>(model: &Model<'g>, r: Vec3<'g>) -> Vec3<'g> {
             let (sin, cos) = (model.number(sin), model.number(cos));
             Rotation::identity(model.graph).turned(*axis, sin, cos).apply(point)
         }
-        Step::Move(_) => point,
+        Step::Move(_) | Step::RotationVector(_) => point,
     })
 }
 

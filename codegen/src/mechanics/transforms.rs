@@ -1,6 +1,6 @@
 //! T, ∂T/∂q and ∂²T/∂q∂q of every body, as the upper three rows of each matrix.
 
-use super::kinematics::{Kinematics, Pose};
+use super::kinematics::{Curvature, Generator, Kinematics, Pose};
 use super::model::Model;
 use super::vector::Vec3;
 use crate::chain::{BodyId, CoordinateKind};
@@ -23,8 +23,12 @@ fn columns<'g>(pose: &Pose<'g>) -> [Vec3<'g>; 4] {
 
 /// `∂T/∂q_j = Ω_j T`.
 fn derivative<'g>(kinematics: &Kinematics<'g>, body: usize, j: usize) -> [Vec3<'g>; 4] {
-    let generator = &kinematics.generators[j];
-    let [x, y, z, origin] = columns(&kinematics.poses[body]);
+    moved(&kinematics.generators[j], &kinematics.poses[body])
+}
+
+/// `Ω T`
+fn moved<'g>(generator: &Generator<'g>, pose: &Pose<'g>) -> [Vec3<'g>; 4] {
+    let [x, y, z, origin] = columns(pose);
     [generator.turn(x), generator.turn(y), generator.turn(z), generator.velocity(origin)]
 }
 
@@ -55,7 +59,11 @@ pub fn second_derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) ->
     }
     let mut factors: Vec<Expr<'g>> = kinematics.generators.iter().flat_map(|generator| generator.omega.0).collect();
     factors.extend(derivatives(model, kinematics));
-    (Shape::Turned { degrees, rotations }, factors)
+    for curvature in &kinematics.curvatures {
+        factors.extend(Curvature::PAIRS.into_iter().flat_map(|pair| curvature.shares(pair)));
+    }
+    let vectors = kinematics.curvatures.iter().map(|curvature| curvature.first).collect();
+    (Shape::Turned { degrees, rotations, vectors }, factors)
 }
 
 fn written_out<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
@@ -65,7 +73,16 @@ fn written_out<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'
         for m in 0..count {
             for n in m..count {
                 // The columns of Ω_n T are directions, so Ω_m only turns them.
-                outputs.extend(rows(first[n].map(|column| kinematics.generators[m].turn(column))));
+                let turned = first[n].map(|column| kinematics.generators[m].turn(column));
+                let within = |curvature: &&Curvature<'g>| curvature.first <= m && n < curvature.first + 3;
+                outputs.extend(rows(match kinematics.curvatures.iter().find(within) {
+                    Some(curvature) => {
+                        let generator = curvature.generator((m - curvature.first, n - curvature.first));
+                        let own = moved(&generator, &kinematics.poses[body]);
+                        [0, 1, 2, 3].map(|k| turned[k] + own[k])
+                    }
+                    None => turned,
+                }));
             }
         }
     }

@@ -104,6 +104,11 @@ impl<'g> Rotation<'g> {
         Vec3(self.0.map(|column| column.dot(x)))
     }
 
+    /// `R S` for another rotation S.
+    pub fn times(self, other: Self) -> Self {
+        Rotation(other.0.map(|column| self.apply(column)))
+    }
+
     /// `R · R_axis(angle)`: a plane rotation of two columns, the third stays.
     pub fn turned(self, axis: Axis, sin: Expr<'g>, cos: Expr<'g>) -> Self {
         let (first, second) = plane(axis);
@@ -161,6 +166,12 @@ impl<'g> Matrix3<'g> {
     pub fn map_columns(&self, f: impl Fn(Vec3<'g>) -> Vec3<'g>) -> Self {
         let columns = [0, 1, 2].map(|j| f(self.column(j)));
         Matrix3([0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i])))
+    }
+
+    /// `R M Rᵀ`
+    pub fn rotated(&self, rotation: Rotation<'g>) -> Self {
+        let left = self.map_columns(|column| rotation.apply(column));
+        Matrix3([0, 1, 2].map(|i| rotation.apply(left.row(i)).0))
     }
 
     /// Names the entries `name_xx`, `name_xy` … in generated code.

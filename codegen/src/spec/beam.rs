@@ -25,6 +25,8 @@ pub struct Beam {
     pub extra_mass: Option<Given<Number>>,
     /// Damping of the springs. Default none.
     pub damping: Option<Given<BeamDamping>>,
+    /// How two elements turn against each other. Default `symmetric`.
+    pub section_joint: Option<Given<SectionJoint>>,
     /// Rigid elements one by one, n + 1 of them.
     pub elements: Option<Given<Vec<Given<Element>>>>,
     /// Springs between the elements, n of them.
@@ -69,6 +71,16 @@ impl JsonSchema for Sections {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "anyOf": [{ "type": "integer", "minimum": 1, "maximum": 1000 }, { "const": "rigid" }] })
     }
+}
+
+/// How two rigid elements of a beam turn against each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SectionJoint {
+    /// By the rotation vector (phi, theta, psi): no direction of bending comes before another.
+    Symmetric,
+    /// As in the paper, first psi, then theta, then phi.
+    Paper,
 }
 
 /// An isotropic elastic material.

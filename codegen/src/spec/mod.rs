@@ -12,7 +12,7 @@ mod scalar;
 mod schema;
 mod support;
 
-pub use beam::{Beam, BeamDamping, Directions, Element, Material, Section, Sections, Spring};
+pub use beam::{Beam, BeamDamping, Directions, Element, Material, Section, SectionJoint, Sections, Spring};
 pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub(crate) use given::{EITHER, GIVEN, MANY};
 pub use given::{Either, Entries, Given, Many};

@@ -17,15 +17,17 @@ pub struct OperationCount {
     pub divisions: usize,
     /// Angles whose sine, cosine or both are taken.
     pub angles: usize,
+    /// Arguments of which one or more of Stumpff's functions are taken.
+    pub stumpff: usize,
     /// Minima and maxima.
     pub comparisons: usize,
 }
 
 impl OperationCount {
-    /// All operations; an angle counts as one.
+    /// All operations; an angle counts as one, and so does an argument of Stumpff's functions.
     #[must_use]
     pub fn total(&self) -> usize {
-        self.additions + self.multiplications + self.divisions + self.angles + self.comparisons
+        self.additions + self.multiplications + self.divisions + self.angles + self.stumpff + self.comparisons
     }
 }
 
@@ -35,6 +37,7 @@ impl AddAssign for OperationCount {
         self.multiplications += other.multiplications;
         self.divisions += other.divisions;
         self.angles += other.angles;
+        self.stumpff += other.stumpff;
         self.comparisons += other.comparisons;
     }
 }
@@ -46,6 +49,9 @@ impl fmt::Display for OperationCount {
             "{} add, {} mul, {} div, {} sin_cos",
             self.additions, self.multiplications, self.divisions, self.angles
         )?;
+        if self.stumpff > 0 {
+            write!(f, ", {} stumpff", self.stumpff)?;
+        }
         if self.comparisons > 0 {
             write!(f, ", {} min/max", self.comparisons)?;
         }
@@ -58,6 +64,7 @@ impl Program {
     pub fn count(&self, roots: &[ExprId], free: impl Fn(ExprId) -> bool) -> OperationCount {
         let mut seen = vec![false; self.operations.len()];
         let mut angles = vec![false; self.operations.len()];
+        let mut arguments = vec![false; self.operations.len()];
         let mut stack: Vec<ExprId> = roots.to_vec();
         let mut count = OperationCount::default();
         while let Some(id) = stack.pop() {
@@ -73,6 +80,11 @@ impl Program {
                 Op::Sin(a) | Op::Cos(a) => {
                     if !std::mem::replace(&mut angles[a.index()], true) {
                         count.angles += 1;
+                    }
+                }
+                Op::Stumpff(_, a) => {
+                    if !std::mem::replace(&mut arguments[a.index()], true) {
+                        count.stumpff += 1;
                     }
                 }
                 Op::Min(..) | Op::Max(..) => count.comparisons += 1,

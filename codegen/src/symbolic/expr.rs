@@ -63,6 +63,16 @@ impl<'g> Expr<'g> {
         self.graph.build(Op::Max(self.id, other.id))
     }
 
+    /// Stumpff's function c_k(x), x ≥ 0.
+    ///
+    /// # Panics
+    /// If there is no operation of this order.
+    #[must_use]
+    pub fn stumpff(self, k: u8) -> Self {
+        assert!(usize::from(k) < Op::STUMPFF_ORDERS, "Stumpff's functions end at c_5");
+        self.graph.build(Op::Stumpff(k, self.id))
+    }
+
     /// The nearest number to x in [low, high].
     #[must_use]
     pub fn clamp(self, low: Self, high: Self) -> Self {

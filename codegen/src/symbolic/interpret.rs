@@ -5,6 +5,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::op::{Constant, Op};
 use super::program::{Argument, Function, Program};
+use super::stumpff;
 
 /// What the interpreter needs from a number: f64, a dual number, a number of higher precision.
 pub trait Scalar:
@@ -14,6 +15,11 @@ pub trait Scalar:
     fn from_f64(value: f64) -> Self;
     /// Sine and cosine.
     fn sin_cos(&self) -> (Self, Self);
+    /// Stumpff's function `c_k(x) = Σ (−x)^i/(2i + k)!`, 0 ≤ x ≤ 100: unless a number knows better, by its series.
+    #[must_use]
+    fn stumpff(&self, k: u8) -> Self {
+        stumpff::series(k, self)
+    }
     /// The smaller of two.
     #[must_use]
     fn min(self, other: Self) -> Self;
@@ -28,6 +34,9 @@ impl Scalar for f64 {
     }
     fn sin_cos(&self) -> (Self, Self) {
         f64::sin_cos(*self)
+    }
+    fn stumpff(&self, k: u8) -> Self {
+        stumpff::of(k, *self)
     }
     fn min(self, other: Self) -> Self {
         f64::min(self, other)
@@ -85,6 +94,7 @@ impl Program {
                 Op::Div(a, b) => of(a) / of(b),
                 Op::Sin(a) => of(a).sin_cos().0,
                 Op::Cos(a) => of(a).sin_cos().1,
+                Op::Stumpff(k, a) => of(a).stumpff(k),
                 Op::Min(a, b) => of(a).min(of(b)),
                 Op::Max(a, b) => of(a).max(of(b)),
             };

@@ -9,6 +9,7 @@ mod program;
 mod rules;
 mod shape;
 mod stage;
+mod stumpff;
 mod tape;
 #[cfg(test)]
 mod tests;

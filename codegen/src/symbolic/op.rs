@@ -55,6 +55,8 @@ pub enum Op {
     Sin(ExprId),
     /// cos a
     Cos(ExprId),
+    /// Stumpff's function `c_k(a) = Σ (−a)^i/(2i + k)!`, k ≤ [`Op::STUMPFF_ORDERS`] − 1, a ≥ 0.
+    Stumpff(u8, ExprId),
     /// Smaller of a and b
     Min(ExprId, ExprId),
     /// Larger of a and b
@@ -65,11 +67,14 @@ impl Op {
     /// The number zero.
     pub const ZERO: Op = Op::Constant(Constant(0));
 
+    /// How many of Stumpff's functions there are as operations: c_0 to c_5.
+    pub const STUMPFF_ORDERS: usize = 6;
+
     /// Operands, in order.
     pub fn operands(self) -> impl DoubleEndedIterator<Item = ExprId> {
         let [first, second] = match self {
             Op::Constant(_) | Op::Symbol(_) => [None, None],
-            Op::Neg(a) | Op::Sin(a) | Op::Cos(a) => [Some(a), None],
+            Op::Neg(a) | Op::Sin(a) | Op::Cos(a) | Op::Stumpff(_, a) => [Some(a), None],
             Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Min(a, b) | Op::Max(a, b) => {
                 [Some(a), Some(b)]
             }
@@ -85,6 +90,7 @@ impl Op {
             Op::Neg(a) => Op::Neg(of(a)),
             Op::Sin(a) => Op::Sin(of(a)),
             Op::Cos(a) => Op::Cos(of(a)),
+            Op::Stumpff(k, a) => Op::Stumpff(k, of(a)),
             Op::Add(a, b) => Op::Add(of(a), of(b)),
             Op::Sub(a, b) => Op::Sub(of(a), of(b)),
             Op::Mul(a, b) => Op::Mul(of(a), of(b)),
@@ -92,6 +98,13 @@ impl Op {
             Op::Min(a, b) => Op::Min(of(a), of(b)),
             Op::Max(a, b) => Op::Max(of(a), of(b)),
         }
+    }
+
+    /// Whether it is a function that is evaluated for all arguments at once, before everything else: a sine, a cosine, one of
+    /// Stumpff's functions.
+    #[must_use]
+    pub fn is_elementary(self) -> bool {
+        matches!(self, Op::Sin(_) | Op::Cos(_) | Op::Stumpff(..))
     }
 
     /// Whether it is an input or a number, at no cost.

@@ -5,7 +5,8 @@
 
 use super::Graph;
 use super::op::{Constant, ExprId, Op};
-use Op::{Add, Cos, Div, Max, Min, Mul, Neg, Sin, Sub};
+use super::stumpff;
+use Op::{Add, Cos, Div, Max, Min, Mul, Neg, Sin, Stumpff, Sub};
 
 /// The node that stands for `op` after all rules that apply.
 pub(super) fn simplify(graph: &Graph, op: Op) -> ExprId {
@@ -18,6 +19,10 @@ pub(super) fn simplify(graph: &Graph, op: Op) -> ExprId {
         Div(a, b) => divide(graph, a, b),
         Sin(a) => sine(graph, a),
         Cos(a) => cosine(graph, a),
+        Stumpff(k, a) => match number(graph, a) {
+            Some(x) => constant(graph, stumpff::of(k, x)),
+            None => graph.intern(op),
+        },
         Min(a, b) => extremum(graph, op, a, b, f64::min),
         Max(a, b) => extremum(graph, op, a, b, f64::max),
     }

@@ -35,12 +35,16 @@ pub enum Shape {
     },
     /// Second derivatives of transformations, left as factors because they are too many to be written out: slots are
     /// the axes ω_m of all coordinates (zero for a translation), then the columns of the first derivatives T_n, body by
-    /// body, each as in [`Shape::Transforms`]. The result is `T_mn = ω_m × T_n` for m ≤ n.
+    /// body, each as in [`Shape::Transforms`]. The result is `T_mn = ω_m × T_n` for m ≤ n. Three coordinates of one rotation
+    /// vector have `Σ_k share_k T_k` more, k running over the three; the shares come last, six times three a vector, row by
+    /// row of a triangle.
     Turned {
         /// How many coordinates move each body.
         degrees: Vec<usize>,
         /// Whether each coordinate is a rotation.
         rotations: Vec<bool>,
+        /// First coordinates of rotation vectors.
+        vectors: Vec<usize>,
     },
     /// A mass matrix by its factors: axes, linear and angular momenta and ways to the next point of all coordinates, three
     /// slots each; then, with `bias`, a vector. The result is the upper triangle, row by row, and the vector.
@@ -76,7 +80,9 @@ impl Shape {
             Shape::Vectors(n) => 3 * n,
             Shape::Pairs(n) => 2 * n,
             Shape::Transforms { counts, .. } => 12 * counts.iter().sum::<usize>(),
-            Shape::Turned { degrees, rotations } => 3 * rotations.len() + 12 * degrees.iter().sum::<usize>(),
+            Shape::Turned { degrees, rotations, vectors } => {
+                3 * rotations.len() + 12 * degrees.iter().sum::<usize>() + 18 * vectors.len()
+            }
             Shape::Record(_, fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
         }
     }
@@ -94,7 +100,7 @@ impl Shape {
     /// The result from its slots: themselves, unless they are factors.
     pub fn close<S: Scalar>(&self, slots: Vec<S>) -> Vec<S> {
         match self {
-            Shape::Turned { degrees, rotations } => turned_pairs(degrees, rotations.len(), &slots),
+            Shape::Turned { degrees, rotations, vectors } => turned_pairs(degrees, rotations.len(), vectors, &slots),
             Shape::Columns { n, points, .. } => {
                 let (columns, bias) = slots.split_at(12 * n);
                 let mut closed = mass_matrix(points, columns);
@@ -109,10 +115,17 @@ impl Shape {
     #[must_use]
     pub fn closing_count(&self) -> OperationCount {
         match self {
-            Shape::Turned { degrees, rotations } => {
+            Shape::Turned { degrees, rotations, vectors } => {
                 let of = |&count: &usize| (0..count).filter(|&m| rotations[m]).map(|m| count - m).sum::<usize>();
                 let pairs: usize = degrees.iter().map(of).sum();
-                OperationCount { additions: 12 * pairs, multiplications: 24 * pairs, ..OperationCount::default() }
+                // Three products in each of twelve entries of six pairs.
+                let of = |&count: &usize| vectors.iter().filter(|&&first| first < count).count();
+                let curved = 6 * 36 * degrees.iter().map(of).sum::<usize>();
+                OperationCount {
+                    additions: 12 * pairs + curved,
+                    multiplications: 24 * pairs + curved,
+                    ..OperationCount::default()
+                }
             }
             Shape::Columns { n, points, .. } => {
                 // An inner product for every entry, a cross product for every column after a point.
@@ -140,16 +153,29 @@ impl Shape {
 }
 
 /// Pairs of second derivatives, body by body, from axes and first derivatives.
-fn turned_pairs<S: Scalar>(degrees: &[usize], coordinates: usize, slots: &[S]) -> Vec<S> {
+fn turned_pairs<S: Scalar>(degrees: &[usize], coordinates: usize, vectors: &[usize], slots: &[S]) -> Vec<S> {
     let (axes, derivatives) = slots.split_at(3 * coordinates);
+    let (derivatives, shares) = derivatives.split_at(derivatives.len() - 18 * vectors.len());
+    let derivative = |at: usize| &derivatives[12 * at..12 * at + 12];
     let mut closed = Vec::new();
     let mut start = 0;
     for &count in degrees {
         for m in 0..count {
             let axis = &axes[3 * m..3 * m + 3];
             for n in m..count {
-                let first = &derivatives[12 * (start + n)..12 * (start + n) + 12];
-                closed.extend(turned(axis, first));
+                let vector = vectors.iter().position(|&first| first <= m && n < first + 3);
+                let mut pair: Vec<S> = turned(axis, derivative(start + n)).collect();
+                if let Some(vector) = vector {
+                    let first = vectors[vector];
+                    let row = m - first;
+                    let place = 6 * vector + row * 3 - row * row.saturating_sub(1) / 2 + n - m;
+                    for (k, share) in shares[3 * place..3 * place + 3].iter().enumerate() {
+                        for (entry, own) in pair.iter_mut().zip(derivative(start + first + k)) {
+                            *entry = entry.clone() + share.clone() * own.clone();
+                        }
+                    }
+                }
+                closed.extend(pair);
             }
         }
         start += count;

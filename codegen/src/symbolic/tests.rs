@@ -63,6 +63,8 @@ fn all_rules<'g>(g: &'g Graph, x: Expr<'g>, y: Expr<'g>) -> Vec<Expr<'g>> {
         (-x).cos(),
         c(0.5).sin(),
         c(0.5).cos(),
+        (x * x).stumpff(3),
+        c(0.5).stumpff(2),
         x.clamp(c(0.0), c(1.0)),
         c(3.0).clamp(c(0.0), c(1.0)),
         x.squared() + y.squared(),
@@ -122,4 +124,27 @@ fn counts_each_operation_once() {
     let p = program(|_, x, y| vec![x.sin() * y, x.cos() * y, x.sin() * y + y], Graph::simplifying());
     let count = p.count(&p.functions[0].outputs, |_| false);
     assert_eq!((count.angles, count.multiplications, count.additions), (1, 2, 1));
+}
+
+#[test]
+fn stumpff_functions_of_one_argument_count_once() {
+    let p = program(|_, x, _| vec![x.stumpff(0), x.stumpff(3)], Graph::simplifying());
+    assert_eq!(p.count(&p.functions[0].outputs, |_| false).total(), 1);
+}
+
+/// By sines and cosines, by the series, and by the series in steps down, which must agree where all of them hold.
+#[test]
+fn stumpff_functions_are_sines_and_cosines() {
+    let of = |k: u8, x: f64| super::Scalar::stumpff(&x, k);
+    for x in [0.3, 2.0, 9.9, 10.1, 60.0] {
+        let s: f64 = x;
+        let s = s.sqrt();
+        let (sin, cos) = s.sin_cos();
+        let direct = [cos, sin / s, (1.0 - cos) / x, (s - sin) / (s * x)];
+        for (k, direct) in (0..).zip(direct) {
+            // A difference of numbers of order 1 over x.
+            assert!((of(k, x) - direct).abs() < 1e-15 / x.min(1.0), "c_{k}({x}): {} against {direct}", of(k, x));
+        }
+    }
+    assert_eq!([0, 1, 2, 3, 4, 5].map(|k| of(k, 0.0)), [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0]);
 }

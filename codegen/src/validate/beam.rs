@@ -6,7 +6,7 @@ use crate::chain::{self, Axis, CoordinateKind, ElementSpring, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::beam::{self, Elements, Joint, RigidElement};
 use crate::expand::placement::translate;
-use crate::spec::{Beam, BeamDamping, Directions, Either, Given, Sections};
+use crate::spec::{Beam, BeamDamping, Directions, Either, Given, SectionJoint, Sections};
 
 /// The most sections a beam may have.
 const MOST_SECTIONS: f64 = 1000.0;
@@ -39,23 +39,24 @@ impl<'a> Check<'a> {
         if total > MOST_COORDINATES {
             self.report(rule::too_many(given.span, format!("beam `{link}`"), total, MOST_COORDINATES, FEWER_SECTIONS));
         }
+        let section_joint = given.value.as_ref().and_then(|inside| inside.section_joint.as_ref()?.value);
         let Some(Elements { elements, joints }) = elements.filter(|_| total <= MOST_COORDINATES) else {
             // Its coordinates are not known.
             self.unknown.links = true;
             return (vec![Value::ZERO], Value::ZERO);
         };
-        self.unroll(link, span, path, elements, joints)
+        let section_joint = section_joint.unwrap_or(SectionJoint::Symmetric);
+        self.unroll((link, span), path, (elements, joints), section_joint)
     }
 
     /// Appends rigid elements as bodies: element 0 on the link's joint, element i ≥ 1 at the end of the one before
-    /// through `Rz(ψ) Ry(θ) Rx(φ)`.
+    /// by the rotation vector (φ, θ, ψ), or through `Rz(ψ) Ry(θ) Rx(φ)`.
     fn unroll(
         &mut self,
-        link: &str,
-        span: Span,
+        (link, span): (&str, Span),
         path: Vec<Step>,
-        elements: Vec<RigidElement>,
-        joints: Vec<Joint>,
+        (elements, joints): (Vec<RigidElement>, Vec<Joint>),
+        section_joint: SectionJoint,
     ) -> (Vec<Value>, Value) {
         let rigid = joints.is_empty();
         let mut path = path;
@@ -69,12 +70,16 @@ impl<'a> Check<'a> {
                 translate(&mut path, [tip, Value::ZERO, Value::ZERO]);
             }
             if let Some(joint) = (index > 0).then(|| joints.next()).flatten() {
-                for (axis, (stiffness, damping)) in
-                    ROTATIONS.into_iter().zip(joint.stiffness.into_iter().zip(joint.damping))
-                {
+                let mut rotation = |axis| {
                     let owner = Owner::Beam(link.to_owned());
-                    let id = self.push_coordinate((link, &name), CoordinateKind::Rotation, axis, owner, span);
-                    path.push(Step::Move(id));
+                    self.push_coordinate((link, &name), CoordinateKind::Rotation, axis, owner, span)
+                };
+                let ids = ROTATIONS.map(&mut rotation);
+                match section_joint {
+                    SectionJoint::Symmetric => path.push(Step::RotationVector(ids)),
+                    SectionJoint::Paper => path.extend(ids.map(Step::Move)),
+                }
+                for (id, (stiffness, damping)) in ids.into_iter().zip(joint.stiffness.into_iter().zip(joint.damping)) {
                     self.elements.push(ElementSpring { coordinate: id, stiffness, damping });
                 }
             }

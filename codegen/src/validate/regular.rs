@@ -4,7 +4,7 @@
 //! pivots of the mass matrix one by one: the inertia `D_j` that coordinate j feels with all later joints free.
 
 use super::{Check, Owner};
-use crate::chain::{Axis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Inertia, Step, Vector};
+use crate::chain::{Axis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Inertia, Vector};
 use crate::diagnostic::{Span, rule};
 use crate::spec::Crane;
 
@@ -101,7 +101,8 @@ impl Check<'_> {
         let q: Vec<f64> = chain.guess.iter().enumerate().map(|(n, guess)| guess + offset(n)).collect();
         for body in &chain.bodies {
             for step in &body.path {
-                if let Step::Move(id) = step {
+                // Beams are straight here: a rotation vector's axes are those of the frame.
+                for id in step.coordinates() {
                     let coordinate = &chain.coordinates[id.0];
                     motions[id.0] = unit_motion(&frame, coordinate.kind, coordinate.axis);
                 }
@@ -119,8 +120,7 @@ impl Check<'_> {
                     locked[i][j] += own[i][j];
                 }
             }
-            for step in body.path.iter().rev() {
-                let Step::Move(id) = step else { continue };
+            for id in body.path.iter().rev().flat_map(|step| step.coordinates().iter().rev()) {
                 let motion = &motions[id.0];
                 let force = apply(&articulated, motion);
                 let armature = armature(chain, *id, parameters);

@@ -144,8 +144,11 @@ pub enum CoordinateRole {
     Prescribed,
     /// A joint without a drive.
     Passive,
-    /// Deformation of a flexible link.
+    /// Deformation of a flexible link, an angle about one axis.
     Element,
+    /// Deformation of a flexible link, a component of the rotation vector of a section: with the two coordinates beside it, in
+    /// the order z, y, x, it turns what follows by `exp([ρ]×)`.
+    ElementVector,
 }
 
 impl CoordinateRole {
@@ -156,8 +159,13 @@ impl CoordinateRole {
             CoordinateRole::Driven => "driven",
             CoordinateRole::Prescribed => "prescribed",
             CoordinateRole::Passive => "passive",
-            CoordinateRole::Element => "element",
+            CoordinateRole::Element | CoordinateRole::ElementVector => "element",
         }
+    }
+
+    /// Whether it is a deformation of a flexible link.
+    pub const fn is_element(self) -> bool {
+        matches!(self, CoordinateRole::Element | CoordinateRole::ElementVector)
     }
 }
 

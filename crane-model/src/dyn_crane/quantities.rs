@@ -133,10 +133,7 @@ impl dyn DynCrane + '_ {
     pub fn element_moments_at(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
         let forces = numbers(self, |out| self.element_forces(q, v, out));
         let coordinates = self.description().coordinates.iter().zip(&forces);
-        coordinates
-            .filter(|(coordinate, _)| coordinate.role == CoordinateRole::Element)
-            .map(|(_, force)| -force)
-            .collect()
+        coordinates.filter(|(coordinate, _)| coordinate.role.is_element()).map(|(_, force)| -force).collect()
     }
 
     /// Forces of the supports on the crane, N.

@@ -1,6 +1,6 @@
 //! Everything of a run that is worth a column.
 
-use crate::{CoordinateKind, CoordinateRole, Description, dyn_crane::DynCrane, dynamics::Sample, results::Table};
+use crate::{CoordinateKind, Description, dyn_crane::DynCrane, dynamics::Sample, results::Table};
 
 /// Records the samples of a run of a crane.
 ///
@@ -84,7 +84,7 @@ fn columns(description: &Description) -> Table {
             table.add(format!("{}_reaction_{axis}", support.name), "N");
         }
     }
-    for coordinate in description.coordinates.iter().filter(|coordinate| coordinate.role == CoordinateRole::Element) {
+    for coordinate in description.coordinates.iter().filter(|coordinate| coordinate.role.is_element()) {
         table.add(format!("{}_moment", coordinate.name), coordinate.kind.force_unit());
     }
     for energy in ["kinetic", "gravity", "support", "element", "drive"] {

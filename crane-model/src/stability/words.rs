@@ -32,7 +32,7 @@ fn moving(description: &Description, coordinate: usize) -> (String, Option<&str>
         CoordinateRole::Base => (format!("base ({name})"), None),
         CoordinateRole::Driven | CoordinateRole::Prescribed => (format!("drive of {name}"), None),
         CoordinateRole::Passive => (format!("joint {name}"), None),
-        CoordinateRole::Element => {
+        CoordinateRole::Element | CoordinateRole::ElementVector => {
             // The rotations of an element come in a row; the first body that a coordinate moves carries it.
             let body = description.bodies.iter().find(|body| body.degrees_of_freedom > coordinate);
             let (link, body) = body.map_or(("", name.as_str()), |body| (&body.link, &body.name));

@@ -3,6 +3,7 @@
 pub use wide::f64x8;
 
 pub use super::sin_cos::sin_cos_lanes as sin_cos;
+pub use super::stumpff::stumpff_lanes as stumpff;
 
 /// A number in all lanes.
 #[inline]

@@ -3,10 +3,12 @@
 pub mod lanes;
 mod mass_matrix;
 mod sin_cos;
+mod stumpff;
 
 pub use lanes::fma;
 pub use mass_matrix::{MassAndBias, MassColumns, Point};
 pub use sin_cos::{sin_cos, sin_cos_lanes};
+pub use stumpff::{stumpff, stumpff_lanes};
 
 use nalgebra::{Matrix4, SMatrix, Vector3};
 
@@ -32,17 +34,26 @@ pub fn fill<T: Copy>(out: &mut [T], results: &[T]) {
 /// What the second derivatives of transforms are made of, `∂²T/∂q_m∂q_n = Ω_m Ω_n T`: the columns of `Ω_n T` are
 /// directions, so `Ω_m` only turns them about its axis.
 #[derive(Clone, Copy, Debug)]
-pub struct TransformFactors<const N: usize, const D: usize> {
+pub struct TransformFactors<const N: usize, const D: usize, const V: usize = 0> {
     /// `ω_m`, zero for a translation.
     pub axes: [Vector3<f64>; N],
     /// `∂T/∂q_n`, body by body.
     pub first: [Matrix4<f64>; D],
+    /// First coordinates of rotation vectors, whose three coordinates k have `Σ_k share_k ∂T/∂q_k` more in their pairs.
+    pub vectors: [usize; V],
+    /// The shares of the six pairs of each rotation vector, row by row of a triangle.
+    pub shares: [[[f64; 3]; 6]; V],
 }
 
-impl<const N: usize, const D: usize> TransformFactors<N, D> {
+impl<const N: usize, const D: usize, const V: usize> TransformFactors<N, D, V> {
     /// All zero.
     pub fn zeros() -> Self {
-        TransformFactors { axes: [Vector3::zeros(); N], first: [Matrix4::zeros(); D] }
+        TransformFactors {
+            axes: [Vector3::zeros(); N],
+            first: [Matrix4::zeros(); D],
+            vectors: [0; V],
+            shares: [[[0.0; 3]; 6]; V],
+        }
     }
 
     /// `∂²T/∂q_m∂q_n`, body by body, m ≤ n; `degrees`: how many coordinates move each body.
@@ -53,11 +64,24 @@ impl<const N: usize, const D: usize> TransformFactors<N, D> {
             let (own, rest) = first.split_at(count.min(first.len()));
             first = rest;
             for (m, axis) in self.axes.iter().enumerate().take(count) {
-                for (derivative, out) in own.iter().skip(m).zip(&mut out) {
+                let shares = self.shares_of(m);
+                for ((n, derivative), out) in own.iter().enumerate().skip(m).zip(&mut out) {
                     *out = turned(axis, derivative);
+                    let Some((first, pairs)) = shares.filter(|(first, _)| n < first + 3) else { continue };
+                    let row = m - first;
+                    let pair = row * 3 - row * row.saturating_sub(1) / 2 + n - m;
+                    for (share, own) in pairs.iter().nth(pair).into_iter().flatten().zip(own.iter().skip(first)) {
+                        *out += *share * own;
+                    }
                 }
             }
         }
+    }
+
+    /// The rotation vector that a coordinate belongs to: its first coordinate and its shares.
+    fn shares_of(&self, coordinate: usize) -> Option<(usize, &[[f64; 3]; 6])> {
+        let belongs = |(first, _): &(usize, _)| (*first..first + 3).contains(&coordinate);
+        self.vectors.iter().copied().zip(&self.shares).find(belongs)
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a pose or a run does that the model does not hold for.
 
-use crane_model::{CoordinateRole, Description, dyn_crane::DynCrane, results::Table};
+use crane_model::{Description, dyn_crane::DynCrane, results::Table};
 use nalgebra::Vector3;
 
 use crate::extremes::Extremes;
@@ -19,8 +19,7 @@ pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let forces =
         description.supports.iter().zip(&reactions).map(|(support, force)| (support.name.as_str(), force.z, None));
     let pulls: Vec<_> = forces.filter(|(_, force, _)| *force < -ROUNDING * greatest).collect();
-    let angles =
-        description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role == CoordinateRole::Element);
+    let angles = description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role.is_element());
     let bent = angles.map(|(coordinate, angle)| (coordinate.name.as_str(), *angle));
     pulled(&pulls).into_iter().chain(bent_beyond(bent, bend)).collect()
 }
@@ -33,7 +32,7 @@ pub fn of_run(description: &Description, table: &Table, bend: f64) -> Vec<String
         let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
         (minimum < -ROUNDING * greatest).then_some((support.name.as_str(), minimum, Some(time_of_minimum)))
     });
-    let elements = description.coordinates.iter().filter(|coordinate| coordinate.role == CoordinateRole::Element);
+    let elements = description.coordinates.iter().filter(|coordinate| coordinate.role.is_element());
     let bent = elements.map(|coordinate| {
         let Extremes { minimum, maximum, .. } = Extremes::of(table, &coordinate.name);
         (coordinate.name.as_str(), if -minimum > maximum { minimum } else { maximum })

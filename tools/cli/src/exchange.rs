@@ -46,6 +46,9 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
         files::write_text(file, text)?;
         writeln!(out, "{} written", file.display())?;
     }
+    if let Some(text) = exchange::approximations(&chain) {
+        writeln!(out, "{text}")?;
+    }
     Ok(())
 }
 

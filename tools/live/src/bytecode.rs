@@ -82,8 +82,18 @@ pub enum Kind {
     Max,
     /// `out = sin a` and `b = cos a`
     Angle,
+    /// `out = c_0(a), b = c_1(a), c = c_2(a)`, and in a second instruction the same with c_3, c_4, c_5
+    Stumpff,
     /// A register becomes a result.
     Store,
+}
+
+impl Kind {
+    /// How many instructions one operation takes.
+    #[must_use]
+    pub fn instructions(self) -> u32 {
+        if self == Kind::Stumpff { 2 } else { 1 }
+    }
 }
 
 /// An operation on registers; what they mean is for the kind to say. Four numbers of 16 bits in one: it is loaded once.

@@ -42,10 +42,18 @@ fn along(n: [f64; 3], x: [f64; 3]) -> f64 {
 }
 
 /// `∂²T/∂q_m∂q_n = Ω_m ∂T/∂q_n`, body by body, m ≤ n, from the axes of all coordinates and three rows of every first derivative;
-/// `degrees`: how many coordinates move each body.
-pub fn second_derivatives(degrees: &[usize], coordinates: usize, factors: &[f64], out: &mut [Matrix4<f64>]) {
-    let (axes, first) = factors.split_at(3 * coordinates);
-    let (axes, first) = (axes.as_chunks::<3>().0, first.as_chunks::<12>().0);
+/// `degrees`: how many coordinates move each body; `vectors`: first coordinates of rotation vectors, whose pairs have
+/// `Σ_k share_k ∂T/∂q_k` more.
+pub fn second_derivatives(
+    degrees: &[usize],
+    coordinates: usize,
+    vectors: &[usize],
+    factors: &[f64],
+    out: &mut [Matrix4<f64>],
+) {
+    let (axes, rest) = factors.split_at(3 * coordinates);
+    let (first, shares) = rest.split_at(rest.len() - 18 * vectors.len());
+    let (axes, first, shares) = (axes.as_chunks::<3>().0, first.as_chunks::<12>().0, shares.as_chunks::<3>().0);
     let mut start = 0;
     let mut out = out.iter_mut();
     for &count in degrees {
@@ -53,11 +61,24 @@ pub fn second_derivatives(degrees: &[usize], coordinates: usize, factors: &[f64]
             for n in m..count {
                 if let Some(place) = out.next() {
                     *place = turned(Vector3::from(axes[m]), &first[start + n]);
+                    let within = |of: &usize| *of <= m && n < of + 3;
+                    if let Some(vector) = vectors.iter().position(within) {
+                        let (of, row) = (vectors[vector], m - vectors[vector]);
+                        let pair = 6 * vector + row * 3 - row * row.saturating_sub(1) / 2 + n - m;
+                        for (k, share) in shares[pair].iter().enumerate() {
+                            *place += *share * derivative(&first[start + of + k]);
+                        }
+                    }
                 }
             }
         }
         start += count;
     }
+}
+
+/// A derivative from three rows.
+fn derivative(rows: &[f64; 12]) -> Matrix4<f64> {
+    Matrix4::from_fn(|row, column| rows.get(4 * row + column).copied().unwrap_or(0.0))
 }
 
 /// `ω ×` every column of a matrix of three rows, stored row by row.

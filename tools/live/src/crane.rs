@@ -398,7 +398,9 @@ impl DynDerivatives for LiveCrane {
 
     fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
         self.call(Name::TransformSecondDerivatives, &at(q), |routine, results| match routine.shape() {
-            Shape::Turned { degrees, rotations } => second_derivatives(degrees, rotations.len(), results, out),
+            Shape::Turned { degrees, rotations, vectors } => {
+                second_derivatives(degrees, rotations.len(), vectors, results, out);
+            }
             _ => copy_as(results.as_chunks::<16>().0, |matrix| Matrix4::from_column_slice(matrix), out),
         });
     }

@@ -4,7 +4,7 @@ use std::ops::Div;
 
 use crane_codegen::symbolic::Argument;
 use crane_model::support::lanes::{Fused, f64x8};
-use crane_model::support::{fma, sin_cos, sin_cos_lanes};
+use crane_model::support::{fma, sin_cos, sin_cos_lanes, stumpff, stumpff_lanes};
 
 use crate::bytecode::{Code, Fixed, Instruction, Kind};
 
@@ -20,9 +20,11 @@ pub trait Number: Copy + Fused + Div<Output = Self> + 'static {
     fn max(self, other: Self) -> Self;
     /// Sines and cosines of angles.
     fn sin_cos(angles: [Self; ANGLES]) -> ([Self; ANGLES], [Self; ANGLES]);
+    /// Stumpff's functions of arguments, order by order.
+    fn stumpff(arguments: [Self; ANGLES]) -> [[Self; ANGLES]; 6];
 }
 
-/// Angles that are taken at a time.
+/// Angles, or arguments of Stumpff's functions, that are taken at a time.
 pub const ANGLES: usize = 8;
 
 impl Number for f64 {
@@ -38,6 +40,9 @@ impl Number for f64 {
     fn sin_cos(angles: [Self; ANGLES]) -> ([Self; ANGLES], [Self; ANGLES]) {
         sin_cos(angles)
     }
+    fn stumpff(arguments: [Self; ANGLES]) -> [[Self; ANGLES]; 6] {
+        stumpff(arguments)
+    }
 }
 
 impl Number for f64x8 {
@@ -52,6 +57,9 @@ impl Number for f64x8 {
     }
     fn sin_cos(angles: [Self; ANGLES]) -> ([Self; ANGLES], [Self; ANGLES]) {
         sin_cos_lanes(angles)
+    }
+    fn stumpff(arguments: [Self; ANGLES]) -> [[Self; ANGLES]; 6] {
+        stumpff_lanes(arguments)
     }
 }
 
@@ -200,6 +208,7 @@ fn run<T: Number, const SIZE: usize>(code: &Code, file: &mut [T; SIZE], out: &mu
             Kind::Min => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()).min(get(file, i.b())))),
             Kind::Max => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()).max(get(file, i.b())))),
             Kind::Angle => take_angles(own, file),
+            Kind::Stumpff => take_stumpff(own, file),
             Kind::Store => {}
         }
     }
@@ -222,6 +231,25 @@ fn take_angles<T: Number, const SIZE: usize>(instructions: &[Instruction], file:
         for (i, (sin, cos)) in eight.iter().zip(sines.into_iter().zip(cosines)) {
             set(file, i.out(), sin);
             set(file, i.b(), cos);
+        }
+    }
+}
+
+/// Stumpff's functions of arguments, eight by eight, two instructions each; all eight are read before one is written.
+fn take_stumpff<T: Number, const SIZE: usize>(instructions: &[Instruction], file: &mut [T; SIZE]) {
+    for eight in instructions.chunks(2 * ANGLES) {
+        let mut arguments = [T::splat(0.0); ANGLES];
+        for (argument, i) in arguments.iter_mut().zip(eight.iter().step_by(2)) {
+            *argument = get(file, i.a());
+        }
+        let [c0, c1, c2, c3, c4, c5] = T::stumpff(arguments);
+        let halves = c0.into_iter().zip(c1).zip(c2).zip(c3.into_iter().zip(c4).zip(c5));
+        for (pair, (((c0, c1), c2), ((c3, c4), c5))) in eight.chunks(2).zip(halves) {
+            for (i, [out, b, c]) in pair.iter().zip([[c0, c1, c2], [c3, c4, c5]]) {
+                set(file, i.out(), out);
+                set(file, i.b(), b);
+                set(file, i.c(), c);
+            }
         }
     }
 }

@@ -14,6 +14,10 @@ function exponential([wx, wy, wz, vx, vy, vz], q, out) {
   return out.makeRotationAxis(w, angle).setPosition(p);
 }
 
+/** Sum of the screws of a rotation vector by its components: three coordinates from `first` on. */
+const combined = (screws, q, first, factor) =>
+  screws[first].map((_, k) => factor * [0, 1, 2].reduce((sum, i) => sum + q[first + i] * screws[first + i][k], 0));
+
 /** Matrix of the upper three rows. */
 const matrix = (rows) => new Matrix4().set(...rows, 0, 0, 0, 1);
 
@@ -24,7 +28,8 @@ export class Kinematics {
     this.coordinates = coordinates;
     this.bodies = scene.bodies.map((body) => ({ ...body, reference: matrix(body.frame), flexible: body.length > 0 }));
     this.screws = scene.screws;
-    this.reference = scene.pose;
+    this.reference = scene.reference;
+    this.vectors = scene.vectors;
     this.points = scene.points.map((point) => ({ ...point, at: new Vector3(...point.at) }));
     this.frames = this.bodies.map(() => new Matrix4());
   }
@@ -46,6 +51,12 @@ export class Kinematics {
         drawn.copy(truth);
       }
       for (; done < body.moved_by; done += 1) {
+        if (this.vectors[done]) {
+          truth.multiply(exponential(combined(this.screws, q, done, 1), 1, step));
+          drawn.multiply(exponential(combined(this.screws, q, done, factor), 1, step));
+          done += 2;
+          continue;
+        }
         const way = q[done] - this.reference[done];
         truth.multiply(exponential(this.screws[done], way, step));
         const larger = this.coordinates[done].role === "element" ? factor * q[done] - this.reference[done] : way;

@@ -80,6 +80,8 @@ fn role(chain: &Chain, index: usize) -> CoordinateRole {
         CoordinateRole::Prescribed
     } else if chain.drives.iter().any(|drive| drive.coordinate.0 == index) {
         CoordinateRole::Driven
+    } else if chain.turns_by_vector(CoordinateId(index)) {
+        CoordinateRole::ElementVector
     } else if chain.elements.iter().any(|element| element.coordinate.0 == index) {
         CoordinateRole::Element
     } else {

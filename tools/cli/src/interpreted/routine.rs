@@ -15,6 +15,7 @@ enum Operation {
     Div(usize, usize),
     Sin(usize),
     Cos(usize),
+    Stumpff(u8, usize),
     Min(usize, usize),
     Max(usize, usize),
 }
@@ -89,6 +90,7 @@ impl Routine {
                 Op::Div(a, b) => Operation::Div(at(a), at(b)),
                 Op::Sin(a) => Operation::Sin(at(a)),
                 Op::Cos(a) => Operation::Cos(at(a)),
+                Op::Stumpff(k, a) => Operation::Stumpff(k, at(a)),
                 Op::Min(a, b) => Operation::Min(at(a), at(b)),
                 Op::Max(a, b) => Operation::Max(at(a), at(b)),
             };
@@ -114,6 +116,7 @@ impl Routine {
                 Operation::Div(a, b) => values[a] / values[b],
                 Operation::Sin(a) => ComplexField::sin(values[a]),
                 Operation::Cos(a) => ComplexField::cos(values[a]),
+                Operation::Stumpff(k, a) => values[a].stumpff(k),
                 Operation::Min(a, b) => Scalar::min(values[a], values[b]),
                 Operation::Max(a, b) => Scalar::max(values[a], values[b]),
             };

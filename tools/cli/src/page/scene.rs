@@ -2,16 +2,20 @@
 //!
 //! `T_p(q) = exp(ξ₁ (q₁ − q₁⁰)) … exp(ξ_n (q_n − q_n⁰)) T_p(q⁰)`, over the coordinates that move body p: the product of
 //! exponentials (R. W. Brockett, Robotic manipulators and the product of exponentials formula, 1984). Exact for any chain,
-//! so that the page can draw any pose, exaggerated and modal ones too.
+//! so that the page can draw any pose, exaggerated and modal ones too. Three coordinates that turn by a rotation vector ρ
+//! share one factor, `exp(ξ_i ρ_1 + ξ_j ρ_2 + ξ_k ρ_3)`, with screws at ρ = 0: q⁰ is the pose with these at zero.
 
-use crane_model::dyn_crane::DynCrane;
+use crane_model::{CoordinateRole, dyn_crane::DynCrane};
 use nalgebra::{Matrix4, Vector3};
 use serde_json::{Value, json};
 
-/// Frames, screws, supports and points of a crane about pose `q`.
+/// Frames, screws, supports and points of a crane for pose `q`.
 pub fn scene(rig: &dyn DynCrane, q: &[f64]) -> Value {
     let description = rig.description();
-    let frames = rig.transforms_at(q);
+    let is_vector: Vec<bool> =
+        description.coordinates.iter().map(|coordinate| coordinate.role == CoordinateRole::ElementVector).collect();
+    let reference: Vec<f64> = q.iter().zip(&is_vector).map(|(q, vector)| if *vector { 0.0 } else { *q }).collect();
+    let frames = rig.transforms_at(&reference);
     let bodies: Vec<Value> = description
         .bodies
         .iter()
@@ -28,7 +32,10 @@ pub fn scene(rig: &dyn DynCrane, q: &[f64]) -> Value {
         .iter()
         .map(|support| json!({"name": support.name.as_str(), "at": support.position}))
         .collect();
-    json!({"pose": q, "bodies": bodies, "screws": screws(rig, q, &frames), "supports": supports, "points": points(rig, q)})
+    json!({
+        "pose": q, "reference": reference, "vectors": is_vector, "bodies": bodies,
+        "screws": screws(rig, &reference, &frames), "supports": supports, "points": points(rig, q),
+    })
 }
 
 /// The upper three rows.

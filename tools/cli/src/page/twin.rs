@@ -1,6 +1,6 @@
 //! The rigid crane to compare a flexible one with.
 
-use crane_model::{CoordinateRole, ParameterInfo, dyn_crane::DynCrane};
+use crane_model::{ParameterInfo, dyn_crane::DynCrane};
 
 use crate::Fleet;
 
@@ -28,7 +28,7 @@ fn is_rigid(rig: &dyn DynCrane, other: &dyn DynCrane) -> bool {
     const OFF: f64 = 0.1;
     let (own, rigid) = (rig.description(), other.description());
     let joints: Vec<usize> =
-        (0..own.coordinates.len()).filter(|&index| own.coordinates[index].role != CoordinateRole::Element).collect();
+        (0..own.coordinates.len()).filter(|&index| !own.coordinates[index].role.is_element()).collect();
     let same_joints = joints.iter().map(|&index| &own.coordinates[index]).eq(&rigid.coordinates);
     let same_supports = own.supports.iter().map(|s| &s.name).eq(rigid.supports.iter().map(|s| &s.name));
     if joints.len() == own.coordinates.len() || !same_joints || !same_supports || own.points != rigid.points {

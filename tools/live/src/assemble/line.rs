@@ -52,6 +52,13 @@ pub enum Step {
         /// Its cosine.
         cos: Value,
     },
+    /// Stumpff's functions of an argument.
+    Stumpff {
+        /// The argument.
+        argument: Value,
+        /// c_0 to c_5.
+        values: [Value; Op::STUMPFF_ORDERS],
+    },
     /// A result.
     Store {
         /// Its place.
@@ -67,7 +74,9 @@ impl Step {
         let (values, count) = match *self {
             Step::Operation { kind: Kind::MulAdd, operands, .. } => (operands, 3),
             Step::Operation { operands, .. } => (operands, 2),
-            Step::Angle { angle: value, .. } | Step::Store { value, .. } => ([value; 3], 1),
+            Step::Angle { angle: value, .. } | Step::Stumpff { argument: value, .. } | Step::Store { value, .. } => {
+                ([value; 3], 1)
+            }
         };
         values.into_iter().take(count)
     }
@@ -75,9 +84,10 @@ impl Step {
     /// Values it makes.
     pub fn makes(&self) -> impl Iterator<Item = Value> {
         let (values, count) = match *self {
-            Step::Operation { out, .. } => ([out; 2], 1),
-            Step::Angle { sin, cos, .. } => ([sin, cos], 2),
-            Step::Store { .. } => ([0; 2], 0),
+            Step::Operation { out, .. } => ([out; Op::STUMPFF_ORDERS], 1),
+            Step::Angle { sin, cos, .. } => ([sin, cos, sin, sin, sin, sin], 2),
+            Step::Stumpff { values, .. } => (values, Op::STUMPFF_ORDERS),
+            Step::Store { .. } => ([0; Op::STUMPFF_ORDERS], 0),
         };
         values.into_iter().take(count)
     }
@@ -204,8 +214,8 @@ impl Writer<'_> {
         }
     }
 
-    /// Sines and cosines of all angles, after what angles are made of. Where an angle is made of another's sine, that one comes
-    /// before it.
+    /// Sines and cosines of all angles and Stumpff's functions of all arguments, after what these are made of. Where one is made
+    /// of another's sine, that one comes before it.
     fn write_angles(&mut self) {
         let program = self.graph.program;
         // How many sines stand before a value, one within the other.
@@ -214,10 +224,11 @@ impl Writer<'_> {
         for id in program.ids().filter(|id| self.selection.recipes[id.index()].is_some()) {
             let op = program.op(id);
             let before = op.operands().map(|operand| depth[operand.index()]).max().unwrap_or(0);
-            depth[id.index()] = before + u32::from(matches!(op, Op::Sin(_) | Op::Cos(_)));
+            depth[id.index()] = before + u32::from(op.is_elementary());
             deepest = deepest.max(depth[id.index()]);
         }
         for inner in 1..=deepest {
+            self.write_stumpff(&depth, inner);
             // Sine and cosine of each angle.
             let mut angles: BTreeMap<ExprId, (Operand, [Option<ExprId>; 2])> = BTreeMap::new();
             for id in program.ids().filter(|id| depth[id.index()] == inner) {
@@ -239,6 +250,32 @@ impl Writer<'_> {
                     if let Some(id) = id {
                         self.values[id.index()][0] = Some(value);
                     }
+                }
+            }
+        }
+    }
+
+    /// Stumpff's functions of all arguments of a depth.
+    fn write_stumpff(&mut self, depth: &[u32], inner: u32) {
+        let program = self.graph.program;
+        let mut arguments: BTreeMap<ExprId, (Operand, [Option<ExprId>; Op::STUMPFF_ORDERS])> = BTreeMap::new();
+        for id in program.ids().filter(|id| depth[id.index()] == inner) {
+            let (Op::Stumpff(k, of), Some((Recipe::Stumpff(_, argument), _))) =
+                (program.op(id), self.selection.recipes[id.index()])
+            else {
+                continue;
+            };
+            arguments.entry(of).or_insert((argument, [None; Op::STUMPFF_ORDERS])).1[usize::from(k)] = Some(id);
+        }
+        let operands: Vec<Operand> = arguments.values().map(|(argument, _)| *argument).collect();
+        self.write_all(&operands);
+        for (argument, orders) in arguments.into_values() {
+            let argument = self.operand(argument);
+            let values = orders.map(|_| self.value());
+            self.line.steps.push(Step::Stumpff { argument, values });
+            for (id, value) in orders.into_iter().zip(values) {
+                if let Some(id) = id {
+                    self.values[id.index()][0] = Some(value);
                 }
             }
         }
@@ -280,7 +317,7 @@ impl Writer<'_> {
                 Recipe::Div([a, b]) => Some((Kind::Div, [a, b, b])),
                 Recipe::Min([a, b]) => Some((Kind::Min, [a, b, b])),
                 Recipe::Max([a, b]) => Some((Kind::Max, [a, b, b])),
-                Recipe::Given | Recipe::Sin(_) | Recipe::Cos(_) => None,
+                Recipe::Given | Recipe::Sin(_) | Recipe::Cos(_) | Recipe::Stumpff(..) => None,
             };
             let Some((kind, operands)) = step else { return };
             let operands = operands.map(|operand| self.operand(operand));

@@ -32,9 +32,11 @@ pub fn assign(line: &Line) -> Result<Code, TooLarge> {
         let read = |value: Value| registers.of[value];
         let reads = match *step {
             Step::Operation { operands, .. } => operands.map(read),
-            Step::Angle { angle: value, .. } | Step::Store { value, .. } => [read(value); 3],
+            Step::Angle { angle: value, .. } | Step::Stumpff { argument: value, .. } | Step::Store { value, .. } => {
+                [read(value); 3]
+            }
         };
-        // Both results of an angle are written before the next angle is read, and one may be needed by nobody.
+        // All results of an angle or an argument are written before the next angle is read, and one may be needed by nobody.
         registers.free.extend(ending.iter().map(|value| registers.of[*value]));
         for value in step.makes() {
             registers.give(value);
@@ -54,14 +56,19 @@ pub fn assign(line: &Line) -> Result<Code, TooLarge> {
                 code.instructions.push(Instruction::new(out, [a, b, c]));
                 Kind::Angle
             }
+            Step::Stumpff { values, .. } => {
+                let [c0, c1, c2, c3, c4, c5] = values.map(|value| own(registers.of[value]));
+                code.instructions.extend([Instruction::new(c0, [a, c1, c2]), Instruction::new(c3, [a, c4, c5])]);
+                Kind::Stumpff
+            }
             Step::Store { place, .. } => {
                 code.stores.push(Store { place: u32::try_from(place).unwrap_or(u32::MAX), register: a });
                 Kind::Store
             }
         };
         match code.segments.last_mut() {
-            Some(segment) if segment.kind == kind => segment.length += 1,
-            _ => code.segments.push(Segment { kind, length: 1 }),
+            Some(segment) if segment.kind == kind => segment.length += kind.instructions(),
+            _ => code.segments.push(Segment { kind, length: kind.instructions() }),
         }
     }
     code.registers = registers.count;

@@ -40,6 +40,8 @@ pub enum Recipe {
     Sin(Operand),
     /// Cosine of an angle.
     Cos(Operand),
+    /// Stumpff's function of this order.
+    Stumpff(u8, Operand),
 }
 
 /// `x − 0 = x` for every x, −0 too.
@@ -140,6 +142,7 @@ impl Selection {
             Op::Max(a, b) => (Recipe::Max([of(a, false), of(b, false)]), false),
             Op::Sin(a) => (Recipe::Sin(of(a, false)), false),
             Op::Cos(a) => (Recipe::Cos(of(a, false)), false),
+            Op::Stumpff(k, a) => (Recipe::Stumpff(k, of(a, false)), false),
             // Negations are operands' signs.
             Op::Constant(_) | Op::Symbol(_) | Op::Neg(_) => (Recipe::Given, false),
         }
@@ -160,8 +163,8 @@ impl Selection {
             return 0;
         }
         let wanted = self.wanted[id.index()];
-        let has_a_sign =
-            matches!(graph.program.op(id), Op::Symbol(_) | Op::Sin(_) | Op::Cos(_) | Op::Min(..) | Op::Max(..));
+        let op = graph.program.op(id);
+        let has_a_sign = op.is_elementary() || matches!(op, Op::Symbol(_) | Op::Min(..) | Op::Max(..));
         match (wanted[usize::from(negative)], wanted[usize::from(!negative)] || (negative && has_a_sign)) {
             (true, _) => 0,
             (false, true) => 4,
@@ -177,7 +180,7 @@ impl Recipe {
             Recipe::Given => vec![],
             Recipe::MulAdd(operands) => operands.to_vec(),
             Recipe::Div(operands) | Recipe::Min(operands) | Recipe::Max(operands) => operands.to_vec(),
-            Recipe::Sin(angle) | Recipe::Cos(angle) => vec![angle],
+            Recipe::Sin(argument) | Recipe::Cos(argument) | Recipe::Stumpff(_, argument) => vec![argument],
         }
     }
 }

@@ -1,0 +1,232 @@
+//! Joints between the rigid elements of a beam: what `symmetric` and `paper` converge to, and how fast.
+
+use std::f64::consts::FRAC_PI_4;
+
+use crane_codegen::chain::Analyses;
+use crane_codegen::mechanics;
+use crane_model::nalgebra::{DMatrix, DVector, SymmetricEigen};
+use crane_tests::interpreted::Interpreted;
+use crane_tests::quantities::State;
+use crane_tests::workspace;
+
+const LENGTH: f64 = 8.0;
+
+/// A cantilever along x with a mass at its tip, on which gravity acts along a direction; what it weighs is live.
+struct Beam {
+    crane: Interpreted,
+}
+
+/// Second moments of area of a section, m⁴; E = G = 1e10 Pa.
+struct Section {
+    jy: f64,
+    jz: f64,
+    jo: f64,
+}
+
+const MODULUS: f64 = 1e10;
+const ROUND: Section = Section { jy: 1e-6, jz: 1e-6, jo: 2e-6 };
+
+impl Beam {
+    fn new(joint: &str, sections: usize, section: &Section, gravity: [f64; 3]) -> Self {
+        let Section { jy, jz, jo } = section;
+        let spec = format!(
+            "format: 1
+name: beam
+gravity: {gravity:?}
+parameters: {{load: {{value: 1.0, unit: kg}}}}
+links:
+  - name: beam
+    beam:
+      length: {LENGTH:?}
+      sections: {sections}
+      section_joint: {joint}
+      material: {{E: {MODULUS:?}, G: {MODULUS:?}, density: 1}}
+      section: {{numbers: {{area: 1e-3, Jy: {jy:?}, Jz: {jz:?}, Jo: {jo:?}}}}}
+  - {{name: tip, mass: load, com: [0, 0, 0]}}
+"
+        );
+        let chain = workspace::chain_of("beam", &spec);
+        let analyses = Analyses { derivatives: false, ..Analyses::ALL };
+        let program = mechanics::derive(&chain, analyses);
+        Beam { crane: Interpreted { chain, program } }
+    }
+
+    fn straight(&self) -> State {
+        self.at(vec![0.0; self.crane.size()])
+    }
+
+    fn at(&self, q: Vec<f64>) -> State {
+        let v = vec![0.0; q.len()];
+        State { t: 0.0, q, v }
+    }
+
+    fn with_load(&self, load: f64) -> Interpreted {
+        let mut chain = self.crane.chain.clone();
+        chain.parameters[0].default = load;
+        Interpreted { chain, program: self.crane.program.clone() }
+    }
+
+    /// Equilibrium under a load, in steps that Newton's method follows.
+    fn equilibrium(&self, load: f64) -> State {
+        let mut q = DVector::zeros(self.crane.size());
+        for step in 1..=20 {
+            let loaded = self.with_load(load * f64::from(step) / 20.0);
+            for _ in 0..6 {
+                let state = self.at(q.as_slice().to_vec());
+                let tangent = loaded.matrix("tangent_stiffness", &state).lu();
+                q -= tangent.solve(&loaded.vector("static_residual", &state)).expect("a regular tangent stiffness");
+            }
+        }
+        self.at(q.as_slice().to_vec())
+    }
+
+    /// Angular frequencies at a pose under a load, from the lowest on, rad/s.
+    fn frequencies(&self, load: f64, state: &State) -> Vec<f64> {
+        let loaded = self.with_load(load);
+        let lower = loaded.matrix("tangent_stiffness", state).cholesky().expect("a stable pose").l();
+        let half = lower.solve_lower_triangular(&loaded.matrix("mass_matrix", state)).expect("L is regular");
+        let reduced = lower.solve_lower_triangular(&half.transpose()).expect("L is regular");
+        let mut squares: Vec<f64> = SymmetricEigen::new(reduced).eigenvalues.iter().map(|x| 1.0 / x).collect();
+        squares.sort_by(f64::total_cmp);
+        squares.into_iter().map(f64::sqrt).collect()
+    }
+
+    /// Pose of the tip, row by row.
+    fn tip(&self, state: &State) -> Vec<f64> {
+        let frames = self.crane.get("transforms", &self.crane.inputs(state), 0);
+        frames[frames.len() - 16..].to_vec()
+    }
+}
+
+/// Excess of the load under which a cantilever, loaded at its tip in its stiff plane, falls aside, over
+/// `4.0126 √(EI GJ)/L²` [Timoshenko and Gere, Theory of Elastic Stability, 1961, section 6.3].
+fn buckling_excess(joint: &str, sections: usize) -> f64 {
+    let section = Section { jy: 1.0, jz: 1e-6, jo: 2e-6 };
+    let beam = Beam::new(joint, sections, &section, [0.0, 0.0, -1.0]);
+    let stiffness = |load: f64| beam.with_load(load).matrix("tangent_stiffness", &beam.straight());
+    // K(P) = K₀ + P K₁, K₀ diagonal but for the beam's own weight.
+    let (unloaded, loaded) = (stiffness(1e-9), stiffness(1.0 + 1e-9));
+    let geometric: DMatrix<f64> = loaded - &unloaded;
+    let lower = unloaded.cholesky().expect("an unloaded beam is stable").l();
+    let half = lower.solve_lower_triangular(&geometric).expect("L is regular");
+    let reduced = lower.solve_lower_triangular(&half.transpose()).expect("L is regular");
+    let critical = -1.0 / SymmetricEigen::new(reduced).eigenvalues.min();
+    // First root of the series of J_{-1/4}, Timoshenko's constant with more digits.
+    let exact = 4.012_599 * MODULUS * (section.jz * section.jo).sqrt() / (LENGTH * LENGTH);
+    critical / exact - 1.0
+}
+
+#[test]
+fn lateral_torsional_buckling() {
+    let sections = [4, 8, 16];
+    let [symmetric, paper] = ["symmetric", "paper"].map(|joint| sections.map(|n| buckling_excess(joint, n)));
+    for (excess, limit) in symmetric.into_iter().zip([0.032, 0.009, 0.0025]) {
+        assert!(excess.abs() < limit, "{symmetric:?}");
+    }
+    let order = |pair: &[f64]| (pair[0] / pair[1]).log2();
+    assert!(symmetric.windows(2).all(|pair| order(pair) > 1.9), "{symmetric:?}");
+    // The paper's joint loses half of the product of two angles in each section.
+    for (excess, expected) in paper.into_iter().zip([0.284, 0.133, 0.065]) {
+        assert!((excess - expected).abs() < 0.005, "{paper:?}");
+    }
+}
+
+/// A round beam does not know which of its planes is called psi: the same load bends it by 70° whichever way it pulls, and
+/// it vibrates at the same frequencies.
+#[test]
+fn a_round_beam_bends_alike_in_all_planes() {
+    for sections in [2, 4, 8] {
+        let pulled = |joint: &str, direction: f64| {
+            let (sin, cos) = direction.sin_cos();
+            Beam::new(joint, sections, &ROUND, [0.0, -9.81 * cos, -9.81 * sin])
+        };
+        let slope = |load: f64| {
+            let beam = pulled("symmetric", 0.0);
+            beam.tip(&beam.equilibrium(load))[0].acos().to_degrees()
+        };
+        let (mut low, mut high) = (20.0, 200.0);
+        for _ in 0..14 {
+            let middle = 0.5 * (low + high);
+            (low, high) = if slope(middle) < 70.0 { (middle, high) } else { (low, middle) };
+        }
+        let bent = |joint: &str, direction: f64| {
+            let beam = pulled(joint, direction);
+            let state = beam.equilibrium(low);
+            (beam.tip(&state)[0].acos().to_degrees(), beam.frequencies(low, &state)[..4].to_vec())
+        };
+        let [by_psi, by_both, by_theta] = [0.0, FRAC_PI_4, 2.0 * FRAC_PI_4].map(|angle| bent("symmetric", angle));
+        assert!((by_psi.0 - 70.0).abs() < 0.1, "bent by {}°", by_psi.0);
+        for other in [&by_both, &by_theta] {
+            for (a, b) in by_psi.1.iter().zip(&other.1) {
+                // Newton's method and the eigenvalues leave some 1e-12.
+                assert!((a / b - 1.0).abs() < 1e-9, "{sections} sections: {by_psi:?} against {other:?}");
+            }
+        }
+        let (psi, theta) = (bent("paper", 0.0).1[0], bent("paper", 2.0 * FRAC_PI_4).1[0]);
+        assert!((psi / theta - 1.0).abs() > 1e-3, "the paper's joint: {psi} and {theta} rad/s");
+    }
+}
+
+/// In one plane, and in torsion alone, both joints are the same: motions, forces, and what they converge to.
+#[test]
+fn motions_in_one_plane_are_those_of_the_paper() {
+    for sections in [1, 3, 5] {
+        let [symmetric, paper] =
+            ["symmetric", "paper"].map(|joint| Beam::new(joint, sections, &ROUND, [0.3, 0.0, 0.0]).crane);
+        for kind in ["_psi", "_theta", "_phi"] {
+            let n = symmetric.size();
+            let own = |size: f64, seed: f64| -> Vec<f64> {
+                let of = |(j, c): (usize, &crane_codegen::chain::Coordinate)| match c.name.ends_with(kind) {
+                    true => size * (seed + 1.3 * j as f64).sin(),
+                    false => 0.0,
+                };
+                symmetric.chain.coordinates.iter().enumerate().map(of).collect()
+            };
+            let state = State { t: 0.0, q: own(1.1, 0.4), v: own(2.0, 1.7) };
+            let (a, b) = (symmetric.acceleration(&state), paper.acceleration(&state));
+            // Accelerations of both lie in the plane; some hundred roundings.
+            assert!((&a - &b).amax() < 1e-11 * b.amax(), "{sections} sections, {kind}: {a} against {b}");
+            for function in ["static_residual", "bias"] {
+                let (a, b) = (symmetric.vector(function, &state), paper.vector(function, &state));
+                let planar = |x: &DVector<f64>| DVector::from_fn(n, |j, _| if state.q[j] == 0.0 { 0.0 } else { x[j] });
+                // Of forces of order 1, which cancel in torsion.
+                assert!((planar(&a) - planar(&b)).amax() < 1e-12 * b.amax().max(1.0), "{function}, {kind}");
+            }
+        }
+    }
+}
+
+/// About the straight beam, pulled lengthwise as a beam that rotates is, small vibrations in all planes are the same.
+#[test]
+fn a_straight_beam_under_tension_vibrates_as_with_the_joint_of_the_paper() {
+    for sections in [2, 4, 8] {
+        let frequencies = |joint: &str| {
+            let beam = Beam::new(joint, sections, &Section { jy: 1e-6, jz: 3e-6, jo: 2e-6 }, [9.81, 0.0, 0.0]);
+            beam.frequencies(50.0, &beam.straight())
+        };
+        for (a, b) in frequencies("symmetric").iter().zip(frequencies("paper")) {
+            assert!((a / b - 1.0).abs() < 1e-10, "{sections} sections: {a} against {b} rad/s");
+        }
+    }
+}
+
+/// A boom under its load, a quarter of it sideways: how far its tip turns about its own axis. With `paper` the error falls as
+/// 1/n, with `symmetric` as 1/n²; both tend to one limit.
+#[test]
+fn twist_of_a_tip_that_is_loaded_in_two_planes() {
+    let section = Section { jy: 4e-6, jz: 1e-6, jo: 1e-6 };
+    let twist = |joint: &str, sections: usize| {
+        let beam = Beam::new(joint, sections, &section, [0.0, 0.25, -1.0]);
+        // Height of the tip's y axis over the horizontal.
+        beam.tip(&beam.equilibrium(200.0))[9]
+    };
+    let [symmetric, paper] = ["symmetric", "paper"].map(|joint| [4, 8, 16].map(|n| twist(joint, n)));
+    let ratio = |x: [f64; 3]| ((x[1] - x[0]) / (x[2] - x[1])).log2();
+    assert!((ratio(symmetric) - 2.0).abs() < 0.1, "order {}", ratio(symmetric));
+    assert!((ratio(paper) - 1.0).abs() < 0.2, "order {}", ratio(paper));
+    let limit = symmetric[2] + (symmetric[2] - symmetric[1]) / 3.0;
+    let of_paper = paper[2] + (paper[2] - paper[1]);
+    assert!((of_paper / limit - 1.0).abs() < 0.02, "{of_paper} against {limit}");
+    let error = |x: f64| (x / limit - 1.0).abs();
+    assert!(error(symmetric[0]) < 0.1 * error(paper[0]), "{symmetric:?}, {paper:?}");
+}
