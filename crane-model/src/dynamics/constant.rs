@@ -62,7 +62,7 @@ impl<'a> Rk4<'a> {
         }
     }
 
-    fn place<'s>(&'s self, t: f64, h: f64) -> Place<'s> {
+    fn place(&self, t: f64, h: f64) -> Place<'_> {
         let q = &self.motion[..self.equations.n];
         Place { method: Method::Rk4, t, h, q, description: self.equations.crane.description() }
     }

@@ -132,7 +132,7 @@ forward!(Rosenbrock);
 pub(super) struct Stages<'a> {
     system: System<'a>,
     /// uᵢ.
-    stages: [Vec<f64>; STAGES],
+    u: [Vec<f64>; STAGES],
     place: Vec<f64>,
     rhs: Vec<f64>,
 }
@@ -141,8 +141,8 @@ impl<'a> Stages<'a> {
     /// Room for motions of so many numbers.
     pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
         let zeros = || vec![0.0; len];
-        let stages = std::array::from_fn(|_| zeros());
-        Self { system: System::new(crane), stages, place: zeros(), rhs: zeros() }
+        let u = std::array::from_fn(|_| zeros());
+        Self { system: System::new(crane), u, place: zeros(), rhs: zeros() }
     }
 }
 
@@ -153,18 +153,18 @@ impl Formula for Stages<'_> {
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
         let h = step.length;
         self.system.factorise(equations.state(step.t, &step.start).0, h * GAMMA);
-        self.system.solve(&step.slopes[0], &mut self.stages[0]);
+        self.system.solve(&step.slopes[0], &mut self.u[0]);
         for i in 1..STAGES {
             self.place.copy_from_slice(&step.start);
-            add_all(&mut self.place, 1.0, A[i], self.stages.iter());
+            add_all(&mut self.place, 1.0, A[i], self.u.iter());
             equations.slope(step.t + NODES[i] * h, &self.place, &mut self.rhs)?;
-            add_all(&mut self.rhs, h.recip(), C[i], self.stages.iter());
-            self.system.solve(&self.rhs, &mut self.stages[i]);
+            add_all(&mut self.rhs, h.recip(), C[i], self.u.iter());
+            self.system.solve(&self.rhs, &mut self.u[i]);
         }
         step.end.copy_from_slice(&step.start);
-        add_all(&mut step.end, 1.0, &WEIGHTS, self.stages.iter());
+        add_all(&mut step.end, 1.0, &WEIGHTS, self.u.iter());
         step.error.fill(0.0);
-        add_all(&mut step.error, 1.0, &ERROR, self.stages.iter());
+        add_all(&mut step.error, 1.0, &ERROR, self.u.iter());
         equations.slope(step.reached(), &step.end, &mut step.slopes[1])
     }
 

@@ -20,6 +20,9 @@ const EASY: usize = 3;
 /// Scaled residual of a point of the path: only the end has to be exact.
 const ON_PATH: f64 = 1e-6;
 
+/// What to do at the whole load: with the pose, the number of steps and the residual.
+pub(super) type Arrive<'a, T> = dyn FnMut(DVector<f64>, usize, &mut Residual<'_>) -> Option<T> + 'a;
+
 /// Follows `H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0` from `(q₀, 0)` on. At λ = 1 `arrive` gets the pose, the number of
 /// steps and the residual, and may end the search.
 pub(super) fn follow<T>(
@@ -28,7 +31,7 @@ pub(super) fn follow<T>(
     steps: usize,
     balance: &Balance,
     residual_at: &mut Residual<'_>,
-    arrive: &mut dyn FnMut(DVector<f64>, usize, &mut Residual<'_>) -> Option<T>,
+    arrive: &mut Arrive<'_, T>,
 ) -> Option<T> {
     let n = start.len();
     let springs = balance.springs(&stiffness_at(crane, start));

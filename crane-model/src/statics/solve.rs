@@ -38,7 +38,7 @@ pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> E
 
 /// As [`solve`], of a crane of any size.
 pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
-    search(crane, guess_dyn(crane).into(), settings, &mut |q, out| crane.static_residual(q, out))
+    search(crane, &guess_dyn(crane).into(), settings, &mut |q, out| crane.static_residual(q, out))
 }
 
 /// As [`solve`], with the drives where their motions are at time `t`, s, and from the pose `q`: where the crane would rest
@@ -72,7 +72,7 @@ pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settin
         }
     };
     crane.prescribe(t, start.as_mut_slice(), &mut vec![0.0; q.len()]);
-    search(crane, start, settings, &mut |q, out| {
+    search(crane, &start, settings, &mut |q, out| {
         crane.static_residual(q, out);
         add_springs(1.0, 0.0, q, out);
         add_springs(-1.0, t, q, out);
@@ -82,13 +82,13 @@ pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settin
 /// Newton's method, then continuation, on any residual with the crane's tangent stiffness.
 fn search(
     crane: &dyn DynStatics,
-    start: DVector<f64>,
+    start: &DVector<f64>,
     settings: &Settings,
     residual_at: &mut newton::Residual<'_>,
 ) -> Equilibrium {
-    let balance = Balance::at(crane, &start);
+    let balance = Balance::at(crane, start);
     let first = newton::iterate(crane, start.clone(), settings, &balance, residual_at);
-    if settings.load_steps == 0 || !missed(crane, &start, settings, &first) {
+    if settings.load_steps == 0 || !missed(crane, start, settings, &first) {
         return first;
     }
     let mut load_steps = 0;
@@ -97,7 +97,7 @@ fn search(
         let found = newton::iterate(crane, q, settings, &balance, residual_at);
         found.is_stable().then_some(found)
     };
-    let found = continuation::follow(crane, &start, settings.load_steps, &balance, residual_at, &mut arrive);
+    let found = continuation::follow(crane, start, settings.load_steps, &balance, residual_at, &mut arrive);
     found.map_or(first, |found| Equilibrium { load_steps: Some(load_steps), ..found })
 }
 

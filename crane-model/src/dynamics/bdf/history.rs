@@ -34,7 +34,9 @@ impl History {
         value.copy_from_slice(start);
         first.fill(0.0);
         add(first, h, slope);
-        higher.iter_mut().for_each(|difference| difference.fill(0.0));
+        for difference in higher {
+            difference.fill(0.0);
+        }
     }
 
     /// As [`begin`](Self::begin), with the last state.
@@ -43,7 +45,9 @@ impl History {
         let [_, first, higher @ ..] = &mut self.differences;
         first.fill(0.0);
         add(first, self.h, slope);
-        higher.iter_mut().for_each(|difference| difference.fill(0.0));
+        for difference in higher {
+            difference.fill(0.0);
+        }
         self.differences[0] = start;
         self.order = 1;
     }
