@@ -37,8 +37,6 @@ pub(super) struct Adaptive<'a, F> {
     norm: Norm,
     /// Step to try next, s.
     next: f64,
-    /// Whether the step before was tried in vain: a step does not grow right after.
-    again: bool,
     step: Step,
     /// Motion at the time reached.
     motion: Vec<f64>,
@@ -50,7 +48,7 @@ impl<'a, F: Formula> Adaptive<'a, F> {
     /// With a measure of errors.
     pub fn new(formula: F, equations: Equations<'a>, norm: Norm) -> Self {
         let (step, motion) = (Step::new(equations.len()), vec![0.0; equations.len()]);
-        Self { formula, equations, norm, next: FIRST, again: false, step, motion, steps: 0, rejections: 0 }
+        Self { formula, equations, norm, next: FIRST, step, motion, steps: 0, rejections: 0 }
     }
 
     /// No step leads on.
@@ -69,8 +67,7 @@ impl<'a, F: Formula> Adaptive<'a, F> {
         };
         let ideal = SAFETY * error.powf(-1.0 / F::METHOD.order() as f64);
         let meets = error <= 1.0;
-        let next = length * ideal.clamp(RATIO.0, if meets && !self.again { RATIO.1 } else { 1.0 });
-        self.again = !meets;
+        let next = length * ideal.clamp(RATIO.0, if meets { RATIO.1 } else { 1.0 });
         // A step cut short by a stop says nothing against the length that was meant.
         self.next = if meets && *length < self.next { next.max(self.next) } else { next }.min(LONGEST);
         meets

@@ -263,7 +263,7 @@ pub struct Timing {
     /// step, the paper's [default: rk4 with --step and for the comparison, otherwise bdf]
     #[arg(long, value_name = "NAME")]
     pub method: Option<Method>,
-    /// Error that an adaptive method allows a step, m and rad [default: 5e-5]
+    /// Error that an adaptive method allows a step, m and rad [default: 2e-5]
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = tolerance)]
     pub tolerance: Option<f64>,
     /// Greatest step of rk4, s; `auto`: the largest safe one [default: the crane's]
