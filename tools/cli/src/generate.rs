@@ -37,7 +37,7 @@ pub fn generate(options: &Generate, out: &mut dyn Write) -> Outcome<()> {
 /// Prints a Markdown table of operations: one row per function, one column per spec.
 pub fn operations(specs: &[PathBuf], out: &mut dyn Write) -> Outcome<()> {
     let report = |spec: &PathBuf| {
-        let (chain, _) = load(spec)?;
+        let (chain, _) = load(spec, false)?;
         let report = compile::report(&chain, Analyses::ALL);
         Ok((chain.name, report))
     };
