@@ -91,6 +91,7 @@ links:
     beam:
       length: 2
       sections: 1
+      section_joint: paper
       material: {{E: {modulus:e}, G: {:e}, density: 7850}}
       section: {{solid: {{height: 0.06, width: 0.04}}}}
   - {{name: weight, mass: 20, com: [0, 0, 0], inertia: {{gyration: [0.1, 0.1, 0.1]}}}}
