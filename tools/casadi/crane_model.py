@@ -100,6 +100,11 @@ class Crane:
         return ca.vertcat(*[coordinate.v for coordinate in self.coordinates])
 
     @property
+    def has_rotation_vectors(self):
+        """Whether elements turn by rotation vectors, which no chain of hinges has."""
+        return any(coordinate.is_in_vector for coordinate in self.coordinates)
+
+    @property
     def parameters(self):
         """Live parameters in the order of the spec."""
         return ca.vertcat(*self.spec.parameters.values())
