@@ -180,14 +180,15 @@ fn a_stiff_drive_tends_to_a_rigid_one() {
         (end.q[1], crane.vector("drive_forces", &end)[0])
     };
     let rigid = run("rigid: true");
-    let [stiff, stiffer] = [1e5, 1e6].map(|s| {
+    // Stiffer still, the spring multiplies what is left of the steps' errors: the reason for rigid drives.
+    let [stiff, stiffer] = [1e4, 1e5].map(|s| {
         // A tenth of critical damping, so that what the start excites is gone.
         let (q, torque) = run(&format!("stiffness: {s}, damping: {}", 0.6 * f64::sqrt(s)));
         [q - rigid.0, torque - rigid.1].map(f64::abs)
     });
-    assert!(stiff[0] < 2e-3 && stiff[1] < 0.02 * rigid.1.abs(), "{stiff:?} of {rigid:?}");
+    assert!(stiff[0] < 2e-2 && stiff[1] < 0.05 * rigid.1.abs(), "{stiff:?} of {rigid:?}");
     for (stiff, stiffer) in stiff.iter().zip(stiffer) {
-        assert!((8.0..12.5).contains(&(stiff / stiffer)), "{stiff} to {stiffer}");
+        assert!((7.0..14.0).contains(&(stiff / stiffer)), "{stiff} to {stiffer}");
     }
 }
 

@@ -47,6 +47,18 @@ pub const LARGE_TILT: f64 = 0.1;
 
 #[cfg(feature = "std")]
 impl Description {
+    /// Places in `q` of the coordinates that rigid drives prescribe: no unknowns.
+    pub fn prescribed(&self) -> Vec<usize> {
+        let prescribed = |i: &usize| self.coordinates[*i].role == CoordinateRole::Prescribed;
+        (0..self.coordinates.len()).filter(prescribed).collect()
+    }
+
+    /// Whether all unknowns of a pose are within a bound, m and rad: a prescribed motion may go as far as it likes.
+    pub(crate) fn bounded(&self, q: &[f64], bound: f64) -> bool {
+        let mut numbers = self.coordinates.iter().zip(q);
+        numbers.all(|(info, x)| x.abs() <= bound || info.role == CoordinateRole::Prescribed)
+    }
+
     /// What to say of a pose in which θ of a base or an element is near ±90°, where ψ and φ turn about one axis: the equations
     /// are singular there.
     pub fn near_singular(&self, q: &[f64]) -> Option<String> {

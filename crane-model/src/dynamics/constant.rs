@@ -115,7 +115,7 @@ impl Stepper for Rk4<'_> {
             return Err(self.rough(&place, |place| place.failed(Cause::Growth, self.equations.crane)));
         }
         let grows = self.roughness.grows(h, before, &room[..n], &motion[n..2 * n]);
-        if grows || !motion[..n].iter().all(|x| x.abs() <= self.settings.bound) {
+        if grows || !equations.crane.description().bounded(&motion[..n], self.settings.bound) {
             let place = self.place(t, h);
             return Err(self.rough(&place, |place| place.furthest(Cause::Growth)));
         }

@@ -54,12 +54,13 @@ pub fn step_with<const N: usize, const M: usize, C: Dynamics<N>>(
 ) -> Result<SVector<f64, M>, NotFinite> {
     let mut integrands = [SVector::<f64, M>::zeros(); STAGES];
     let mut room = [[0.0; N]; ROOM];
-    let State { q, v } = state;
+    let State { q, v } = &mut *state;
     advance(t, h, [q.as_mut_slice(), v.as_mut_slice()], room.as_flattened_mut(), |stage, t, q, v, out| {
         let [q, v] = [q, v].map(SVector::from_column_slice);
         integrands[stage] = integrand(t, &q, &v);
         acceleration(crane, t, &q, &v).map(|a| out.copy_from_slice(a.as_slice()))
     })?;
+    crane.prescribe(t + h, &mut state.q, &mut state.v);
     Ok(increments(&integrands, h))
 }
 

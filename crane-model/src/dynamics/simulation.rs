@@ -101,7 +101,7 @@ pub fn run(
             let steps = stepper.statistics().steps;
             let q = &stepper.motion()[..n];
             let place = Place { method, t: reached, h: reached - before, q, description };
-            if !q.iter().all(|x| x.abs() <= settings.bound) {
+            if !description.bounded(q, settings.bound) {
                 return Err(place.furthest(Cause::Growth));
             }
             if steps >= settings.most_steps && reached < settings.duration {

@@ -8,7 +8,7 @@ use crate::{Linearisation, dyn_crane::DynLinearise, model::state_blocks};
 /// A coordinate belongs to a mode from this part of the greatest share of energy.
 const SHARE: f64 = 0.2;
 
-/// Coefficients of `A δq̈ + D δq̇ + K δq = 0`.
+/// Coefficients of `A δq̈ + D δq̇ + K δq = 0`, of the coordinates that can move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SmallMotions {
     /// Mass matrix A.
@@ -17,13 +17,19 @@ pub struct SmallMotions {
     pub stiffness: DMatrix<f64>,
     /// Damping matrix D.
     pub damping: DMatrix<f64>,
+    /// Places in q of the rows and columns: all but those that rigid drives prescribe.
+    pub unknowns: Vec<usize>,
+    /// Number of coordinates.
+    pub size: usize,
 }
 
+/// Of all coordinates: one that a rigid drive prescribes swings by itself at 1 rad/s, unless [`without`](SmallMotions::without) it.
 impl<const N: usize> From<&Linearisation<N>> for SmallMotions {
     fn from(linearisation: &Linearisation<N>) -> Self {
         let Linearisation { mass, stiffness, damping } = linearisation;
         let dynamic = |matrix: &nalgebra::SMatrix<f64, N, N>| DMatrix::from_column_slice(N, N, matrix.as_slice());
-        Self { mass: dynamic(mass), stiffness: dynamic(stiffness), damping: dynamic(damping) }
+        let (mass, stiffness, damping) = (dynamic(mass), dynamic(stiffness), dynamic(damping));
+        Self { mass, stiffness, damping, unknowns: (0..N).collect(), size: N }
     }
 }
 
@@ -33,7 +39,34 @@ impl SmallMotions {
         let zeros = || DMatrix::zeros(q.len(), q.len());
         let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
         crane.linearise(q, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
-        Self { mass, stiffness, damping }
+        let all = Self { mass, stiffness, damping, unknowns: (0..q.len()).collect(), size: q.len() };
+        all.without(&crane.description().prescribed())
+    }
+
+    /// Those of the other coordinates, when these stand still.
+    #[must_use]
+    pub fn without(self, prescribed: &[usize]) -> Self {
+        if prescribed.is_empty() {
+            return self;
+        }
+        let kept: Vec<usize> = (0..self.unknowns.len()).filter(|i| !prescribed.contains(&self.unknowns[*i])).collect();
+        let of = |matrix: &DMatrix<f64>| matrix.select_rows(&kept).select_columns(&kept);
+        Self {
+            mass: of(&self.mass),
+            stiffness: of(&self.stiffness),
+            damping: of(&self.damping),
+            unknowns: kept.iter().map(|i| self.unknowns[*i]).collect(),
+            size: self.size,
+        }
+    }
+
+    /// A shape over all coordinates; those that stand still have none.
+    pub(super) fn shape(&self, of_unknowns: &DVector<f64>) -> DVector<f64> {
+        let mut shape = DVector::zeros(self.size);
+        for (place, x) in self.unknowns.iter().zip(of_unknowns) {
+            shape[*place] = *x;
+        }
+        shape
     }
 
     /// State matrix `[[0, I], [−A⁻¹K, −A⁻¹D]]` of `d/dt [δq; δq̇]`, 2N × 2N.
@@ -61,7 +94,7 @@ impl SmallMotions {
         let least = SHARE * share.iter().copied().fold(0.0, f64::max);
         let mut dominating: Vec<usize> = (0..share.len()).filter(|&i| share[i] >= least).collect();
         dominating.sort_by(|&i, &j| share[j].total_cmp(&share[i]));
-        dominating
+        dominating.into_iter().map(|i| self.unknowns[i]).collect()
     }
 
     /// `λ²A + λD + K`, singular where λ is an eigenvalue.

@@ -45,7 +45,7 @@ pub fn undamped(motions: &SmallMotions) -> Result<Vec<Mode>, NoModes> {
         .map(|(&omega_squared, shape)| {
             let shape = shape.into_owned();
             let dominating = motions.dominating(&shape);
-            Mode { omega_squared, shape, dominating }
+            Mode { omega_squared, shape: motions.shape(&shape), dominating }
         })
         .collect();
     modes.sort_by(|a, b| a.omega_squared.total_cmp(&b.omega_squared));

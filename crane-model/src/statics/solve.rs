@@ -38,7 +38,8 @@ pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> E
 
 /// As [`solve`], of a crane of any size.
 pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
-    search(crane, &guess_dyn(crane).into(), settings, &mut |q, out| crane.static_residual(q, out))
+    let found = search(crane, &guess_dyn(crane).into(), settings, &mut |q, out| crane.static_residual(q, out));
+    prescribed_at(crane, 0.0, found)
 }
 
 /// As [`solve`], with the drives where their motions are at time `t`, s, and from the pose `q`: where the crane would rest
@@ -72,11 +73,19 @@ pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settin
         }
     };
     crane.prescribe(t, start.as_mut_slice(), &mut vec![0.0; q.len()]);
-    search(crane, &start, settings, &mut |q, out| {
+    let found = search(crane, &start, settings, &mut |q, out| {
         crane.static_residual(q, out);
         add_springs(1.0, 0.0, q, out);
         add_springs(-1.0, t, q, out);
-    })
+    });
+    prescribed_at(crane, t, found)
+}
+
+/// The pose found, with what rigid drives prescribe to the last bit: the steps leave it as it is but for rounding.
+fn prescribed_at(crane: &dyn DynStatics, t: f64, mut found: Equilibrium) -> Equilibrium {
+    let mut rates = vec![0.0; found.q.len()];
+    crane.prescribe(t, &mut found.q, &mut rates);
+    found
 }
 
 /// Newton's method, then continuation, on any residual with the crane's tangent stiffness.
