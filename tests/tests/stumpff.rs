@@ -6,9 +6,9 @@ use crane_tests::precise::Precise;
 use fastrand::Rng;
 
 /// Units in the last place of the exact result, for x ≤ 10: a section bent by 180° has π².
-const LIMIT: f64 = 1.6;
+const LIMIT: f64 = 3.2;
 /// c_0 and c_1 have zeros, c_2 beyond 10: there the error is measured by 1/k!, the value at x = 0.
-const OF_LARGEST: f64 = 2.5e-16;
+const OF_LARGEST: f64 = 1.2e-15;
 
 /// How far a result is off.
 fn off(value: f64, exact: &Precise) -> f64 {
@@ -43,7 +43,7 @@ fn are_right_to_the_last_place() {
                 // As the interpreter has it, by another way.
                 let interpreted = off(x.stumpff(k), &exact);
                 assert!(
-                    interpreted < 1e-15 * reciprocal_factorial(k),
+                    interpreted < 4e-15 * reciprocal_factorial(k),
                     "c_{k}({x:?}): interpreter off by {interpreted:e}"
                 );
                 if k < 2 || x > 10.0 {
