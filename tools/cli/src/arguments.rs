@@ -127,24 +127,14 @@ pub enum Action {
 }
 
 impl Action {
-    /// The YAML file that is named in place of a crane.
-    pub fn spec(&self) -> Option<&Path> {
-        self.crane()?.file()
-    }
-
-    /// Whether warnings about that file end the command.
-    pub fn is_strict(&self) -> bool {
-        self.crane().is_some_and(|choice| choice.strict)
-    }
-
-    /// The crane of an action that a crane's own program can do.
-    fn crane(&self) -> Option<&Choice> {
-        Some(match self {
-            Action::Run(options) | Action::Simulate(options) => &options.analysis.crane,
-            Action::Statics(options) | Action::Modes(options) | Action::Info(options) => &options.crane,
-            Action::Stability(options) => &options.analysis.crane,
-            Action::Report(options) => &options.crane,
-            Action::Eval(options) => &options.crane,
+    /// The crane that is chosen by name, or by a YAML file in place of it.
+    pub fn choice(&mut self) -> Option<&mut Choice> {
+        match self {
+            Action::Run(options) | Action::Simulate(options) => Some(&mut options.analysis.crane),
+            Action::Statics(options) | Action::Modes(options) | Action::Info(options) => Some(&mut options.crane),
+            Action::Stability(options) => Some(&mut options.analysis.crane),
+            Action::Report(options) => Some(&mut options.crane),
+            Action::Eval(options) => Some(&mut options.crane),
             // Compiles the crane with other numbers of sections along.
             Action::WorkPrecision(_)
             | Action::New(_)
@@ -157,8 +147,8 @@ impl Action {
             | Action::Export(_)
             | Action::Import(_)
             | Action::List(_)
-            | Action::Completions { .. } => return None,
-        })
+            | Action::Completions { .. } => None,
+        }
     }
 }
 
@@ -185,6 +175,9 @@ pub struct Choice {
     pub parameters: Parameters,
     #[command(flatten)]
     pub limits: Limits,
+    /// Compile the crane to machine code first, with cargo, and keep it: some five times faster, for long studies
+    #[arg(long)]
+    pub compile: bool,
 }
 
 impl Choice {

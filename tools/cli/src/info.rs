@@ -13,7 +13,8 @@ use crate::{
 /// Prints the cranes to choose from.
 pub fn list(format: Format, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let mut grid = Grid::new("cranes", "Cranes", &["name", "coordinates", "title"]);
-    for rig in (fleet.all)() {
+    for rig in fleet.all() {
+        let rig = rig?;
         let description = rig.description();
         grid.row([
             description.name.as_str().into(),

@@ -7,7 +7,7 @@
 //!
 //! fn main() -> std::process::ExitCode {
 //!     let specs = &[("my_crane", include_str!("../crane.yaml"))];
-//!     crane_cli::main(&crane_cli::Fleet { all, specs })
+//!     crane_cli::main(crane_cli::Fleet::new(specs, all()))
 //! }
 //! ```
 
@@ -50,7 +50,7 @@ use problem::Outcome;
 pub use selection::Fleet;
 
 /// Does what the arguments of the process ask for, with the cranes of a fleet or of a YAML file that the arguments name.
-pub fn main(fleet: &Fleet) -> ExitCode {
+pub fn main(fleet: Fleet) -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -59,16 +59,24 @@ pub fn main(fleet: &Fleet) -> ExitCode {
             return if error.use_stderr() { ExitCode::from(problem::USAGE) } else { ExitCode::SUCCESS };
         }
     };
-    match act(&arguments, fleet, &mut io::stdout().lock()) {
+    match act(arguments, fleet, &mut io::stdout().lock()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(problem) => problem.report(),
     }
 }
 
-fn act(arguments: &Arguments, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    if let Some((action, spec)) = arguments.action.as_ref().and_then(|action| Some((action, action.spec()?))) {
-        return own::run(spec, action.is_strict());
+fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outcome<()> {
+    if let Some(choice) = arguments.action.as_mut().and_then(Action::choice) {
+        if choice.compile {
+            return own::compiled(choice, &fleet);
+        }
+        if let Some(file) = choice.file() {
+            let (chain, spec) = own::load(file, choice.strict)?;
+            fleet.add(&chain.name, spec);
+            choice.name = chain.name;
+        }
     }
+    let fleet = &fleet;
     match &arguments.action {
         None if fleet.has(compare::CRANES) => compare::compare(&arguments.compare, fleet, out),
         None => Ok(Arguments::command().print_help()?),

@@ -5,5 +5,5 @@ use std::process::ExitCode;
 use crane_cli::Fleet;
 
 fn main() -> ExitCode {
-    crane_cli::main(&Fleet { all: crane_specs::all, specs: crane_specs::SPECS })
+    crane_cli::main(Fleet::new(crane_specs::SPECS, crane_specs::all()))
 }

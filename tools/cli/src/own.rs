@@ -13,6 +13,8 @@ use std::{
 use crane_codegen::{Checked, Diagnostics, SourceFile, build, chain::Chain, compile, explain, picture::picture};
 
 use crate::{
+    Fleet,
+    arguments::Choice,
     files,
     problem::{FAILED, Outcome, Problem},
 };
@@ -54,20 +56,26 @@ pub fn explain(spec: &Path, svg: Option<&Path>, out: &mut dyn Write) -> Outcome<
     Ok(out.write_all(explain::explain(&chain, &report).as_bytes())?)
 }
 
-/// Does what the arguments of this process ask for, with the crane of a spec in place of the file's name.
-pub fn run(spec: &Path, strict: bool) -> Outcome<()> {
-    let (Chain { name, spec_hash, .. }, text) = load(spec, strict)?;
+/// Does what the arguments of this process ask for, with the chosen crane as machine code.
+pub fn compiled(choice: &Choice, fleet: &Fleet) -> Outcome<()> {
+    let (Chain { name, spec_hash, .. }, text) = match (choice.file(), fleet.spec(&choice.name)) {
+        (None, Some(spec)) => parse(SourceFile::new(format!("{}.yaml", choice.name), spec.to_owned()), choice.strict)?,
+        (None, None) => return fleet.crane(&choice.name).map(|_| ()),
+        (Some(file), _) => load(file, choice.strict)?,
+    };
     let package = format!("crane-{name}-{spec_hash}");
-    run_with(&package, spec.as_os_str(), &[(name, text)])
+    run_with(&package, OsStr::new(&choice.name), &[(name, text)])
 }
 
 /// The same with the program of several cranes, names and specs; the first one stands in place of `named`.
 pub fn run_with(package: &str, named: &OsStr, cranes: &[(String, String)]) -> Outcome<()> {
     let program = program(package, cranes)?;
     let mut place = cranes.first().map(|(name, _)| OsString::from(name));
-    let arguments = env::args_os().skip(1).map(|argument| match place.take_if(|_| argument == *named) {
-        Some(name) => name,
-        None => argument,
+    let arguments = env::args_os().skip(1).filter(|argument| argument != "--compile").map(|argument| {
+        match place.take_if(|_| argument == *named) {
+            Some(name) => name,
+            None => argument,
+        }
     });
     finish(Command::new(&program).args(arguments).env(AS_TYPED, typed()))
 }
@@ -89,7 +97,11 @@ pub(super) fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
     } else {
         "name a YAML file that describes a crane".to_owned()
     };
-    let source = open(spec, &help)?;
+    parse(open(spec, &help)?, strict)
+}
+
+/// A sound chain and its text, or every mistake; warnings are drawn, and are mistakes if `strict`.
+fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
     let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| drawn(&mistakes))?;
     if !warnings.is_empty() {
         let problem = drawn(&warnings);

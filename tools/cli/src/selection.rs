@@ -1,47 +1,98 @@
-//! A crane by its name, with parameters set.
+//! The cranes that the command can choose from, with parameters set.
 
-use std::path::Path;
+use std::{borrow::Cow, path::Path};
 
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
 use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
 
 use crate::{
     arguments::{Choice, Parameters},
+    own,
     problem::{Outcome, Problem, nearest},
 };
 
-/// Cranes that the command can choose from.
-#[derive(Clone, Copy, Debug)]
+/// Cranes that the command can choose from: shipped ones, compiled or live, and one of a YAML file.
+#[derive(Default)]
 pub struct Fleet {
-    /// All of them, with the parameters of their specs.
-    pub all: fn() -> Vec<Box<dyn DynCrane>>,
-    /// Names and specs (YAML), as far as they are known.
-    pub specs: &'static [(&'static str, &'static str)],
+    entries: Vec<Entry>,
+}
+
+/// A crane of the fleet.
+struct Entry {
+    name: String,
+    /// Its spec, YAML.
+    spec: Cow<'static, str>,
+    /// The crane as machine code; a live crane is made of the spec otherwise.
+    compiled: Option<Box<dyn DynCrane>>,
+}
+
+impl Entry {
+    fn open(&self) -> Outcome<Box<dyn DynCrane>> {
+        match &self.compiled {
+            Some(compiled) => Ok(compiled.boxed_clone()),
+            None => {
+                let source = SourceFile::new(format!("{}.yaml", self.name), self.spec.clone());
+                Ok(Box::new(LiveCrane::from_spec(&source).map_err(|mistakes| own::drawn(&mistakes))?))
+            }
+        }
+    }
 }
 
 impl Fleet {
+    /// Cranes by names and specs (YAML), those of `compiled` as machine code.
+    pub fn new(specs: &'static [(&'static str, &'static str)], mut compiled: Vec<Box<dyn DynCrane>>) -> Self {
+        let entry = |&(name, spec): &(&'static str, &'static str)| {
+            let index = compiled.iter().position(|crane| crane.description().name == name);
+            let compiled = index.map(|index| compiled.swap_remove(index));
+            Entry { name: name.to_owned(), spec: Cow::Borrowed(spec), compiled }
+        };
+        Self { entries: specs.iter().map(entry).collect() }
+    }
+
+    /// Adds a crane by its spec, in place of one of the same name.
+    pub(super) fn add(&mut self, name: &str, spec: String) {
+        self.entries.retain(|entry| entry.name != name);
+        self.entries.push(Entry { name: name.to_owned(), spec: Cow::Owned(spec), compiled: None });
+    }
+
+    /// Names of all cranes.
+    pub(super) fn names(&self) -> Vec<&str> {
+        self.entries.iter().map(|entry| entry.name.as_str()).collect()
+    }
+
+    /// All cranes, with the parameters of their specs.
+    pub(super) fn all(&self) -> impl Iterator<Item = Outcome<Box<dyn DynCrane>>> {
+        self.entries.iter().map(Entry::open)
+    }
+
+    /// Whether a crane is machine code.
+    pub(super) fn is_compiled(&self, name: &str) -> bool {
+        self.entries.iter().any(|entry| entry.name == name && entry.compiled.is_some())
+    }
+
     /// Whether it has cranes of all these names.
     pub(super) fn has(&self, names: [&str; 2]) -> bool {
-        let all = (self.all)();
-        names.iter().all(|name| all.iter().any(|rig| rig.description().name == *name))
+        names.iter().all(|name| self.entries.iter().any(|entry| entry.name == *name))
     }
 
     /// The spec of a crane.
-    pub(super) fn spec(&self, name: &str) -> Option<&'static str> {
-        self.specs.iter().find(|(known, _)| *known == name).map(|(_, spec)| *spec)
+    pub(super) fn spec(&self, name: &str) -> Option<&str> {
+        self.entries.iter().find(|entry| entry.name == name).map(|entry| entry.spec.as_ref())
     }
 
     /// A crane by its name.
     pub(super) fn crane(&self, name: &str) -> Outcome<Box<dyn DynCrane>> {
-        let mut all = (self.all)();
-        if let Some(index) = all.iter().position(|rig| rig.description().name == name) {
-            return Ok(all.swap_remove(index));
+        if let Some(entry) = self.entries.iter().find(|entry| entry.name == name) {
+            return entry.open();
         }
-        let names: Vec<&str> = all.iter().map(|rig| rig.description().name.as_str()).collect();
         let file = format!("{name}.yaml");
         let help = if Path::new(&file).exists() {
             format!("did you mean the file `{file}`?")
+        } else if Path::new(name).is_file() {
+            "give the file the ending `.yaml`".to_owned()
         } else {
-            meant(name, &names, "cranes")
+            meant(name, &self.names(), "cranes")
         };
         Err(Problem::usage(format!("there is no crane `{name}`"), help))
     }

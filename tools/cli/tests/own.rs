@@ -72,9 +72,9 @@ fn warnings_are_drawn_and_end_a_strict_command() {
 
 #[test]
 fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
-    // Another hash, the same crane.
+    // Another hash, the same crane; machine code of it, which is kept.
     let file = spec("knuckle.yaml", "title: Planar", "title: A planar");
-    let own = crane(&["eval", &file, "--q", "0.1,0.2,0.3,0.4", "--v", "1,2,3,4"]);
+    let own = crane(&["eval", &file, "--compile", "--q", "0.1,0.2,0.3,0.4", "--v", "1,2,3,4"]);
     assert!(own.status.success(), "{}", text(&own.stderr));
     let shipped = crane(&["eval", "knuckle_boom", "--q", "0.1,0.2,0.3,0.4", "--v", "1,2,3,4"]);
     let numbers = |output: &Output| -> serde_json::Value {
@@ -84,12 +84,41 @@ fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
     };
     assert_eq!(numbers(&own), numbers(&shipped));
     // Kept: the second time nothing is compiled; parameters, options and exit codes are passed on.
-    let again = crane(&["statics", &file, "--set", "payload=1", "--format", "json"]);
+    let again = crane(&["statics", &file, "--compile", "--set", "payload=1", "--format", "json"]);
     assert!(again.status.success(), "{}", text(&again.stderr));
     assert!(text(&again.stderr).contains("kept from before"), "{}", text(&again.stderr));
     assert!(serde_json::from_slice::<serde_json::Value>(&again.stdout).is_ok_and(|report| report["pose"].is_array()));
     let refused = crane(&["statics", &file, "--set", "payload"]);
     assert_eq!(refused.status.code(), Some(2));
+}
+
+#[test]
+fn a_spec_runs_live_without_cargo_from_any_folder() {
+    let file = spec("live.yaml", "title: Planar", "title: A planar");
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("live");
+    fs::create_dir_all(&folder).expect("a folder");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+        let output = command.args(arguments).current_dir(&folder).env("PATH", "").env_remove("CARGO").output();
+        let output = output.expect("the command starts");
+        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    for command in ["info", "modes", "stability"] {
+        run(&[command, &file]);
+    }
+    run(&["run", &file, "--duration", "0.5", "--out", "."]);
+    assert!(folder.join("knuckle_boom.html").exists());
+    // The same pose as machine code finds, but for rounding.
+    let pose = |crane: &str| -> Vec<f64> {
+        let report: serde_json::Value =
+            serde_json::from_str(&run(&["statics", crane, "--format", "json"])).expect("JSON");
+        let rows = report["pose"].as_array().expect("a table");
+        rows.iter().map(|row| row["value"].as_f64().expect("a number")).collect()
+    };
+    let (live, compiled) = (pose(&file), pose("knuckle_boom"));
+    let off = live.iter().zip(&compiled).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-10 && live.len() == 4, "{off:e}");
 }
 
 #[test]

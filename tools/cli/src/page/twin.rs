@@ -7,7 +7,7 @@ use crate::Fleet;
 /// The crane of the fleet that is `rig` but for its elements, with the same parameters.
 pub fn rigid(rig: &dyn DynCrane, fleet: &Fleet) -> Option<Box<dyn DynCrane>> {
     let parameters = &rig.description().parameters;
-    (fleet.all)().into_iter().find_map(|mut other| {
+    fleet.all().flatten().find_map(|mut other| {
         let own = |(index, parameter): (usize, &ParameterInfo)| match parameters
             .iter()
             .position(|own| own.name == parameter.name)

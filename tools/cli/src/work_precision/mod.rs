@@ -45,10 +45,11 @@ pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Writ
         (name, text)
     };
     let counts = options.sections.0.as_slice();
-    let known: Vec<&str> = fleet.specs.iter().map(|(name, _)| *name).collect();
+    let known = fleet.names();
     let missing = counts.iter().any(|&count| !known.contains(&variants::name(&crane, count).as_str()));
     let flexible = if missing { others(&crane, &text, counts) } else { Vec::new() };
-    if flexible.is_empty() && choice.file().is_none() {
+    // Times are those of machine code.
+    if flexible.is_empty() && choice.file().is_none() && fleet.is_compiled(&crane) {
         return study(options, if missing { &[] } else { counts }, fleet, out);
     }
     let hash = SourceFile::new(&crane, &text).hash();
