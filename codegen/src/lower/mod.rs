@@ -145,7 +145,7 @@ pub struct Angle {
 pub struct StumpffArgument {
     /// The argument.
     pub argument: ExprId,
-    /// Nodes of c_0, c_1, ….
+    /// Nodes of c₀, c₁, ….
     pub values: [Option<ExprId>; Op::STUMPFF_ORDERS],
 }
 

@@ -62,7 +62,7 @@ impl<'g> Generator<'g> {
     }
 }
 
-/// A rotation vector whose second derivatives `∂²T/∂q_m∂q_n` have a rotation E_mn about the joint's point beside `Ω_m Ω_n T`.
+/// A rotation vector whose second derivatives `∂²T/∂q_m∂q_n` have a rotation `E_mn` about the joint's point beside `Ω_m Ω_n T`.
 #[derive(Clone, Copy, Debug)]
 pub struct Curvature<'g> {
     /// First of the three coordinates.
@@ -84,18 +84,18 @@ impl<'g> Curvature<'g> {
         (axes[m], axes[n])
     }
 
-    /// E_mn
+    /// `E_mn`
     pub fn generator(&self, pair: (usize, usize)) -> Generator<'g> {
         let axis = self.vector.curvature(self.axes(pair));
         Generator::through(self.pose.origin, self.pose.rotation.apply(axis), self.body)
     }
 
-    /// E_mn as `Σ_k share_k Ω_k` over the coordinates k of the joint.
+    /// `E_mn` as `Σ_k share_k Ω_k` over the coordinates k of the joint.
     pub fn shares(&self, pair: (usize, usize)) -> [Expr<'g>; 3] {
         self.vector.by_coordinates(self.vector.rates_of(self.vector.curvature(self.axes(pair))).0)
     }
 
-    /// Work of a torque of the world at unit rate of each E_mn.
+    /// Work of a torque of the world at unit rate of each `E_mn`.
     pub fn works(&self, torque: Vec3<'g>) -> [Expr<'g>; 6] {
         let local = self.pose.rotation.apply_transposed(torque);
         Self::PAIRS.map(|pair| self.vector.curvature_along(local, self.axes(pair)))

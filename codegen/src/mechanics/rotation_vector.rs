@@ -20,7 +20,7 @@ pub struct RotationVector<'g> {
     /// For each axis, the place among the joint's coordinates of the one along it.
     places: [usize; 3],
     rho: Vec3<'g>,
-    /// c_0 to c_5
+    /// c₀ to c₅
     c: [Expr<'g>; 6],
 }
 

@@ -63,7 +63,7 @@ impl<'g> Expr<'g> {
         self.graph.build(Op::Max(self.id, other.id))
     }
 
-    /// Stumpff's function c_k(x), x ≥ 0.
+    /// Stumpff's function cₖ(x), x ≥ 0.
     ///
     /// # Panics
     /// If there is no operation of this order.

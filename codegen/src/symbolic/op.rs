@@ -67,7 +67,7 @@ impl Op {
     /// The number zero.
     pub const ZERO: Op = Op::Constant(Constant(0));
 
-    /// How many of Stumpff's functions there are as operations: c_0 to c_5.
+    /// How many of Stumpff's functions there are as operations: c₀ to c₅.
     pub const STUMPFF_ORDERS: usize = 6;
 
     /// Operands, in order.

@@ -70,7 +70,7 @@ impl<const N: usize, const D: usize, const V: usize> TransformFactors<N, D, V> {
                     let Some((first, pairs)) = shares.filter(|(first, _)| n < first + 3) else { continue };
                     let row = m - first;
                     let pair = row * 3 - row * row.saturating_sub(1) / 2 + n - m;
-                    for (share, own) in pairs.iter().nth(pair).into_iter().flatten().zip(own.iter().skip(first)) {
+                    for (share, own) in pairs.get(pair).into_iter().flatten().zip(own.iter().skip(first)) {
                         *out += *share * own;
                     }
                 }

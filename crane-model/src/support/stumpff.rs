@@ -1,10 +1,10 @@
 //! Stumpff's functions `c_k(x) = Σ (−x)^i/(2i + k)!` of all arguments of a state in one pass, eight at a time.
 //!
 //! What is made of a rotation vector ρ is made of them at x = ρ·ρ: `c_0` is the cosine of its length, `c_1` the sine over the
-//! length. They are entire, so there is no branch near zero. Up to x = 10, where a rotation has gone beyond 180°, c_7 and c_8
+//! length. They are entire, so there is no branch near zero. Up to x = 10, where a rotation has gone beyond 180°, c₇ and c₈
 //! are polynomials, interpolated at Chebyshev's nodes to 3e-18 and 2e-16 of their size, and the others follow downward by
 //! `c_k = 1/k! − x c_{k+2}`, each step of which adds half a unit in the last place and shrinks what was there before. The error
-//! is below 3.2 units in the last place for c_2 to c_5, and below 1e-15 for c_0 and c_1, which have zeros. Larger arguments go one by one
+//! is below 3.2 units in the last place for c₂ to c₅, and below 1e-15 for c₀ and c₁, which have zeros. Larger arguments go one by one
 //! through sines and cosines.
 
 use nalgebra::ComplexField;
@@ -15,7 +15,7 @@ use super::lanes::fma;
 /// Up to here the polynomials hold.
 const LARGEST: f64 = 10.0;
 
-/// Coefficients of c_7 by powers of x.
+/// Coefficients of c₇ by powers of x.
 const SEVENTH: [f64; 9] = [
     1.984_126_984_126_984e-4,
     -2.755_731_922_398_581_6e-6,
@@ -27,7 +27,7 @@ const SEVENTH: [f64; 9] = [
     -1.952_117_481_922_161_3e-20,
     3.588_642_229_836_847e-23,
 ];
-/// Coefficients of c_8 by powers of x.
+/// Coefficients of c₈ by powers of x.
 const EIGHTH: [f64; 8] = [
     2.480_158_730_158_729_8e-5,
     -2.755_731_922_397_997e-7,
@@ -41,7 +41,7 @@ const EIGHTH: [f64; 8] = [
 /// 1/k!
 const RECIPROCAL_FACTORIALS: [f64; 7] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0];
 
-/// c_0 to c_5 of all arguments, x ≥ 0.
+/// c₀ to c₅ of all arguments, x ≥ 0.
 #[inline]
 pub fn stumpff<const K: usize>(arguments: [f64; K]) -> [[f64; K]; 6] {
     let mut values = [[0.0; K]; 6];
@@ -81,7 +81,7 @@ pub fn stumpff<const K: usize>(arguments: [f64; K]) -> [[f64; K]; 6] {
     values
 }
 
-/// c_0 to c_5 of every argument in every lane, x ≥ 0.
+/// c₀ to c₅ of every argument in every lane, x ≥ 0.
 #[inline]
 pub fn stumpff_lanes<const K: usize>(arguments: [f64x8; K]) -> [[f64x8; K]; 6] {
     let mut small = true;
@@ -137,7 +137,7 @@ fn replace_large(arguments: &[f64], rows: [&mut [f64]; 6]) {
     }
 }
 
-/// c_0 to c_5 upward by `c_{k+2} = (1/k! − c_k)/x`.
+/// c₀ to c₅ upward by `c_{k+2} = (1/k! − c_k)/x`.
 fn of_large(x: f64) -> [f64; 6] {
     let s = ComplexField::sqrt(x);
     let (sin, cos) = ComplexField::sin_cos(s);
@@ -147,7 +147,7 @@ fn of_large(x: f64) -> [f64; 6] {
     [c0, c1, c2, c3, up(2, c2), up(3, c3)]
 }
 
-/// c_0 to c_5 of eight arguments up to [`LARGEST`].
+/// c₀ to c₅ of eight arguments up to [`LARGEST`].
 #[inline]
 fn of_small(x: f64x8) -> [f64x8; 6] {
     let down = |k: usize, c: f64x8| fma(-x, c, f64x8::splat(RECIPROCAL_FACTORIALS[k]));
