@@ -4,7 +4,10 @@ use std::{borrow::Cow, path::Path};
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::{Description, ParameterError, Refusal, dyn_crane::DynCrane};
+use crane_model::{
+    Description, ParameterError, Refusal,
+    dyn_crane::{DynCrane, DynModel},
+};
 
 use crate::{
     arguments::{Choice, Parameters},
@@ -33,7 +36,13 @@ impl Entry {
             Some(compiled) => Ok(compiled.boxed_clone()),
             None => {
                 let source = SourceFile::new(format!("{}.yaml", self.name), self.spec.clone());
-                Ok(Box::new(LiveCrane::from_spec(&source).map_err(|mistakes| own::drawn(&mistakes))?))
+                let crane = LiveCrane::from_spec(&source).map_err(|mistakes| own::drawn(&mistakes))?;
+                let (count, most) = (crane.description().coordinates.len(), LiveCrane::MOST_COORDINATES);
+                if count > most {
+                    let title = format!("{} has {count} coordinates; the command takes at most {most}", self.name);
+                    return Err(Problem::failed(title, "give flexible links fewer `sections`"));
+                }
+                Ok(Box::new(crane))
             }
         }
     }

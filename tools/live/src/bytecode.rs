@@ -82,7 +82,7 @@ pub enum Kind {
     Max,
     /// `out = sin a` and `b = cos a`
     Angle,
-    /// `out = c_0(a), b = c_1(a), c = c_2(a)`, and in a second instruction the same with c_3, c_4, c_5
+    /// `out = c_0(a), b = c_1(a), c = c_2(a)`, and in a second instruction the same with c₃, c₄, c₅
     Stumpff,
     /// A register becomes a result.
     Store,

@@ -56,7 +56,7 @@ pub enum Step {
     Stumpff {
         /// The argument.
         argument: Value,
-        /// c_0 to c_5.
+        /// c₀ to c₅.
         values: [Value; Op::STUMPFF_ORDERS],
     },
     /// A result.
