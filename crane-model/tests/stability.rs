@@ -1,8 +1,8 @@
 //! The largest stable step: predicted from eigenvalues, observed by bisection over runs.
 
 mod common;
-#[path = "common/interpreted.rs"]
-mod interpreted;
+#[path = "common/live.rs"]
+mod live;
 
 use crane_model::{
     CoordinateKind, CoordinateRole, Dynamics, Linearise,
@@ -12,7 +12,7 @@ use crane_model::{
     statics,
 };
 use crane_specs as cranes;
-use interpreted::Interpreted;
+use live::Live;
 use nalgebra::{Complex, SVector};
 
 /// Predicted and observed limits agree to this.
@@ -99,7 +99,7 @@ fn predicted_limits_are_observed_for_1_to_16_sections() {
     assert!(text.contains("sections: 4 "));
     macro_rules! check {
         ($($sections:literal),*) => {$({
-            let crane = Interpreted::<{ 13 + 3 * $sections }>::new(
+            let crane = Live::<{ 13 + 3 * $sections }>::new(
                 &text.replace("sections: 4 ", concat!("sections: ", $sections, " ")),
             );
             agree(concat!($sections, " sections"), &crane, 0.0, &crane.equilibrium());

@@ -31,7 +31,7 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
 
     let cases = [Case::new("rigid", rigid.as_ref()), Case::new("flexible", flexible.as_ref())];
     let format = options.format;
-    let mut report = tables(&cases, &options.limits);
+    let mut report = tables(&cases, options.limits);
     let [rigid_case, flexible_case] = &cases;
     report.grid(deflection(rigid_case, flexible_case));
     if format == Format::Table {
@@ -41,7 +41,7 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     }
 
     files::folder(folder)?;
-    let (settings, runs) = runs(&cases, &options.timing, &options.limits, Method::Rk4)?;
+    let (settings, runs) = runs(&cases, &options.timing, options.limits, Method::Rk4)?;
     let [rigid_run, flexible_run] = runs.as_slice() else {
         return Err(Problem::failed("a simulation is missing", "please report it"));
     };
@@ -61,7 +61,7 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     written.push(deviation_file);
 
     let page = "report.html";
-    page::write(&folder.join(page), fleet, (&cases, &options.limits), &settings, &runs)?;
+    page::write(&folder.join(page), fleet, (&cases, options.limits), &settings, &runs)?;
     written.push(page.to_owned());
 
     let labelled = [("rigid", rigid_run), ("flexible", flexible_run)];
@@ -84,7 +84,7 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
 pub fn runs(
     cases: &[Case<'_>],
     timing: &Timing,
-    limits: &Limits,
+    limits: Limits,
     default: Method,
 ) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
     let starts = cases.iter().map(|case| Start::of(case.rig)).collect::<Outcome<Vec<_>>>()?;

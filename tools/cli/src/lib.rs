@@ -22,7 +22,6 @@ mod figures;
 mod files;
 mod generate;
 mod info;
-mod interpreted;
 mod modes;
 mod new;
 mod npz;

@@ -27,11 +27,11 @@ pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()
     let rig = options.analysis.crane.open(fleet)?;
     let (rig, twin) = (rig.as_ref(), twin::rigid(rig.as_ref(), fleet));
     let cases = cases(rig, twin.as_deref());
-    let mut report = tables(&cases, &options.analysis.crane.limits);
+    let mut report = tables(&cases, options.analysis.crane.limits);
     if let [rigid, flexible] = cases.as_slice() {
         report.grid(deflection(rigid, flexible));
     }
-    let (settings, runs) = runs(&cases, &options.timing, &options.analysis.crane.limits, Method::RECOMMENDED)?;
+    let (settings, runs) = runs(&cases, &options.timing, options.analysis.crane.limits, Method::RECOMMENDED)?;
     let labels = cases.iter().map(|case| case.label);
 
     let folder = &options.folder.out;
@@ -48,7 +48,7 @@ pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()
     let description = rig.description();
     written.extend(write_figures(folder, &format!("{}_", description.name), description, &traces)?);
     let page = format!("{}.html", description.name);
-    write(&folder.join(&page), fleet, (&cases, &options.analysis.crane.limits), &settings, &runs)?;
+    write(&folder.join(&page), fleet, (&cases, options.analysis.crane.limits), &settings, &runs)?;
     written.push(page);
 
     let labelled: Vec<_> = labels.zip(&runs).collect();

@@ -345,7 +345,7 @@ pub fn record_checked(
     rig: &dyn DynCrane,
     start: &Start,
     settings: &dynamics::Settings,
-    (verify, limits): (bool, &Limits),
+    (verify, limits): (bool, Limits),
     bar: &ProgressBar,
 ) -> Outcome<Recorded> {
     let mut recorded = record(rig, start, settings, bar)?;

@@ -32,19 +32,17 @@ struct Entry {
 
 impl Entry {
     fn open(&self) -> Outcome<Box<dyn DynCrane>> {
-        match &self.compiled {
-            Some(compiled) => Ok(compiled.boxed_clone()),
-            None => {
-                let source = SourceFile::new(format!("{}.yaml", self.name), self.spec.clone());
-                let crane = LiveCrane::from_spec(&source).map_err(|mistakes| own::drawn(&mistakes))?;
-                let (count, most) = (crane.description().coordinates.len(), LiveCrane::MOST_COORDINATES);
-                if count > most {
-                    let title = format!("{} has {count} coordinates; the command takes at most {most}", self.name);
-                    return Err(Problem::failed(title, "give flexible links fewer `sections`"));
-                }
-                Ok(Box::new(crane))
-            }
+        if let Some(compiled) = &self.compiled {
+            return Ok(compiled.boxed_clone());
         }
+        let source = SourceFile::new(format!("{}.yaml", self.name), self.spec.clone());
+        let crane = LiveCrane::from_spec(&source).map_err(|mistakes| own::drawn(&mistakes))?;
+        let (count, most) = (crane.description().coordinates.len(), LiveCrane::MOST_COORDINATES);
+        if count > most {
+            let title = format!("{} has {count} coordinates; the command takes at most {most}", self.name);
+            return Err(Problem::failed(title, "give flexible links fewer `sections`"));
+        }
+        Ok(Box::new(crane))
     }
 }
 

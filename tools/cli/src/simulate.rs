@@ -40,7 +40,7 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;
     files::folder(&options.folder.out)?;
     let bar = progress(settings.duration);
-    let checks = (!options.timing.no_verify, &options.analysis.crane.limits);
+    let checks = (!options.timing.no_verify, options.analysis.crane.limits);
     let recorded = record_checked(rig, &start, &settings, checks, &bar)?;
     bar.finish_and_clear();
 

@@ -76,7 +76,7 @@ impl<'a> Case<'a> {
 pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.crane.open(fleet)?;
     let case = Case::new("value", rig.as_ref());
-    let mut report = tables(std::slice::from_ref(&case), &options.crane.limits);
+    let mut report = tables(std::slice::from_ref(&case), options.crane.limits);
     if options.format == Format::Json {
         report.grid(history(&case.equilibrium));
     }
@@ -85,7 +85,7 @@ pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcom
 }
 
 /// Tables of cranes in equilibrium, a column each.
-pub fn tables(cases: &[Case<'_>], limits: &Limits) -> Report {
+pub fn tables(cases: &[Case<'_>], limits: Limits) -> Report {
     let mut report = Report::default();
     for case in cases {
         let Case { equilibrium, .. } = case;

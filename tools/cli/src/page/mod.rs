@@ -39,8 +39,8 @@ pub fn report(options: &Page, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
     let rig = options.crane.open(fleet)?;
     let twin = twin::rigid(rig.as_ref(), fleet);
     let cases = cases(rig.as_ref(), twin.as_deref());
-    let (settings, runs) = runs(&cases, &options.timing, &options.crane.limits, Method::RECOMMENDED)?;
-    write(&options.file, fleet, (&cases, &options.crane.limits), &settings, &runs)?;
+    let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, Method::RECOMMENDED)?;
+    write(&options.file, fleet, (&cases, options.crane.limits), &settings, &runs)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())
 }
@@ -57,7 +57,7 @@ pub fn cases<'a>(rig: &'a dyn DynCrane, twin: Option<&'a dyn DynCrane>) -> Vec<C
 pub fn write(
     file: &Path,
     fleet: &Fleet,
-    cases: (&[Case<'_>], &Limits),
+    cases: (&[Case<'_>], Limits),
     settings: &[Settings],
     runs: &[Recorded],
 ) -> Outcome<()> {
@@ -71,7 +71,7 @@ pub fn write(
 
 fn data(
     fleet: &Fleet,
-    (cases, limits): (&[Case<'_>], &Limits),
+    (cases, limits): (&[Case<'_>], Limits),
     settings: &[Settings],
     runs: &[Recorded],
 ) -> Outcome<Value> {
@@ -90,7 +90,7 @@ fn data(
     }))
 }
 
-fn all_tables(cases: &[Case<'_>], limits: &Limits, runs: &[Recorded]) -> Outcome<Report> {
+fn all_tables(cases: &[Case<'_>], limits: Limits, runs: &[Recorded]) -> Outcome<Report> {
     let mut report = tables(cases, limits);
     caution_of_runs(&mut report, cases.iter().map(|case| case.label).zip(runs));
     if let [rigid, flexible] = cases {

@@ -1,6 +1,7 @@
 //! A crane under test, used as the command uses it.
 
-use crane_codegen::{SourceFile, compile};
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
 use indicatif::ProgressBar;
 
 use super::{
@@ -15,7 +16,6 @@ use crane_model::{
 
 use crate::{
     arguments::Timing,
-    interpreted::interpret,
     problem::Problem,
     run::{self, Recorded, Start, record},
 };
@@ -32,12 +32,11 @@ impl Subject {
         if let Some(words) = &spec.missing {
             return Err(format!("the shipped spec has no `{words}` any more"));
         }
-        let chain = compile::load(&SourceFile::new("spec", spec.text.as_str())).map_err(|mistakes| {
+        let crane = LiveCrane::from_spec(&SourceFile::new("spec", spec.text.as_str())).map_err(|mistakes| {
             let told = mistakes.mistakes().iter().map(|mistake| format!("{}: {}", mistake.code, mistake.title));
             format!("refused, {}", told.collect::<Vec<_>>().join("; "))
         })?;
-        let rig = interpret(&chain).ok_or_else(|| format!("no size for {} coordinates", chain.coordinates.len()))?;
-        Ok(Self { rig })
+        Ok(Self { rig: Box::new(crane) })
     }
 
     /// With another value of a live parameter.
