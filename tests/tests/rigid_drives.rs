@@ -27,7 +27,7 @@ fn assert_close(value: f64, expected: f64, what: &str) {
     assert!((value - expected).abs() <= ROUNDING * expected.abs().max(1.0), "{what}: {value}, expected {expected}");
 }
 
-/// A pendulum of mass m at distance l about a horizontal axis, with a rotor I_a.
+/// A pendulum of mass m at distance l about a horizontal axis, with a rotor `I_a`.
 const PENDULUM: &str = "
 format: 1
 name: law

@@ -26,6 +26,12 @@ struct Section {
 const MODULUS: f64 = 1e10;
 const ROUND: Section = Section { jy: 1e-6, jz: 1e-6, jo: 2e-6 };
 
+/// At rest in a pose, at the start.
+fn at(q: Vec<f64>) -> State {
+    let v = vec![0.0; q.len()];
+    State { t: 0.0, q, v }
+}
+
 impl Beam {
     fn new(joint: &str, sections: usize, section: &Section, gravity: [f64; 3]) -> Self {
         let Section { jy, jz, jo } = section;
@@ -52,12 +58,7 @@ links:
     }
 
     fn straight(&self) -> State {
-        self.at(vec![0.0; self.crane.size()])
-    }
-
-    fn at(&self, q: Vec<f64>) -> State {
-        let v = vec![0.0; q.len()];
-        State { t: 0.0, q, v }
+        at(vec![0.0; self.crane.size()])
     }
 
     fn with_load(&self, load: f64) -> Interpreted {
@@ -72,12 +73,12 @@ links:
         for step in 1..=20 {
             let loaded = self.with_load(load * f64::from(step) / 20.0);
             for _ in 0..6 {
-                let state = self.at(q.as_slice().to_vec());
+                let state = at(q.as_slice().to_vec());
                 let tangent = loaded.matrix("tangent_stiffness", &state).lu();
                 q -= tangent.solve(&loaded.vector("static_residual", &state)).expect("a regular tangent stiffness");
             }
         }
-        self.at(q.as_slice().to_vec())
+        at(q.as_slice().to_vec())
     }
 
     /// Angular frequencies at a pose under a load, from the lowest on, rad/s.
@@ -176,9 +177,8 @@ fn motions_in_one_plane_are_those_of_the_paper() {
         for kind in ["_psi", "_theta", "_phi"] {
             let n = symmetric.size();
             let own = |size: f64, seed: f64| -> Vec<f64> {
-                let of = |(j, c): (usize, &crane_codegen::chain::Coordinate)| match c.name.ends_with(kind) {
-                    true => size * (seed + 1.3 * j as f64).sin(),
-                    false => 0.0,
+                let of = |(j, c): (usize, &crane_codegen::chain::Coordinate)| {
+                    if c.name.ends_with(kind) { size * (seed + 1.3 * j as f64).sin() } else { 0.0 }
                 };
                 symmetric.chain.coordinates.iter().enumerate().map(of).collect()
             };

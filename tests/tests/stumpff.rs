@@ -7,7 +7,7 @@ use fastrand::Rng;
 
 /// Units in the last place of the exact result, for x ≤ 10: a section bent by 180° has π².
 const LIMIT: f64 = 3.2;
-/// c_0 and c_1 have zeros, c_2 beyond 10: there the error is measured by 1/k!, the value at x = 0.
+/// c₀ and c₁ have zeros, c₂ beyond 10: there the error is measured by 1/k!, the value at x = 0.
 const OF_LARGEST: f64 = 1.2e-15;
 
 /// How far a result is off.
