@@ -74,6 +74,9 @@ impl<'a> Rk4<'a> {
     }
 }
 
+/// Steps through a piece of a motion that is shorter than the step asked for: in one, a stroke would be off by a quarter.
+const PIECE: usize = 16;
+
 impl Stepper for Rk4<'_> {
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
         self.motion.copy_from_slice(motion);
@@ -89,7 +92,9 @@ impl Stepper for Rk4<'_> {
         let Self { equations, motion, before, room, steps, .. } = self;
         if steps.done == steps.count {
             let (begin, end) = (steps.end, ahead.result.min(ahead.stop));
-            *steps = Equal { begin, end, count: divided(end - begin, self.settings.step).0, done: 0 };
+            let short = end == ahead.stop && end - begin < self.settings.step;
+            let count = if short { PIECE } else { divided(end - begin, self.settings.step).0 };
+            *steps = Equal { begin, end, count, done: 0 };
         }
         let (t, h) = steps.next();
         let n = equations.n;
