@@ -79,7 +79,7 @@ fn layout(entry: &Entry) -> serde_json::Value {
         "coordinates": crane.coordinates.iter().map(|c| c.name.as_str()).collect::<Vec<_>>(),
         "parameters": crane.parameters.iter().map(parameter).collect::<Vec<_>>(),
         "bodies": crane.bodies.iter().map(body).collect::<Vec<_>>(),
-        "points": crane.points.iter().map(|name| name.as_str()).collect::<Vec<_>>(),
+        "points": crane.points.iter().map(crane_model::Text::as_str).collect::<Vec<_>>(),
         "supports": crane.supports.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(),
         "drives": crane.drives.iter().map(|d| d.coordinate).collect::<Vec<_>>(),
         "quantities": quantities(crane).into_iter().map(quantity).collect::<Vec<_>>(),
