@@ -13,7 +13,7 @@ use crate::{
     dyn_crane::{DynStatics, Instance},
 };
 
-/// Solves `∂E_p/∂q = 0` at t = 0, Eq. (23) with `q̇ = q̈ = 0`, from the [`guess`].
+/// Solves `∂E_p/∂q = 0` at t = 0, Eq. (23) with `q̇ = q̈ = 0`, from [`super::guess()`].
 ///
 /// Newton–Raphson on `r(q) = ∂E_p/∂q` with `K = ∂²E_p/∂q²`: `q ← q − α K⁻¹ r`, α = 1, halved until the residual falls.
 /// The residual is measured as `‖r/scale‖`, the scale of a translation being the greatest force that any translation

@@ -33,9 +33,9 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let task = arguments.first().map_or("", String::as_str);
     let steps = match task {
-        "test" => [lint(), tests(), oracles()].concat(),
+        "test" => [prepare(), lint(), tests(), oracles()].concat(),
         "lint" => lint(),
-        "oracles" => oracles(),
+        "oracles" => [prepare(), oracles()].concat(),
         "performance" => {
             vec![Step::check("times of the generated functions and of other libraries", oracles::performance)]
         }
@@ -67,20 +67,38 @@ const ERROR_VS_RUNTIME: [&str; 10] = [
     "target/error-vs-runtime",
 ];
 
-/// Runs steps in order; the first that fails ends it.
+/// Runs all steps in order, and says at the end which failed and how long each took.
 fn run(steps: &[Step]) -> ExitCode {
     let start = Instant::now();
+    let mut summary = String::new();
+    let mut failed = 0;
     for (number, step) in steps.iter().enumerate() {
         println!("\n=== {}/{} {}", number + 1, steps.len(), step.title);
         let begun = Instant::now();
-        if let Err(message) = step.run() {
-            eprintln!("\n{} failed: {message}", step.title);
-            return ExitCode::FAILURE;
+        let outcome = step.run();
+        let seconds = begun.elapsed().as_secs_f64();
+        match outcome {
+            Ok(()) => {
+                println!("=== {} done, {seconds:.0} s", step.title);
+                summary += &format!("{seconds:>6.0} s  {}\n", step.title);
+            }
+            Err(message) => {
+                eprintln!("\n{} failed: {message}", step.title);
+                failed += 1;
+                summary += &format!("{seconds:>6.0} s  {}: FAILED, {message}\n", step.title);
+            }
         }
-        println!("=== {} done, {:.0} s", step.title, begun.elapsed().as_secs_f64());
     }
-    println!("\nall {} steps passed in {:.0} s", steps.len(), start.elapsed().as_secs_f64());
-    ExitCode::SUCCESS
+    println!("\n{summary}\n{failed} of {} steps failed, {:.0} s", steps.len(), start.elapsed().as_secs_f64());
+    if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// What is downloaded, before anything is built.
+fn prepare() -> Vec<Step> {
+    vec![
+        Step::check("Python environment", oracles::prepare),
+        Step::check("packages of the report page", report::prepare),
+    ]
 }
 
 fn lint() -> Vec<Step> {
@@ -106,7 +124,6 @@ fn tests() -> Vec<Step> {
         Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench"]),
         Step::check("tests with fused multiply-adds", fused::check),
         Step::cargo("the default run", &["run", "--release"]),
-        Step::check("packages of the report page", report::prepare),
         Step::check("the report page is current", report::is_current),
         Step::check("the report page in a browser", report::in_browser),
         Step::cargo("a crane of one's own", &["run", "--release", "--package", "own-crane"]),
@@ -131,7 +148,6 @@ fn tests() -> Vec<Step> {
 
 fn oracles() -> Vec<Step> {
     vec![
-        Step::check("Python environment", oracles::prepare),
         Step::cargo(
             "the program that evaluates generated code",
             &["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins"],
