@@ -13,6 +13,7 @@ mod report;
 mod step;
 mod workspace;
 
+use std::fmt::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -80,12 +81,12 @@ fn run(steps: &[Step]) -> ExitCode {
         match outcome {
             Ok(()) => {
                 println!("=== {} done, {seconds:.0} s", step.title);
-                summary += &format!("{seconds:>6.0} s  {}\n", step.title);
+                let _ = writeln!(summary, "{seconds:>6.0} s  {}", step.title);
             }
             Err(message) => {
                 eprintln!("\n{} failed: {message}", step.title);
                 failed += 1;
-                summary += &format!("{seconds:>6.0} s  {}: FAILED, {message}\n", step.title);
+                let _ = writeln!(summary, "{seconds:>6.0} s  {}: FAILED, {message}", step.title);
             }
         }
     }
