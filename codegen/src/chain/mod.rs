@@ -311,6 +311,9 @@ pub struct Analyses {
 }
 
 impl Analyses {
+    /// What the command asks of a crane.
+    pub const COMMAND: Analyses =
+        Analyses { statics: true, dynamics: true, modes: true, derivatives: false, ensemble: false };
     /// Everything there is about one crane, for checks.
     pub const ALL: Analyses =
         Analyses { statics: true, dynamics: true, modes: true, derivatives: true, ensemble: false };

@@ -13,16 +13,10 @@ use crate::{
     Statics, TransformDerivatives, support::lanes::f64x8,
 };
 
-/// A crane compiled with every analysis.
-pub trait Crane<const N: usize>:
-    Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone
-{
-}
+/// A crane compiled with every analysis but derivatives.
+pub trait Crane<const N: usize>: Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + Clone {}
 
-impl<const N: usize, C> Crane<N> for C where
-    C: Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + TransformDerivatives<N> + Clone
-{
-}
+impl<const N: usize, C> Crane<N> for C where C: Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + Clone {}
 
 /// A crane of `N` coordinates on slices, held by a reference or by a box: `Instance(&crane)`, `Instance(Box::new(crane))`.
 ///

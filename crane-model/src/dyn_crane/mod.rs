@@ -12,7 +12,7 @@
 //! | [`DynLinearise`] | [`Linearise`](crate::Linearise) | modes, stability |
 //! | [`DynEnsemble`] | [`Ensemble`](crate::Ensemble) | runs of many cranes |
 //! | [`DynDerivatives`] | [`TransformDerivatives`](crate::TransformDerivatives) | tables of derivatives |
-//! | [`DynCrane`] | all of them | the command |
+//! | [`DynCrane`] | all of them but derivatives | the command |
 //!
 //! # Slices
 //! `q`, `v`, `r` and results per coordinate have as many numbers as [`Description::coordinates`], in that order; lists of
@@ -184,10 +184,10 @@ pub trait DynDerivatives: DynModel {
     fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]);
 }
 
-/// A crane with every analysis.
+/// A crane with every analysis but the derivatives of transforms, which few ask for: [`DynDerivatives`].
 ///
 /// What is computed from these, as lists and matrices of their own, stands with [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
-pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynEnsemble + DynDerivatives + Send + Sync {
+pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynEnsemble + Send + Sync {
     /// Sets a live parameter. An index out of range changes nothing.
     ///
     /// # Errors

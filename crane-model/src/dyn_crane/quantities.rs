@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
-use super::{DynCrane, DynModel};
+use super::{DynCrane, DynDerivatives, DynModel};
 use crate::{
     CoordinateKind, CoordinateRole, ParameterError, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
@@ -58,23 +58,6 @@ impl dyn DynCrane + '_ {
     pub fn transforms_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
         let mut out = vec![Matrix4::identity(); self.description().bodies.len()];
         self.transforms(q, &mut out);
-        out
-    }
-
-    /// `∂T/∂q_j`, body by body, for the coordinates j that move it.
-    pub fn transform_derivatives_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
-        let count = self.description().bodies.iter().map(|body| body.degrees_of_freedom).sum();
-        let mut out = vec![Matrix4::zeros(); count];
-        self.transform_derivatives(q, &mut out);
-        out
-    }
-
-    /// `∂²T/∂q_m∂q_n`, body by body, for the pairs m ≤ n of the coordinates that move it.
-    pub fn transform_second_derivatives_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
-        let pairs = |n: usize| n * (n + 1) / 2;
-        let count = self.description().bodies.iter().map(|body| pairs(body.degrees_of_freedom)).sum();
-        let mut out = vec![Matrix4::zeros(); count];
-        self.transform_second_derivatives(q, &mut out);
         out
     }
 
@@ -150,12 +133,15 @@ impl dyn DynCrane + '_ {
     pub fn weight_at(&self, q: &[f64]) -> [Option<f64>; 3] {
         /// A base moves along an axis where its directions hold all of it but for rounding.
         const ROUNDING: f64 = 1e-9;
-        let (bias, derivatives) = (self.bias_at(q, &vec![0.0; q.len()]), self.transform_derivatives_at(q));
+        let bias = self.bias_at(q, &vec![0.0; q.len()]);
+        let place = |q: &[f64]| self.transforms_at(q).first().map(|frame| frame.fixed_view::<3, 1>(0, 3).into_owned());
+        let Some(here) = place(q) else { return [None; 3] };
         let (mut weight, mut held) = (Vector3::zeros(), Vector3::zeros());
-        // The derivatives of the base come first, one per coordinate.
-        for ((coordinate, derivative), force) in self.description().coordinates.iter().zip(&derivatives).zip(&bias) {
+        for (index, (coordinate, force)) in self.description().coordinates.iter().zip(&bias).enumerate() {
             if (coordinate.role, coordinate.kind) == (CoordinateRole::Base, CoordinateKind::Translation) {
-                let direction = derivative.fixed_view::<3, 1>(0, 3);
+                let mut moved = q.to_vec();
+                moved[index] += 1.0;
+                let direction = place(&moved).unwrap_or(here) - here;
                 weight += direction * *force;
                 held += direction.component_mul(&direction);
             }
@@ -218,5 +204,28 @@ impl dyn DynCrane + '_ {
         observe: &mut dyn FnMut(usize, &Sample<'_>),
     ) -> Result<Vec<Result<Run, Stopped>>, ParameterError> {
         dynamics::ensemble::simulate_dyn(self, members, settings, observe)
+    }
+}
+
+/// Lists of their own of the derivatives.
+///
+/// # Panics
+/// Where `q` has not as many numbers as the crane has coordinates.
+impl dyn DynDerivatives + '_ {
+    /// `∂T/∂q_j`, body by body, for the coordinates j that move it.
+    pub fn transform_derivatives_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
+        let count = self.description().bodies.iter().map(|body| body.degrees_of_freedom).sum();
+        let mut out = vec![Matrix4::zeros(); count];
+        self.transform_derivatives(q, &mut out);
+        out
+    }
+
+    /// `∂²T/∂q_m∂q_n`, body by body, for the pairs m ≤ n of the coordinates that move it.
+    pub fn transform_second_derivatives_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
+        let pairs = |n: usize| n * (n + 1) / 2;
+        let count = self.description().bodies.iter().map(|body| pairs(body.degrees_of_freedom)).sum();
+        let mut out = vec![Matrix4::zeros(); count];
+        self.transform_second_derivatives(q, &mut out);
+        out
     }
 }

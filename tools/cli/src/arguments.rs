@@ -492,17 +492,59 @@ pub enum EvalFormat {
     Npz,
 }
 
-/// Quantities at one state.
+/// What `crane eval` computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Transforms of the bodies into the world frame, 4 × 4 each; m
+    Transforms,
+    /// ∂T/∂q, and which body and coordinate each belongs to
+    TransformDerivatives,
+    /// ∂²T/∂q∂q, and which body and coordinates each belongs to
+    TransformSecondDerivatives,
+    /// Positions of the points of interest, m
+    Points,
+    /// Velocities of the points of interest, m/s
+    PointVelocities,
+    /// Mass matrix A; kg, kg m, kg m²
+    MassMatrix,
+    /// Velocity and gravity forces e, N and N m
+    Bias,
+    /// Generalized forces of everything but inertia and gravity, N and N m
+    Forces,
+    /// Accelerations q̈, m/s² and rad/s²
+    Accelerations,
+    /// ∂E_p/∂q at t = 0, N and N m
+    StaticResidual,
+    /// ∂²E_p/∂q² at t = 0, N/m and N m/rad
+    TangentStiffness,
+    /// Energies: kinetic, of gravity, supports, elements and drives; J
+    Energies,
+    /// Efforts of the drives, N and N m
+    DriveEfforts,
+    /// Forces of the supports on the crane, N
+    SupportReactions,
+}
+
+/// Quantities at one state or at many.
 #[derive(Debug, Args)]
 pub struct Eval {
     #[command(flatten)]
     pub crane: Choice,
-    /// Coordinates, m and rad: numbers separated by commas or blanks, or a file of them [default: the crane's guess]
+    /// What to compute, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "NAMES",
+          default_values_t = [Quantity::Transforms, Quantity::TransformDerivatives, Quantity::MassMatrix, Quantity::Bias])]
+    pub quantities: Vec<Quantity>,
+    /// Coordinates, m and rad: numbers separated by commas or blanks, or a file of them; those of several states one after
+    /// the other [default: the crane's guess]
     #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
     pub q: Option<String>,
-    /// Their rates, m/s and rad/s, likewise [default: 0]
+    /// Their rates, m/s and rad/s, likewise, of each state or of all [default: 0]
     #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
     pub v: Option<String>,
+    /// Time of the drives' motions, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub time: f64,
     /// Form of the result
     #[arg(long, value_enum, default_value_t)]
     pub format: EvalFormat,

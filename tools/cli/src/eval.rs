@@ -1,14 +1,18 @@
-//! `crane eval`: transforms, their derivatives, A and e at one state.
+//! `crane eval`: quantities of a crane at one state or at many.
 
 use std::{fs, io::Write};
 
-use crane_model::{Description, dyn_crane::DynCrane};
-use nalgebra::Matrix4;
+use crane_live::LiveCrane;
+use crane_model::{
+    Description,
+    dyn_crane::{DynCrane, DynDerivatives, DynModel},
+};
+use nalgebra::{Matrix4, Vector3};
 use serde_json::{Map, Value};
 
 use crate::{
     Fleet,
-    arguments::{Eval, EvalFormat},
+    arguments::{Eval, EvalFormat, Quantity},
     files,
     npz::{Array, npz},
     problem::{Outcome, Problem},
@@ -16,11 +20,10 @@ use crate::{
 
 /// Evaluates and prints or writes.
 pub fn eval(options: &Eval, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open(fleet)?;
-    let description = rig.description();
-    let q = state("q", options.q.as_deref(), description)?.unwrap_or_else(|| rig.guess());
-    let v = state("v", options.v.as_deref(), description)?.unwrap_or_else(|| vec![0.0; q.len()]);
-    let arrays = arrays(rig.as_ref(), &q, &v);
+    let crane = fleet.live(options.crane.open(fleet)?.as_ref())?;
+    let states = states(options, &crane)?;
+    let arrays = arrays(options, &crane, &states);
+    let description = crane.description();
     let bytes = match options.format {
         EvalFormat::Json => format!("{}\n", json(description, &arrays)).into_bytes(),
         EvalFormat::Npz => npz(&arrays).map_err(|error| Problem::failed(format!("no archive: {error}"), ""))?,
@@ -31,20 +34,44 @@ pub fn eval(options: &Eval, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     }
 }
 
-/// Numbers given in place or in a file, one a coordinate.
-fn state(name: &str, given: Option<&str>, description: &Description) -> Outcome<Option<Vec<f64>>> {
+/// Coordinates and rates, state by state.
+struct States {
+    q: Vec<Vec<f64>>,
+    v: Vec<Vec<f64>>,
+}
+
+fn states(options: &Eval, crane: &LiveCrane) -> Outcome<States> {
+    let description = crane.description();
+    let size = description.coordinates.len();
+    let guess = || (crane as &dyn DynCrane).guess();
+    let q = given("q", options.q.as_deref(), description)?.unwrap_or_else(|| vec![guess()]);
+    let mut v = given("v", options.v.as_deref(), description)?.unwrap_or_else(|| vec![vec![0.0; size]]);
+    if v.len() == 1 {
+        v.resize(q.len(), v[0].clone());
+    }
+    if v.len() != q.len() {
+        return Err(Problem::usage(
+            format!("`--q` has {} states and `--v` {}", q.len(), v.len()),
+            "give rates of each state, or of one for all",
+        ));
+    }
+    Ok(States { q, v })
+}
+
+/// Numbers given in place or in a file, one per coordinate of each state.
+fn given(name: &str, given: Option<&str>, description: &Description) -> Outcome<Option<Vec<Vec<f64>>>> {
     let Some(given) = given else { return Ok(None) };
     let numbers = parse(given).map_or_else(|| parse_file(name, given), Ok)?;
     let wanted = description.coordinates.len();
-    if numbers.len() != wanted {
+    if numbers.is_empty() || wanted == 0 || numbers.len() % wanted != 0 {
         let names: Vec<String> =
             description.coordinates.iter().map(|c| format!("{} [{}]", c.name, c.kind.unit())).collect();
         return Err(Problem::usage(
             format!("`--{name}` has {} numbers, {} has {wanted} coordinates", numbers.len(), description.name),
-            format!("in this order: {}", names.join(", ")),
+            format!("in this order, state by state: {}", names.join(", ")),
         ));
     }
-    Ok(Some(numbers))
+    Ok(Some(numbers.chunks(wanted).map(<[f64]>::to_vec).collect()))
 }
 
 fn parse_file(name: &str, path: &str) -> Outcome<Vec<f64>> {
@@ -67,37 +94,122 @@ fn parse(text: &str) -> Option<Vec<f64>> {
     words.map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect()
 }
 
-fn arrays(rig: &dyn DynCrane, q: &[f64], v: &[f64]) -> Vec<Array> {
-    let bodies = &rig.description().bodies;
+/// The states and what is asked for; with several states, the first axis counts them.
+fn arrays(options: &Eval, crane: &LiveCrane, states: &States) -> Vec<Array> {
+    let size = crane.description().coordinates.len();
+    let count = states.q.len();
+    let over = |name, shape: Vec<usize>, data: Vec<f64>| {
+        let shape = if count == 1 { shape } else { [vec![count], shape].concat() };
+        Array { name, shape, data }
+    };
+    let mut arrays = vec![over("q", vec![size], states.q.concat()), over("v", vec![size], states.v.concat())];
+    for (place, quantity) in options.quantities.iter().enumerate() {
+        if options.quantities[..place].contains(quantity) {
+            continue;
+        }
+        let mut shape = Vec::new();
+        let mut data = Vec::new();
+        for (q, v) in states.q.iter().zip(&states.v) {
+            let (of_one, numbers) = evaluate(*quantity, crane, options.time, q, v);
+            shape = of_one;
+            data.extend(numbers);
+        }
+        arrays.push(over(quantity.name(), shape, data));
+        arrays.extend(index(*quantity, crane.description()));
+    }
+    arrays
+}
+
+impl Quantity {
+    /// Its name in results and on the command line.
+    fn name(self) -> &'static str {
+        match self {
+            Quantity::Transforms => "transforms",
+            Quantity::TransformDerivatives => "transform_derivatives",
+            Quantity::TransformSecondDerivatives => "transform_second_derivatives",
+            Quantity::Points => "points",
+            Quantity::PointVelocities => "point_velocities",
+            Quantity::MassMatrix => "mass_matrix",
+            Quantity::Bias => "bias",
+            Quantity::Forces => "forces",
+            Quantity::Accelerations => "accelerations",
+            Quantity::StaticResidual => "static_residual",
+            Quantity::TangentStiffness => "tangent_stiffness",
+            Quantity::Energies => "energies",
+            Quantity::DriveEfforts => "drive_efforts",
+            Quantity::SupportReactions => "support_reactions",
+        }
+    }
+}
+
+/// Shape and numbers of a quantity at one state.
+fn evaluate(quantity: Quantity, live: &LiveCrane, t: f64, q: &[f64], v: &[f64]) -> (Vec<usize>, Vec<f64>) {
+    let crane: &dyn DynCrane = live;
+    let derivatives: &dyn DynDerivatives = live;
     let n = q.len();
-    let first = bodies.iter().enumerate().flat_map(|(p, body)| (0..body.degrees_of_freedom).map(move |i| vec![p, i]));
-    let second = bodies.iter().enumerate().flat_map(|(p, body)| {
-        let count = body.degrees_of_freedom;
-        (0..count).flat_map(move |m| (m..count).map(move |n| vec![p, m, n]))
-    });
-    let mass = rig.mass_matrix_at(q);
-    vec![
-        Array { name: "q", shape: vec![n], data: q.to_vec() },
-        Array { name: "v", shape: vec![n], data: v.to_vec() },
-        matrices("transforms", &rig.transforms_at(q)),
-        matrices("transform_derivatives", &rig.transform_derivatives_at(q)),
-        index("transform_derivatives_index", first.collect(), 2),
-        matrices("transform_second_derivatives", &rig.transform_second_derivatives_at(q)),
-        index("transform_second_derivatives_index", second.collect(), 3),
-        Array { name: "mass_matrix", shape: vec![n, n], data: mass.transpose().as_slice().to_vec() },
-        Array { name: "bias", shape: vec![n], data: rig.bias_at(q, v).as_slice().to_vec() },
-    ]
+    match quantity {
+        Quantity::Transforms => matrices(&crane.transforms_at(q)),
+        Quantity::TransformDerivatives => matrices(&derivatives.transform_derivatives_at(q)),
+        Quantity::TransformSecondDerivatives => matrices(&derivatives.transform_second_derivatives_at(q)),
+        Quantity::Points => vectors(&crane.points_at(q)),
+        Quantity::PointVelocities => vectors(&crane.point_velocities_at(q, v)),
+        Quantity::MassMatrix => (vec![n, n], crane.mass_matrix_at(q).as_slice().to_vec()),
+        Quantity::Bias => list(crane.bias_at(q, v).as_slice()),
+        Quantity::Forces => {
+            let mut forces = vec![0.0; n];
+            crane.forces(t, q, v, &mut forces);
+            list(&forces)
+        }
+        Quantity::Accelerations => list(crane.accelerations_at(t, q, v).as_slice()),
+        Quantity::StaticResidual => {
+            let mut residual = vec![0.0; n];
+            crane.static_residual(q, &mut residual);
+            list(&residual)
+        }
+        Quantity::TangentStiffness => {
+            let mut stiffness = vec![0.0; n * n];
+            crane.tangent_stiffness(q, &mut stiffness);
+            (vec![n, n], stiffness)
+        }
+        Quantity::Energies => {
+            let energies = crane.energies_at(t, q, v);
+            list(&[energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives])
+        }
+        Quantity::DriveEfforts => list(&crane.drive_efforts_at(t, q, v)),
+        Quantity::SupportReactions => vectors(&crane.support_reactions_at(q, v)),
+    }
 }
 
-fn matrices(name: &'static str, matrices: &[Matrix4<f64>]) -> Array {
+fn list(numbers: &[f64]) -> (Vec<usize>, Vec<f64>) {
+    (vec![numbers.len()], numbers.to_vec())
+}
+
+fn vectors(vectors: &[Vector3<f64>]) -> (Vec<usize>, Vec<f64>) {
+    (vec![vectors.len(), 3], vectors.iter().flatten().copied().collect())
+}
+
+fn matrices(matrices: &[Matrix4<f64>]) -> (Vec<usize>, Vec<f64>) {
     let data = matrices.iter().flat_map(|matrix| matrix.transpose().as_slice().to_vec()).collect();
-    Array { name, shape: vec![matrices.len(), 4, 4], data }
+    (vec![matrices.len(), 4, 4], data)
 }
 
-/// Body and coordinates that belong to each matrix of a list.
-fn index(name: &'static str, rows: Vec<Vec<usize>>, width: usize) -> Array {
+/// Body and coordinates that belong to each matrix of a list of derivatives.
+fn index(quantity: Quantity, description: &Description) -> Option<Array> {
+    let bodies = description.bodies.iter().map(|body| body.degrees_of_freedom).enumerate();
+    let (name, width, rows): (_, _, Vec<Vec<usize>>) = match quantity {
+        Quantity::TransformDerivatives => {
+            let rows = bodies.flat_map(|(p, count)| (0..count).map(move |i| vec![p, i]));
+            ("transform_derivatives_index", 2, rows.collect())
+        }
+        Quantity::TransformSecondDerivatives => {
+            let pairs = |count: usize| (0..count).flat_map(move |m| (m..count).map(move |n| [m, n]));
+            let rows = bodies.flat_map(|(p, count)| pairs(count).map(move |[m, n]| vec![p, m, n]));
+            ("transform_second_derivatives_index", 3, rows.collect())
+        }
+        _ => return None,
+    };
     let shape = vec![rows.len(), width];
-    Array { name, shape, data: rows.into_iter().flatten().map(|index| index as f64).collect() }
+    Some(Array { name, shape, data: rows.into_iter().flatten().map(|index| index as f64).collect() })
 }
 
 fn json(description: &Description, arrays: &[Array]) -> Value {

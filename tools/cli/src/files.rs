@@ -5,6 +5,7 @@ use std::{
     io::Write,
     path::{Path, PathBuf},
     process,
+    time::Duration,
 };
 
 use crane_model::{dyn_crane::DynCrane, dynamics, results::Table};
@@ -27,7 +28,11 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
     name.push(format!(".{}.part", process::id()));
     let part: PathBuf = path.with_file_name(name);
     let written = (|| {
-        let mut file = io::BufWriter::new(fs::File::create(&part)?);
+        remove_parts_of_the_dead(path);
+        let file = fs::File::create(&part)?;
+        // Held while this process lives. A file system without locks does without.
+        let _ = file.try_lock();
+        let mut file = io::BufWriter::new(file);
         content(&mut file)?;
         file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
         fs::rename(&part, path)
@@ -39,16 +44,42 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
     })
 }
 
+/// Removes what commands that were killed left of a file: parts that no living process holds.
+fn remove_parts_of_the_dead(path: &Path) {
+    /// A younger part may be one whose owner is about to lock it, s.
+    const AGE: Duration = Duration::from_secs(60);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let begin = format!("{}.", path.file_name().unwrap_or_default().to_string_lossy());
+    let is_dead = |part: &Path| {
+        let name = part.file_name().unwrap_or_default().to_string_lossy();
+        let number = name.strip_prefix(&begin).and_then(|rest| rest.strip_suffix(".part"));
+        let is_part = number.is_some_and(|number| number.chars().all(|c| c.is_ascii_digit()));
+        is_part
+            && fs::File::open(part).is_ok_and(|file| {
+                let old = file
+                    .metadata()
+                    .and_then(|of| of.modified())
+                    .is_ok_and(|at| at.elapsed().is_ok_and(|age| age > AGE));
+                old && file.try_lock().is_ok()
+            })
+    };
+    for part in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+        if is_dead(&part) {
+            let _ = fs::remove_file(part);
+        }
+    }
+}
+
 /// Writes text.
 pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
     write(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// Writes a table as CSV, units in the header: `boom_psi [rad]`. Only numbers: what is none is told instead.
+/// Writes a table as CSV, units in the header: `boom_psi [rad]`. Only finite numbers: anything else is an error.
 pub fn write_csv(path: &Path, table: &Table) -> Outcome<()> {
     if let Some((row, column)) = table.not_finite() {
         let what = &table.columns[column].name;
-        let title = format!("{what} in row {} is no number: {} is not written", row + 1, path.display());
+        let title = format!("{what} in row {} is not a number: {} is not written", row + 1, path.display());
         return Err(Problem::failed(title, "make masses, stiffnesses and positions of a size that a crane has"));
     }
     let header = table.columns.iter().map(ToString::to_string);
@@ -115,4 +146,30 @@ pub fn record(rig: &dyn DynCrane, settings: &dynamics::Settings, recorded: &Reco
         "wall_time_s": recorded.wall.as_secs_f64(),
         "real_time_factor": recorded.real_time_factor(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{env, fs, time::SystemTime};
+
+    use super::*;
+
+    #[test]
+    fn parts_of_the_dead_go_and_others_stay() {
+        let folder = env::temp_dir().join(format!("crane-parts-{}", process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let parts = ["table.csv.4194999.part", "table.csv.4194998.part", "table.csv.notes.part", "other.csv.1.part"];
+        let [dead, held, notes, other] = parts.map(|name| folder.join(name));
+        for part in [&dead, &held, &notes, &other] {
+            fs::write(part, "half").unwrap();
+            let file = fs::File::options().write(true).open(part).unwrap();
+            file.set_modified(SystemTime::now() - Duration::from_secs(3600)).unwrap();
+        }
+        let owner = fs::File::open(&held).unwrap();
+        owner.try_lock().unwrap();
+        write_text(&folder.join("table.csv"), "whole").unwrap();
+        assert_eq!(fs::read_to_string(folder.join("table.csv")).unwrap(), "whole");
+        assert_eq!([&dead, &held, &notes, &other].map(|part| part.exists()), [false, true, true, true]);
+        fs::remove_dir_all(folder).unwrap();
+    }
 }

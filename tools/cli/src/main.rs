@@ -4,6 +4,8 @@ use std::process::ExitCode;
 
 use crane_cli::Fleet;
 
+include!(concat!(env!("OUT_DIR"), "/cranes.rs"));
+
 fn main() -> ExitCode {
-    crane_cli::main(Fleet::new(crane_specs::SPECS, crane_specs::all()))
+    crane_cli::main(Fleet::new(SPECS, all()))
 }

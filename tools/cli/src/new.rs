@@ -1,6 +1,6 @@
-//! `crane new`: a crate for a crane of one's own, begun from a shipped one.
+//! `crane new`: a crate for your own crane, begun from a shipped one.
 
-use std::{io::Write, path::Path};
+use std::{fs, io::Write, path::Path};
 
 use crane_codegen::{SourceFile, compile};
 
@@ -44,6 +44,12 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
             "name a folder that does not exist yet",
         ));
     }
+    if !own::root().join("crane-model").exists() {
+        return Err(Problem::failed(
+            format!("the source of `crane`, which a new crate builds on, is not at {} any more", own::root().display()),
+            "build `crane` again where its source is now",
+        ));
+    }
     let [model, codegen] = ["crane-model", "codegen"].map(|folder| own::root().join(folder));
     let values = [
         ("{{package}}", package.as_str()),
@@ -53,12 +59,13 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
         ("{{model}}", &model.to_string_lossy()),
         ("{{codegen}}", &codegen.to_string_lossy()),
     ];
-    for (file, template) in FILES {
-        let text = values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
-        write(&options.folder.join(file), &text)?;
-    }
-    write(&options.folder.join(SPEC), &spec)?;
-    write(&options.folder.join(SCHEMA.0), SCHEMA.1)?;
+    let filled =
+        |template: &str| values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
+    let mut texts: Vec<(&str, String)> = FILES.iter().map(|(file, template)| (*file, filled(template))).collect();
+    texts.push((SPEC, spec));
+    texts.push((SCHEMA.0, SCHEMA.1.to_owned()));
+    texts.push(("Cargo.lock", own::LOCK.to_owned()));
+    write(&options.folder, &texts)?;
     writeln!(
         out,
         "{} written, from {}: change {SPEC} there, then `cargo run --release`; its first build takes some minutes",
@@ -68,15 +75,32 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     Ok(())
 }
 
-fn write(file: &Path, text: &str) -> Outcome<()> {
-    files::folder(file.parent().unwrap_or(file))?;
-    files::write_text(file, text)
+/// Writes a folder with its files, whole or not at all.
+fn write(folder: &Path, texts: &[(&str, String)]) -> Outcome<()> {
+    let part = folder.with_extension("part");
+    let written = (|| {
+        for (file, text) in texts {
+            let file = part.join(file);
+            files::folder(file.parent().unwrap_or(&part))?;
+            files::write_text(&file, text)?;
+        }
+        fs::rename(&part, folder).map_err(|error| Problem::file(folder, &error))
+    })();
+    if written.is_err() {
+        // What is left of the part; the first error is the one to tell.
+        let _ = fs::remove_dir_all(&part);
+    }
+    written
 }
 
 /// The name of the package, that of its folder: letters, digits, `-` and `_`, from which the crane's name is made.
 fn package(folder: &Path) -> Outcome<String> {
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+    if own::LOCK.contains(&format!("\nname = \"{name}\"\n")) {
+        let title = format!("`{name}` is the name of a crate that the new one is built from");
+        return Err(Problem::usage(title, format!("choose another name, such as my-{name}")));
+    }
     if name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(fits) {
         Ok(name)
     } else {

@@ -32,9 +32,13 @@ struct Entry {
 
 impl Entry {
     fn open(&self) -> Outcome<Box<dyn DynCrane>> {
-        if let Some(compiled) = &self.compiled {
-            return Ok(compiled.boxed_clone());
+        match &self.compiled {
+            Some(compiled) => Ok(compiled.boxed_clone()),
+            None => Ok(Box::new(self.live()?)),
         }
+    }
+
+    fn live(&self) -> Outcome<LiveCrane> {
         let source = SourceFile::new(format!("{}.yaml", self.name), self.spec.clone());
         let crane = LiveCrane::from_spec(&source).map_err(|mistakes| own::drawn(&mistakes))?;
         let (count, most) = (crane.description().coordinates.len(), LiveCrane::MOST_COORDINATES);
@@ -42,7 +46,7 @@ impl Entry {
             let title = format!("{} has {count} coordinates; the command takes at most {most}", self.name);
             return Err(Problem::failed(title, "give flexible links fewer `sections`"));
         }
-        Ok(Box::new(crane))
+        Ok(crane)
     }
 }
 
@@ -86,6 +90,19 @@ impl Fleet {
     /// The spec of a crane.
     pub(super) fn spec(&self, name: &str) -> Option<&str> {
         self.entries.iter().find(|entry| entry.name == name).map(|entry| entry.spec.as_ref())
+    }
+
+    /// A live crane of the same spec and parameters, which has derivatives of transforms too.
+    pub(super) fn live(&self, crane: &dyn DynCrane) -> Outcome<LiveCrane> {
+        let description = crane.description();
+        let entry = self.entries.iter().find(|entry| entry.name == description.name.as_str());
+        let mut live = entry.ok_or_else(|| Problem::failed(format!("{} has no spec", description.name), ""))?.live()?;
+        let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
+        DynCrane::set_parameters(&mut live, &values).map_err(|refused| {
+            let (title, help) = told(&refused);
+            Problem::usage(title, help)
+        })?;
+        Ok(live)
     }
 
     /// A crane by its name.

@@ -285,7 +285,8 @@ fn a_folder_that_cannot_be_made_is_named() {
 
 #[test]
 fn evaluation_is_shaped_as_announced() {
-    let report = json(&["eval", "double_pendulum", "--q", "0.3,-0.2", "--v", "1 2"]);
+    let all = "transforms,transform_derivatives,transform_second_derivatives,mass_matrix,bias";
+    let report = json(&["eval", "double_pendulum", "--q", "0.3,-0.2", "--v", "1 2", "--quantities", all]);
     let length = |key: &str| report[key].as_array().expect("an array").len();
     assert_eq!(length("mass_matrix"), 2);
     assert_eq!(length("bias"), 2);
@@ -297,6 +298,27 @@ fn evaluation_is_shaped_as_announced() {
     // A ZIP archive of NPY members, stored.
     assert!(npz.stdout.starts_with(b"PK\x03\x04"));
     assert!(npz.stdout.windows(6).any(|bytes| bytes == b"\x93NUMPY"));
+}
+
+/// A state of many is what it is alone, and nothing is there that was not asked for.
+#[test]
+fn many_states_are_evaluated_at_once() {
+    let names = "points,point_velocities,forces,accelerations,static_residual,tangent_stiffness,energies,drive_efforts";
+    let asked =
+        |q: &str, v: &str| json(&["eval", "knuckle_boom", "--q", q, "--v", v, "--quantities", names, "--time", "0.5"]);
+    let (first, second) = ("0.1,0.2,0.3,0.4", "0.2,0.1,-0.3,0.5");
+    let both = asked(&format!("{first},{second}"), "1,2,3,4");
+    assert!(both.get("transforms").is_none());
+    for (place, q) in [first, second].into_iter().enumerate() {
+        let one = asked(q, "1,2,3,4");
+        for name in names.split(',') {
+            assert_eq!(both[name][place], one[name], "{name}");
+        }
+    }
+    refused(
+        &["eval", "knuckle_boom", "--q", &format!("{first},{second}"), "--v", &[first; 3].join(",")],
+        &["`--q` has 2 states and `--v` 3"],
+    );
 }
 
 #[test]
@@ -333,7 +355,7 @@ fn a_new_crane_is_a_crate_with_the_comments_of_its_spec() {
     refused(&arguments, &["already exists"]);
     refused(&["new", "My crane"], &["not a valid name for a crate", "such as my-crane"]);
     refused(&["new", "fn"], &["`fn` cannot be a name: a keyword of Rust", "`fn_1`"]);
-    refused(&["new", "crane-model"], &["`crane_model` cannot be a name"]);
+    refused(&["new", "crane-model"], &["`crane-model` is the name of a crate", "my-crane-model"]);
     refused(&["new", "other", "--from", "cantilver"], &["no crane `cantilver`", "`cantilever`"]);
 }
 

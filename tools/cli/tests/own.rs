@@ -86,10 +86,41 @@ fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
     // Kept: the second time nothing is compiled; parameters, options and exit codes are passed on.
     let again = crane(&["statics", &file, "--compile", "--set", "payload=1", "--format", "json"]);
     assert!(again.status.success(), "{}", text(&again.stderr));
-    assert!(text(&again.stderr).contains("kept from before"), "{}", text(&again.stderr));
+    assert!(text(&again.stderr).contains("compiled before"), "{}", text(&again.stderr));
     assert!(serde_json::from_slice::<serde_json::Value>(&again.stdout).is_ok_and(|report| report["pose"].is_array()));
     let refused = crane(&["statics", &file, "--set", "payload"]);
     assert_eq!(refused.status.code(), Some(2));
+
+    // It runs without cargo, and one that is spoilt is compiled again.
+    let cache = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("own_cranes");
+    let statics = |path: Option<&str>| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+        command.args(["statics", &file, "--compile"]).env("CRANE_CACHE", &cache);
+        if let Some(path) = path {
+            command.env("PATH", path).env_remove("CARGO");
+        }
+        command.output().expect("the command starts")
+    };
+    let alone = statics(Some(""));
+    assert!(alone.status.success(), "{}", text(&alone.stderr));
+    let folders = fs::read_dir(&cache).expect("a cache").filter_map(|entry| Some(entry.ok()?.path()));
+    let folder = folders.filter(|path| path.display().to_string().contains("crane-knuckle_boom")).next();
+    fs::write(folder.expect("a kept crane").join("program"), "rubbish").expect("a file");
+    let mended = statics(None);
+    assert!(mended.status.success() && mended.stdout == alone.stdout, "{}", text(&mended.stderr));
+    assert!(text(&mended.stderr).contains("compiling it again"), "{}", text(&mended.stderr));
+}
+
+#[test]
+fn without_a_folder_of_ones_own_nothing_is_compiled() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+    command.args(["statics", "knuckle_boom", "--compile"]);
+    for name in ["CRANE_CACHE", "XDG_CACHE_HOME", "HOME"] {
+        command.env_remove(name);
+    }
+    let refused = command.output().expect("the command starts");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(text(&refused.stderr).contains("name a folder of yours in CRANE_CACHE"), "{}", text(&refused.stderr));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! A crane of one's own as `crane new` begins it: made, tested, run.
+//! Your own crane as `crane new` begins it: made, tested, run.
 
 use std::process::Command;
 use std::{fs, io};
@@ -17,9 +17,6 @@ pub fn check() -> Result<(), String> {
     }
     let crane = workspace::target().join("release/crane");
     step::finish(Command::new(crane).arg("new").arg(&folder).args(["--from", "knuckle-boom"]))?;
-    // The versions that everything else is tested with.
-    let lock = "Cargo.lock";
-    fs::copy(workspace::root().join(lock), folder.join(lock)).map_err(|error| format!("{lock}: {error}"))?;
     for task in ["test", "run"] {
         let mut cargo = Command::new(step::cargo());
         // What the workspace has built serves again: the same folder, and the same profile.

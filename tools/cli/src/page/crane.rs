@@ -1,6 +1,7 @@
 //! One crane of the page: what it is, how it is drawn, its run and its modes.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
+use crane_live::LiveCrane;
 use crane_model::{CoordinateRole, modes::undamped, results::Table};
 use serde_json::{Value, json};
 
@@ -10,8 +11,8 @@ use crate::{problem::Outcome, run::Recorded, statics::Case};
 /// Most rows of a run that a page holds; a longer one is thinned, so that the page stays small enough to mail.
 const MOST_ROWS: usize = 4000;
 
-/// Everything of one crane.
-pub fn data(case: &Case<'_>, run: &Recorded) -> Outcome<Value> {
+/// Everything of one crane; `live`: the same crane with derivatives of its transforms.
+pub fn data(case: &Case<'_>, live: &LiveCrane, run: &Recorded) -> Outcome<Value> {
     let rig = case.rig;
     let description = rig.description();
     let coordinates: Vec<Value> = description
@@ -35,7 +36,7 @@ pub fn data(case: &Case<'_>, run: &Recorded) -> Outcome<Value> {
         "label": case.label,
         "coordinates": coordinates,
         "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
-        "scene": scene(rig, &case.equilibrium.q),
+        "scene": scene(live, &case.equilibrium.q),
         "modes": modes(case)?,
         "run": columns(&run.table),
     }))

@@ -77,7 +77,7 @@ fn data(
 ) -> Outcome<Value> {
     let mut cranes = Vec::new();
     for ((case, settings), run) in cases.iter().zip(settings).zip(runs) {
-        let mut crane = crane::data(case, run)?;
+        let mut crane = crane::data(case, &fleet.live(case.rig)?, run)?;
         crane["outlines"] = exchange::outlines(fleet.spec(&case.rig.description().name));
         crane["record"] = files::record(case.rig, settings, run);
         cranes.push(crane);

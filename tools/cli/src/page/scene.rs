@@ -5,12 +5,17 @@
 //! so that the page can draw any pose, exaggerated and modal ones too. Three coordinates that turn by a rotation vector ρ
 //! share one factor, `exp(ξ_i ρ_1 + ξ_j ρ_2 + ξ_k ρ_3)`, with screws at ρ = 0: q⁰ is the pose with these at zero.
 
-use crane_model::{CoordinateRole, dyn_crane::DynCrane};
+use crane_live::LiveCrane;
+use crane_model::{
+    CoordinateRole,
+    dyn_crane::{DynCrane, DynDerivatives, DynModel},
+};
 use nalgebra::{Matrix4, Vector3};
 use serde_json::{Value, json};
 
 /// Frames, screws, supports and points of a crane for pose `q`.
-pub fn scene(rig: &dyn DynCrane, q: &[f64]) -> Value {
+pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
+    let rig: &dyn DynCrane = live;
     let description = rig.description();
     let is_vector: Vec<bool> =
         description.coordinates.iter().map(|coordinate| coordinate.role == CoordinateRole::ElementVector).collect();
@@ -34,7 +39,7 @@ pub fn scene(rig: &dyn DynCrane, q: &[f64]) -> Value {
         .collect();
     json!({
         "pose": q, "reference": reference, "vectors": is_vector, "bodies": bodies,
-        "screws": screws(rig, &reference, &frames), "supports": supports, "points": points(rig, q),
+        "screws": screws(live, &reference, &frames), "supports": supports, "points": points(rig, q),
     })
 }
 
@@ -44,8 +49,8 @@ fn rows(frame: &Matrix4<f64>) -> Vec<f64> {
 }
 
 /// Screws of all coordinates in the world frame at pose `q`, `ξ̂ = ∂T/∂q_j T⁻¹`: direction ω, then velocity at the origin.
-fn screws(rig: &dyn DynCrane, q: &[f64], frames: &[Matrix4<f64>]) -> Vec<[f64; 6]> {
-    let derivatives = rig.transform_derivatives_at(q);
+fn screws(rig: &LiveCrane, q: &[f64], frames: &[Matrix4<f64>]) -> Vec<[f64; 6]> {
+    let derivatives = (rig as &dyn DynDerivatives).transform_derivatives_at(q);
     let mut screws = Vec::with_capacity(q.len());
     let mut first = 0;
     for (body, frame) in rig.description().bodies.iter().zip(frames) {
