@@ -274,6 +274,13 @@ pub struct Timing {
     /// Interval of recorded results, s [default: the crane's]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub output: Option<f64>,
+    /// Start from the last row of a CSV file of results, with its rates; motions of drives begin at t = 0 again
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    pub from: Option<PathBuf>,
+    /// Start with other values: a coordinate in m or rad, or its rate, as in `boom_psi=0.3` and `boom_psi_rate=-0.1`; what is not
+    /// given is as at rest
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub start: Vec<String>,
 }
 
 /// Folder of results.

@@ -15,7 +15,7 @@ use crate::{
     figures::{Curve, Mark, PALETTE, Panel},
     files, page,
     problem::{Outcome, Problem},
-    run::{Recorded, Start, progress, record_checked},
+    run::{Recorded, progress, record_checked},
     simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
     statics::{Case, caution_of_runs, deflection, tables},
 };
@@ -87,7 +87,10 @@ pub fn runs(
     limits: Limits,
     default: Method,
 ) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
-    let starts = cases.iter().map(|case| Start::of(case.rig)).collect::<Outcome<Vec<_>>>()?;
+    // The last is the one that the arguments are about.
+    let starts = cases.iter().enumerate();
+    let starts =
+        starts.map(|(index, case)| timing.start(case.rig, index + 1 < cases.len())).collect::<Outcome<Vec<_>>>()?;
     let settings = cases
         .iter()
         .zip(&starts)

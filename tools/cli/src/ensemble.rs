@@ -22,7 +22,8 @@ use crate::{
     parameter_table::ParameterTable,
     problem::{Outcome, Problem},
     report::Report,
-    run::{Start, batches},
+    run::batches,
+    start::Start,
 };
 
 /// Status of a run that reached its end.

@@ -7,7 +7,7 @@ use crate::{
     arguments::{Analysis, Format},
     problem::Outcome,
     report::{Cell, Grid, Report},
-    run::{EQUILIBRIUM, GUESS},
+    start::{EQUILIBRIUM, GUESS},
 };
 
 /// Prints the cranes to choose from.

@@ -35,6 +35,7 @@ mod run;
 mod selection;
 mod simulate;
 mod stability;
+mod start;
 mod statics;
 mod stress;
 mod verification;

@@ -7,7 +7,7 @@ use std::{
 
 use crane_model::{
     dyn_crane::DynCrane,
-    dynamics::{self, Cause, InitialState, Method, Run},
+    dynamics::{self, Cause, Method, Run},
     modes::{self, DampedMode},
     results::{Recording, Table},
     stability::{Limit, cause, limit},
@@ -19,7 +19,7 @@ use crate::{
     arguments::{Limits, Step, Timing},
     cautions,
     problem::{Outcome, Problem},
-    statics::Case,
+    start::Start,
     verification::{self, Verification},
 };
 
@@ -32,36 +32,10 @@ const MOST_STEPS: f64 = 1e10;
 /// Poses along the manoeuvre at which the step is checked: 2 ms each for 25 coordinates.
 pub const POSES: u16 = 10;
 
-/// Start of a crane whose spec asks for statics.
-pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
-
-/// Start of a crane whose spec does not.
-pub const GUESS: &str = "guess, at rest";
-
-/// Pose from which a run starts, at rest.
-pub struct Start {
-    /// The pose, m and rad.
-    pub q: Vec<f64>,
-    /// Which one: [`EQUILIBRIUM`] or [`GUESS`].
-    pub what: &'static str,
-}
-
-impl Start {
-    /// The static equilibrium where the crane's spec asks for statics, otherwise its guess.
-    pub fn of(rig: &dyn DynCrane) -> Outcome<Self> {
-        let description = rig.description();
-        if description.statics {
-            Case::new(&description.name, rig).start()
-        } else {
-            Ok(Self { q: rig.guess(), what: GUESS })
-        }
-    }
-}
-
 /// A finished run.
 pub struct Recorded {
     /// What it started from.
-    pub start: &'static str,
+    pub start: String,
     /// Steps and time.
     pub run: Run,
     /// All results.
@@ -242,7 +216,7 @@ pub fn manoeuvre(rig: &dyn DynCrane, start: &Start, count: u16) -> Outcome<Vec<P
     let description = rig.description();
     let mut q = start.q.clone();
     let mut poses = vec![Pose { t: 0.0, modes: modes::damped(&rig.small_motions_at(&q))? }];
-    if start.what == EQUILIBRIUM {
+    if start.rests {
         for index in 1..=count {
             let t = description.duration * f64::from(index) / f64::from(count);
             let equilibrium = rig.equilibrium_at(t, &q, &Settings::default());
@@ -296,7 +270,7 @@ pub fn record(
     let mut shown = 0;
     let (mut singular, mut tilted) = (None, None);
     let run = rig
-        .simulate(&InitialState::at_rest(start.q.clone()), settings, &mut |sample| {
+        .simulate(&start.state(), settings, &mut |sample| {
             recording.push(sample);
             singular = singular.take().or_else(|| description.near_singular(sample.q));
             tilted = tilted.take().or_else(|| description.large_tilt(sample.q));
@@ -337,7 +311,7 @@ pub fn record(
         )
     });
     let cautions = singular.into_iter().chain(tilted).chain(unbalanced).collect();
-    Ok(Recorded { start: start.what, run, table, wall: begin.elapsed(), verification: None, cautions })
+    Ok(Recorded { start: start.what.clone(), run, table, wall: begin.elapsed(), verification: None, cautions })
 }
 
 /// Runs from `start`, once more to estimate the error if `verify`, and says what the run did that the model does not hold for.

@@ -18,7 +18,7 @@ use crate::{
     files,
     problem::{Outcome, Problem},
     report::{Grid, Report},
-    run::{Recorded, Start, progress, record_checked},
+    run::{Recorded, progress, record_checked},
 };
 
 /// A recorded run as a curve of the figures.
@@ -36,7 +36,7 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     let rig = options.analysis.crane.open(fleet)?;
     let rig = rig.as_ref();
     let name = &rig.description().name;
-    let start = Start::of(rig)?;
+    let start = options.timing.start(rig, false)?;
     let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;
     files::folder(&options.folder.out)?;
     let bar = progress(settings.duration);
@@ -50,7 +50,7 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
 
     let mut report = Report::default();
     report.fact("crane", name.as_str(), "");
-    report.fact("start", recorded.start, "");
+    report.fact("start", recorded.start.as_str(), "");
     report.fact("method", settings.method.title(), "");
     if settings.method.is_adaptive() {
         report.fact("tolerance", settings.tolerance, "m, rad");

@@ -17,8 +17,9 @@ use crate::{
     modes::damped_modes,
     problem::Outcome,
     report::{Grid, Report},
-    run::{Bound, Pose, SAFE, Start, manoeuvre},
+    run::{Bound, Pose, SAFE, manoeuvre},
     simulate::{file_list, write_figure},
+    start::Start,
 };
 
 /// Prints limits and modes, and draws the regions.
@@ -32,7 +33,7 @@ pub fn stability(options: &Stability, fleet: &Fleet, out: &mut dyn Write) -> Out
 
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
-    report.fact("start", start.what, "");
+    report.fact("start", start.what.as_str(), "");
     report.grid(limits(description, &poses));
     if poses.len() > 1 {
         report.grid(along(description, &poses));

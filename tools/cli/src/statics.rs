@@ -16,7 +16,8 @@ use crate::{
     cautions,
     problem::{Outcome, Problem},
     report::{Cell, Grid, Report},
-    run::{EQUILIBRIUM, Recorded, Start},
+    run::Recorded,
+    start::Start,
 };
 
 /// A crane in equilibrium.
@@ -54,7 +55,7 @@ impl<'a> Case<'a> {
                 "give every link a mass in kg and an inertia in kg m² that count beside those of the others",
             ));
         }
-        Ok(Start { q: q.clone(), what: EQUILIBRIUM })
+        Ok(Start::equilibrium(q.clone()))
     }
 
     fn coordinates(&self) -> &[CoordinateInfo] {

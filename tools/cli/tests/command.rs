@@ -300,6 +300,38 @@ fn evaluation_is_shaped_as_announced() {
     assert!(npz.stdout.windows(6).any(|bytes| bytes == b"\x93NUMPY"));
 }
 
+/// A run in two halves ends where one of the same length does, to the tolerance, where nothing is driven.
+#[test]
+fn a_run_goes_on_from_the_end_of_another() {
+    let folder = folder("in_two_halves");
+    let file = |name: &str| folder.join(name).join("double_pendulum.csv");
+    let run = |name: &str, more: &[&str]| {
+        let place = folder.join(name).display().to_string();
+        let arguments = ["simulate", "double_pendulum", "--method", "bdf", "--tolerance", "1e-10", "--out", &place];
+        let output = crane(&[&arguments[..], more].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let csv = fs::read_to_string(file(name)).expect("results");
+        let last = csv.lines().last().expect("a row").to_owned();
+        last.split(',').map(|number| number.parse().expect("a number")).collect::<Vec<f64>>()
+    };
+    let given = ["--start", "upper_theta=0.5", "--start", "lower_theta_rate=-1"];
+    let whole = run("whole", &[&["--duration", "1"], &given[..]].concat());
+    run("half", &[&["--duration", "0.5"], &given[..]].concat());
+    let first = file("half").display().to_string();
+    let second = run("second", &["--duration", "0.5", "--from", &first]);
+    // Time, two coordinates, two rates; errors of 1e-10 grow tenfold in a second.
+    for (whole, halves) in whole[1..5].iter().zip(&second[1..5]) {
+        assert!((whole - halves).abs() < 1e-7, "{whole} {halves}");
+    }
+    assert!(whole[1..5].iter().all(|x| x.abs() > 1e-3));
+    refused(
+        &["simulate", "double_pendulum", "--start", "uper_theta=1"],
+        &["no coordinate `uper_theta`", "`upper_theta`"],
+    );
+    refused(&["simulate", "double_pendulum", "--start", "upper_theta=x"], &["`x` is not a value for upper_theta"]);
+    refused(&["simulate", "double_pendulum", "--from", "no_such.csv"], &["no_such.csv"]);
+}
+
 /// A state of many is what it is alone, and nothing is there that was not asked for.
 #[test]
 fn many_states_are_evaluated_at_once() {

@@ -9,6 +9,8 @@ use crate::workspace;
 const TESTS: [&str; 3] = ["interpreter", "accuracy", "sin_cos"];
 
 /// Builds and runs them with AVX2 and fused multiply-adds, which no build for any machine of the kind may use.
+///
+/// With a target named, flags are for the target alone: the compiler, which runs in build scripts, is not built again.
 pub fn check() -> Result<(), String> {
     if !has_fma() {
         println!("this machine has no AVX2 with fused multiply-adds");
@@ -17,8 +19,17 @@ pub fn check() -> Result<(), String> {
     let mut command = Command::new(cargo());
     command.args(["test", "--release", "--package", "crane-tests"]).current_dir(workspace::root());
     command.args(TESTS.iter().flat_map(|test| ["--test", test]));
-    command.env("RUSTFLAGS", "-C target-cpu=x86-64-v3").env("CARGO_TARGET_DIR", workspace::target().join("fused"));
+    command.args(["--target", &host()?]).env("RUSTFLAGS", "-C target-cpu=x86-64-v3");
     finish(&mut command)
+}
+
+/// The target that this machine is.
+fn host() -> Result<String, String> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let output = Command::new(rustc).arg("-vV").output().map_err(|error| format!("rustc: {error}"))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let host = text.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).ok_or_else(|| "rustc does not name its host".to_owned())
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -23,9 +23,10 @@ use crate::{
     files, modes, own,
     problem::Outcome,
     report::Report,
-    run::{POSES, Recorded, Start, manoeuvre},
+    run::{POSES, Recorded, manoeuvre},
     simulate::summary,
     stability,
+    start::Start,
     statics::{Case, caution_of_runs, deflection, tables},
 };
 

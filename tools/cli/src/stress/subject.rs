@@ -17,7 +17,8 @@ use crane_model::{
 use crate::{
     arguments::Timing,
     problem::Problem,
-    run::{self, Recorded, Start, record},
+    run::{self, Recorded, record},
+    start::Start,
 };
 
 /// A crane under test.
@@ -93,6 +94,8 @@ pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
         force: false,
         duration: Some(duration),
         output: Some(duration / 100.0),
+        from: None,
+        start: Vec::new(),
     }
 }
 

@@ -26,8 +26,9 @@ use crate::{
     files, own,
     problem::{Outcome, Problem},
     report::{Grid, Report},
-    run::{Bound, GUESS, POSES, SAFE, Start, manoeuvre, progress},
+    run::{Bound, POSES, SAFE, manoeuvre, progress},
     simulate::{file_list, write_figure},
+    start::Start,
 };
 use methods::{REPEATS, least, series, table};
 use reference::reference;
@@ -95,7 +96,7 @@ fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn
 
     let mut facts = Report::default();
     facts.fact("crane", description.name.as_str(), "");
-    facts.fact("start", start.what, "");
+    facts.fact("start", start.what.as_str(), "");
     facts.fact("duration", base.duration, "s");
     facts.fact("longest way of a point", reference.solution.trace.size(), "m");
     let (tolerance, step) = reference.settings;
@@ -128,7 +129,7 @@ fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn
 
 /// Where runs start: at rest in equilibrium, or at the guess where no drive would move the crane from there.
 fn start(rig: &dyn DynCrane) -> Outcome<Start> {
-    if rig.description().drives.is_empty() { Ok(Start { q: rig.guess(), what: GUESS }) } else { Start::of(rig) }
+    if rig.description().drives.is_empty() { Ok(Start::guess(rig)) } else { Start::of(rig) }
 }
 
 /// The run to be studied.

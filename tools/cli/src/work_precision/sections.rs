@@ -13,7 +13,8 @@ use crane_model::{
 use crate::{
     problem::{Outcome, Problem},
     report::{Cell, Grid},
-    run::{SAFE, Start},
+    run::SAFE,
+    start::Start,
     work_precision::{
         methods::{Setting, TARGETS, with},
         trace::{Timed, Trace, timed},

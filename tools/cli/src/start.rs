@@ -1,0 +1,157 @@
+//! Where a run starts: at rest where the crane stands, from given values, or from the end of another run.
+
+use std::path::Path;
+
+use crane_model::{Description, dyn_crane::DynCrane, dynamics::InitialState};
+
+use crate::{
+    arguments::Timing,
+    problem::{Outcome, Problem, nearest},
+    statics::Case,
+};
+
+/// Start of a crane whose spec asks for statics.
+pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
+/// Start of a crane whose spec does not.
+pub const GUESS: &str = "guess, at rest";
+/// What follows a coordinate's name in the name of its rate.
+const RATE: &str = "_rate";
+
+/// Pose and rates from which a run starts.
+pub struct Start {
+    /// The pose, m and rad.
+    pub q: Vec<f64>,
+    /// Its rates, m/s and rad/s.
+    pub v: Vec<f64>,
+    /// In words; [`EQUILIBRIUM`], [`GUESS`], or what was asked for.
+    pub what: String,
+    /// Whether the crane would stay there if its drives did.
+    pub rests: bool,
+}
+
+impl Start {
+    /// The static equilibrium where the crane's spec asks for statics, otherwise its guess.
+    pub fn of(rig: &dyn DynCrane) -> Outcome<Self> {
+        let description = rig.description();
+        if description.statics { Case::new(&description.name, rig).start() } else { Ok(Self::guess(rig)) }
+    }
+
+    /// A pose of static equilibrium.
+    pub fn equilibrium(q: Vec<f64>) -> Self {
+        Self { v: vec![0.0; q.len()], q, what: EQUILIBRIUM.to_owned(), rests: true }
+    }
+
+    /// The guess of a crane.
+    pub fn guess(rig: &dyn DynCrane) -> Self {
+        let q = rig.guess();
+        Self { v: vec![0.0; q.len()], q, what: GUESS.to_owned(), rests: false }
+    }
+
+    /// Pose and rates.
+    pub fn state(&self) -> InitialState {
+        InitialState { q: self.q.clone(), v: self.v.clone() }
+    }
+}
+
+/// A coordinate or its rate, by its place.
+#[derive(Clone, Copy)]
+enum Variable {
+    Position(usize),
+    Rate(usize),
+}
+
+impl Variable {
+    fn of(name: &str, description: &Description) -> Option<Self> {
+        let place = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
+        let rate = || name.strip_suffix(RATE).and_then(place).map(Self::Rate);
+        place(name).map(Self::Position).or_else(rate)
+    }
+
+    fn set(self, start: &mut Start, value: f64) {
+        match self {
+            Self::Position(place) => start.q[place] = value,
+            Self::Rate(place) => start.v[place] = value,
+        }
+    }
+}
+
+impl Timing {
+    /// The start that `--from` and `--start` ask for; `with_strangers`: names that this crane does not have are of another one.
+    pub fn start(&self, rig: &dyn DynCrane, with_strangers: bool) -> Outcome<Start> {
+        if self.from.is_none() && self.start.is_empty() {
+            return Start::of(rig);
+        }
+        let description = rig.description();
+        // What is not given is as where the crane stands, if it stands anywhere.
+        let mut start = Start::of(rig).unwrap_or_else(|_| Start::guess(rig));
+        start.rests = false;
+        if let Some(file) = &self.from {
+            for (variable, value) in end(file, description)? {
+                variable.set(&mut start, value);
+            }
+            start.what = format!("end of {}", file.display());
+        }
+        for given in &self.start {
+            let (name, value) = given.split_once('=').ok_or_else(|| {
+                let help =
+                    "write `--start coordinate=value`, such as `--start boom_psi=0.3` or `--start boom_psi_rate=-0.1`";
+                Problem::usage(format!("`--start {given}` has no value"), help)
+            })?;
+            let variable = match Variable::of(name, description) {
+                Some(variable) => variable,
+                None if with_strangers => continue,
+                None => return Err(unknown(name, description)),
+            };
+            let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+                Problem::usage(
+                    format!("`{value}` is not a value for {name}"),
+                    "write a finite number, in m, rad or per second",
+                )
+            })?;
+            variable.set(&mut start, number);
+        }
+        if !self.start.is_empty() {
+            start.what += &format!(", {}", self.start.join(", "));
+        }
+        Ok(start)
+    }
+}
+
+fn unknown(name: &str, description: &Description) -> Problem {
+    let names: Vec<&str> = description.coordinates.iter().map(|coordinate| coordinate.name.as_str()).collect();
+    let guess = nearest(name.strip_suffix(RATE).unwrap_or(name), names.iter().copied());
+    let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
+    Problem::usage(
+        format!("{} has no coordinate `{name}`", description.name),
+        format!("{guess}coordinates, and with `{RATE}` behind it their rates: {}", names.join(", ")),
+    )
+}
+
+/// Values of coordinates and rates in the last row of the results of a run.
+fn end(file: &Path, description: &Description) -> Outcome<Vec<(Variable, f64)>> {
+    let help = "name the CSV file of results that `crane simulate` or `crane run` has written";
+    let unreadable = |error: csv::Error| Problem::usage(format!("cannot use {}: {error}", file.display()), help);
+    let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(unreadable)?;
+    let headers = csv.headers().map_err(unreadable)?.clone();
+    let mut last = None;
+    for record in csv.records() {
+        last = Some(record.map_err(unreadable)?);
+    }
+    let last = last.ok_or_else(|| Problem::usage(format!("{} has no rows", file.display()), help))?;
+    let mut values = Vec::new();
+    for (header, text) in headers.iter().zip(&last) {
+        let name = header.split(" [").next().unwrap_or(header);
+        let Some(variable) = Variable::of(name, description) else { continue };
+        let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+        let number = number.ok_or_else(|| {
+            let title = format!("{}: `{text}` is not a value for {name}", file.display());
+            Problem::usage(title, help)
+        })?;
+        values.push((variable, number));
+    }
+    if values.is_empty() {
+        let title = format!("{} names no coordinate of {}", file.display(), description.name);
+        return Err(Problem::usage(title, help));
+    }
+    Ok(values)
+}
