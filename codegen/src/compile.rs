@@ -46,8 +46,15 @@ pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
 /// # Errors
 /// All mistakes of the spec at once.
 pub fn check(source: &SourceFile) -> Result<Checked, Diagnostics> {
-    let spec = read(source)?;
-    validate::check(&spec, source)
+    check_with(source, &[])
+}
+
+/// As [`check`], with warnings for other values of parameters than the spec's: names and values.
+///
+/// # Errors
+/// All mistakes of the spec at once.
+pub fn check_with(source: &SourceFile, set: &[(&str, f64)]) -> Result<Checked, Diagnostics> {
+    validate::check_with(&read(source)?, source, set)
 }
 
 /// Compiles a chain to Rust. `spec_file` is the name of the YAML file, for the header.

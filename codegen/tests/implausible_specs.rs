@@ -106,3 +106,17 @@ fn a_published_robot_that_misses_the_triangle_inequality_passes() {
         com: [0, -0.0141, 0.0702]\n    inertia: {Ixx: 0.066, Iyy: 0.086, Izz: 0.0125}\n";
     assert_eq!(codes(&warnings("puma", text)), ["W011"]);
 }
+
+/// What a parameter is set to is looked at like what the spec says.
+#[test]
+fn values_of_parameters_are_looked_at() {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/knuckle_boom.yaml"));
+    let source = SourceFile::new("knuckle_boom.yaml", text.expect("a spec"));
+    let with = |value| {
+        let checked = crane_codegen::compile::check_with(&source, &[("payload", value)]);
+        codes(&checked.unwrap_or_else(|found| panic!("{found}")).warnings)
+    };
+    assert_eq!(with(800.0), [""; 0]);
+    assert_eq!(with(0.3), ["W010"]);
+    assert_eq!(with(8e5), ["W010"]);
+}

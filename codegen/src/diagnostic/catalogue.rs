@@ -263,8 +263,8 @@ catalogue! {
     /// The torsion constant of a section is at most the sum of its two second moments of area.
     W007 torsion_constant(place, given, polar) "the torsion constant `Jo` of {place} exceeds Jy + Jz", "{given} m⁴ exceeds {polar} m⁴",
         "write the torsion constant: Jy + Jz for circles and tubes, less for boxes, far less for open sections";
-    /// Angles without `deg` or `pi` are at most one turn.
-    W008 degrees(what, given, turns) "{what} is {given} rad", "{turns} turns", "did you mean `{given} deg`? Write several turns as a multiple of `pi`";
+    /// Angles without `deg` or `pi` are at most one turn, speeds one turn per second.
+    W008 degrees(what, given, unit, turns) "{what} is {given} {unit}", "{turns}", "did you mean `{given} deg`? Write several turns as a multiple of `pi`";
     /// The damping of a beam leaves its lowest bending vibration: β ω is at most 10 for the beam alone, clamped at one end.
     W009 overdamped(link, beta, frequency, product) "the damping of beam `{link}` suppresses all vibration: β ω = {product}",
         "β = {beta} s, the lowest bending frequency is {frequency} rad/s", "check the unit: `beta` is in s, 1e-4 to 1e-2 s for steel structures";

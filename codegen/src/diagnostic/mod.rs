@@ -62,6 +62,13 @@ impl Diagnostics {
         self.mistakes.is_empty()
     }
 
+    /// Those that are not among others.
+    #[must_use]
+    pub fn without(mut self, others: &Diagnostics) -> Self {
+        self.mistakes.retain(|mistake| !others.mistakes.contains(mistake));
+        self
+    }
+
     /// Each in one line, for places that show no more: `crane.yaml:3:5: unknown key `masss` [E010]`.
     pub fn lines(&self) -> impl Iterator<Item = String> {
         self.mistakes.iter().map(|mistake| {

@@ -50,6 +50,14 @@ pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnost
 /// # Errors
 /// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
 pub fn check(spec: &CraneSpec, source: &SourceFile) -> Result<Checked, Diagnostics> {
+    check_with(spec, source, &[])
+}
+
+/// As [`check`], with warnings for other values of parameters than the spec's: names and values.
+///
+/// # Errors
+/// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
+pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) -> Result<Checked, Diagnostics> {
     let mut check = Check { mistakes: spec.mistakes.clone(), ..Check::default() };
     let mut chain = check.crane(&spec.crane, source);
     if check.mistakes.is_empty() {
@@ -61,7 +69,11 @@ pub fn check(spec: &CraneSpec, source: &SourceFile) -> Result<Checked, Diagnosti
         return Err(Diagnostics::new(source, check.mistakes));
     }
     let mut warnings = check.warnings;
-    warnings.extend(plausibility::warnings(&spec.crane, &chain));
+    let value = |parameter: &Parameter| {
+        set.iter().rev().find(|(name, _)| *name == parameter.name).map_or(parameter.default, |(_, value)| *value)
+    };
+    let values = chain.parameters.iter().map(value).collect();
+    warnings.extend(plausibility::warnings(&spec.crane, &chain, values));
     Ok(Checked { chain, warnings: Diagnostics::new(source, warnings) })
 }
 

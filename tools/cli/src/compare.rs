@@ -26,7 +26,8 @@ pub const CRANES: [&str; 2] = ["eight_link_rigid", "eight_link_flexible"];
 /// Statics and motion of both cranes, figures and data.
 pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let begin = Instant::now();
-    let (rigid, flexible) = (options.parameters.crane(CRANES[0], fleet)?, options.parameters.crane(CRANES[1], fleet)?);
+    let (rigid, flexible) =
+        (options.parameters.crane(CRANES[0], false, fleet)?, options.parameters.crane(CRANES[1], false, fleet)?);
     let folder = &options.folder.out;
 
     let cases = [Case::new("rigid", rigid.as_ref()), Case::new("flexible", flexible.as_ref())];

@@ -106,6 +106,15 @@ fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
     Ok((chain, source.text))
 }
 
+/// Draws what is implausible about a crane with these values of its parameters, and not without them: a problem of its own if
+/// warnings are.
+pub(super) fn warn_of(source: &SourceFile, set: &[(String, f64)]) -> Option<Problem> {
+    let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    let known = compile::check(source).ok()?.warnings;
+    let added = compile::check_with(source, &set).ok()?.warnings.without(&known);
+    (!added.is_empty()).then(|| drawn(&added))
+}
+
 /// A file of text; `help`: what kind of file to name.
 pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
     build::open(file).map_err(|failure| match failure {

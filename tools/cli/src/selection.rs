@@ -125,22 +125,29 @@ impl Fleet {
 impl Choice {
     /// The crane with its parameters.
     pub fn open(&self, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
-        self.parameters.crane(&self.name, fleet)
+        self.parameters.crane(&self.name, self.strict, fleet)
     }
 }
 
 impl Parameters {
-    /// A crane with these parameters.
-    pub fn crane(&self, name: &str, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
+    /// A crane with these parameters; `strict`: what is implausible about them is a mistake.
+    pub fn crane(&self, name: &str, strict: bool, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
         let mut rig = fleet.crane(name)?;
-        self.apply(rig.as_mut())?;
-        Ok(rig)
-    }
-
-    fn apply(&self, rig: &mut dyn DynCrane) -> Outcome<()> {
         let description = rig.description();
         let settings = self.read(&description.name, &known(description))?;
-        set(rig, &settings)
+        if settings.is_empty() {
+            return Ok(rig);
+        }
+        let values: Vec<(String, f64)> =
+            settings.iter().map(|&(index, value)| (description.parameters[index].name.to_string(), value)).collect();
+        set(rig.as_mut(), &settings)?;
+        if let Some(spec) = fleet.spec(name) {
+            let warned = own::warn_of(&SourceFile::new(format!("{name}.yaml"), spec), &values);
+            if let (true, Some(problem)) = (strict, warned) {
+                return Err(problem);
+            }
+        }
+        Ok(rig)
     }
 
     /// Places of the parameters that are set, and their values; `known`: names and units of those that the crane has.

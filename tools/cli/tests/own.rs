@@ -59,6 +59,10 @@ fn warnings_are_drawn_and_end_a_strict_command() {
         "{message}"
     );
     assert!(text(&checked.stdout).starts_with("knuckle_boom: sound"));
+    // Also where a parameter is set to such a value.
+    let set = crane(&["statics", "knuckle_boom", "--set", "payload=0.8"]);
+    assert!(set.status.success() && text(&set.stderr).contains(warned), "{}", text(&set.stderr));
+    assert_eq!(crane(&["statics", "knuckle_boom", "--set", "payload=0.8", "--strict"]).status.code(), Some(1));
     for command in ["check", "statics", "run"] {
         let strict = crane(&[command, "--strict", &light]);
         assert_eq!(strict.status.code(), Some(1), "{command}: {}", text(&strict.stderr));

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::lengths::is_far;
 use super::{Look, items, rounded};
-use crate::chain::CoordinateKind;
+use crate::chain::{Coordinate, CoordinateKind};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Angle, Given, Link, Motion, Placement, Scalar, Turn};
 
@@ -64,11 +64,31 @@ impl Look<'_> {
         };
         // The first that is wrong says it for the motion.
         let before = self.warnings.len();
+        if let Motion::Speed(speed) = motion {
+            self.speed(&speed.rate, coordinate);
+        }
         for (scalar, at) in positions {
             self.position(scalar, at, coordinate, &what);
             if self.warnings.len() > before {
                 return;
             }
+        }
+    }
+
+    /// A speed of rotation.
+    fn speed(&mut self, rate: &Given<Angle>, coordinate: &str) {
+        let turns = |known: &&Coordinate| known.name == coordinate && known.kind == CoordinateKind::Rotation;
+        let (scalar, at) = written(rate);
+        if let (Some(_), Some(rate)) = (self.chain.coordinates.iter().find(turns), self.bare(scalar))
+            && rate.abs() > FULL_TURN
+        {
+            self.warn(rule::degrees(
+                at,
+                &format!("the speed of `{coordinate}`"),
+                rate,
+                "rad/s",
+                &format!("{} turns per second", rounded(rate / TAU)),
+            ));
         }
     }
 
@@ -87,16 +107,25 @@ impl Look<'_> {
         }
     }
 
-    /// An angle that is written without `deg` or `pi`, itself or as the value of the parameter that it names.
+    /// An angle that is written without `deg` or `pi`.
     fn angle(&mut self, scalar: Option<&Scalar>, at: Span, what: &str) {
-        let bare = match scalar {
-            Some(Scalar::Name(name)) => self.parameter(name),
-            other => other,
-        };
-        if let Some(&Scalar::Number(angle)) = bare
+        if let Some(angle) = self.bare(scalar)
             && angle.abs() > FULL_TURN
         {
-            self.warn(rule::degrees(at, what, angle, rounded(angle / TAU)));
+            self.warn(rule::degrees(at, what, angle, "rad", &format!("{} turns", rounded(angle / TAU))));
+        }
+    }
+
+    /// A number without `deg` or `pi`, itself or as the value of the parameter that it names.
+    fn bare(&self, scalar: Option<&Scalar>) -> Option<f64> {
+        match scalar? {
+            Scalar::Number(number) => Some(*number),
+            Scalar::Angle(_) => None,
+            // One that was set is a number in radians.
+            Scalar::Name(name) => match (self.parameter(name)?, self.set(name)) {
+                (Scalar::Angle(_), false) => None,
+                _ => self.value(name),
+            },
         }
     }
 }

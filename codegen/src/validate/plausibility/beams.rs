@@ -135,7 +135,7 @@ impl Look<'_> {
     /// Damping in proportion to stiffness, seen by the lowest bending vibration of the beam alone, clamped at one end.
     fn damping_of(&mut self, link: &str, at: Span) {
         let bodies: Vec<_> = self.chain.bodies.iter().filter(|body| body.link == link).collect();
-        let now = |value: &crate::chain::Value| value.at(&self.defaults);
+        let now = |value: &crate::chain::Value| value.at(&self.values);
         let length: f64 = bodies.iter().map(|body| now(&body.length)).sum();
         let mass: f64 = bodies.iter().filter_map(|body| body.inertia.as_ref()).map(|inertia| now(&inertia.mass)).sum();
         let springs = self.chain.elements.iter().filter(|spring| {

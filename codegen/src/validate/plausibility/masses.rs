@@ -39,7 +39,7 @@ impl Look<'_> {
         let chain = self.chain;
         let base = chain.base.iter().any(Option::is_some);
         let carried = chain.bodies.iter().skip(usize::from(base)).filter_map(|body| body.inertia.as_ref());
-        let crane: f64 = carried.map(|inertia| inertia.mass.at(&self.defaults)).sum::<f64>() - mass;
+        let crane: f64 = carried.map(|inertia| inertia.mass.at(&self.values)).sum::<f64>() - mass;
         // Zero: there is none.
         if mass == 0.0 || crane <= 0.0 {
             return;

@@ -1,6 +1,6 @@
 //! Plausibility: numbers that no rule refuses, but that look like another unit than SI or like a slip.
 //!
-//! Looked for in a crane without mistakes, at the default values of its parameters. Each finding is a warning: the crane
+//! Looked for in a crane without mistakes, at the default values of its parameters or at others. Each finding is a warning: the crane
 //! is compiled as it is written.
 
 mod angles;
@@ -12,9 +12,9 @@ use crate::chain::Chain;
 use crate::diagnostic::{Mistake, Span};
 use crate::spec::{Crane, Given, Number, Parameter, Scalar};
 
-/// Warnings about a crane without mistakes.
-pub(super) fn warnings(crane: &Crane, chain: &Chain) -> Vec<Mistake> {
-    let mut look = Look { crane, chain, defaults: chain.parameter_defaults(), warnings: Vec::new() };
+/// Warnings about a crane without mistakes, with these values of its parameters.
+pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mistake> {
+    let mut look = Look { crane, chain, values, warnings: Vec::new() };
     look.beams();
     look.lengths();
     // Frequencies and masses that follow from such numbers would be named a second time.
@@ -31,7 +31,7 @@ struct Look<'a> {
     crane: &'a Crane,
     chain: &'a Chain,
     /// Values of the parameters at which the numbers are looked at.
-    defaults: Vec<f64>,
+    values: Vec<f64>,
     warnings: Vec<Mistake>,
 }
 
@@ -48,8 +48,20 @@ impl<'a> Look<'a> {
     fn scalar(&self, scalar: &Scalar) -> f64 {
         match scalar {
             Scalar::Number(number) | Scalar::Angle(number) => *number,
-            Scalar::Name(name) => self.parameter(name).map_or(f64::NAN, |value| self.scalar(value)),
+            Scalar::Name(name) => self.value(name).unwrap_or(f64::NAN),
         }
+    }
+
+    /// Value of a parameter.
+    fn value(&self, name: &str) -> Option<f64> {
+        let place = self.chain.parameters.iter().position(|parameter| parameter.name == name)?;
+        self.values.get(place).copied()
+    }
+
+    /// Whether a parameter has another value than in the spec.
+    fn set(&self, name: &str) -> bool {
+        let parameter = self.chain.parameters.iter().find(|parameter| parameter.name == name);
+        parameter.is_some_and(|parameter| self.value(name) != Some(parameter.default))
     }
 
     /// What stands under `value` of a parameter.

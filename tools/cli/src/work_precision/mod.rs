@@ -112,7 +112,8 @@ fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn
     if !counts.is_empty() {
         let variants = counts.iter().map(|&count| {
             announce(&bar, count);
-            let rig = options.analysis.crane.parameters.crane(&variants::name(&description.name, count), fleet)?;
+            let rig =
+                options.analysis.crane.parameters.crane(&variants::name(&description.name, count), false, fleet)?;
             variant(rig.as_ref(), &self::start(rig.as_ref())?, &base, count, repeats)
         });
         let variants: Vec<Variant> = variants.collect::<Outcome<_>>()?;
