@@ -29,10 +29,15 @@ function columns(text) {
   return new Map(header.map((name, i) => [name, rows.map((row) => Number(row[i]))]));
 }
 
+/** Longest wait for anything, ms. */
+const PATIENCE = 180_000;
+
 /** Opens the page; `check` looks at it; what it says or asks for besides is an error. */
 async function open(browser, options, check) {
   const context = await browser.newContext({ offline: true, reducedMotion: "reduce", acceptDownloads: true, ...options });
   const page = await context.newPage();
+  // Software rendering on a busy machine.
+  page.setDefaultTimeout(PATIENCE);
   const said = [];
   page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.stack}`));
@@ -40,7 +45,7 @@ async function open(browser, options, check) {
     if (!/^(file|data|blob):/.test(request.url())) said.push(`request: ${request.url()}`);
   });
   await page.goto(`file://${file}`);
-  await page.waitForFunction(() => document.documentElement.dataset.ready === "yes", null, { timeout: 60_000 });
+  await page.waitForFunction(() => document.documentElement.dataset.ready === "yes", null, { timeout: PATIENCE });
   await check(page);
   await context.close();
   return said;
