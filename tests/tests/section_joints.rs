@@ -230,3 +230,56 @@ fn twist_of_a_tip_that_is_loaded_in_two_planes() {
     let error = |x: f64| (x / limit - 1.0).abs();
     assert!(error(symmetric[0]) < 0.1 * error(paper[0]), "{symmetric:?}, {paper:?}");
 }
+
+/// Tip of the elastica: along and across the straight beam, parts of its length, under `PL²/EI` across it.
+///
+/// `θ″ = −α cos θ` with θ(0) = 0 and θ′(1) = 0, by shooting with the classical Runge–Kutta method.
+fn elastica(alpha: f64) -> [f64; 2] {
+    const STEPS: usize = 4000;
+    let shoot = |curvature: f64| {
+        let slope = |[angle, curvature, ..]: [f64; 4]| [curvature, -alpha * angle.cos(), angle.cos(), angle.sin()];
+        let h = 1.0 / STEPS as f64;
+        let mut y = [0.0, curvature, 0.0, 0.0];
+        for _ in 0..STEPS {
+            let moved = |by: f64, k: [f64; 4]| std::array::from_fn(|i| y[i] + by * k[i]);
+            let k1 = slope(y);
+            let k2 = slope(moved(h / 2.0, k1));
+            let k3 = slope(moved(h / 2.0, k2));
+            let k4 = slope(moved(h, k3));
+            y = std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
+        }
+        y
+    };
+    let (mut low, mut high) = (0.0, 2.0 * alpha);
+    for _ in 0..100 {
+        let middle = f64::midpoint(low, high);
+        if shoot(middle)[1] > 0.0 { high = middle } else { low = middle }
+    }
+    let [_, _, along, across] = shoot(high);
+    [along, across]
+}
+
+/// Bent by half its length, in whichever plane, a beam tends to the elastica with order 2.
+#[test]
+fn large_bending_tends_to_the_elastica() {
+    const ALPHA: f64 = 2.0;
+    let exact = elastica(ALPHA);
+    // Bisshop and Drucker, Large deflection of cantilever beams, Quart. Appl. Math. 3 (1945) 272: 0.494 and 0.161.
+    assert!((exact[1] - 0.4935).abs() < 1e-3 && (1.0 - exact[0] - 0.1606).abs() < 1e-3, "{exact:?}");
+    let load = ALPHA * MODULUS * ROUND.jy / (LENGTH * LENGTH);
+    for direction in [0.0, 0.3, FRAC_PI_4, 1.2] {
+        let errors = [4, 8, 16].map(|sections| {
+            let beam = Beam::new("symmetric", sections, &ROUND, [0.0, -f64::sin(direction), -f64::cos(direction)]);
+            let tip = beam.tip(&beam.equilibrium(load));
+            let place = |row: usize| tip[4 * row + 3];
+            let across = -place(1) * f64::sin(direction) - place(2) * f64::cos(direction);
+            [place(0) / LENGTH - exact[0], across / LENGTH - exact[1]]
+        });
+        for axis in [0, 1] {
+            let of: Vec<f64> = errors.iter().map(|error| error[axis].abs()).collect();
+            // The beam weighs 5e-5 of the load: below that the law ends.
+            assert!(of[0] < 0.01 && of[2] < 7e-4, "{direction}: {errors:?}");
+            assert!((of[0] / of[1]).log2() > 1.9 && (of[1] / of[2]).log2() > 1.8, "{direction}: {errors:?}");
+        }
+    }
+}

@@ -46,7 +46,8 @@ def random_states(crane, count, seed):
     end = max((drive.moves_within[1] for drive in crane.drives), default=1.0)
     time = rng.uniform(begin - 1, end + 1, count)
     if count:
-        time[0], q[0], v[0], parameters[0] = 0, guess, 0, defaults
+        # Just after the start: at it accelerations of motions jump, and either value is right.
+        time[0], q[0], v[0], parameters[0] = 1e-9, guess, 0, defaults
     return States(time, q, v, parameters)
 
 

@@ -185,7 +185,7 @@ class Exported:
         layout = self.evaluate.layout(str(spec))
         states = States(self.states.time, self.states.q, self.states.v, np.empty((len(self.states.time), 0)))
         again = self.evaluate.values(layout, states)
-        again["mass_matrix"] += np.diag(springs.armature).ravel()
+        again["mass_matrix"] = again["mass_matrix"] + np.diag(springs.armature).ravel()
         comparisons = [compare(name, self.ours[name], again[name], states.groups) for name in ("mass_matrix", "bias")]
         return told(f"{self.name}, spec of URDF", comparisons)
 

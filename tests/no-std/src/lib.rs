@@ -1,4 +1,4 @@
-//! The reference crane for a machine without operating system: no `std`, no heap, and no function that can panic.
+//! Two cranes for a machine without operating system: no `std`, no heap, and no function that can panic.
 //!
 //! As a static library with the panic handler below it builds only where no crate beneath needs `std` or a heap:
 //!
@@ -14,80 +14,128 @@
 
 #![no_std]
 
-use crane_model::dynamics::rk4::{self, State};
-use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use crane_model::{CraneModel, Dynamics, Linearisation, Linearise, ParameterError, Statics, TransformDerivatives};
+/// All functions of a generated crane, one per method of the traits.
+macro_rules! crane {
+    ($(#[$about:meta])* $name:ident) => {
+        $(#[$about])*
+        pub mod $name {
+            use crane_model::dynamics::rk4::{self, State};
+            use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
+            use crane_model::support::lanes::f64x8;
+            use crane_model::{
+                CraneModel, Dynamics, Ensemble, Implicit, LaneDynamics, Linearisation, Linearise, ParameterError, Statics,
+                TransformDerivatives,
+            };
 
-pub use crane::{Crane, DESCRIPTION, N};
+            pub use generated::{Crane, DESCRIPTION, N};
 
-/// The generated module.
-mod crane {
-    #![allow(dead_code, clippy::all)]
-    include!(concat!(env!("OUT_DIR"), "/eight_link_flexible.rs"));
+            /// The generated module.
+            mod generated {
+                #![allow(dead_code, clippy::all)]
+                include!(concat!(env!("OUT_DIR"), "/", stringify!($name), ".rs"));
+            }
+
+            /// Coordinates, velocities or generalized forces.
+            pub type Vector = SVector<f64, N>;
+            /// The same of eight cranes.
+            pub type LaneVector = SVector<f64x8, N>;
+            /// Mass or stiffness.
+            pub type Matrix = SMatrix<f64, N, N>;
+            /// Stiffness or damping of the base.
+            pub type BaseMatrix = SMatrix<f64, 6, 6>;
+            /// Factors of a system.
+            pub type Factors = <Crane as Implicit<N>>::Factors;
+            /// Eight cranes.
+            pub type Lanes = <Crane as Ensemble<N>>::Lanes;
+
+            exported! {
+                Crane;
+                transforms(q: &Vector, out: &mut [Matrix4<f64>]);
+                points(q: &Vector, out: &mut [Vector3<f64>]);
+                point_velocities(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
+                forces(t: f64, q: &Vector, v: &Vector) -> Vector;
+                support_forces(q: &Vector, v: &Vector) -> Vector;
+                element_forces(q: &Vector, v: &Vector) -> Vector;
+                drive_forces(t: f64, q: &Vector, v: &Vector) -> Vector;
+                hinge_forces(v: &Vector) -> Vector;
+                support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
+                drive_motions(t: f64, out: &mut [[f64; 2]]);
+                drive_pieces(out: &mut [[f64; 2]]);
+                prescribe(t: f64, q: &mut Vector, v: &mut Vector);
+                gravity_energy(q: &Vector) -> f64;
+                support_energy(q: &Vector) -> f64;
+                element_energy(q: &Vector) -> f64;
+                drive_energy(t: f64, q: &Vector) -> f64;
+                potential_energy(t: f64, q: &Vector) -> f64;
+                drive_power(t: f64, q: &Vector, v: &Vector) -> f64;
+                dissipation(t: f64, q: &Vector, v: &Vector) -> f64;
+                mass_matrix(q: &Vector) -> Matrix;
+                mass_matrix_and_bias(q: &Vector, v: &Vector, mass: &mut Matrix) -> Vector;
+                bias(q: &Vector, v: &Vector) -> Vector;
+                forward_dynamics(t: f64, q: &Vector, v: &Vector) -> Vector;
+                solve_mass(q: &Vector, r: &Vector) -> Vector;
+                kinetic_energy(q: &Vector, v: &Vector) -> f64;
+                factorise(q: &Vector, resistance: &Vector, base: &BaseMatrix) -> Factors;
+                solve(factors: &Factors, r: &Vector) -> Vector;
+                joint_impedances(out: &mut [[f64; 2]]);
+                base_stiffness(q: &Vector) -> BaseMatrix;
+                base_damping(q: &Vector) -> BaseMatrix;
+                static_residual(q: &Vector) -> Vector;
+                tangent_stiffness(q: &Vector) -> Matrix;
+                drive_forces_at_rest(q: &Vector) -> Vector;
+                linearise(q: &Vector) -> Linearisation<N>;
+                transform_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
+                transform_second_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
+            }
+
+            /// Accelerations of eight cranes.
+            #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
+            pub fn lane_forward_dynamics(cranes: &Lanes, t: f64x8, q: &LaneVector, v: &LaneVector) -> LaneVector {
+                cranes.forward_dynamics(t, q, v)
+            }
+
+            /// Another value of a live parameter.
+            #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
+            pub fn set_parameter(crane: &mut Crane, index: usize, value: f64) -> Result<(), ParameterError> {
+                crane.set_parameter(index, value)
+            }
+
+            /// Other values of the first live parameters.
+            #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
+            pub fn set_parameters(crane: &mut Crane, values: &[f64]) -> Result<(), ParameterError> {
+                crane.set_parameters(values)
+            }
+
+            /// One step of the motion; false where an acceleration is not finite.
+            #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
+            pub fn step(crane: &Crane, t: f64, h: f64, state: &mut State<N>) -> bool {
+                rk4::step(crane, t, h, state).is_ok()
+            }
+        }
+    };
 }
 
-/// Coordinates, velocities or generalized forces.
-pub type Vector = SVector<f64, N>;
-/// Mass or stiffness.
-pub type Matrix = SMatrix<f64, N, N>;
-
-/// One function a method of the traits.
+/// One function per method.
 macro_rules! exported {
-    ($($name:ident($($argument:ident: $of:ty),*) $(-> $result:ty)?;)*) => {
+    ($crane:ident; $($name:ident($($argument:ident: $of:ty),*) $(-> $result:ty)?;)*) => {
         $(
             #[doc = concat!("`", stringify!($name), "` of the generated crane.")]
             #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
-            pub fn $name(crane: &Crane, $($argument: $of),*) $(-> $result)? {
+            pub fn $name(crane: &$crane, $($argument: $of),*) $(-> $result)? {
                 crane.$name($($argument),*)
             }
         )*
     };
 }
+use exported;
 
-exported! {
-    transforms(q: &Vector, out: &mut [Matrix4<f64>]);
-    points(q: &Vector, out: &mut [Vector3<f64>]);
-    point_velocities(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
-    forces(t: f64, q: &Vector, v: &Vector) -> Vector;
-    support_forces(q: &Vector, v: &Vector) -> Vector;
-    element_forces(q: &Vector, v: &Vector) -> Vector;
-    drive_forces(t: f64, q: &Vector, v: &Vector) -> Vector;
-    hinge_forces(v: &Vector) -> Vector;
-    support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
-    drive_motions(t: f64, out: &mut [[f64; 2]]);
-    gravity_energy(q: &Vector) -> f64;
-    support_energy(q: &Vector) -> f64;
-    element_energy(q: &Vector) -> f64;
-    drive_energy(t: f64, q: &Vector) -> f64;
-    potential_energy(t: f64, q: &Vector) -> f64;
-    drive_power(t: f64, q: &Vector, v: &Vector) -> f64;
-    dissipation(t: f64, q: &Vector, v: &Vector) -> f64;
-    mass_matrix(q: &Vector) -> Matrix;
-    bias(q: &Vector, v: &Vector) -> Vector;
-    kinetic_energy(q: &Vector, v: &Vector) -> f64;
-    static_residual(q: &Vector) -> Vector;
-    tangent_stiffness(q: &Vector) -> Matrix;
-    linearise(q: &Vector) -> Linearisation<N>;
-    transform_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
-    transform_second_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
+crane! {
+    /// The reference crane.
+    eight_link_flexible
 }
-
-/// Another value of a live parameter.
-#[cfg_attr(feature = "no-panic", no_panic::no_panic)]
-pub fn set_parameter(crane: &mut Crane, index: usize, value: f64) -> Result<(), ParameterError> {
-    crane.set_parameter(index, value)
-}
-
-/// Other values of the first live parameters.
-#[cfg_attr(feature = "no-panic", no_panic::no_panic)]
-pub fn set_parameters(crane: &mut Crane, values: &[f64]) -> Result<(), ParameterError> {
-    crane.set_parameters(values)
-}
-
-/// One step of the motion; false where the mass matrix is not positive definite.
-#[cfg_attr(feature = "no-panic", no_panic::no_panic)]
-pub fn step(crane: &Crane, t: f64, h: f64, state: &mut State<N>) -> bool {
-    rk4::step(crane, t, h, state).is_ok()
+crane! {
+    /// Exact kinematics, rotation vectors, a rigid drive, rotors.
+    exact
 }
 
 /// What a panic does is up to whoever owns the machine. `std` has a handler of its own; two of them do not compile.

@@ -1,46 +1,75 @@
-//! Calls every function of the crane, so that the linker has to find all of them free of panics.
+//! Calls every function of the cranes, so that the linker has to find all of them free of panics.
 
 use std::hint::black_box;
 
 use crane_model::dynamics::rk4::State;
 use crane_model::nalgebra::{Matrix4, Vector3};
-use no_std_crane::{Crane, DESCRIPTION, Vector};
+use crane_model::support::lanes::splat;
+use crane_model::{Ensemble, Implicit};
+
+/// Calls every function of a crane.
+macro_rules! call_all {
+    ($crane:ident) => {{
+        use no_std_crane::$crane::{self as of, BaseMatrix, Crane, DESCRIPTION, LaneVector, Matrix, Vector};
+        let mut crane = black_box(Crane::default());
+        let (t, mut q, mut v) = black_box((0.5, Vector::from_column_slice(&DESCRIPTION.guess), Vector::repeat(0.1)));
+        let pairs: usize =
+            DESCRIPTION.bodies.iter().map(|b| b.degrees_of_freedom * (b.degrees_of_freedom + 1) / 2).sum();
+        let mut matrices = vec![Matrix4::zeros(); black_box(pairs)];
+        let mut vectors = vec![Vector3::zeros(); black_box(DESCRIPTION.supports.len().max(DESCRIPTION.points.len()))];
+        let mut motions = vec![[0.0; 2]; black_box(DESCRIPTION.drives.len())];
+        let pieces = DESCRIPTION.drives.iter().map(|drive| drive.pieces).sum();
+        let mut pieces = vec![[0.0; 2]; black_box(pieces)];
+        let mut impedances = vec![[0.0; 2]; black_box(q.len())];
+        let mut mass = Matrix::zeros();
+        let _ = black_box(of::set_parameter(&mut crane, black_box(0), black_box(400.0)));
+        let _ = black_box(of::set_parameters(&mut crane, black_box(&[400.0])));
+        of::transforms(&crane, &q, &mut matrices);
+        of::points(&crane, &q, &mut vectors);
+        of::point_velocities(&crane, &q, &v, &mut vectors);
+        black_box(of::forces(&crane, t, &q, &v));
+        black_box(of::support_forces(&crane, &q, &v));
+        black_box(of::element_forces(&crane, &q, &v));
+        black_box(of::drive_forces(&crane, t, &q, &v));
+        black_box(of::hinge_forces(&crane, &v));
+        of::support_reactions(&crane, &q, &v, &mut vectors);
+        of::drive_motions(&crane, t, &mut motions);
+        of::drive_pieces(&crane, &mut pieces);
+        of::prescribe(&crane, t, &mut q, &mut v);
+        black_box(of::gravity_energy(&crane, &q));
+        black_box(of::support_energy(&crane, &q));
+        black_box(of::element_energy(&crane, &q));
+        black_box(of::drive_energy(&crane, t, &q));
+        black_box(of::potential_energy(&crane, t, &q));
+        black_box(of::drive_power(&crane, t, &q, &v));
+        black_box(of::dissipation(&crane, t, &q, &v));
+        black_box(of::mass_matrix(&crane, &q));
+        black_box(of::mass_matrix_and_bias(&crane, &q, &v, &mut mass));
+        black_box(of::bias(&crane, &q, &v));
+        black_box(of::forward_dynamics(&crane, t, &q, &v));
+        black_box(of::solve_mass(&crane, &q, &v));
+        black_box(of::kinetic_energy(&crane, &q, &v));
+        let factors: <Crane as Implicit<{ of::N }>>::Factors = of::factorise(&crane, &q, &v, &BaseMatrix::zeros());
+        black_box(of::solve(&crane, &factors, &v));
+        of::joint_impedances(&crane, &mut impedances);
+        black_box(of::base_stiffness(&crane, &q));
+        black_box(of::base_damping(&crane, &q));
+        black_box(of::static_residual(&crane, &q));
+        black_box(of::tangent_stiffness(&crane, &q));
+        black_box(of::drive_forces_at_rest(&crane, &q));
+        black_box(of::linearise(&crane, &q));
+        of::transform_derivatives(&crane, &q, &mut matrices);
+        of::transform_second_derivatives(&crane, &q, &mut matrices);
+        let lanes = Crane::lanes([&crane; 8]);
+        let [lane_q, lane_v] = [&q, &v].map(|x| LaneVector::from_iterator(x.iter().map(|x| splat(*x))));
+        black_box(of::lane_forward_dynamics(&lanes, splat(t), &lane_q, &lane_v));
+        let mut state = State { q, v };
+        black_box(of::step(&crane, t, black_box(1e-4), &mut state));
+        black_box((state, matrices, vectors, motions, pieces, impedances, mass));
+    }};
+}
 
 fn main() {
-    let mut crane = black_box(Crane::default());
-    let (t, q, v) = black_box((0.5, Vector::from_column_slice(DESCRIPTION.guess), Vector::repeat(0.1)));
-    let pairs: usize = DESCRIPTION.bodies.iter().map(|b| b.degrees_of_freedom * (b.degrees_of_freedom + 1) / 2).sum();
-    let mut matrices = vec![Matrix4::zeros(); black_box(pairs)];
-    let mut vectors = vec![Vector3::zeros(); black_box(DESCRIPTION.supports.len().max(DESCRIPTION.points.len()))];
-    let mut motions = vec![[0.0; 2]; black_box(DESCRIPTION.drives.len())];
-    let _ = black_box(no_std_crane::set_parameter(&mut crane, black_box(0), black_box(400.0)));
-    let _ = black_box(no_std_crane::set_parameters(&mut crane, black_box(&[400.0])));
-    no_std_crane::transforms(&crane, &q, &mut matrices);
-    no_std_crane::points(&crane, &q, &mut vectors);
-    no_std_crane::point_velocities(&crane, &q, &v, &mut vectors);
-    black_box(no_std_crane::forces(&crane, t, &q, &v));
-    black_box(no_std_crane::support_forces(&crane, &q, &v));
-    black_box(no_std_crane::element_forces(&crane, &q, &v));
-    black_box(no_std_crane::drive_forces(&crane, t, &q, &v));
-    black_box(no_std_crane::hinge_forces(&crane, &v));
-    no_std_crane::support_reactions(&crane, &q, &v, &mut vectors);
-    no_std_crane::drive_motions(&crane, t, &mut motions);
-    black_box(no_std_crane::gravity_energy(&crane, &q));
-    black_box(no_std_crane::support_energy(&crane, &q));
-    black_box(no_std_crane::element_energy(&crane, &q));
-    black_box(no_std_crane::drive_energy(&crane, t, &q));
-    black_box(no_std_crane::potential_energy(&crane, t, &q));
-    black_box(no_std_crane::drive_power(&crane, t, &q, &v));
-    black_box(no_std_crane::dissipation(&crane, t, &q, &v));
-    black_box(no_std_crane::mass_matrix(&crane, &q));
-    black_box(no_std_crane::bias(&crane, &q, &v));
-    black_box(no_std_crane::kinetic_energy(&crane, &q, &v));
-    black_box(no_std_crane::static_residual(&crane, &q));
-    black_box(no_std_crane::tangent_stiffness(&crane, &q));
-    black_box(no_std_crane::linearise(&crane, &q));
-    no_std_crane::transform_derivatives(&crane, &q, &mut matrices);
-    no_std_crane::transform_second_derivatives(&crane, &q, &mut matrices);
-    let mut state = State { q, v };
-    black_box(no_std_crane::step(&crane, t, black_box(1e-4), &mut state));
-    black_box((state, matrices, vectors, motions));
+    call_all!(eight_link_flexible);
+    call_all!(exact);
 }
