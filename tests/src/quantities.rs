@@ -3,7 +3,7 @@
 use crane_model::dyn_crane::Crane;
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use crane_model::support::lanes::f64x8;
-use crane_model::{Description, LaneDynamics, Linearisation};
+use crane_model::{Description, LaneDynamics, Linearisation, TransformDerivatives};
 
 /// A quantity: its name and the shape of its numbers, row-major.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -92,7 +92,7 @@ pub struct State {
 }
 
 /// All quantities of a generated crane at a state, one after the other.
-pub fn evaluate<const N: usize, C: Crane<N>>(crane: &C, state: &State) -> Vec<f64> {
+pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C, state: &State) -> Vec<f64> {
     let (t, q, v) =
         (state.t, &SVector::<f64, N>::from_column_slice(&state.q), &SVector::<f64, N>::from_column_slice(&state.v));
     let info = crane.description();

@@ -2,13 +2,13 @@
 
 use std::hint::black_box;
 
-use crane_model::CraneModel;
 use crane_model::dyn_crane::Crane;
 use crane_model::nalgebra::{Matrix4, SVector, Vector3};
+use crane_model::{CraneModel, TransformDerivatives};
 use crane_specs as cranes;
 
 /// Calls every function of the traits at the guess; vectors and matrices stay on the stack, lists go into `places`.
-fn every_function<const N: usize>(crane: &mut impl Crane<N>, places: &mut Places) {
+fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivatives<N>), places: &mut Places) {
     let (t, q, v) = (0.7, SVector::<f64, N>::from_column_slice(&crane.description().guess), SVector::repeat(0.1));
     let (q, v) = (&q, &v);
     let _ = black_box(crane.set_parameter(0, black_box(crane.parameter(0))));

@@ -30,6 +30,7 @@ mod own;
 mod page;
 mod parameter_table;
 mod problem;
+mod refinement;
 mod report;
 mod run;
 mod selection;

@@ -13,6 +13,7 @@ use crate::{
     Fleet,
     arguments::Analysis,
     problem::Outcome,
+    refinement,
     report::{Cell, Grid, Report},
     statics::Case,
 };
@@ -28,18 +29,28 @@ pub fn modes(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<
     report.fact("crane", description.name.as_str(), "");
     let step = limit(&modes, &Method::Rk4.stability()).map(|limit| limit.step);
     report.fact("largest stable step", Cell::from(step), "s");
-    report.grid(undamped_modes(&case)?);
+    let changes = refinement::changes(&case, fleet)?;
+    report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
+    report.grid(undamped_modes(&case, changes.as_deref())?);
     report.grid(damped_modes(description, &modes));
     report.print(options.format, out)
 }
 
-/// Undamped modes about an equilibrium as a table.
-pub fn undamped_modes(case: &Case<'_>) -> Outcome<Grid> {
-    let mut grid = Grid::new("undamped", "Undamped modes", &["mode", "frequency Hz", "omega rad/s", "dominated by"]);
+/// Undamped modes about an equilibrium as a table; `changes`: of the lowest ones with twice the sections.
+pub fn undamped_modes(case: &Case<'_>, changes: Option<&[f64]>) -> Outcome<Grid> {
+    let mut headers = vec!["mode", "frequency Hz", "omega rad/s", "dominated by"];
+    if changes.is_some() {
+        headers.insert(2, "with twice the sections %");
+    }
+    let mut grid = Grid::new("undamped", "Undamped modes", &headers);
     for (index, mode) in undamped(&case.rig.small_motions_at(&case.equilibrium.q))?.iter().enumerate() {
         let omega = mode.frequency().map(|_| mode.omega_squared.sqrt());
         let names = names(case.rig.description(), &mode.dominating);
-        grid.row([(index + 1).into(), mode.frequency().into(), omega.into(), names]);
+        let mut row = vec![(index + 1).into(), mode.frequency().into(), omega.into(), names];
+        if let Some(changes) = changes {
+            row.insert(2, changes.get(index).map_or(Cell::Empty, |change| format!("{:+.2}", 100.0 * change).into()));
+        }
+        grid.row(row);
     }
     Ok(grid)
 }

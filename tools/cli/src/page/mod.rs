@@ -22,6 +22,7 @@ use crate::{
     extremes::extremes,
     files, modes, own,
     problem::Outcome,
+    refinement,
     report::Report,
     run::{POSES, Recorded, manoeuvre},
     simulate::summary,
@@ -85,13 +86,13 @@ fn data(
     }
     Ok(json!({
         "cranes": cranes,
-        "tables": all_tables(cases, limits, runs)?.page(),
+        "tables": all_tables(fleet, cases, limits, runs)?.page(),
         "command": own::typed(),
         "spec": cases.last().and_then(|case| fleet.spec(&case.rig.description().name)),
     }))
 }
 
-fn all_tables(cases: &[Case<'_>], limits: Limits, runs: &[Recorded]) -> Outcome<Report> {
+fn all_tables(fleet: &Fleet, cases: &[Case<'_>], limits: Limits, runs: &[Recorded]) -> Outcome<Report> {
     let mut report = tables(cases, limits);
     caution_of_runs(&mut report, cases.iter().map(|case| case.label).zip(runs));
     if let [rigid, flexible] = cases {
@@ -102,7 +103,9 @@ fn all_tables(cases: &[Case<'_>], limits: Limits, runs: &[Recorded]) -> Outcome<
         report.grid(extremes(case.rig.description(), &labelled));
         report.grid(summary(&labelled));
         if case.equilibrium.is_stable() {
-            report.grid(modes::undamped_modes(case)?);
+            let changes = refinement::changes(case, fleet)?;
+            report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
+            report.grid(modes::undamped_modes(case, changes.as_deref())?);
             let poses = manoeuvre(case.rig, &Start::of(case.rig)?, POSES)?;
             report.grid(modes::damped_modes(case.rig.description(), poses.first().map_or(&[], |pose| &pose.modes)));
             report.grid(stability::limits(case.rig.description(), &poses));

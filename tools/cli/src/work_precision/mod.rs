@@ -6,7 +6,6 @@ mod page;
 mod reference;
 mod sections;
 mod trace;
-mod variants;
 #[cfg(feature = "yardstick")]
 mod yardstick;
 
@@ -25,6 +24,7 @@ use crate::{
     arguments::WorkPrecision,
     files, own,
     problem::{Outcome, Problem},
+    refinement,
     report::{Grid, Report},
     run::{Bound, POSES, SAFE, manoeuvre, progress},
     simulate::{file_list, write_figure},
@@ -47,7 +47,7 @@ pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Writ
     };
     let counts = options.sections.0.as_slice();
     let known = fleet.names();
-    let missing = counts.iter().any(|&count| !known.contains(&variants::name(&crane, count).as_str()));
+    let missing = counts.iter().any(|&count| !known.contains(&refinement::name(&crane, count).as_str()));
     let flexible = if missing { others(&crane, &text, counts) } else { Vec::new() };
     // Times are those of machine code.
     if flexible.is_empty() && choice.file().is_none() && fleet.is_compiled(&crane) {
@@ -65,7 +65,7 @@ pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Writ
 
 /// Names and specs of a crane with other numbers of sections; none of a crane without flexible links.
 fn others(crane: &str, text: &str, counts: &[usize]) -> Vec<(String, String)> {
-    let other = |&count: &usize| Some((variants::name(crane, count), variants::spec(crane, text, count)?));
+    let other = |&count: &usize| Some((refinement::name(crane, count), refinement::spec(crane, text, count)?));
     counts.iter().filter_map(other).collect()
 }
 
@@ -113,7 +113,7 @@ fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn
         let variants = counts.iter().map(|&count| {
             announce(&bar, count);
             let rig =
-                options.analysis.crane.parameters.crane(&variants::name(&description.name, count), false, fleet)?;
+                options.analysis.crane.parameters.crane(&refinement::name(&description.name, count), false, fleet)?;
             variant(rig.as_ref(), &self::start(rig.as_ref())?, &base, count, repeats)
         });
         let variants: Vec<Variant> = variants.collect::<Outcome<_>>()?;

@@ -1,0 +1,99 @@
+//! The same crane with other numbers of sections, and how much its frequencies change with twice as many.
+
+use crane_codegen::{
+    SourceFile,
+    diagnostic::Span,
+    read,
+    spec::{Analysis, Sections},
+};
+use crane_live::LiveCrane;
+use crane_model::{dyn_crane::DynCrane, modes::undamped};
+
+use crate::{Fleet, problem::Outcome, statics::Case};
+
+/// Most coordinates of a crane whose frequencies are computed with twice the sections too: more take seconds.
+const MOST_COORDINATES: usize = 120;
+/// Modes from the lowest on that sections are to resolve; higher ones are those of the elements.
+const LOWEST: usize = 6;
+/// Change of a frequency that is worth a caution.
+const CAUTION: f64 = 0.01;
+
+/// Relative changes of the frequencies with twice the sections, lowest first; `None` for a crane without sections, with too many,
+/// or without a stable pose.
+pub fn changes(case: &Case<'_>, fleet: &Fleet) -> Outcome<Option<Vec<f64>>> {
+    let description = case.rig.description();
+    let text = fleet.spec(&description.name).filter(|_| description.coordinates.len() <= MOST_COORDINATES);
+    let Some(text) = text.and_then(|text| with(&description.name, text, |count| 2.0 * count)) else { return Ok(None) };
+    let Ok(mut finer) = LiveCrane::from_spec(&SourceFile::new(description.name.to_string(), text)) else {
+        return Ok(None);
+    };
+    let values: Vec<f64> = (0..description.parameters.len()).map(|index| case.rig.parameter(index)).collect();
+    if DynCrane::set_parameters(&mut finer, &values).is_err() {
+        return Ok(None);
+    }
+    let finer = Case::new(case.label, &finer);
+    if !finer.equilibrium.is_stable() {
+        return Ok(None);
+    }
+    let frequencies = |case: &Case<'_>| -> Outcome<Vec<Option<f64>>> {
+        let modes = undamped(&case.rig.small_motions_at(&case.equilibrium.q))?;
+        Ok(modes.iter().take(LOWEST).map(crane_model::modes::Mode::frequency).collect())
+    };
+    let pairs = frequencies(case)?.into_iter().zip(frequencies(&finer)?);
+    Ok(Some(pairs.map_while(|(coarse, fine)| Some(fine? / coarse? - 1.0)).collect()))
+}
+
+/// Names the lowest mode whose frequency the sections do not resolve.
+pub fn caution(changes: &[f64]) -> Option<String> {
+    let (index, change) = changes.iter().enumerate().find(|(_, change)| change.abs() > CAUTION)?;
+    Some(format!(
+        "the frequency of mode {} changes by {:.1} % with twice the sections: give the beams more `sections`",
+        index + 1,
+        100.0 * change
+    ))
+}
+
+/// Name of a crane with some number of sections of each flexible link.
+pub fn name(crane: &str, sections: usize) -> String {
+    format!("{crane}_sections_{sections}")
+}
+
+/// Spec of that crane.
+pub fn spec(crane: &str, text: &str, sections: usize) -> Option<String> {
+    with(&name(crane, sections), text, |_| sections as f64)
+}
+
+/// A spec under another name with other numbers of sections, by exchanging values in its text; `None` for a crane without
+/// sections.
+///
+/// What a run of one crane does not need is left out: eight cranes a call take rustc as long as all the rest.
+fn with(name: &str, text: &str, sections: impl Fn(f64) -> f64) -> Option<String> {
+    let spec = read(&SourceFile::new(name, text)).ok()?;
+    let spec = &spec.crane;
+    let beams = spec.links.value.iter().flatten().filter_map(|link| link.value.as_ref()?.beam.as_ref()?.value.as_ref());
+    let counts = beams.filter_map(|beam| beam.sections.as_ref());
+    let mut values: Vec<_> = counts
+        .filter_map(|given| match &given.value {
+            Some(Sections::Count(count)) => Some((given.span, sections(*count).to_string())),
+            _ => None,
+        })
+        .collect();
+    if values.is_empty() {
+        return None;
+    }
+    values.push((spec.name.span, name.to_owned()));
+    let analyses = spec.analyses.as_ref().and_then(|given| given.value.as_deref()).unwrap_or_default();
+    if let Some(index) = analyses.iter().position(|analysis| analysis.value == Some(Analysis::Ensemble)) {
+        // With the comma that sets it apart from its neighbour.
+        let start = index.checked_sub(1).map_or(analyses[index].span.start, |before| analyses[before].span.end);
+        let end = if index > 0 { analyses[index].span.end } else { analyses.get(1)?.span.start };
+        values.push((Span { start, end }, String::new()));
+    }
+    // From the last on: places before it stay.
+    values.sort_unstable_by_key(|(span, _)| std::cmp::Reverse(span.start));
+    let mut text = text.to_owned();
+    for (span, value) in values {
+        text.replace_range(span.start..span.end, &value);
+    }
+    Some(text)
+}
