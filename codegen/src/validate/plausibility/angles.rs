@@ -84,10 +84,10 @@ impl Look<'_> {
         {
             self.warn(rule::degrees(
                 at,
-                &format!("the speed of `{coordinate}`"),
+                format!("the speed of `{coordinate}`"),
                 rate,
                 "rad/s",
-                &format!("{} turns per second", rounded(rate / TAU)),
+                format!("{} turns per second", rounded(rate / TAU)),
             ));
         }
     }
@@ -112,7 +112,7 @@ impl Look<'_> {
         if let Some(angle) = self.bare(scalar)
             && angle.abs() > FULL_TURN
         {
-            self.warn(rule::degrees(at, what, angle, "rad", &format!("{} turns", rounded(angle / TAU))));
+            self.warn(rule::degrees(at, what, angle, "rad", format!("{} turns", rounded(angle / TAU))));
         }
     }
 
