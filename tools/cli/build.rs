@@ -20,17 +20,18 @@ fn main() -> io::Result<()> {
     specs.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
     // The order of a folder differs from machine to machine.
     specs.sort();
-    let mut texts = String::new();
+    let mut texts = Vec::new();
     for spec in &specs {
         let name = spec.file_stem().unwrap_or_default().to_string_lossy();
-        texts += &format!("({name:?}, {:?}),", fs::read_to_string(spec)?);
+        texts.push(format!("({name:?}, {:?}),", fs::read_to_string(spec)?));
         if COMPILED.contains(&name.as_ref()) {
             build::compile_spec_for(spec, Some(Analyses::COMMAND));
         }
     }
     let module = format!(
-        "crane_model::cranes! {{ {} }}\n\n/// Names and specs (YAML) of all shipped cranes.\nconst SPECS: &[(&str, &str)] = &[{texts}];\n",
+        "crane_model::cranes! {{ {} }}\n\n/// Names and specs (YAML) of all shipped cranes.\nconst SPECS: &[(&str, &str)] = &[{}];\n",
         COMPILED.join(", "),
+        texts.concat(),
     );
     fs::write(build::out_dir().join("cranes.rs"), module)
 }
