@@ -521,9 +521,9 @@ pub enum Quantity {
     Forces,
     /// Accelerations q̈, m/s² and rad/s²
     Accelerations,
-    /// ∂E_p/∂q at t = 0, N and N m
+    /// Slope of the potential energy at t = 0, N and N m
     StaticResidual,
-    /// ∂²E_p/∂q² at t = 0, N/m and N m/rad
+    /// Second derivative of the potential energy at t = 0, N/m and N m/rad
     TangentStiffness,
     /// Energies: kinetic, of gravity, supports, elements and drives; J
     Energies,

@@ -110,8 +110,9 @@ impl Timing {
             })?;
             variable.set(&mut start, number);
         }
-        if !self.start.is_empty() {
-            start.what += &format!(", {}", self.start.join(", "));
+        for given in &self.start {
+            start.what += ", ";
+            start.what += given;
         }
         Ok(start)
     }
