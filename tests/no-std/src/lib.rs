@@ -127,7 +127,6 @@ macro_rules! exported {
         )*
     };
 }
-use exported;
 
 crane! {
     /// The reference crane.
