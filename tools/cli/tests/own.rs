@@ -107,8 +107,8 @@ fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
     };
     let alone = statics(Some(""));
     assert!(alone.status.success(), "{}", text(&alone.stderr));
-    let folders = fs::read_dir(&cache).expect("a cache").filter_map(|entry| Some(entry.ok()?.path()));
-    let folder = folders.filter(|path| path.display().to_string().contains("crane-knuckle_boom")).next();
+    let mut folders = fs::read_dir(&cache).expect("a cache").filter_map(|entry| Some(entry.ok()?.path()));
+    let folder = folders.find(|path| path.display().to_string().contains("crane-knuckle_boom"));
     fs::write(folder.expect("a kept crane").join("program"), "rubbish").expect("a file");
     let mended = statics(None);
     assert!(mended.status.success() && mended.stdout == alone.stdout, "{}", text(&mended.stderr));
