@@ -9,7 +9,7 @@
 //! The program of this package links only where the optimiser has found every path to a panic impossible:
 //!
 //! ```text
-//! cargo build --profile no-panic -p no-std-crane --features no-panic
+//! cargo build --release -p no-std-crane --features no-panic --config 'profile.release.lto="fat"' --config profile.release.codegen-units=1
 //! ```
 
 #![no_std]

@@ -19,17 +19,8 @@ pub fn check() -> Result<(), String> {
     let mut command = Command::new(cargo());
     command.args(["test", "--release", "--package", "crane-tests"]).current_dir(workspace::root());
     command.args(TESTS.iter().flat_map(|test| ["--test", test]));
-    command.args(["--target", &host()?]).env("RUSTFLAGS", "-C target-cpu=x86-64-v3");
+    command.args(["--target", &workspace::host()?]).env("RUSTFLAGS", "-C target-cpu=x86-64-v3");
     finish(&mut command)
-}
-
-/// The target that this machine is.
-fn host() -> Result<String, String> {
-    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let output = Command::new(rustc).arg("-vV").output().map_err(|error| format!("rustc: {error}"))?;
-    let text = String::from_utf8_lossy(&output.stdout);
-    let host = text.lines().find_map(|line| line.strip_prefix("host: "));
-    host.map(str::to_owned).ok_or_else(|| "rustc does not name its host".to_owned())
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -7,6 +7,7 @@ mod fused;
 mod imports;
 mod manual;
 mod new_crane;
+mod no_panic;
 mod oracles;
 mod python;
 mod report;
@@ -36,7 +37,7 @@ fn main() -> ExitCode {
     let steps = match task {
         "test" => [prepare(), lint(), tests(), oracles()].concat(),
         "lint" => lint(),
-        "oracles" => [prepare(), oracles()].concat(),
+        "oracles" => [prepare(), vec![programs()], oracles()].concat(),
         "performance" => {
             vec![Step::check("times of the generated functions and of other libraries", oracles::performance)]
         }
@@ -120,14 +121,20 @@ fn lint() -> Vec<Step> {
 /// Which cranes the benchmarks compile: to look at them the smallest will do.
 const SECTIONS: &str = "CRANE_BENCH_SECTIONS";
 
+/// All packages together, as the tests build them: alone, a package would choose other features of what it builds on.
+fn programs() -> Step {
+    Step::cargo("all programs", &["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins"])
+}
+
 fn tests() -> Vec<Step> {
     vec![
+        programs(),
         Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench"]),
         Step::check("tests with fused multiply-adds", fused::check),
-        Step::cargo("the default run", &["run", "--release"]),
+        Step::program("the default run", "crane"),
         Step::check("the report page is current", report::is_current),
         Step::check("the report page in a browser", report::in_browser),
-        Step::cargo("a crane of one's own", &["run", "--release", "--package", "own-crane"]),
+        Step::program("the example of your own crane", "own-crane"),
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.
@@ -139,20 +146,12 @@ fn tests() -> Vec<Step> {
             ]
             .concat(),
         ),
-        // It links only where the optimiser finds every path to a panic impossible.
-        Step::cargo(
-            "a crane without panics",
-            &["build", "--profile", "no-panic", "--features", "no-panic", "--package", "no-std-crane"],
-        ),
+        Step::check("cranes without panics", no_panic::check),
     ]
 }
 
 fn oracles() -> Vec<Step> {
     vec![
-        Step::cargo(
-            "the program that evaluates generated code",
-            &["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins"],
-        ),
         Step::check("CasADi's own checks notice errors", oracles::self_test),
         Step::check("generated code against CasADi", oracles::check),
         Step::check("runs against SciPy's Radau", oracles::motion),

@@ -15,6 +15,7 @@ pub struct Step {
 #[derive(Clone)]
 enum Action {
     Cargo { arguments: Vec<String>, environment: Vec<(&'static str, &'static str)> },
+    Program(&'static str),
     Check(fn() -> Result<(), String>),
 }
 
@@ -30,6 +31,11 @@ impl Step {
         Step { title, action: Action::Check(check) }
     }
 
+    /// Runs a program of the workspace, which is built, at the workspace's root.
+    pub fn program(title: &'static str, name: &'static str) -> Self {
+        Step { title, action: Action::Program(name) }
+    }
+
     /// The same with an environment variable.
     pub fn with(mut self, name: &'static str, value: &'static str) -> Self {
         if let Action::Cargo { environment, .. } = &mut self.action {
@@ -42,6 +48,10 @@ impl Step {
     pub fn run(&self) -> Result<(), String> {
         match &self.action {
             Action::Check(check) => check(),
+            Action::Program(name) => {
+                let program = workspace::target().join("release").join(name);
+                finish(Command::new(program).current_dir(workspace::root()))
+            }
             Action::Cargo { arguments, environment } => {
                 let mut command = Command::new(cargo());
                 command.args(arguments).envs(environment.iter().copied()).current_dir(workspace::root());

@@ -1,6 +1,7 @@
 //! Files of the workspace.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::{env, fs};
 
 /// The workspace's root.
@@ -36,4 +37,13 @@ pub fn files(folder: &str, extension: &str) -> Result<Vec<String>, String> {
     }
     found.sort();
     Ok(found)
+}
+
+/// The target that this machine is.
+pub fn host() -> Result<String, String> {
+    let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let output = Command::new(rustc).arg("-vV").output().map_err(|error| format!("rustc: {error}"))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let host = text.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).ok_or_else(|| "rustc does not name its host".to_owned())
 }
