@@ -1,4 +1,4 @@
-//! docs/SPEC.md tells of every key and every rule; specs in the documentation are cranes; links lead somewhere.
+//! docs/SPEC.md describes every key and every rule; specs in the documentation are cranes; links lead somewhere.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! URDF and MJCF: what is written of the shipped cranes, what is read of robots, and what is said of files that are no crane.
+//! URDF and MJCF: what is written of the shipped cranes, what is read of robots, and what is said of files that are not cranes.
 //!
 //! That other programs compute the same of these files is checked by `tools/peers/exchange.py`.
 

@@ -86,7 +86,7 @@ fn work_of_the_drive_is_energy_and_dissipation() {
 
 #[test]
 fn results_come_at_their_own_interval() {
-    // 0.03 s is no multiple of 7 ms and 0.1 s none of 0.03 s: steps shrink to fit, the end is met.
+    // 0.03 s is not a multiple of 7 ms, nor 0.1 s of 0.03 s: steps shrink to fit, the end is met.
     let lift = Lift::default();
     let settings =
         Settings { duration: 0.1, step: 7e-3, output: 0.03, ..classical(&common::description("", &[], &[])) };
@@ -157,7 +157,7 @@ fn a_joint_without_inertia_is_named() {
 
 #[test]
 fn a_step_out_of_all_bounds_is_no_want_of_inertia() {
-    // The first stage already overflows: the mass matrix there is no number, that of the start is sound.
+    // The first stage already overflows: the mass matrix there is not a number, that of the start is sound.
     let pendulum = DoublePendulum { gravity: 1e300, ..DoublePendulum::hanging() };
     let settings = Settings { step: 1e10, output: 1e10, duration: 1e10, ..classical(pendulum.description) };
     let stopped =

@@ -70,7 +70,7 @@ impl<const N: usize, C: Dynamics<N>> Implicit<N> for Misled<C> {
     }
 }
 
-/// End of a second from `start` in equal steps of a method, and of its embedded formula, which starts every step anew.
+/// End of a second from `start` in equal steps of a method, and of its embedded formula, which starts every step afresh.
 fn run<const N: usize>(
     steps: i32,
     start: State<N>,

@@ -21,7 +21,7 @@ impl Precise {
     /// The nearest number of 64 bits.
     ///
     /// # Panics
-    /// If it is no number.
+    /// If it is not a number.
     #[must_use]
     pub fn round(&self) -> f64 {
         self.0.to_string().parse().expect("a finite number")

@@ -1,6 +1,6 @@
 //! Generated code that a person can read in a diff, compiled with warnings denied, and operation counts of all specs.
 //!
-//! `cargo xtask bless` writes the files anew; commit them with the reason.
+//! `cargo xtask bless` writes the files again; commit them with the reason.
 
 use std::fmt::Write;
 use std::path::Path;

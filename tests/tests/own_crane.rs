@@ -1,4 +1,4 @@
-//! The crane of one's own: as shown, sound, at rest.
+//! The example of your own crane: as shown, sound, at rest.
 
 use std::fs;
 

@@ -219,7 +219,7 @@ INTERNAL = [SPRINGS, PRESCRIBED]
 def solutions(values, v, prescribed):
     """Accelerations and solutions of linear systems, by dense factors of the derived matrices; efforts of rigid drives.
 
-    Prescribed coordinates are no unknowns: with P these and U the others, `A_UU q̈_U = (e + f)_U - A_UP q̈_P`. What the motion
+    Prescribed coordinates are not unknowns: with P these and U the others, `A_UU q̈_U = (e + f)_U - A_UP q̈_P`. What the motion
     takes, `(A q̈ - e - f)_P`, joins the forces.
     """
     count = v.shape[1]

@@ -11,7 +11,7 @@ PERTURBATION = 1e-8
 def perturb(quantity, values, rng, perturbation=PERTURBATION):
     """The values with one entry, picked at random, wrong by the perturbation in the state where it is largest.
 
-    Where all is zero, an entry is no longer so.
+    Where all is zero, an entry is not.
     """
     size = np.abs(values).max(axis=0)
     entry = rng.choice(np.flatnonzero(size >= negligible_entry(quantity) * size.max()))

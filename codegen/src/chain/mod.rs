@@ -333,7 +333,7 @@ impl Chain {
         steps.any(|step| matches!(step, Step::RotationVector(ids) if ids.contains(&id)))
     }
 
-    /// Rigid drives: their coordinates are prescribed, and no unknowns.
+    /// Rigid drives: their coordinates are prescribed, not unknown.
     pub fn rigid_drives(&self) -> impl Iterator<Item = &Drive> {
         self.drives.iter().filter(|drive| drive.transmission == Transmission::Rigid)
     }

@@ -113,7 +113,7 @@ catalogue! {
     /// A parameter is used somewhere.
     E027 unused_parameter(name) "parameter `{name}` is never used", "no number refers to it",
         "write `{name}` where a number stands, or remove it";
-    /// The columns of a point in the results, `<point>_x`, `_y`, `_z`, are no other column.
+    /// The columns of a point in the results, `<point>_x`, `_y`, `_z`, are not other columns.
     E028 shared_column(point, column) "point `{point}` shares a column of the results", "`{column}` is a column already",
         "rename the point, such as `{point}_point`";
 

@@ -10,7 +10,7 @@ macro_rules! cranes {
     ($($name:ident),* $(,)?) => {
         $(
             #[doc = concat!("The crane `", stringify!($name), "`.")]
-            // Words of a spec, such as `[A]`, are no links.
+            // Words of a spec, such as `[A]`, are not links.
             #[allow(clippy::all, clippy::pedantic, rustdoc::broken_intra_doc_links)]
             pub mod $name {
                 include!(concat!(env!("OUT_DIR"), "/", stringify!($name), ".rs"));

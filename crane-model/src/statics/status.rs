@@ -20,7 +20,7 @@ pub enum Status {
         /// Coordinates that move in that direction.
         coordinates: Vec<Text>,
     },
-    /// Forces or stiffnesses at the guess are no finite numbers.
+    /// Forces or stiffnesses at the guess are not finite numbers.
     Overflow,
     /// No equilibrium found within the allowed iterations, or no step made the residual smaller.
     NotConverged,

@@ -65,7 +65,7 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
     }
 
     /// The lower triangle, column by column: row i of the upper triangle is column i of the lower one. What stands above the
-    /// diagonal is no result.
+    /// diagonal is not a result.
     #[inline]
     pub fn fill(&mut self, points: &[Point], lower: &mut [[f64; N]; N]) {
         let eights = &mut self.eights;

@@ -3,7 +3,7 @@
 //! Reduction to `x = n π/2 + y`, |y| ≤ π/4, by the four parts of π/2 of W. J. Cody and W. Waite, *Software Manual for the
 //! Elementary Functions*, Prentice-Hall 1980, with the rounding error of y carried along; then the polynomials of K. C. Ng
 //! (`fdlibm`, Sun Microsystems 1993). The error is below 0.8 units in the last place for every angle. Angles of 2²⁰ quarter
-//! turns or more, and those that are no number, go one by one through the standard library's functions.
+//! turns or more, and those that are not numbers, go one by one through the standard library's functions.
 
 use wide::{bytemuck::cast, f64x8, i64x8};
 
@@ -91,13 +91,13 @@ pub fn sin_cos_lanes<const K: usize>(angles: [f64x8; K]) -> ([f64x8; K], [f64x8;
     (sines, cosines)
 }
 
-/// False too for what is no number.
+/// False too for what is not a number.
 #[inline]
 fn is_small(x: f64x8) -> bool {
     x.abs().simd_lt(f64x8::splat(LARGEST)).all()
 }
 
-/// Large angles, and those that are no number, by the standard library: a result does not depend on the angles beside it.
+/// Large angles, and those that are not numbers, by the standard library: a result does not depend on the angles beside it.
 #[cold]
 #[inline(never)]
 fn replace_large(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {

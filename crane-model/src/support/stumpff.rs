@@ -1,7 +1,7 @@
 //! Stumpff's functions `c_k(x) = Σ (−x)^i/(2i + k)!` of all arguments of a state in one pass, eight at a time.
 //!
 //! What is made of a rotation vector ρ is made of them at x = ρ·ρ: `c_0` is the cosine of its length, `c_1` the sine over the
-//! length. They are entire, so there is no branch near zero. Up to x = 10, where a rotation has gone beyond 180°, c₇ and c₈
+//! length. They are entire, so they need no branch near zero. Up to x = 10, where a rotation has gone beyond 180°, c₇ and c₈
 //! are polynomials, interpolated at Chebyshev's nodes to 3e-18 and 2e-16 of their size, and the others follow downward by
 //! `c_k = 1/k! − x c_{k+2}`, each step of which adds half a unit in the last place and shrinks what was there before. The error
 //! is below 3.2 units in the last place for c₂ to c₅, and below 1e-15 for c₀ and c₁, which have zeros. Larger arguments go one by one

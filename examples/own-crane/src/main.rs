@@ -1,4 +1,4 @@
-//! A crane of one's own: where it rests, and how it lifts its load.
+//! Your own crane: where it rests, and how it lifts its load.
 
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -30,9 +30,9 @@ Examples:
   crane work-precision                 what accuracy costs: methods, steps, tolerances, numbers of sections
   crane stress --quick                 stiff and extreme cranes, as expected or not
   crane check my.yaml; crane run my.yaml
-                                       a crane of one's own: its mistakes; everything about it
+                                       your own crane: its mistakes; everything about it
   crane explain my.yaml --svg my.svg   its chain, in words and as a picture
-  crane new my-crane --from cantilever a crate that compiles a crane of one's own
+  crane new my-crane --from cantilever a crate that compiles your own crane
   crane export my.yaml --format urdf -o my.urdf
                                        the chain for other programs, its springs in my.springs.yaml beside it
   crane import robot.urdf -o my.yaml   a spec from a robot of others
@@ -83,7 +83,7 @@ pub enum Action {
     Info(Analysis),
     /// T, ∂T/∂q, ∂²T/∂q∂q, A and e at a state, for checks by other programs
     Eval(Eval),
-    /// A crate for a crane of one's own, begun from a shipped one
+    /// A crate for your own crane, begun from a shipped one
     New(New),
     /// Check a spec: every mistake in it, or what is implausible
     Check {
@@ -346,7 +346,7 @@ pub struct Page {
     pub file: PathBuf,
 }
 
-/// A crate of one's own.
+/// A crate for your own crane.
 #[derive(Debug, Args)]
 pub struct New {
     /// Folder to make; its name is the crate's and the crane's

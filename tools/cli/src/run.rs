@@ -117,7 +117,7 @@ impl Timing {
                 let help =
                     if what == "tolerance" { "number, such as 1e-4" } else { "number of seconds, such as 0.001" };
                 return Err(Problem::usage(
-                    format!("`--{name} {value}` is no {what}"),
+                    format!("`--{name} {value}` is not a valid {what}"),
                     format!("write a positive {help}"),
                 ));
             }
@@ -139,7 +139,7 @@ impl Timing {
             let (least, greatest) = TIMES;
             if !(least..=greatest).contains(&value) {
                 return Err(Problem::usage(
-                    format!("`--{name} {value:e}` is no time of a crane"),
+                    format!("`--{name} {value:e}` is out of range"),
                     format!("write seconds from {least:e} to {greatest:e}"),
                 ));
             }
@@ -235,7 +235,7 @@ fn step_limit(rig: &dyn DynCrane, start: &Start) -> Option<Bound> {
     Bound::of(&manoeuvre(rig, start, POSES).ok()?, Method::Rk4)
 }
 
-/// A progress bar in seconds of simulated time; hidden where standard error is no terminal.
+/// A progress bar in seconds of simulated time; hidden where standard error is not a terminal.
 pub fn progress(seconds: f64) -> ProgressBar {
     /// Units of the bar a second.
     const MILLISECONDS: f64 = 1e3;

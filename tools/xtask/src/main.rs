@@ -9,6 +9,7 @@ mod manual;
 mod new_crane;
 mod no_panic;
 mod oracles;
+mod prose;
 mod python;
 mod report;
 mod step;
@@ -29,7 +30,7 @@ const USAGE: &str = "cargo xtask TASK
            time the generated functions and other libraries in turns, write docs/performance.md; g++ or clang needed
   error-vs-runtime
            time methods and numbers of sections of the reference crane, write docs/error-vs-runtime.md
-  bless    write anew what tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md";
+  bless    rewrite what tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -107,6 +108,7 @@ fn lint() -> Vec<Step> {
     vec![
         Step::cargo("formatting", &["fmt", "--all", "--", "--check"]),
         Step::check("import rules", imports::check),
+        Step::check("plain English", prose::check),
         Step::check("docs/EQUATIONS.md is current", equations::check),
         Step::cargo("clippy", &["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
             .with(SECTIONS, "0"),

@@ -180,7 +180,7 @@ impl Names {
     }
 }
 
-/// A `snake_case` identifier that is no keyword.
+/// A `snake_case` identifier that is not a keyword.
 pub(super) fn identifier(name: &str) -> String {
     let mut text = String::new();
     let mut lower = false;

@@ -20,7 +20,7 @@ catalogue! {
     U007 two_parents(link, other) "link `{link}` hangs on two joints", "and on joint `{other}`",
         "a crane is an open chain: cut the loop at one of the two joints";
     /// All links hang together, on one that hangs on none.
-    U008 not_a_tree(problem) "the links are no tree: {problem}", "all links but one hang on a joint, in the end on that one", "let every link but one be the child of one joint";
+    U008 not_a_tree(problem) "the links are not a tree: {problem}", "all links but one hang on a joint, in the end on that one", "let every link but one be the child of one joint";
     /// Joints turn about an axis, slide along it, or stand still.
     U009 unsupported(joint, kind) "joint `{joint}` is {kind}, which no joint of a crane is", "revolute, continuous, prismatic or fixed",
         "hold it at zero by `--fix {joint}`, or describe it by joints of one axis each; a base that is free is `joint: free` in the spec";

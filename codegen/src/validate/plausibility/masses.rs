@@ -34,7 +34,7 @@ impl Look<'_> {
         }
     }
 
-    /// A payload beside everything else, but for a base that moves: a truck is no measure of its crane.
+    /// A payload beside everything else, but for a base that moves: a truck does not measure its crane.
     fn payload(&mut self, place: &str, mass: f64, at: Span, lightest: f64) {
         let chain = self.chain;
         let base = chain.base.iter().any(Option::is_some);

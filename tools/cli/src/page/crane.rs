@@ -42,7 +42,7 @@ pub fn data(case: &Case<'_>, live: &LiveCrane, run: &Recorded) -> Outcome<Value>
     }))
 }
 
-/// Frequencies, Hz, and shapes in generalized coordinates, lowest first; none about a pose that is no stable equilibrium.
+/// Frequencies, Hz, and shapes in generalized coordinates, lowest first; none unless the pose is a stable equilibrium.
 fn modes(case: &Case<'_>) -> Outcome<Vec<Value>> {
     if !case.equilibrium.is_stable() {
         return Ok(Vec::new());

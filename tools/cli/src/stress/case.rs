@@ -16,7 +16,7 @@ const STACK: usize = 64 << 20;
 /// What happened: as expected, or otherwise.
 pub type Finding = Result<String, String>;
 
-/// A case, with what is expected of it stated beforehand.
+/// A case, with what is expected of it stated in advance.
 pub struct Case {
     /// What it belongs to.
     pub group: &'static str,

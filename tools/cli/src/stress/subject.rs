@@ -77,7 +77,9 @@ impl Subject {
         let recorded = record(rig, &start, &settings, &ProgressBar::hidden()).map_err(told)?;
         let table = &recorded.table;
         match table.not_finite() {
-            Some((row, column)) => Err(format!("{} is no number in row {row} of the results", table.columns[column])),
+            Some((row, column)) => {
+                Err(format!("{} is not a number in row {row} of the results", table.columns[column]))
+            }
             None => Ok(recorded),
         }
     }

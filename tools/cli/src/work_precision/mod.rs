@@ -139,7 +139,7 @@ fn base(options: &WorkPrecision, description: &Description) -> Outcome<Settings>
     let duration = options.duration.unwrap_or(own.duration);
     if !(duration.is_finite() && duration > 0.0) {
         return Err(Problem::usage(
-            format!("`--duration {duration}` is no length of time"),
+            format!("`--duration {duration}` is not a duration"),
             "write a positive number of seconds, such as 2",
         ));
     }

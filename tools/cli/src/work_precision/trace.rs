@@ -119,7 +119,7 @@ impl Trace {
     }
 }
 
-/// The greatest number; NaN where there is one, for a run without numbers is no good run.
+/// The greatest number; NaN where there is one, because such a run has failed.
 fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(f64::NEG_INFINITY, |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
 }

@@ -1,0 +1,57 @@
+//! Words that a reader stumbles over, in documents, comments and messages.
+
+use crate::workspace;
+
+/// What is looked for, and what to write instead.
+const STUMBLES: [(&str, &str); 7] = [
+    (" of one's own", "your own"),
+    (" tells of ", "describes"),
+    ("beforehand", "in advance"),
+    (" anew", "again"),
+    (" is no ", "is not a"),
+    (" are no ", "are not"),
+    (" an own ", "its own"),
+];
+/// Where `is no` is plain English.
+const PLAIN: [&str; 4] = ["here is no ", "here are no ", " is no longer ", " is no more "];
+/// Folders and files, by extension, of texts that people write.
+const TEXTS: [(&str, &str); 15] = [
+    ("codegen", "rs"),
+    ("crane-model", "rs"),
+    ("docs", "md"),
+    ("examples", "rs"),
+    ("examples", "toml"),
+    ("specs", "yaml"),
+    ("specs/src", "rs"),
+    ("tests", "rs"),
+    ("tools/bench", "rs"),
+    ("tools/casadi", "py"),
+    ("tools/cli", "rs"),
+    ("tools/cli", "template"),
+    ("tools/live", "rs"),
+    ("tools/peers", "py"),
+    ("tools/xtask", "rs"),
+];
+const DOCUMENTS: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
+/// This file names them.
+const HERE: &str = "tools/xtask/src/prose.rs";
+
+/// Every place where one stands.
+pub fn check() -> Result<(), String> {
+    let mut files: Vec<String> = DOCUMENTS.map(str::to_owned).to_vec();
+    for (folder, extension) in TEXTS {
+        files.extend(workspace::files(folder, extension)?);
+    }
+    let mut found = Vec::new();
+    for file in files.iter().filter(|file| *file != HERE && !file.contains("/target/")) {
+        for (number, line) in workspace::read(file)?.lines().enumerate() {
+            let rest = PLAIN.iter().fold(line.to_owned(), |line, plain| line.replace(plain, " "));
+            let stumbles = STUMBLES.iter().filter(|(words, _)| rest.contains(words));
+            found.extend(
+                stumbles
+                    .map(|(words, instead)| format!("{file}:{}: `{}`: write `{instead}`", number + 1, words.trim())),
+            );
+        }
+    }
+    if found.is_empty() { Ok(()) } else { Err(found.join("\n")) }
+}
