@@ -13,6 +13,7 @@ pub mod build;
 pub mod chain;
 pub mod compile;
 pub mod diagnostic;
+pub mod dump;
 pub mod emit;
 pub mod exchange;
 mod expand;

@@ -20,6 +20,8 @@ mod matching;
 mod order;
 mod roll;
 mod split;
+#[cfg(test)]
+mod tests;
 
 use crate::symbolic::{ExprId, Function, Op, OperationCount, Program, Visit};
 

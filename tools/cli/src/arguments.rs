@@ -369,6 +369,9 @@ pub struct Generate {
     /// Generate everything there is, also what the spec's `analyses` do not ask for
     #[arg(long)]
     pub all: bool,
+    /// Write every stage of the compilation as text into a folder too: spec, chain, expressions, statements, Rust
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub dump: Option<PathBuf>,
 }
 
 /// Stability of time steps.

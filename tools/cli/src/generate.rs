@@ -5,7 +5,7 @@ use std::{io::Write, path::PathBuf};
 use crane_codegen::{
     chain::Analyses,
     compile::{self, Compiled},
-    explain, json_schema,
+    dump, explain, json_schema,
 };
 
 use crate::{
@@ -19,6 +19,12 @@ use crate::{
 pub fn generate(options: &Generate, out: &mut dyn Write) -> Outcome<()> {
     let source = open(&options.spec, "name a YAML file that describes a crane")?;
     let analyses = options.all.then_some(Analyses::ALL);
+    if let Some(folder) = &options.dump {
+        files::folder(folder)?;
+        for (name, text) in dump::stages(&source, analyses).map_err(|mistakes| drawn(&mistakes))? {
+            files::write_text(&folder.join(name), &text)?;
+        }
+    }
     let Compiled { code, warnings } = compile::compile(&source, analyses).map_err(|mistakes| drawn(&mistakes))?;
     if !warnings.is_empty() {
         // A reader of standard error that has gone misses them.
