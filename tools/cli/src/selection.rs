@@ -189,7 +189,8 @@ pub fn set(rig: &mut dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<()> {
 pub fn told(refused: &ParameterError) -> (String, String) {
     let Refusal { code, title, help } = &refused.refusal;
     let title = match &refused.given {
-        Some((parameter, value)) => format!("parameter `{parameter}`: {title} {value} [{code}]"),
+        Some((parameter, value)) if value.abs() < 1e15 => format!("parameter `{parameter}`: {title} {value} [{code}]"),
+        Some((parameter, value)) => format!("parameter `{parameter}`: {title} {value:e} [{code}]"),
         None => format!("{title} [{code}]"),
     };
     (title, help.to_string())

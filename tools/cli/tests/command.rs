@@ -253,9 +253,11 @@ fn an_impossible_load_is_told_not_panicked() {
         let output = crane(&[command, "--set", &format!("load_mass={load}")]);
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{command} {load}: {message}");
-        assert!(message.starts_with("error:") && !message.contains("panicked"), "{command} {load}: {message}");
+        assert!(message.contains("\nerror:") && !message.contains("panicked"), "{command} {load}: {message}");
         assert!(!message.contains("singular"), "{command} {load}: {message}");
+        assert!(message.starts_with("warning[W010]"), "{command} {load}: {message}");
     }
+    refused(&["statics", "--set", "load_mass=1e300"], &["outside the allowed range: 1e300 [E033]"]);
 }
 
 #[test]
