@@ -266,6 +266,7 @@ impl Rolling<'_> {
             }
         }
         for (round, m) in matches.iter().enumerate() {
+            #[expect(clippy::iter_over_hash_type, reason = "each goes to a place of its own, in any order")]
             for (template, id) in &m.nodes {
                 self.places.insert(*id, (number, *template, round));
             }
