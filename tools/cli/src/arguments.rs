@@ -434,7 +434,7 @@ pub struct WorkPrecision {
     /// Simulated time, s [default: the crane's]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub duration: Option<f64>,
-    /// Fewer steps and tolerances, each run once: to look whether it works
+    /// Fewer steps and tolerances, each run once, without compiling: to look whether it works
     #[arg(long)]
     pub quick: bool,
     /// Folder for tables (CSV) and figures (SVG); made where it is missing

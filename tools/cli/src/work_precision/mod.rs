@@ -49,9 +49,17 @@ pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Writ
     let known = fleet.names();
     let missing = counts.iter().any(|&count| !known.contains(&refinement::name(&crane, count).as_str()));
     let flexible = if missing { others(&crane, &text, counts) } else { Vec::new() };
-    // Times are those of machine code.
+    // Times are those of machine code, but for a quick look.
     if flexible.is_empty() && choice.file().is_none() && fleet.is_compiled(&crane) {
-        return study(options, if missing { &[] } else { counts }, fleet, out);
+        return study(options, &crane, if missing { &[] } else { counts }, fleet, out);
+    }
+    if options.quick {
+        let counts = if missing && flexible.is_empty() { &[] } else { counts };
+        let mut live = Fleet::default();
+        for (name, text) in [vec![(crane.clone(), text)], flexible].concat() {
+            live.add(&name, text);
+        }
+        return study(options, &crane, counts, &live, out);
     }
     let hash = SourceFile::new(&crane, &text).hash();
     let listed: Vec<String> = counts.iter().map(ToString::to_string).collect();
@@ -78,8 +86,8 @@ struct Found<'a> {
 }
 
 /// The study itself, with the cranes of a fleet.
-fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.analysis.crane.open(fleet)?;
+fn study(options: &WorkPrecision, crane: &str, counts: &[usize], fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.parameters.crane(crane, options.analysis.crane.strict, fleet)?;
     let rig = rig.as_ref();
     let description = rig.description();
     let start = start(rig)?;
@@ -96,6 +104,7 @@ fn study(options: &WorkPrecision, counts: &[usize], fleet: &Fleet, out: &mut dyn
 
     let mut facts = Report::default();
     facts.fact("crane", description.name.as_str(), "");
+    facts.fact("code", if fleet.is_compiled(crane) { "compiled" } else { "interpreted" }, "");
     facts.fact("start", start.what.as_str(), "");
     facts.fact("duration", base.duration, "s");
     facts.fact("longest way of a point", reference.solution.trace.size(), "m");
