@@ -21,7 +21,9 @@ use std::time::Instant;
 
 use step::Step;
 
-const USAGE: &str = "cargo xtask TASK
+const USAGE: &str = "cargo xtask TASK [WORD …]
+
+With words, only the steps whose titles contain one of them.
 
   test     every check: lint, unit and whole-system tests, oracles, the example crate, the default run and its report
   lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md
@@ -53,7 +55,17 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    run(&steps)
+    // Some of them, by words of their titles; `performance` has options of its own.
+    let words: &[String] = if task == "performance" { &[] } else { &arguments[1..] };
+    let chosen: Vec<Step> = steps
+        .into_iter()
+        .filter(|step| words.is_empty() || words.iter().any(|word| step.title.contains(word)))
+        .collect();
+    if chosen.is_empty() {
+        eprintln!("no step of `{task}` is called so");
+        return ExitCode::from(2);
+    }
+    run(&chosen)
 }
 
 /// With diffsol beside our methods.
