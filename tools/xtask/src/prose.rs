@@ -13,7 +13,7 @@ const STUMBLES: [(&str, &str); 7] = [
     (" an own ", "its own"),
 ];
 /// Where `is no` is plain English.
-const PLAIN: [&str; 4] = ["here is no ", "here are no ", " is no longer ", " is no more "];
+const PLAIN: [&str; 5] = ["here is no ", "here are no ", " is no longer ", " are no longer ", " is no more "];
 /// Folders and files, by extension, of texts that people write.
 const TEXTS: [(&str, &str); 15] = [
     ("codegen", "rs"),

@@ -75,7 +75,7 @@ fn drives(spec: Spec, factor: f64) -> Case {
     let expected = if stiff {
         format!("stable; boom drive carries {:.1} kN m ± 2 %, the level boom's moment", LEVEL_MOMENT / 1e3)
     } else {
-        format!("stable; boom sinks and its drive carries less than {:.1} kN m", LEVEL_MOMENT / 1e3)
+        format!("stable; boom sinks and its drive carries up to {:.1} kN m", LEVEL_MOMENT / 1e3)
     };
     Case::new(DRIVES, format!("eight_link_flexible × {factor:e}, statics"), expected, move || {
         let subject = Subject::new(&spec.scaled("drives", "stiffness:", factor))?;
@@ -85,7 +85,9 @@ fn drives(spec: Spec, factor: f64) -> Case {
         let place = drives.iter().position(|drive| drive.coordinate == boom).ok_or("no drive of the boom")?;
         let torque = subject.rig.drive_efforts_at(0.0, &rest.q, &vec![0.0; rest.q.len()])[place];
         // Sag of some centimetres and tilt of the truck shorten and lengthen the levers by about a percent.
-        let right = if stiff { (torque / LEVEL_MOMENT - 1.0).abs() < 0.02 } else { torque < 1.001 * LEVEL_MOMENT };
+        let carried = torque / LEVEL_MOMENT;
+        // A boom that sinks keeps pulling downwards, until it hangs.
+        let right = if stiff { (carried - 1.0).abs() < 0.02 } else { (-1e-6..1.001).contains(&carried) };
         expect(right, format!("{rest}; {:.1} kN m, boom at {:.4} rad", torque / 1e3, rest.q[boom]))
     })
 }
