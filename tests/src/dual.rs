@@ -64,4 +64,13 @@ impl Scalar for Dual {
     fn max(self, other: Self) -> Self {
         if other.0.re > self.0.re { other } else { self }
     }
+    fn sqrt(&self) -> Self {
+        Dual(self.0.sqrt())
+    }
+    fn exp(&self) -> Self {
+        Dual(self.0.exp())
+    }
+    fn select(&self, positive: Self, other: Self) -> Self {
+        if self.0.re > 0.0 { positive } else { other }
+    }
 }

@@ -66,6 +66,15 @@ impl Scalar for Precise {
     fn max(self, other: Self) -> Self {
         if other.0 > self.0 { other } else { self }
     }
+    fn sqrt(&self) -> Self {
+        Precise(self.0.sqrt(BITS, ROUNDING))
+    }
+    fn exp(&self) -> Self {
+        CONSTANTS.with_borrow_mut(|constants| Precise(self.0.exp(BITS, ROUNDING, constants)))
+    }
+    fn select(&self, positive: Self, other: Self) -> Self {
+        if self.0.is_positive() && !self.0.is_zero() { positive } else { other }
+    }
 }
 
 /// Solves `A x = b` for a positive definite A, by elimination.

@@ -47,4 +47,13 @@ impl Scalar for Runtime {
     fn max(self, other: Self) -> Self {
         Runtime(self.0.max(other.0))
     }
+    fn sqrt(&self) -> Self {
+        Runtime(support::sqrt(self.0))
+    }
+    fn exp(&self) -> Self {
+        Runtime(support::exp(self.0))
+    }
+    fn select(&self, positive: Self, other: Self) -> Self {
+        Runtime(support::select(self.0, positive.0, other.0))
+    }
 }

@@ -409,6 +409,12 @@ pub fn operation(op: Op, number: Number, of: &mut dyn FnMut(ExprId) -> Expr) -> 
         Op::Div(a, b) => quotient(of(a), of(b)),
         Op::Min(a, b) => method(of(a), "min", of(b)),
         Op::Max(a, b) => method(of(a), "max", of(b)),
+        Op::Sqrt(a) => call("sqrt", [of(a)]),
+        Op::Exp(a) => call("exp", [of(a)]),
+        Op::Select(a, b, c) => {
+            let (a, b) = (of(a), of(b));
+            call("select", [a, b, of(c)])
+        }
         Op::Sin(a) => field_of_pair(&of(a), 0),
         Op::Cos(a) => field_of_pair(&of(a), 1),
         Op::Stumpff(k, a) => {

@@ -3,7 +3,9 @@
 use quote::{format_ident, quote};
 use syn::{Item, ItemMod, parse_quote};
 
+use super::arithmetic::variable;
 use super::function;
+use super::identifiers;
 use super::labels::Labels;
 use super::number::Number;
 use super::parameters;
@@ -40,11 +42,14 @@ pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
         |block: &Block| block.pieces.iter().flatten().any(|statement| matches!(statement, Statement::Stumpff(_)));
     let in_lanes = || blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.name));
     let stumpff = in_lanes().any(takes_stumpff).then(|| quote!(, stumpff));
+    let words = identifiers(&items);
+    let functions = ["exp", "select", "sqrt"].into_iter().filter(|name| words.contains(*name)).map(variable);
+    let functions: Vec<_> = functions.collect();
     let mut module: ItemMod = parse_quote! {
         #[doc = " Eight cranes a call."]
         pub mod lanes {
             use ::crane_model::nalgebra::SVector;
-            use ::crane_model::support::lanes::{f64x8, fma, sin_cos, splat #stumpff};
+            use ::crane_model::support::lanes::{f64x8, fma, sin_cos, splat #stumpff #(, #functions)*};
             use ::crane_model::LaneDynamics;
             use super::N;
         }

@@ -21,13 +21,20 @@ pub struct OperationCount {
     pub stumpff: usize,
     /// Minima and maxima.
     pub comparisons: usize,
+    /// Choices between two values.
+    pub choices: usize,
+    /// Square roots.
+    pub roots: usize,
+    /// Exponentials.
+    pub exponentials: usize,
 }
 
 impl OperationCount {
     /// All operations; an angle counts as one, and so does an argument of Stumpff's functions.
     #[must_use]
     pub fn total(&self) -> usize {
-        self.additions + self.multiplications + self.divisions + self.angles + self.stumpff + self.comparisons
+        let arithmetic = self.additions + self.multiplications + self.divisions + self.comparisons + self.choices;
+        arithmetic + self.angles + self.stumpff + self.roots + self.exponentials
     }
 }
 
@@ -39,6 +46,9 @@ impl AddAssign for OperationCount {
         self.angles += other.angles;
         self.stumpff += other.stumpff;
         self.comparisons += other.comparisons;
+        self.choices += other.choices;
+        self.roots += other.roots;
+        self.exponentials += other.exponentials;
     }
 }
 
@@ -49,13 +59,14 @@ impl fmt::Display for OperationCount {
             "{} add, {} mul, {} div, {} sin_cos",
             self.additions, self.multiplications, self.divisions, self.angles
         )?;
-        if self.stumpff > 0 {
-            write!(f, ", {} stumpff", self.stumpff)?;
-        }
-        if self.comparisons > 0 {
-            write!(f, ", {} min/max", self.comparisons)?;
-        }
-        Ok(())
+        let others = [
+            (self.stumpff, "stumpff"),
+            (self.comparisons, "min/max"),
+            (self.choices, "select"),
+            (self.roots, "sqrt"),
+            (self.exponentials, "exp"),
+        ];
+        others.iter().filter(|(count, _)| *count > 0).try_for_each(|(count, name)| write!(f, ", {count} {name}"))
     }
 }
 
@@ -88,6 +99,9 @@ impl Program {
                     }
                 }
                 Op::Min(..) | Op::Max(..) => count.comparisons += 1,
+                Op::Select(..) => count.choices += 1,
+                Op::Sqrt(_) => count.roots += 1,
+                Op::Exp(_) => count.exponentials += 1,
             }
             stack.extend(op.operands());
         }

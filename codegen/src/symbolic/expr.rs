@@ -63,6 +63,38 @@ impl<'g> Expr<'g> {
         self.graph.build(Op::Max(self.id, other.id))
     }
 
+    /// The smaller of x and y.
+    #[must_use]
+    pub fn min(self, other: Self) -> Self {
+        self.graph.build(Op::Min(self.id, other.id))
+    }
+
+    /// √x, x ≥ 0
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        self.graph.build(Op::Sqrt(self.id))
+    }
+
+    /// eˣ
+    #[must_use]
+    pub fn exp(self) -> Self {
+        self.graph.build(Op::Exp(self.id))
+    }
+
+    /// tanh x, by `sign x (1 − e)/(1 + e)` with `e = exp(−2|x|)`, which overflows nowhere.
+    #[must_use]
+    pub fn tanh(self) -> Self {
+        let e = (-2.0 * self.max(-self)).exp();
+        let size = (1.0 - e) / (1.0 + e);
+        self.select(size, -size)
+    }
+
+    /// `positive` where x > 0, else `other`.
+    #[must_use]
+    pub fn select(self, positive: Self, other: Self) -> Self {
+        self.graph.build(Op::Select(self.id, positive.id, other.id))
+    }
+
     /// Stumpff's function cₖ(x), x ≥ 0.
     ///
     /// # Panics

@@ -26,6 +26,15 @@ pub trait Scalar:
     /// The larger of two.
     #[must_use]
     fn max(self, other: Self) -> Self;
+    /// Square root.
+    #[must_use]
+    fn sqrt(&self) -> Self;
+    /// Exponential.
+    #[must_use]
+    fn exp(&self) -> Self;
+    /// `positive` if the number is above zero, else `other`.
+    #[must_use]
+    fn select(&self, positive: Self, other: Self) -> Self;
 }
 
 impl Scalar for f64 {
@@ -43,6 +52,15 @@ impl Scalar for f64 {
     }
     fn max(self, other: Self) -> Self {
         f64::max(self, other)
+    }
+    fn sqrt(&self) -> Self {
+        f64::sqrt(*self)
+    }
+    fn exp(&self) -> Self {
+        f64::exp(*self)
+    }
+    fn select(&self, positive: Self, other: Self) -> Self {
+        if *self > 0.0 { positive } else { other }
     }
 }
 
@@ -97,6 +115,9 @@ impl Program {
                 Op::Stumpff(k, a) => of(a).stumpff(k),
                 Op::Min(a, b) => of(a).min(of(b)),
                 Op::Max(a, b) => of(a).max(of(b)),
+                Op::Sqrt(a) => of(a).sqrt(),
+                Op::Exp(a) => of(a).exp(),
+                Op::Select(a, b, c) => of(a).select(of(b), of(c)),
             };
             values[index] = Some(value);
         }

@@ -1,6 +1,7 @@
 //! Expressions, programs and their meaning. Knows no crane and no Rust.
 
 mod count;
+mod derivative;
 mod expr;
 mod graph;
 mod interpret;

@@ -61,6 +61,12 @@ pub enum Op {
     Min(ExprId, ExprId),
     /// Larger of a and b
     Max(ExprId, ExprId),
+    /// √a, a ≥ 0
+    Sqrt(ExprId),
+    /// eᵃ
+    Exp(ExprId),
+    /// b where a > 0, else c: both are computed, and there is no branch.
+    Select(ExprId, ExprId, ExprId),
 }
 
 impl Op {
@@ -72,14 +78,17 @@ impl Op {
 
     /// Operands, in order.
     pub fn operands(self) -> impl DoubleEndedIterator<Item = ExprId> {
-        let [first, second] = match self {
-            Op::Constant(_) | Op::Symbol(_) => [None, None],
-            Op::Neg(a) | Op::Sin(a) | Op::Cos(a) | Op::Stumpff(_, a) => [Some(a), None],
-            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Min(a, b) | Op::Max(a, b) => {
-                [Some(a), Some(b)]
+        let operands = match self {
+            Op::Constant(_) | Op::Symbol(_) => [None, None, None],
+            Op::Neg(a) | Op::Sin(a) | Op::Cos(a) | Op::Stumpff(_, a) | Op::Sqrt(a) | Op::Exp(a) => {
+                [Some(a), None, None]
             }
+            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Min(a, b) | Op::Max(a, b) => {
+                [Some(a), Some(b), None]
+            }
+            Op::Select(a, b, c) => [Some(a), Some(b), Some(c)],
         };
-        [first, second].into_iter().flatten()
+        operands.into_iter().flatten()
     }
 
     /// The same operation on other operands.
@@ -97,6 +106,9 @@ impl Op {
             Op::Div(a, b) => Op::Div(of(a), of(b)),
             Op::Min(a, b) => Op::Min(of(a), of(b)),
             Op::Max(a, b) => Op::Max(of(a), of(b)),
+            Op::Sqrt(a) => Op::Sqrt(of(a)),
+            Op::Exp(a) => Op::Exp(of(a)),
+            Op::Select(a, b, c) => Op::Select(of(a), of(b), of(c)),
         }
     }
 

@@ -6,7 +6,7 @@
 use super::Graph;
 use super::op::{Constant, ExprId, Op};
 use super::stumpff;
-use Op::{Add, Cos, Div, Max, Min, Mul, Neg, Sin, Stumpff, Sub};
+use Op::{Add, Cos, Div, Exp, Max, Min, Mul, Neg, Select, Sin, Sqrt, Stumpff, Sub};
 
 /// The node that stands for `op` after all rules that apply.
 pub(super) fn simplify(graph: &Graph, op: Op) -> ExprId {
@@ -25,6 +25,9 @@ pub(super) fn simplify(graph: &Graph, op: Op) -> ExprId {
         },
         Min(a, b) => extremum(graph, op, a, b, f64::min),
         Max(a, b) => extremum(graph, op, a, b, f64::max),
+        Sqrt(a) => of_number(graph, op, a, libm::sqrt),
+        Exp(a) => of_number(graph, op, a, libm::exp),
+        Select(a, b, c) => select(graph, a, b, c),
     }
 }
 
@@ -164,6 +167,20 @@ fn cosine(graph: &Graph, a: ExprId) -> ExprId {
         Op::Constant(c) => constant(graph, libm::cos(c.value())),
         Neg(x) => graph.intern(Cos(x)),
         _ => graph.intern(Cos(a)),
+    }
+}
+
+/// A function of one number, which is computed here: not by the platform, the same bytes on any machine.
+fn of_number(graph: &Graph, op: Op, a: ExprId, of: fn(f64) -> f64) -> ExprId {
+    number(graph, a).map_or_else(|| graph.intern(op), |x| constant(graph, of(x)))
+}
+
+fn select(graph: &Graph, a: ExprId, b: ExprId, c: ExprId) -> ExprId {
+    match number(graph, a) {
+        Some(x) if x > 0.0 => b,
+        Some(_) => c,
+        None if b == c => b,
+        None => graph.intern(Select(a, b, c)),
     }
 }
 

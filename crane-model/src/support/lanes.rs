@@ -1,5 +1,6 @@
 //! One number, or eight of different cranes: what generated code does with either.
 
+use nalgebra::ComplexField;
 pub use wide::f64x8;
 
 pub use super::sin_cos::sin_cos_lanes as sin_cos;
@@ -40,6 +41,71 @@ impl Fused for f64x8 {
     fn fma(a: f64x8, b: f64x8, c: f64x8) -> f64x8 {
         a.mul_add(b, c)
     }
+}
+
+/// Functions of one number, or of eight: each number by itself, so that a lane has the bits that it has alone.
+pub trait Function: Copy {
+    /// √x, x ≥ 0
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// eˣ
+    #[must_use]
+    fn exp(self) -> Self;
+    /// `positive` where x > 0, else `other`.
+    #[must_use]
+    fn select(self, positive: Self, other: Self) -> Self;
+}
+
+impl Function for f64 {
+    #[inline]
+    fn sqrt(self) -> f64 {
+        ComplexField::sqrt(self)
+    }
+
+    #[inline]
+    fn exp(self) -> f64 {
+        ComplexField::exp(self)
+    }
+
+    #[inline]
+    fn select(self, positive: f64, other: f64) -> f64 {
+        if self > 0.0 { positive } else { other }
+    }
+}
+
+impl Function for f64x8 {
+    #[inline]
+    fn sqrt(self) -> f64x8 {
+        f64x8::sqrt(self)
+    }
+
+    #[inline]
+    fn exp(self) -> f64x8 {
+        f64x8::new(self.to_array().map(Function::exp))
+    }
+
+    #[inline]
+    fn select(self, positive: f64x8, other: f64x8) -> f64x8 {
+        self.simd_gt(splat(0.0)).select(positive, other)
+    }
+}
+
+/// √x, x ≥ 0
+#[inline]
+pub fn sqrt<T: Function>(x: T) -> T {
+    Function::sqrt(x)
+}
+
+/// eˣ
+#[inline]
+pub fn exp<T: Function>(x: T) -> T {
+    Function::exp(x)
+}
+
+/// `positive` where x > 0, else `other`.
+#[inline]
+pub fn select<T: Function>(x: T, positive: T, other: T) -> T {
+    Function::select(x, positive, other)
 }
 
 /// `a b + c`, rounded once where the target can.

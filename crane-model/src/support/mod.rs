@@ -5,7 +5,7 @@ mod mass_matrix;
 mod sin_cos;
 mod stumpff;
 
-pub use lanes::fma;
+pub use lanes::{exp, fma, select, sqrt};
 pub use mass_matrix::{MassAndBias, MassColumns, Point};
 pub use sin_cos::{sin_cos, sin_cos_lanes};
 pub use stumpff::{stumpff, stumpff_lanes};

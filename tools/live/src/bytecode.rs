@@ -80,6 +80,12 @@ pub enum Kind {
     Min,
     /// `out = max(a, b)`
     Max,
+    /// `out = √a`
+    Sqrt,
+    /// `out = eᵃ`
+    Exp,
+    /// `out = b` where a > 0, else c
+    Select,
     /// `out = sin a` and `b = cos a`
     Angle,
     /// `out = c_0(a), b = c_1(a), c = c_2(a)`, and in a second instruction the same with c₃, c₄, c₅

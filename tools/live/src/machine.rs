@@ -3,13 +3,13 @@
 use std::ops::Div;
 
 use crane_codegen::symbolic::Argument;
-use crane_model::support::lanes::{Fused, f64x8};
-use crane_model::support::{fma, sin_cos, sin_cos_lanes, stumpff, stumpff_lanes};
+use crane_model::support::lanes::{Function, Fused, f64x8};
+use crane_model::support::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
 
 use crate::bytecode::{Code, Fixed, Instruction, Kind};
 
 /// One number, or eight of different states.
-pub trait Number: Copy + Fused + Div<Output = Self> + 'static {
+pub trait Number: Copy + Fused + Function + Div<Output = Self> + 'static {
     /// The same number everywhere.
     fn splat(number: f64) -> Self;
     /// The smaller of two.
@@ -207,6 +207,12 @@ fn run<T: Number, const SIZE: usize>(code: &Code, file: &mut [T; SIZE], out: &mu
             Kind::Div => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()) / get(file, i.b()))),
             Kind::Min => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()).min(get(file, i.b())))),
             Kind::Max => own.iter().for_each(|i| set(file, i.out(), get(file, i.a()).max(get(file, i.b())))),
+            Kind::Sqrt => own.iter().for_each(|i| set(file, i.out(), sqrt(get(file, i.a())))),
+            Kind::Exp => own.iter().for_each(|i| set(file, i.out(), exp(get(file, i.a())))),
+            Kind::Select => {
+                own.iter()
+                    .for_each(|i| set(file, i.out(), select(get(file, i.a()), get(file, i.b()), get(file, i.c()))));
+            }
             Kind::Angle => take_angles(own, file),
             Kind::Stumpff => take_stumpff(own, file),
             Kind::Store => {}

@@ -2,7 +2,7 @@
 
 use crane_codegen::SourceFile;
 use crane_codegen::chain::{Analyses, Chain};
-use crane_codegen::symbolic::{Argument, Inputs, Program, Shape};
+use crane_codegen::symbolic::{Argument, Expr, Function, Graph, Inputs, Program, Shape, Symbol, SymbolId, Tape};
 use crane_codegen::{compile, mechanics};
 use crane_live::Routine;
 use crane_live::layout::{Entry, layout};
@@ -152,4 +152,39 @@ fn a_lane_computes_what_one_state_does() {
 fn lanes_of(states: &[State], of: fn(&State) -> &Vec<f64>) -> Vec<f64x8> {
     let lane = |i: usize| f64x8::new(std::array::from_fn(|lane| of(&states[lane])[i]));
     (0..of(&states[0]).len()).map(lane).collect()
+}
+
+/// Roots, exponentials and choices, which few cranes have: one by one and in lanes, with both signs wanted of each.
+#[test]
+fn functions_of_one_number_and_choices_are_the_interpreters() {
+    let symbol = |name: &str, index| Symbol { name: name.into(), argument: Argument::Position, index };
+    let graph = Graph::simplifying();
+    let [x, y] = [0, 1].map(|id| graph.symbol(SymbolId(id)));
+    let values = [(x * x + y * y).sqrt(), (x * y).exp(), (x - y).select(x * y, y + 1.0), x.tanh()];
+    let outputs: Vec<_> = values.into_iter().flat_map(|value| [value, -value]).map(Expr::id).collect();
+    let function = Function {
+        name: "f",
+        doc: "",
+        equation: "",
+        arguments: &[Argument::Position],
+        shape: Shape::Vector(outputs.len()),
+        outputs,
+        tape: Tape::default(),
+    };
+    let program = graph.into_program(vec![symbol("x", 0), symbol("y", 1)], vec![function]);
+    let routine = Routine::new(&program, &program.functions[0]).unwrap();
+    let states: Vec<[f64; 2]> = (0..8).map(|i| [f64::from(i) - 3.5, 0.4 * f64::from(i) - 1.0]).collect();
+    let q = [0, 1].map(|i| f64x8::new(std::array::from_fn(|lane| states[lane][i])));
+    let mut eight = [f64x8::splat(0.0); 8];
+    routine.run(&mut routine.machine(&[]), &Arguments { q: &q, ..Arguments::none() }, &mut eight);
+    for (lane, q) in states.iter().enumerate() {
+        let mut one = [0.0; 8];
+        routine.run(&mut routine.machine(&[]), &Arguments { q, ..Arguments::none() }, &mut one);
+        let expected = program.evaluate(&program.functions[0], &Inputs::state(0.0, q.to_vec(), vec![], vec![]));
+        for ((one, eight), expected) in one.iter().zip(&eight).zip(&expected) {
+            assert_eq!(one, &eight.to_array()[lane]);
+            // A product and a sum that are fused round once less.
+            assert!((one - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{q:?}: {one} for {expected}");
+        }
+    }
 }

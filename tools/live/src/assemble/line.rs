@@ -72,7 +72,8 @@ impl Step {
     /// Values it reads.
     pub fn reads(&self) -> impl Iterator<Item = Value> {
         let (values, count) = match *self {
-            Step::Operation { kind: Kind::MulAdd, operands, .. } => (operands, 3),
+            Step::Operation { kind: Kind::MulAdd | Kind::Select, operands, .. } => (operands, 3),
+            Step::Operation { kind: Kind::Sqrt | Kind::Exp, operands, .. } => (operands, 1),
             Step::Operation { operands, .. } => (operands, 2),
             Step::Angle { angle: value, .. } | Step::Stumpff { argument: value, .. } | Step::Store { value, .. } => {
                 ([value; 3], 1)
@@ -317,6 +318,9 @@ impl Writer<'_> {
                 Recipe::Div([a, b]) => Some((Kind::Div, [a, b, b])),
                 Recipe::Min([a, b]) => Some((Kind::Min, [a, b, b])),
                 Recipe::Max([a, b]) => Some((Kind::Max, [a, b, b])),
+                Recipe::Sqrt(a) => Some((Kind::Sqrt, [a, a, a])),
+                Recipe::Exp(a) => Some((Kind::Exp, [a, a, a])),
+                Recipe::Select(operands) => Some((Kind::Select, operands)),
                 Recipe::Given | Recipe::Sin(_) | Recipe::Cos(_) | Recipe::Stumpff(..) => None,
             };
             let Some((kind, operands)) = step else { return };

@@ -36,6 +36,12 @@ pub enum Recipe {
     Min([Operand; 2]),
     /// The larger of two.
     Max([Operand; 2]),
+    /// Square root.
+    Sqrt(Operand),
+    /// Exponential.
+    Exp(Operand),
+    /// The second where the first is above zero, else the third.
+    Select([Operand; 3]),
     /// Sine of an angle.
     Sin(Operand),
     /// Cosine of an angle.
@@ -140,6 +146,9 @@ impl Selection {
             }
             Op::Min(a, b) => (Recipe::Min([of(a, false), of(b, false)]), false),
             Op::Max(a, b) => (Recipe::Max([of(a, false), of(b, false)]), false),
+            Op::Sqrt(a) => (Recipe::Sqrt(of(a, false)), false),
+            Op::Exp(a) => (Recipe::Exp(of(a, false)), false),
+            Op::Select(a, b, c) => (Recipe::Select([of(a, false), of(b, negative), of(c, negative)]), negative),
             Op::Sin(a) => (Recipe::Sin(of(a, false)), false),
             Op::Cos(a) => (Recipe::Cos(of(a, false)), false),
             Op::Stumpff(k, a) => (Recipe::Stumpff(k, of(a, false)), false),
@@ -164,7 +173,8 @@ impl Selection {
         }
         let wanted = self.wanted[id.index()];
         let op = graph.program.op(id);
-        let has_a_sign = op.is_elementary() || matches!(op, Op::Symbol(_) | Op::Min(..) | Op::Max(..));
+        let has_a_sign =
+            op.is_elementary() || matches!(op, Op::Symbol(_) | Op::Min(..) | Op::Max(..) | Op::Sqrt(_) | Op::Exp(_));
         match (wanted[usize::from(negative)], wanted[usize::from(!negative)] || (negative && has_a_sign)) {
             (true, _) => 0,
             (false, true) => 4,
@@ -178,9 +188,13 @@ impl Recipe {
     pub fn operands(&self) -> Vec<Operand> {
         match *self {
             Recipe::Given => vec![],
-            Recipe::MulAdd(operands) => operands.to_vec(),
+            Recipe::MulAdd(operands) | Recipe::Select(operands) => operands.to_vec(),
             Recipe::Div(operands) | Recipe::Min(operands) | Recipe::Max(operands) => operands.to_vec(),
-            Recipe::Sin(argument) | Recipe::Cos(argument) | Recipe::Stumpff(_, argument) => vec![argument],
+            Recipe::Sqrt(argument)
+            | Recipe::Exp(argument)
+            | Recipe::Sin(argument)
+            | Recipe::Cos(argument)
+            | Recipe::Stumpff(_, argument) => vec![argument],
         }
     }
 }
