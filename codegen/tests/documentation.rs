@@ -82,12 +82,13 @@ fn the_example_is_a_crane() {
 fn what_the_schema_requires_the_reader_requires() {
     // Every mapping of the language, empty: the reader asks for each key that the schema requires of it.
     let schema: Value = serde_json::from_str(&json_schema()).expect("JSON");
-    let empty = "links: [{}]\nparameters: {a: {}}\nmaterials: {m: {}}\nsupports: [{}]\ndrives: [{}]\npoints: [{}]\n";
+    let empty = "links: [{}]\nparameters: {a: {}}\nmaterials: {m: {}}\nsupports: [{}]\ndrives: [{}]\npoints: [{}]\n\
+                 stops: {a_x: {}}\nfriction: {a_x: {}}\n";
     let source = SourceFile::new("empty.yaml", empty);
     let found = read(&source).and_then(|spec| validate(&spec, &source)).expect_err("nothing in it").to_string();
     let top = &schema["required"];
-    let definitions =
-        ["Link", "Parameter", "Material", "Support", "Drive", "Point"].map(|name| &schema["$defs"][name]["required"]);
+    let definitions = ["Link", "Parameter", "Material", "Support", "Drive", "Point", "Stops", "Friction"]
+        .map(|name| &schema["$defs"][name]["required"]);
     let mut required = 0;
     for key in [top].into_iter().chain(definitions).flat_map(|keys| keys.as_array().into_iter().flatten()) {
         let key = key.as_str().expect("a key");

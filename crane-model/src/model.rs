@@ -69,6 +69,16 @@ pub trait CraneModel<const N: usize> {
         SVector::zeros()
     }
 
+    /// Generalized forces of the end stops.
+    fn stop_forces(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
+    /// Generalized forces of joint friction.
+    fn friction_forces(&self, _v: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
     /// Forces of the supports on the crane, world frame, N. `out`: one a support.
     fn support_reactions(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
@@ -101,6 +111,11 @@ pub trait CraneModel<const N: usize> {
         0.0
     }
 
+    /// Energy of the end stops. J.
+    fn stop_energy(&self, _q: &SVector<f64, N>) -> f64 {
+        0.0
+    }
+
     /// Power that the drives' prescribed motions put in, `Σ t_dr q̇_dr`. W.
     fn drive_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
         0.0
@@ -113,7 +128,8 @@ pub trait CraneModel<const N: usize> {
 
     /// Potential energy of everything. J.
     fn potential_energy(&self, t: f64, q: &SVector<f64, N>) -> f64 {
-        self.gravity_energy(q) + self.support_energy(q) + self.element_energy(q) + self.drive_energy(t, q)
+        let linear = self.gravity_energy(q) + self.support_energy(q) + self.element_energy(q) + self.drive_energy(t, q);
+        linear + self.stop_energy(q)
     }
 }
 
@@ -186,7 +202,8 @@ impl<const N: usize, C: Dynamics<N>> LaneDynamics<N> for OneByOne<C> {
 
 /// What an implicit step needs: stiffness and damping by their structure, and systems with them at the price of A alone.
 ///
-/// All springs and dampers sit on single coordinates, or in the block of the base's coordinates, which are the first of q.
+/// All springs and dampers sit on single coordinates, or in the block of the base's coordinates, which are the first of q. Those
+/// of linear springs and dampers on single coordinates are constants; those of other laws are taken at each step.
 pub trait Implicit<const N: usize>: Dynamics<N> {
     /// What [`Implicit::factorise`] leaves for [`Implicit::solve`].
     type Factors;
@@ -201,6 +218,12 @@ pub trait Implicit<const N: usize>: Dynamics<N> {
     /// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of elements, drives and joints on single coordinates; zero for
     /// the base's. `out`: one pair a coordinate.
     fn joint_impedances(&self, out: &mut [[f64; 2]]);
+
+    /// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates at a state.
+    /// `out`: one pair per coordinate.
+    fn nonlinear_impedances(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>, out: &mut [[f64; 2]]) {
+        out.fill([0.0; 2]);
+    }
 
     /// Stiffness over the base's coordinates: supports and drives. N/m, N and N m.
     fn base_stiffness(&self, _q: &SVector<f64, N>) -> SMatrix<f64, 6, 6> {

@@ -13,6 +13,8 @@
 //   springs and dampers of rigid elements: no link is flexible
 //   drives: the spec has none
 //   viscous damping of joints: the spec has none
+//   end stops: the spec has none
+//   friction of joints: the spec has none
 //   live parameters: the spec has none: all numbers are baked in
 //   everything out of the crane's plane: all joints turn about one direction, none moves along it
 //   static residual and tangent stiffness: `analyses` does not ask for statics
@@ -86,6 +88,8 @@ pub const DESCRIPTION: Description = Description {
     ),
     supports: List::Static(&[]),
     drives: List::Static(&[]),
+    stops: List::Static(&[]),
+    frictions: List::Static(&[]),
     points: List::Static(&[Text::Static("end")]),
     statics: false,
     guess: List::Static(&[1.5707963267948966, -1.5707963267948966]),

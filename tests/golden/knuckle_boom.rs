@@ -11,6 +11,8 @@
 //   coordinates of the base: the base is fixed
 //   supports: the spec has none
 //   springs and dampers of rigid elements: no link is flexible
+//   end stops: the spec has none
+//   friction of joints: the spec has none
 //   everything out of the crane's plane: all joints turn about one direction, none moves along it
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives
 //
@@ -142,6 +144,8 @@ pub const DESCRIPTION: Description = Description {
             },
         ],
     ),
+    stops: List::Static(&[]),
+    frictions: List::Static(&[]),
     points: List::Static(&[Text::Static("boom_tip"), Text::Static("load_centre")]),
     statics: true,
     guess: List::Static(

@@ -48,6 +48,8 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("element_forces", vec![n]),
         ("drive_forces", vec![n]),
         ("hinge_forces", vec![n]),
+        ("stop_forces", vec![n]),
+        ("friction_forces", vec![n]),
         ("drive_forces_at_rest", vec![n]),
         ("forward_dynamics", vec![n]),
         ("mass_solution", vec![n]),
@@ -58,6 +60,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("support_energy", vec![1]),
         ("element_energy", vec![1]),
         ("drive_energy", vec![1]),
+        ("stop_energy", vec![1]),
         ("static_residual", vec![n]),
         ("tangent_stiffness", vec![n, n]),
         ("linearised_mass", vec![n, n]),
@@ -70,6 +73,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("drive_power", vec![1]),
         ("dissipation", vec![1]),
         ("prescribed", vec![2, n]),
+        ("nonlinear_impedances", vec![n, 2]),
     ];
     rows.into_iter().map(|(name, shape)| Quantity { name, shape }).collect()
 }
@@ -122,6 +126,8 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         crane.element_forces(q, v),
         crane.drive_forces(t, q, v),
         crane.hinge_forces(v),
+        crane.stop_forces(q, v),
+        crane.friction_forces(v),
         crane.drive_forces_at_rest(q),
         crane.forward_dynamics(t, q, v),
         crane.solve_mass(q, v),
@@ -136,6 +142,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         crane.support_energy(q),
         crane.element_energy(q),
         crane.drive_energy(t, q),
+        crane.stop_energy(q),
     ]);
     out.extend(crane.static_residual(q).iter());
     push_matrix(&mut out, &crane.tangent_stiffness(q));
@@ -155,9 +162,12 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     crane.drive_motions(t, &mut motions);
     out.extend(motions.iter().flatten());
     out.extend([crane.drive_power(t, q, v), crane.dissipation(t, q, v)]);
+    let mut tangents = vec![[0.0; 2]; info.coordinates.len()];
+    crane.nonlinear_impedances(t, q, v, &mut tangents);
     let (mut q, mut v) = (*q, *v);
     crane.prescribe(t, &mut q, &mut v);
     out.extend(q.iter().chain(&v));
+    out.extend(tangents.iter().flatten());
     out
 }
 

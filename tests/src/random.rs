@@ -67,7 +67,7 @@ impl Writer {
         self.tip("hand");
         self.supports(base);
         if self.driven {
-            self.drives();
+            self.drives(seed);
         }
         self.line("points:");
         for (name, link) in [("middle", "first"), ("end", "hand")] {
@@ -254,7 +254,7 @@ impl Writer {
         }
     }
 
-    fn drives(&mut self) {
+    fn drives(&mut self, seed: u64) {
         self.line("drives:");
         let driven: Vec<_> = self.coordinates.iter().take(5).cloned().collect();
         let passive = self.coordinates[5..].to_vec();
@@ -295,6 +295,21 @@ impl Writer {
             let armature = self.positive(2.0);
             self.line(&format!("armature: {{{coordinate}: {armature}}}"));
         }
+        if seed % 2 == 1 {
+            self.joint_forces();
+        }
+    }
+
+    /// Stops and friction of driven joints, of rigid drives too, and of a passive one.
+    fn joint_forces(&mut self) {
+        let names: Vec<String> = self.coordinates.iter().map(|(name, _)| name.clone()).collect();
+        let (Some(last), [_, second, third, ..]) = (names.last(), names.as_slice()) else { return };
+        self.line("stops:");
+        self.line(&format!("  {third}: {{min: -0.15, max: 0.2, stiffness: 2500, damping: 0.3}}"));
+        self.line(&format!("  {last}: {{max: 0.1, stiffness: 700}}"));
+        self.line("friction:");
+        self.line(&format!("  {second}: {{coulomb: 6, breakaway: 9, stribeck: 0.6, width: 0.3, viscous: 1.5}}"));
+        self.line(&format!("  {last}: {{coulomb: payload, width: 0.4}}"));
     }
 
     fn line(&mut self, line: &str) {

@@ -39,10 +39,14 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
         crane.element_forces(q, v),
         crane.drive_forces(t, q, v),
         crane.hinge_forces(v),
+        crane.stop_forces(q, v),
+        crane.friction_forces(v),
     ));
     black_box((crane.forces(t, q, v), crane.mass_matrix(q), crane.bias(q, v), crane.linearise(q)));
     black_box((crane.static_residual(q), crane.tangent_stiffness(q)));
     black_box((crane.gravity_energy(q), crane.support_energy(q), crane.element_energy(q), crane.drive_energy(t, q)));
+    black_box(crane.stop_energy(q));
+    crane.nonlinear_impedances(t, q, v, &mut places.motions);
     black_box((crane.potential_energy(t, q), crane.kinetic_energy(q, v)));
     black_box((crane.drive_power(t, q, v), crane.dissipation(t, q, v)));
 }

@@ -171,7 +171,7 @@ proptest! {
         let along = DVector::from_vec(direction);
 
         let residual = crane.interpreted.vector("static_residual", &state);
-        let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy"];
+        let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy"];
         let slopes = parts.map(|part| crane.interpreted.get(part, &inputs, 1)[0].derivative());
         let size = slopes.iter().map(|slope| slope.abs()).sum::<f64>()
             + residual.iter().zip(&along).map(|(r, d)| (r * d).abs()).sum::<f64>();
@@ -193,7 +193,7 @@ proptest! {
         let parameters = crane.interpreted.chain.parameter_defaults().into_iter().map(|p| Dual::new(p, 0.0)).collect();
         let acceleration = crane.vector("forward_dynamics");
         let inputs = Inputs::state(Dual::new(*t, 1.0), pairs(q, v), pairs(v, acceleration.as_slice()), parameters);
-        let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy"];
+        let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy"];
         let rates = parts.map(|part| crane.interpreted.get(part, &inputs, 1)[0].derivative());
         let scalar = |function: &str| crane.interpreted.scalar(function, &crane.state);
         let supplied = scalar("drive_power") - scalar("dissipation");

@@ -102,7 +102,8 @@ fn a_rotor_adds_to_the_diagonal_and_to_nothing_else() {
             let energy = crane.scalar("kinetic_energy", &state) - without.scalar("kinetic_energy", &state);
             let size = crane.scalar("kinetic_energy", &state);
             assert_close(energy, 0.5 * v.component_mul(&armature).dot(&v), size, 1e-15, &format!("seed {seed}"));
-            for force in ["bias", "support_forces", "element_forces", "hinge_forces"] {
+            for force in ["bias", "support_forces", "element_forces", "hinge_forces", "stop_forces", "friction_forces"]
+            {
                 assert_eq!(crane.vector(force, &state), without.vector(force, &state), "seed {seed}: {force}");
             }
         }
@@ -179,7 +180,8 @@ fn power_balances() {
         for state in states::far(&crane.chain, 3, seed) {
             let acceleration = crane.acceleration(&state);
             let inputs = moving(&crane, &state, (1.0, &state.v, acceleration.as_slice()));
-            let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy"];
+            let parts =
+                ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy"];
             let rates: Vec<f64> = parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
             let supplied = crane.scalar("drive_power", &state) - crane.scalar("dissipation", &state);
             let size = rates.iter().map(|rate| rate.abs()).sum();
@@ -203,7 +205,8 @@ fn prescribed_coordinates_are_no_unknowns() {
                 (crane.matrix("mass_matrix", &state), crane.vector("bias", &state) + crane.vector("forces", &state));
             let size = (mass.abs() * acceleration.abs()).amax();
             assert!((&mass * &acceleration - &force).amax() < 1e-12 * size, "seed {seed}: A q̈ = e + f");
-            let parts = ["support_forces", "element_forces", "drive_forces", "hinge_forces"];
+            let parts =
+                ["support_forces", "element_forces", "drive_forces", "hinge_forces", "stop_forces", "friction_forces"];
             let sum = parts.iter().fold(DVector::zeros(n), |sum, part| sum + crane.vector(part, &state));
             let forces = crane.vector("forces", &state);
             assert!(
@@ -245,7 +248,7 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
                 let mut direction = vec![0.0; n];
                 direction[j] = 1.0;
                 let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n]));
-                let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy"];
+                let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy"];
                 let slopes: Vec<f64> = parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
                 let size = slopes.iter().map(|slope| slope.abs()).sum();
                 if crane.prescribed().contains(&j) {

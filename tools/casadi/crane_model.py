@@ -54,6 +54,29 @@ class Spring:
 
 
 @dataclass
+class Stop:
+    """An end stop: the joint is beyond it where `sign * (q - at)` is above zero."""
+
+    coordinate: Coordinate
+    at: object
+    sign: int
+    stiffness: object
+    damping: object
+
+
+@dataclass
+class Friction:
+    """Friction of a joint; `breakaway` is as `coulomb` where the spec says nothing."""
+
+    coordinate: Coordinate
+    coulomb: object
+    breakaway: object
+    stribeck: object
+    width: object
+    viscous: object
+
+
+@dataclass
 class Support:
     """Springs and dampers along the world's axes; `elongation` and its columns for x, y, z."""
 
@@ -86,6 +109,8 @@ class Crane:
     drives: list = field(default_factory=list)
     hinges: list = field(default_factory=list)
     rotors: list = field(default_factory=list)
+    stops: list = field(default_factory=list)
+    frictions: list = field(default_factory=list)
     points: dict = field(default_factory=dict)
     guess: list = field(default_factory=list)
 
@@ -151,6 +176,10 @@ def read_crane(path):
         crane.hinges.append(Spring(crane.coordinate(name), 0, spec.number(damping)))
     for name, armature in spec.get("armature", {}).items():
         crane.rotors.append((crane.coordinate(name), spec.number(armature)))
+    for name, written in spec.get("stops", {}).items():
+        crane.stops.extend(read_stops(spec, written, crane.coordinate(name)))
+    for name, written in spec.get("friction", {}).items():
+        crane.frictions.append(read_friction(spec, written, crane.coordinate(name)))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     crane.guess = read_guess(crane)
@@ -272,6 +301,26 @@ def read_drive(crane, written):
     motion, interval = read_profile(spec, written["motion"], coordinate.is_rotation, crane.time)
     stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
     return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False))
+
+
+def read_stops(spec, written, coordinate):
+    """The stops at one end of a joint's range or at both."""
+    stiffness, damping = spec.number(written["stiffness"]), spec.number(written.get("damping", 0))
+    ends = [(key, sign) for key, sign in (("min", -1), ("max", 1)) if key in written]
+    return [
+        Stop(coordinate, spec.position(written[key], coordinate.is_rotation), sign, stiffness, damping)
+        for key, sign in ends
+    ]
+
+
+def read_friction(spec, written, coordinate):
+    """Friction of a joint."""
+    coulomb = spec.number(written["coulomb"])
+    breakaway = spec.number(written["breakaway"]) if "breakaway" in written else coulomb
+    stribeck, width, viscous = (
+        spec.number(written.get(key, default)) for key, default in (("stribeck", 1e-2), ("width", 1e-3), ("viscous", 0))
+    )
+    return Friction(coordinate, coulomb, breakaway, stribeck, width, viscous)
 
 
 def read_point(spec, written, span):

@@ -110,6 +110,31 @@ class Derivations:
             "hinge": (ca.SX(0), lost(crane.hinges)),
         }
 
+    def joint_forces(self):
+        """End stops and friction: generalized forces of either, energy of the stops, damping of both at rest.
+
+        A stop is a spring that acts one way, times `1 + a δ̇` as long as that pushes [Hunt and Crossley 1975]; friction is Coulomb's
+        with Stribeck's decline, smooth by a hyperbolic tangent.
+        """
+        crane = self.crane
+        places = {coordinate.name: place for place, coordinate in enumerate(crane.coordinates)}
+        stop_forces, friction_forces, damping = (ca.SX.zeros(crane.q.shape) for _ in range(3))
+        energy = ca.SX(0)
+        for stop in crane.stops:
+            place, rate = places[stop.coordinate.name], stop.sign * stop.coordinate.v
+            beyond = stop.sign * (stop.coordinate.q - stop.at)
+            depth = ca.if_else(beyond > 0, beyond, 0)
+            growth = 1 + stop.damping * rate
+            stop_forces[place] -= stop.sign * stop.stiffness * depth * ca.if_else(growth > 0, growth, 0)
+            damping[place] += stop.stiffness * depth * stop.damping
+            energy += stop.stiffness * depth**2 / 2
+        for friction in crane.frictions:
+            place, rate = places[friction.coordinate.name], friction.coordinate.v
+            more = (friction.breakaway - friction.coulomb) * ca.exp(-((rate / friction.stribeck) ** 2))
+            friction_forces[place] -= (friction.coulomb + more) * ca.tanh(rate / friction.width) + friction.viscous * rate
+            damping[place] += friction.viscous
+        return stop_forces, friction_forces, energy, damping
+
     def forces(self):
         """Generalized forces `-∂E_p/∂q - ∂R/∂q̇` by part and in all; power lost 2R; D = ∂²R/∂q̇²."""
         q, v = self.crane.q, self.crane.v
@@ -117,15 +142,27 @@ class Derivations:
         energies = {part: energy for part, (energy, _) in parts.items()}
         by_part = {part: -ca.gradient(e, q) - ca.gradient(r, v) for part, (e, r) in parts.items()}
         dissipation_function = sum(lost for _, lost in parts.values())
-        forces = sum(by_part.values())
-        damping = -ca.substitute(ca.jacobian(forces, v), v, ca.DM.zeros(v.shape))
+        linear = sum(by_part.values())
+        damping = -ca.substitute(ca.jacobian(linear, v), v, ca.DM.zeros(v.shape))
+        stops, friction, stop_energy, at_rest = self.joint_forces()
+        # What is neither in the stops' energy nor at rest.
+        lost = -ca.dot(stops + friction, v) - ca.jtimes(stop_energy, q, v)
+        tangents = ca.horzcat(
+            -ca.diag(ca.jacobian(stops, q)),
+            -ca.diag(ca.jacobian(stops, v)) + ca.fmax(0, -ca.diag(ca.jacobian(friction, v))),
+        )
         return {
+            "stop_forces": stops,
+            "friction_forces": friction,
+            "stop_energy": stop_energy,
+            "nonlinear_impedances": row_major(ca.densify(tangents)),
+            LINEAR_DAMPING: row_major(ca.densify(damping)),
             **{f"{part}_forces": force for part, force in by_part.items()},
-            "forces": forces,
+            "forces": linear + stops + friction,
             "gravity_energy": self.gravity_energy(),
             **{f"{part}_energy": energies[part] for part in ("support", "element", "drive")},
-            "dissipation": 2 * dissipation_function,
-            "linearised_damping": self.unknowns(damping, 0),
+            "dissipation": 2 * dissipation_function + lost,
+            "linearised_damping": self.unknowns(damping + ca.diag(at_rest), 0),
         }
 
     def unknowns(self, matrix, diagonal):
@@ -155,6 +192,7 @@ class Derivations:
     def statics(self):
         """Gradient and Hessian of the whole potential energy at t = 0."""
         potential = self.gravity_energy() + sum(energy for energy, _ in self.potentials().values())
+        potential += self.joint_forces()[2]
         stiffness, gradient = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
         stiffness = self.unknowns(stiffness, 1)
         residual, holding = ca.densify(gradient), self.springs_at_rest()
@@ -213,7 +251,9 @@ SOLUTIONS = ["forward_dynamics", "lane_forward_dynamics", "mass_solution", "impl
 SPRINGS = "impedance_stiffness"
 # The accelerations of coordinates that rigid drives prescribe, likewise.
 PRESCRIBED = "prescribed_acceleration"
-INTERNAL = [SPRINGS, PRESCRIBED]
+# The damping of linear dampers, likewise.
+LINEAR_DAMPING = "impedance_damping"
+INTERNAL = [SPRINGS, PRESCRIBED, LINEAR_DAMPING]
 
 
 def solutions(values, v, prescribed):
@@ -224,7 +264,7 @@ def solutions(values, v, prescribed):
     """
     count = v.shape[1]
     mass, damping, stiffness = (
-        values[name].reshape(-1, count, count) for name in ("mass_matrix", "linearised_damping", SPRINGS)
+        values[name].reshape(-1, count, count) for name in ("mass_matrix", LINEAR_DAMPING, SPRINGS)
     )
     implicit = mass + IMPLICIT_STEP * damping + IMPLICIT_STEP**2 * stiffness
     given = values[PRESCRIBED]

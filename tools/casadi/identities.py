@@ -39,7 +39,7 @@ def identities(derivations, states, derived):
         Identity("the tangent stiffness is symmetric", relative(stiffness, stiffness.transpose(0, 2, 1))),
         Identity("D is symmetric", relative(damping, damping.transpose(0, 2, 1))),
         Identity("half v A v = kinetic energy", relative(kinetic_energy, derived["kinetic_energy"][:, 0])),
-        Identity("forces = supports + elements + drives + hinges", relative(parts_of(derived), derived["forces"])),
+        Identity("forces are the sum of their parts", relative(parts_of(derived), derived["forces"])),
         Identity("Adot - 2C is skew: v.Adot v / 2 = v.h", power_of_inertia(derivations, states, derived)),
         Identity("d(E_k + E_p)/dt = drive power - dissipation", power_balance(derivations, states, derived)),
         Identity("supports' forces on the base = sum of reactions", sum_of_reactions(derivations, derived)),
@@ -54,7 +54,7 @@ def relative(left, right, size=None):
 
 def parts_of(derived):
     """The sum of the generalized forces by part."""
-    return sum(derived[f"{part}_forces"] for part in ("support", "element", "drive", "hinge"))
+    return sum(derived[f"{part}_forces"] for part in ("support", "element", "drive", "hinge", "stop", "friction"))
 
 
 def evaluate(derivations, expression, states):
@@ -81,7 +81,7 @@ def power_balance(derivations, states, derived):
     size = len(crane.coordinates)
     mass = derived["mass_matrix"].reshape(-1, size, size)
     acceleration = np.linalg.solve(mass, (derived["bias"] + derived["forces"])[..., None])[..., 0]
-    potential = sum(quantities[f"{part}_energy"] for part in ("gravity", "support", "element", "drive"))
+    potential = sum(quantities[f"{part}_energy"] for part in ("gravity", "support", "element", "drive", "stop"))
     kinetic = quantities["kinetic_energy"]
     rate = evaluate(derivations, derivations.rate(kinetic + potential), states)[:, 0]
     momentum = evaluate(derivations, ca.gradient(kinetic, crane.v), states)

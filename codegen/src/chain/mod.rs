@@ -2,6 +2,7 @@
 //!
 //! // AFTER THIS POINT: nobody knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
+mod force;
 mod frame;
 mod loops;
 mod parameter;
@@ -9,6 +10,7 @@ mod profile;
 mod start;
 mod value;
 
+pub use force::{End, ForceElement, Friction, Law, Stop};
 pub use frame::{Frame, Vector};
 pub use loops::Loops;
 pub use parameter::{Bound, Parameter, Refusal, Relation};
@@ -52,6 +54,8 @@ pub struct Chain {
     pub drives: Vec<Drive>,
     /// Viscous damping of passive joints.
     pub hinges: Vec<Hinge>,
+    /// End stops and friction of joints.
+    pub forces: Vec<ForceElement>,
     /// Rotors that joints turn through gears.
     pub rotors: Vec<Rotor>,
     /// Points whose motion is of interest.
@@ -331,6 +335,30 @@ impl Chain {
     pub fn turns_by_vector(&self, id: CoordinateId) -> bool {
         let mut steps = self.bodies.iter().flat_map(|body| &body.path);
         steps.any(|step| matches!(step, Step::RotationVector(ids) if ids.contains(&id)))
+    }
+
+    /// The end stops.
+    pub fn stops(&self) -> impl Iterator<Item = (CoordinateId, &Stop)> {
+        self.forces.iter().filter_map(|element| match &element.law {
+            Law::Stop(stop) => Some((element.coordinate, stop)),
+            Law::Friction(_) => None,
+        })
+    }
+
+    /// Joints with friction.
+    pub fn frictions(&self) -> impl Iterator<Item = (CoordinateId, &Friction)> {
+        self.forces.iter().filter_map(|element| match &element.law {
+            Law::Friction(friction) => Some((element.coordinate, friction)),
+            Law::Stop(_) => None,
+        })
+    }
+
+    /// Coordinates with end stops, each once.
+    #[must_use]
+    pub fn stopped(&self) -> Vec<CoordinateId> {
+        let mut stopped: Vec<CoordinateId> = self.stops().map(|(coordinate, _)| coordinate).collect();
+        stopped.dedup();
+        stopped
     }
 
     /// Rigid drives: their coordinates are prescribed, not unknown.

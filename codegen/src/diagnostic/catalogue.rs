@@ -245,6 +245,23 @@ catalogue! {
     E092 prescribed_guess(coordinate) "the guess of `{coordinate}` has no effect", "its rigid drive prescribes where it is",
         "remove it";
 
+    // Stops and friction of joints.
+    /// Stops and friction are of joints, not of a free base or inside a beam.
+    E094 not_a_joint(coordinate, what, owner) "coordinate `{coordinate}` cannot have {what}", "it belongs to {owner}",
+        "name the coordinate of a revolute or prismatic joint";
+    /// Stops stand at one end of a joint's range at least.
+    E095 no_stop(coordinate) "the stops of `{coordinate}` stand nowhere", "neither `min` nor `max`",
+        "write `min:` or `max:` or both, in rad or m";
+    /// The least position of a joint is below its greatest.
+    E096 stops_crossed(coordinate, least, greatest) "the stops of `{coordinate}` leave no range", "from {least} to {greatest}",
+        "make `min` less than `max`";
+    /// Breaking away takes no less than moving on.
+    E097 breakaway(coordinate, coulomb, breakaway) "the friction of `{coordinate}` is less at rest than in motion",
+        "{breakaway} against {coulomb}", "write `breakaway` at least as great as `coulomb`, or leave it out";
+    /// Stribeck's decline is from a breakaway friction.
+    E098 stribeck_alone(coordinate) "the friction of `{coordinate}` has nothing to decline from", "`stribeck` without `breakaway`",
+        "add `breakaway:`, at least as great as `coulomb`, or remove `stribeck`";
+
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa.
     W001 modulus(what, place, given, usual, help) "{what} of {place} is {given} Pa", "usual: {usual} Pa", "{help}";

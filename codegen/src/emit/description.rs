@@ -41,11 +41,14 @@ fn description_constant(chain: &Chain) -> Item {
         let pieces = integer(drive.profile.pieces().len());
         quote!(DriveInfo { coordinate: #coordinate, start: #start, pieces: #pieces })
     });
+    let stops = chain.stopped().into_iter().map(|id| integer(id.0));
+    let frictions = chain.frictions().map(|(id, _)| integer(id.0));
     let points = chain.points.iter().map(|point| text(&point.name));
     let parameters = if chain.parameters.is_empty() { quote!(&[]) } else { quote!(&PARAMETERS) };
     let statics = chain.analyses.statics;
     let guess = chain.guess.iter().map(|&x| literal(x));
     let [coordinates, bodies] = [list(coordinates), list(bodies)];
+    let [stops, frictions] = [list(stops), list(frictions)];
     let [supports, drives, points, guess] = [list(supports), list(drives), list(points), list(guess)];
     let [name, title, hash] = [&chain.name, &chain.title, &chain.spec_hash].map(|words| text(words));
     let (duration, step, output) = (literal(chain.run.duration), literal(chain.run.step), literal(chain.run.output));
@@ -60,6 +63,8 @@ fn description_constant(chain: &Chain) -> Item {
             bodies: #bodies,
             supports: #supports,
             drives: #drives,
+            stops: #stops,
+            frictions: #frictions,
             points: #points,
             statics: #statics,
             guess: #guess,

@@ -52,7 +52,9 @@ impl<'a> Labels<'a> {
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
             Shape::Vectors(_) if function.name == "support_reactions" => Some(chain.supports[slot / 3].name.clone()),
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
-            Shape::Pairs(_) if function.name == "joint_impedances" => Some(coordinate(slot / 2).to_owned()),
+            Shape::Pairs(_) if matches!(function.name, "joint_impedances" | "nonlinear_impedances") => {
+                Some(coordinate(slot / 2).to_owned())
+            }
             Shape::Pairs(_) if function.name == "prescribed_motions" => {
                 chain.rigid_drives().nth(slot / 2).map(|drive| coordinate(drive.coordinate.0).to_owned())
             }

@@ -44,12 +44,15 @@ fn hinged(path: &[Step]) -> Vec<Step> {
 pub fn approximations(chain: &Chain) -> Option<String> {
     let symmetric = |body: &&Body| body.path.iter().any(|step| matches!(step, Step::RotationVector(_)));
     let count = chain.bodies.iter().filter(symmetric).count();
-    (count > 0).then(|| {
+    let hinges = (count > 0).then(|| {
         format!(
             "{count} symmetric section joints are three hinges each, psi, theta, phi in this order: the same pose up to \
              products of their angles. Write `section_joint: paper` for a crane that is exported exactly."
         )
-    })
+    });
+    let joints = (!chain.forces.is_empty()).then(|| "End stops and friction of joints are left out.".to_owned());
+    let lost: Vec<String> = hinges.into_iter().chain(joints).collect();
+    (!lost.is_empty()).then(|| lost.join(" "))
 }
 
 /// Poses of all bodies at `q = 0`, each in the frame of the body before it.

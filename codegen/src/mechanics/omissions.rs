@@ -22,6 +22,8 @@ pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'stati
     out(chain.elements.is_empty(), "springs and dampers of rigid elements", "no link is flexible");
     out(chain.drives.is_empty(), "drives", "the spec has none");
     out(chain.hinges.is_empty(), "viscous damping of joints", "the spec has none");
+    out(chain.stops().next().is_none(), "end stops", "the spec has none");
+    out(chain.frictions().next().is_none(), "friction of joints", "the spec has none");
     out(chain.points.is_empty(), "points of interest", "the spec has none");
     out(chain.parameters.is_empty(), "live parameters", "the spec has none: all numbers are baked in");
     out(

@@ -52,6 +52,7 @@ fn double_pendulum() -> Chain {
         elements: vec![],
         drives: vec![],
         hinges: vec![],
+        forces: vec![],
         rotors: vec![],
         points: vec![Point { name: "tip".into(), body: BodyId(1), position: [c(LENGTH[1]), Value::ZERO, Value::ZERO] }],
         guess: vec![0.0; 2],

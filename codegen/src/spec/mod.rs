@@ -6,6 +6,7 @@ mod beam;
 mod drive;
 mod given;
 mod inertia;
+mod joint;
 mod link;
 mod placement;
 mod scalar;
@@ -17,6 +18,7 @@ pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub(crate) use given::{EITHER, GIVEN, MANY};
 pub use given::{Either, Entries, Given, Many};
 pub use inertia::{About, Inertia};
+pub use joint::{Friction, Stops};
 pub use link::{BaseCoordinate, Body, Joint, JointAxis, Link};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector};
@@ -69,6 +71,10 @@ pub struct Crane {
     pub damping: Option<Given<Entries<Number>>>,
     /// Rotor inertia of joints without a drive by coordinate, reflected by the square of the gear ratio, kg m² or kg.
     pub armature: Option<Given<Entries<Number>>>,
+    /// End stops of joints by coordinate.
+    pub stops: Option<Given<Entries<Stops>>>,
+    /// Friction of joints by coordinate.
+    pub friction: Option<Given<Entries<Friction>>>,
     /// Points whose motion is of interest.
     pub points: Option<Given<Vec<Given<Point>>>>,
     /// Where the static solution starts, by coordinate, rad or m. Default: a driven coordinate at its drive's position

@@ -11,12 +11,14 @@ impl Graph {
     /// Of Stumpff's functions `c_k' = (k c_{k+2} − c_{k+1})/2`, [`Op::STUMPFF_ORDERS`] permitting.
     ///
     /// # Panics
-    /// If a function `c_k` with k > 3 depends on x: its derivative would need an order that is no operation.
+    /// If a function `c_k` with k > 3 depends on x: its derivative would need an order that no operation has.
     pub fn derivatives<'g>(&'g self, of: &[Expr<'g>], by: Expr<'g>) -> Vec<Expr<'g>> {
         let zero = self.constant(0.0);
         let last = of.iter().map(|f| f.id().0).max().unwrap_or(0);
         let mut needed = vec![false; last as usize + 1];
-        of.iter().for_each(|f| needed[f.id().index()] = true);
+        for f in of {
+            needed[f.id().index()] = true;
+        }
         for id in (0..=last).rev().map(ExprId).filter(|id| id.0 > by.id().0) {
             if needed[id.index()] {
                 self.op(id).operands().for_each(|operand| needed[operand.index()] = true);

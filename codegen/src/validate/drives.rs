@@ -8,13 +8,13 @@ use crate::expand::spline;
 use crate::spec::{self, Angle, Crane, Given, Motion, Number, Table};
 
 /// Units on a coordinate.
-struct Units {
-    stiffness: &'static str,
-    damping: &'static str,
+pub(super) struct Units {
+    pub(super) stiffness: &'static str,
+    pub(super) damping: &'static str,
     armature: &'static str,
 }
 
-fn units(kind: Option<CoordinateKind>) -> Units {
+pub(super) fn units(kind: Option<CoordinateKind>) -> Units {
     match kind {
         Some(CoordinateKind::Translation) => Units { stiffness: "N/m", damping: "N s/m", armature: "kg" },
         _ => Units { stiffness: "N m/rad", damping: "N m s/rad", armature: "kg m²" },
@@ -137,7 +137,7 @@ impl<'a> Check<'a> {
     }
 
     /// What a coordinate belongs to, if that is not a joint.
-    fn not_a_joint(&self, CoordinateId(index): CoordinateId) -> Option<String> {
+    pub(super) fn not_a_joint(&self, CoordinateId(index): CoordinateId) -> Option<String> {
         match &self.owners[index] {
             Owner::Joint => None,
             Owner::Base => Some("the free base".into()),

@@ -7,6 +7,7 @@ mod base;
 mod beam;
 mod drives;
 mod elements;
+mod joints;
 mod limits;
 mod links;
 mod mass;
@@ -154,6 +155,7 @@ impl<'a> Check<'a> {
         let supports = self.supports(crane);
         let (drives, mut rotors) = self.drives(crane);
         let hinges = self.hinges(crane, &drives);
+        let forces = self.joint_forces(crane);
         rotors.extend(self.rotors(crane, &drives));
         let points = self.points(crane, &supports);
         let guess = self.guess(crane, &drives);
@@ -175,6 +177,7 @@ impl<'a> Check<'a> {
             elements: std::mem::take(&mut self.elements),
             drives,
             hinges,
+            forces,
             rotors,
             points,
             guess,

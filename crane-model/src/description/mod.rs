@@ -25,6 +25,10 @@ pub struct Description {
     pub supports: List<SupportInfo>,
     /// Drives.
     pub drives: List<DriveInfo>,
+    /// Coordinates with end stops, by their places in `q`.
+    pub stops: List<usize>,
+    /// Coordinates with friction, by their places in `q`.
+    pub frictions: List<usize>,
     /// Names of the points of interest.
     pub points: List<Text>,
     /// Whether the spec asks for statics: a run then starts from the static equilibrium, otherwise from the guess.

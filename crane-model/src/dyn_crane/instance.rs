@@ -67,6 +67,14 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H
         out.copy_from_slice(self.0.drive_forces(t, &vector(q), &vector(v)).as_slice());
     }
 
+    fn stop_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.stop_forces(&vector(q), &vector(v)).as_slice());
+    }
+
+    fn friction_forces(&self, v: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.friction_forces(&vector(v)).as_slice());
+    }
+
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
         self.0.support_reactions(&vector(q), &vector(v), out);
     }
@@ -100,6 +108,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H
 
     fn drive_energy(&self, t: f64, q: &[f64]) -> f64 {
         self.0.drive_energy(t, &vector(q))
+    }
+
+    fn stop_energy(&self, q: &[f64]) -> f64 {
+        self.0.stop_energy(&vector(q))
     }
 
     fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
@@ -154,6 +166,10 @@ impl<const N: usize, H: Deref<Target: Implicit<N> + Sized>> DynImplicit for Inst
 
     fn joint_impedances(&self, out: &mut [[f64; 2]]) {
         self.0.joint_impedances(out);
+    }
+
+    fn nonlinear_impedances(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.0.nonlinear_impedances(t, &vector(q), &vector(v), out);
     }
 
     fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64> {

@@ -58,6 +58,12 @@ pub trait DynModel {
     /// Generalized forces of the drives.
     fn drive_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
 
+    /// Generalized forces of the end stops.
+    fn stop_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]);
+
+    /// Generalized forces of joint friction.
+    fn friction_forces(&self, v: &[f64], out: &mut [f64]);
+
     /// Forces of the supports on the crane, world frame, N.
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
 
@@ -81,6 +87,9 @@ pub trait DynModel {
 
     /// Energy of the drives' springs, J.
     fn drive_energy(&self, t: f64, q: &[f64]) -> f64;
+
+    /// Energy of the end stops, J.
+    fn stop_energy(&self, q: &[f64]) -> f64;
 
     /// Power that the drives' motions put in, W.
     fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
@@ -129,6 +138,9 @@ pub trait DynImplicit: DynDynamics {
     /// Stiffness and damping of elements, drives and joints on single coordinates; zero for the base's. `out`: one pair per
     /// coordinate.
     fn joint_impedances(&self, out: &mut [[f64; 2]]);
+
+    /// Stiffness and damping of end stops and friction on single coordinates at a state. `out`: one pair per coordinate.
+    fn nonlinear_impedances(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
 
     /// Stiffness over the base's coordinates.
     fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64>;

@@ -26,12 +26,14 @@ pub struct Energies {
     pub elements: f64,
     /// Springs of the drives, Eq. (19).
     pub drives: f64,
+    /// End stops.
+    pub stops: f64,
 }
 
 impl Energies {
     /// Kinetic and potential energy together.
     pub fn total(&self) -> f64 {
-        self.kinetic + self.gravity + self.supports + self.elements + self.drives
+        self.kinetic + self.gravity + self.supports + self.elements + self.drives + self.stops
     }
 }
 
@@ -119,6 +121,18 @@ impl dyn DynCrane + '_ {
         coordinates.filter(|(coordinate, _)| coordinate.role.is_element()).map(|(_, force)| -force).collect()
     }
 
+    /// Torques and forces of the end stops on the coordinates that have some, in their order: N m and N.
+    pub fn stop_efforts_at(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let forces = numbers(self, |out| self.stop_forces(q, v, out));
+        self.description().stops.iter().map(|&coordinate| forces[coordinate]).collect()
+    }
+
+    /// Torques and forces of friction on the coordinates that have some, in their order: N m and N.
+    pub fn friction_efforts_at(&self, v: &[f64]) -> Vec<f64> {
+        let forces = numbers(self, |out| self.friction_forces(v, out));
+        self.description().frictions.iter().map(|&coordinate| forces[coordinate]).collect()
+    }
+
     /// Forces of the supports on the crane, N.
     pub fn support_reactions_at(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>> {
         let mut out = vec![Vector3::zeros(); self.description().supports.len()];
@@ -157,6 +171,7 @@ impl dyn DynCrane + '_ {
             supports: self.support_energy(q),
             elements: self.element_energy(q),
             drives: self.drive_energy(t, q),
+            stops: self.stop_energy(q),
         }
     }
 

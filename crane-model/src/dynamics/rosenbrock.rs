@@ -152,7 +152,7 @@ impl Formula for Stages<'_> {
     /// Integrals go along; J is zero for them.
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
         let h = step.length;
-        self.system.factorise(equations.state(step.t, &step.start).0, h * GAMMA);
+        self.system.factorise(step.t, equations.state(step.t, &step.start), h * GAMMA);
         self.system.solve(&step.slopes[0], &mut self.u[0]);
         for i in 1..STAGES {
             self.place.copy_from_slice(&step.start);

@@ -17,8 +17,11 @@ use crate::dyn_crane::{DynImplicit, DynSystem};
 pub(super) struct System<'a> {
     crane: &'a dyn DynImplicit,
     factors: Box<dyn DynSystem + 'a>,
-    /// Stiffness and damping on single coordinates.
+    /// Stiffness and damping on single coordinates: of linear springs and dampers, and with those of other laws added.
+    linear: Vec<[f64; 2]>,
     joints: Vec<[f64; 2]>,
+    /// Those of other laws.
+    nonlinear: Vec<[f64; 2]>,
     /// Stiffness and damping over the base's coordinates.
     base: [Matrix6<f64>; 2],
     /// c, s.
@@ -34,13 +37,15 @@ impl<'a> System<'a> {
     /// Room for the systems of a crane.
     pub fn new(crane: &'a dyn DynImplicit) -> Self {
         let n = crane.size();
-        let mut joints = vec![[0.0; 2]; n];
-        crane.joint_impedances(&mut joints);
+        let mut linear = vec![[0.0; 2]; n];
+        crane.joint_impedances(&mut linear);
         let zeros = || vec![0.0; n];
         Self {
             crane,
             factors: crane.system(),
-            joints,
+            joints: linear.clone(),
+            linear,
+            nonlinear: vec![[0.0; 2]; n],
             base: [Matrix6::zeros(); 2],
             c: f64::NAN,
             resistance: zeros(),
@@ -50,9 +55,13 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Factorises about the pose `q`.
-    pub fn factorise(&mut self, q: &[f64], c: f64) {
+    /// Factorises about a state.
+    pub fn factorise(&mut self, t: f64, (q, v): (&[f64], &[f64]), c: f64) {
         self.c = c;
+        self.crane.nonlinear_impedances(t, q, v, &mut self.nonlinear);
+        for ((joint, linear), nonlinear) in self.joints.iter_mut().zip(&self.linear).zip(&self.nonlinear) {
+            *joint = [linear[0] + nonlinear[0], linear[1] + nonlinear[1]];
+        }
         self.base = [self.crane.base_stiffness(q), self.crane.base_damping(q)];
         for (resistance, [stiffness, damping]) in self.resistance.iter_mut().zip(&self.joints) {
             *resistance = damping * c + stiffness * (c * c);

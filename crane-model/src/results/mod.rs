@@ -5,5 +5,5 @@ mod recording;
 mod table;
 
 pub use peaks::Peaks;
-pub use recording::{Recording, drive_effort};
+pub use recording::{Recording, drive_effort, stop_effort};
 pub use table::{Column, Table};

@@ -6,7 +6,7 @@ use crate::{CoordinateKind, Description, dyn_crane::DynCrane, dynamics::Sample, 
 ///
 /// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; of a drive `<coordinate>_prescribed` and
 /// `<coordinate>_drive_torque` or `_drive_force`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
-/// `<support>_reaction_x`, `_y`, `_z`; of a coordinate of an element `<coordinate>_moment`; energies. `energy_balance` is `E(t) − E(0) − drive_work + dissipated_energy`, the
+/// `<support>_reaction_x`, `_y`, `_z`; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; energies. `energy_balance` is `E(t) − E(0) − drive_work + dissipated_energy`, the
 /// error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
@@ -46,7 +46,12 @@ impl<'a> Recording<'a> {
             row.extend(&reaction);
         }
         row.extend(crane.element_moments_at(q, v));
+        row.extend(crane.stop_efforts_at(q, v));
+        row.extend(crane.friction_efforts_at(v));
         row.extend([energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives]);
+        if !crane.description().stops.is_empty() {
+            row.push(energies.stops);
+        }
         row.extend([work, dissipated, energies.total() - self.energy_at_start - work + dissipated]);
         self.table.rows.push(row);
     }
@@ -87,8 +92,17 @@ fn columns(description: &Description) -> Table {
     for coordinate in description.coordinates.iter().filter(|coordinate| coordinate.role.is_element()) {
         table.add(format!("{}_moment", coordinate.name), coordinate.kind.force_unit());
     }
+    for (coordinates, what) in [(&description.stops, "stop"), (&description.frictions, "friction")] {
+        for &coordinate in coordinates {
+            let coordinate = &description.coordinates[coordinate];
+            table.add(effort(&coordinate.name, what, coordinate.kind), coordinate.kind.force_unit());
+        }
+    }
     for energy in ["kinetic", "gravity", "support", "element", "drive"] {
         table.add(format!("{energy}_energy"), "J");
+    }
+    if !description.stops.is_empty() {
+        table.add("stop_energy", "J");
     }
     for energy in ["drive_work", "dissipated_energy", "energy_balance"] {
         table.add(energy, "J");
@@ -98,8 +112,18 @@ fn columns(description: &Description) -> Table {
 
 /// Name of the column with the torque or force of a drive.
 pub fn drive_effort(coordinate: &str, kind: CoordinateKind) -> String {
+    effort(coordinate, "drive", kind)
+}
+
+/// Name of the column with the torque or force of a coordinate's end stops.
+pub fn stop_effort(coordinate: &str, kind: CoordinateKind) -> String {
+    effort(coordinate, "stop", kind)
+}
+
+/// Name of the column with the torque or force of what acts on a coordinate.
+fn effort(coordinate: &str, of: &str, kind: CoordinateKind) -> String {
     match kind {
-        CoordinateKind::Translation => format!("{coordinate}_drive_force"),
-        CoordinateKind::Rotation => format!("{coordinate}_drive_torque"),
+        CoordinateKind::Translation => format!("{coordinate}_{of}_force"),
+        CoordinateKind::Rotation => format!("{coordinate}_{of}_torque"),
     }
 }

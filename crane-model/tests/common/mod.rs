@@ -32,6 +32,8 @@ pub const fn description(
         bodies: List::Static(&[]),
         supports: List::Static(&[]),
         drives: List::Static(&[]),
+        stops: List::Static(&[]),
+        frictions: List::Static(&[]),
         points: List::Static(&[]),
         statics: true,
         guess: List::Static(guess),

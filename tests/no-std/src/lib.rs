@@ -58,6 +58,8 @@ macro_rules! crane {
                 element_forces(q: &Vector, v: &Vector) -> Vector;
                 drive_forces(t: f64, q: &Vector, v: &Vector) -> Vector;
                 hinge_forces(v: &Vector) -> Vector;
+                stop_forces(q: &Vector, v: &Vector) -> Vector;
+                friction_forces(v: &Vector) -> Vector;
                 support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
                 drive_motions(t: f64, out: &mut [[f64; 2]]);
                 drive_pieces(out: &mut [[f64; 2]]);
@@ -66,6 +68,7 @@ macro_rules! crane {
                 support_energy(q: &Vector) -> f64;
                 element_energy(q: &Vector) -> f64;
                 drive_energy(t: f64, q: &Vector) -> f64;
+                stop_energy(q: &Vector) -> f64;
                 potential_energy(t: f64, q: &Vector) -> f64;
                 drive_power(t: f64, q: &Vector, v: &Vector) -> f64;
                 dissipation(t: f64, q: &Vector, v: &Vector) -> f64;
@@ -78,6 +81,7 @@ macro_rules! crane {
                 factorise(q: &Vector, resistance: &Vector, base: &BaseMatrix) -> Factors;
                 solve(factors: &Factors, r: &Vector) -> Vector;
                 joint_impedances(out: &mut [[f64; 2]]);
+                nonlinear_impedances(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 base_stiffness(q: &Vector) -> BaseMatrix;
                 base_damping(q: &Vector) -> BaseMatrix;
                 static_residual(q: &Vector) -> Vector;

@@ -32,6 +32,8 @@ macro_rules! call_all {
         black_box(of::element_forces(&crane, &q, &v));
         black_box(of::drive_forces(&crane, t, &q, &v));
         black_box(of::hinge_forces(&crane, &v));
+        black_box(of::stop_forces(&crane, &q, &v));
+        black_box(of::friction_forces(&crane, &v));
         of::support_reactions(&crane, &q, &v, &mut vectors);
         of::drive_motions(&crane, t, &mut motions);
         of::drive_pieces(&crane, &mut pieces);
@@ -40,6 +42,7 @@ macro_rules! call_all {
         black_box(of::support_energy(&crane, &q));
         black_box(of::element_energy(&crane, &q));
         black_box(of::drive_energy(&crane, t, &q));
+        black_box(of::stop_energy(&crane, &q));
         black_box(of::potential_energy(&crane, t, &q));
         black_box(of::drive_power(&crane, t, &q, &v));
         black_box(of::dissipation(&crane, t, &q, &v));
@@ -52,6 +55,7 @@ macro_rules! call_all {
         let factors: <Crane as Implicit<{ of::N }>>::Factors = of::factorise(&crane, &q, &v, &BaseMatrix::zeros());
         black_box(of::solve(&crane, &factors, &v));
         of::joint_impedances(&crane, &mut impedances);
+        of::nonlinear_impedances(&crane, t, &q, &v, &mut impedances);
         black_box(of::base_stiffness(&crane, &q));
         black_box(of::base_damping(&crane, &q));
         black_box(of::static_residual(&crane, &q));

@@ -1,6 +1,10 @@
 //! What a pose or a run does that the model does not hold for.
 
-use crane_model::{Description, dyn_crane::DynCrane, results::Table};
+use crane_model::{
+    Description,
+    dyn_crane::DynCrane,
+    results::{Table, stop_effort},
+};
 use nalgebra::Vector3;
 
 use crate::extremes::Extremes;
@@ -11,7 +15,7 @@ pub const BEND: f64 = 20.0;
 /// Part of the greatest reaction below which a pull is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Feet that pull the crane down, and elements bent beyond `bend` degrees, at a pose at rest.
+/// Feet that pull the crane down, joints on their stops, and elements bent beyond `bend` degrees, at a pose at rest.
 pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let description = rig.description();
     let reactions = rig.support_reactions_at(q, &vec![0.0; q.len()]);
@@ -21,7 +25,12 @@ pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let pulls: Vec<_> = forces.filter(|(_, force, _)| *force < -ROUNDING * greatest).collect();
     let angles = description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role.is_element());
     let bent = angles.map(|(coordinate, angle)| (coordinate.name.as_str(), *angle));
-    pulled(&pulls).into_iter().chain(bent_beyond(bent, bend)).collect()
+    let stopped = description.stops.iter().zip(rig.stop_efforts_at(q, &vec![0.0; q.len()]));
+    let stopped = stopped.filter(|(_, effort)| *effort != 0.0).map(|(&coordinate, effort)| {
+        let coordinate = &description.coordinates[coordinate];
+        format!("{} rests on its stop, with {:.1} {}", coordinate.name, effort.abs(), coordinate.kind.force_unit())
+    });
+    pulled(&pulls).into_iter().chain(stopped).chain(bent_beyond(bent, bend)).collect()
 }
 
 /// The same over a run.
@@ -37,7 +46,23 @@ pub fn of_run(description: &Description, table: &Table, bend: f64) -> Vec<String
         let Extremes { minimum, maximum, .. } = Extremes::of(table, &coordinate.name);
         (coordinate.name.as_str(), if -minimum > maximum { minimum } else { maximum })
     });
-    pulled(&pulls.collect::<Vec<_>>()).into_iter().chain(bent_beyond(bent, bend)).collect()
+    let stopped = description.stops.iter().filter_map(|&coordinate| on_stop(description, table, coordinate));
+    pulled(&pulls.collect::<Vec<_>>()).into_iter().chain(stopped).chain(bent_beyond(bent, bend)).collect()
+}
+
+/// Says for how long a run has a joint on its stops, and what these took at most.
+fn on_stop(description: &Description, table: &Table, coordinate: usize) -> Option<String> {
+    let coordinate = &description.coordinates[coordinate];
+    let column = stop_effort(&coordinate.name, coordinate.kind);
+    let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(table, &column);
+    let (effort, time) = if -minimum > maximum { (-minimum, time_of_minimum) } else { (maximum, time_of_maximum) };
+    let samples = table.values(&column)?.filter(|effort| *effort != 0.0).count();
+    let duration = table.rows.last().map_or(0.0, |row| row[0]);
+    let met = samples as f64 * duration / (table.rows.len().max(2) - 1) as f64;
+    (effort > 0.0).then(|| {
+        let (name, unit) = (&coordinate.name, coordinate.kind.force_unit());
+        format!("{name} is on its stop for {met:.2} s, with up to {effort:.1} {unit} at {time:.2} s")
+    })
 }
 
 /// Says which feet pull, with how much, and when.

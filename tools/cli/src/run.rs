@@ -64,7 +64,7 @@ const LEAST_TURNED: f64 = 1e-9;
 /// Greatest error of the energy balance over the greatest energy that was turned over.
 pub fn imbalance(table: &Table) -> f64 {
     let column = |name: &str| table.values(name).map_or_else(Vec::new, Iterator::collect::<Vec<f64>>);
-    let parts = ["kinetic", "gravity", "support", "element", "drive"].map(|part| format!("{part}_energy"));
+    let parts = ["kinetic", "gravity", "support", "element", "drive", "stop"].map(|part| format!("{part}_energy"));
     let turned = parts.iter().map(String::as_str).chain(["drive_work", "dissipated_energy"]).map(|name| {
         let values = column(name);
         let first = values.first().copied().unwrap_or(0.0);

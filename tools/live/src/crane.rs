@@ -216,6 +216,14 @@ impl DynModel for LiveCrane {
         self.numbers(Name::DriveForces, &state(t, q, v), out);
     }
 
+    fn stop_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
+        self.numbers(Name::StopForces, &state(0.0, q, v), out);
+    }
+
+    fn friction_forces(&self, v: &[f64], out: &mut [f64]) {
+        self.numbers(Name::FrictionForces, &state(0.0, &[], v), out);
+    }
+
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
         self.vectors(Name::SupportReactions, &state(0.0, q, v), out);
     }
@@ -250,6 +258,10 @@ impl DynModel for LiveCrane {
 
     fn drive_energy(&self, t: f64, q: &[f64]) -> f64 {
         self.scalar(Name::DriveEnergy, &Arguments { t, ..at(q) })
+    }
+
+    fn stop_energy(&self, q: &[f64]) -> f64 {
+        self.scalar(Name::StopEnergy, &at(q))
     }
 
     fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
@@ -320,6 +332,10 @@ impl DynImplicit for LiveCrane {
 
     fn joint_impedances(&self, out: &mut [[f64; 2]]) {
         self.pairs(Name::JointImpedances, &Arguments::none(), out);
+    }
+
+    fn nonlinear_impedances(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.pairs(Name::NonlinearImpedances, &state(t, q, v), out);
     }
 
     fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64> {

@@ -52,6 +52,8 @@ pub fn describe(chain: &Chain) -> Description {
         bodies: bodies.collect(),
         supports: supports.collect(),
         drives: drives.collect(),
+        stops: chain.stopped().into_iter().map(|id| id.0).collect(),
+        frictions: chain.frictions().map(|(id, _)| id.0).collect(),
         points: chain.points.iter().map(|point| point.name.clone().into()).collect(),
         statics: chain.analyses.statics,
         guess: chain.guess.iter().copied().collect(),

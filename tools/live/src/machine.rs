@@ -210,8 +210,9 @@ fn run<T: Number, const SIZE: usize>(code: &Code, file: &mut [T; SIZE], out: &mu
             Kind::Sqrt => own.iter().for_each(|i| set(file, i.out(), sqrt(get(file, i.a())))),
             Kind::Exp => own.iter().for_each(|i| set(file, i.out(), exp(get(file, i.a())))),
             Kind::Select => {
-                own.iter()
-                    .for_each(|i| set(file, i.out(), select(get(file, i.a()), get(file, i.b()), get(file, i.c()))));
+                for i in own {
+                    set(file, i.out(), select(get(file, i.a()), get(file, i.b()), get(file, i.c())));
+                }
             }
             Kind::Angle => take_angles(own, file),
             Kind::Stumpff => take_stumpff(own, file),

@@ -19,15 +19,6 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
     let mut text =
         format!("# The robot {robot_name}, from {file}. Units: SI; angles in rad, or written as `90 deg`.\n");
     text += "# Positions and velocities of joints are those of the robot; zero is where its zero is.\n";
-    let friction: Vec<String> =
-        robot.joints.iter().filter(|joint| joint.friction > 0.0).map(|j| plain(&j.name)).collect();
-    if !friction.is_empty() {
-        let _ = writeln!(
-            text,
-            "# Left out, since a crane has viscous friction only: Coulomb friction of {}.",
-            friction.join(", ")
-        );
-    }
     let _ =
         write!(text, "format: 1\nname: {}\ntitle: \"{robot_name}, from {file}\"\n\nlinks:\n", identifier(&robot.name));
     for link in links {
@@ -43,6 +34,20 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
         text += "damping:                        # N m s/rad, N s/m; leave a joint out that gets a drive\n";
         for (name, damping) in damped {
             let _ = writeln!(text, "  {name}: {}", decimal(damping));
+        }
+        text.push('\n');
+    }
+    // A joint of several coordinates has one number for friction that acts on none of them alone.
+    let rubbing = links.iter().filter_map(|link| {
+        let coulomb = link.joint.map(|joint| joint.friction).filter(|friction| *friction > 0.0)?;
+        let coordinates = link.motion.coordinates(&link.name);
+        (coordinates.len() == 1).then(|| coordinates.into_iter().map(move |name| (name, coulomb)))
+    });
+    let rubbing: Vec<(String, f64)> = rubbing.flatten().collect();
+    if !rubbing.is_empty() {
+        text += "friction:                       # N m, N\n";
+        for (name, coulomb) in rubbing {
+            let _ = writeln!(text, "  {name}: {{coulomb: {}}}", decimal(coulomb));
         }
         text.push('\n');
     }

@@ -1,9 +1,12 @@
 //! Forces and energies by part, and what drives do.
 
 use super::{Derivation, function, sum};
-use crate::mechanics::{drives, gravity, springs, supports};
+use crate::mechanics::{drives, gravity, joints, springs, supports};
 use crate::symbolic::Argument::{Position, Time, Velocity};
-use crate::symbolic::{Expr, Function, Shape, Tape};
+use crate::symbolic::{Argument, Expr, Function, Shape, Tape};
+
+/// A part of the forces: name, documentation, equation and arguments of its function, and its expressions.
+type Part<'g> = (&'static str, &'static str, &'static str, &'static [Argument], Vec<Expr<'g>>);
 
 impl<'g> Derivation<'g> {
     pub(super) fn forces(&self) -> Vec<Function> {
@@ -60,6 +63,10 @@ impl<'g> Derivation<'g> {
                 forces,
             ));
         }
+        for (name, doc, equation, arguments, forces) in self.joint_forces() {
+            parts.push(forces.clone());
+            functions.push(function(name, doc, equation, arguments, vector(), forces));
+        }
         if parts.len() > 1 {
             functions.push(
                 function(
@@ -74,6 +81,31 @@ impl<'g> Derivation<'g> {
             );
         }
         functions
+    }
+
+    /// What acts in joints besides drives and viscous damping, as far as the crane has it.
+    fn joint_forces(&self) -> Vec<Part<'g>> {
+        let model = &self.model;
+        let mut parts: Vec<Part<'g>> = Vec::new();
+        if model.chain.stops().next().is_some() {
+            parts.push((
+                "stop_forces",
+                "Generalized forces of the end stops, N and N m.",
+                "−k δ max(0, 1 + a δ̇)",
+                &[Position, Velocity],
+                joints::stop_forces(model, &model.v),
+            ));
+        }
+        if model.chain.frictions().next().is_some() {
+            parts.push((
+                "friction_forces",
+                "Generalized forces of joint friction, N and N m.",
+                "−(F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) − b q̇",
+                &[Velocity],
+                joints::friction_forces(model, &model.v),
+            ));
+        }
+        parts
     }
 
     /// What drives do and how they move, from their generalized forces.
@@ -131,7 +163,21 @@ impl<'g> Derivation<'g> {
     fn drive_forces(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
         let flexible = drives::forces(model, model.t, &model.v);
-        if self.rigid { sum(&[flexible, self.motion().efforts]) } else { flexible }
+        if self.rigid { sum(&[flexible, self.rigid_efforts()]) } else { flexible }
+    }
+
+    /// Efforts of rigid drives: what the prescribed motions take, less what acts on their joints anyway.
+    fn rigid_efforts(&self) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let given = self.given_forces(model.t, &model.v);
+        let mut efforts = self.motion().efforts;
+        for drive in model.chain.rigid_drives() {
+            let j = drive.coordinate.0;
+            if !given[j].is_zero() {
+                efforts[j] = efforts[j] - given[j];
+            }
+        }
+        efforts
     }
 
     /// What efforts of rigid drives need comes in the order of the recursion that finds them.
@@ -142,12 +188,16 @@ impl<'g> Derivation<'g> {
     /// Generalized forces of all but inertia, gravity and rigid drives.
     pub(super) fn given_forces(&self, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let model = &self.model;
-        sum(&[
+        let mut parts = vec![
             supports::forces(model, &self.kinematics, v),
             springs::element_forces(model, &model.q, v),
             drives::forces(model, t, v),
             springs::hinge_forces(model, v),
-        ])
+        ];
+        if !model.chain.forces.is_empty() {
+            parts.extend([joints::stop_forces(model, v), joints::friction_forces(model, v)]);
+        }
+        sum(&parts)
     }
 
     pub(super) fn energies(&self) -> Vec<Function> {
@@ -190,7 +240,7 @@ impl<'g> Derivation<'g> {
                 ));
             }
             let (power, tape) = self.recorded_if_rigid(|| {
-                let efforts = if self.rigid { self.motion().efforts } else { vec![] };
+                let efforts = if self.rigid { self.rigid_efforts() } else { vec![] };
                 drives::power(model, &efforts)
             });
             functions.push(
@@ -204,8 +254,18 @@ impl<'g> Derivation<'g> {
                 .by(tape),
             );
         }
-        let dissipation =
+        if chain.stops().next().is_some() {
+            functions.push(scalar(
+                "stop_energy",
+                "Energy of the end stops, J.",
+                "½ Σ k δ²",
+                &[Position],
+                joints::stop_energy(model),
+            ));
+        }
+        let linear =
             supports::dissipation(model, &self.kinematics) + springs::dissipation(model) + drives::dissipation(model);
+        let dissipation = if chain.forces.is_empty() { linear } else { linear + joints::dissipation(model) };
         if !dissipation.is_zero() {
             functions.push(scalar(
                 "dissipation",

@@ -16,7 +16,7 @@ use super::kinematics::Kinematics;
 use super::model::Model;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
-use super::{drives, energy, newton_euler, points, resisted, rotors, springs, supports, transforms};
+use super::{drives, energy, joints, newton_euler, points, resisted, rotors, springs, supports, transforms};
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
@@ -251,6 +251,16 @@ impl<'g> Derivation<'g> {
             Shape::Pairs(model.size()),
             (0..model.size()).flat_map(diagonal).collect(),
         ));
+        if !model.chain.forces.is_empty() {
+            functions.push(function(
+                "nonlinear_impedances",
+                "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates.",
+                "∂F/∂q, max(0, ∂F/∂q̇)",
+                &[Time, Position, Velocity],
+                Shape::Pairs(model.size()),
+                joints::impedances(model).into_iter().flatten().collect(),
+            ));
+        }
         if !base.is_empty() {
             let block = |matrix: &SymmetricMatrix<'g>| {
                 let entry = |i: usize, j: usize| match (base.get(i), base.get(j)) {

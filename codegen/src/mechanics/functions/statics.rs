@@ -3,7 +3,7 @@
 use super::{Derivation, function, sum};
 use crate::mechanics::columns::columns;
 use crate::mechanics::vector::SymmetricMatrix;
-use crate::mechanics::{drives, gravity, springs, supports};
+use crate::mechanics::{drives, gravity, joints, springs, supports};
 use crate::symbolic::Argument::Position;
 use crate::symbolic::{Expr, Function, Shape};
 
@@ -72,24 +72,30 @@ impl<'g> Derivation<'g> {
         let model = &self.model;
         let rest = model.zeros();
         let gravity = gravity::gradient(model, &self.kinematics, &self.inertias);
-        let forces = sum(&[
+        let mut forces = vec![
             supports::forces(model, &self.kinematics, &rest),
             springs::element_forces(model, &model.q, &rest),
             drives::forces_at_rest(model),
-        ]);
+        ];
+        if !model.chain.forces.is_empty() {
+            forces.push(joints::stop_forces(model, &rest));
+        }
+        let forces = sum(&forces);
         gravity.into_iter().zip(forces).map(|(g, f)| g - f).collect()
     }
 
     fn stiffness(&self) -> SymmetricMatrix<'g> {
         let model = &self.model;
         let mut matrix = self.impedances().0;
+        joints::stiffness(model, &mut matrix);
         gravity::stiffness(model, &self.kinematics, &self.inertias, &mut matrix);
         matrix
     }
 
     pub(super) fn linearise(&self) -> Function {
         let model = &self.model;
-        let damping = self.impedances().1;
+        let mut damping = self.impedances().1;
+        joints::damping(model, &mut damping);
         let columns = columns(model, &self.factors);
         let mut outputs = self.unknowns(columns.mass_matrix(model), 1.0).into_upper();
         outputs.extend(self.unknowns(self.stiffness(), 1.0).into_upper());

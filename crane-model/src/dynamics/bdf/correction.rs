@@ -48,7 +48,7 @@ impl<'a> Correction<'a> {
         self.t = history.t + history.h;
         self.c = history.h / GAMMAS[history.order];
         equations.guides.step_within(history.t, self.t);
-        self.system.factorise(equations.state(self.t, &self.end).0, self.c);
+        self.system.factorise(self.t, equations.state(self.t, &self.end), self.c);
     }
 
     /// One step of the iteration. Integrals wait for its end.

@@ -1,0 +1,60 @@
+//! Force elements on single coordinates whose law is not linear.
+
+use super::{CoordinateId, Value};
+
+/// A force element: a law that acts on one coordinate of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceElement {
+    /// The coordinate.
+    pub coordinate: CoordinateId,
+    /// What it does.
+    pub law: Law,
+}
+
+/// The law of a force element.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// An end stop.
+    Stop(Stop),
+    /// Friction of a joint.
+    Friction(Friction),
+}
+
+/// An end stop, which pushes where the coordinate is beyond it and never pulls: with `δ` how far it is beyond,
+/// `F = k δ max(0, 1 + a δ̇)`.
+///
+/// K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440, with a linear spring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    /// Where it stands, rad or m.
+    pub at: Value,
+    /// Which end of the joint's range it is.
+    pub end: End,
+    /// k, N m/rad or N/m.
+    pub stiffness: Value,
+    /// a, s/rad or s/m.
+    pub damping: Value,
+}
+
+/// An end of a joint's range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The least value of the coordinate.
+    Least,
+    /// The greatest.
+    Greatest,
+}
+
+/// Friction of a joint, `F = (F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) + b q̇`: Coulomb's with Stribeck's decline, smooth
+/// where the motion turns around.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Friction {
+    /// `F_c`, N m or N.
+    pub coulomb: Value,
+    /// `F_b`, N m or N, and `v_s`, rad/s or m/s, where breaking away takes more.
+    pub breakaway: Option<(Value, Value)>,
+    /// v₀, rad/s or m/s: at this rate friction has come to three quarters of its size.
+    pub width: Value,
+    /// b, N m s/rad or N s/m.
+    pub viscous: Value,
+}

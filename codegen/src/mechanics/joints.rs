@@ -1,0 +1,82 @@
+//! End stops and friction of joints: laws on single coordinates, `f_j = −F(q_j, q̇_j)`.
+
+use super::laws;
+use super::model::Model;
+use super::vector::SymmetricMatrix;
+use crate::symbolic::Expr;
+
+/// Generalized forces of the end stops.
+pub fn stop_forces<'g>(model: &Model<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let mut forces = model.zeros();
+    for (coordinate, stop) in model.chain.stops() {
+        let j = coordinate.0;
+        forces[j] = forces[j] - laws::stop_force(model, stop, model.q[j], v[j]);
+    }
+    forces
+}
+
+/// Generalized forces of friction.
+pub fn friction_forces<'g>(model: &Model<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let mut forces = model.zeros();
+    for (coordinate, friction) in model.chain.frictions() {
+        let j = coordinate.0;
+        forces[j] = forces[j] - laws::friction_force(model, friction, v[j]);
+    }
+    forces
+}
+
+/// Energy of the stops, `½ Σ k δ²`.
+pub fn stop_energy<'g>(model: &Model<'g>) -> Expr<'g> {
+    let twice = model.chain.stops().fold(model.zero(), |sum, (coordinate, stop)| {
+        sum + laws::twice_stop_energy(model, stop, model.q[coordinate.0])
+    });
+    0.5 * twice
+}
+
+/// Power that stops and friction take out.
+pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
+    let stops = model.chain.stops().fold(model.zero(), |sum, (coordinate, stop)| {
+        let j = coordinate.0;
+        sum + laws::stop_dissipation(model, stop, model.q[j], model.v[j])
+    });
+    model.chain.frictions().fold(stops, |sum, (coordinate, friction)| {
+        let rate = model.v[coordinate.0];
+        sum + laws::friction_force(model, friction, rate) * rate
+    })
+}
+
+/// `∂F/∂q_j` and `∂F/∂q̇_j` of all laws on each coordinate at the present state, for implicit steps: where friction declines
+/// with the rate 0, since a step needs no exact derivative but a positive resistance.
+pub fn impedances<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
+    let (stops, frictions) = (stop_forces(model, &model.v), friction_forces(model, &model.v));
+    let of = |force: Expr<'g>, by: Expr<'g>| -model.graph.derivatives(&[force], by)[0];
+    (0..model.size())
+        .map(|j| {
+            let (q, v) = (model.q[j], model.v[j]);
+            let declining = of(frictions[j], v);
+            let friction = if declining.is_zero() { declining } else { declining.max(model.zero()) };
+            [of(stops[j], q), of(stops[j], v) + friction]
+        })
+        .collect()
+}
+
+/// Stiffness of the stops at rest, on the diagonal.
+pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    let forces = stop_forces(model, &model.zeros());
+    for coordinate in model.chain.stopped() {
+        let j = coordinate.0;
+        matrix.add(j, j, -model.graph.derivatives(&[forces[j]], model.q[j])[0]);
+    }
+}
+
+/// Damping at rest, on the diagonal: of the stops, and viscous friction. A joint that sticks has no damping of its own, so
+/// Coulomb friction is not among it.
+pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    for (coordinate, stop) in model.chain.stops() {
+        let j = coordinate.0;
+        matrix.add(j, j, laws::stop_damping_at_rest(model, stop, model.q[j]));
+    }
+    for (coordinate, friction) in model.chain.frictions() {
+        matrix.add(coordinate.0, coordinate.0, model.number(&friction.viscous));
+    }
+}

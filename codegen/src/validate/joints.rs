@@ -1,0 +1,124 @@
+//! End stops and friction of joints.
+
+use super::Check;
+use super::drives::units;
+use super::limits::Limit;
+use crate::chain::{CoordinateId, CoordinateKind, End, ForceElement, Friction, Law, Stop, Value};
+use crate::diagnostic::rule;
+use crate::spec::{self, Crane, Given};
+
+/// Rate at which friction has come to three quarters of its size unless the spec says so, rad/s or m/s: of the drives of a crane
+/// a hundredth.
+const WIDTH: f64 = 1e-3;
+/// Rate of Stribeck's decline unless the spec says so, rad/s or m/s.
+const STRIBECK: f64 = 1e-2;
+
+impl<'a> Check<'a> {
+    /// The force elements of all joints: stops, then friction.
+    pub(super) fn joint_forces(&mut self, crane: &'a Crane) -> Vec<ForceElement> {
+        let mut forces = Vec::new();
+        for (name, stops) in crane.stops.iter().filter_map(|given| given.value.as_ref()).flat_map(|given| &given.0) {
+            let coordinate = self.joint_of(name, "stops");
+            if let Some(own) = &stops.value {
+                let laws = self.stops(own, stops, name.value.as_deref().unwrap_or_default(), coordinate);
+                forces.extend(coordinate.into_iter().flat_map(|coordinate| {
+                    laws.clone().into_iter().map(move |stop| ForceElement { coordinate, law: Law::Stop(stop) })
+                }));
+            }
+        }
+        for (name, given) in crane.friction.iter().filter_map(|given| given.value.as_ref()).flat_map(|given| &given.0) {
+            let coordinate = self.joint_of(name, "friction");
+            if let Some(own) = &given.value {
+                let friction = self.friction(own, name.value.as_deref().unwrap_or_default(), coordinate);
+                forces.extend(coordinate.map(|coordinate| ForceElement { coordinate, law: Law::Friction(friction) }));
+            }
+        }
+        forces
+    }
+
+    /// The coordinate of a joint by its name.
+    fn joint_of(&mut self, name: &Given<String>, what: &str) -> Option<CoordinateId> {
+        let id = self.coordinate(name)?;
+        if let Some(owner) = self.not_a_joint(id) {
+            let coordinate = self.coordinates[id.0].name.clone();
+            self.report(rule::not_a_joint(name.span, coordinate, what, owner));
+        }
+        Some(id)
+    }
+
+    fn stops(
+        &mut self,
+        own: &spec::Stops,
+        given: &Given<spec::Stops>,
+        name: &str,
+        coordinate: Option<CoordinateId>,
+    ) -> Vec<Stop> {
+        let kind = self.kind_of(coordinate);
+        let place = |what: &str| format!("the {what} of the stops of `{name}`");
+        let stiffness = self.number(&own.stiffness, &place("stiffness"), units(kind).stiffness, Limit::Positive);
+        let unit = if kind == Some(CoordinateKind::Translation) { "s/m" } else { "s/rad" };
+        let damping = self.number_or(own.damping.as_ref(), 0.0, &place("damping"), unit, Limit::NotNegative);
+        let mut stops = Vec::new();
+        for (end, at, key) in [(End::Least, &own.min, "`min`"), (End::Greatest, &own.max, "`max`")] {
+            if let Some(at) = at {
+                let at = self.position(at, kind, key);
+                stops.push(Stop { at, end, stiffness: stiffness.clone(), damping: damping.clone() });
+            }
+        }
+        match (stops.as_slice(), &own.max) {
+            ([], _) => self.report(rule::no_stop(given.span, name)),
+            ([least, greatest], Some(max)) => {
+                let (low, high) = (self.now(&least.at), self.now(&greatest.at));
+                let broken = rule::stops_crossed(max.span, name, low, high);
+                if low >= high {
+                    self.report(broken.clone());
+                }
+                self.keep_below(&least.at, &greatest.at, &broken);
+            }
+            _ => {}
+        }
+        stops
+    }
+
+    fn friction(&mut self, own: &spec::Friction, name: &str, coordinate: Option<CoordinateId>) -> Friction {
+        let kind = self.kind_of(coordinate);
+        let (force, rate) = match kind {
+            Some(CoordinateKind::Translation) => ("N", "m/s"),
+            _ => ("N m", "rad/s"),
+        };
+        let place = |what: &str| format!("the {what} friction of `{name}`");
+        let coulomb = self.number(&own.coulomb, &place("Coulomb"), force, Limit::NotNegative);
+        let stribeck = self.number_or(own.stribeck.as_ref(), STRIBECK, "`stribeck`", rate, Limit::Positive);
+        let breakaway = own.breakaway.as_ref().map(|given| {
+            let breakaway = self.number(given, &place("breakaway"), force, Limit::NotNegative);
+            let (less, more) = (self.now(&coulomb), self.now(&breakaway));
+            let broken = rule::breakaway(given.span, name, less, more);
+            if more < less {
+                self.report(broken.clone());
+            }
+            // A live one may be as great, but no less.
+            let margin = breakaway.clone() - coulomb.clone() + Value::Constant(f64::MIN_POSITIVE);
+            self.keep_positive(margin, &broken);
+            (breakaway, stribeck.clone())
+        });
+        if let (Some(given), None) = (&own.stribeck, &own.breakaway) {
+            self.report(rule::stribeck_alone(given.span, name));
+        }
+        Friction {
+            coulomb,
+            breakaway,
+            width: self.number_or(own.width.as_ref(), WIDTH, "`width`", rate, Limit::Positive),
+            viscous: self.number_or(
+                own.viscous.as_ref(),
+                0.0,
+                &place("viscous"),
+                units(kind).damping,
+                Limit::NotNegative,
+            ),
+        }
+    }
+
+    fn kind_of(&self, coordinate: Option<CoordinateId>) -> Option<CoordinateKind> {
+        coordinate.map(|CoordinateId(index)| self.coordinates[index].kind)
+    }
+}
