@@ -3,7 +3,7 @@
 //!
 //! | what | where | needs |
 //! |---|---|---|
-//! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Implicit`], [`Ensemble`], [`Statics`], [`Linearise`], [`TransformDerivatives`] | nothing |
+//! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Implicit`], [`Ensemble`], [`Statics`], [`Linearise`], [`InternalForces`], [`TransformDerivatives`] | nothing |
 //! | one step in time | [`dynamics::rk4`] | nothing |
 //! | adaptive steps, explicit and implicit | `dynamics::dormand_prince`, `dynamics::rosenbrock` | `std` |
 //! | equilibrium | `statics` | `std` |
@@ -11,6 +11,7 @@
 //! | runs of many cranes, eight at a time | `dynamics::ensemble` | `std` |
 //! | frequencies, damping | `modes` | `std` |
 //! | largest stable step | `stability` | `std` |
+//! | moments about tipping lines | `tipping` | `std` |
 //! | cranes of any size through one pointer | `dyn_crane` | `std` |
 //!
 //! With `default-features = false` the crate is `no_std` and needs no heap.
@@ -23,6 +24,8 @@ extern crate self as crane_model;
 mod description;
 mod model;
 mod parameter;
+mod stress;
+mod wrench;
 
 #[cfg(feature = "std")]
 pub mod dyn_crane;
@@ -36,15 +39,21 @@ pub mod stability;
 #[cfg(feature = "std")]
 pub mod statics;
 pub mod support;
+#[cfg(feature = "std")]
+pub mod tipping;
 
 pub use description::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, LARGE_TILT, List, NEAR_SINGULAR,
     ParameterInfo, SupportInfo, Text,
 };
 pub use model::{
-    CraneModel, Dynamics, Ensemble, Implicit, LaneDynamics, Linearisation, Linearise, OneByOne, Statics,
-    TransformDerivatives,
+    CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,
+    Statics, TransformDerivatives,
 };
 /// The linear algebra of every signature, so that generated code needs this crate alone.
 pub use nalgebra;
 pub use parameter::{Bound, ParameterError, Refusal};
+pub use stress::SectionModuli;
+#[cfg(feature = "std")]
+pub use stress::Stress;
+pub use wrench::{Cut, Wrench};

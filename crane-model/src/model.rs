@@ -10,7 +10,7 @@ use nalgebra::{
 };
 
 use crate::support::lanes::f64x8;
-use crate::{Description, ParameterError};
+use crate::{Description, ParameterError, SectionModuli, Wrench};
 
 /// Poses, forces and potential energy of a crane.
 pub trait CraneModel<const N: usize> {
@@ -265,6 +265,24 @@ pub trait Statics<const N: usize>: CraneModel<N> {
 pub trait Linearise<const N: usize>: CraneModel<N> {
     /// A, D and K at a pose.
     fn linearise(&self, q: &SVector<f64, N>) -> Linearisation<N>;
+}
+
+/// What the parts of a crane exert on each other.
+pub trait InternalForces<const N: usize>: CraneModel<N> {
+    /// At every cut, what the part beyond it exerts on the part before it, in the cut's frame about its origin, at pose q,
+    /// rates v and accelerations a. `out`: one per cut, as [`Description::cuts`] lists them.
+    ///
+    /// It is the inertia and the weight of everything beyond, so it holds where nothing but the joints holds that: supports
+    /// act on the base alone. At the ground it is the load on the foundation or on the supports. In a section of a beam it
+    /// is `N, Qy, Qz` and `Mx, My, Mz`: N pulls where it is positive, Mx, My and Mz have the signs of the deformations that they
+    /// cause, φ, θ and ψ.
+    fn internal_forces(&self, q: &SVector<f64, N>, v: &SVector<f64, N>, a: &SVector<f64, N>, out: &mut [Wrench]);
+
+    /// Positions of the supports' attachment points in the world frame, m. `out`: one per support.
+    fn support_positions(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
+
+    /// What stresses of beams follow from. `out`: one per beam, from the base to the tip.
+    fn section_moduli(&self, _out: &mut [SectionModuli]) {}
 }
 
 /// Derivatives of the transforms. Each body has derivatives by the coordinates that move it, the first

@@ -3,7 +3,7 @@
 use crane_model::dyn_crane::Crane;
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use crane_model::support::lanes::f64x8;
-use crane_model::{Description, LaneDynamics, Linearisation, TransformDerivatives};
+use crane_model::{Description, LaneDynamics, Linearisation, SectionModuli, TransformDerivatives, Wrench};
 
 /// A quantity: its name and the shape of its numbers, row-major.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,6 +74,9 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("dissipation", vec![1]),
         ("prescribed", vec![2, n]),
         ("nonlinear_impedances", vec![n, 2]),
+        ("internal_forces", vec![crane.cuts().len(), 6]),
+        ("support_positions", vec![supports, 3]),
+        ("section_moduli", vec![crane.beams().len(), 8]),
     ];
     rows.into_iter().map(|(name, shape)| Quantity { name, shape }).collect()
 }
@@ -162,12 +165,24 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     crane.drive_motions(t, &mut motions);
     out.extend(motions.iter().flatten());
     out.extend([crane.drive_power(t, q, v), crane.dissipation(t, q, v)]);
+    let mut wrenches = vec![Wrench::ZERO; info.cuts().len()];
+    // The rates stand for accelerations, too.
+    crane.internal_forces(q, v, v, &mut wrenches);
+    crane.support_positions(q, &mut reactions);
+    let mut moduli = vec![SectionModuli::ZERO; info.beams().len()];
+    crane.section_moduli(&mut moduli);
     let mut tangents = vec![[0.0; 2]; info.coordinates.len()];
     crane.nonlinear_impedances(t, q, v, &mut tangents);
     let (mut q, mut v) = (*q, *v);
     crane.prescribe(t, &mut q, &mut v);
     out.extend(q.iter().chain(&v));
     out.extend(tangents.iter().flatten());
+    out.extend(wrenches.iter().flat_map(|wrench| wrench.force.iter().chain(&wrench.moment)));
+    out.extend(reactions.iter().flatten());
+    for of in moduli {
+        let SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress } = of;
+        out.extend([area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress]);
+    }
     out
 }
 

@@ -54,7 +54,7 @@ impl Writer {
         self.line(&format!("gravity: {gravity}"));
         let head = std::mem::take(&mut self.text);
         self.line("materials:");
-        self.line("  soft: {E: modulus, G: 4.0e6, density: 1200}");
+        self.line("  soft: {E: modulus, G: 4.0e6, density: 1200, yield_stress: 3.0e6}");
         self.line("links:");
         self.base(base);
         // Every kind at least once over the seeds: a fixed link, a prismatic one, both flexible ones, a classic row.

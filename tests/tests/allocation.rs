@@ -7,7 +7,7 @@ use crane_model::dyn_crane::{Crane, DynCrane};
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector3};
 use crane_model::support::lanes::splat;
-use crane_model::{CraneModel, Ensemble, LaneDynamics, TransformDerivatives};
+use crane_model::{CraneModel, Ensemble, LaneDynamics, SectionModuli, TransformDerivatives, Wrench};
 use crane_specs as cranes;
 
 /// Calls every function of the traits at the guess; vectors and matrices stay on the stack, lists go into `places`.
@@ -21,6 +21,9 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.points(q, &mut places.vectors);
     crane.point_velocities(q, v, &mut places.vectors);
     crane.support_reactions(q, v, &mut places.vectors);
+    crane.support_positions(q, &mut places.vectors);
+    crane.internal_forces(q, v, v, &mut places.wrenches);
+    crane.section_moduli(&mut places.moduli);
     crane.drive_motions(t, &mut places.motions);
     crane.drive_pieces(&mut places.pieces);
     crane.joint_impedances(&mut places.impedances);
@@ -58,6 +61,8 @@ struct Places {
     motions: Vec<[f64; 2]>,
     pieces: Vec<[f64; 2]>,
     impedances: Vec<[f64; 2]>,
+    wrenches: Vec<Wrench>,
+    moduli: Vec<SectionModuli>,
 }
 
 impl Places {
@@ -73,6 +78,8 @@ impl Places {
             motions: vec![[0.0; 2]; description.drives.len()],
             pieces: vec![[0.0; 2]; description.drives.iter().map(|drive| drive.pieces).sum()],
             impedances: vec![[0.0; 2]; N],
+            wrenches: vec![Wrench::ZERO; description.cuts().len()],
+            moduli: vec![SectionModuli::ZERO; description.beams().len()],
         }
     }
 }

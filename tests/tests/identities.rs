@@ -1,6 +1,6 @@
 //! Physical identities on random cranes with fixed seeds, by the interpreter.
 
-use crane_codegen::chain::Chain;
+use crane_codegen::chain::{Chain, CoordinateKind, Cut, Step};
 use crane_codegen::symbolic::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use crane_tests::dual::Dual;
@@ -127,6 +127,56 @@ fn reactions_and_weight_are_what_acts_on_the_base() {
                 assert_close(total, forces[axis], forces.amax(), 1e-13, &format!("seed {seed}: reactions"));
                 let gravity = mass * crane.chain.gravity[axis].at(&parameters);
                 assert_close(weight[axis], gravity, weight.amax(), 1e-13, &format!("seed {seed}: weight"));
+            }
+        }
+    }
+}
+
+/// What every cut transmits at a state with accelerations `a`: force, then moment.
+fn wrenches(crane: &Interpreted, state: &State, a: &DVector<f64>) -> Vec<[f64; 6]> {
+    let inputs = crane.inputs(state).with(Argument::Acceleration, a.as_slice().to_vec());
+    crane.get("internal_forces", &inputs, 0).as_chunks().0.to_vec()
+}
+
+/// Along the axis of a joint's last coordinate, a cut transmits what moves that coordinate: `A a − e` without the rotor.
+#[test]
+fn what_a_joint_transmits_along_its_axis_is_its_effort() {
+    for (seed, crane) in cranes() {
+        let chain = &crane.chain;
+        for state in states::far(chain, 2, seed) {
+            let a = DVector::from_column_slice(&state.v) * 3.0;
+            let mut efforts = crane.matrix("mass_matrix", &state) * &a - crane.vector("bias", &state);
+            for rotor in &chain.rotors {
+                efforts[rotor.coordinate.0] -= rotor.armature.at(&chain.parameter_defaults()) * a[rotor.coordinate.0];
+            }
+            let mut compared = 0;
+            for (cut, wrench) in chain.cuts().into_iter().zip(wrenches(&crane, &state, &a)) {
+                let Cut::Joint(body) = cut else { continue };
+                let last = chain.bodies[body.0].path.iter().rev().find(|step| !step.coordinates().is_empty());
+                let Some(Step::Move(id)) = last else { continue };
+                let coordinate = &chain.coordinates[id.0];
+                let first = if coordinate.kind == CoordinateKind::Rotation { 3 } else { 0 };
+                let transmitted = wrench[first + coordinate.axis.index()];
+                assert_close(-transmitted, efforts[id.0], efforts.amax(), 1e-12, &format!("seed {seed}"));
+                compared += 1;
+            }
+            assert!(compared > 0, "seed {seed} has a joint");
+        }
+    }
+}
+
+/// The load on the ground is the weight and the inertia of the crane: what the supports carry, as it moves.
+#[test]
+fn supports_carry_the_load_on_the_ground() {
+    for (seed, crane) in cranes().filter(|(seed, _)| seed % 3 == 0) {
+        for state in states::far(&crane.chain, 2, seed) {
+            let reactions = crane.get("support_reactions", &crane.inputs(&state), 0);
+            let ground = wrenches(&crane, &state, &crane.acceleration(&state))[0];
+            for axis in 0..3 {
+                let total: f64 = reactions.iter().skip(axis).step_by(3).sum();
+                let size = reactions.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+                // Accelerations are good to 1e-12 of the largest, which is that of a light element.
+                assert_close(-ground[axis], total, size, 1e-9, &format!("seed {seed}"));
             }
         }
     }

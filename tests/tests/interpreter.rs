@@ -33,6 +33,10 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
             (0..n * n).map(|k| entry(k / n, k % n)).collect()
         }
         "bias_with_mass_matrix" => crane.get("mass_matrix_and_bias", inputs, 0).split_off(n * (n + 1) / 2),
+        "internal_forces" => {
+            let accelerated = inputs.clone().with(Argument::Acceleration, inputs.get(Argument::Velocity));
+            crane.get("internal_forces", &accelerated, quantity.len())
+        }
         "lane_forward_dynamics" => crane.get("forward_dynamics", inputs, n),
         "implicit_solution" => implicit_solution(crane, inputs),
         "prescribed" => prescribed(crane, inputs),
@@ -114,6 +118,7 @@ fn simplification_changes_nothing_but_rounding() {
             // Some system with damping, and factors of it: those of the two programs differ in number and order.
             let diagonal = (0..36).map(|i| if i % 7 == 0 { 10.0 } else { 0.0 }).collect();
             let inputs = (crane.inputs(&state).with(Argument::Right, state.v.clone()))
+                .with(Argument::Acceleration, state.v.clone())
                 .with(Argument::Resistance, vec![1.0; crane.size()])
                 .with(Argument::BaseResistance, diagonal);
             let evaluate = |program: &Program, name: &str| {

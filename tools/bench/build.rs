@@ -23,7 +23,14 @@ fn main() -> io::Result<()> {
         let spec = build::out_dir().join(format!("crane_{sections}.yaml"));
         fs::write(&spec, with_sections(&text, sections).map_err(io::Error::other)?)?;
         let derivatives = sections <= DERIVATIVES_UP_TO;
-        let analyses = Analyses { statics: false, dynamics: true, modes: false, derivatives, ensemble: true };
+        let analyses = Analyses {
+            statics: false,
+            modes: false,
+            internal_forces: false,
+            derivatives,
+            ensemble: true,
+            ..Analyses::ALL
+        };
         let name = build::compile_spec_for(&spec, Some(analyses)).name;
         (if derivatives { &mut small } else { &mut large }).push(name);
     }

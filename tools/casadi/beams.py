@@ -20,6 +20,41 @@ class Section:
     Jy: object
     Jz: object
     Jo: object
+    moduli: list = None
+
+
+def section_moduli(shape, size, section):
+    """A, Wy, Wz, Wt, Ay, Az of a shape, and 1 if it has corners: stresses are N/A, M/W and Q/A where they are greatest.
+
+    Bending: J over the distance of the outermost fibre. Shear: Q S/(J t) at the neutral axis, S the first moment of half
+    of the section, t the width there. Torsion: Bredt for the box, J over the radius for the round ones, Saint-Venant's series for
+    the rectangle.
+    """
+    if shape == "numbers":
+        if "moduli" not in size:
+            return None
+        given = size["moduli"]
+        return [section.area, given["Wy"], given["Wz"], given["Wt"], given["Ay"], given["Az"], 1]
+    if shape in ("box", "solid"):
+        h, b = size["height"], size["width"]
+        wall = size.get("thickness")
+        first = [b * h * h / 8, h * b * b / 8]
+        width = [b, h]
+        if shape == "box":
+            hi, bi = h - 2 * wall, b - 2 * wall
+            first = [first[0] - bi * hi * hi / 8, first[1] - hi * bi * bi / 8]
+            width = [2 * wall, 2 * wall]
+            torsion = section.Jo * (h + b - 2 * wall) / ((h - wall) * (b - wall))
+        else:
+            long, short = ca.fmax(h, b), ca.fmin(h, b)
+            series = sum(1 / (n * n * ca.cosh(n * math.pi * long / (2 * short))) for n in range(1, 40, 2))
+            torsion = section.Jo / (short * (1 - 8 / math.pi**2 * series))
+        shear = [J * t / S for J, t, S in zip((section.Jz, section.Jy), width, first)]
+        return [section.area, section.Jy / (b / 2), section.Jz / (h / 2), torsion, *shear, 1]
+    outer = size["diameter"] / 2
+    inner = outer - size["thickness"] if shape == "tube" else 0
+    shear = section.Jz * 2 * (outer - inner) / (2 / 3 * (outer**3 - inner**3))
+    return [section.area, section.Jy / outer, section.Jz / outer, section.Jo / outer, shear, shear, 0]
 
 
 @dataclass
@@ -30,6 +65,8 @@ class Beam:
     pseudo_inertias: list
     stiffness: list
     damping: list
+    moduli: list = None
+    allowable_stress: object = 0
 
 
 def rectangle_torsion(one_side, other_side):
@@ -47,7 +84,17 @@ def rectangle_torsion(one_side, other_side):
 def read_section(spec, section):
     """A section from its shape; height is along y, width along z."""
     ((shape, written),) = section.items()
-    size = {key: spec.number(value) for key, value in written.items()}
+    size = {
+        key: {name: spec.number(number) for name, number in value.items()} if key == "moduli" else spec.number(value)
+        for key, value in written.items()
+    }
+    section = read_shape(shape, size)
+    section.moduli = section_moduli(shape, size, section)
+    return section
+
+
+def read_shape(shape, size):
+    """Area and second moments of a shape."""
     if shape == "numbers":
         return Section(size["area"], size["Jy"], size["Jz"], size["Jo"])
     if shape == "box":
@@ -88,6 +135,8 @@ def read_beam(spec, beam):
         pseudo_inertias=[prism(distributed_mass * l, l, section) for l in lengths],
         stiffness=[stiffness] * sections,
         damping=[read_damping(spec, beam.get("damping") or {}, stiffness)] * sections,
+        moduli=section.moduli,
+        allowable_stress=spec.number(material.get("yield_stress", 0)) / spec.number(beam.get("safety_factor", 1.5)),
     )
 
 

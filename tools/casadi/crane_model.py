@@ -42,6 +42,14 @@ class Body:
 
 
 @dataclass
+class Cut:
+    """A cut through the chain: the pose of its frame in the world, and the place of the first body beyond it."""
+
+    frame: ca.SX
+    beyond: int
+
+
+@dataclass
 class Spring:
     """Spring and damper on one coordinate: an element's, or with a motion a drive's; a rigid drive has neither."""
 
@@ -81,6 +89,7 @@ class Support:
     """Springs and dampers along the world's axes; `elongation` and its columns for x, y, z."""
 
     name: str
+    position: ca.SX
     elongation: ca.SX
     stiffness: ca.SX
     damping: ca.SX
@@ -104,8 +113,10 @@ class Crane:
     gravity: ca.SX
     coordinates: list = field(default_factory=list)
     bodies: list = field(default_factory=list)
+    cuts: list = field(default_factory=list)
     supports: list = field(default_factory=list)
     elements: list = field(default_factory=list)
+    beams: list = field(default_factory=list)
     drives: list = field(default_factory=list)
     hinges: list = field(default_factory=list)
     rotors: list = field(default_factory=list)
@@ -156,6 +167,7 @@ class Crane:
 
     def add_body(self, name, transform, pseudo_inertia):
         """Adds a body that all coordinates so far move."""
+        self.cuts.append(Cut(transform, len(self.bodies)))
         self.bodies.append(Body(name, transform, len(self.coordinates), pseudo_inertia))
         return self.bodies[-1]
 
@@ -190,9 +202,12 @@ def read_links(crane):
     """Adds the bodies of all links and returns the span of each."""
     spans = {}
     tip = ca.SX.eye(4)
+    crane.cuts.append(Cut(tip, 0))
     for index, link in enumerate(crane.spec.keys["links"]):
         name = link["name"]
-        transform = tip @ read_joint(crane, link, is_base=index == 0)
+        joint, frame = read_joint(crane, link, is_base=index == 0)
+        crane.cuts.append(Cut(tip @ joint, len(crane.bodies)))
+        transform = tip @ frame
         if "beam" in link:
             spans[name], tip = read_beam_bodies(crane, name, transform, link["beam"])
         else:
@@ -210,6 +225,7 @@ def read_link_inertia(spec, link):
 def read_beam_bodies(crane, name, transform, written):
     """Adds the elements of a beam; returns its span and the pose of its tip."""
     beam = read_beam(crane.spec, written)
+    crane.beams.append(beam)
     span, start = Span([], []), 0.0
     for index, (length, pseudo_inertia) in enumerate(zip(beam.lengths, beam.pseudo_inertias)):
         element = f"{name}_{index}"
@@ -235,7 +251,7 @@ def read_beam_bodies(crane, name, transform, written):
 
 
 def read_joint(crane, link, is_base):
-    """T̃ of a link: its placement and its joint's motions."""
+    """Where a link's joint and the link are after the joint's motions, in the frame that the link hangs on."""
     joint = link.get("joint", "fixed")
     kind, written = next(iter(joint.items())) if isinstance(joint, dict) else (joint, None)
     placement = link.get("placement") or {"transform": {}}
@@ -246,15 +262,20 @@ def read_joint(crane, link, is_base):
         written = FREE if written is None else written
         for symbol in [symbol for symbol in FREE if kind == "free" and symbol in written]:
             constant = constant @ crane.move(link["name"], symbol, is_base=is_base)
-        return constant
+        return constant, constant
 
     axis = (written or {}).get("axis", "z")
     symbol = {"revolute": ROTATION_NAMES[axis], "prismatic": axis}[kind]
     motion = crane.move(link["name"], symbol, is_base=is_base)
     if convention == "transform":
-        return read_placement(crane.spec, convention, row or {}) @ motion
+        transform = read_placement(crane.spec, convention, row or {}) @ motion
+        return transform, transform
     offset = {"revolute": "theta", "prismatic": "d"}[kind]
-    return read_placement(crane.spec, convention, row or {}, {offset: crane.coordinates[-1].q})
+    placement = read_placement(crane.spec, convention, row or {}, {offset: crane.coordinates[-1].q})
+    if convention == "modified_dh":
+        return placement, placement
+    # In a classic row the motion comes before the way to the link.
+    return rotate("z", crane.spec.angle((row or {}).get("theta", 0))) @ motion, placement
 
 
 def read_placement(spec, convention, row, variable=None):
@@ -291,7 +312,7 @@ def read_support(crane, written, base):
     stiffness, damping, free_play = (
         spec.vector(written.get(key, [0, 0, 0])) for key in ("stiffness", "damping", "free_play")
     )
-    return Support(written["name"], displacement - free_play, stiffness, damping)
+    return Support(written["name"], position, displacement - free_play, stiffness, damping)
 
 
 def read_drive(crane, written):

@@ -26,6 +26,7 @@ class Derivations:
             **self.statics(),
             **self.motions(),
             **self.prescribed(),
+            **self.internal_forces(),
         }
 
     def rate(self, expression):
@@ -57,6 +58,39 @@ class Derivations:
                 *[pair(p, m, n) for p, dof in moving for m in dof for n in dof if n >= m]
             ),
         }
+
+    def internal_forces(self):
+        """What the part beyond each cut exerts on the part before it: minus the rate of its momenta, and its weight.
+
+        With H the pseudo-inertia, `∫ ẍ dm` is the last column of `T̈ H`, and `∫ x × ẍ dm` the axial vector of `T̈ H Tᵀ`. The
+        rates stand for accelerations, too.
+        """
+        q, v, gravity = self.crane.q, self.crane.v, self.crane.gravity
+        force, moment, sums = ca.SX(3, 1), ca.SX(3, 1), {}
+        for place, body in reversed(list(enumerate(self.crane.bodies))):
+            first = ca.jtimes(body.transform, q, v)
+            second = ca.jtimes(first, q, v) + first
+            linear = second @ body.pseudo_inertia[:, 3]
+            rate = second @ body.pseudo_inertia @ body.transform.T
+            angular = ca.vertcat(rate[2, 1] - rate[1, 2], rate[0, 2] - rate[2, 0], rate[1, 0] - rate[0, 1])
+            moments = (body.transform @ body.pseudo_inertia[:, 3])[:3]
+            force = force + linear[:3] - body.pseudo_inertia[3, 3] * gravity
+            moment = moment + angular - ca.cross(moments, gravity)
+            sums[place] = force, moment
+        wrenches = []
+        for cut in self.crane.cuts:
+            force, moment = sums[cut.beyond]
+            turn, origin = cut.frame[:3, :3].T, cut.frame[:3, 3]
+            wrenches += [-turn @ force, -turn @ (moment - ca.cross(origin, force))]
+        positions = [support.position for support in self.crane.supports]
+        return {"internal_forces": ca.vertcat(*wrenches), "support_positions": ca.vertcat(ca.SX(0, 1), *positions), **self.section_moduli()}
+
+    def section_moduli(self):
+        """What stresses of beams follow from, and the allowable stress; zeros where the spec does not say."""
+        rows = [
+            ca.vertcat(*beam.moduli, beam.allowable_stress) if beam.moduli else ca.SX.zeros(8) for beam in self.crane.beams
+        ]
+        return {"section_moduli": ca.vertcat(ca.SX(0, 1), *rows)}
 
     def kinetic_energy(self):
         """`½ Σ tr(Ṫ H Ṫᵀ)` [Urbaś 2016, Eq. (4)], and of rotors, whose armature is reflected to the joint, `½ Σ I q̇²`."""

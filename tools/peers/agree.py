@@ -1,4 +1,4 @@
-"""Compares A, e and q̈ of the generated Rust functions with what Pinocchio and MuJoCo compute of the same YAML file.
+"""Compares A, e, q̈ and joint wrenches of the generated Rust functions with what Pinocchio and MuJoCo compute of the same YAML file.
 
     python agree.py --evaluate target/release/evaluate [--crane NAME]... [--states 100] [--seed 1]
     python agree.py --self-test [SPEC.yaml]...
@@ -10,6 +10,7 @@ import sys
 import time
 import zlib
 
+import casadi as ca
 import numpy as np
 
 from chain import TOOLS, read_chain
@@ -24,6 +25,8 @@ from states import random_states
 
 # A solve with the dense A loses cond(A) ε: 2e6 · 2e-16 for the shipped cranes. Their own recursion, and ours, do not.
 TOLERANCES = {"mass_matrix": TOLERANCE, "bias": TOLERANCE, "forward_dynamics": 1e-9}
+# Poses of frames and wrenches are carried along the chain by another way.
+TOLERANCE_OF_WRENCHES = 1e-9
 # What the self-test puts in: a hundred of the largest tolerance.
 PERTURBATION = 1e-7
 
@@ -60,6 +63,7 @@ def agree_on(name, evaluate, options):
         library: compare_all(computed(library(read_chain(crane)), states, generated["forces"]), generated, states)
         for library in (Pinocchio, MuJoCo)
     }
+    comparisons[Pinocchio] += compare_wrenches(crane, generated, states)
     seconds = time.perf_counter() - started
     print(f"{name}: {len(crane.coordinates)} coordinates, {len(states.time)} states, {seconds:.2f} s\n{HEADER}")
     for library, quantities in comparisons.items():
@@ -95,6 +99,31 @@ def compare_all(expected, generated, states):
         compare(name, expected[name], generated[name], states.groups, tolerance)
         for name, tolerance in TOLERANCES.items()
     ]
+
+
+def compare_wrenches(crane, generated, states):
+    """What joints and sections transmit, with the rates for accelerations, against Pinocchio's recursion."""
+    first_moved = {}
+    for place, body in enumerate(crane.bodies):
+        first_moved.setdefault(body.degrees_of_freedom, place)
+    cuts = [
+        (place, cut.frame, crane.bodies[cut.beyond].degrees_of_freedom - 1)
+        for place, cut in enumerate(crane.cuts)
+        # The joint before a cut carries what is beyond the cut, and nothing else.
+        if place > 0 and first_moved[crane.bodies[cut.beyond].degrees_of_freedom] == cut.beyond
+    ]
+    cuts = [cut for cut in cuts if cut[2] >= 0]
+    if not cuts:
+        return []
+    poses = ca.Function("poses", [crane.q, crane.parameters], [frame for _, frame, _ in cuts])
+    library = Pinocchio(read_chain(crane))
+    rows = []
+    for q, v, parameters in zip(states.q, states.v, states.parameters):
+        frames = [pose.full() for pose in poses.call([q, parameters])]
+        rows.append(library.transmitted(q, v, v, list(zip((joint for *_, joint in cuts), frames))).ravel())
+    ours = generated["internal_forces"].reshape(len(rows), len(crane.cuts), 6)[:, [place for place, *_ in cuts]]
+    quantity = "internal_forces"
+    return [compare(quantity, np.array(rows), ours.reshape(len(rows), -1), states.groups, TOLERANCE_OF_WRENCHES)]
 
 
 def self_test(options):

@@ -14,7 +14,7 @@ JOINTS = {
 
 
 class Pinocchio:
-    """A, e and q̈ of a chain: crba, nonLinearEffects, aba."""
+    """A, e, q̈ and joint wrenches of a chain: crba, nonLinearEffects, aba, rnea."""
 
     name = "Pinocchio"
 
@@ -34,3 +34,16 @@ class Pinocchio:
         mass_matrix += np.triu(mass_matrix, 1).T
         bias = -pin.nonLinearEffects(self.model, self.data, q, v)
         return mass_matrix, bias, pin.aba(self.model, self.data, q, v, force).copy()
+
+    def transmitted(self, q, v, acceleration, frames):
+        """What the part beyond a joint exerts on the part before it, force and moment, in other frames.
+
+        `frames`: the coordinate of each joint, and the pose in the world of the frame.
+        """
+        pin.forwardKinematics(self.model, self.data, q)
+        pin.rnea(self.model, self.data, q, v, acceleration)
+        wrenches = []
+        for coordinate, pose in frames:
+            needed = self.data.oMi[coordinate + 1].act(self.data.f[coordinate + 1])
+            wrenches.append(-pin.SE3(pose[:3, :3], pose[:3, 3]).actInv(needed).vector)
+        return np.array(wrenches)

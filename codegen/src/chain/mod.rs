@@ -2,6 +2,7 @@
 //!
 //! // AFTER THIS POINT: nobody knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
+mod cut;
 mod force;
 mod frame;
 mod loops;
@@ -10,6 +11,7 @@ mod profile;
 mod start;
 mod value;
 
+pub use cut::Cut;
 pub use force::{End, ForceElement, Friction, Law, Stop};
 pub use frame::{Frame, Vector};
 pub use loops::Loops;
@@ -48,6 +50,8 @@ pub struct Chain {
     pub base: [Option<CoordinateId>; 6],
     /// Supports of the base, Eqs. (16)–(18).
     pub supports: Vec<Support>,
+    /// What stresses of beams follow from, beam by beam from the base to the tip.
+    pub beams: Vec<Beam>,
     /// Springs and dampers between the rigid elements of flexible links, Eqs. (14)–(15).
     pub elements: Vec<ElementSpring>,
     /// Drives, Eqs. (19)–(21).
@@ -220,6 +224,32 @@ pub struct ElementSpring {
     pub damping: Value,
 }
 
+/// A beam, as far as stresses go.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beam {
+    /// Name of the link.
+    pub link: String,
+    /// Moduli of its cross-section; `None` where the spec does not give them.
+    pub moduli: Option<Moduli>,
+    /// Yield stress over the safety factor, Pa; `None` without a yield stress.
+    pub allowable_stress: Option<Value>,
+}
+
+/// What turns forces and moments of a section into its greatest stresses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moduli {
+    /// Area, m²: `σ = N/A`.
+    pub area: Value,
+    /// Moduli of bending about y and about z, m³: `σ = M/W`.
+    pub bending: [Value; 2],
+    /// Modulus of torsion, m³: the greatest `τ = Mx/W`.
+    pub torsion: Value,
+    /// Shear areas along y and along z, m²: the greatest `τ = Q/A`.
+    pub shear: [Value; 2],
+    /// Whether the stresses of both bendings add up in a corner; on a round section they are at right angles.
+    pub has_corners: bool,
+}
+
 /// A drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
@@ -308,6 +338,8 @@ pub struct Analyses {
     pub dynamics: bool,
     /// Linearisation: A, K and D at a pose.
     pub modes: bool,
+    /// What joints, beam sections and the ground transmit.
+    pub internal_forces: bool,
     /// ∂T/∂q and ∂²T/∂q∂q of every body.
     pub derivatives: bool,
     /// Eight cranes a call, for simulations of many; needs dynamics.
@@ -316,11 +348,16 @@ pub struct Analyses {
 
 impl Analyses {
     /// What the command asks of a crane.
-    pub const COMMAND: Analyses =
-        Analyses { statics: true, dynamics: true, modes: true, derivatives: false, ensemble: false };
+    pub const COMMAND: Analyses = Analyses { derivatives: false, ..Analyses::ALL };
     /// Everything there is about one crane, for checks.
-    pub const ALL: Analyses =
-        Analyses { statics: true, dynamics: true, modes: true, derivatives: true, ensemble: false };
+    pub const ALL: Analyses = Analyses {
+        statics: true,
+        dynamics: true,
+        modes: true,
+        internal_forces: true,
+        derivatives: true,
+        ensemble: false,
+    };
 }
 
 impl Chain {

@@ -263,7 +263,7 @@ catalogue! {
         "add `breakaway:`, at least as great as `coulomb`, or remove `stribeck`";
 
     // Plausibility: warnings.
-    /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa.
+    /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
     W001 modulus(what, place, given, usual, help) "{what} of {place} is {given} Pa", "usual: {usual} Pa", "{help}";
     /// The shear modulus is at most half of Young's modulus: Poisson's ratio is not below zero.
     W002 poisson(place, ratio) "{place} has a Poisson's ratio of {ratio}", "`G` exceeds E/2",

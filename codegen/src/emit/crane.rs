@@ -8,13 +8,13 @@ use super::arithmetic::integer;
 use super::function::argument_name;
 use super::number::Number;
 use super::print::plain;
-use super::shape::Storage;
+use super::shape::{Storage, struct_name};
 use crate::chain::Chain;
 use crate::lower::{Block, Blocks};
 use crate::symbolic::{Argument, Shape};
 
 /// Traits of the runtime, and the functions that each needs.
-const TRAITS: [(&str, &[&str]); 6] = [
+const TRAITS: [(&str, &[&str]); 7] = [
     (
         "CraneModel",
         &[
@@ -45,6 +45,7 @@ const TRAITS: [(&str, &[&str]); 6] = [
     ("Implicit", &["factorise", "solve", "joint_impedances", "nonlinear_impedances", "base_stiffness", "base_damping"]),
     ("Statics", &["static_residual", "tangent_stiffness", "drive_forces_at_rest"]),
     ("Linearise", &["linearise"]),
+    ("InternalForces", &["internal_forces", "support_positions", "section_moduli"]),
     ("TransformDerivatives", &["transform_derivatives", "transform_second_derivatives"]),
 ];
 
@@ -222,10 +223,11 @@ fn method(block: &Block) -> TokenStream {
                 }
             }
         }
-        Shape::Vectors(_) | Shape::Pairs(_) | Shape::Transforms { corner: 1, .. } => {
+        Shape::Vectors(_) | Shape::Pairs(_) | Shape::Structs(..) | Shape::Transforms { corner: 1, .. } => {
             let element = match function.shape {
                 Shape::Vectors(_) => quote!(Vector3<f64>),
                 Shape::Pairs(_) => quote!([f64; 2]),
+                Shape::Structs(of, _) => struct_name(of),
                 _ => quote!(Matrix4<f64>),
             };
             quote! {

@@ -457,9 +457,10 @@ fn row_pattern(ids: &[Option<ExprId>], names: &mut Names) -> TokenStream {
 pub type Used = BTreeSet<Argument>;
 
 /// Arguments that are vectors, and their names.
-const VECTORS: [(Argument, &str); 4] = [
+const VECTORS: [(Argument, &str); 5] = [
     (Argument::Position, "q"),
     (Argument::Velocity, "v"),
+    (Argument::Acceleration, "a"),
     (Argument::Right, "r"),
     (Argument::Resistance, "resistance"),
 ];
@@ -471,6 +472,7 @@ pub fn argument_name(argument: Argument, number: Number) -> (&'static str, Token
         Argument::Time => ("t", quote!(#number)),
         Argument::Position => ("q", quote!(&SVector<#number, N>)),
         Argument::Velocity => ("v", quote!(&SVector<#number, N>)),
+        Argument::Acceleration => ("a", quote!(&SVector<#number, N>)),
         Argument::Right => ("r", quote!(&SVector<#number, N>)),
         Argument::Resistance => ("resistance", quote!(&SVector<#number, N>)),
         Argument::BaseResistance => ("base", quote!(&SMatrix<#number, 6, 6>)),

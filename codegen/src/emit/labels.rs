@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::chain::{BodyId, Chain, Drive};
+use crate::chain::{BodyId, Chain, Cut, Drive};
 use crate::lower::Blocks;
-use crate::symbolic::{ExprId, Function, Shape};
+use crate::symbolic::{ExprId, Function, Shape, Struct};
 
 use super::shape::{field_of, row_of_triangle};
 
@@ -50,7 +50,7 @@ impl<'a> Labels<'a> {
                 }
             }),
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
-            Shape::Vectors(_) if function.name == "support_reactions" => Some(chain.supports[slot / 3].name.clone()),
+            Shape::Vectors(_) if function.name.starts_with("support_") => Some(chain.supports[slot / 3].name.clone()),
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
             Shape::Pairs(_) if matches!(function.name, "joint_impedances" | "nonlinear_impedances") => {
                 Some(coordinate(slot / 2).to_owned())
@@ -63,6 +63,14 @@ impl<'a> Labels<'a> {
                 chain.drives.iter().flat_map(of).nth(slot / 2).map(|i| coordinate(i).to_owned())
             }
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
+            Shape::Structs(Struct::SectionModuli, _) => {
+                Some(chain.beams[slot / Struct::SectionModuli.len()].link.clone())
+            }
+            Shape::Structs(Struct::Wrench, _) => Some(match &chain.cuts()[slot / Struct::Wrench.len()] {
+                Cut::Ground => "Ground".to_owned(),
+                Cut::Joint(body) => format!("Joint of {}", chain.bodies[body.0].link),
+                Cut::Body(body) => format!("Before {}", chain.bodies[body.0].name),
+            }),
             Shape::Transforms { counts, .. } => Some(self.transform(function.name, counts, slot / 12)),
             Shape::Turned { degrees, rotations, .. } => {
                 let axes = 3 * rotations.len();

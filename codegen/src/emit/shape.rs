@@ -8,7 +8,7 @@ use super::arithmetic::{element, field, integer, variable};
 use super::number::Number;
 use super::rounds::{at, place};
 use crate::lower::Progression;
-use crate::symbolic::{Function, Point, Shape};
+use crate::symbolic::{Function, Point, Shape, Struct};
 
 /// How a function hands over its result.
 pub enum Handover {
@@ -53,6 +53,7 @@ impl<'f> Storage<'f> {
             Shape::Factors(_) => quote!(Factors),
             Shape::Vectors(n) => array(&quote!(Vector3<f64>), *n),
             Shape::Pairs(n) => array(&quote!([f64; 2]), *n),
+            Shape::Structs(of, n) => array(&struct_name(*of), *n),
             Shape::Transforms { .. } | Shape::Turned { .. } => array(&quote!(Matrix4<f64>), self.shape.matrices()),
             Shape::Record(name, _) => {
                 let name = format_ident!("{name}");
@@ -106,6 +107,10 @@ impl<'f> Storage<'f> {
             Shape::Factors(n) => array(&quote!(0.0), *n),
             Shape::Vectors(n) => array(&quote!(Vector3::zeros()), *n),
             Shape::Pairs(n) => array(&quote!([0.0; 2]), *n),
+            Shape::Structs(of, n) => {
+                let of = struct_name(*of);
+                array(&quote!(#of::ZERO), *n)
+            }
             Shape::Transforms { counts, corner } => {
                 let blank = if *corner == 1 { quote!(BLANK) } else { quote!(Matrix4::zeros()) };
                 array(&blank, counts.iter().sum())
@@ -163,8 +168,13 @@ impl<'f> Storage<'f> {
     /// The place of slots in a loop.
     pub fn place_at(&self, slots: Progression) -> Expr {
         let out = variable(self.storage_name());
-        let Shape::Columns { n, .. } = self.shape else { return place(out, &at(slots)) };
         let Progression { first, step } = slots;
+        if let Shape::Structs(of, _) = self.shape {
+            let slots = isize::try_from(of.len()).expect("a few");
+            let which = at(Progression { first: first / of.len(), step: step / slots });
+            return struct_slot(*of, place(out, &which), first % of.len());
+        }
+        let Shape::Columns { n, .. } = self.shape else { return place(out, &at(slots)) };
         if let Some(first) = first.checked_sub(12 * n) {
             return place(field(out, "bias"), &at(Progression { first, step }));
         }
@@ -193,6 +203,7 @@ impl<'f> Storage<'f> {
             Shape::Symmetric(n) | Shape::MassAndBias(n) => row_of_triangle(*n, slot).0,
             Shape::Vectors(_) => slot / 3,
             Shape::Pairs(_) => slot / 2,
+            Shape::Structs(of, _) => slot / of.len(),
             Shape::Transforms { .. } => slot / 12,
             Shape::Turned { rotations, degrees, .. } => {
                 let axes = 3 * rotations.len();
@@ -212,6 +223,26 @@ impl<'f> Storage<'f> {
 fn point(point: &Point) -> TokenStream {
     let (coordinates, turns) = (integer(point.coordinates), point.turns);
     quote!(Point { coordinates: #coordinates, turns: #turns })
+}
+
+/// What the runtime calls a type; it has a constant `ZERO`.
+pub fn struct_name(of: Struct) -> TokenStream {
+    match of {
+        Struct::Wrench => quote!(Wrench),
+        Struct::SectionModuli => quote!(SectionModuli),
+    }
+}
+
+/// A field of a type of the runtime.
+fn struct_slot(of: Struct, value: Expr, slot: usize) -> Expr {
+    match of {
+        Struct::Wrench => field(field(value, ["force", "moment"][slot / 3]), ["x", "y", "z"][slot % 3]),
+        Struct::SectionModuli => {
+            let fields =
+                ["area", "bending_y", "bending_z", "torsion", "shear_y", "shear_z", "corners", "allowable_stress"];
+            field(value, fields[slot])
+        }
+    }
 }
 
 /// Entry of a matrix in an array of matrices.
@@ -259,6 +290,7 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
         }
         Shape::Vectors(_) => field(element(out, slot / 3), ["x", "y", "z"][slot % 3]),
         Shape::Pairs(_) => element(element(out, slot / 2), slot % 2),
+        Shape::Structs(of, _) => struct_slot(*of, element(out, slot / of.len()), slot % of.len()),
         Shape::Transforms { .. } => matrix_slot(out, slot),
         Shape::Turned { rotations, degrees, .. } => {
             let axes = 3 * rotations.len();

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::chain::Value;
+use crate::chain::{Moduli, Value};
 
 /// What a beam needs to know of its cross-section.
 #[derive(Clone, Debug)]
@@ -15,23 +15,41 @@ pub(crate) struct CrossSection {
     pub jz: Value,
     /// Torsion constant, m⁴.
     pub jo: Value,
+    /// What stresses follow from, if known.
+    pub moduli: Option<Moduli>,
 }
 
 fn power(base: &Value, exponent: usize) -> Value {
     std::iter::repeat_n(base.clone(), exponent).fold(Value::ONE, |product, factor| product * factor)
 }
 
-/// Hollow rectangle; torsion by Bredt's formula for thin walls, `J_o = 2t(b−t)²(h−t)²/(b+h−2t)`.
+/// Hollow rectangle; torsion by Bredt's formula for thin walls, `J_o = 2t(b−t)²(h−t)²/(b+h−2t)`, `W_t = 2t(b−t)(h−t)`.
+///
+/// Shear by Zhuravskii's formula at the neutral axis, where two walls carry it: `A_y = 2t J_z/S_z` with the first moment
+/// `S_z = (b h² − b_i h_i²)/8` of half of the section.
 pub(crate) fn hollow_rectangle(height: &Value, width: &Value, thickness: &Value) -> CrossSection {
     let (h, b, t) = (height, width, thickness);
     let inner = |side: &Value| side.clone() - 2.0 * t.clone();
     let middle = |side: &Value| side.clone() - t.clone();
     let (hi, bi) = (inner(h), inner(b));
     let second = |b: &Value, h: &Value| b.clone() * power(h, 3) / 12.0.into();
+    let area = b.clone() * h.clone() - bi.clone() * hi.clone();
+    let (jy, jz) = (second(h, b) - second(&hi, &bi), second(b, h) - second(&bi, &hi));
+    let first =
+        |b: &Value, h: &Value, bi: &Value, hi: &Value| 0.125 * (b.clone() * power(h, 2) - bi.clone() * power(hi, 2));
+    let walls = || 2.0 * t.clone();
+    let moduli = Moduli {
+        area: area.clone(),
+        bending: [2.0 * jy.clone() / b.clone(), 2.0 * jz.clone() / h.clone()],
+        torsion: walls() * middle(b) * middle(h),
+        shear: [walls() * jz.clone() / first(b, h, &bi, &hi), walls() * jy.clone() / first(h, b, &hi, &bi)],
+        has_corners: true,
+    };
     CrossSection {
-        area: b.clone() * h.clone() - bi.clone() * hi.clone(),
-        jy: second(h, b) - second(&hi, &bi),
-        jz: second(b, h) - second(&bi, &hi),
+        area,
+        jy,
+        jz,
+        moduli: Some(moduli),
         jo: 2.0 * t.clone() * power(&middle(b), 2) * power(&middle(h), 2) / (b.clone() + h.clone() - 2.0 * t.clone()),
     }
 }
@@ -48,18 +66,26 @@ pub(crate) fn circle(diameter: &Value) -> CrossSection {
     ring(&(0.5 * diameter.clone()), &Value::ZERO)
 }
 
+/// Ring; shear at the neutral axis, `A_y = 3J (R − r)/(R³ − r³) = 3J/(R² + Rr + r²)`.
 fn ring(outer: &Value, inner: &Value) -> CrossSection {
     let polar = PI / 2.0 * (power(outer, 4) - power(inner, 4));
-    CrossSection {
-        area: PI * (power(outer, 2) - power(inner, 2)),
-        jy: 0.5 * polar.clone(),
-        jz: 0.5 * polar.clone(),
-        jo: polar,
-    }
+    let area = PI * (power(outer, 2) - power(inner, 2));
+    let second = 0.5 * polar.clone();
+    let bending = second.clone() / outer.clone();
+    let shear = 3.0 * second.clone() / (power(outer, 2) + outer.clone() * inner.clone() + power(inner, 2));
+    let moduli = Moduli {
+        area: area.clone(),
+        bending: [bending.clone(), bending],
+        torsion: polar.clone() / outer.clone(),
+        shear: [shear.clone(), shear],
+        has_corners: false,
+    };
+    CrossSection { area, jy: second.clone(), jz: second, jo: polar, moduli: Some(moduli) }
 }
 
 /// Solid rectangle; torsion by Saint-Venant's series, with sides a ≥ b:
-/// `J_o = a b³ (1/3 − (64/π⁵) (b/a) Σ tanh(nπa/2b)/n⁵)`, n = 1, 3, 5, …
+/// `J_o = a b³ (1/3 − (64/π⁵) (b/a) Σ tanh(nπa/2b)/n⁵)`, n = 1, 3, 5, …, and in the middle of the longer side
+/// `W_t = J_o/(b (1 − (8/π²) Σ 1/(n² cosh(nπa/2b))))`. Shear `1.5 Q/A`.
 ///
 /// The series itself converges as n⁻⁴; with `tanh x = 1 − 2/(e²ˣ + 1)` its slow part is `Σ n⁻⁵ = 31/32 ζ(5)` and the rest
 /// falls as e^{−nπ}.
@@ -75,11 +101,25 @@ pub(crate) fn solid_rectangle(height: f64, width: f64) -> CrossSection {
         .sum();
     let series = 31.0 / 32.0 * ZETA_5 - falling;
     let jo = a * b.powi(3) * (1.0 / 3.0 - 64.0 / PI.powi(5) * (b / a) * series);
+    // Terms beyond fall below rounding as those above do.
+    let along: f64 = (0..2 * TERMS)
+        .rev()
+        .map(|k| f64::from(2 * k + 1))
+        .map(|n| 1.0 / (n * n * libm::cosh(0.5 * n * PI * a / b)))
+        .sum();
+    let moduli = Moduli {
+        area: (height * width).into(),
+        bending: [(height * width.powi(2) / 6.0).into(), (width * height.powi(2) / 6.0).into()],
+        torsion: (jo / (b * (1.0 - 8.0 / (PI * PI) * along))).into(),
+        shear: [height * width / 1.5, height * width / 1.5].map(Value::from),
+        has_corners: true,
+    };
     CrossSection {
         area: (height * width).into(),
         jy: (height * width.powi(3) / 12.0).into(),
         jz: (width * height.powi(3) / 12.0).into(),
         jo: jo.into(),
+        moduli: Some(moduli),
     }
 }
 
@@ -113,6 +153,48 @@ mod tests {
         }
         // The square to more digits: 0.140577.
         close(&solid_rectangle(1.0, 1.0).jo, 0.140_577, 1e-6);
+    }
+
+    fn moduli(section: CrossSection) -> Moduli {
+        section.moduli.expect("the section has a shape")
+    }
+
+    #[test]
+    fn moduli_of_a_box() {
+        // 0.25 m high, 0.2 m wide, 8 mm thick: W = 2J/h from the second moments, Bredt's 2t(b − t)(h − t), and 2t J/S with
+        // S = (0.2 · 0.25² − 0.184 · 0.234²)/8 = 3.031e-4 m³.
+        let Moduli { bending, torsion, shear, .. } = moduli(hollow_rectangle(&0.25.into(), &0.2.into(), &0.008.into()));
+        close(&bending[1], 2.0 * 6.395e-5 / 0.25, 1e-4);
+        close(&bending[0], 2.0 * 4.519e-5 / 0.2, 1e-4);
+        close(&torsion, 0.016 * 0.192 * 0.242, 1e-13);
+        close(&shear[0], 0.016 * 6.395e-5 / 3.031e-4, 2e-4);
+    }
+
+    #[test]
+    fn moduli_of_solid_rectangles() {
+        // Timoshenko & Goodier, section 109: τ = Mx/(k₂ a b²).
+        for (ratio, k2, tolerance) in [(1.0, 0.208, 2e-3), (2.0, 0.246, 2e-3), (5.0, 0.291, 2e-3), (10.0, 0.312, 2e-3)]
+        {
+            close(&moduli(solid_rectangle(ratio * 0.1, 0.1)).torsion, k2 * ratio * 1e-3, tolerance);
+            close(&moduli(solid_rectangle(0.1, ratio * 0.1)).torsion, k2 * ratio * 1e-3, tolerance);
+        }
+        let Moduli { bending, shear, .. } = moduli(solid_rectangle(0.3, 0.1));
+        close(&bending[1], 0.1 * 0.09 / 6.0, 1e-14);
+        close(&bending[0], 0.3 * 0.01 / 6.0, 1e-14);
+        close(&shear[0], 0.02, 1e-14);
+    }
+
+    #[test]
+    fn moduli_of_circles_and_thin_tubes() {
+        let Moduli { bending, torsion, shear, has_corners, .. } = moduli(circle(&0.2.into()));
+        close(&bending[0], PI * 1e-3 / 4.0, 1e-14);
+        close(&torsion, PI * 1e-3 / 2.0, 1e-14);
+        // 4/3 of the mean.
+        close(&shear[1], 0.75 * PI * 0.01, 1e-14);
+        assert!(!has_corners);
+        // Of a thin tube twice the mean.
+        let thin = tube(&0.2.into(), &1e-5.into());
+        close(&(thin.area.clone() / moduli(thin).shear[0].clone()), 2.0, 1e-4);
     }
 
     #[test]

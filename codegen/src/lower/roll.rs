@@ -174,7 +174,12 @@ impl Rolling<'_> {
             };
             let in_order = matches!(
                 argument,
-                Argument::Position | Argument::Velocity | Argument::Right | Argument::Resistance | Argument::Factors
+                Argument::Position
+                    | Argument::Velocity
+                    | Argument::Acceleration
+                    | Argument::Right
+                    | Argument::Resistance
+                    | Argument::Factors
             );
             if let Some(places) = progression(ops.iter().map(index)).filter(|_| in_order) {
                 return Some(Operands::From(Source::Input(argument, places)));

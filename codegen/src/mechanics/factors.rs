@@ -28,6 +28,11 @@ pub enum Factor<'g> {
 }
 
 impl<'g> Factor<'g> {
+    /// Whether coordinates move it.
+    pub fn moves(&self) -> bool {
+        !matches!(self, Factor::Translate(_) | Factor::Turn(_) | Factor::Body(_))
+    }
+
     /// Its elementary rotations, from the base to the tip, and whose coordinates they are.
     pub fn turns(&self) -> Vec<(Option<usize>, Turn<'g>)> {
         match self {

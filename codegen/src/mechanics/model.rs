@@ -16,6 +16,8 @@ pub struct Model<'g> {
     pub q: Vec<Expr<'g>>,
     /// Velocities.
     pub v: Vec<Expr<'g>>,
+    /// Accelerations.
+    pub a: Vec<Expr<'g>>,
     /// Right-hand side of a linear system.
     pub right: Vec<Expr<'g>>,
     /// Resistances of the coordinates.
@@ -38,6 +40,7 @@ impl<'g> Model<'g> {
             t: of(Argument::Time)[0],
             q: of(Argument::Position),
             v: of(Argument::Velocity),
+            a: of(Argument::Acceleration),
             right: of(Argument::Right),
             resistance: of(Argument::Resistance),
             base_resistance: of(Argument::BaseResistance),
@@ -62,6 +65,7 @@ impl<'g> Model<'g> {
             vec![symbol("t".into(), Argument::Time, 0)],
             each(Argument::Position, ""),
             each(Argument::Velocity, "_dot"),
+            each(Argument::Acceleration, "_ddot"),
             each(Argument::Right, "_force"),
             each(Argument::Resistance, "_resistance"),
             base.collect(),

@@ -1,48 +1,121 @@
-//! The bias by Newton's and Euler's equations in local frames: two sweeps, O(n).
+//! Inverse dynamics by Newton's and Euler's equations in local frames: two sweeps, O(n).
 //!
-//! J. Y. S. Luh, M. W. Walker, R. P. C. Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69, with q̈ = 0.
+//! J. Y. S. Luh, M. W. Walker, R. P. C. Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69. At q̈ = 0 the efforts are the bias; at
+//! any q̈ the forces and moments that the sweep carries inward are what the crane transmits.
 
 use super::factors::Factor;
 use super::model::Model;
 use super::outward::{Velocities, along};
 use super::vector::Vec3;
+use crate::chain::{BodyId, Cut};
 use crate::symbolic::Expr;
 
 /// `e = −(h + g)` [Urbaś 2016, Eqs. (5), (7), (9), by recursion]; the base is accelerated against gravity.
 pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
+    let motions = outward(model, factors, None);
+    inward(model, factors, &motions, |_, _| None).bias
+}
+
+/// What the part beyond each cut exerts on the part before it, force and moment: the inertia and the weight of everything
+/// beyond.
+pub fn internal_forces<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
+    let motions = outward(model, factors, Some(&model.a));
+    let cuts = inward(model, factors, &motions, |force, moment| Some([-force, -moment]));
+    let wrenches = model.chain.cuts().into_iter().filter_map(|cut| match cut {
+        Cut::Ground => cuts.ground,
+        Cut::Joint(BodyId(body)) => cuts.joints[body].or(cuts.bodies[body]),
+        Cut::Body(BodyId(body)) => cuts.bodies[body],
+    });
+    wrenches.flatten().flat_map(|vector| vector.0).collect()
+}
+
+/// What one factor does to the motion of the frame reached.
+struct Motion<'g> {
+    velocities: Velocities<'g>,
+    /// Angular acceleration of the frame after the factor, by its components in it.
+    alpha: Vec3<'g>,
+    /// Acceleration of its origin, gravity subtracted.
+    a: Vec3<'g>,
+}
+
+/// From base to tip: ω, α and a of each frame. In one sweep the three chains of dependent operations run side by side.
+fn outward<'g>(model: &Model<'g>, factors: &[Factor<'g>], accelerations: Option<&[Expr<'g>]>) -> Vec<Motion<'g>> {
     let zero = Vec3::zero(model.graph);
-    // Outward: ω, α and a of each frame. In one sweep the three chains of dependent operations run side by side.
     let (mut omega, mut alpha, mut a) = (zero, zero, -model.vector(&model.chain.gravity));
+    let own = |vector: Vec3<'g>, own: &dyn Fn(&[Expr<'g>]) -> Vec3<'g>| match accelerations {
+        Some(accelerations) => vector + own(accelerations),
+        None => vector,
+    };
     let mut motions = Vec::new();
     let sweep = model.graph.sweep();
     for factor in factors {
         let velocities = along(model, &mut omega, factor, &model.v);
         match (factor, &velocities) {
             (Factor::Turn(turn), _) => (alpha, a) = (turn.inward(alpha), turn.inward(a)),
-            (Factor::Revolute { turn, .. }, Velocities::Revolute { gyration }) => {
-                (alpha, a) = (turn.inward(alpha) + *gyration, turn.inward(a));
+            (Factor::Revolute { j, turn }, Velocities::Revolute { gyration }) => {
+                alpha = own(turn.inward(alpha) + *gyration, &|q| Vec3::along(turn.axis, q[*j]));
+                a = turn.inward(a);
             }
-            (Factor::Ball { turns, .. }, Velocities::Ball { gyrations }) => {
-                for (turn, gyration) in turns.iter().zip(gyrations) {
-                    (alpha, a) = (turn.inward(alpha) + *gyration, turn.inward(a));
+            (Factor::Ball { j, turns }, Velocities::Ball { gyrations }) => {
+                for (k, (turn, gyration)) in turns.iter().zip(gyrations).enumerate() {
+                    alpha = own(turn.inward(alpha) + *gyration, &|q| Vec3::along(turn.axis, q[j + k]));
+                    a = turn.inward(a);
                 }
             }
-            (Factor::RotationVector { vector, .. }, Velocities::RotationVector { rates, gyration }) => {
+            (Factor::RotationVector { j, vector }, Velocities::RotationVector { rates, gyration }) => {
                 let rotation = vector.rotation();
-                alpha = rotation.apply_transposed(alpha) + *gyration + vector.spin_rate(*rates);
+                let rates = rotation.apply_transposed(alpha) + *gyration + vector.spin_rate(*rates);
+                alpha = own(rates, &|q| vector.project(Vec3(vector.along_axes([q[*j], q[j + 1], q[j + 2]]))));
                 a = rotation.apply_transposed(a);
             }
-            (_, Velocities::Translation { by, acceleration }) => a = a + alpha.cross(*by) + *acceleration,
+            (_, Velocities::Translation { by, acceleration }) => {
+                a = a + alpha.cross(*by) + *acceleration;
+                if let Factor::Prismatic { j, axis } = factor {
+                    a = own(a, &|q| Vec3::along(*axis, q[*j]));
+                }
+            }
             (Factor::Body(index), _) => sweep.leave(&model.chain.bodies[*index].name),
             _ => {}
         }
-        motions.push((velocities, alpha, a));
+        motions.push(Motion { velocities, alpha, a });
     }
-    // Inward: force and moment that each frame takes.
+    motions
+}
+
+/// Force and moment about the origin of the frame in which both are given.
+type Wrench<'g> = [Vec3<'g>; 2];
+
+/// What a motion asks for.
+struct Inward<'g> {
+    /// Generalized forces that the motion lacks.
+    bias: Vec<Expr<'g>>,
+    /// What was noted of each body in the frame after its last coordinate; nothing where it has none of its own.
+    joints: Vec<Option<Wrench<'g>>>,
+    /// What was noted of each body in its own frame.
+    bodies: Vec<Option<Wrench<'g>>>,
+    /// What was noted in the world frame.
+    ground: Option<Wrench<'g>>,
+}
+
+/// From tip to base: force and moment that each frame takes. `note` makes of them what is kept of every cut.
+fn inward<'g>(
+    model: &Model<'g>,
+    factors: &[Factor<'g>],
+    motions: &[Motion<'g>],
+    note: impl Fn(Vec3<'g>, Vec3<'g>) -> Option<Wrench<'g>>,
+) -> Inward<'g> {
+    let zero = Vec3::zero(model.graph);
     let (mut force, mut moment) = (zero, zero);
     let mut bias = model.zeros();
+    let mut joints = vec![None; model.chain.bodies.len()];
+    let mut bodies = joints.clone();
+    // The body whose path the sweep is on.
+    let mut on = 0;
     let sweep = model.graph.sweep();
-    for (factor, (velocities, alpha, a)) in factors.iter().zip(motions).rev() {
+    for (factor, Motion { velocities, alpha, a }) in factors.iter().zip(motions).rev() {
+        if factor.moves() && joints[on].is_none() {
+            joints[on] = note(force, moment);
+        }
         match (factor, velocities) {
             (Factor::Body(index), Velocities::Body { omega }) => {
                 let body = &model.chain.bodies[*index];
@@ -50,11 +123,13 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
                 if let Some(inertia) = &body.inertia {
                     let (mass, first) = (model.number(&inertia.mass), model.vector(&inertia.first));
                     let tensor = model.second_moments(inertia).tensor();
-                    force = force + mass * a + alpha.cross(first) + omega.cross(omega.cross(first));
-                    moment = moment + tensor.apply(alpha) + omega.cross(tensor.apply(omega)) + first.cross(a);
+                    force = force + mass * *a + alpha.cross(first) + omega.cross(omega.cross(first));
+                    moment = moment + tensor.apply(*alpha) + omega.cross(tensor.apply(*omega)) + first.cross(*a);
                     force.named(&format!("force_{}", body.name));
                     moment.named(&format!("moment_{}", body.name));
                 }
+                on = *index;
+                bodies[on] = note(force, moment);
             }
             (Factor::Turn(_) | Factor::Revolute { .. } | Factor::Ball { .. }, _) => {
                 for (j, turn) in factor.turns().into_iter().rev() {
@@ -82,5 +157,5 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
             _ => {}
         }
     }
-    bias
+    Inward { bias, joints, bodies, ground: note(force, moment) }
 }

@@ -34,6 +34,7 @@ pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'stati
     out(!analyses.statics, "static residual and tangent stiffness", "`analyses` does not ask for statics");
     out(!analyses.dynamics, "mass matrix, bias and kinetic energy", "`analyses` does not ask for dynamics");
     out(!analyses.modes, "linearisation", "`analyses` does not ask for modes");
+    out(!analyses.internal_forces, "internal forces", "`analyses` does not ask for internal_forces");
     out(!analyses.derivatives, "∂T/∂q and ∂²T/∂q∂q", "`analyses` does not ask for derivatives");
     rows
 }

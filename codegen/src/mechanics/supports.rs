@@ -33,6 +33,17 @@ fn linear_column<'g>(model: &Model<'g>, r: Vec3<'g>, place: usize) -> Vec3<'g> {
     })
 }
 
+/// Where the supports hold the base, world frame, m.
+pub fn positions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let base = &kinematics.poses[0];
+    let position = |support: &Support| {
+        (base.origin + base.rotation.apply(model.vector(&support.position)))
+            .named(&format!("position_{}", support.name))
+            .0
+    };
+    model.chain.supports.iter().flat_map(position).collect()
+}
+
 /// A support at the present state.
 struct Stretched<'g> {
     /// e, m.

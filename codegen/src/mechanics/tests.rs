@@ -49,6 +49,7 @@ fn double_pendulum() -> Chain {
         ],
         base: [None; 6],
         supports: vec![],
+        beams: vec![],
         elements: vec![],
         drives: vec![],
         hinges: vec![],

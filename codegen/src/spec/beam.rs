@@ -23,6 +23,8 @@ pub struct Beam {
     pub section: Option<Given<Section>>,
     /// Mass besides the section's, kg/m, smeared with the section's radii of gyration. Default 0.
     pub extra_mass: Option<Given<Number>>,
+    /// Factor by which stresses have to stay below the material's `yield_stress`. Default 1.5.
+    pub safety_factor: Option<Given<Number>>,
     /// Damping of the springs. Default none.
     pub damping: Option<Given<BeamDamping>>,
     /// How two elements turn against each other. Default `symmetric`.
@@ -85,7 +87,7 @@ pub enum SectionJoint {
 
 /// An isotropic elastic material.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `E`, `G` and `density`")]
+#[serde(deny_unknown_fields, expecting = "a mapping of `E`, `G`, `density` and `yield_stress`")]
 pub struct Material {
     /// Young's modulus, Pa.
     #[serde(rename = "E")]
@@ -95,6 +97,8 @@ pub struct Material {
     pub shear_modulus: Given<Number>,
     /// Density, kg/m³.
     pub density: Given<Number>,
+    /// Yield stress, Pa. Default none: no utilisation is computed.
+    pub yield_stress: Option<Given<Number>>,
 }
 
 /// Cross-section of a beam: height along y, width along z.
@@ -142,7 +146,30 @@ pub enum Section {
         /// Torsion constant, m⁴.
         #[serde(rename = "Jo")]
         jo: Given<Number>,
+        /// Moduli for stresses. Default none: no stresses are computed.
+        moduli: Option<Box<Given<Moduli>>>,
     },
+}
+
+/// Moduli of a section that is given by its numbers.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `Wy`, `Wz`, `Wt`, `Ay` and `Az`")]
+pub struct Moduli {
+    /// Modulus of bending about y, m³.
+    #[serde(rename = "Wy")]
+    pub wy: Given<Number>,
+    /// Modulus of bending about z, m³.
+    #[serde(rename = "Wz")]
+    pub wz: Given<Number>,
+    /// Modulus of torsion, m³.
+    #[serde(rename = "Wt")]
+    pub wt: Given<Number>,
+    /// Shear area along y, m²: the force over the greatest shear stress.
+    #[serde(rename = "Ay")]
+    pub ay: Given<Number>,
+    /// Shear area along z, m².
+    #[serde(rename = "Az")]
+    pub az: Given<Number>,
 }
 
 /// Damping of the springs of a beam, exactly one of these.

@@ -13,7 +13,7 @@ mod scalar;
 mod schema;
 mod support;
 
-pub use beam::{Beam, BeamDamping, Directions, Element, Material, Section, SectionJoint, Sections, Spring};
+pub use beam::{Beam, BeamDamping, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring};
 pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub(crate) use given::{EITHER, GIVEN, MANY};
 pub use given::{Either, Entries, Given, Many};
@@ -94,6 +94,8 @@ pub enum Analysis {
     Dynamics,
     /// Linearisation at a pose: frequencies and damping.
     Modes,
+    /// Forces and moments that joints, beam sections and the ground transmit.
+    InternalForces,
     /// First and second derivatives of every body's transformation.
     Derivatives,
     /// Accelerations of eight cranes a call, for simulations of many with other parameters; includes `dynamics`.

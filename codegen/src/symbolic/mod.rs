@@ -21,6 +21,6 @@ pub use graph::Graph;
 pub use interpret::{Inputs, Scalar};
 pub use op::{Constant, ExprId, Op, SymbolId};
 pub use program::{Argument, Function, Program, Symbol};
-pub use shape::{Point, Shape};
+pub use shape::{Point, Shape, Struct};
 pub use stage::Stages;
 pub use tape::{Sweep, Tape, Visit};

@@ -41,6 +41,8 @@ pub enum Argument {
     Position,
     /// A vector, `v`.
     Velocity,
+    /// A vector, `a`: accelerations of the coordinates.
+    Acceleration,
     /// A generalized force, the right-hand side `r` of a linear system.
     Right,
     /// Resistances of single coordinates, a diagonal.

@@ -12,6 +12,27 @@ pub struct Point {
     pub turns: bool,
 }
 
+/// A type of the runtime whose fields are numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Struct {
+    /// Force x, y, z, then moment x, y, z.
+    Wrench,
+    /// Area, moduli of bending about y and z and of torsion, shear areas along y and z, share of corners, allowable stress.
+    SectionModuli,
+}
+
+impl Struct {
+    /// Number of its slots.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty)] // none is
+    pub fn len(self) -> usize {
+        match self {
+            Struct::Wrench => 6,
+            Struct::SectionModuli => 8,
+        }
+    }
+}
+
 /// Shape of a result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -25,6 +46,8 @@ pub enum Shape {
     Vectors(usize),
     /// Several pairs.
     Pairs(usize),
+    /// Several of one type of the runtime.
+    Structs(Struct, usize),
     /// Homogeneous transformations or their derivatives, grouped by body; slots are the upper three rows of each, row
     /// by row. `corner` is the corner of the constant fourth row: 1 for a transformation, 0 for a derivative.
     Transforms {
@@ -79,6 +102,7 @@ impl Shape {
             Shape::Symmetric(n) => n * (n + 1) / 2,
             Shape::Vectors(n) => 3 * n,
             Shape::Pairs(n) => 2 * n,
+            Shape::Structs(of, n) => of.len() * n,
             Shape::Transforms { counts, .. } => 12 * counts.iter().sum::<usize>(),
             Shape::Turned { degrees, rotations, vectors } => {
                 3 * rotations.len() + 12 * degrees.iter().sum::<usize>() + 18 * vectors.len()

@@ -1,6 +1,7 @@
 //! Beams: of equal sections, and how elements become bodies.
 
 use super::limits::Limit;
+use super::section::Elastic;
 use super::{Check, Owner};
 use crate::chain::{self, Axis, CoordinateKind, ElementSpring, Step, Value};
 use crate::diagnostic::{Span, rule};
@@ -12,6 +13,8 @@ use crate::spec::{Beam, BeamDamping, Directions, Either, Given, SectionJoint, Se
 const MOST_SECTIONS: f64 = 1000.0;
 /// The most coordinates that a crane may have: far more than make sense, few enough to answer at once.
 pub(super) const MOST_COORDINATES: usize = 10_000;
+/// Factor between the yield stress and the allowable stress unless given.
+const SAFETY_FACTOR: f64 = 1.5;
 /// What to do about too many of them.
 const FEWER_SECTIONS: &str =
     "cut beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
@@ -30,8 +33,11 @@ impl<'a> Check<'a> {
         let elements = given.value.as_ref().and_then(|inside| {
             let length = self.number(&inside.length, "`length`", "m", Limit::Positive);
             match &inside.elements {
-                Some(elements) => self.one_by_one(inside, &length, elements),
-                None => self.equal_sections(inside, given.span, &length),
+                Some(elements) => {
+                    self.beams.push(chain::Beam { link: link.to_owned(), moduli: None, allowable_stress: None });
+                    self.one_by_one(inside, &length, elements)
+                }
+                None => self.equal_sections(inside, (link, given.span), &length),
             }
         });
         let count = |elements: &Elements| self.coordinates.len() + ROTATIONS.len() * elements.joints.len();
@@ -100,7 +106,7 @@ impl<'a> Check<'a> {
     }
 
     /// A beam of equal sections of one material and cross-section.
-    fn equal_sections(&mut self, beam: &'a Beam, span: Span, length: &Value) -> Option<Elements> {
+    fn equal_sections(&mut self, beam: &'a Beam, (link, span): (&str, Span), length: &Value) -> Option<Elements> {
         if let Some(springs) = &beam.springs {
             self.report(rule::missing_key(springs.span, "elements", "a beam with `springs`"));
         }
@@ -117,7 +123,13 @@ impl<'a> Check<'a> {
         let section = beam.section.as_ref().and_then(|section| self.section(section));
         let extra = self.number_or(beam.extra_mass.as_ref(), 0.0, "`extra_mass`", "kg/m", Limit::NotNegative);
         let damping = self.beam_damping(beam.damping.as_ref());
-        let ([youngs, shear, density], section, sections) = (material?, section?, sections?);
+        let safety = self.number_or(beam.safety_factor.as_ref(), SAFETY_FACTOR, "`safety_factor`", "", Limit::Positive);
+        let (Elastic { youngs, shear, density, yield_stress }, section, sections) = (material?, section?, sections?);
+        self.beams.push(chain::Beam {
+            link: link.to_owned(),
+            moduli: section.moduli.clone(),
+            allowable_stress: yield_stress.map(|stress| stress / safety),
+        });
 
         let line_density = density * section.area.clone() + extra;
         let element = |length| beam::prismatic(length, &line_density, &section);

@@ -23,6 +23,7 @@ impl<'a> Check<'a> {
             ("material", beam.material.as_ref().map(|given| given.span)),
             ("section", beam.section.as_ref().map(|given| given.span)),
             ("extra_mass", beam.extra_mass.as_ref().map(|given| given.span)),
+            ("safety_factor", beam.safety_factor.as_ref().map(|given| given.span)),
             ("damping", beam.damping.as_ref().map(|given| given.span)),
         ];
         for (key, span) in beside {

@@ -21,13 +21,14 @@ mod section;
 use std::collections::BTreeMap;
 
 use crate::chain::{
-    Analyses, Body, Bound, Chain, Coordinate, CoordinateId, ElementSpring, Loops, Parameter, ParameterId, Relation,
-    Value,
+    self, Analyses, Body, Bound, Chain, Coordinate, CoordinateId, ElementSpring, Loops, Parameter, ParameterId,
+    Relation, Value,
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
 use crate::spec::{self, Analysis, Crane, CraneSpec, Given};
 use limits::Limit;
 use names::Names;
+use section::Elastic;
 
 /// A crane without mistakes.
 #[derive(Clone, Debug)]
@@ -113,13 +114,13 @@ struct Check<'a> {
     live_masses: Vec<(ParameterId, Bound)>,
     /// Rules that join several numbers of which some are live.
     relations: Vec<Relation>,
-    /// Young's modulus, shear modulus and density of each material.
-    materials: BTreeMap<&'a str, [Value; 3]>,
+    materials: BTreeMap<&'a str, Elastic>,
     coordinates: Vec<Coordinate>,
     /// What each coordinate belongs to.
     owners: Vec<Owner>,
     bodies: Vec<Body>,
     elements: Vec<ElementSpring>,
+    beams: Vec<chain::Beam>,
     base: [Option<CoordinateId>; 6],
     links: BTreeMap<&'a str, Place>,
     /// Names of bodies and coordinates after expansion.
@@ -174,6 +175,7 @@ impl<'a> Check<'a> {
             bodies: std::mem::take(&mut self.bodies),
             base: self.base,
             supports,
+            beams: std::mem::take(&mut self.beams),
             elements: std::mem::take(&mut self.elements),
             drives,
             hinges,
@@ -217,7 +219,7 @@ impl<'a> Check<'a> {
     }
 
     fn analyses(&mut self, given: Option<&Given<Vec<Given<Analysis>>>>) -> Analyses {
-        let default = Analyses { statics: true, dynamics: true, modes: true, derivatives: false, ensemble: false };
+        let default = Analyses { internal_forces: false, derivatives: false, ..Analyses::ALL };
         let Some((list, span)) = given.and_then(|given| Some((given.value.as_ref()?, given.span))) else {
             return default;
         };
@@ -229,6 +231,7 @@ impl<'a> Check<'a> {
             statics: wants(Analysis::Statics),
             dynamics: wants(Analysis::Dynamics) || wants(Analysis::Ensemble),
             modes: wants(Analysis::Modes),
+            internal_forces: wants(Analysis::InternalForces),
             derivatives: wants(Analysis::Derivatives),
             ensemble: wants(Analysis::Ensemble),
         }

@@ -2,14 +2,27 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::Value;
+use crate::chain::{Moduli, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::expand::section::{self, CrossSection};
 use crate::spec::{Either, Given, Material, Number, Section};
 
+/// An isotropic elastic material.
+#[derive(Clone, Debug)]
+pub(super) struct Elastic {
+    /// Young's modulus, Pa.
+    pub youngs: Value,
+    /// Shear modulus, Pa.
+    pub shear: Value,
+    /// Density, kg/m³.
+    pub density: Value,
+    /// Yield stress, Pa.
+    pub yield_stress: Option<Value>,
+}
+
 impl<'a> Check<'a> {
-    /// Young's modulus, shear modulus, density.
-    pub(super) fn material(&mut self, given: &'a Given<Either<String, Material>>) -> Option<[Value; 3]> {
+    /// A material written out, or the one of a name.
+    pub(super) fn material(&mut self, given: &'a Given<Either<String, Material>>) -> Option<Elastic> {
         let name = match given.value.as_ref()? {
             Either::Full(material) => return Some(self.elastic(material)),
             Either::Short(name) => name,
@@ -22,13 +35,17 @@ impl<'a> Check<'a> {
         known
     }
 
-    /// Young's modulus, shear modulus, density.
-    pub(super) fn elastic(&mut self, material: &Material) -> [Value; 3] {
-        [
-            self.number(&material.youngs_modulus, "Young's modulus `E`", "Pa", Limit::Positive),
-            self.number(&material.shear_modulus, "the shear modulus `G`", "Pa", Limit::Positive),
-            self.number(&material.density, "`density`", "kg/m³", Limit::Positive),
-        ]
+    /// The numbers of a material.
+    pub(super) fn elastic(&mut self, material: &Material) -> Elastic {
+        Elastic {
+            youngs: self.number(&material.youngs_modulus, "Young's modulus `E`", "Pa", Limit::Positive),
+            shear: self.number(&material.shear_modulus, "the shear modulus `G`", "Pa", Limit::Positive),
+            density: self.number(&material.density, "`density`", "kg/m³", Limit::Positive),
+            yield_stress: material
+                .yield_stress
+                .as_ref()
+                .map(|given| self.number(given, "`yield_stress`", "Pa", Limit::Positive)),
+        }
     }
 
     /// A cross-section by its shape or its numbers.
@@ -58,12 +75,23 @@ impl<'a> Check<'a> {
                 section::solid_rectangle(sides[0], sides[1])
             }
             Section::Circle { diameter } => section::circle(&positive(diameter, "`diameter`", "m")),
-            Section::Numbers { area, jy, jz, jo } => CrossSection {
-                area: positive(area, "`area`", "m²"),
-                jy: positive(jy, "`Jy`", "m⁴"),
-                jz: positive(jz, "`Jz`", "m⁴"),
-                jo: positive(jo, "`Jo`", "m⁴"),
-            },
+            Section::Numbers { area, jy, jz, jo, moduli } => {
+                let area = positive(area, "`area`", "m²");
+                let moduli = moduli.as_ref().and_then(|given| given.value.as_ref()).map(|given| Moduli {
+                    area: area.clone(),
+                    bending: [positive(&given.wy, "`Wy`", "m³"), positive(&given.wz, "`Wz`", "m³")],
+                    torsion: positive(&given.wt, "`Wt`", "m³"),
+                    shear: [positive(&given.ay, "`Ay`", "m²"), positive(&given.az, "`Az`", "m²")],
+                    has_corners: true,
+                });
+                CrossSection {
+                    area,
+                    jy: positive(jy, "`Jy`", "m⁴"),
+                    jz: positive(jz, "`Jz`", "m⁴"),
+                    jo: positive(jo, "`Jo`", "m⁴"),
+                    moduli,
+                }
+            }
         })
     }
 

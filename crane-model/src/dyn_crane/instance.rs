@@ -5,18 +5,24 @@ use std::ops::{Deref, DerefMut};
 use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector3};
 
 use super::{
-    DynBlock, DynCrane, DynDerivatives, DynDynamics, DynEnsemble, DynImplicit, DynLinearise, DynModel, DynStatics,
-    DynSystem,
+    DynBlock, DynCrane, DynDerivatives, DynDynamics, DynEnsemble, DynImplicit, DynInternalForces, DynLinearise,
+    DynModel, DynStatics, DynSystem,
 };
 use crate::{
-    CraneModel, Description, Dynamics, Ensemble, Implicit, LaneDynamics, Linearisation, Linearise, ParameterError,
-    Statics, TransformDerivatives, support::lanes::f64x8,
+    CraneModel, Description, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
+    ParameterError, SectionModuli, Statics, TransformDerivatives, Wrench, support::lanes::f64x8,
 };
 
 /// A crane compiled with every analysis but derivatives.
-pub trait Crane<const N: usize>: Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + Clone {}
+pub trait Crane<const N: usize>:
+    Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + InternalForces<N> + Clone
+{
+}
 
-impl<const N: usize, C> Crane<N> for C where C: Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + Clone {}
+impl<const N: usize, C> Crane<N> for C where
+    C: Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + InternalForces<N> + Clone
+{
+}
 
 /// A crane of `N` coordinates on slices, held by a reference or by a box: `Instance(&crane)`, `Instance(Box::new(crane))`.
 ///
@@ -226,6 +232,20 @@ pub(crate) struct Block<const N: usize, L>(pub L);
 impl<const N: usize, L: LaneDynamics<N>> DynBlock for Block<N, L> {
     fn forward_dynamics(&mut self, t: f64, q: &[f64x8], v: &[f64x8], out: &mut [f64x8]) {
         out.copy_from_slice(self.0.forward_dynamics(f64x8::splat(t), &vector(q), &vector(v)).as_slice());
+    }
+}
+
+impl<const N: usize, H: Deref<Target: InternalForces<N>>> DynInternalForces for Instance<N, H> {
+    fn internal_forces(&self, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
+        self.0.internal_forces(&vector(q), &vector(v), &vector(a), out);
+    }
+
+    fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]) {
+        self.0.support_positions(&vector(q), out);
+    }
+
+    fn section_moduli(&self, out: &mut [SectionModuli]) {
+        self.0.section_moduli(out);
     }
 }
 

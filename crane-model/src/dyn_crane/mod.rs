@@ -10,6 +10,7 @@
 //! | [`DynDynamics`] | [`Dynamics`](crate::Dynamics) | explicit methods |
 //! | [`DynImplicit`] | [`Implicit`](crate::Implicit) | implicit methods |
 //! | [`DynLinearise`] | [`Linearise`](crate::Linearise) | modes, stability |
+//! | [`DynInternalForces`] | [`InternalForces`](crate::InternalForces) | bearing loads, stresses |
 //! | [`DynEnsemble`] | [`Ensemble`](crate::Ensemble) | runs of many cranes |
 //! | [`DynDerivatives`] | [`TransformDerivatives`](crate::TransformDerivatives) | tables of derivatives |
 //! | [`DynCrane`] | all of them but derivatives | the command |
@@ -30,7 +31,7 @@ pub(crate) use instance::Block;
 pub use instance::{Crane, Instance, boxed};
 pub use quantities::{Energies, Member};
 
-use crate::{Description, ParameterError, support::lanes::f64x8};
+use crate::{Description, ParameterError, SectionModuli, Wrench, support::lanes::f64x8};
 
 /// Poses, forces and potential energy of a crane: [`CraneModel`](crate::CraneModel) on slices.
 pub trait DynModel {
@@ -164,6 +165,18 @@ pub trait DynLinearise: DynModel {
     fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]);
 }
 
+/// What the parts of a crane exert on each other: [`InternalForces`](crate::InternalForces) on slices.
+pub trait DynInternalForces: DynModel {
+    /// What the part beyond each cut exerts on the part before it. `out`: one per cut, as [`Description::cuts`] lists them.
+    fn internal_forces(&self, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]);
+
+    /// Positions of the supports' attachment points, m.
+    fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]);
+
+    /// What stresses of beams follow from; one per beam, from the base to the tip.
+    fn section_moduli(&self, out: &mut [SectionModuli]);
+}
+
 /// Cranes that move several at a time, each with its own state and parameters: [`Ensemble`](crate::Ensemble) on slices.
 pub trait DynEnsemble: DynDynamics {
     /// How many cranes a block holds: a multiple of eight.
@@ -199,7 +212,7 @@ pub trait DynDerivatives: DynModel {
 /// A crane with every analysis but the derivatives of transforms, which few ask for: [`DynDerivatives`].
 ///
 /// What is computed from these, as lists and matrices of their own, stands with [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
-pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynEnsemble + Send + Sync {
+pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynInternalForces + DynEnsemble + Send + Sync {
     /// Sets a live parameter. An index out of range changes nothing.
     ///
     /// # Errors

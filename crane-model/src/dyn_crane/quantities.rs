@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynModel};
 use crate::{
-    CoordinateKind, CoordinateRole, ParameterError, dynamics,
+    CoordinateKind, CoordinateRole, ParameterError, SectionModuli, Wrench, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
     modes::SmallMotions,
     statics,
@@ -137,6 +137,27 @@ impl dyn DynCrane + '_ {
     pub fn support_reactions_at(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>> {
         let mut out = vec![Vector3::zeros(); self.description().supports.len()];
         self.support_reactions(q, v, &mut out);
+        out
+    }
+
+    /// What the part beyond each cut exerts on the part before it, cut by cut: N and N m.
+    pub fn internal_forces_at(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
+        let mut out = vec![Wrench::ZERO; self.description().cuts().len()];
+        self.internal_forces(q, v, a, &mut out);
+        out
+    }
+
+    /// Positions of the supports' attachment points, m.
+    pub fn support_positions_at(&self, q: &[f64]) -> Vec<Vector3<f64>> {
+        let mut out = vec![Vector3::zeros(); self.description().supports.len()];
+        self.support_positions(q, &mut out);
+        out
+    }
+
+    /// What stresses of beams follow from, beam by beam as [`Description::beams`](crate::Description::beams) lists them.
+    pub fn section_moduli_at(&self) -> Vec<SectionModuli> {
+        let mut out = vec![SectionModuli::ZERO; self.description().beams().len()];
+        self.section_moduli(&mut out);
         out
     }
 

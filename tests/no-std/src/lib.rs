@@ -23,8 +23,8 @@ macro_rules! crane {
             use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
             use crane_model::support::lanes::f64x8;
             use crane_model::{
-                CraneModel, Dynamics, Ensemble, Implicit, LaneDynamics, Linearisation, Linearise, ParameterError, Statics,
-                TransformDerivatives,
+                CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
+                ParameterError, SectionModuli, Statics, TransformDerivatives, Wrench,
             };
 
             pub use generated::{Crane, DESCRIPTION, N};
@@ -88,6 +88,9 @@ macro_rules! crane {
                 tangent_stiffness(q: &Vector) -> Matrix;
                 drive_forces_at_rest(q: &Vector) -> Vector;
                 linearise(q: &Vector) -> Linearisation<N>;
+                internal_forces(q: &Vector, v: &Vector, a: &Vector, out: &mut [Wrench]);
+                support_positions(q: &Vector, out: &mut [Vector3<f64>]);
+                section_moduli(out: &mut [SectionModuli]);
                 transform_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
                 transform_second_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);
             }

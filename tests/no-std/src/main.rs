@@ -5,7 +5,7 @@ use std::hint::black_box;
 use crane_model::dynamics::rk4::State;
 use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::support::lanes::splat;
-use crane_model::{Ensemble, Implicit};
+use crane_model::{Ensemble, Implicit, SectionModuli, Wrench};
 
 /// Calls every function of a crane.
 macro_rules! call_all {
@@ -17,6 +17,8 @@ macro_rules! call_all {
             DESCRIPTION.bodies.iter().map(|b| b.degrees_of_freedom * (b.degrees_of_freedom + 1) / 2).sum();
         let mut matrices = vec![Matrix4::zeros(); black_box(pairs)];
         let mut vectors = vec![Vector3::zeros(); black_box(DESCRIPTION.supports.len().max(DESCRIPTION.points.len()))];
+        let mut wrenches = vec![Wrench::ZERO; black_box(2 * DESCRIPTION.bodies.len() + 1)];
+        let mut moduli = vec![SectionModuli::ZERO; black_box(DESCRIPTION.bodies.len())];
         let mut motions = vec![[0.0; 2]; black_box(DESCRIPTION.drives.len())];
         let pieces = DESCRIPTION.drives.iter().map(|drive| drive.pieces).sum();
         let mut pieces = vec![[0.0; 2]; black_box(pieces)];
@@ -62,6 +64,9 @@ macro_rules! call_all {
         black_box(of::tangent_stiffness(&crane, &q));
         black_box(of::drive_forces_at_rest(&crane, &q));
         black_box(of::linearise(&crane, &q));
+        of::internal_forces(&crane, &q, &v, &v, &mut wrenches);
+        of::support_positions(&crane, &q, &mut vectors);
+        of::section_moduli(&crane, &mut moduli);
         of::transform_derivatives(&crane, &q, &mut matrices);
         of::transform_second_derivatives(&crane, &q, &mut matrices);
         let lanes = Crane::lanes([&crane; 8]);
@@ -69,7 +74,7 @@ macro_rules! call_all {
         black_box(of::lane_forward_dynamics(&lanes, splat(t), &lane_q, &lane_v));
         let mut state = State { q, v };
         black_box(of::step(&crane, t, black_box(1e-4), &mut state));
-        black_box((state, matrices, vectors, motions, pieces, impedances, mass));
+        black_box((state, matrices, vectors, motions, pieces, impedances, mass, wrenches, moduli));
     }};
 }
 

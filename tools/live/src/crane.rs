@@ -7,12 +7,12 @@ use crane_codegen::chain::Chain;
 use crane_codegen::symbolic::Shape;
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::{
-    DynBlock, DynCrane, DynDerivatives, DynDynamics, DynEnsemble, DynImplicit, DynLinearise, DynModel, DynStatics,
-    DynSystem,
+    DynBlock, DynCrane, DynDerivatives, DynDynamics, DynEnsemble, DynImplicit, DynInternalForces, DynLinearise,
+    DynModel, DynStatics, DynSystem,
 };
 use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
 use crane_model::support::lanes::f64x8;
-use crane_model::{Description, ParameterError};
+use crane_model::{Description, ParameterError, SectionModuli, Wrench};
 
 use crate::closing::{mass_matrix, second_derivatives};
 use crate::describe::{describe, refusal};
@@ -382,6 +382,32 @@ impl DynLinearise for LiveCrane {
                 rest = others;
             }
         });
+    }
+}
+
+impl DynInternalForces for LiveCrane {
+    fn internal_forces(&self, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
+        self.call(Name::InternalForces, &Arguments { a, ..state(0.0, q, v) }, |_, results| {
+            let wrench = |[fx, fy, fz, mx, my, mz]: &[f64; 6]| Wrench {
+                force: Vector3::new(*fx, *fy, *fz),
+                moment: Vector3::new(*mx, *my, *mz),
+            };
+            copy_as(results.as_chunks().0, wrench, out);
+        });
+    }
+
+    fn section_moduli(&self, out: &mut [SectionModuli]) {
+        self.call(Name::SectionModuli, &Arguments::none(), |_, results| {
+            let moduli = |numbers: &[f64; 8]| {
+                let [area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress] = *numbers;
+                SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress }
+            };
+            copy_as(results.as_chunks().0, moduli, out);
+        });
+    }
+
+    fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]) {
+        self.vectors(Name::SupportPositions, &at(q), out);
     }
 }
 

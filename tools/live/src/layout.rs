@@ -45,6 +45,7 @@ fn append(shape: &Shape, first: usize, entries: &mut Vec<Entry>) {
         | Shape::Vector(_)
         | Shape::Vectors(_)
         | Shape::Pairs(_)
+        | Shape::Structs(..)
         | Shape::Turned { .. }
         | Shape::Columns { .. }
         | Shape::Factors(_) => entries.extend(slots(shape.len())),

@@ -43,6 +43,9 @@ pub enum Name {
     BaseStiffness,
     BaseDamping,
     Linearise,
+    InternalForces,
+    SupportPositions,
+    SectionModuli,
     TransformDerivatives,
     TransformSecondDerivatives,
 }
@@ -58,13 +61,15 @@ pub enum Group {
     Statics,
     /// Small motions.
     Modes,
+    /// What joints and sections transmit.
+    InternalForces,
     /// Derivatives of transforms.
     Derivatives,
 }
 
 impl Name {
     /// All of them, in the order of their declaration.
-    pub const ALL: [Name; 35] = [
+    pub const ALL: [Name; 38] = [
         Name::Transforms,
         Name::Points,
         Name::PointVelocities,
@@ -98,13 +103,16 @@ impl Name {
         Name::BaseStiffness,
         Name::BaseDamping,
         Name::Linearise,
+        Name::InternalForces,
+        Name::SupportPositions,
+        Name::SectionModuli,
         Name::TransformDerivatives,
         Name::TransformSecondDerivatives,
     ];
 
     /// The name that the compiler gives it, and with what it is derived.
     pub fn describe(self) -> (&'static str, Group) {
-        use Group::{Common, Derivatives, Dynamics, Modes, Statics};
+        use Group::{Common, Derivatives, Dynamics, InternalForces, Modes, Statics};
         match self {
             Name::Transforms => ("transforms", Common),
             Name::Points => ("points", Common),
@@ -139,6 +147,9 @@ impl Name {
             Name::BaseStiffness => ("base_stiffness", Dynamics),
             Name::BaseDamping => ("base_damping", Dynamics),
             Name::Linearise => ("linearise", Modes),
+            Name::InternalForces => ("internal_forces", InternalForces),
+            Name::SupportPositions => ("support_positions", InternalForces),
+            Name::SectionModuli => ("section_moduli", InternalForces),
             Name::TransformDerivatives => ("transform_derivatives", Derivatives),
             Name::TransformSecondDerivatives => ("transform_second_derivatives", Derivatives),
         }
@@ -146,16 +157,24 @@ impl Name {
 }
 
 impl Group {
-    const COUNT: usize = 5;
+    const COUNT: usize = 6;
 
     /// What the compiler is asked for.
     fn analyses(self) -> Analyses {
-        let nothing = Analyses { statics: false, dynamics: false, modes: false, derivatives: false, ensemble: false };
+        let nothing = Analyses {
+            statics: false,
+            dynamics: false,
+            modes: false,
+            internal_forces: false,
+            derivatives: false,
+            ensemble: false,
+        };
         match self {
             Group::Common => nothing,
             Group::Dynamics => Analyses { dynamics: true, ..nothing },
             Group::Statics => Analyses { statics: true, ..nothing },
             Group::Modes => Analyses { modes: true, ..nothing },
+            Group::InternalForces => Analyses { internal_forces: true, ..nothing },
             Group::Derivatives => Analyses { derivatives: true, ..nothing },
         }
     }

@@ -72,6 +72,8 @@ pub struct Arguments<'a, T> {
     pub q: &'a [T],
     /// Their rates.
     pub v: &'a [T],
+    /// Accelerations.
+    pub a: &'a [T],
     /// Right-hand side of a linear system.
     pub right: &'a [T],
     /// Resistances of single coordinates.
@@ -89,7 +91,7 @@ impl<T: Number> Arguments<'_, T> {
     #[must_use]
     pub fn none() -> Self {
         let t = T::splat(0.0);
-        Self { t, q: &[], v: &[], right: &[], resistance: &[], base: &[], factors: &[], parameters: &[] }
+        Self { t, q: &[], v: &[], a: &[], right: &[], resistance: &[], base: &[], factors: &[], parameters: &[] }
     }
 
     /// The numbers of an argument.
@@ -98,6 +100,7 @@ impl<T: Number> Arguments<'_, T> {
             Argument::Time => std::slice::from_ref(&self.t),
             Argument::Position => self.q,
             Argument::Velocity => self.v,
+            Argument::Acceleration => self.a,
             Argument::Right => self.right,
             Argument::Resistance => self.resistance,
             Argument::BaseResistance => self.base,

@@ -58,6 +58,7 @@ impl State {
     fn inputs(&self) -> Inputs<f64> {
         Inputs::state(self.t, self.q.clone(), self.v.clone(), self.parameters.clone())
             .with(Argument::Right, self.right.clone())
+            .with(Argument::Acceleration, self.right.clone())
             .with(Argument::Resistance, self.resistance.clone())
             .with(Argument::BaseResistance, self.base.clone())
             .with(Argument::Factors, self.factors.clone())
@@ -68,6 +69,7 @@ impl State {
             t: self.t,
             q: &self.q,
             v: &self.v,
+            a: &self.right,
             right: &self.right,
             resistance: &self.resistance,
             base: &self.base,

@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::ParameterError;
 use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, Instance, Member};
 use crane_model::dynamics::{InitialState, Settings};
 use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
+use crane_model::{ParameterError, SectionModuli};
 use crane_model::{modes, statics};
 
 /// Whether products and sums round once: a loop of compiled code may then fuse others than bytecode does.
@@ -71,6 +71,19 @@ fn pairs(count: usize, write: impl FnOnce(&mut [[f64; 2]])) -> Vec<f64> {
     out.into_flattened()
 }
 
+fn wrenches(crane: &dyn DynCrane, q: &[f64], v: &[f64], a: &[f64]) -> Vec<f64> {
+    let wrenches = crane.internal_forces_at(q, v, a);
+    wrenches.iter().flat_map(|wrench| wrench.force.iter().chain(&wrench.moment).copied().collect::<Vec<_>>()).collect()
+}
+
+fn moduli(crane: &dyn DynCrane) -> Vec<f64> {
+    let numbers = |of: &SectionModuli| {
+        let SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress } = *of;
+        [area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress]
+    };
+    crane.section_moduli_at().iter().flat_map(numbers).collect()
+}
+
 /// Everything that a crane computes at a state, by name.
 fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
     let (t, q, v) = state(crane);
@@ -116,6 +129,9 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
         ("linearised mass", mass),
         ("linearised stiffness", stiffness),
         ("linearised damping", damping),
+        ("internal_forces", wrenches(crane, q, v, &r)),
+        ("section_moduli", moduli(crane)),
+        ("support_positions", vectors(description.supports.len(), |out| crane.support_positions(q, out))),
     ]
 }
 

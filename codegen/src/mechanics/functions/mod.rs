@@ -1,6 +1,7 @@
 //! Which functions a crane gets: signatures, documentation, and what is left out.
 
 mod forces;
+mod internal_forces;
 mod statics;
 
 use crate::chain::{Analyses, BodyId, Chain};
@@ -69,6 +70,9 @@ impl<'g> Derivation<'g> {
         }
         if analyses.modes {
             functions.push(self.linearise());
+        }
+        if analyses.internal_forces {
+            functions.extend(self.internal_forces());
         }
         if analyses.derivatives {
             functions.extend(self.transform_derivatives());

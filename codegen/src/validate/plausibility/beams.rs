@@ -9,6 +9,8 @@ use crate::spec::{Beam, Either, Given, Link, Material, Number, Section};
 const YOUNGS_MODULUS: std::ops::RangeInclusive<f64> = 1e9..=1e12;
 /// Shear moduli, those of wood (5e8 Pa) included. Pa.
 const SHEAR_MODULUS: std::ops::RangeInclusive<f64> = 1e8..=5e11;
+/// Yield stresses, from soft plastics to piano wire, Pa.
+const YIELD_STRESS: std::ops::RangeInclusive<f64> = 1e6..=5e9;
 /// Densities from balsa to osmium, kg/m³.
 const DENSITY: std::ops::RangeInclusive<f64> = 100.0..=25_000.0;
 /// A side of a cross-section beyond this is not in m.
@@ -79,6 +81,16 @@ impl Look<'_> {
         if !SHEAR_MODULUS.contains(&g) {
             self.warn(rule::modulus(at_g, "the shear modulus `G`", place, g, "1e8 to 5e11", in_pascal(g)));
         }
+        if let Some((stress, at)) = material.yield_stress.as_ref().map(|given| self.number(given))
+            && !YIELD_STRESS.contains(&stress)
+        {
+            let help = if (10.0..=5e3).contains(&stress) {
+                format!("write it in Pa: {stress} MPa = {:e} Pa", stress * 1e6)
+            } else {
+                "write it in Pa; structural steel has 2.35e8 to 1.1e9".to_owned()
+            };
+            self.warn(rule::modulus(at, "the `yield_stress`", place, stress, "1e6 to 5e9", help));
+        }
         if YOUNGS_MODULUS.contains(&e) && SHEAR_MODULUS.contains(&g) && g > 0.5 * e {
             self.warn(rule::poisson(at_g, place, rounded(e / (2.0 * g) - 1.0)));
         }
@@ -98,7 +110,7 @@ impl Look<'_> {
                 vec![("height", height), ("width", width)]
             }
             Section::Tube { diameter, .. } | Section::Circle { diameter } => vec![("diameter", diameter)],
-            Section::Numbers { area, jy, jz, jo } => return self.section_numbers([area, jy, jz, jo], place),
+            Section::Numbers { area, jy, jz, jo, .. } => return self.section_numbers([area, jy, jz, jo], place),
         };
         // The first side that is wrong says it for all.
         for (key, given) in sides {

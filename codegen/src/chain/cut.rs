@@ -1,0 +1,29 @@
+//! Where a crane is cut to see what one part exerts on the other.
+
+use super::{BodyId, Chain};
+
+/// A cut through the chain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// Between the crane and the world: world frame, about the world's origin.
+    Ground,
+    /// At the joint of the link that begins with this body: in the frame reached by the link's last coordinate, about its
+    /// origin; of a link without a joint, in the body's frame.
+    Joint(BodyId),
+    /// Before a body, in its frame; of a beam's element, the section where it begins.
+    Body(BodyId),
+}
+
+impl Chain {
+    /// All cuts: the ground, then from base to tip the joint of every link and the bodies of that link.
+    #[must_use]
+    pub fn cuts(&self) -> Vec<Cut> {
+        let mut cuts = vec![Cut::Ground];
+        for (index, body) in self.bodies.iter().enumerate() {
+            let begins_link = index.checked_sub(1).is_none_or(|before| self.bodies[before].link != body.link);
+            cuts.extend(begins_link.then_some(Cut::Joint(BodyId(index))));
+            cuts.push(Cut::Body(BodyId(index)));
+        }
+        cuts
+    }
+}

@@ -1,0 +1,58 @@
+//! What joints, sections and the ground transmit, and what stresses of beams follow from.
+
+use super::{Derivation, function};
+use crate::chain::{Beam, Moduli};
+use crate::mechanics::model::Model;
+use crate::mechanics::{newton_euler, supports};
+use crate::symbolic::Argument::{Acceleration, Position, Velocity};
+use crate::symbolic::{Expr, Function, Shape, Struct};
+
+impl Derivation<'_> {
+    pub(super) fn internal_forces(&self) -> Vec<Function> {
+        let model = &self.model;
+        let (wrenches, tape) = model.graph.recorded(|| newton_euler::internal_forces(model, &self.factors));
+        let mut functions = vec![
+            function(
+                "internal_forces",
+                "Force (N) and moment (N m) that what is beyond a cut exerts on what is before it, cut by cut.",
+                "−Σ ∫ (ẍ − γ) dm, −Σ ∫ r × (ẍ − γ) dm over everything beyond, by Newton and Euler",
+                &[Position, Velocity, Acceleration],
+                Shape::Structs(Struct::Wrench, model.chain.cuts().len()),
+                wrenches,
+            )
+            .by(tape),
+        ];
+        if !model.chain.supports.is_empty() {
+            functions.push(function(
+                "support_positions",
+                "Positions of the supports' attachment points in the world frame, m.",
+                "T(1) r_E",
+                &[Position],
+                Shape::Vectors(model.chain.supports.len()),
+                supports::positions(model, &self.kinematics),
+            ));
+        }
+        if !model.chain.beams.is_empty() {
+            functions.push(function(
+                "section_moduli",
+                "What stresses of beams follow from, beam by beam: areas (m²), moduli (m³), the allowable stress (Pa); 0 where not known.",
+                "A, W_y, W_z, W_t, A_y, A_z; yield stress over safety factor",
+                &[],
+                Shape::Structs(Struct::SectionModuli, model.chain.beams.len()),
+                model.chain.beams.iter().flat_map(|beam| section_moduli(model, beam)).collect(),
+            ));
+        }
+        functions
+    }
+}
+
+/// The slots of [`Struct::SectionModuli`] of a beam.
+fn section_moduli<'g>(model: &Model<'g>, beam: &Beam) -> [Expr<'g>; 8] {
+    let zero = model.zero();
+    let Some(Moduli { area, bending, torsion, shear, has_corners }) = &beam.moduli else { return [zero; 8] };
+    let [wy, wz] = bending.each_ref().map(|modulus| model.number(modulus));
+    let [ay, az] = shear.each_ref().map(|area| model.number(area));
+    let corners = model.graph.constant(if *has_corners { 1.0 } else { 0.0 });
+    let allowable = beam.allowable_stress.as_ref().map_or(zero, |stress| model.number(stress));
+    [model.number(area), wy, wz, model.number(torsion), ay, az, corners, allowable]
+}

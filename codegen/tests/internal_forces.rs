@@ -1,0 +1,206 @@
+//! What joints, sections and the ground transmit, against exact laws.
+
+use crane_codegen::chain::{Analyses, Chain, Cut};
+use crane_codegen::symbolic::{Argument, Inputs};
+use crane_codegen::{SourceFile, compile, mechanics, read, validate};
+
+/// Sums of a few products: some roundings of the largest term.
+const ROUNDING: f64 = 1e-13;
+/// Length of the beam, m.
+const LENGTH: f64 = 3.0;
+/// Sections of the beam.
+const SECTIONS: usize = 4;
+/// Density of the beam, kg/m³.
+const DENSITY: f64 = 7850.0;
+/// Area of its cross-section, 0.2 m high, 0.1 m wide, m².
+const AREA: f64 = 0.02;
+/// Second moment of area about z, m⁴.
+const JZ: f64 = 0.1 * 0.2 * 0.2 * 0.2 / 12.0;
+/// Mass on the beam's tip, kg.
+const LOAD: f64 = 40.0;
+
+/// Force and moment.
+type Wrench = [[f64; 3]; 2];
+
+/// A crane whose gravity and links are given.
+fn crane(rest: &str) -> Chain {
+    let source = SourceFile::new("test.yaml", format!("format: 1\nname: test\n{rest}"));
+    read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+/// A beam on a hub that turns by `joint`, x of the beam along x of the hub; on its tip a point mass of [`LOAD`].
+fn beam(joint: &str, gravity: &str, section_joint: &str) -> Chain {
+    crane(&format!(
+        "gravity: {gravity}
+links:
+  - name: beam
+    joint: {joint}
+    beam:
+      length: {LENGTH}
+      sections: {SECTIONS}
+      section_joint: {section_joint}
+      material: {{E: 2.1e11, G: 8.1e10, density: {DENSITY}}}
+      section: {{solid: {{height: 0.2, width: 0.1}}}}
+  - {{name: load, mass: {LOAD}, com: [0, 0, 0]}}
+"
+    ))
+}
+
+/// What every cut transmits.
+fn wrenches(chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
+    let analyses = Analyses { derivatives: false, ..Analyses::ALL };
+    let program = mechanics::derive(chain, analyses);
+    let function = program.function("internal_forces").expect("the analyses ask for it");
+    let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), chain.parameter_defaults());
+    let slots = program.evaluate(function, &inputs.with(Argument::Acceleration, a.to_vec()));
+    slots.as_chunks::<3>().0.as_chunks::<2>().0.to_vec()
+}
+
+/// Sections of a beam, and what they transmit.
+fn sections(chain: &Chain, wrenches: &[Wrench]) -> Vec<(f64, Wrench)> {
+    let mut x = 0.0;
+    let mut sections = Vec::new();
+    for (cut, wrench) in chain.cuts().into_iter().zip(wrenches) {
+        if let Cut::Body(body) = cut {
+            let body = &chain.bodies[body.0];
+            sections.extend((body.link != "load").then_some((x, *wrench)));
+            x += body.length.at(&[]);
+        }
+    }
+    sections
+}
+
+fn assert_close(what: &str, actual: Wrench, expected: Wrench) {
+    for (actual, expected) in actual.iter().zip(&expected) {
+        let size = expected.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
+        for (a, b) in actual.iter().zip(expected) {
+            assert!((a - b).abs() <= ROUNDING * size, "{what}: {actual:?} instead of {expected:?}");
+        }
+    }
+}
+
+/// Whatever the number of elements: their weights and levers add up to the integral.
+#[test]
+fn a_cantilever_bends_by_its_weight_and_its_load() {
+    for section_joint in ["symmetric", "paper"] {
+        let chain = beam("fixed", "[0, -9.81, 0]", section_joint);
+        let rest = vec![0.0; chain.coordinates.len()];
+        let wrenches = wrenches(&chain, &rest, &rest, &rest);
+        let sections = sections(&chain, &wrenches);
+        assert_eq!(sections.len(), SECTIONS + 1);
+        for (x, wrench) in sections {
+            let out = LENGTH - x;
+            let q = -9.81 * (LOAD + DENSITY * AREA * out);
+            let m = -9.81 * (LOAD * out + DENSITY * AREA * out * out / 2.0);
+            assert_close(&format!("x = {x}"), wrench, [[0.0, q, 0.0], [0.0, 0.0, m]]);
+        }
+        // The ground carries what the clamped end does.
+        assert_close("ground", wrenches[0], wrenches[1]);
+    }
+}
+
+/// `N = ∫ ρAω² x dx + m ω² l`; and while it speeds up by α, `Qy = −α (∫ ρA x dx + m l)` and
+/// `Mz = −α (∫ ρA x (x − x₀) dx + m l (l − x₀) + ρ J_z (l − x₀))`, the last part by the turning of the sections.
+#[test]
+fn a_turning_beam_pulls_by_its_centrifugal_force() {
+    let (rate, speeding) = (7.0, 3.0);
+    let chain = beam("revolute", "[0, 0, 0]", "symmetric");
+    let mut q = vec![0.0; chain.coordinates.len()];
+    let (mut v, mut a) = (q.clone(), q.clone());
+    (q[0], v[0], a[0]) = (0.4, rate, speeding);
+    for (x, wrench) in sections(&chain, &wrenches(&chain, &q, &v, &a)) {
+        let integral = |power: i32| (LENGTH.powi(power) - x.powi(power)) / f64::from(power);
+        let line = DENSITY * AREA;
+        let first = line * integral(2) + LOAD * LENGTH;
+        let second = line * (integral(3) - x * integral(2)) + LOAD * LENGTH * (LENGTH - x);
+        let turning = DENSITY * JZ * (LENGTH - x);
+        let expected = [[rate * rate * first, -speeding * first, 0.0], [0.0, 0.0, -speeding * (second + turning)]];
+        assert_close(&format!("x = {x}"), wrench, expected);
+    }
+}
+
+/// Weight that hangs beside the beam's axis twists it, and bends it about y.
+#[test]
+fn an_eccentric_load_twists() {
+    let chain = crane(
+        "links:
+  - name: arm
+    joint: revolute
+    beam:
+      length: 2
+      sections: rigid
+      material: {E: 2.1e11, G: 8.1e10, density: 1}
+      section: {numbers: {area: 1e-4, Jy: 1e-9, Jz: 1e-9, Jo: 1e-9}}
+  - {name: load, mass: 100, com: [0, 0.5, 0]}
+",
+    );
+    let wrenches = wrenches(&chain, &[0.0], &[0.0], &[0.0]);
+    let [(_, section)] = sections(&chain, &wrenches)[..] else { panic!("one element") };
+    let weight = -9.81 * 100.0;
+    let own = -9.81 * 2e-4;
+    assert_close("arm", section, [[0.0, 0.0, weight + own], [0.5 * weight, -2.0 * weight - own, 0.0]]);
+}
+
+/// A rope's tension m (g + a) in a hoist that speeds up, and the guide's moment of a load beside it.
+#[test]
+fn a_hoist_pulls_more_as_it_speeds_up() {
+    let chain = crane("links:\n  - {name: cage, joint: {prismatic: {axis: z}}, mass: 200, com: [0.3, 0, 0]}\n");
+    let force = -200.0 * (9.81 + 2.0);
+    let wrenches = wrenches(&chain, &[1.5], &[0.7], &[2.0]);
+    assert_close("joint", wrenches[1], [[0.0, 0.0, force], [0.0, -0.3 * force, 0.0]]);
+}
+
+/// A joint of a classic D-H row is cut at its axis, not where the link's frame stands: there the moment about z is the effort.
+#[test]
+fn a_classic_row_is_cut_at_its_axis() {
+    let row = |name: &str, alpha: &str| {
+        format!(
+            "  - {{name: {name}, placement: {{classic_dh: {{a: 0.8, alpha: {alpha}, d: 0.3, theta: 20 deg}}}}, joint: revolute, \
+             mass: 30, com: [-0.4, 0.1, 0.05]}}\n"
+        )
+    };
+    let chain = crane(&format!("links:\n{}{}", row("one", "90 deg"), row("two", "30 deg")));
+    let (q, v, a) = ([0.3, -0.7], [1.1, 0.4], [-2.0, 5.0]);
+    let wrenches = wrenches(&chain, &q, &v, &a);
+    // A a − e, what drives would have to do.
+    let program = mechanics::derive(&chain, Analyses::ALL);
+    let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), vec![]);
+    let get = |name| program.evaluate(program.function(name).expect("every crane has it"), &inputs);
+    let (mass, bias) = (get("mass_matrix"), get("bias"));
+    let efforts = [mass[0] * a[0] + mass[1] * a[1] - bias[0], mass[1] * a[0] + mass[2] * a[1] - bias[1]];
+    // Of each link its joint, then its frame.
+    for (effort, wrench) in efforts.iter().zip([&wrenches[1], &wrenches[3]]) {
+        assert!((effort + wrench[1][2]).abs() < ROUNDING * effort.abs(), "{effort} against {wrench:?}");
+    }
+    // The first axis is the world's z.
+    assert_close(
+        "the first joint's axis",
+        [[0.0; 3], [0.0, 0.0, wrenches[0][1][2]]],
+        [[0.0; 3], [0.0, 0.0, wrenches[1][1][2]]],
+    );
+}
+
+/// The function of the reference crane costs at most half as much again as the bias.
+#[test]
+fn they_cost_little_more_than_the_bias() {
+    let path = format!("{}/../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect("it is shipped");
+    let chain = compile::load(&SourceFile::new(&path, &text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+    assert_eq!(chain.coordinates.len(), 25);
+    let report =
+        compile::report(&chain, Analyses { statics: false, modes: false, derivatives: false, ..Analyses::ALL });
+    let cost = |name| report.costs.iter().find(|cost| cost.function == name).expect("it is derived").operations.total();
+    let (forces, bias) = (cost("internal_forces"), cost("bias"));
+    assert!(2 * forces <= 3 * bias, "{forces} operations, {bias} of the bias");
+}
+
+/// A crane whose spec does not ask for them has nothing of them.
+#[test]
+fn who_does_not_ask_does_not_pay() {
+    let chain = beam("revolute", "[0, 0, 0]", "symmetric");
+    let code = compile::generate(&chain, chain.analyses, "test.yaml").text;
+    assert!(!code.contains("fn internal_forces"));
+    assert!(!code.contains("Wrench"));
+    let code = compile::generate(&chain, Analyses { internal_forces: true, ..chain.analyses }, "test.yaml").text;
+    assert!(code.contains("impl InternalForces<N> for Crane"));
+}

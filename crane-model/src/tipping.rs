@@ -1,0 +1,169 @@
+//! Stability against tipping: moments about the lines between the outermost feet.
+//!
+//! A crane on feet that push and do not pull tips about a tipping line: a side of the convex polygon that the feet make, seen
+//! from above. What a link's weight and inertia do about a line holds the crane down or tips it; where the sum of all tips, the
+//! crane falls. Feet are points, and the ground is rigid: what gives way under the feet shows in the pose alone.
+
+use nalgebra::Vector3;
+
+use crate::{Wrench, dyn_crane::DynCrane};
+
+/// Moments about a tipping line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TippingLine {
+    /// Places of two supports; from the first to the second the crane is on the left, seen from above.
+    pub feet: [usize; 2],
+    /// Moment of the links whose weight and inertia hold the crane down, N m, not negative.
+    pub stabilising: f64,
+    /// Moment of the links whose weight and inertia tip it over the line, N m, not negative.
+    pub overturning: f64,
+}
+
+impl TippingLine {
+    /// What is left to hold the crane down, N m; negative where it tips.
+    pub fn balance(&self) -> f64 {
+        self.stabilising - self.overturning
+    }
+
+    /// `1 − overturning / stabilising`: 1 where nothing tips, 0 where the crane is about to fall, −∞ where nothing holds it.
+    pub fn margin(&self) -> f64 {
+        if self.overturning == 0.0 {
+            1.0
+        } else if self.stabilising > 0.0 {
+            1.0 - self.overturning / self.stabilising
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+}
+
+/// The tipping lines of a crane, anticlockwise seen from above, at pose `q`, rates `v` and accelerations `a`; none where the
+/// supports make no polygon, because there are fewer than three or all are in one line.
+pub fn lines(crane: &dyn DynCrane, q: &[f64], v: &[f64], a: &[f64]) -> Vec<TippingLine> {
+    let feet = crane.support_positions_at(q);
+    let corners = polygon(&feet);
+    let loads = if corners.is_empty() { Vec::new() } else { loads_of_links(crane, q, v, a) };
+    let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+    sides.map(|(&from, &to)| line([from, to], [feet[from], feet[to]], &loads)).collect()
+}
+
+/// The line with the least margin.
+pub fn governing(lines: &[TippingLine]) -> Option<&TippingLine> {
+    lines.iter().min_by(|a, b| a.margin().total_cmp(&b.margin()))
+}
+
+/// Moments of loads about the line through two places.
+fn line(feet: [usize; 2], [from, to]: [Vector3<f64>; 2], loads: &[Wrench]) -> TippingLine {
+    let direction = (to - from).normalize();
+    // A load within the polygon turns the crane clockwise about the line, and so against the ground.
+    let held = loads.iter().map(|load| -direction.dot(&(load.moment - from.cross(&load.force))));
+    let (mut stabilising, mut overturning) = (0.0, 0.0);
+    for moment in held {
+        if moment > 0.0 {
+            stabilising += moment;
+        } else {
+            overturning -= moment;
+        }
+    }
+    TippingLine { feet, stabilising, overturning }
+}
+
+/// What the weight and the inertia of every link exert, in the world frame about the world's origin.
+fn loads_of_links(crane: &dyn DynCrane, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
+    let description = crane.description();
+    let transforms = crane.transforms_at(q);
+    let wrenches = crane.internal_forces_at(q, v, a);
+    let beginnings = description.cuts().into_iter().zip(&wrenches).filter_map(|(cut, wrench)| match cut {
+        crate::Cut::Body { body, .. } => Some((body, wrench)),
+        _ => None,
+    });
+    // What each link and all beyond it exert.
+    let mut beyond: Vec<Wrench> = Vec::new();
+    for (body, wrench) in beginnings {
+        let link = &description.bodies[body].link;
+        if body == 0 || description.bodies[body - 1].link != *link {
+            let (turn, place) = (transforms[body].fixed_view::<3, 3>(0, 0), transforms[body].fixed_view::<3, 1>(0, 3));
+            let force = turn * wrench.force;
+            beyond.push(Wrench { force, moment: turn * wrench.moment + place.cross(&force) });
+        }
+    }
+    let next = beyond.clone().into_iter().skip(1).chain([Wrench::ZERO]);
+    let own = beyond
+        .iter()
+        .zip(next)
+        .map(|(all, rest)| Wrench { force: all.force - rest.force, moment: all.moment - rest.moment });
+    own.collect()
+}
+
+/// Part of the polygon's size below which a foot is on the line between two others.
+const ON_A_LINE: f64 = 1e-9;
+
+/// Corners of the convex polygon of some places, seen from above, anticlockwise; none where they are in one line.
+fn polygon(places: &[Vector3<f64>]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    order.sort_by(|&i, &j| {
+        (places[i].x, places[i].y).partial_cmp(&(places[j].x, places[j].y)).unwrap_or(std::cmp::Ordering::Equal)
+    });
+    let size = |axis: usize| {
+        let along = || places.iter().map(|place| place[axis]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    };
+    let least = if places.is_empty() { 0.0 } else { ON_A_LINE * size(0).max(size(1)).powi(2) };
+    // Twice the area of the triangle of three places, positive where it turns left.
+    let turn = |[i, j, k]: [usize; 3]| {
+        let (one, two) = (places[j] - places[i], places[k] - places[i]);
+        one.x * two.y - one.y * two.x
+    };
+    // Andrew's monotone chain: the lower side from left to right, then the upper side back.
+    let side = |order: &mut dyn Iterator<Item = usize>| {
+        let mut corners: Vec<usize> = Vec::new();
+        for next in order {
+            while corners.len() >= 2 && turn([corners[corners.len() - 2], corners[corners.len() - 1], next]) <= least {
+                corners.pop();
+            }
+            corners.push(next);
+        }
+        corners.pop();
+        corners
+    };
+    let mut corners = side(&mut order.iter().copied());
+    corners.extend(side(&mut order.iter().rev().copied()));
+    if corners.len() < 3 { Vec::new() } else { corners }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn places(xy: &[[f64; 2]]) -> Vec<Vector3<f64>> {
+        xy.iter().map(|[x, y]| Vector3::new(*x, *y, 0.3)).collect()
+    }
+
+    #[test]
+    fn a_polygon_has_its_outermost_feet() {
+        let feet = [[1.0, 1.0], [-1.0, -1.0], [0.0, 0.2], [1.0, -1.0], [-1.0, 1.0], [0.0, -1.0]];
+        assert_eq!(polygon(&places(&feet)), [1, 3, 0, 4]);
+    }
+
+    #[test]
+    fn feet_in_a_line_make_none() {
+        assert_eq!(polygon(&places(&[[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]])), [] as [usize; 0]);
+        assert_eq!(polygon(&places(&[[0.0, 0.0], [1.0, 1.0]])), [] as [usize; 0]);
+        assert_eq!(polygon(&[]), [] as [usize; 0]);
+    }
+
+    /// A weight of 10 N at 0.5 m from the line x = 1 within the square, and one of 4 N at 1 m beyond it.
+    #[test]
+    fn moments_about_a_line() {
+        let weight = |newton: f64, place: Vector3<f64>| {
+            let force = Vector3::new(0.0, 0.0, -newton);
+            Wrench { force, moment: place.cross(&force) }
+        };
+        let loads = [weight(10.0, Vector3::new(0.5, 0.3, 2.0)), weight(4.0, Vector3::new(2.0, -5.0, 1.0))];
+        let feet = [Vector3::new(1.0, -1.0, 0.0), Vector3::new(1.0, 1.0, 0.0)];
+        let found = line([0, 1], feet, &loads);
+        assert_eq!((found.stabilising, found.overturning), (5.0, 4.0));
+        assert!((found.margin() - 0.2).abs() < 1e-15);
+        assert_eq!(found.balance(), 1.0);
+    }
+}

@@ -1,0 +1,66 @@
+//! What one part of a crane exerts on the other, and where it is cut to see that.
+
+use nalgebra::Vector3;
+
+/// A force and a moment about a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench {
+    /// Force, N.
+    pub force: Vector3<f64>,
+    /// Moment about the point, N m.
+    pub moment: Vector3<f64>,
+}
+
+impl Wrench {
+    /// No force and no moment.
+    pub const ZERO: Wrench = Wrench { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
+}
+
+/// Where a crane is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cut {
+    /// Between the crane and the world: world frame, about the world's origin.
+    Ground,
+    /// At a link's joint, in the frame reached by the link's last coordinate, about its origin. That frame moves with the link;
+    /// a rotation leaves its axis, and so the bearing's, where it was. Of a link without a joint, in the link's frame.
+    Joint {
+        /// Place of the link's first body.
+        body: usize,
+    },
+    /// Before a body, in its frame: of a beam's element, the section of the beam where it begins, x along the beam.
+    Body {
+        /// Place of the body.
+        body: usize,
+        /// Of a beam's element, the distance from the beam's beginning with default parameters, m.
+        x: Option<f64>,
+    },
+}
+
+#[cfg(feature = "std")]
+impl crate::Description {
+    /// Names of the links that are beams, from the base to the tip.
+    pub fn beams(&self) -> Vec<&str> {
+        // Only elements of beams have a length.
+        let mut beams: Vec<&str> =
+            self.bodies.iter().filter(|body| body.length > 0.0).map(|body| body.link.as_str()).collect();
+        beams.dedup();
+        beams
+    }
+
+    /// Cuts of the crane, in the order of [`InternalForces::internal_forces`](crate::InternalForces::internal_forces): the
+    /// ground, then from base to tip the joint of every link and the bodies of that link.
+    pub fn cuts(&self) -> Vec<Cut> {
+        let mut cuts = vec![Cut::Ground];
+        let (mut link, mut x) = (None, 0.0);
+        for (body, info) in self.bodies.iter().enumerate() {
+            if link != Some(&info.link) {
+                cuts.push(Cut::Joint { body });
+                (link, x) = (Some(&info.link), 0.0);
+            }
+            // Only elements of beams have a length.
+            cuts.push(Cut::Body { body, x: (info.length > 0.0).then_some(x) });
+            x += info.length;
+        }
+        cuts
+    }
+}
