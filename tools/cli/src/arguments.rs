@@ -25,6 +25,7 @@ Examples:
   crane simulate --ensemble loads.csv -o peaks.csv
                                        a crane for every row of a table of parameters
   crane report -o report.html          the crane in 3-D, plots and tables as a page that needs no network
+  crane strength --run                 tipping margin, stresses, loads of joints, at rest and along the manoeuvre
   crane modes                          frequencies and damping about the static pose
   crane stability                      largest stable steps, what limits them, and a figure
   crane work-precision                 what accuracy costs: methods, steps, tolerances, numbers of sections
@@ -67,6 +68,8 @@ pub enum Action {
     Run(Simulate),
     /// Static equilibrium: pose, drive torques, support reactions
     Statics(Analysis),
+    /// Tipping margin, stresses and utilisation of beams, loads of the ground and the joints; the load that tips the crane
+    Strength(Strength),
     /// Motion from the static pose: results, figures and a record of the run into a folder
     Simulate(Simulate),
     /// Frequencies, damping and dominating coordinates about the static pose, and the largest stable step
@@ -132,6 +135,7 @@ impl Action {
         match self {
             Action::Run(options) | Action::Simulate(options) => Some(&mut options.analysis.crane),
             Action::Statics(options) | Action::Modes(options) | Action::Info(options) => Some(&mut options.crane),
+            Action::Strength(options) => Some(&mut options.analysis.crane),
             Action::Stability(options) => Some(&mut options.analysis.crane),
             Action::Report(options) => Some(&mut options.crane),
             Action::Eval(options) => Some(&mut options.crane),
@@ -372,6 +376,25 @@ pub struct Generate {
     /// Write every stage of the compilation as text into a folder too: spec, chain, expressions, statements, Rust
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub dump: Option<PathBuf>,
+}
+
+/// Loads and stability against tipping.
+#[derive(Debug, Args)]
+pub struct Strength {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    #[command(flatten)]
+    pub timing: Timing,
+    /// Along the manoeuvre, too: least tipping margin, extremes of all loads with their times
+    #[arg(long)]
+    pub run: bool,
+    /// Live parameter that is the load: which value of it lifts the first foot, and which tips the crane [default: the only
+    /// parameter in kg]
+    #[arg(long, value_name = "PARAMETER")]
+    pub load: Option<String>,
+    /// File for moments about tipping lines and all loads over the run, CSV
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "run")]
+    pub results: Option<PathBuf>,
 }
 
 /// Stability of time steps.

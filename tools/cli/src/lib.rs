@@ -38,6 +38,7 @@ mod simulate;
 mod stability;
 mod start;
 mod statics;
+mod strength;
 mod stress;
 mod verification;
 mod work_precision;
@@ -89,6 +90,7 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
         },
         Some(Action::Modes(options)) => modes::modes(options, fleet, out),
         Some(Action::Stability(options)) => stability::stability(options, fleet, out),
+        Some(Action::Strength(options)) => strength::strength(options, fleet, out),
         Some(Action::Stress(options)) => stress::stress(options, fleet, out),
         Some(Action::WorkPrecision(options)) => work_precision::work_precision(options, fleet, out),
         Some(Action::Report(options)) => page::report(options, fleet, out),

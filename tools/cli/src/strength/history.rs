@@ -1,0 +1,95 @@
+//! Loads and moments about tipping lines over a run.
+
+use crane_model::{
+    Cut, Description, Wrench,
+    dyn_crane::DynCrane,
+    results::Table,
+    tipping::{TippingLine, governing, lines},
+};
+
+/// Components of what a joint carries.
+pub const OF_JOINTS: [&str; 6] = ["Fx", "Fy", "Fz", "Mx", "My", "Mz"];
+/// Components of what a section carries.
+pub const OF_SECTIONS: [&str; 6] = ["N", "Qy", "Qz", "Mx", "My", "Mz"];
+/// Their units.
+pub const UNITS: [&str; 6] = ["N", "N", "N", "N m", "N m", "N m"];
+
+/// What a crane carries at a moment.
+pub struct Instant {
+    /// Time, s.
+    pub t: f64,
+    /// Tipping lines.
+    pub lines: Vec<TippingLine>,
+    /// What every cut transmits.
+    pub wrenches: Vec<Wrench>,
+}
+
+impl Instant {
+    /// At rest.
+    pub fn at_rest(rig: &dyn DynCrane, q: &[f64]) -> Self {
+        let rest = vec![0.0; q.len()];
+        Self { t: 0.0, lines: lines(rig, q, &rest, &rest), wrenches: rig.internal_forces_at(q, &rest, &rest) }
+    }
+
+    /// In motion.
+    fn moving(rig: &dyn DynCrane, t: f64, q: &[f64], v: &[f64]) -> Self {
+        let a = rig.accelerations_at(t, q, v);
+        Self { t, lines: lines(rig, q, v, a.as_slice()), wrenches: rig.internal_forces_at(q, v, a.as_slice()) }
+    }
+}
+
+/// At every result of a run.
+pub fn of(rig: &dyn DynCrane, results: &Table) -> Vec<Instant> {
+    let n = rig.size();
+    // Time, coordinates and rates come first.
+    let instant = |row: &Vec<f64>| Instant::moving(rig, row[0], &row[1..=n], &row[n + 1..=2 * n]);
+    results.rows.iter().map(instant).collect()
+}
+
+/// The moment nearest to tipping, or the first.
+pub fn least_margin(history: &[Instant]) -> Option<&Instant> {
+    let margin = |instant: &Instant| governing(&instant.lines).map_or(f64::INFINITY, TippingLine::margin);
+    history.iter().min_by(|a, b| margin(a).total_cmp(&margin(b)))
+}
+
+/// What the columns of a cut are called, and their components; nothing of a rigid link, whose joint shows the same.
+pub fn prefix(description: &Description, cut: Cut) -> Option<(String, [&'static str; 6])> {
+    match cut {
+        Cut::Ground => Some(("ground".to_owned(), OF_JOINTS)),
+        Cut::Joint { body } => Some((format!("{}_joint", description.bodies[body].link), OF_JOINTS)),
+        Cut::Body { body, x: Some(_) } => Some((format!("{}_section", description.bodies[body].name), OF_SECTIONS)),
+        Cut::Body { x: None, .. } => None,
+    }
+}
+
+/// All of it in columns: `t`; of a tipping line `<from>_<to>_stabilising` and `_overturning`; of the ground, joints and sections
+/// the six components.
+pub fn table(description: &Description, history: &[Instant]) -> Table {
+    let mut table = Table::default();
+    table.add("t", "s");
+    for line in history.first().map_or(&[][..], |instant| &instant.lines) {
+        let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
+        for what in ["stabilising", "overturning"] {
+            table.add(format!("{from}_{to}_{what}"), "N m");
+        }
+    }
+    let cuts = description.cuts();
+    for (prefix, components) in cuts.iter().filter_map(|cut| prefix(description, *cut)) {
+        for (component, unit) in components.into_iter().zip(UNITS) {
+            table.add(format!("{prefix}_{component}"), unit);
+        }
+    }
+    let row = |instant: &Instant| {
+        let moments = instant.lines.iter().flat_map(|line| [line.stabilising, line.overturning]);
+        let shown = cuts.iter().zip(&instant.wrenches).filter(|(cut, _)| prefix(description, **cut).is_some());
+        [instant.t].into_iter().chain(moments).chain(shown.flat_map(|(_, wrench)| numbers(wrench))).collect()
+    };
+    table.rows = history.iter().map(row).collect();
+    table
+}
+
+/// Force, then moment.
+pub fn numbers(wrench: &Wrench) -> [f64; 6] {
+    let Wrench { force, moment } = wrench;
+    [force.x, force.y, force.z, moment.x, moment.y, moment.z]
+}

@@ -1,0 +1,156 @@
+//! The load that lifts the first foot, and the load that tips the crane.
+
+use crane_model::{
+    Description,
+    dyn_crane::DynCrane,
+    statics::Settings,
+    tipping::{TippingLine, lines},
+};
+
+use crate::{
+    problem::{Outcome, Problem, nearest},
+    report::Report,
+};
+
+/// Part of the load to which it is found: an equilibrium leaves some 1e-13 of the forces.
+const ACCURACY: f64 = 1e-10;
+/// Steps that find a load: halving alone would take some forty.
+const MOST_STEPS: usize = 100;
+/// The first step towards a greater load, as a part of the crane's mass; it is doubled until something gives.
+const FIRST_STEP: f64 = 0.1;
+/// How often: up to a thousand times the crane's mass.
+const DOUBLINGS: usize = 14;
+
+/// Place of the parameter that is the load: the one of this name, or else the only one in kg.
+pub fn parameter(rig: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usize>> {
+    let parameters = &rig.description().parameters;
+    let Some(name) = name else {
+        let mut masses = parameters.iter().enumerate().filter(|(_, parameter)| parameter.unit.as_str() == "kg");
+        return Ok(masses.next().filter(|_| masses.next().is_none()).map(|(index, _)| index));
+    };
+    let found = parameters.iter().position(|parameter| parameter.name.as_str() == name);
+    found.map(Some).ok_or_else(|| {
+        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+        let help = nearest(name, names).map_or_else(
+            || "`crane info` lists the live parameters".to_owned(),
+            |nearest| format!("did you mean `{nearest}`?"),
+        );
+        Problem::usage(format!("there is no live parameter `{name}`"), help)
+    })
+}
+
+/// How far the crane is from something at rest with a load, negative beyond, and where.
+type Distance = fn(&dyn DynCrane, &[f64]) -> Option<(f64, String)>;
+
+/// Adds the loads at which the first foot carries nothing, and at which the crane tips.
+pub fn critical(report: &mut Report, rig: &mut dyn DynCrane, index: usize) -> Outcome<()> {
+    let before = rig.parameter(index);
+    let parameter = &rig.description().parameters[index];
+    let (name, unit) = match parameter.unit.as_str() {
+        "kg" => (parameter.name.to_string(), "kg"),
+        other => (format!("{} [{other}]", parameter.name), ""),
+    };
+    for (what, place, distance) in [
+        ("lifts the first foot", "first foot to lift", least_reaction as Distance),
+        ("tips the crane", "line that it tips over", least_balance),
+    ] {
+        let found = root(rig, index, before, distance);
+        rig.set_parameter(index, before).map_err(|refused| Problem::failed(refused.to_string(), ""))?;
+        if let Some((load, at)) = found {
+            report.fact(format!("{name} that {what}"), load, unit);
+            report.fact(place, at, "");
+        }
+    }
+    Ok(())
+}
+
+/// Vertical force of the foot that presses least, N.
+fn least_reaction(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
+    let reactions = rig.support_reactions_at(q, &vec![0.0; q.len()]);
+    let feet = rig.description().supports.iter().zip(&reactions);
+    let (foot, force) = feet.min_by(|(_, a), (_, b)| a.z.total_cmp(&b.z))?;
+    Some((force.z, foot.name.as_str().to_owned()))
+}
+
+/// What is left to hold the crane down about the line that tips first, N m.
+fn least_balance(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
+    let rest = vec![0.0; q.len()];
+    let lines = lines(rig, q, &rest, &rest);
+    let line = lines.iter().min_by(|a, b| a.balance().total_cmp(&b.balance()))?;
+    Some((line.balance(), feet(rig.description(), line)))
+}
+
+/// The feet of a tipping line.
+fn feet(description: &Description, line: &TippingLine) -> String {
+    let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
+    format!("{from} – {to}")
+}
+
+/// The least load beyond `from` at which a distance is zero, or the greatest below where it is negative already. Nothing where
+/// there is none, or the crane finds no rest before.
+fn root(rig: &mut dyn DynCrane, index: usize, from: f64, distance: Distance) -> Option<(f64, String)> {
+    let mass: f64 = rig.description().bodies.iter().map(|body| body.mass).sum();
+    let mut at = |load: f64| {
+        rig.set_parameter(index, load).ok()?;
+        let equilibrium = rig.equilibrium(&Settings::default());
+        if equilibrium.is_stable() { distance(rig, &equilibrium.q) } else { None }
+    };
+    let here = (from, at(from)?.0);
+    let (low, high) = if here.1 > 0.0 {
+        let mut low = here;
+        let mut step = FIRST_STEP * mass;
+        let mut doublings = 0..DOUBLINGS;
+        loop {
+            doublings.next()?;
+            let load = low.0 + step;
+            let value = at(load)?.0;
+            if value <= 0.0 {
+                break (low, (load, value));
+            }
+            (low, step) = ((load, value), 2.0 * step);
+        }
+    } else {
+        ((0.0, at(0.0)?.0), here)
+    };
+    if low.1 > 0.0 { between(&mut at, low, high) } else { None }
+}
+
+/// Where a function is zero between a place where it is positive and one where it is not: by the Illinois form of regula falsi,
+/// as distances are nearly linear in the load.
+fn between(
+    at: &mut impl FnMut(f64) -> Option<(f64, String)>,
+    mut low: (f64, f64),
+    mut high: (f64, f64),
+) -> Option<(f64, String)> {
+    for _ in 0..MOST_STEPS {
+        let load = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        let (value, place) = at(load)?;
+        let moved = if value > 0.0 { load - low.0 } else { high.0 - load };
+        if value > 0.0 {
+            (low, high.1) = ((load, value), 0.5 * high.1);
+        } else {
+            (high, low.1) = ((load, value), 0.5 * low.1);
+        }
+        if value == 0.0 || moved.abs() <= ACCURACY * load.abs() {
+            return Some((load, place));
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_root_is_found_to_ten_digits() {
+        let mut calls = 0;
+        let mut cube = |x: f64| {
+            calls += 1;
+            Some((8.0 - x * x * x, String::new()))
+        };
+        let (root, _) = between(&mut cube, (0.0, 8.0), (10.0, -992.0)).unwrap();
+        assert!((root - 2.0).abs() < 1e-9, "{root}");
+        assert!(calls < 40, "{calls}");
+    }
+}

@@ -1,0 +1,107 @@
+//! `crane strength`: what joints, sections and the ground carry, stresses of beams, and how far the crane is from tipping.
+
+mod history;
+mod loads;
+mod stresses;
+mod tables;
+
+use std::io::Write;
+
+use crane_model::{dyn_crane::DynCrane, dynamics::Method, tipping::governing};
+
+use crate::{
+    Fleet,
+    arguments::Strength,
+    cautions, files,
+    problem::{Outcome, Problem},
+    report::Report,
+    run::{progress, record_checked},
+    statics::Case,
+};
+
+use history::{Instant, least_margin};
+
+/// Prints loads and stability at rest, and along the manoeuvre if asked for.
+pub fn strength(options: &Strength, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let mut rig = options.analysis.crane.open(fleet)?;
+    let load = loads::parameter(rig.as_ref(), options.load.as_deref())?;
+    let case = Case::new("value", rig.as_ref());
+    let q = case.equilibrium.q.clone();
+    let mut report = Report::default();
+    let status = format!("{}", case.equilibrium);
+    report.fact(rig.description().name.as_str(), status, "");
+    if !case.equilibrium.is_stable() {
+        report.print(options.analysis.format, out)?;
+        return case.stable();
+    }
+    let rest = Instant::at_rest(rig.as_ref(), &q);
+    verdict(&mut report, rig.as_ref(), &rest, "");
+    let moduli = rig.section_moduli_at();
+    stresses::verdict(&mut report, rig.description(), &moduli, std::slice::from_ref(&rest), "");
+    let history = if options.run { Some(along(options, rig.as_ref(), &mut report)?) } else { None };
+    for caution in cautions::of_pose(rig.as_ref(), &q, options.analysis.crane.limits.bend) {
+        report.caution(Some(caution));
+    }
+    if let Some(index) = load {
+        loads::critical(&mut report, rig.as_mut(), index)?;
+    }
+    let rig = rig.as_ref();
+    report.grid(stresses::table(rig.description(), &moduli, &rest.wrenches));
+    report.grid(tables::tipping(rig.description(), &rest.lines));
+    if let Some(history) = &history {
+        let table = history::table(rig.description(), history);
+        report.grid(tables::extremes_of_joints(rig.description(), &table));
+        report.grid(tables::extremes_of_sections(rig.description(), &table));
+        if let Some(file) = &options.results {
+            files::write_csv(file, &table)?;
+        }
+    }
+    report.grid(tables::joints(rig.description(), &rest.wrenches));
+    report.grid(tables::sections(rig.description(), &rest.wrenches));
+    report.print(options.analysis.format, out)
+}
+
+/// What the manoeuvre asks of the crane, result by result.
+fn along(options: &Strength, rig: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
+    let start = options.timing.start(rig, false)?;
+    let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;
+    let bar = progress(settings.duration);
+    let checks = (!options.timing.no_verify, options.analysis.crane.limits);
+    let recorded = record_checked(rig, &start, &settings, checks, &bar)?;
+    bar.finish_and_clear();
+    for caution in &recorded.cautions {
+        report.caution(Some(caution.as_str()));
+    }
+    let history = history::of(rig, &recorded.table);
+    let worst = least_margin(&history).ok_or_else(|| Problem::failed("the run has no results", ""))?;
+    verdict(report, rig, worst, " of the run");
+    stresses::verdict(report, rig.description(), &rig.section_moduli_at(), &history, " of the run");
+    if !worst.lines.is_empty() {
+        report.fact("time of the least tipping margin", worst.t, "s");
+    }
+    Ok(history)
+}
+
+/// How far the crane is from tipping.
+fn verdict(report: &mut Report, rig: &dyn DynCrane, instant: &Instant, of: &str) {
+    let description = rig.description();
+    let Some(line) = governing(&instant.lines) else {
+        let why = if description.supports.is_empty() {
+            "not computed: the crane has no supports"
+        } else {
+            "not computed: the supports make no polygon"
+        };
+        report.fact(format!("tipping margin{of}"), why, "");
+        return;
+    };
+    let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
+    let margin = line.margin();
+    report.fact(format!("tipping margin{of}"), margin, "");
+    report.fact(format!("governing line{of}"), format!("{from} – {to}"), "");
+    if margin <= 0.0 {
+        report.caution(Some(format!(
+            "the crane tips over the line {from} – {to}{of}: weight and inertia turn it over by {:.4} kN m",
+            -line.balance() / 1e3
+        )));
+    }
+}

@@ -1,0 +1,150 @@
+//! Tables of loads.
+
+use crane_model::{Cut, Description, Wrench, results::Table, tipping::TippingLine};
+
+use crate::{
+    extremes::Extremes,
+    report::{Cell, Grid},
+};
+
+use super::history::{OF_JOINTS, OF_SECTIONS, UNITS, numbers, prefix};
+
+/// Moments about the tipping lines.
+pub fn tipping(description: &Description, lines: &[TippingLine]) -> Grid {
+    let title = "Moments of weight about the tipping lines at rest, anticlockwise seen from above";
+    let mut grid = Grid::new("tipping", title, &["from", "to", "stabilising", "overturning", "unit", "margin"]);
+    for line in lines {
+        let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
+        grid.row([
+            from.into(),
+            to.into(),
+            line.stabilising.into(),
+            line.overturning.into(),
+            "N m".into(),
+            line.margin().into(),
+        ]);
+    }
+    grid
+}
+
+/// Headings with units.
+fn headings(first: &[&str], components: [&str; 6]) -> Vec<String> {
+    let components = components.iter().zip(UNITS).map(|(component, unit)| format!("{component} [{unit}]"));
+    first.iter().map(|&word| word.to_owned()).chain(components).collect()
+}
+
+fn borrowed(words: &[String]) -> Vec<&str> {
+    words.iter().map(String::as_str).collect()
+}
+
+/// What the ground and the joints carry.
+pub fn joints(description: &Description, wrenches: &[Wrench]) -> Grid {
+    let title = "Loads at rest: of the ground in the world frame about its origin, of a joint what its link exerts on the link before, \
+                 in the frame after the joint about its origin";
+    let mut grid = Grid::new("loads", title, &borrowed(&headings(&["joint"], OF_JOINTS)));
+    for (cut, wrench) in description.cuts().into_iter().zip(wrenches) {
+        let name = match cut {
+            Cut::Ground => "ground",
+            Cut::Joint { body } => description.bodies[body].link.as_str(),
+            Cut::Body { .. } => continue,
+        };
+        grid.row([Cell::from(name)].into_iter().chain(numbers(wrench).map(Cell::from)).collect::<Vec<_>>());
+    }
+    grid
+}
+
+/// What the sections of beams carry.
+pub fn sections(description: &Description, wrenches: &[Wrench]) -> Grid {
+    let title = "Section forces of beams at rest, in the section's frame, x along the beam: N pulls where positive, Mx twists, My and \
+                 Mz bend as theta and psi do";
+    let mut grid = Grid::new("sections", title, &borrowed(&headings(&["beam", "x [m]"], OF_SECTIONS)));
+    for (cut, wrench) in description.cuts().into_iter().zip(wrenches) {
+        if let Cut::Body { body, x: Some(x) } = cut {
+            let beam = description.bodies[body].link.as_str();
+            let row = [Cell::from(beam), x.into()].into_iter().chain(numbers(wrench).map(Cell::from));
+            grid.row(row.collect::<Vec<_>>());
+        }
+    }
+    grid
+}
+
+/// Least and greatest loads of the ground and the joints over a run.
+pub fn extremes_of_joints(description: &Description, table: &Table) -> Grid {
+    let title = "Extremes of the loads along the manoeuvre, frames as at rest, times in s";
+    let headers = ["joint", "component", "minimum", "time of minimum", "maximum", "time of maximum", "unit"];
+    let mut grid = Grid::new("extremes_of_loads", title, &headers);
+    for cut in description.cuts() {
+        let name = match cut {
+            Cut::Ground => "ground",
+            Cut::Joint { body } => description.bodies[body].link.as_str(),
+            Cut::Body { .. } => continue,
+        };
+        for (component, unit, found) in extremes(description, cut, table) {
+            grid.row([
+                name.into(),
+                component.into(),
+                found.minimum.into(),
+                found.time_of_minimum.into(),
+                found.maximum.into(),
+                found.time_of_maximum.into(),
+                unit.into(),
+            ]);
+        }
+    }
+    grid
+}
+
+/// Least and greatest section forces of every beam over a run, and where.
+pub fn extremes_of_sections(description: &Description, table: &Table) -> Grid {
+    let title = "Extremes of the section forces along the manoeuvre, times in s, places along the beam in m";
+    let headers = [
+        "beam",
+        "component",
+        "minimum",
+        "x of minimum",
+        "time of minimum",
+        "maximum",
+        "x of maximum",
+        "time of maximum",
+        "unit",
+    ];
+    let mut grid = Grid::new("extremes_of_sections", title, &headers);
+    let mut beams: Vec<(&str, Vec<(f64, Cut)>)> = Vec::new();
+    for cut in description.cuts() {
+        if let Cut::Body { body, x: Some(x) } = cut {
+            let link = description.bodies[body].link.as_str();
+            match beams.last_mut().filter(|(beam, _)| *beam == link) {
+                Some((_, sections)) => sections.push((x, cut)),
+                None => beams.push((link, vec![(x, cut)])),
+            }
+        }
+    }
+    for (beam, sections) in beams {
+        let all: Vec<_> = sections.iter().map(|(x, cut)| (*x, extremes(description, *cut, table))).collect();
+        for index in 0..UNITS.len() {
+            let at = all.iter().map(|(x, found)| (*x, found[index]));
+            let least = at.clone().min_by(|(_, (.., a)), (_, (.., b))| a.minimum.total_cmp(&b.minimum));
+            let greatest = at.max_by(|(_, (.., a)), (_, (.., b))| a.maximum.total_cmp(&b.maximum));
+            let (Some((x, (component, unit, low))), Some((x_high, (.., high)))) = (least, greatest) else { continue };
+            grid.row([
+                beam.into(),
+                component.into(),
+                low.minimum.into(),
+                x.into(),
+                low.time_of_minimum.into(),
+                high.maximum.into(),
+                x_high.into(),
+                high.time_of_maximum.into(),
+                unit.into(),
+            ]);
+        }
+    }
+    grid
+}
+
+/// Extremes of the components of a cut.
+fn extremes(description: &Description, cut: Cut, table: &Table) -> Vec<(&'static str, &'static str, Extremes)> {
+    let Some((prefix, components)) = prefix(description, cut) else { return Vec::new() };
+    let of = |(component, unit)| (component, unit, Extremes::of(table, &format!("{prefix}_{component}")));
+    components.into_iter().zip(UNITS).map(of).collect()
+}

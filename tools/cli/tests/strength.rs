@@ -1,0 +1,148 @@
+//! `crane strength` against the equilibrium of moments and against known motions.
+
+use std::{fs, path::PathBuf, process::Command};
+
+use serde_json::Value;
+
+/// What the command says of a spec, as JSON, with further arguments.
+fn strength(name: &str, spec: &str, arguments: &[&str]) -> Value {
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.yaml"));
+    fs::write(&file, format!("format: 1\nname: {name}\n{spec}")).expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+    let said =
+        command.arg("strength").arg(&file).args(["--format", "json"]).args(arguments).output().expect("it starts");
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    serde_json::from_slice(&said.stdout).expect("JSON")
+}
+
+fn assert_close(what: &str, actual: &Value, expected: f64, tolerance: f64) {
+    let actual = actual.as_f64().unwrap_or_else(|| panic!("{what} is a number: {actual}"));
+    assert!((actual / expected - 1.0).abs() < tolerance, "{what}: {actual} instead of {expected}");
+}
+
+/// A truck of 4 t, its centre amid four feet 3 m and 2 m apart, and a load 3 m before and 5 m beside it.
+const TRUCK: &str = "
+parameters: {payload: {value: 100, unit: kg}}
+links:
+  - {name: truck, joint: free, mass: 4000, com: [0, 0, 0.5], inertia: {Ixx: 3000, Iyy: 3000, Izz: 3000}}
+  - {name: load, placement: {transform: {translation: [3, 5, 1]}}, mass: payload, com: [0, 0, 0]}
+supports:
+  - {name: front_left, at: [1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: front_right, at: [1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: rear_left, at: [-1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: rear_right, at: [-1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
+";
+/// Feet give way by micrometres, which moves the load by as much of its lever.
+const COMPLIANCE: f64 = 1e-5;
+
+#[test]
+fn a_truck_on_four_feet_tips_where_moments_say() {
+    let said = strength("truck", TRUCK, &[]);
+    // About the line of the left feet: 4000 kg at 1 m hold 100 kg at 4 m.
+    assert_eq!(said["governing_line"], "front_left – rear_left");
+    assert_close("margin", &said["tipping_margin"], 0.9, COMPLIANCE);
+    let line = said["tipping"].as_array().expect("a table").iter().find(|line| line["from"] == "front_left");
+    let line = line.expect("the line");
+    assert_close("stabilising", &line["stabilising"], 4000.0 * 9.81, COMPLIANCE);
+    assert_close("overturning", &line["overturning"], 400.0 * 9.81, COMPLIANCE);
+    // (4000 + m)/4 − 5 m/4 − 3 · 1.5 m/9 = 0 at the foot across, on springs of one stiffness.
+    assert_eq!(said["first_foot_to_lift"], "rear_right");
+    assert_close("lift", &said["payload_that_lifts_the_first_foot"], 1000.0 / 1.5, COMPLIANCE);
+    // 4000 kg · 1 m = m · 4 m
+    assert_eq!(said["line_that_it_tips_over"], "front_left – rear_left");
+    assert_close("tips", &said["payload_that_tips_the_crane"], 1000.0, COMPLIANCE);
+    // What the ground carries.
+    let ground = &said["loads"][0];
+    assert_eq!(ground["joint"], "ground");
+    assert_close("weight", &ground["Fz_[N]"], -4100.0 * 9.81, 1e-12);
+    assert_close("moment", &ground["Mx_[N_m]"], -500.0 * 9.81, COMPLIANCE);
+}
+
+/// With more load than tips it, the crane is said to tip, and the loads are found below.
+#[test]
+fn a_crane_that_tips_is_told_so() {
+    let said = strength("overloaded", TRUCK, &["--set", "payload=1500"]);
+    assert_close("margin", &said["tipping_margin"], 1.0 - 1500.0 * 4.0 / 4000.0, 10.0 * COMPLIANCE);
+    let cautions = said["cautions"].to_string();
+    assert!(cautions.contains("tips over the line front_left – rear_left"), "{cautions}");
+    assert_close("tips", &said["payload_that_tips_the_crane"], 1000.0, COMPLIANCE);
+}
+
+/// A quintic of 1 m in 2 s speeds up by at most `10/√3 · 1 m/(2 s)²`, after `(3 − √3)/6` of its time.
+#[test]
+fn a_hoist_carries_its_greatest_load_as_it_speeds_up() {
+    let hoist = "
+links: [{name: cage, joint: {prismatic: {axis: z}}, mass: 200, com: [0.3, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}]
+drives: [{coordinate: cage_z, rigid: true, motion: {quintic: {from: 0, to: 1, duration: 2}}}]
+run: {duration: 2, output: 0.001}
+";
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("hoist.csv");
+    let said = strength("hoist", hoist, &["--run", "-o", file.to_str().expect("a path")]);
+    let peak = 10.0 / 3.0f64.sqrt() / 4.0;
+    let extremes = said["extremes_of_loads"].as_array().expect("a table");
+    let of = |component: &str| {
+        let found = extremes.iter().find(|row| row["joint"] == "cage" && row["component"] == component);
+        found.expect("a component of the joint").clone()
+    };
+    // Results 1 ms apart miss the peak of a parabola by 1e-6 of it.
+    assert_close("Fz", &of("Fz")["minimum"], -200.0 * (9.81 + peak), 1e-6);
+    assert_close("Fz", &of("Fz")["maximum"], -200.0 * (9.81 - peak), 1e-6);
+    assert_close("My", &of("My")["maximum"], 0.3 * 200.0 * (9.81 + peak), 1e-6);
+    assert_close("time", &of("Fz")["time_of_minimum"], 2.0 * (3.0 - 3.0f64.sqrt()) / 6.0, 2e-3);
+    let table = fs::read_to_string(file).expect("the file");
+    assert!(table.starts_with("t [s],ground_Fx [N]"), "{}", &table[..60]);
+    assert_eq!(table.lines().count(), 2002);
+}
+
+/// A box 0.25 m high and 0.2 m wide, 8 mm thick, 2 m long, with 100 kg at 0.5 m beside its tip: bent, sheared and twisted at once.
+const CANTILEVER: &str = "
+materials: {steel: {E: 2.1e11, G: 8.1e10, density: 7850, yield_stress: 355e6}}
+links:
+  - name: boom
+    placement: {transform: {rotation: {x: 90 deg}}}
+    beam: {length: 2, sections: 4, material: steel, safety_factor: 1.25, section: {box: {height: 0.25, width: 0.2, thickness: 0.008}}}
+  - {name: load, mass: 100, com: [0, 0, 0.5]}
+";
+
+#[test]
+fn a_cantilever_is_stressed_by_bending_shear_and_torsion() {
+    let said = strength("cantilever", CANTILEVER, &[]);
+    let (height, width, wall): (f64, f64, f64) = (0.25, 0.2, 0.008);
+    let (inner_height, inner_width) = (height - 2.0 * wall, width - 2.0 * wall);
+    let area = height * width - inner_height * inner_width;
+    let second = (width * height.powi(3) - inner_width * inner_height.powi(3)) / 12.0;
+    let first = (width * height.powi(2) - inner_width * inner_height.powi(2)) / 8.0;
+    let own = 9.81 * 7850.0 * area * 2.0;
+    let normal = (981.0 * 2.0 + own) * (height / 2.0) / second;
+    let shear = (981.0 + own) * first / (second * 2.0 * wall);
+    let torsion = 981.0 * 0.5 / (2.0 * wall * (width - wall) * (height - wall));
+    let equivalent = (normal.powi(2) + 3.0 * (shear + torsion).powi(2)).sqrt();
+    let root = &said["stresses"][0];
+    // The tip sinks by 0.3 mm, which turns the load by 2e-4 rad into a normal force.
+    for (what, stress) in [("normal", normal), ("shear", shear), ("torsion", torsion), ("equivalent", equivalent)] {
+        assert_close(what, &root[format!("{what}_[MPa]")], stress / 1e6, 1e-4);
+    }
+    assert_close("utilisation", &said["greatest_utilisation"], 1.25 * equivalent / 355e6, 1e-4);
+    assert_eq!(said["place_of_the_greatest_stress"], "boom, 0.000 m from its beginning");
+    assert_eq!(said["tipping_margin"], "not computed: the crane has no supports");
+}
+
+/// Three tons more than the boom holds.
+#[test]
+fn a_boom_that_yields_is_told_so() {
+    let said = strength("overstressed", &CANTILEVER.replace("mass: 100", "mass: 10000"), &[]);
+    assert!(said["greatest_utilisation"].as_f64().expect("a number") > 1.0);
+    let cautions = said["cautions"].to_string();
+    assert!(cautions.contains("times the allowable one"), "{cautions}");
+}
+
+#[test]
+fn an_unknown_load_is_refused() {
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("other.yaml");
+    fs::write(&file, format!("format: 1\nname: other\n{TRUCK}")).expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+    let said = command.arg("strength").arg(&file).args(["--load", "pay_load"]).output().expect("it starts");
+    assert_eq!(said.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&said.stderr);
+    assert!(message.contains("there is no live parameter `pay_load`") && message.contains("`payload`"), "{message}");
+}
