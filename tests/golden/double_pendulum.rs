@@ -19,6 +19,7 @@
 //   everything out of the crane's plane: all joints turn about one direction, none moves along it
 //   static residual and tangent stiffness: `analyses` does not ask for statics
 //   linearisation: `analyses` does not ask for modes
+//   internal forces: `analyses` does not ask for internal_forces
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives
 //
 // The mass matrix is written out, which is faster for a crane of this size.

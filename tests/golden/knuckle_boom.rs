@@ -14,6 +14,7 @@
 //   end stops: the spec has none
 //   friction of joints: the spec has none
 //   everything out of the crane's plane: all joints turn about one direction, none moves along it
+//   internal forces: `analyses` does not ask for internal_forces
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives
 //
 // The mass matrix is written out, which is faster for a crane of this size.
@@ -197,29 +198,29 @@ pub struct Constants {
 impl Constants {
     fn of(params: &Params) -> Self {
         let c001 = params.payload + 25.0;
-        let t248 = 1.2 * params.payload;
-        let c002 = -7.5 - t248;
-        let t255 = 0.16000000000000003 * params.payload;
-        let t257 = 0.32000000000000006 * params.payload;
-        let t259 = t257 - t255;
-        let t260 = 0.5 * t259;
-        let c003 = 0.10000000000000003 + t260;
-        let t264 = 1.44 * params.payload;
-        let t266 = t260 + t264;
-        let c004 = 2.75 + t266;
+        let t252 = 1.2 * params.payload;
+        let c002 = -7.5 - t252;
+        let t259 = 0.16000000000000003 * params.payload;
+        let t261 = 0.32000000000000006 * params.payload;
+        let t263 = t261 - t259;
+        let t264 = 0.5 * t263;
+        let c003 = 0.10000000000000003 + t264;
+        let t268 = 1.44 * params.payload;
+        let t270 = t264 + t268;
+        let c004 = 2.75 + t270;
         let c005 = 0.5 * c001;
         let c006 = 150.0 + c001;
         let c007 = 310.0 + c006;
-        let t322 = 420.0 + c007;
+        let t326 = 420.0 + c007;
         let c008 = c003 + c004;
         let c009 = 1.0 / c008;
         let c010 = c008 * c009;
         let c011 = c002 * c009;
-        let t580 = c002 * c011;
-        let c012 = c001 - t580;
+        let t584 = c002 * c011;
+        let c012 = c001 - t584;
         let c013 = c001 - c012;
         let c014 = 2.6 * c006;
-        let c015 = 2.0 * t322;
+        let c015 = 2.0 * t326;
         let c016 = c004 - c003;
         let c017 = 0.5 * c006;
         let c018 = 1.3 * c006;
@@ -2895,29 +2896,29 @@ pub mod lanes {
     impl Constants {
         fn of(params: &Params) -> Self {
             let c001 = params.payload + splat(25.0);
-            let t248 = splat(1.2) * params.payload;
-            let c002 = splat(-7.5) - t248;
-            let t255 = splat(0.16000000000000003) * params.payload;
-            let t257 = splat(0.32000000000000006) * params.payload;
-            let t259 = t257 - t255;
-            let t260 = splat(0.5) * t259;
-            let c003 = splat(0.10000000000000003) + t260;
-            let t264 = splat(1.44) * params.payload;
-            let t266 = t260 + t264;
-            let c004 = splat(2.75) + t266;
+            let t252 = splat(1.2) * params.payload;
+            let c002 = splat(-7.5) - t252;
+            let t259 = splat(0.16000000000000003) * params.payload;
+            let t261 = splat(0.32000000000000006) * params.payload;
+            let t263 = t261 - t259;
+            let t264 = splat(0.5) * t263;
+            let c003 = splat(0.10000000000000003) + t264;
+            let t268 = splat(1.44) * params.payload;
+            let t270 = t264 + t268;
+            let c004 = splat(2.75) + t270;
             let c005 = splat(0.5) * c001;
             let c006 = splat(150.0) + c001;
             let c007 = splat(310.0) + c006;
-            let t322 = splat(420.0) + c007;
+            let t326 = splat(420.0) + c007;
             let c008 = c003 + c004;
             let c009 = splat(1.0) / c008;
             let c010 = c008 * c009;
             let c011 = c002 * c009;
-            let t580 = c002 * c011;
-            let c012 = c001 - t580;
+            let t584 = c002 * c011;
+            let c012 = c001 - t584;
             let c013 = c001 - c012;
             let c014 = splat(2.6) * c006;
-            let c015 = splat(2.0) * t322;
+            let c015 = splat(2.0) * t326;
             let c016 = c004 - c003;
             let c017 = splat(0.5) * c006;
             let c018 = splat(1.3) * c006;
