@@ -135,9 +135,8 @@ fn tumble(spec: Spec, method: Method) -> Case {
 fn vibration(method: Method) -> Case {
     let (accuracy, kept) = match method {
         Method::Rk4 => (5e-4, 1e-4),
-        Method::DormandPrince => (1e-8, 1e-4),
+        Method::DormandPrince | Method::Bdf => (1e-8, 1e-4),
         Method::Rosenbrock => (1e-7, 1e-5),
-        Method::Bdf => (1e-8, 1e-4),
     };
     let expected = format!("600 s to the end, energy kept to {kept:e} of what swings");
     let case = Case::new("600 s without drift", format!("soft beam by {method}, {accuracy:e}"), expected, move || {
