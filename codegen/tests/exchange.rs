@@ -76,6 +76,18 @@ fn a_crane_comes_back_from_urdf() {
 }
 
 #[test]
+fn friction_of_a_robots_joint_is_that_of_the_crane() {
+    let urdf = "<robot name='arm'><link name='base'/>\
+                <link name='upper'><inertial><mass value='6'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
+                <joint name='shoulder' type='continuous'><parent link='base'/><child link='upper'/><axis xyz='0 0 1'/>\
+                <dynamics damping='0.5' friction='2.5'/></joint></robot>";
+    let spec = exchange::import(&SourceFile::new("arm.urdf", urdf), &[]).expect("a robot");
+    let crane = chain("arm", spec);
+    let coulomb: Vec<f64> = crane.frictions().map(|(_, friction)| friction.coulomb.at(&[])).collect();
+    assert_eq!(coulomb, [2.5]);
+}
+
+#[test]
 fn what_is_written_is_for_people_to_read() {
     let cranes = shipped();
     let named = |name: &str| cranes.iter().find(|crane| crane.name == name).expect("a shipped crane");
