@@ -1,13 +1,16 @@
 //! Results from the factors that functions leave where a result is too long to be written out.
 
+use std::ops::{Mul, Neg};
+
 use crane_codegen::symbolic::Point;
 use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::support::fma;
+use crane_model::support::lanes::Fused;
 
 /// A full mass matrix from axes, linear and angular momenta and ways to the next point of all coordinates, in the order of
 /// operations of compiled cranes: `a_ij = n_i · L_j` where coordinate i turns, `n_i · P_j` where it slides, L_j about the point
 /// of i. The angular momenta are moved on the way.
-pub fn mass_matrix(points: &[Point], columns: &mut [f64], out: &mut [f64]) {
+pub fn mass_matrix<T: Fused + Neg<Output = T> + Mul<Output = T>>(points: &[Point], columns: &mut [T], out: &mut [T]) {
     let n: usize = points.iter().map(|point| point.coordinates).sum();
     let (axes, rest) = columns.split_at_mut(3 * n);
     let (linear, rest) = rest.split_at_mut(3 * n);
@@ -32,12 +35,12 @@ pub fn mass_matrix(points: &[Point], columns: &mut [f64], out: &mut [f64]) {
 }
 
 /// `L + way × P`
-fn moved([wx, wy, wz]: [f64; 3], [px, py, pz]: [f64; 3], [lx, ly, lz]: [f64; 3]) -> [f64; 3] {
+fn moved<T: Fused + Neg<Output = T>>([wx, wy, wz]: [T; 3], [px, py, pz]: [T; 3], [lx, ly, lz]: [T; 3]) -> [T; 3] {
     [fma(wy, pz, fma(-wz, py, lx)), fma(wz, px, fma(-wx, pz, ly)), fma(wx, py, fma(-wy, px, lz))]
 }
 
 /// `n · x`
-fn along(n: [f64; 3], x: [f64; 3]) -> f64 {
+fn along<T: Fused + Mul<Output = T>>(n: [T; 3], x: [T; 3]) -> T {
     fma(n[0], x[0], fma(n[1], x[1], n[2] * x[2]))
 }
 

@@ -80,8 +80,22 @@ impl LiveCrane {
         Some(shown)
     }
 
+    /// The live parameters, in the order of the description.
+    #[must_use]
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// Its functions, which all its clones share.
+    pub(crate) fn library(&self) -> Arc<Library> {
+        Arc::clone(&self.library)
+    }
+
     /// Whether all parameters together may have these values.
-    fn check(&self, parameters: &[f64]) -> Result<(), ParameterError> {
+    ///
+    /// # Errors
+    /// The rule of the spec language that they break.
+    pub fn check(&self, parameters: &[f64]) -> Result<(), ParameterError> {
         for (info, value) in self.description.parameters.iter().zip(parameters) {
             info.check(*value)?;
         }

@@ -32,6 +32,8 @@ pub mod layout;
 mod library;
 pub mod machine;
 mod routine;
+pub mod rows;
 
 pub use crane::LiveCrane;
+pub use library::Name;
 pub use routine::Routine;

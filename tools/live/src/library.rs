@@ -7,8 +7,9 @@ use crane_codegen::mechanics;
 
 use crate::routine::Routine;
 
-/// A function of the compiler that a crane calls.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A function of the compiler that a crane calls, named as the method of [`crane_model::dyn_crane`] that calls it.
+#[expect(missing_docs, reason = "the methods are documented")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Name {
     Transforms,
     Points,
@@ -111,7 +112,7 @@ impl Name {
     ];
 
     /// The name that the compiler gives it, and with what it is derived.
-    pub fn describe(self) -> (&'static str, Group) {
+    pub(crate) fn describe(self) -> (&'static str, Group) {
         use Group::{Common, Derivatives, Dynamics, InternalForces, Modes, Statics};
         match self {
             Name::Transforms => ("transforms", Common),

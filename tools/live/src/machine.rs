@@ -1,6 +1,6 @@
 //! Runs bytecode, for one state or for eight at a time.
 
-use std::ops::Div;
+use std::ops::{Div, Mul, Neg};
 
 use crane_codegen::symbolic::Argument;
 use crane_model::support::lanes::{Function, Fused, f64x8};
@@ -9,7 +9,15 @@ use crane_model::support::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stump
 use crate::bytecode::{Code, Fixed, Instruction, Kind};
 
 /// One number, or eight of different states.
-pub trait Number: Copy + Fused + Function + Div<Output = Self> + 'static {
+pub trait Number:
+    Copy + Fused + Function + Div<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
+{
+    /// How many numbers it holds.
+    const LANES: usize;
+    /// Numbers by their places.
+    fn from_lanes(number: impl Fn(usize) -> f64) -> Self;
+    /// The number at a place below [`LANES`](Self::LANES).
+    fn lane(&self, place: usize) -> f64;
     /// The same number everywhere.
     fn splat(number: f64) -> Self;
     /// The smaller of two.
@@ -28,6 +36,13 @@ pub trait Number: Copy + Fused + Function + Div<Output = Self> + 'static {
 pub const ANGLES: usize = 8;
 
 impl Number for f64 {
+    const LANES: usize = 1;
+    fn from_lanes(number: impl Fn(usize) -> f64) -> Self {
+        number(0)
+    }
+    fn lane(&self, _: usize) -> f64 {
+        *self
+    }
     fn splat(number: f64) -> Self {
         number
     }
@@ -46,6 +61,13 @@ impl Number for f64 {
 }
 
 impl Number for f64x8 {
+    const LANES: usize = 8;
+    fn from_lanes(number: impl Fn(usize) -> f64) -> Self {
+        f64x8::new(std::array::from_fn(number))
+    }
+    fn lane(&self, place: usize) -> f64 {
+        self.as_array()[place]
+    }
     fn splat(number: f64) -> Self {
         f64x8::splat(number)
     }
@@ -130,17 +152,21 @@ pub struct Machine<T> {
 }
 
 impl<T: Number> Machine<T> {
-    /// Registers for a function; `parameter` and `stored` are live parameters and the constants made of them, by place.
-    pub fn new(code: &Code, parameter: impl Fn(usize) -> T, stored: impl Fn(usize) -> T) -> Self {
+    /// Registers for a function, all zero.
+    pub fn new(code: &Code) -> Self {
         let file = match code.registers {
             count if count <= SIZES[0] => File::Small(zeros()),
             count if count <= SIZES[1] => File::Medium(zeros()),
             _ => File::Large(zeros()),
         };
-        let mut machine = Self { file };
+        Self { file }
+    }
+
+    /// Sets the fixed numbers of a function; `parameter` and `stored` are live parameters and the constants made of them, by place.
+    pub fn fix(&mut self, code: &Code, parameter: impl Fn(usize) -> T, stored: impl Fn(usize) -> T) {
         // −x as −1 x − 0.
         let negative = |x: T| fma(T::splat(-1.0), x, T::splat(-0.0));
-        for (register, fixed) in machine.registers().iter_mut().zip(&code.fixed) {
+        for (register, fixed) in self.registers().iter_mut().zip(&code.fixed) {
             let (number, sign) = match *fixed {
                 Fixed::Number(number) => (T::splat(number), false),
                 Fixed::Parameter { index, negative } => (parameter(index), negative),
@@ -148,7 +174,6 @@ impl<T: Number> Machine<T> {
             };
             *register = if sign { negative(number) } else { number };
         }
-        machine
     }
 
     fn registers(&mut self) -> &mut [T] {

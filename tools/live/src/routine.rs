@@ -51,13 +51,22 @@ impl Routine {
 
     /// Room for runs with these live parameters.
     pub fn machine<T: Number>(&self, parameters: &[T]) -> Machine<T> {
+        let mut machine = Machine::new(&self.code);
+        self.set_parameters(&mut machine, parameters);
+        machine
+    }
+
+    /// Gives a machine of this function other live parameters.
+    pub fn set_parameters<T: Number>(&self, machine: &mut Machine<T>, parameters: &[T]) {
         let zero = T::splat(0.0);
         let nothing = |_| zero;
         let mut stored = vec![zero; self.constants.results];
         let arguments = Arguments { parameters, ..Arguments::none() };
-        Machine::new(&self.constants, nothing, nothing).run(&self.constants, &arguments, &mut stored);
+        let mut constants = Machine::new(&self.constants);
+        constants.fix(&self.constants, nothing, nothing);
+        constants.run(&self.constants, &arguments, &mut stored);
         let at = |values: &[T], index: usize| values.get(index).copied().unwrap_or(zero);
-        Machine::new(&self.code, |index| at(parameters, index), |index| at(&stored, index))
+        machine.fix(&self.code, |index| at(parameters, index), |index| at(&stored, index));
     }
 
     /// Runs it; `machine` is room that it made.

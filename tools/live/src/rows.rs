@@ -1,0 +1,277 @@
+//! Quantities of many states, one state or eight at a time.
+//!
+//! A row is a state with its parameters. Its numbers are those of the functions of [`DynModel`] and its kin at that state, to the
+//! last bit, whatever stands in the other rows.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crane_codegen::symbolic::Shape;
+use crane_model::Description;
+use crane_model::dyn_crane::DynModel;
+use crane_model::support::fma;
+
+use crate::LiveCrane;
+use crate::closing::mass_matrix;
+use crate::library::{Library, Name};
+use crate::machine::{Arguments, Machine, Number};
+use crate::routine::Routine;
+
+/// What is computed of every row. Matrices are written row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// A function of the compiler.
+    Of(Name),
+    /// Derivatives of the points' positions with respect to q: points × 3 × n.
+    PointJacobians,
+    /// Generalized forces of supports, springs and drives that a motion takes, `A a − e`.
+    InverseDynamics,
+}
+
+/// States and parameters, row after row. A list of one row holds for all rows; parameters that are not given are the crane's.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rows<'a> {
+    /// Times, s.
+    pub t: &'a [f64],
+    /// Coordinates, m and rad.
+    pub q: &'a [f64],
+    /// Their rates, m/s and rad/s.
+    pub v: &'a [f64],
+    /// Accelerations, m/s² and rad/s².
+    pub a: &'a [f64],
+    /// Live parameters, all of them.
+    pub parameters: &'a [f64],
+}
+
+/// Room to compute a quantity of many rows, as many at a time as a number of `T` holds.
+#[derive(Debug)]
+pub struct Evaluation<T> {
+    library: Arc<Library>,
+    quantity: Quantity,
+    width: usize,
+    /// Numbers of coordinates and of live parameters.
+    sizes: [usize; 2],
+    /// The function, and a second one where the quantity is made of two.
+    calls: [Option<Call<T>>; 2],
+    /// The states that are evaluated.
+    lanes: Lanes<T>,
+    /// Their results.
+    results: Vec<T>,
+}
+
+/// Some states.
+#[derive(Debug, Default)]
+struct Lanes<T> {
+    t: Vec<T>,
+    q: Vec<T>,
+    v: Vec<T>,
+    a: Vec<T>,
+    parameters: Vec<T>,
+}
+
+/// A function with room for its calls.
+#[derive(Debug)]
+struct Call<T> {
+    name: Name,
+    machine: Machine<T>,
+    factors: Vec<T>,
+    /// Where each number of the result stands among what the function writes; nowhere: zero.
+    places: Option<Vec<Option<usize>>>,
+}
+
+impl<T: Number> Evaluation<T> {
+    /// Room for a quantity of a crane, with its parameters.
+    #[must_use]
+    pub fn new(crane: &LiveCrane, quantity: Quantity) -> Self {
+        let names = match quantity {
+            Quantity::Of(name) => [Some(name), None],
+            Quantity::PointJacobians => [Some(Name::PointVelocities), None],
+            Quantity::InverseDynamics => [Some(Name::MassMatrix), Some(Name::Bias)],
+        };
+        let width = width(crane, quantity);
+        Self {
+            library: crane.library(),
+            quantity,
+            width,
+            sizes: [crane.size(), crane.parameters().len()],
+            calls: names.map(|name| Call::new(crane, name?)),
+            lanes: Lanes { t: vec![], q: vec![], v: vec![], a: vec![], parameters: vec![] },
+            results: vec![T::splat(0.0); width],
+        }
+    }
+
+    /// How many numbers a row has.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Computes some rows into `out`, row after row.
+    pub fn run(&mut self, rows: &Rows<'_>, range: Range<usize>, out: &mut [f64]) {
+        let mut first = range.start;
+        for several in out.chunks_mut((T::LANES * self.width).max(1)) {
+            let count = (range.end - first).min(T::LANES);
+            self.lanes.take(self.sizes, rows, first, count);
+            let given = rows.parameters.len();
+            if given > 0 && (first == range.start || given > self.sizes[1]) {
+                for call in self.calls.iter_mut().flatten() {
+                    call.set_parameters(&self.library, &self.lanes.parameters);
+                }
+            }
+            self.evaluate();
+            for (lane, row) in several.chunks_mut(self.width.max(1)).enumerate().take(count) {
+                for (out, result) in row.iter_mut().zip(&self.results) {
+                    *out = result.lane(lane);
+                }
+            }
+            first += count;
+        }
+    }
+
+    /// Computes the results of the states taken.
+    fn evaluate(&mut self) {
+        let Self { calls, lanes, results, library, .. } = self;
+        let n = lanes.q.len();
+        match (self.quantity, calls) {
+            (Quantity::Of(_), [Some(call), _]) => call.run(library, lanes, results),
+            (Quantity::PointJacobians, [Some(call), _]) => {
+                // Velocities are linear in the rates: column j is what the rate of coordinate j alone makes.
+                let mut column = vec![T::splat(0.0); results.len() / n.max(1)];
+                for j in 0..n {
+                    lanes.v.clear();
+                    lanes.v.resize(n, T::splat(0.0));
+                    lanes.v[j] = T::splat(1.0);
+                    call.run(library, lanes, &mut column);
+                    results.iter_mut().skip(j).step_by(n).zip(&column).for_each(|(result, of_j)| *result = *of_j);
+                }
+            }
+            (Quantity::InverseDynamics, [Some(mass), Some(bias)]) => {
+                bias.run(library, lanes, results);
+                let mut matrix = vec![T::splat(0.0); n * n];
+                mass.run(library, lanes, &mut matrix);
+                for (result, row) in results.iter_mut().zip(matrix.chunks(n.max(1))) {
+                    *result = row.iter().zip(&lanes.a).fold(-*result, |sum, (entry, a)| fma(*entry, *a, sum));
+                }
+            }
+            // A function that the scene does not need is zero.
+            _ => results.fill(T::splat(0.0)),
+        }
+    }
+}
+
+impl<T: Number> Lanes<T> {
+    /// Takes rows of a crane with so many coordinates and parameters; the last of them fills the lanes that are left.
+    fn take(&mut self, [n, parameters]: [usize; 2], rows: &Rows<'_>, first: usize, count: usize) {
+        let states =
+            [(&mut self.t, rows.t, 1), (&mut self.q, rows.q, n), (&mut self.v, rows.v, n), (&mut self.a, rows.a, n)];
+        for (lanes, list, width) in states.into_iter().chain([(&mut self.parameters, rows.parameters, parameters)]) {
+            let row = |lane: usize| if list.len() <= width { 0 } else { (first + lane.min(count - 1)) * width };
+            let given = if list.is_empty() { 0 } else { width };
+            lanes.clear();
+            lanes.extend((0..given).map(|i| T::from_lanes(|lane| list[row(lane) + i])));
+        }
+    }
+}
+
+impl<T: Number> Call<T> {
+    fn new(crane: &LiveCrane, name: Name) -> Option<Self> {
+        let library = crane.library();
+        let routine = library.routine(name)?;
+        let parameters: Vec<T> = crane.parameters().iter().copied().map(T::splat).collect();
+        Some(Self {
+            name,
+            machine: routine.machine(&parameters),
+            factors: vec![T::splat(0.0); routine.results()],
+            places: places(crane.description(), crane.size(), name),
+        })
+    }
+
+    fn set_parameters(&mut self, library: &Library, parameters: &[T]) {
+        if let Some(routine) = library.routine(self.name) {
+            routine.set_parameters(&mut self.machine, parameters);
+        }
+    }
+
+    fn run(&mut self, library: &Library, lanes: &Lanes<T>, out: &mut [T]) {
+        let Some(routine) = library.routine(self.name) else { return };
+        let t = lanes.t.first().copied().unwrap_or(T::splat(0.0));
+        let arguments = Arguments { t, q: &lanes.q, v: &lanes.v, ..Arguments::none() };
+        match (routine.shape(), &self.places) {
+            (Shape::Columns { points, .. }, _) => {
+                routine.run(&mut self.machine, &arguments, &mut self.factors);
+                mass_matrix(points, &mut self.factors, out);
+            }
+            (_, Some(places)) => {
+                routine.run(&mut self.machine, &arguments, &mut self.factors);
+                for (out, place) in out.iter_mut().zip(places) {
+                    *out = place.map_or(T::splat(0.0), |place| self.factors[place]);
+                }
+            }
+            (_, None) => routine.run(&mut self.machine, &arguments, out),
+        }
+    }
+}
+
+/// Numbers of a quantity for one state.
+fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
+    let description = crane.description();
+    let n = crane.size();
+    let [bodies, points, supports, drives] =
+        [description.bodies.len(), description.points.len(), description.supports.len(), description.drives.len()];
+    match quantity {
+        Quantity::PointJacobians => 3 * points * n,
+        Quantity::InverseDynamics => n,
+        Quantity::Of(name) => match name {
+            Name::Transforms => 16 * bodies,
+            Name::TransformDerivatives => 16 * bodies * n,
+            Name::Points | Name::PointVelocities => 3 * points,
+            Name::SupportReactions => 3 * supports,
+            Name::DriveMotions => 2 * drives,
+            Name::GravityEnergy
+            | Name::SupportEnergy
+            | Name::ElementEnergy
+            | Name::DriveEnergy
+            | Name::StopEnergy
+            | Name::KineticEnergy
+            | Name::DrivePower
+            | Name::Dissipation => 1,
+            Name::MassMatrix | Name::TangentStiffness => n * n,
+            Name::Linearise => 3 * n * n,
+            Name::Forces
+            | Name::ElementForces
+            | Name::DriveForces
+            | Name::StopForces
+            | Name::FrictionForces
+            | Name::StaticResidual
+            | Name::DriveForcesAtRest
+            | Name::Bias
+            | Name::ForwardDynamics => n,
+            Name::JointImpedances | Name::NonlinearImpedances => 2 * n,
+            Name::BaseStiffness | Name::BaseDamping => 36,
+            Name::DrivePieces => 2 * description.drives.iter().map(|drive| drive.pieces).sum::<usize>(),
+            // What other functions need, or what is left as factors.
+            Name::PrescribedMotions | Name::Factorise | Name::Solve | Name::TransformSecondDerivatives => {
+                crane.library().routine(name).map_or(0, Routine::results)
+            }
+        },
+    }
+}
+
+/// Where the numbers of transforms and their derivatives stand, whose matrices a function writes column by column.
+fn places(description: &Description, n: usize, name: Name) -> Option<Vec<Option<usize>>> {
+    let bodies = &description.bodies;
+    let row_by_row = |matrix: usize| (0..16).map(move |place| 16 * matrix + 4 * (place % 4) + place / 4);
+    match name {
+        Name::Transforms => Some((0..bodies.len()).flat_map(row_by_row).map(Some).collect()),
+        Name::TransformDerivatives => {
+            let (mut places, mut first) = (Vec::new(), 0);
+            for body in bodies {
+                places.extend((first..first + body.degrees_of_freedom).flat_map(row_by_row).map(Some));
+                places.extend((16 * body.degrees_of_freedom..16 * n).map(|_| None));
+                first += body.degrees_of_freedom;
+            }
+            Some(places)
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,83 @@
+//! Rows beside the functions of one crane: the same bits, whatever stands in the other rows.
+
+use crane_codegen::SourceFile;
+use crane_live::rows::{Evaluation, Quantity, Rows};
+use crane_live::{LiveCrane, Name};
+use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
+use crane_model::nalgebra::{Matrix4, Vector3};
+use crane_model::support::lanes::f64x8;
+
+/// Eight and three more.
+const COUNT: usize = 11;
+
+fn crane() -> LiveCrane {
+    let path = format!("{}/../../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap();
+    LiveCrane::from_spec(&SourceFile::new(&path, &text)).unwrap()
+}
+
+/// Poses about the guess, row after row.
+fn poses(crane: &LiveCrane) -> Vec<f64> {
+    let guess = crane.description().guess.to_vec();
+    let wave = |k: usize| 0.02 * (1.3 * k as f64).sin();
+    (0..COUNT * guess.len()).map(|k| guess[k % guess.len()] + wave(k)).collect()
+}
+
+#[test]
+fn mass_matrices_with_parameters_of_their_own() {
+    let crane = crane();
+    let (n, count) = (crane.size(), crane.parameters().len());
+    let q = poses(&crane);
+    let load = crane.description().parameters.iter().position(|info| info.name == "load_mass").unwrap();
+    let parameters: Vec<f64> = (0..COUNT)
+        .flat_map(|row| (0..count).map(move |index| (row, index)))
+        .map(|(row, index)| if index == load { 50.0 * row as f64 } else { crane.parameters()[index] })
+        .collect();
+    let mut out = vec![f64::NAN; COUNT * n * n];
+    let rows = Rows { q: &q, parameters: &parameters, ..Rows::default() };
+    Evaluation::<f64x8>::new(&crane, Quantity::Of(Name::MassMatrix)).run(&rows, 0..COUNT, &mut out);
+    let mut alone = vec![f64::NAN; n * n];
+    for row in 0..COUNT {
+        let mut own = crane.clone();
+        own.set_parameters(&parameters[row * count..(row + 1) * count]).unwrap();
+        own.mass_matrix(&q[row * n..(row + 1) * n], &mut alone);
+        assert_eq!(out[row * n * n..(row + 1) * n * n], alone, "row {row}");
+    }
+}
+
+#[test]
+fn transforms_are_written_row_by_row() {
+    let crane = crane();
+    let (n, bodies) = (crane.size(), crane.description().bodies.len());
+    let q = poses(&crane);
+    let mut out = vec![f64::NAN; COUNT * 16 * bodies];
+    let rows = Rows { q: &q, ..Rows::default() };
+    Evaluation::<f64x8>::new(&crane, Quantity::Of(Name::Transforms)).run(&rows, 0..COUNT, &mut out);
+    let mut alone = vec![Matrix4::zeros(); bodies];
+    for row in 0..COUNT {
+        crane.transforms(&q[row * n..(row + 1) * n], &mut alone);
+        let expected: Vec<f64> = alone.iter().flat_map(|matrix| matrix.transpose().as_slice().to_vec()).collect();
+        assert_eq!(out[row * 16 * bodies..(row + 1) * 16 * bodies], expected, "row {row}");
+    }
+}
+
+#[test]
+fn jacobians_turn_rates_into_velocities() {
+    let crane = crane();
+    let (n, points) = (crane.size(), crane.description().points.len());
+    let q = poses(&crane);
+    let v: Vec<f64> = (0..n).map(|j| (0.7 * (j as f64 + 1.0)).sin()).collect();
+    let mut jacobian = vec![f64::NAN; 3 * points * n];
+    Evaluation::<f64>::new(&crane, Quantity::PointJacobians).run(
+        &Rows { q: &q[..n], ..Rows::default() },
+        0..1,
+        &mut jacobian,
+    );
+    let mut velocities = vec![Vector3::zeros(); points];
+    crane.point_velocities(&q[..n], &v, &mut velocities);
+    for (row, expected) in jacobian.chunks(n).zip(velocities.iter().flatten()) {
+        let velocity: f64 = row.iter().zip(&v).map(|(entry, rate)| entry * rate).sum();
+        // Rounding of a sum of some numbers of size 10.
+        assert!((velocity - expected).abs() < 1e-12, "{velocity} {expected}");
+    }
+}
