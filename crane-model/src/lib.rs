@@ -9,6 +9,7 @@
 //! | equilibrium | `statics` | `std` |
 //! | a run with recorded results | `dynamics::simulate` | `std` |
 //! | runs of many cranes, eight at a time | `dynamics::ensemble` | `std` |
+//! | runs as users ask for them: from rest, recorded, verified; ensembles on threads | `runs` | `std` |
 //! | frequencies, damping | `modes` | `std` |
 //! | largest stable step | `stability` | `std` |
 //! | moments about tipping lines | `tipping` | `std` |
@@ -34,6 +35,8 @@ pub mod dynamics;
 pub mod modes;
 #[cfg(feature = "std")]
 pub mod results;
+#[cfg(feature = "std")]
+pub mod runs;
 #[cfg(feature = "std")]
 pub mod stability;
 #[cfg(feature = "std")]

@@ -217,7 +217,7 @@ impl<'a> Batch<'a> {
         let run =
             Run { statistics: Statistics::default(), step: settings.step_taken(), time: 0.0, efforts: Vec::new() };
         let mut results = vec![Ok(run); self.models.len()];
-        let stops = Stops::of(self.models.iter().copied(), settings.duration);
+        let stops = Stops::between(self.models.iter().copied(), 0.0, settings.duration);
         let n = self.description.coordinates.len();
         let (mut q, mut v) = (vec![0.0; n], vec![0.0; n]);
         let intervals = divided(settings.duration, settings.output).0;

@@ -58,7 +58,7 @@ pub use run::{Run, Sample};
 #[cfg(feature = "std")]
 pub use settings::Settings;
 #[cfg(feature = "std")]
-pub use simulation::{run, simulate, simulate_dyn};
+pub use simulation::{Watch, run, simulate, simulate_dyn, simulate_from, simulate_watched};
 #[cfg(feature = "std")]
 pub use state::InitialState;
 pub use state::{NotFinite, State, acceleration};

@@ -38,6 +38,17 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Least tolerance: rounding errors of coordinates of some metres and of their stiff springs. Greatest tolerance, m and rad:
+    /// beyond it nothing is held any more.
+    pub const TOLERANCES: (f64, f64) = (1e-12, 1.0);
+    /// Shortest and longest run and interval of results, s: below a nanosecond steps are lost in rounding, and nobody waits for four
+    /// months of a crane.
+    pub const TIMES: (f64, f64) = (1e-9, 1e7);
+    /// Most results of a run that are kept in memory.
+    pub const MOST_RESULTS: f64 = 1e6;
+    /// Most steps of constant length that are begun: hours of waiting.
+    pub const MOST_STEPS: f64 = 1e10;
+
     /// The run that the crane's spec asks for, by the default method, without audit.
     pub fn of(description: &Description) -> Self {
         let &Description { duration, step, output, .. } = description;

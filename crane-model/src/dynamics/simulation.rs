@@ -37,6 +37,26 @@ pub fn simulate<const N: usize, C: Implicit<N>>(
     simulate_dyn(&Instance::<N, _>(crane), &InitialState::from(&start), settings, &mut observe)
 }
 
+/// What looks on while a run goes on, and may break it off.
+pub trait Watch {
+    /// Is shown a sample: at the beginning, at every interval of results, and at the end.
+    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()>;
+
+    /// Is told the time after every step, s.
+    fn step(&mut self, _t: f64) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// Shows samples to a function.
+struct Samples<'a>(&'a mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>);
+
+impl Watch for Samples<'_> {
+    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
+        (self.0)(sample)
+    }
+}
+
 /// As [`simulate`], of a crane of any size.
 ///
 /// # Errors
@@ -50,11 +70,47 @@ pub fn simulate_dyn(
     settings: &Settings,
     observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
 ) -> Result<Run, Stopped> {
+    simulate_watched(crane, start, settings, &mut Samples(observe))
+}
+
+/// As [`simulate_dyn`], looked at after every step, too.
+///
+/// # Errors
+/// As [`simulate`].
+///
+/// # Panics
+/// Where the start has not as many numbers as the crane has coordinates.
+pub fn simulate_watched(
+    crane: &dyn DynImplicit,
+    start: &InitialState,
+    settings: &Settings,
+    watch: &mut dyn Watch,
+) -> Result<Run, Stopped> {
+    simulate_from(crane, 0.0, start, settings, watch)
+}
+
+/// As [`simulate_watched`], from a time on, s, over the settings' duration: the drives' motions go on from there. A run in pieces is
+/// the same as long as the pieces are.
+///
+/// # Errors
+/// As [`simulate`].
+///
+/// # Panics
+/// Where the start has not as many numbers as the crane has coordinates.
+pub fn simulate_from(
+    crane: &dyn DynImplicit,
+    begin: f64,
+    start: &InitialState,
+    settings: &Settings,
+    watch: &mut dyn Watch,
+) -> Result<Run, Stopped> {
     match settings.method {
-        Method::Rk4 => run(crane, &mut Rk4::new(crane, settings), start, settings, observe),
-        Method::DormandPrince => run(crane, &mut DormandPrince::new(crane, settings), start, settings, observe),
-        Method::Rosenbrock => run(crane, &mut Rosenbrock::new(crane, settings), start, settings, observe),
-        Method::Bdf => run(crane, &mut Bdf::new(crane, settings), start, settings, observe),
+        Method::Rk4 => run_from(crane, &mut Rk4::new(crane, settings), begin, start, settings, watch),
+        Method::DormandPrince => {
+            run_from(crane, &mut DormandPrince::new(crane, settings), begin, start, settings, watch)
+        }
+        Method::Rosenbrock => run_from(crane, &mut Rosenbrock::new(crane, settings), begin, start, settings, watch),
+        Method::Bdf => run_from(crane, &mut Bdf::new(crane, settings), begin, start, settings, watch),
     }
 }
 
@@ -72,30 +128,44 @@ pub fn run(
     settings: &Settings,
     observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
 ) -> Result<Run, Stopped> {
+    run_from(crane, stepper, 0.0, start, settings, &mut Samples(observe))
+}
+
+/// A run from a time on.
+fn run_from(
+    crane: &dyn DynDynamics,
+    stepper: &mut dyn Stepper,
+    begin: f64,
+    start: &InitialState,
+    settings: &Settings,
+    watch: &mut dyn Watch,
+) -> Result<Run, Stopped> {
     let (n, description) = (crane.size(), crane.description());
     let method = settings.method;
     check_inertia(crane, &start.q).map_err(|index| {
-        let place = Place { method, t: 0.0, h: settings.step, q: &start.q, description };
+        let place = Place { method, t: begin, h: settings.step, q: &start.q, description };
         place.stopped(Cause::MassMatrix, index)
     })?;
     let mut motion = [start.q.as_slice(), &start.v, if settings.audit { &[0.0; 2] } else { &[] }].concat();
     let (pose, rates) = motion[..2 * n].split_at_mut(n);
-    crane.prescribe(0.0, pose, rates);
-    stepper.start(0.0, &motion)?;
-    let mut time = 0.0;
-    let mut reached = 0.0;
-    let stops = Stops::of([crane as &dyn DynModel], settings.duration);
+    crane.prescribe(begin, pose, rates);
+    stepper.start(begin, &motion)?;
+    let mut time = begin;
+    let mut reached = begin;
+    let end = begin + settings.duration;
+    let stops = Stops::between([crane as &dyn DynModel], begin, end);
     let intervals = divided(settings.duration, settings.output).0;
+    let mut broken_off = false;
 
     for interval in 0..=intervals {
         let (q, rest) = motion.split_at(n);
         let (v, integrals) = rest.split_at(n);
         let [work, dissipated] = *integrals.first_chunk().unwrap_or(&[0.0; 2]);
-        if observe(&Sample { t: time, q, v, work, dissipated }).is_break() || interval == intervals {
+        if watch.sample(&Sample { t: time, q, v, work, dissipated }).is_break() || interval == intervals {
             break;
         }
-        let result = (settings.output * (interval + 1) as f64).min(settings.duration);
-        while reached < result {
+        let result = (begin + settings.output * (interval + 1) as f64).min(end);
+        while reached < result && !broken_off {
             let before = reached;
             reached = stepper.step(&Ahead { result, stop: stops.after(reached) })?;
             let steps = stepper.statistics().steps;
@@ -104,16 +174,20 @@ pub fn run(
             if !description.bounded(q, settings.bound) {
                 return Err(place.furthest(Cause::Growth));
             }
-            if steps >= settings.most_steps && reached < settings.duration {
+            if steps >= settings.most_steps && reached < end {
                 return Err(place.furthest(Cause::Steps));
             }
+            broken_off = watch.step(reached).is_break();
+        }
+        if broken_off {
+            break;
         }
         stepper.interpolate(result, &mut motion);
         time = result;
     }
     let statistics = stepper.statistics();
     let step = match (settings.method.is_adaptive(), statistics.steps) {
-        (true, 1..) => time / statistics.steps as f64,
+        (true, 1..) => (time - begin) / statistics.steps as f64,
         _ => settings.step_taken(),
     };
     Ok(Run { statistics, step, time, efforts: stepper.efforts() })

@@ -10,18 +10,18 @@ impl Stops {
     /// Times nearer than this, as a part of the run, are one: no step is as short.
     const NEAR: f64 = 1e-9;
 
-    /// Where pieces of the motions of some cranes begin and end, within a run of so many seconds.
-    pub fn of<'a>(cranes: impl IntoIterator<Item = &'a dyn DynModel>, duration: f64) -> Self {
+    /// Where pieces of the motions of some cranes begin and end, within a run from one time to another, s.
+    pub fn between<'a>(cranes: impl IntoIterator<Item = &'a dyn DynModel>, begin: f64, end: f64) -> Self {
+        let near = Self::NEAR * (end - begin);
         let mut times = Vec::new();
         for crane in cranes {
             let count = crane.description().drives.iter().map(|drive| drive.pieces).sum();
             let mut pieces = vec![[f64::NAN; 2]; count];
             crane.drive_pieces(&mut pieces);
-            let near = Self::NEAR * duration;
-            times.extend(pieces.into_iter().flatten().filter(|time| *time > near && *time < duration - near));
+            times.extend(pieces.into_iter().flatten().filter(|time| *time > begin + near && *time < end - near));
         }
         times.sort_by(f64::total_cmp);
-        times.dedup_by(|later, earlier| *later - *earlier < Self::NEAR * duration);
+        times.dedup_by(|later, earlier| *later - *earlier < near);
         Self(times)
     }
 

@@ -1,9 +1,16 @@
-//! Results as columns with names and units.
+//! Results as columns with names and units, their extremes, how far off they may be, and what to be careful about.
 
+pub mod cautions;
+mod extremes;
+mod headlines;
 mod peaks;
 mod recording;
 mod table;
+pub mod verification;
 
+pub use extremes::Extremes;
+pub use headlines::{Kind, headlines};
 pub use peaks::Peaks;
 pub use recording::{Recording, drive_effort, stop_effort};
 pub use table::{Column, Table};
+pub use verification::Verification;

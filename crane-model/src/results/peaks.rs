@@ -4,7 +4,7 @@ use crate::{
     Description,
     dyn_crane::DynCrane,
     dynamics::Sample,
-    results::{Column, Table, drive_effort},
+    results::{Column, Extremes, Table, drive_effort},
 };
 
 /// Extremes, signed, with their times, and last values over the samples of a run.
@@ -16,15 +16,6 @@ use crate::{
 pub struct Peaks {
     extremes: Vec<Extremes>,
     last: Vec<f64>,
-}
-
-/// The least and the greatest value of one quantity, and when it had them first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Extremes {
-    minimum: f64,
-    time_of_minimum: f64,
-    maximum: f64,
-    time_of_maximum: f64,
 }
 
 impl Peaks {
@@ -73,35 +64,5 @@ impl Peaks {
         let extremes = self.extremes.iter();
         let extremes = extremes.flat_map(|e| [e.minimum, e.time_of_minimum, e.maximum, e.time_of_maximum]);
         extremes.chain(self.last.iter().copied())
-    }
-}
-
-impl Extremes {
-    fn at(t: f64, value: f64) -> Self {
-        Self { minimum: value, time_of_minimum: t, maximum: value, time_of_maximum: t }
-    }
-
-    fn widen(&mut self, t: f64, value: f64) {
-        if value < self.minimum {
-            (self.minimum, self.time_of_minimum) = (value, t);
-        }
-        if value > self.maximum {
-            (self.maximum, self.time_of_maximum) = (value, t);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn extremes_keep_their_signs_and_first_times() {
-        let mut extremes = Extremes::at(0.0, -1.0);
-        for (t, value) in [(1.0, -3.0), (2.0, 2.0), (3.0, -3.0), (4.0, 2.0)] {
-            extremes.widen(t, value);
-        }
-        let expected = Extremes { minimum: -3.0, time_of_minimum: 1.0, maximum: 2.0, time_of_maximum: 2.0 };
-        assert_eq!(extremes, expected);
     }
 }

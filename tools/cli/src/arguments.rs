@@ -10,7 +10,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
 use crane_model::dynamics::Method;
 
-use crate::cautions::BEND;
+use crane_model::results::cautions::BEND;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -333,7 +333,7 @@ pub struct Ensemble {
     /// File for peaks and final values, a row a crane [default: <CRANE>_ensemble.csv in the folder for results]
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "table")]
     pub results: Option<PathBuf>,
-    /// Threads that run the cranes of the table, eight at a time each [default: all of the machine]
+    /// Threads that run the cranes of the table [default: all of the machine]
     #[arg(long, value_name = "COUNT", requires = "table", value_parser = count)]
     pub threads: Option<NonZeroUsize>,
 }

@@ -6,6 +6,7 @@ use crane_model::{
     Description,
     dynamics::{Method, Settings},
     results::Table,
+    runs::Recorded,
 };
 
 use crate::{
@@ -15,7 +16,7 @@ use crate::{
     figures::{Curve, Mark, PALETTE, Panel},
     files, page,
     problem::{Outcome, Problem},
-    run::{Recorded, progress, record_checked},
+    run::{progress, record_checked},
     simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
     statics::{Case, caution_of_runs, deflection, tables},
 };

@@ -1,18 +1,15 @@
 //! `crane simulate --ensemble`: a run of every row of a table of parameters.
 
-use std::{
-    io::Write,
-    num::NonZeroUsize,
-    path::Path,
-    sync::{Mutex, PoisonError},
-    thread,
-    time::Instant,
-};
+use std::{io::Write, num::NonZeroUsize, path::Path, thread, time::Instant};
 
 use crane_model::{
-    dyn_crane::{DynCrane, Member},
-    dynamics::{self, InitialState, Method, ensemble::LANES},
+    dyn_crane::DynCrane,
+    dynamics::{self, Method},
     results::{Column, Peaks},
+    runs::{
+        Start,
+        ensemble::{self, Conduct, Outcome as Row},
+    },
 };
 
 use crate::{
@@ -23,21 +20,10 @@ use crate::{
     problem::{Outcome, Problem},
     report::Report,
     run::batches,
-    start::Start,
 };
 
 /// Status of a run that reached its end.
 const DONE: &str = "done";
-
-/// What is told of one crane.
-struct Row {
-    /// Its peaks, if it reached the end.
-    peaks: Option<Peaks>,
-    /// Time reached, s.
-    time: f64,
-    /// [`DONE`], or why not.
-    status: String,
-}
 
 /// Runs all cranes of the table and writes a row for each.
 pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
@@ -52,18 +38,26 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
     files::folder(path.parent().unwrap_or(&path))?;
 
     let begin = Instant::now();
-    let rows = run(rig, &table, &settings, threads);
+    let bar = batches(table.rows.len());
+    let conduct = Conduct { threads, done: &|_, _| bar.inc(1), called_off: &|_| false };
+    let rows = ensemble::run(rig, &table.parameters(rig), &settings, &conduct);
+    bar.finish_and_clear();
     let wall = begin.elapsed().as_secs_f64();
     write(&path, rig, &table, &rows)?;
 
-    let done = rows.iter().filter(|row| row.status == DONE).count();
-    let simulated: f64 = rows.iter().map(|row| row.time).sum();
+    let done = rows.iter().filter(|row| row.run.is_ok()).count();
+    let simulated: f64 = rows.iter().map(Row::time).sum();
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
     report.fact("cranes", rows.len(), "");
     report.fact("reached the end", done, "");
-    report.fact("step", settings.step_taken(), "s");
-    report.fact("step from", step, "");
+    report.fact("method", settings.method.title(), "");
+    if settings.method.is_adaptive() {
+        report.fact("tolerance", settings.tolerance, "m, rad");
+    } else {
+        report.fact("step", settings.step_taken(), "s");
+        report.fact("step from", step, "");
+    }
     report.fact("threads", threads, "");
     report.fact("wall time", wall, "s");
     report.fact("cranes per second", rows.len() as f64 / wall, "");
@@ -79,8 +73,8 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
     ))
 }
 
-/// Settings of all runs, and whose step it is: stable for the first and the last row that rest, the spec's at most unless
-/// another is asked for.
+/// Settings of all runs, and whose step it is by a method with constant steps: stable for the first and the last row that rest, the
+/// spec's at most unless another is asked for.
 fn settings(
     timing: &Timing,
     rig: &dyn DynCrane,
@@ -88,20 +82,23 @@ fn settings(
 ) -> Outcome<(dynamics::Settings, &'static str)> {
     let startable = |row: &Vec<f64>| {
         let crane = table.crane(rig, row)?;
-        Start::of(crane.as_ref()).map(|start| (crane, start))
+        let start = Start::of(crane.as_ref())?;
+        Ok::<_, Problem>((crane, start))
     };
     let rests = |row: &Vec<f64>| startable(row).ok();
-    if let Some(method) = timing.method.filter(|method| *method != Method::Rk4) {
-        let title = format!("`--method {method}` moves one crane alone; eight in lanes share the steps of rk4");
-        return Err(Problem::usage(title, "leave `--method` out with `--ensemble`"));
-    }
     // Where no crane rests, the first tells why.
-    let (crane, start) =
+    let (crane, from) =
         startable(&table.rows[0]).or_else(|problem| table.rows.iter().find_map(rests).ok_or(problem))?;
+    let method = timing.method.unwrap_or(if timing.step.is_some() { Method::Rk4 } else { Method::RECOMMENDED });
+    if method.is_adaptive() {
+        let settings = timing.settings(crane.as_ref(), &from, method)?;
+        return Ok((dynamics::Settings { audit: false, ..settings }, ""));
+    }
     let safe = Timing { step: Some(timing.step.unwrap_or(Step::Auto)), ..timing.clone() };
-    let mut settings = safe.settings(crane.as_ref(), &start, Method::Rk4)?;
-    if let Some((crane, start)) = table.rows.iter().rev().find_map(rests) {
-        settings.step = settings.step.min(safe.settings(crane.as_ref(), &start, Method::Rk4)?.step);
+    let safe_for = |crane: &dyn DynCrane, start: &Start| safe.settings(crane, start, Method::Rk4);
+    let mut settings = safe_for(crane.as_ref(), &from)?;
+    if let Some((crane, from)) = table.rows.iter().rev().find_map(rests) {
+        settings.step = settings.step.min(safe_for(crane.as_ref(), &from)?.step);
     }
     let own = rig.description().step;
     let (step, from) = match timing.step {
@@ -112,68 +109,7 @@ fn settings(
     Ok((dynamics::Settings { step, audit: false, ..settings }, from))
 }
 
-/// Runs batches of cranes on threads, each taking the next when it is done with one; the rows in order.
-fn run(rig: &dyn DynCrane, table: &ParameterTable, settings: &dynamics::Settings, threads: usize) -> Vec<Row> {
-    let bar = batches(table.rows.len().div_ceil(LANES));
-    let waiting = Mutex::new(table.rows.chunks(LANES).enumerate());
-    let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let finished = Mutex::new(Vec::new());
-    thread::scope(|scope| {
-        for _ in 0..threads.min(table.rows.len().div_ceil(LANES)) {
-            scope.spawn(|| {
-                while let Some((index, rows)) = next() {
-                    let rows = batch(rig, table, rows, settings);
-                    finished.lock().unwrap_or_else(PoisonError::into_inner).push((index, rows));
-                    bar.inc(1);
-                }
-            });
-        }
-    });
-    bar.finish_and_clear();
-    let mut finished = finished.into_inner().unwrap_or_else(PoisonError::into_inner);
-    finished.sort_by_key(|(index, _)| *index);
-    finished.into_iter().flat_map(|(_, rows)| rows).collect()
-}
-
-/// Runs the cranes of some rows, those that rest, side by side.
-fn batch(rig: &dyn DynCrane, table: &ParameterTable, rows: &[Vec<f64>], settings: &dynamics::Settings) -> Vec<Row> {
-    let mut told: Vec<Row> = rows.iter().map(|_| Row { peaks: None, time: 0.0, status: DONE.to_owned() }).collect();
-    let (mut places, mut cranes, mut members) = (Vec::new(), Vec::new(), Vec::new());
-    for (place, row) in rows.iter().enumerate() {
-        let crane = table.crane(rig, row);
-        match crane.and_then(|crane| Start::of(crane.as_ref()).map(|start| (crane, start))) {
-            Ok((crane, start)) => {
-                let parameters = (0..rig.description().parameters.len()).map(|index| crane.parameter(index)).collect();
-                members.push(Member { parameters, start: InitialState::at_rest(start.q) });
-                cranes.push(crane);
-                places.push(place);
-            }
-            Err(problem) => problem.title().clone_into(&mut told[place].status),
-        }
-    }
-    let mut peaks = vec![Peaks::default(); members.len()];
-    let results = rig.simulate_ensemble(&members, settings, &mut |member, sample| {
-        peaks[member].push(cranes[member].as_ref(), sample);
-    });
-    let results = match results {
-        Ok(results) => results,
-        Err(refused) => {
-            for place in places {
-                told[place].status = refused.to_string();
-            }
-            return told;
-        }
-    };
-    for ((place, peaks), result) in places.into_iter().zip(peaks).zip(results) {
-        told[place] = match result {
-            Ok(run) => Row { peaks: Some(peaks), time: run.time, status: DONE.to_owned() },
-            Err(stopped) => Row { peaks: None, time: stopped.time, status: stopped.to_string() },
-        };
-    }
-    told
-}
-
-/// Writes parameters, peaks, time reached and status of every crane.
+/// Writes parameters, peaks, time reached, cautions and status of every crane.
 fn write(path: &Path, rig: &dyn DynCrane, table: &ParameterTable, rows: &[Row]) -> Outcome<()> {
     let description = rig.description();
     let parameters = table.columns.iter().map(|&index| &description.parameters[index]);
@@ -181,15 +117,16 @@ fn write(path: &Path, rig: &dyn DynCrane, table: &ParameterTable, rows: &[Row]) 
     let peaks = Peaks::columns(description);
     let time = Column { name: "time".to_owned(), unit: "s".to_owned() };
     let header: Vec<String> = parameters.chain(peaks.clone()).chain([time]).map(|column| column.to_string()).collect();
-    let header = header.into_iter().chain(["status".to_owned()]);
+    let header = header.into_iter().chain(["cautions".to_owned(), "status".to_owned()]);
     let rows = rows.iter().zip(&table.rows).map(|(row, parameters)| {
         let values: Vec<Option<f64>> = match &row.peaks {
             Some(peaks) => peaks.values().map(Some).collect(),
             None => vec![None; peaks.len()],
         };
-        let numbers = parameters.iter().copied().map(Some).chain(values).chain([Some(row.time)]);
+        let numbers = parameters.iter().copied().map(Some).chain(values).chain([Some(row.time())]);
         let numbers = numbers.map(|number| number.map_or_else(String::new, files::number));
-        numbers.chain([row.status.clone()]).collect()
+        let status = row.run.as_ref().map_or_else(ToString::to_string, |_| DONE.to_owned());
+        numbers.chain([row.cautions.join("; "), status]).collect()
     });
     files::write_fields(path, header, rows)
 }

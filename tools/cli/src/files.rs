@@ -8,14 +8,15 @@ use std::{
     time::Duration,
 };
 
-use crane_model::{dyn_crane::DynCrane, dynamics, results::Table};
+use crane_model::{
+    dyn_crane::DynCrane,
+    dynamics,
+    results::{Table, Verification},
+    runs::Recorded,
+};
 use serde_json::{Map, Value, json};
 
-use crate::{
-    problem::{Outcome, Problem},
-    run::Recorded,
-    verification::Verification,
-};
+use crate::problem::{Outcome, Problem};
 
 /// Makes a folder where it is missing.
 pub fn folder(path: &Path) -> Outcome<()> {

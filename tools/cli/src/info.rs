@@ -2,12 +2,13 @@
 
 use std::io::Write;
 
+use crane_model::runs::{EQUILIBRIUM, GUESS};
+
 use crate::{
     Fleet,
     arguments::{Analysis, Format},
     problem::Outcome,
     report::{Cell, Grid, Report},
-    start::{EQUILIBRIUM, GUESS},
 };
 
 /// Prints the cranes to choose from.

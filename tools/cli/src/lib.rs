@@ -12,7 +12,6 @@
 //! ```
 
 mod arguments;
-mod cautions;
 mod compare;
 mod ensemble;
 mod eval;
@@ -40,7 +39,6 @@ mod start;
 mod statics;
 mod strength;
 mod stress;
-mod verification;
 mod work_precision;
 
 use std::{io, io::Write, process::ExitCode};

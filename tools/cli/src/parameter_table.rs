@@ -68,6 +68,19 @@ impl ParameterTable {
         Ok(Self { columns, rows })
     }
 
+    /// All live parameters of every row: what has no column is as in `rig`.
+    pub fn parameters(&self, rig: &dyn DynCrane) -> Vec<Vec<f64>> {
+        let own: Vec<f64> = (0..rig.description().parameters.len()).map(|index| rig.parameter(index)).collect();
+        let row = |row: &Vec<f64>| {
+            let mut values = own.clone();
+            for (&index, &value) in self.columns.iter().zip(row) {
+                values[index] = value;
+            }
+            values
+        };
+        self.rows.iter().map(row).collect()
+    }
+
     /// The crane of a row: what has no column is as in `rig`.
     pub fn crane(&self, rig: &dyn DynCrane, row: &[f64]) -> Outcome<Box<dyn DynCrane>> {
         let mut crane = rig.boxed_clone();

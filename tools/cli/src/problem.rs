@@ -2,7 +2,11 @@
 
 use std::{fmt::Write as _, io, path::Path, process::ExitCode};
 
-use crane_model::{dynamics::Stopped, modes::NoModes, statics::Equilibrium};
+use crane_model::{
+    dynamics::{Method, Stopped},
+    modes::NoModes,
+    runs::{Failed, Reason},
+};
 
 /// Exit code where the computation or a file failed.
 pub const FAILED: u8 = 1;
@@ -56,16 +60,6 @@ impl Problem {
         Self::failed(format!("cannot use {}: {error}", path.display()), help)
     }
 
-    /// No stable equilibrium to start from.
-    pub fn equilibrium(name: &str, equilibrium: &Equilibrium) -> Self {
-        let residual = equilibrium.residual();
-        let left = if residual.is_finite() { format!(", residual {residual:.1e}") } else { String::new() };
-        Self::failed(
-            format!("{name}: statics did not find a stable equilibrium ({equilibrium}{left})"),
-            "change `guess:` in its spec to a pose near a stable equilibrium, or drive or spring the coordinates named",
-        )
-    }
-
     /// What is wrong.
     pub fn title(&self) -> &str {
         match self {
@@ -112,6 +106,18 @@ impl From<io::Error> for Problem {
 impl From<Stopped> for Problem {
     fn from(stopped: Stopped) -> Self {
         Problem::failed(stopped.to_string(), stopped.advice())
+    }
+}
+
+impl From<Failed> for Problem {
+    fn from(failed: Failed) -> Self {
+        let other = match failed.reason.as_ref() {
+            Reason::Stopped { stopped, .. } if stopped.method.is_explicit() => {
+                format!("; `--method {}` copes with stiff cranes", Method::RECOMMENDED)
+            }
+            _ => String::new(),
+        };
+        Problem::failed(failed.to_string(), failed.advice() + &other)
     }
 }
 

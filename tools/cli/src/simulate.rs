@@ -8,6 +8,7 @@ use crane_model::{
     dynamics,
     dynamics::Method,
     results::{Table, drive_effort},
+    runs::Recorded,
 };
 
 use crate::{
@@ -18,7 +19,7 @@ use crate::{
     files,
     problem::{Outcome, Problem},
     report::{Grid, Report},
-    run::{Recorded, progress, record_checked},
+    run::{progress, record_checked},
 };
 
 /// A recorded run as a curve of the figures.

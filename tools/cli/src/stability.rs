@@ -6,6 +6,7 @@ use crane_model::{
     Description,
     dynamics::Method,
     modes::DampedMode,
+    runs::{Bound, Pose, SAFE, Start, manoeuvre},
     stability::{cause, limit},
 };
 
@@ -17,9 +18,7 @@ use crate::{
     modes::damped_modes,
     problem::Outcome,
     report::{Grid, Report},
-    run::{Bound, Pose, SAFE, manoeuvre},
     simulate::{file_list, write_figure},
-    start::Start,
 };
 
 /// Prints limits and modes, and draws the regions.

@@ -1,57 +1,16 @@
-//! Where a run starts: at rest where the crane stands, from given values, or from the end of another run.
+//! Where a run of the command starts: at rest where the crane stands, from given values, or from the end of another run.
 
 use std::path::Path;
 
-use crane_model::{Description, dyn_crane::DynCrane, dynamics::InitialState};
+use crane_model::{Description, dyn_crane::DynCrane, runs::Start};
 
 use crate::{
     arguments::Timing,
     problem::{Outcome, Problem, nearest},
-    statics::Case,
 };
 
-/// Start of a crane whose spec asks for statics.
-pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
-/// Start of a crane whose spec does not.
-pub const GUESS: &str = "guess, at rest";
 /// What follows a coordinate's name in the name of its rate.
 const RATE: &str = "_rate";
-
-/// Pose and rates from which a run starts.
-pub struct Start {
-    /// The pose, m and rad.
-    pub q: Vec<f64>,
-    /// Its rates, m/s and rad/s.
-    pub v: Vec<f64>,
-    /// In words; [`EQUILIBRIUM`], [`GUESS`], or what was asked for.
-    pub what: String,
-    /// Whether the crane would stay there if its drives did.
-    pub rests: bool,
-}
-
-impl Start {
-    /// The static equilibrium where the crane's spec asks for statics, otherwise its guess.
-    pub fn of(rig: &dyn DynCrane) -> Outcome<Self> {
-        let description = rig.description();
-        if description.statics { Case::new(&description.name, rig).start() } else { Ok(Self::guess(rig)) }
-    }
-
-    /// A pose of static equilibrium.
-    pub fn equilibrium(q: Vec<f64>) -> Self {
-        Self { v: vec![0.0; q.len()], q, what: EQUILIBRIUM.to_owned(), rests: true }
-    }
-
-    /// The guess of a crane.
-    pub fn guess(rig: &dyn DynCrane) -> Self {
-        let q = rig.guess();
-        Self { v: vec![0.0; q.len()], q, what: GUESS.to_owned(), rests: false }
-    }
-
-    /// Pose and rates.
-    pub fn state(&self) -> InitialState {
-        InitialState { q: self.q.clone(), v: self.v.clone() }
-    }
-}
 
 /// A coordinate or its rate, by its place.
 #[derive(Clone, Copy)]
@@ -79,7 +38,7 @@ impl Timing {
     /// The start that `--from` and `--start` ask for; `with_strangers`: names that this crane does not have are of another one.
     pub fn start(&self, rig: &dyn DynCrane, with_strangers: bool) -> Outcome<Start> {
         if self.from.is_none() && self.start.is_empty() {
-            return Start::of(rig);
+            return Ok(Start::of(rig)?);
         }
         let description = rig.description();
         // What is not given is as where the crane stands, if it stands anywhere.

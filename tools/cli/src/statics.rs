@@ -5,6 +5,8 @@ use std::io::Write;
 use crane_model::{
     CoordinateInfo,
     dyn_crane::DynCrane,
+    results::cautions,
+    runs::{Reason, Recorded},
     statics::{Equilibrium, Settings},
 };
 
@@ -13,11 +15,8 @@ use nalgebra::Vector3;
 use crate::{
     Fleet,
     arguments::{Analysis, Format, Limits},
-    cautions,
-    problem::{Outcome, Problem},
+    problem::Outcome,
     report::{Cell, Grid, Report},
-    run::Recorded,
-    start::Start,
 };
 
 /// A crane in equilibrium.
@@ -41,21 +40,8 @@ impl<'a> Case<'a> {
         if self.equilibrium.is_stable() {
             Ok(())
         } else {
-            Err(Problem::equilibrium(&self.rig.description().name, &self.equilibrium))
+            Err(Reason::Equilibrium(self.equilibrium.clone()).of(&self.rig.description().name).into())
         }
-    }
-
-    /// Where a run from this equilibrium starts: a problem unless it is stable, and the crane can be moved.
-    pub fn start(&self) -> Outcome<Start> {
-        self.stable()?;
-        let (name, q) = (&self.rig.description().name, &self.equilibrium.q);
-        if !q.is_empty() && self.rig.mass_matrix_at(q).cholesky().is_none() {
-            return Err(Problem::failed(
-                format!("{name}: the mass matrix is not positive definite, so nothing can be moved"),
-                "give every link a mass in kg and an inertia in kg m² that count beside those of the others",
-            ));
-        }
-        Ok(Start::equilibrium(q.clone()))
     }
 
     fn coordinates(&self) -> &[CoordinateInfo] {

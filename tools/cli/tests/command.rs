@@ -486,7 +486,8 @@ fn an_ensemble_writes_a_row_for_every_crane() {
     let loads = ["0", "100", "200", "300", "1e12", "500", "600", "700", "800"];
     let loads_file = table("loads.csv", &format!("payload [kg]\n{}\n", loads.join("\n")));
     let arguments = ["simulate", "knuckle_boom", "--ensemble", &loads_file, "--duration", "0.5", "--format", "json"];
-    let output = crane(&[&arguments[..], &["-o", file.to_str().expect("a path"), "--threads", "2"]].concat());
+    let by_rk4 = ["--method", "rk4", "-o", file.to_str().expect("a path"), "--threads", "2"];
+    let output = crane(&[&arguments[..], &by_rk4].concat());
     assert_eq!(output.status.code(), Some(1), "a row that failed");
     assert!(text(&output.stderr).contains("1 of 9 cranes did not reach the end"), "{}", text(&output.stderr));
     let report: serde_json::Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
@@ -495,7 +496,8 @@ fn an_ensemble_writes_a_row_for_every_crane() {
 
     let mut csv = csv::Reader::from_path(&file).expect("a CSV file");
     let header = csv.headers().expect("a header").clone();
-    assert!(header.iter().all(|column| column == "status" || column.ends_with(']')), "{header:?}");
+    let named = |column: &str| ["cautions", "status"].contains(&column) || column.ends_with(']');
+    assert!(header.iter().all(named), "{header:?}");
     let rows: Vec<_> = csv.records().map(|row| row.expect("a row")).collect();
     let column = |name: &str| header.iter().position(|column| column == name).unwrap_or_else(|| panic!("{header:?}"));
     let torques = ["min", "max"].map(|end| column(&format!("main_boom_theta_drive_torque_{end} [N m]")));
@@ -536,6 +538,36 @@ fn an_ensemble_writes_a_row_for_every_crane() {
         .fold(0.0_f64, |m, x: f64| m.max(x.abs()));
     // One crane and eight lanes by the same method: roundings.
     assert!((single - before).abs() < 1e-8 * single, "{single} {before}");
+}
+
+#[test]
+fn an_ensemble_by_the_default_method_is_its_single_runs() {
+    let out = folder("ensemble_bdf");
+    let file = out.join("peaks.csv");
+    let loads_file = table("two_loads.csv", "payload [kg]\n200\n800\n");
+    let arguments = ["simulate", "knuckle_boom", "--ensemble", &loads_file, "--duration", "1", "--format", "json"];
+    let report = json(&[&arguments[..], &["-o", file.to_str().expect("a path")]].concat());
+    assert!(report["method"].as_str().expect("a method").starts_with("backward"), "{report}");
+    let mut csv = csv::Reader::from_path(&file).expect("a CSV file");
+    let header = csv.headers().expect("a header").clone();
+    let place =
+        |header: &csv::StringRecord, name: &str| header.iter().position(|column| column == name).expect("a column");
+    for (row, load) in csv.records().zip(["200", "800"]) {
+        let row = row.expect("a row");
+        let number = |name: &str| row[place(&header, name)].parse::<f64>().expect("a number");
+        let set = format!("payload={load}");
+        let arguments =
+            ["simulate", "knuckle_boom", "--set", &set, "--duration", "1", "--no-verify", "--format", "json"];
+        let run = json(&[&arguments[..], &["--out", out.to_str().expect("a path")]].concat());
+        let extremes = run["extremes"].as_array().expect("a table");
+        let torque = extremes.iter().find(|row| row["quantity"] == "main_boom_theta_drive_torque").expect("a row");
+        // The same steps of the same crane: not a bit differs, but in the rounding of times.
+        for (column, key) in [("min", "minimum"), ("max", "maximum")] {
+            assert_eq!(number(&format!("main_boom_theta_drive_torque_{column} [N m]")), torque[key], "{load} {key}");
+        }
+        let time = torque["time_of_maximum"].as_f64().expect("a time");
+        assert!((number("main_boom_theta_drive_torque_max_time [s]") - time).abs() < 1e-9);
+    }
 }
 
 #[test]

@@ -2,11 +2,11 @@
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use crane_live::LiveCrane;
-use crane_model::{CoordinateRole, modes::undamped, results::Table};
+use crane_model::{CoordinateRole, modes::undamped, results::Table, runs::Recorded};
 use serde_json::{Value, json};
 
 use super::scene::scene;
-use crate::{problem::Outcome, run::Recorded, statics::Case};
+use crate::{problem::Outcome, statics::Case};
 
 /// Most rows of a run that a page holds; a longer one is thinned, so that the page stays small enough to mail.
 const MOST_ROWS: usize = 4000;

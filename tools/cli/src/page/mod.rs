@@ -11,6 +11,7 @@ use std::{io::Write, path::Path};
 use crane_model::{
     dyn_crane::DynCrane,
     dynamics::{Method, Settings},
+    runs::{POSES, Recorded, Start, manoeuvre},
 };
 use serde_json::{Value, json};
 
@@ -24,10 +25,8 @@ use crate::{
     problem::Outcome,
     refinement,
     report::Report,
-    run::{POSES, Recorded, manoeuvre},
     simulate::summary,
     stability,
-    start::Start,
     statics::{Case, caution_of_runs, deflection, tables},
 };
 

@@ -11,15 +11,11 @@ use super::{
 use crane_model::{
     dyn_crane::DynCrane,
     dynamics::Method,
+    runs::{self, Recorded, Start},
     statics::{Equilibrium, Settings},
 };
 
-use crate::{
-    arguments::Timing,
-    problem::Problem,
-    run::{self, Recorded, record},
-    start::Start,
-};
+use crate::{arguments::Timing, problem::Problem, run::record};
 
 /// A crane under test.
 pub struct Subject {
@@ -72,7 +68,7 @@ impl Subject {
     pub fn run(&self, timing: &Timing) -> Result<Recorded, String> {
         let rig = self.rig.as_ref();
         let told = |problem: Problem| problem.message();
-        let start = Start::of(rig).map_err(told)?;
+        let start = Start::of(rig).map_err(|failed| told(failed.into()))?;
         let settings = timing.settings(rig, &start, Method::RECOMMENDED).map_err(told)?;
         let recorded = record(rig, &start, &settings, &ProgressBar::hidden()).map_err(told)?;
         let table = &recorded.table;
@@ -103,7 +99,7 @@ pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
 
 /// Greatest error of the energy balance over the greatest energy that was turned over.
 pub fn imbalance(recorded: &Recorded) -> f64 {
-    run::imbalance(&recorded.table)
+    runs::imbalance(&recorded.table)
 }
 
 /// What the command says of a run besides its results, after a semicolon each.

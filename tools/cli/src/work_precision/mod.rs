@@ -17,6 +17,7 @@ use crane_model::{
     Description,
     dyn_crane::DynCrane,
     dynamics::{Method, Settings},
+    runs::{Bound, POSES, SAFE, Start, manoeuvre},
 };
 
 use crate::{
@@ -26,9 +27,8 @@ use crate::{
     problem::{Outcome, Problem},
     refinement,
     report::{Grid, Report},
-    run::{Bound, POSES, SAFE, manoeuvre, progress},
+    run::progress,
     simulate::{file_list, write_figure},
-    start::Start,
 };
 use methods::{REPEATS, least, series, table};
 use reference::reference;
@@ -139,7 +139,7 @@ fn study(options: &WorkPrecision, crane: &str, counts: &[usize], fleet: &Fleet, 
 
 /// Where runs start: at rest in equilibrium, or at the guess where no drive would move the crane from there.
 fn start(rig: &dyn DynCrane) -> Outcome<Start> {
-    if rig.description().drives.is_empty() { Ok(Start::guess(rig)) } else { Start::of(rig) }
+    if rig.description().drives.is_empty() { Ok(Start::guess(rig)) } else { Ok(Start::of(rig)?) }
 }
 
 /// The run to be studied.

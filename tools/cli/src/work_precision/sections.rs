@@ -7,14 +7,13 @@ use crane_model::{
     dyn_crane::DynCrane,
     dynamics::{Method, Settings},
     modes::{NoModes, damped, undamped},
+    runs::{SAFE, Start},
     stability::limit,
 };
 
 use crate::{
     problem::{Outcome, Problem},
     report::{Cell, Grid},
-    run::SAFE,
-    start::Start,
     work_precision::{
         methods::{Setting, TARGETS, with},
         trace::{Timed, Trace, timed},

@@ -3,9 +3,8 @@
 //! Where the method converges, the finer run is several times as exact, so the difference of the two is the error of the
 //! coarser one but for a small part of it.
 
-use crane_model::{Description, dynamics, results::Table};
-
-use crate::extremes::{Extremes, columns};
+use super::{Extremes, Table, headlines};
+use crate::{Description, dynamics};
 
 /// Part of the tolerance of the finer run.
 const FINER: f64 = 0.1;
@@ -56,7 +55,7 @@ impl Verification {
     /// Names what may be off by more than one percent of its size.
     pub fn cautions(&self, description: &Description, table: &Table) -> Vec<String> {
         let mut cautions = Vec::new();
-        for kind in columns(description) {
+        for kind in headlines(description) {
             let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of(table, name))).collect();
             let greatest = sizes.iter().copied().fold(0.0, f64::max);
             for (name, size) in kind.names.iter().zip(sizes) {

@@ -1,13 +1,9 @@
 //! What a pose or a run does that the model does not hold for.
 
-use crane_model::{
-    Description,
-    dyn_crane::DynCrane,
-    results::{Table, stop_effort},
-};
 use nalgebra::Vector3;
 
-use crate::extremes::Extremes;
+use super::{Extremes, Table, stop_effort};
+use crate::{Description, dyn_crane::DynCrane};
 
 /// Bend of one section of a beam from which that is said unless asked otherwise, degrees: linear springs and straight
 /// elements are then off by about a hundredth.
@@ -35,19 +31,14 @@ pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
 
 /// The same over a run.
 pub fn of_run(description: &Description, table: &Table, bend: f64) -> Vec<String> {
-    let reaction = |name: &str| Extremes::of(table, &format!("{name}_reaction_z"));
-    let greatest = description.supports.iter().map(|support| reaction(&support.name).size()).fold(0.0, f64::max);
-    let pulls = description.supports.iter().filter_map(|support| {
-        let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
-        (minimum < -ROUNDING * greatest).then_some((support.name.as_str(), minimum, Some(time_of_minimum)))
-    });
+    let pulls = of_reactions(description, &|name| Some(Extremes::of(table, name)));
     let elements = description.coordinates.iter().filter(|coordinate| coordinate.role.is_element());
     let bent = elements.map(|coordinate| {
         let Extremes { minimum, maximum, .. } = Extremes::of(table, &coordinate.name);
         (coordinate.name.as_str(), if -minimum > maximum { minimum } else { maximum })
     });
     let stopped = description.stops.iter().filter_map(|&coordinate| on_stop(description, table, coordinate));
-    pulled(&pulls.collect::<Vec<_>>()).into_iter().chain(stopped).chain(bent_beyond(bent, bend)).collect()
+    pulls.into_iter().chain(stopped).chain(bent_beyond(bent, bend)).collect()
 }
 
 /// Says for how long a run has a joint on its stops, and what these took at most.
@@ -63,6 +54,17 @@ fn on_stop(description: &Description, table: &Table, coordinate: usize) -> Optio
         let (name, unit) = (&coordinate.name, coordinate.kind.force_unit());
         format!("{name} is on its stop for {met:.2} s, with up to {effort:.1} {unit} at {time:.2} s")
     })
+}
+
+/// Feet that pull the crane down over a run, by the extremes of its columns.
+pub fn of_reactions(description: &Description, extremes: &dyn Fn(&str) -> Option<Extremes>) -> Option<String> {
+    let reaction = |name: &str| extremes(&format!("{name}_reaction_z")).unwrap_or_default();
+    let greatest = description.supports.iter().map(|support| reaction(&support.name).size()).fold(0.0, f64::max);
+    let pulls = description.supports.iter().filter_map(|support| {
+        let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
+        (minimum < -ROUNDING * greatest).then_some((support.name.as_str(), minimum, Some(time_of_minimum)))
+    });
+    pulled(&pulls.collect::<Vec<_>>())
 }
 
 /// Says which feet pull, with how much, and when.

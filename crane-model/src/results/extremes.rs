@@ -1,0 +1,63 @@
+//! Least and greatest values of a quantity, signed, and when it had them.
+
+use super::Table;
+
+/// Least and greatest value of a quantity, and when it had them first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extremes {
+    /// Least value.
+    pub minimum: f64,
+    /// When, s.
+    pub time_of_minimum: f64,
+    /// Greatest value.
+    pub maximum: f64,
+    /// When, s.
+    pub time_of_maximum: f64,
+}
+
+impl Extremes {
+    /// Of the column of this name; zeros where there is none.
+    pub fn of(table: &Table, name: &str) -> Self {
+        let Some(values) = table.values(name) else { return Self::default() };
+        let mut times = table.rows.iter().map(|row| row[0]).zip(values);
+        let Some((t, first)) = times.next() else { return Self::default() };
+        let mut found = Self::at(t, first);
+        times.for_each(|(t, value)| found.widen(t, value));
+        found
+    }
+
+    /// The greatest size.
+    pub fn size(&self) -> f64 {
+        self.minimum.abs().max(self.maximum.abs())
+    }
+
+    /// Of one value.
+    pub fn at(t: f64, value: f64) -> Self {
+        Self { minimum: value, time_of_minimum: t, maximum: value, time_of_maximum: t }
+    }
+
+    /// Takes a later value in.
+    pub fn widen(&mut self, t: f64, value: f64) {
+        if value < self.minimum {
+            (self.minimum, self.time_of_minimum) = (value, t);
+        }
+        if value > self.maximum {
+            (self.maximum, self.time_of_maximum) = (value, t);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extremes_keep_their_signs_and_first_times() {
+        let mut extremes = Extremes::at(0.0, -1.0);
+        for (t, value) in [(1.0, -3.0), (2.0, 2.0), (3.0, -3.0), (4.0, 2.0)] {
+            extremes.widen(t, value);
+        }
+        let expected = Extremes { minimum: -3.0, time_of_minimum: 1.0, maximum: 2.0, time_of_maximum: 2.0 };
+        assert_eq!(extremes, expected);
+    }
+}

@@ -1,0 +1,72 @@
+//! The columns of a run that people look at first, by kind.
+
+use super::{Extremes, Table, drive_effort};
+use crate::Description;
+
+/// What the size of a quantity is, against which its error counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Size {
+    /// The greatest value.
+    Peak,
+    /// The way from the least to the greatest value.
+    Range,
+}
+
+/// Columns of one kind, whose sizes compare.
+#[derive(Clone, Debug)]
+pub struct Kind {
+    /// Names of the columns.
+    pub names: Vec<String>,
+    /// Their unit.
+    pub unit: &'static str,
+    /// What their error is measured by, in words.
+    pub measure: &'static str,
+    size: Size,
+}
+
+impl Kind {
+    fn new(names: Vec<String>, unit: &'static str, size: Size) -> Self {
+        let measure = match size {
+            Size::Peak => "peak",
+            Size::Range => "range",
+        };
+        Self { names, unit, measure, size }
+    }
+
+    /// Size of a quantity.
+    pub fn size(&self, extremes: &Extremes) -> f64 {
+        match self.size {
+            Size::Peak => extremes.size(),
+            Size::Range => extremes.maximum - extremes.minimum,
+        }
+    }
+
+    /// Below this a difference is rounding or a motion too small to matter: a micrometre of a crane of some metres.
+    pub fn noise(&self, table: &Table, name: &str) -> f64 {
+        /// Part of the greatest value.
+        const NOISE: f64 = 1e-6;
+        match self.size {
+            Size::Peak => 0.0,
+            Size::Range => NOISE * Extremes::of(table, name).size(),
+        }
+    }
+}
+
+/// The columns that are headlines of a run: efforts of the drives, paths of the points, vertical forces of the supports.
+pub fn headlines(description: &Description) -> Vec<Kind> {
+    let efforts = |unit: &str| -> Vec<String> {
+        let coordinates = description.drives.iter().map(|drive| &description.coordinates[drive.coordinate]);
+        let of_unit = coordinates.filter(|coordinate| coordinate.kind.force_unit() == unit);
+        of_unit.map(|coordinate| drive_effort(&coordinate.name, coordinate.kind)).collect()
+    };
+    let each_axis =
+        |name: String| ["x", "y", "z"].map(|axis| format!("{name}_{axis}")).into_iter().collect::<Vec<String>>();
+    let points = description.points.iter().flat_map(|point| each_axis(point.to_string())).collect();
+    let supports = description.supports.iter().map(|support| format!("{}_reaction_z", support.name));
+    vec![
+        Kind::new(efforts("N m"), "N m", Size::Peak),
+        Kind::new(efforts("N"), "N", Size::Peak),
+        Kind::new(points, "m", Size::Range),
+        Kind::new(supports.collect(), "N", Size::Peak),
+    ]
+}

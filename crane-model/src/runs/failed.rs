@@ -1,0 +1,103 @@
+//! Why there is no run.
+
+use std::{error::Error, fmt};
+
+use crate::{
+    Text,
+    dynamics::{Cause, Stopped},
+    modes::NoModes,
+    statics::Equilibrium,
+};
+
+/// A crane without a run, or without all of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failed {
+    /// Its name.
+    pub crane: Text,
+    /// Why.
+    pub reason: Box<Reason>,
+}
+
+/// Why there is no run, or not all of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reason {
+    /// Statics found no stable equilibrium to start from.
+    Equilibrium(Equilibrium),
+    /// The mass matrix at the start is not positive definite.
+    MassMatrix,
+    /// There are no modes to tell a stable step by.
+    Modes(NoModes),
+    /// The run ended before its time.
+    Stopped {
+        /// Where, and why.
+        stopped: Stopped,
+        /// What was said of a pose near a singularity before.
+        near_singular: Option<String>,
+        /// The largest stable step of a method with constant steps, in words.
+        limit: Option<String>,
+    },
+}
+
+impl Failed {
+    /// What to do about it.
+    pub fn advice(&self) -> String {
+        self.reason.advice()
+    }
+}
+
+impl Reason {
+    /// Of a crane of this name.
+    pub fn of(self, crane: &Text) -> Failed {
+        Failed { crane: crane.clone(), reason: Box::new(self) }
+    }
+
+    /// What to do about it.
+    pub fn advice(&self) -> String {
+        match self {
+            Reason::Equilibrium(_) => {
+                "change `guess:` in its spec to a pose near a stable equilibrium, or drive or spring the coordinates named".to_owned()
+            }
+            Reason::MassMatrix => {
+                "give every link a mass in kg and an inertia in kg m² that count beside those of the others".to_owned()
+            }
+            Reason::Modes(_) => "check masses and inertias in the spec".to_owned(),
+            Reason::Stopped { stopped, limit, .. } => {
+                let light = match stopped.cause {
+                    Cause::Tolerance => {
+                        "; a link of hardly any mass beside a heavy one swings faster than any step: give it the mass it has"
+                    }
+                    _ => "",
+                };
+                let limit = limit.as_ref().map_or_else(String::new, |limit| format!("; {limit}"));
+                stopped.advice() + light + &limit
+            }
+        }
+    }
+}
+
+impl fmt::Display for Failed {
+    /// Name and reason.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.crane, self.reason)
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Reason::Equilibrium(equilibrium) => {
+                let residual = equilibrium.residual();
+                let left = if residual.is_finite() { format!(", residual {residual:.1e}") } else { String::new() };
+                write!(f, "statics did not find a stable equilibrium ({equilibrium}{left})")
+            }
+            Reason::MassMatrix => f.write_str("the mass matrix is not positive definite, so nothing can be moved"),
+            Reason::Modes(no_modes) => write!(f, "{no_modes}"),
+            Reason::Stopped { stopped, near_singular, .. } => {
+                let near = near_singular.as_ref().map_or_else(String::new, |said| format!("; {said}"));
+                write!(f, "{stopped}{near}")
+            }
+        }
+    }
+}
+
+impl Error for Failed {}

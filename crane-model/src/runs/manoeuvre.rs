@@ -1,0 +1,75 @@
+//! Poses along a manoeuvre, and the largest stable step over them.
+
+use super::{Failed, Reason, Start};
+use crate::{
+    dyn_crane::DynCrane,
+    dynamics::Method,
+    modes::{self, DampedMode},
+    stability::{Limit, limit},
+    statics::Settings,
+};
+
+/// Poses along the manoeuvre at which the step is checked: 2 ms each for 25 coordinates.
+pub const POSES: u16 = 10;
+
+/// Part of the largest stable step that is safe to take: swinging moves the limit by some per cent.
+pub const SAFE: f64 = 0.9;
+
+/// Damped modes of a crane at a moment of its manoeuvre.
+#[derive(Clone, Debug)]
+pub struct Pose {
+    /// Time, s.
+    pub t: f64,
+    /// Modes about the pose at rest.
+    pub modes: Vec<DampedMode>,
+}
+
+/// The least of the largest stable steps along a manoeuvre.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// When it holds, s.
+    pub t: f64,
+    /// It, and what limits it.
+    pub limit: Limit,
+}
+
+impl Bound {
+    /// The least over some poses; `None` where nothing limits the step.
+    pub fn of(poses: &[Pose], method: Method) -> Option<Self> {
+        let bounds =
+            poses.iter().filter_map(|pose| Some(Self { t: pose.t, limit: limit(&pose.modes, &method.stability())? }));
+        bounds.min_by(|a, b| a.limit.step.total_cmp(&b.limit.step))
+    }
+}
+
+/// The start and `count` further poses evenly in time, each where the crane would rest if its drives stopped there. As far
+/// as there are such: without statics, or where the crane would fall, the poses end.
+///
+/// # Errors
+/// There are no modes: masses are not those of a crane.
+pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<Pose>, Failed> {
+    let description = crane.description();
+    let mut q = start.q.clone();
+    let mut poses = vec![Pose { t: 0.0, modes: modes_at(crane, &q)? }];
+    if start.rests {
+        for index in 1..=count {
+            let t = description.duration * f64::from(index) / f64::from(count);
+            let equilibrium = crane.equilibrium_at(t, &q, &Settings::default());
+            if !equilibrium.is_stable() {
+                break;
+            }
+            q = equilibrium.q;
+            poses.push(Pose { t, modes: modes_at(crane, &q)? });
+        }
+    }
+    Ok(poses)
+}
+
+fn modes_at(crane: &dyn DynCrane, q: &[f64]) -> Result<Vec<DampedMode>, Failed> {
+    modes::damped(&crane.small_motions_at(q)).map_err(|no_modes| Reason::Modes(no_modes).of(&crane.description().name))
+}
+
+/// What limits the step of [`Method::Rk4`] along the manoeuvre; `None` where nothing does or there are no modes.
+pub fn step_limit(crane: &dyn DynCrane, start: &Start) -> Option<Bound> {
+    Bound::of(&manoeuvre(crane, start, POSES).ok()?, Method::Rk4)
+}

@@ -1,0 +1,155 @@
+//! A recorded run.
+
+use std::{
+    ops::ControlFlow,
+    time::{Duration, Instant},
+};
+
+use super::{Bound, Failed, Reason, Start, step_limit};
+use crate::{
+    dyn_crane::DynCrane,
+    dynamics::{self, Run, Sample, Watch},
+    results::{Recording, Table, Verification, cautions, verification},
+    stability::cause,
+};
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// What it started from.
+    pub start: String,
+    /// Steps and time.
+    pub run: Run,
+    /// All results.
+    pub table: Table,
+    /// Time it took.
+    pub wall: Duration,
+    /// How far off it may be, unless that was not asked for.
+    pub verification: Option<Verification>,
+    /// What the run did that the model or the method does not hold for.
+    pub cautions: Vec<String>,
+}
+
+impl Recorded {
+    /// Simulated time per time taken.
+    pub fn real_time_factor(&self) -> f64 {
+        self.run.time / self.wall.as_secs_f64()
+    }
+}
+
+/// Part of the energy turned over by which a run may be off before that is said: a hundred times what usual steps and
+/// tolerances leave.
+const IMBALANCE: f64 = 0.01;
+/// Energy turned over counts at least as this part of the energy there is: that of a crane at rest is rounding.
+const LEAST_TURNED: f64 = 1e-9;
+
+/// Greatest error of the energy balance over the greatest energy that was turned over.
+pub fn imbalance(table: &Table) -> f64 {
+    let column = |name: &str| table.values(name).map_or_else(Vec::new, Iterator::collect::<Vec<f64>>);
+    let parts = ["kinetic", "gravity", "support", "element", "drive", "stop"].map(|part| format!("{part}_energy"));
+    let turned = parts.iter().map(String::as_str).chain(["drive_work", "dissipated_energy"]).map(|name| {
+        let values = column(name);
+        let first = values.first().copied().unwrap_or(0.0);
+        values.iter().map(|x| (x - first).abs().max(LEAST_TURNED * x.abs())).fold(0.0, f64::max)
+    });
+    let error = column("energy_balance").iter().map(|x| x.abs()).fold(0.0, f64::max);
+    error / turned.fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// Records every sample, says what is odd about poses, and asks after every step whether to go on.
+struct Recorder<'a> {
+    crane: &'a dyn DynCrane,
+    recording: Recording<'a>,
+    singular: Option<String>,
+    tilted: Option<String>,
+    proceed: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
+}
+
+impl Watch for Recorder<'_> {
+    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
+        let description = self.crane.description();
+        self.recording.push(sample);
+        self.singular = self.singular.take().or_else(|| description.near_singular(sample.q));
+        self.tilted = self.tilted.take().or_else(|| description.large_tilt(sample.q));
+        ControlFlow::Continue(())
+    }
+
+    fn step(&mut self, t: f64) -> ControlFlow<()> {
+        (self.proceed)(t)
+    }
+}
+
+/// Runs from `start` and records every result. `proceed` is shown the time after every step, s, and may break off the run, which then
+/// ends with what it has.
+///
+/// # Errors
+/// [`Reason::Stopped`].
+pub fn record(
+    crane: &dyn DynCrane,
+    start: &Start,
+    settings: &dynamics::Settings,
+    proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<Recorded, Failed> {
+    let begin = Instant::now();
+    let mut recorder = Recorder { crane, recording: Recording::new(crane), singular: None, tilted: None, proceed };
+    let run = dynamics::simulate_watched(crane, &start.state(), settings, &mut recorder);
+    let Recorder { recording, singular, tilted, .. } = recorder;
+    let run = run.map_err(|stopped| {
+        let limit = if settings.method.is_adaptive() { None } else { step_limit(crane, start) };
+        let limit = limit.map(|Bound { t, limit }| {
+            let cause = cause(crane.description(), &limit.mode);
+            format!("the largest stable step is {:.3e} s, limited at t = {t} s by {cause}", limit.step)
+        });
+        Reason::Stopped { stopped, near_singular: singular.clone(), limit }.of(&crane.description().name)
+    })?;
+    let table = recording.into_table();
+    let off = imbalance(&table);
+    let unbalanced = (settings.audit && off > IMBALANCE).then(|| {
+        format!(
+            "energy is off by {:.0} % of what was turned over: steps miss something, such as a motion shorter than they are \
+             or an angle near ±90°, or rounding moves springs that are too stiff; make step or tolerance smaller, the \
+             interval of results shorter, springs softer",
+            100.0 * off
+        )
+    });
+    let cautions = singular.into_iter().chain(tilted).chain(unbalanced).collect();
+    Ok(Recorded { start: start.what.clone(), run, table, wall: begin.elapsed(), verification: None, cautions })
+}
+
+/// As [`record`], once more to estimate the error if `verify`, and says what the run did that the model does not hold for; `bend`:
+/// degrees by which one section of a beam may turn.
+///
+/// # Errors
+/// [`Reason::Stopped`].
+pub fn record_checked(
+    crane: &dyn DynCrane,
+    start: &Start,
+    settings: &dynamics::Settings,
+    (verify, bend): (bool, f64),
+    proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<Recorded, Failed> {
+    let mut recorded = record(crane, start, settings, proceed)?;
+    let description = crane.description();
+    recorded.cautions.extend(cautions::of_run(description, &recorded.table, bend));
+    if !settings.method.is_adaptive() {
+        let limit = step_limit(crane, start).map_or(f64::INFINITY, |bound| bound.limit.step);
+        recorded.cautions.extend(cautions::of_step(settings.step_taken(), limit));
+    }
+    if verify {
+        let finer = dynamics::Settings { audit: false, ..verification::finer(settings) };
+        // The time of the finer run is none of the reader's.
+        match record(crane, start, &finer, &mut |_| proceed(settings.duration)) {
+            Ok(finer) => {
+                let found = Verification::new(&recorded.table, &finer.table, description.coordinates.len());
+                recorded.cautions.extend(found.cautions(description, &recorded.table));
+                recorded.verification = Some(found);
+            }
+            Err(failed) => {
+                recorded
+                    .cautions
+                    .push(format!("the error of the run is unknown: a finer run ended early ({})", failed.reason));
+            }
+        }
+    }
+    Ok(recorded)
+}

@@ -1,0 +1,67 @@
+//! Where a run starts.
+
+use super::{Failed, Reason};
+use crate::{
+    dyn_crane::DynCrane,
+    dynamics::InitialState,
+    statics::{Equilibrium, Settings},
+};
+
+/// Start of a crane whose spec asks for statics.
+pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
+/// Start of a crane whose spec does not.
+pub const GUESS: &str = "guess, at rest";
+
+/// Pose and rates from which a run starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// The pose, m and rad.
+    pub q: Vec<f64>,
+    /// Its rates, m/s and rad/s.
+    pub v: Vec<f64>,
+    /// In words; [`EQUILIBRIUM`], [`GUESS`], or what was asked for.
+    pub what: String,
+    /// Whether the crane would stay there if its drives did.
+    pub rests: bool,
+}
+
+impl Start {
+    /// The static equilibrium where the crane's spec asks for statics, otherwise its guess.
+    ///
+    /// # Errors
+    /// There is no stable equilibrium, or the crane cannot be moved.
+    pub fn of(crane: &dyn DynCrane) -> Result<Self, Failed> {
+        if crane.description().statics {
+            Self::at(crane, &crane.equilibrium(&Settings::default()))
+        } else {
+            Ok(Self::guess(crane))
+        }
+    }
+
+    /// An equilibrium that was found.
+    ///
+    /// # Errors
+    /// It is not stable, or the crane cannot be moved.
+    pub fn at(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Result<Self, Failed> {
+        let name = &crane.description().name;
+        if !equilibrium.is_stable() {
+            return Err(Reason::Equilibrium(equilibrium.clone()).of(name));
+        }
+        let q = equilibrium.q.clone();
+        if !q.is_empty() && crane.mass_matrix_at(&q).cholesky().is_none() {
+            return Err(Reason::MassMatrix.of(name));
+        }
+        Ok(Self { v: vec![0.0; q.len()], q, what: EQUILIBRIUM.to_owned(), rests: true })
+    }
+
+    /// The guess of a crane.
+    pub fn guess(crane: &dyn DynCrane) -> Self {
+        let q = crane.guess();
+        Self { v: vec![0.0; q.len()], q, what: GUESS.to_owned(), rests: false }
+    }
+
+    /// Pose and rates.
+    pub fn state(&self) -> InitialState {
+        InitialState { q: self.q.clone(), v: self.v.clone() }
+    }
+}
