@@ -18,7 +18,7 @@ const MAY_IMPORT: [(&str, &[&str]); 11] = [
 ];
 
 /// Words that a folder may not contain, and why.
-const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 6] = [
+const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 7] = [
     ("crane-model/src", "rs", &["crane_codegen"], "the runtime does not depend on the compiler"),
     (
         "tests/golden",
@@ -34,6 +34,12 @@ const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 6] = [
         "rs",
         &["crane_codegen::emit", "crane_codegen::build", "std::fs", "std::env", "std::process", "leak("],
         "a live crane is made of text in memory and gone when it is dropped: no Rust is written, no file touched, nothing leaks",
+    ),
+    (
+        "tools/python/src",
+        "rs",
+        &["unsafe ", "crane_cli", "crane_codegen::emit", "crane_codegen::mechanics", "std::fs", "std::process"],
+        "the package computes with live cranes, and leaves what they are made of, files and processes to others",
     ),
 ];
 

@@ -9,6 +9,7 @@ mod manual;
 mod new_crane;
 mod no_panic;
 mod oracles;
+mod package;
 mod prose;
 mod python;
 mod report;
@@ -25,7 +26,8 @@ const USAGE: &str = "cargo xtask TASK [WORD …]
 
 With words, only the steps whose titles contain one of them.
 
-  test     every check: lint, unit and whole-system tests, oracles, the example crate, the default run and its report
+  test     every check: lint, unit and whole-system tests, oracles, the example crate, the default run and its report, the
+           Python package
   lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md
   oracles  generated code against CasADi, Pinocchio and MuJoCo, over all shipped and some random cranes
   performance [--quick]
@@ -151,6 +153,7 @@ fn tests() -> Vec<Step> {
         Step::program("the example of your own crane", "own-crane"),
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
+        Step::check("the Python package", package::check),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.
         Step::cargo(
             "a crane without std and heap",

@@ -13,8 +13,14 @@ pub struct Environment {
 }
 
 /// For the checks with other libraries.
-pub const CHECKS: Environment =
-    Environment { folder: ".venv", requirements: &["tools/casadi/requirements.txt", "tools/peers/requirements.txt"] };
+pub const CHECKS: Environment = Environment {
+    folder: ".venv",
+    requirements: &[
+        "tools/casadi/requirements.txt",
+        "tools/peers/requirements.txt",
+        "tools/python/requirements-test.txt",
+    ],
+};
 
 /// For the measurement beside other libraries.
 pub const PERFORMANCE: Environment = Environment {

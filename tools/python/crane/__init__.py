@@ -1,0 +1,49 @@
+"""Statics, motion and vibration of cranes with flexible supports, links and drives, from a description in YAML.
+
+>>> import crane
+>>> c = crane.load("eight_link_flexible", load_mass=300)
+>>> rest = c.statics()
+>>> rest.stable
+True
+>>> c.mass_matrix(rest.q).shape
+(25, 25)
+
+Every function takes states as arrays whose last axis holds the coordinates, and broadcasts over the axes before it as NumPy does;
+so do live parameters that are arrays. Batches run on all threads, without Python's global lock.
+"""
+
+from ._native import (
+    InvalidRowWarning,
+    NoEquilibrium,
+    ParameterError,
+    SpecError,
+    SpecWarning,
+    set_threads,
+    shipped,
+    threads,
+)
+from .model import Crane, load
+from .results import Energies, Ensemble, Equilibrium, Linearisation, Modes, Run, Stability
+from .simulation import Simulation, State
+
+__all__ = [
+    "Crane",
+    "Energies",
+    "Ensemble",
+    "Equilibrium",
+    "InvalidRowWarning",
+    "Linearisation",
+    "Modes",
+    "NoEquilibrium",
+    "ParameterError",
+    "Run",
+    "Simulation",
+    "SpecError",
+    "SpecWarning",
+    "Stability",
+    "State",
+    "load",
+    "set_threads",
+    "shipped",
+    "threads",
+]

@@ -1,0 +1,155 @@
+"""The native part of `crane`."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+class SpecError(ValueError):
+    """The mistakes of a spec, drawn with their places and remedies."""
+
+    codes: list[str]
+
+class ParameterError(ValueError):
+    """Live parameters whose values break a rule of the spec language."""
+
+class NoEquilibrium(ArithmeticError):
+    """Statics found no stable equilibrium."""
+
+class SpecWarning(UserWarning):
+    """What is implausible about a spec, drawn with its places and remedies."""
+
+class InvalidRowWarning(UserWarning):
+    """Rows of a batch whose results are NaN, and why."""
+
+def shipped() -> list[str]:
+    """Names of the cranes that come with the package."""
+
+def set_threads(count: int | None = None) -> None:
+    """Sets how many threads a call takes; None: as many as the machine has."""
+
+def threads() -> int:
+    """How many threads a call takes."""
+
+class Crane:
+    """A crane with its parameters: native part of `crane.Crane`."""
+
+    def __new__(
+        cls,
+        named: str,
+        text: str | None = None,
+        parameters: dict[str, ArrayLike] | None = None,
+        invalid: str = "raise",
+        like: Crane | None = None,
+    ) -> Crane: ...
+    @property
+    def name(self) -> str:
+        """Name of the crane."""
+    @property
+    def title(self) -> str:
+        """One line about it."""
+    @property
+    def spec(self) -> str:
+        """Its spec, YAML."""
+    @property
+    def spec_hash(self) -> str:
+        """Hash of the spec."""
+    @property
+    def source(self) -> str:
+        """Where the spec is from, as messages say."""
+    @property
+    def shape(self) -> list[int]:
+        """Leading axes of the parameters; empty where all are numbers."""
+    def describe(self) -> dict[str, Any]:
+        """Coordinates, bodies, drives, supports, points and parameters."""
+    def export(self, format: str) -> str:
+        """The crane for other programs: "urdf", "springs" (what URDF does not hold, YAML) or "mjcf", with the present parameters."""
+    def parameter_rows(self, index: int) -> Any:
+        """Values of a live parameter, by its place, over the leading axes."""
+    def guess_rows(self) -> Array:
+        """(..., n): where statics begins, m and rad."""
+    def equilibria(
+        self,
+        t: ArrayLike | None = None,
+        guess: ArrayLike | None = None,
+        tolerance: float | None = None,
+        iterations: int | None = None,
+        load_steps: int | None = None,
+        invalid: str = "raise",
+    ) -> dict[str, Any]:
+        """Equilibria: `Crane.statics` makes an `Equilibrium` of them."""
+    def vibrations(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:
+        """Modes and stable steps: `Crane.modes` and `Crane.stability` name them."""
+    def record(
+        self, timing: dict[str, Any], q: ArrayLike | None = None, v: ArrayLike | None = None, verify: bool = True, bend: float = ...
+    ) -> dict[str, Any]:
+        """A run: `Crane.simulate` makes a `Run` of it."""
+    def run_ensemble(
+        self, timing: dict[str, Any], invalid: str = "raise", progress: Callable[[int, int], Any] | None = None
+    ) -> dict[str, Any]:
+        """Runs over parameters: `Crane.simulate_ensemble` makes an `Ensemble` of them."""
+    def advance(
+        self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike
+    ) -> tuple[float, Array, Array, float, float, int]:
+        """Time, pose, rates, work, dissipated energy and steps after a while: `Simulation.step` keeps them."""
+    def transforms(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., bodies, 4, 4): transforms of the bodies into the world frame, m."""
+    def transform_derivatives(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., bodies, n, 4, 4): `∂T/∂q_j`; zero for coordinates that do not move a body."""
+    def transform_second_derivatives(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., bodies, n, n, 4, 4): `∂²T/∂q_m∂q_n`."""
+    def points(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., points, 3): positions of the points of interest, world frame, m."""
+    def point_velocities(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., points, 3): their velocities, m/s."""
+    def point_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., points, 3, n): derivatives of their positions with respect to q, m/m and m/rad."""
+    def mass_matrix(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n, n): the mass matrix A, symmetric positive definite; kg, kg m, kg m²."""
+    def bias(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m."""
+    def forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): generalized forces f of supports, elements, drives and hinges, N and N m. t: s, 0 unless given."""
+    def element_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): generalized forces of the springs and dampers between rigid elements, N m."""
+    def drive_forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): generalized forces of the drives, N and N m."""
+    def stop_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): generalized forces of the end stops, N and N m."""
+    def friction_forces(self, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): generalized forces of friction in joints, N and N m."""
+    def drive_forces_at_rest(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m."""
+    def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., supports, 3): forces of the supports on the crane, world frame, N."""
+    def drive_motions(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., drives, 2): prescribed positions and rates of the drives at times t, m and rad, m/s and rad/s."""
+    def forward_dynamics(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): accelerations q̈ of `A q̈ = e + f`, m/s² and rad/s²."""
+    def inverse_dynamics(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): generalized forces that a motion takes in all, `A a − e`, N and N m."""
+    def static_residual(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n): `∂E_p/∂q` at t = 0, zero in equilibrium, N and N m."""
+    def tangent_stiffness(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., n, n): `∂²E_p/∂q²` at t = 0, N/m, N and N m."""
+    def small_motions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them."""
+    def kinetic_energy(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(...): kinetic energy, J."""
+    def gravity_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(...): potential energy of gravity, zero at the world's origin, J."""
+    def support_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(...): energy of the supports' springs, J."""
+    def element_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(...): energy of the springs between rigid elements, J."""
+    def drive_energy(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(...): energy of the drives' springs, J."""
+    def stop_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(...): energy of the end stops, J."""
+    def drive_power(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(...): power that the drives' motions put in, W."""
+    def dissipation(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(...): power that all dampers take out, W."""

@@ -1,0 +1,228 @@
+"""A crane: a spec with live parameters."""
+
+import os
+import warnings
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _native
+from .results import Array, Energies, Ensemble, Equilibrium, Linearisation, Modes, Run, Stability
+from .simulation import Simulation
+
+
+def load(source: str | os.PathLike[str], /, *, text: str | None = None, invalid: str = "raise", **parameters: ArrayLike) -> "Crane":
+    """Loads a crane: a shipped one by its name (`crane.shipped()` lists them), or that of a YAML file.
+
+    text: the spec itself; `source` is then what messages call it.
+    parameters: live parameters by name, in the units that `Crane.info` shows. Arrays of them make a batch: their axes are leading
+    axes of all that is computed.
+    invalid: "raise" raises where parameters of an array break a rule, "nan" makes results of those rows NaN and warns.
+
+    Raises SpecError, which prints every mistake with its place and remedy; warns with SpecWarning of what is implausible.
+    """
+    return Crane(os.fspath(source), text=text, parameters=parameters, invalid=invalid)
+
+
+def _load_again(source: str, text: str, parameters: dict[str, Any]) -> "Crane":
+    """A crane out of a pickle: what was warned of once is not warned of again."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return Crane(source, text=text, parameters=parameters, invalid="nan")
+
+
+class Crane(_native.Crane):
+    """A crane with its live parameters. It never changes; `replace` makes another.
+
+    n: number of coordinates. States are arrays (..., n): coordinates q in m and rad, rates v in m/s and rad/s, both in the order
+    of `coordinates`. Leading axes of q, v, t and of parameters that are arrays broadcast as in NumPy. Times t are in s. The
+    world's z axis points up.
+
+    Functions take `invalid`: "raise" raises a ValueError that names the first row with a number that is not finite, "nan" makes
+    the results of such rows NaN and warns with InvalidRowWarning. Several threads may use one crane; it can be pickled, and
+    used after a fork.
+    """
+
+    def __reduce__(self) -> tuple:
+        return _load_again, (self.source, self.spec, self.parameters)
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={value}" for name, value in self.parameters.items() if np.ndim(value) == 0)
+        batch = f", shape={self.shape}" if self.shape else ""
+        return f"<crane {self.name}: {self.n} coordinates{', ' if values else ''}{values}{batch}>"
+
+    def replace(self, *, invalid: str = "raise", **parameters: ArrayLike) -> Self:
+        """The same crane with other live parameters; what is not named keeps its value. Nothing is derived again."""
+        return type(self)(self.source, parameters=parameters, invalid=invalid, like=self)
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """Coordinates, bodies, drives, supports, points and parameters: names, units and what they are."""
+        return self.describe()
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.info["coordinates"])
+
+    @property
+    def coordinates(self) -> list[str]:
+        """Names of the coordinates, in the order of q."""
+        return [coordinate["name"] for coordinate in self.info["coordinates"]]
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Live parameters: a number each, or an array over the leading axes."""
+        names = [parameter["name"] for parameter in self.info["parameters"]]
+        return {name: self.parameter_rows(index) for index, name in enumerate(names)}
+
+    @property
+    def guess(self) -> Array:
+        """Where statics begins, (..., n), m and rad."""
+        return self.guess_rows()
+
+    def linearise(self, q: ArrayLike, *, invalid: str = "raise") -> Linearisation:
+        """Coefficients of small motions about poses at rest: A, K, D, each (..., n, n)."""
+        matrices = self.small_motions(q, invalid=invalid)
+        return Linearisation(*(matrices[..., place, :, :] for place in range(3)))
+
+    def energies(self, q: ArrayLike, v: ArrayLike, t: ArrayLike = 0.0, *, invalid: str = "raise") -> Energies:
+        """Energies by part, each (...), J."""
+        return Energies(
+            self.kinetic_energy(q, v, invalid=invalid),
+            self.gravity_energy(q, invalid=invalid),
+            self.support_energy(q, invalid=invalid),
+            self.element_energy(q, invalid=invalid),
+            self.drive_energy(q, t, invalid=invalid),
+            self.stop_energy(q, invalid=invalid),
+        )
+
+    def statics(
+        self,
+        *,
+        t: ArrayLike | None = None,
+        guess: ArrayLike | None = None,
+        tolerance: float | None = None,
+        iterations: int | None = None,
+        load_steps: int | None = None,
+        invalid: str = "raise",
+    ) -> Equilibrium:
+        """Static equilibrium by Newton's method, and by continuation where that fails.
+
+        t: times at which the drives' motions stop, s; guess: (..., n), where to begin. Both are leading axes of the result.
+        tolerance: the part of the balancing forces that may be left over; iterations: Newton's steps; load_steps: of the continuation.
+
+        Raises NoEquilibrium where a row has no stable one; with invalid="nan" it warns, and `status` says why.
+        """
+        found = self.equilibria(t, guess, tolerance, iterations, load_steps, invalid)
+        shape = tuple(found.pop("shape"))
+        words = {key: _shaped(found.pop(key), shape) for key in ("status", "message", "steps")}
+        return Equilibrium(**found, **words)
+
+    def modes(self, q: ArrayLike | None = None, *, invalid: str = "raise") -> Modes:
+        """Undamped and damped modes about poses at rest; about the static equilibrium unless poses are given."""
+        q = self.statics(invalid=invalid).q if q is None else np.asarray(q, dtype=float)
+        found = self.vibrations(q, invalid)
+        lists = [found["dominating"], found["damped_dominating"]]
+        if not found["shape"]:
+            lists = [rows[0] for rows in lists]
+        eigenvalues = found["real"] + 1j * found["imaginary"]
+        return Modes(q, found["omega_squared"], found["shapes"], eigenvalues, *lists)
+
+    def stability(self, q: ArrayLike | None = None, *, invalid: str = "raise") -> Stability:
+        """Largest stable steps of all methods of integration about poses at rest, and what limits them."""
+        q = self.statics(invalid=invalid).q if q is None else np.asarray(q, dtype=float)
+        found = self.vibrations(q, invalid)
+        shape = tuple(found["shape"])
+        steps, why = {}, {}
+        for method, (step, words) in found["stable_steps"].items():
+            steps[method] = step.reshape(shape) if shape else float(step[0])
+            why[method] = words if shape else words[0]
+        return Stability(steps, why)
+
+    def simulate(
+        self,
+        *,
+        duration: float | None = None,
+        output: float | None = None,
+        method: str | None = None,
+        tolerance: float | None = None,
+        step: float | str | None = None,
+        force: bool = False,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        verify: bool = True,
+        bend_limit: float | None = None,
+    ) -> Run:
+        """A run from the static equilibrium at rest, or from pose q and rates v.
+
+        duration: s; output: interval of results, s; the spec's unless given.
+        method: "bdf" (default), "rosw4", "dopri5", or "rk4" with constant `step` in s ("auto": the largest safe one).
+        tolerance: error that an adaptive method allows a step, m and rad (2e-5).
+        force: run even where the step is beyond the largest stable one.
+        verify: run once more, finer, to estimate the error of every column.
+        bend_limit: degrees by which a section of a beam may turn before a caution says so.
+
+        Ctrl-C ends it with KeyboardInterrupt.
+        """
+        timing = _timing(method, duration, output, tolerance, step, force)
+        limits = {} if bend_limit is None else {"bend": bend_limit}
+        found = self.record(timing, q, v, verify, **limits)
+        units = dict(found.pop("columns"))
+        differences = found.pop("differences")
+        errors = None if differences is None else dict(zip(units, differences, strict=True))
+        return Run(units=units, errors=errors, **found)
+
+    def simulate_ensemble(
+        self,
+        *,
+        duration: float | None = None,
+        output: float | None = None,
+        method: str | None = None,
+        tolerance: float | None = None,
+        step: float | str | None = None,
+        force: bool = False,
+        invalid: str = "raise",
+        progress: Any = None,
+    ) -> Ensemble:
+        """A run for every row of the parameters, each from its own static equilibrium, on all threads.
+
+        Arguments are those of `simulate`. Adaptive methods run every crane as it would run alone. `progress(done, all)` is called
+        now and then. With invalid="nan" runs that fail leave NaN, and `status` says why.
+        """
+        found = self.run_ensemble(_timing(method, duration, output, tolerance, step, force), invalid, progress)
+        shape = tuple(found.pop("shape"))
+        words = {key: _shaped(found.pop(key), shape) for key in ("status", "cautions")}
+        return Ensemble(units=dict(found.pop("columns")), **found, **words)
+
+    def simulation(self, *, method: str | None = None, tolerance: float | None = None, step: float | None = None, **start: Any) -> Simulation:
+        """A run to be driven from outside, step by step: `Simulation`. `start`: t, q and v; the static equilibrium at rest unless given."""
+        return Simulation(self, _timing(method, None, None, tolerance, step, True), **start)
+
+
+def _timing(
+    method: str | None,
+    duration: float | None,
+    output: float | None,
+    tolerance: float | None,
+    step: float | str | None,
+    force: bool,
+) -> dict[str, Any]:
+    """How to run, for the native part."""
+    if isinstance(step, str) and step != "auto":
+        raise ValueError(f'step={step!r}: write a number of seconds, or "auto"')
+    return {
+        "method": method,
+        "duration": duration,
+        "output": output,
+        "tolerance": tolerance,
+        "step": None if step == "auto" else step,
+        "safe_step": step == "auto",
+        "force": force,
+    }
+
+
+def _shaped(rows: list, shape: tuple[int, ...]) -> Any:
+    """What a list of rows is over leading axes: the row itself where there are none."""
+    return np.asarray(rows).reshape(shape) if shape else rows[0]

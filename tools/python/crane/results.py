@@ -1,0 +1,210 @@
+"""What the functions of a crane return."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Energies(NamedTuple):
+    """Energies by part, J, over the leading axes."""
+
+    kinetic: Array
+    gravity: Array
+    supports: Array
+    elements: Array
+    drives: Array
+    stops: Array
+
+    @property
+    def total(self) -> Array:
+        """Kinetic and potential energy together, J."""
+        return self.kinetic + self.gravity + self.supports + self.elements + self.drives + self.stops
+
+
+class Linearisation(NamedTuple):
+    """Coefficients of small motions about a pose at rest, `A δq̈ + D δq̇ + K δq = 0`; each (..., n, n)."""
+
+    mass: Array
+    stiffness: Array
+    damping: Array
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Where a crane rests, over the leading axes.
+
+    q: (..., n), m and rad; NaN where there is no equilibrium.
+    status: "stable", "unstable", "singular", "not converged" or "overflow".
+    residual: (...), the part of the balancing forces left over.
+    steps: (...), Newton's steps.
+    drive_efforts: (..., drives), N m and N, what the drives hold.
+    support_reactions: (..., supports, 3), N, world frame.
+    points: (..., points, 3), m, world frame.
+    """
+
+    q: Array
+    status: Any
+    message: Any
+    residual: Array
+    steps: Any
+    drive_efforts: Array
+    support_reactions: Array
+    points: Array
+
+    @property
+    def stable(self) -> Any:
+        """Whether it is a stable equilibrium: a bool, or (...) of them."""
+        return self.status == "stable"
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Small vibrations about poses at rest, lowest first, over the leading axes; NaN behind the last mode of a row.
+
+    omega_squared: (..., modes), rad²/s² of undamped modes; negative where the pose is unstable.
+    shapes: (..., modes, n), shapes in generalized coordinates, `xᵀ A x = 1`.
+    eigenvalues: (..., damped modes), λ with Im λ ≥ 0 of damped modes, 1/s.
+    dominating: names of the coordinates that dominate each undamped mode; a list per row where there are leading axes.
+    damped_dominating: those of each damped mode.
+    """
+
+    q: Array
+    omega_squared: Array
+    shapes: Array
+    eigenvalues: NDArray[np.complex128]
+    dominating: list
+    damped_dominating: list
+
+    @property
+    def frequencies(self) -> Array:
+        """Undamped frequencies ω/2π, Hz; NaN where the pose is unstable in a mode."""
+        with np.errstate(invalid="ignore"):
+            return np.sqrt(self.omega_squared) / (2.0 * np.pi)
+
+    @property
+    def damping_ratios(self) -> Array:
+        """Damping ratios −Re λ/|λ|: 1 for a mode that creeps back without swinging, negative for one that grows."""
+        size = np.abs(self.eigenvalues)
+        return np.divide(-self.eigenvalues.real, size, out=np.zeros_like(size), where=size != 0.0)
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Largest stable steps of the methods of integration, s, over the leading axes; infinite where nothing limits them.
+
+    steps: by the name of the method; (...).
+    limited_by: what limits them, in words; a list per row where there are leading axes.
+    """
+
+    steps: dict[str, Any]
+    limited_by: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Run(Mapping[str, Array]):
+    """A run: its columns by name, as in `run["boom_psi_drive_torque"]`, at the times `run.t`.
+
+    units: unit of every column, by name.
+    table: (times, columns), all of them in the order of `units`.
+    start: what it started from. method, tolerance, step (s; the mean of an adaptive method), statistics: how it ran.
+    errors: greatest difference of every column from a finer run, in the column's unit; None where that was not asked for.
+    divergence: time in which small differences grow by a factor e, s, where the motion is chaotic.
+    cautions: what the run did that the model or the method does not hold for.
+    """
+
+    units: dict[str, str]
+    table: Array = field(repr=False)
+    start: str
+    method: str
+    tolerance: float | None
+    step: float
+    statistics: dict[str, int]
+    errors: dict[str, float] | None = field(repr=False)
+    divergence: float | None
+    cautions: list[str]
+    wall_time: float
+
+    def __getitem__(self, name: str) -> Array:
+        return self.table[:, _place(self.units, name)]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.units)
+
+    def __len__(self) -> int:
+        return len(self.units)
+
+    @property
+    def t(self) -> Array:
+        """Times of the results, s."""
+        return self["t"]
+
+    def extremes(self, name: str) -> dict[str, float]:
+        """Least and greatest value of a column, and when it had them first, s."""
+        column, t = self[name], self.t
+        least, greatest = int(np.argmin(column)), int(np.argmax(column))
+        return {
+            "minimum": float(column[least]),
+            "time_of_minimum": float(t[least]),
+            "maximum": float(column[greatest]),
+            "time_of_maximum": float(t[greatest]),
+        }
+
+    def to_pandas(self) -> Any:
+        """The columns as a pandas DataFrame over time."""
+        import pandas
+
+        frame = pandas.DataFrame(self.table, columns=list(self.units))
+        return frame.set_index("t")
+
+
+@dataclass(frozen=True)
+class Ensemble(Mapping[str, Array]):
+    """Runs of a crane over arrays of parameters: what is left of each, by name, over their axes.
+
+    Columns: `_min`, `_min_time`, `_max`, `_max_time` of `<point>_x`, `_y`, `_z`, of `<coordinate>_drive_torque` or
+    `_drive_force` and of `<support>_reaction_x`, `_y`, `_z`, signed; `<point>_x_end` and so on, the last values.
+    NaN where a run did not reach its end.
+
+    units: unit of every column. status: "done", or why not. cautions: what to be careful about, or "".
+    time: time reached, s. steps: steps taken. q, v: (..., n), the last pose and rates.
+    """
+
+    units: dict[str, str]
+    table: Array = field(repr=False)
+    status: Any
+    cautions: Any
+    time: Array
+    steps: Array
+    q: Array = field(repr=False)
+    v: Array = field(repr=False)
+
+    def __getitem__(self, name: str) -> Array:
+        return self.table[..., _place(self.units, name)]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.units)
+
+    def __len__(self) -> int:
+        return len(self.units)
+
+    @property
+    def done(self) -> Any:
+        """Whether each run reached its end."""
+        return self.status == "done"
+
+
+def _place(units: dict[str, str], name: str) -> int:
+    """Place of a column; a KeyError that names those alike."""
+    try:
+        return list(units).index(name)
+    except ValueError:
+        import difflib
+
+        alike = difflib.get_close_matches(name, units, 3, 0.5)
+        meant = f"; did you mean {' or '.join(alike)}?" if alike else ""
+        raise KeyError(f"there is no column {name!r}{meant}") from None

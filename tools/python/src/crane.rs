@@ -1,0 +1,316 @@
+//! A spec with parameters, and what it says about itself.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use crane_codegen::compile::check_with;
+use crane_codegen::{Checked, SourceFile, build, exchange};
+use crane_live::LiveCrane;
+use crane_live::rows::{Evaluation, Quantity};
+use crane_model::Description;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_specs::SPECS;
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::arrays::{Argument, Joined};
+use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn_of_rows, warn_of_spec};
+
+/// A crane with its parameters: native part of `crane.Crane`.
+#[pyclass(frozen, subclass, module = "crane._native")]
+pub struct Crane {
+    /// The crane, with the parameters of the first row.
+    pub live: LiveCrane,
+    source: SourceFile,
+    /// Live parameters of all rows.
+    pub parameters: Argument,
+    /// Rows whose parameters break a rule.
+    pub bad: Vec<BadRow>,
+    /// Room for single states, by quantity.
+    rooms: Mutex<HashMap<Quantity, Evaluation<f64>>>,
+}
+
+/// Names of the cranes that come with the package.
+#[pyfunction]
+pub fn shipped() -> Vec<&'static str> {
+    SPECS.iter().map(|(name, _)| *name).collect()
+}
+
+/// The spec of a file or of a shipped crane.
+fn open(py: Python<'_>, named: &str) -> PyResult<SourceFile> {
+    if let Some((name, text)) = SPECS.iter().find(|(name, _)| *name == named) {
+        return Ok(SourceFile::new(format!("{name}.yaml"), *text));
+    }
+    let path = PathBuf::from(named);
+    let yaml = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
+    if !yaml && !path.is_file() {
+        return Err(PyFileNotFoundError::new_err(format!(
+            "there is no crane `{named}` and no such file; cranes: {}; a spec of your own is a file that ends with .yaml",
+            shipped().join(", ")
+        )));
+    }
+    build::open(&path).map_err(|failure| match failure {
+        build::Failure::File(message) if !path.exists() => PyFileNotFoundError::new_err(message),
+        build::Failure::File(message) => PyOSError::new_err(message),
+        build::Failure::Mistakes(mistakes) => spec_error(py, &mistakes),
+    })
+}
+
+#[pymethods]
+impl Crane {
+    #[new]
+    #[pyo3(signature = (named, text=None, parameters=None, invalid="raise", like=None))]
+    fn new(
+        py: Python<'_>,
+        named: &str,
+        text: Option<&str>,
+        parameters: Option<&Bound<'_, PyDict>>,
+        invalid: &str,
+        like: Option<&Bound<'_, Crane>>,
+    ) -> PyResult<Self> {
+        let invalid = Invalid::named(invalid)?;
+        if let Some(like) = like {
+            return like.get().with_others(py, parameters, invalid);
+        }
+        let source = match text {
+            Some(text) => SourceFile::new(named, text),
+            None => open(py, named)?,
+        };
+        // Numbers that are set are looked at for plausibility, too; whether they may be set is asked below.
+        let number = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+            Some((name.extract::<String>().ok()?, value.extract::<f64>().ok()?))
+        };
+        let set: Vec<(String, f64)> = parameters.into_iter().flatten().filter_map(number).collect();
+        let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        let checked = py.detach(|| check_with(&source, &set));
+        let Checked { chain, warnings } = checked.map_err(|found| spec_error(py, &found))?;
+        warn_of_spec(py, &warnings)?;
+        let count = chain.coordinates.len();
+        if count > LiveCrane::MOST_COORDINATES {
+            let most = LiveCrane::MOST_COORDINATES;
+            return Err(mistakes::SpecError::new_err(format!(
+                "{} has {count} coordinates, and at most {most} can be computed: give flexible links fewer `sections`",
+                chain.name
+            )));
+        }
+        Self::with(py, LiveCrane::new(chain), source, parameters, invalid)
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.live.description().name
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.live.description().title
+    }
+
+    #[getter]
+    fn spec(&self) -> &str {
+        &self.source.text
+    }
+
+    #[getter]
+    fn spec_hash(&self) -> &str {
+        &self.live.description().spec_hash
+    }
+
+    #[getter]
+    fn source(&self) -> &str {
+        &self.source.name
+    }
+
+    #[getter]
+    fn shape(&self) -> Vec<usize> {
+        self.parameters.shape.clone()
+    }
+
+    /// What the crane consists of.
+    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let description = self.live.description();
+        let all = PyDict::new(py);
+        let list = |rows: Vec<Bound<'py, PyDict>>| PyList::new(py, rows);
+        let mut rows = Vec::new();
+        for info in &description.coordinates {
+            let row = PyDict::new(py);
+            row.set_item("name", &*info.name)?;
+            row.set_item("unit", info.kind.unit())?;
+            row.set_item("force_unit", info.kind.force_unit())?;
+            row.set_item("role", info.role.name())?;
+            rows.push(row);
+        }
+        all.set_item("coordinates", list(std::mem::take(&mut rows))?)?;
+        for info in &description.bodies {
+            let row = PyDict::new(py);
+            row.set_item("name", &*info.name)?;
+            row.set_item("link", &*info.link)?;
+            row.set_item("mass", info.mass)?;
+            row.set_item("length", info.length)?;
+            row.set_item("degrees_of_freedom", info.degrees_of_freedom)?;
+            rows.push(row);
+        }
+        all.set_item("bodies", list(std::mem::take(&mut rows))?)?;
+        for info in &description.drives {
+            let coordinate = &description.coordinates[info.coordinate];
+            let row = PyDict::new(py);
+            row.set_item("coordinate", &*coordinate.name)?;
+            row.set_item("index", info.coordinate)?;
+            row.set_item("unit", coordinate.kind.force_unit())?;
+            row.set_item("start", info.start)?;
+            rows.push(row);
+        }
+        all.set_item("drives", list(std::mem::take(&mut rows))?)?;
+        for info in &description.supports {
+            let row = PyDict::new(py);
+            row.set_item("name", &*info.name)?;
+            row.set_item("position", info.position.to_vec())?;
+            rows.push(row);
+        }
+        all.set_item("supports", list(std::mem::take(&mut rows))?)?;
+        for info in &description.parameters {
+            let row = PyDict::new(py);
+            row.set_item("name", &*info.name)?;
+            row.set_item("unit", &*info.unit)?;
+            row.set_item("about", &*info.about)?;
+            row.set_item("default", info.default)?;
+            rows.push(row);
+        }
+        all.set_item("parameters", list(rows)?)?;
+        all.set_item("points", description.points.iter().map(|point| &**point).collect::<Vec<&str>>())?;
+        all.set_item("run", (description.duration, description.step, description.output))?;
+        Ok(all)
+    }
+
+    /// The crane for other programs: "urdf", "springs" (what URDF does not hold, YAML) or "mjcf", with the present parameters.
+    fn export(&self, format: &str) -> PyResult<String> {
+        if !self.is_single() {
+            return Err(PyValueError::new_err("the crane has arrays of parameters: export one of them"));
+        }
+        let (chain, parameters) = (self.live.chain(), self.live.parameters());
+        match format {
+            "urdf" => Ok(exchange::urdf(chain, parameters)),
+            "springs" => Ok(exchange::springs(chain, parameters)),
+            "mjcf" => exchange::mjcf(chain, parameters)
+                .map_err(|failure| PyValueError::new_err(format!("{}; {}", failure.title, failure.help))),
+            other => Err(PyValueError::new_err(format!("format={other:?}: write \"urdf\", \"springs\" or \"mjcf\""))),
+        }
+    }
+
+    /// Values of a live parameter, by its place, over the leading axes.
+    fn parameter_rows<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        let values = self.parameters.numbers.iter().skip(index).step_by(self.parameters.width.max(1)).copied();
+        let values: Vec<f64> = values.collect();
+        match (values.as_slice(), self.parameters.shape.as_slice()) {
+            ([value], []) => Ok(value.into_pyobject(py)?.into_any()),
+            _ => Ok(crate::arrays::array(py, values, &self.parameters.shape, &[])?.into_any()),
+        }
+    }
+
+    /// (..., n): where statics begins, m and rad.
+    fn guess_rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let rows = self.parameters.rows();
+        let guesses = crate::parallel::map_rows(py, rows, |row, _| (&*self.of_row(row) as &dyn DynCrane).guess())?;
+        let size = self.live.size();
+        Ok(crate::arrays::array(py, guesses.concat(), &self.parameters.shape, &[size])?.into_any())
+    }
+}
+
+impl Crane {
+    /// The same crane with other parameters; what is not named keeps its values.
+    fn with_others(&self, py: Python<'_>, given: Option<&Bound<'_, PyDict>>, invalid: Invalid) -> PyResult<Self> {
+        let all = PyDict::new(py);
+        for (index, info) in self.live.description().parameters.iter().enumerate() {
+            all.set_item(&*info.name, self.parameter_rows(py, index)?)?;
+        }
+        if let Some(given) = given {
+            all.update(given.as_mapping())?;
+        }
+        Self::with(py, self.live.clone(), self.source.clone(), Some(&all), invalid)
+    }
+
+    /// The crane with parameters by name, numbers or arrays.
+    fn with(
+        py: Python<'_>,
+        mut live: LiveCrane,
+        source: SourceFile,
+        given: Option<&Bound<'_, PyDict>>,
+        invalid: Invalid,
+    ) -> PyResult<Self> {
+        let description = live.description().clone();
+        let mut values: Vec<Argument> = live
+            .parameters()
+            .iter()
+            .map(|value| Argument { shape: Vec::new(), numbers: vec![*value], width: 1 })
+            .collect();
+        for (name, value) in given.into_iter().flatten() {
+            let name: String = name.extract()?;
+            values[place(&description, &name)?] = Argument::scalars(&name, &value)?;
+        }
+        let names = description.parameters.iter().map(|info| &*info.name);
+        let joined = Joined::new(&names.zip(&values).collect::<Vec<_>>())?;
+        let rows = joined.rows();
+        let of = |values: &[f64], row: usize| values[if values.len() == 1 { 0 } else { row }];
+        let numbers: Vec<f64> =
+            (0..rows).flat_map(|row| joined.arguments.iter().map(move |values| of(values, row))).collect();
+        let width = values.len();
+        let check = |row: usize| {
+            let refused = live.check(&numbers[row * width..(row + 1) * width]).err()?;
+            Some(BadRow { row, reason: refused.to_string() })
+        };
+        let bad: Vec<BadRow> = if width == 0 { Vec::new() } else { (0..rows).filter_map(check).collect() };
+        if let (Some(first), true) = (bad.first(), invalid == Invalid::Raise || joined.shape.is_empty()) {
+            return Err(ParameterError::new_err(mistakes::describe(first, &joined.shape)));
+        }
+        warn_of_rows(py, &bad, &joined.shape)?;
+        let sound = (0..rows).find(|row| bad.iter().all(|bad| bad.row != *row));
+        if let (Some(row), true) = (sound, width > 0) {
+            let row = &numbers[row * width..(row + 1) * width];
+            live.set_parameters(row).map_err(|refused| ParameterError::new_err(refused.to_string()))?;
+        }
+        let parameters = Argument { shape: joined.shape.clone(), numbers, width };
+        Ok(Self { live, source, parameters, bad, rooms: Mutex::default() })
+    }
+
+    /// The crane of a row of parameters.
+    pub fn of_row(&self, row: usize) -> Box<LiveCrane> {
+        let mut live = self.live.clone();
+        let Argument { width, numbers, .. } = &self.parameters;
+        if *width > 0 && self.parameters.rows() > 1 && self.bad.iter().all(|bad| bad.row != row) {
+            // Checked when they were given.
+            let _ = live.set_parameters(&numbers[row * width..(row + 1) * width]);
+        }
+        Box::new(live)
+    }
+
+    /// Whether all rows have the same parameters.
+    pub fn is_single(&self) -> bool {
+        self.parameters.shape.is_empty()
+    }
+
+    /// Calls with room for a quantity of one state, kept from the last call.
+    pub fn in_room<R>(&self, quantity: Quantity, call: impl FnOnce(&mut Evaluation<f64>) -> R) -> R {
+        let kept = self.rooms.lock().unwrap_or_else(PoisonError::into_inner).remove(&quantity);
+        let mut room = kept.unwrap_or_else(|| Evaluation::new(&self.live, quantity));
+        let result = call(&mut room);
+        self.rooms.lock().unwrap_or_else(PoisonError::into_inner).insert(quantity, room);
+        result
+    }
+}
+
+/// Place of a live parameter by its name.
+fn place(description: &Description, name: &str) -> PyResult<usize> {
+    let names = || description.parameters.iter().map(|info| &*info.name);
+    names().position(|known| known == name).ok_or_else(|| {
+        let known: Vec<String> =
+            description.parameters.iter().map(|info| format!("{} [{}]", info.name, info.unit)).collect();
+        let known = if known.is_empty() {
+            "it has none; name values under `parameters:` in its spec".to_owned()
+        } else {
+            format!("parameters: {}", known.join(", "))
+        };
+        PyTypeError::new_err(format!("{} has no live parameter `{name}`; {known}", description.name))
+    })
+}

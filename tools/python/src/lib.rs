@@ -1,0 +1,35 @@
+//! The native part of the Python package `crane`: what is computed per state, over rows of states on all threads.
+//!
+//! | here | what |
+//! |---|---|
+//! | `crane` | the class `Crane`: a spec with parameters, its names and units |
+//! | `functions` | transforms, points, mass matrix, forces, dynamics, energies: arrays in, arrays out |
+//! | `equilibria`, `vibrations` | statics, modes and stability, row by row |
+//! | `motion` | runs: of one crane, of many, step by step |
+//! | `arrays` | arguments as rows, and results as arrays |
+//! | `parallel` | rows on threads, while Python's signals are looked at |
+//! | `mistakes` | exceptions and warnings |
+
+mod arrays;
+mod crane;
+mod equilibria;
+mod functions;
+mod mistakes;
+mod motion;
+mod parallel;
+mod vibrations;
+
+use pyo3::prelude::*;
+
+/// What `crane` imports.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::crane::Crane;
+    #[pymodule_export]
+    use crate::crane::shipped;
+    #[pymodule_export]
+    use crate::mistakes::{InvalidRowWarning, NoEquilibrium, ParameterError, SpecError, SpecWarning};
+    #[pymodule_export]
+    use crate::parallel::{set_threads, threads};
+}

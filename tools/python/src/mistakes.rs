@@ -1,0 +1,112 @@
+//! Exceptions and warnings.
+
+use crane_codegen::Diagnostics;
+use pyo3::create_exception;
+use pyo3::exceptions::{PyArithmeticError, PyUserWarning, PyValueError};
+use pyo3::prelude::*;
+
+create_exception!(crane, SpecError, PyValueError, "The mistakes of a spec, drawn with their places and remedies.");
+create_exception!(
+    crane,
+    ParameterError,
+    PyValueError,
+    "Live parameters whose values break a rule of the spec language."
+);
+create_exception!(crane, NoEquilibrium, PyArithmeticError, "Statics found no stable equilibrium.");
+create_exception!(
+    crane,
+    SpecWarning,
+    PyUserWarning,
+    "What is implausible about a spec, drawn with its places and remedies."
+);
+create_exception!(crane, InvalidRowWarning, PyUserWarning, "Rows of a batch whose results are NaN, and why.");
+
+/// The mistakes of a spec as an exception that prints them as the command draws them; its `codes` are those of the rules.
+pub fn spec_error(py: Python<'_>, mistakes: &Diagnostics) -> PyErr {
+    let codes: Vec<&str> = mistakes.mistakes().iter().map(|mistake| mistake.code).collect();
+    let error = SpecError::new_err(format!("\n{}", mistakes.to_string().trim_end()));
+    match error.value(py).setattr("codes", codes) {
+        Ok(()) => error,
+        Err(other) => other,
+    }
+}
+
+/// Warns of what is implausible.
+pub fn warn_of_spec(py: Python<'_>, warnings: &Diagnostics) -> PyResult<()> {
+    if warnings.is_empty() {
+        return Ok(());
+    }
+    warn(py, &py.get_type::<SpecWarning>(), format!("\n{}", warnings.to_string().trim_end()))
+}
+
+/// Warns the caller of the function of the package that was called.
+pub fn warn(py: Python<'_>, category: &Bound<'_, PyAny>, message: String) -> PyResult<()> {
+    let message = std::ffi::CString::new(message.replace('\0', "\u{fffd}"))?;
+    PyErr::warn(py, category, &message, 1)
+}
+
+/// What to do with rows that nothing can be computed of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Invalid {
+    /// Raise an exception that names the first.
+    Raise,
+    /// Make their results NaN, and warn of all.
+    Nan,
+}
+
+impl Invalid {
+    /// By its name.
+    pub fn named(name: &str) -> PyResult<Self> {
+        match name {
+            "raise" => Ok(Invalid::Raise),
+            "nan" => Ok(Invalid::Nan),
+            other => Err(PyValueError::new_err(format!("invalid={other:?}: write \"raise\" or \"nan\""))),
+        }
+    }
+}
+
+/// A row that nothing can be computed of, and why.
+#[derive(Clone, Debug)]
+pub struct BadRow {
+    /// Its place.
+    pub row: usize,
+    /// Why.
+    pub reason: String,
+}
+
+/// Rows that are told one by one in a warning.
+const TOLD: usize = 5;
+
+/// Warns of bad rows of a batch of this shape.
+pub fn warn_of_rows(py: Python<'_>, bad: &[BadRow], shape: &[usize]) -> PyResult<()> {
+    if bad.is_empty() {
+        return Ok(());
+    }
+    let mut told: Vec<String> = bad.iter().take(TOLD).map(|bad| describe(bad, shape)).collect();
+    if bad.len() > TOLD {
+        told.push(format!("{} more", bad.len() - TOLD));
+    }
+    let category = py.get_type::<InvalidRowWarning>();
+    warn(py, &category, format!("results of {} rows are NaN: {}", bad.len(), told.join("; ")))
+}
+
+/// A bad row in words: its index, and why.
+pub fn describe(bad: &BadRow, shape: &[usize]) -> String {
+    if shape.is_empty() { bad.reason.clone() } else { format!("row {}: {}", index(bad.row, shape), bad.reason) }
+}
+
+/// The index of a row in an array of this shape.
+fn index(row: usize, shape: &[usize]) -> String {
+    let mut rest = row;
+    let mut places: Vec<String> = shape
+        .iter()
+        .rev()
+        .map(|size| {
+            let place = rest % size.max(&1);
+            rest /= size.max(&1);
+            place.to_string()
+        })
+        .collect();
+    places.reverse();
+    if places.len() == 1 { format!("[{}]", places[0]) } else { format!("[{}]", places.join(", ")) }
+}

@@ -1,0 +1,342 @@
+//! Runs: of one crane with all its results, of many with what is left of them, and step by step.
+
+use std::ops::ControlFlow;
+use std::str::FromStr;
+
+use crane_model::Description;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::{self, InitialState, Method, Sample, Settings, Statistics};
+use crane_model::results::{Column, Peaks, cautions};
+use crane_model::runs::ensemble::{self, Conduct};
+use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, record_checked, step_limit};
+use crane_model::stability::cause;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::{Argument, array};
+use crate::crane::Crane;
+use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
+use crate::parallel::{Watch, threads};
+
+/// Start from a state that was given.
+const GIVEN: &str = "as given";
+
+/// How to run, as it was given.
+#[derive(FromPyObject)]
+pub struct Timing {
+    #[pyo3(item)]
+    method: Option<String>,
+    #[pyo3(item)]
+    duration: Option<f64>,
+    #[pyo3(item)]
+    output: Option<f64>,
+    #[pyo3(item)]
+    tolerance: Option<f64>,
+    #[pyo3(item)]
+    step: Option<f64>,
+    /// The largest safe step.
+    #[pyo3(item)]
+    safe_step: bool,
+    #[pyo3(item)]
+    force: bool,
+}
+
+impl Timing {
+    /// Settings of a run: the spec's unless given here.
+    fn settings(&self, description: &Description) -> PyResult<Settings> {
+        let constant = self.step.is_some() || self.safe_step;
+        let method = match &self.method {
+            Some(name) => Method::from_str(name).map_err(|unknown| PyValueError::new_err(unknown.to_string()))?,
+            None if constant => Method::Rk4,
+            None => Method::default(),
+        };
+        if constant && method.is_adaptive() {
+            return Err(PyValueError::new_err(format!(
+                "`step` means nothing to {method}: give `tolerance`, or method=\"rk4\""
+            )));
+        }
+        if self.tolerance.is_some() && !method.is_adaptive() {
+            return Err(PyValueError::new_err(format!(
+                "`tolerance` means nothing to {method}: give `step`, or method=\"bdf\""
+            )));
+        }
+        let own = Settings::of(description);
+        let settings = Settings {
+            method,
+            duration: self.duration.unwrap_or(own.duration),
+            output: self.output.unwrap_or_else(|| own.output.min(self.duration.unwrap_or(own.output))),
+            tolerance: self.tolerance.unwrap_or(own.tolerance),
+            step: self.step.unwrap_or(own.step),
+            audit: true,
+            ..own
+        };
+        for (name, value, (least, greatest), unit) in [
+            ("duration", settings.duration, Settings::TIMES, "s"),
+            ("output", settings.output, Settings::TIMES, "s"),
+            ("tolerance", settings.tolerance, Settings::TOLERANCES, "m and rad"),
+            ("step", settings.step, (f64::MIN_POSITIVE, f64::MAX), "s"),
+        ] {
+            if !(least..=greatest).contains(&value) {
+                let range =
+                    if greatest < f64::MAX { format!("from {least:e} to {greatest:e}") } else { "above 0".to_owned() };
+                return Err(PyValueError::new_err(format!("{name}={value}: write a number {range}, in {unit}")));
+            }
+        }
+        if settings.output > settings.duration {
+            let Settings { output, duration, .. } = settings;
+            return Err(PyValueError::new_err(format!("output={output} is longer than the run of {duration} s")));
+        }
+        if settings.duration / settings.output > Settings::MOST_RESULTS {
+            return Err(PyValueError::new_err("results are more than a million: write a longer `output`, in s"));
+        }
+        if !method.is_adaptive() && settings.duration / settings.step > Settings::MOST_STEPS {
+            return Err(PyValueError::new_err("steps are more than ten billion: write a longer `step`, in s"));
+        }
+        Ok(settings)
+    }
+
+    /// The same with a step that is stable from a start.
+    fn stable(&self, crane: &dyn DynCrane, start: &Start) -> PyResult<Settings> {
+        let settings = self.settings(crane.description())?;
+        if settings.method.is_adaptive() {
+            return Ok(settings);
+        }
+        match step_limit(crane, start) {
+            Some(StepBound { limit, .. }) if self.safe_step => Ok(Settings { step: SAFE * limit.step, ..settings }),
+            Some(StepBound { t, limit }) if settings.step.min(settings.output) > limit.step && !self.force => {
+                let (name, step) = (&crane.description().name, settings.step);
+                let cause = cause(crane.description(), &limit.mode);
+                Err(PyValueError::new_err(format!(
+                    "{name}: a step of {step:e} s is unstable; rk4 takes at most {:.3e} s, limited at t = {t} s by {cause}; \
+                     step=\"auto\" takes {:.2e} s, method=\"bdf\" needs no such steps, force=True runs all the same",
+                    limit.step,
+                    SAFE * limit.step
+                )))
+            }
+            _ => Ok(settings),
+        }
+    }
+}
+
+/// A failure as an exception.
+fn raised(failed: &Failed) -> PyErr {
+    let words = format!("{failed}; {}", failed.advice());
+    match *failed.reason {
+        Reason::Equilibrium(_) => NoEquilibrium::new_err(words),
+        _ => PyRuntimeError::new_err(words),
+    }
+}
+
+/// Names and units of columns.
+fn named(columns: &[Column]) -> Vec<(&str, &str)> {
+    columns.iter().map(|column| (column.name.as_str(), column.unit.as_str())).collect()
+}
+
+fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    let Statistics { steps, rejections, evaluations, factorisations } = *statistics;
+    all.set_item("steps", steps)?;
+    all.set_item("rejections", rejections)?;
+    all.set_item("evaluations", evaluations)?;
+    all.set_item("factorisations", factorisations)?;
+    Ok(all)
+}
+
+/// Goes on unless the call is off.
+fn unless(off: bool) -> ControlFlow<()> {
+    if off { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+/// Pose and rates that were given, of one state.
+fn given(name: &str, object: &Bound<'_, PyAny>, description: &Description) -> PyResult<Vec<f64>> {
+    let argument = Argument::coordinates(name, object, description)?;
+    if !argument.shape.is_empty() {
+        return Err(PyValueError::new_err(format!("{name} has {} axes: give one state", argument.shape.len() + 1)));
+    }
+    match argument.numbers.iter().position(|x| !x.is_finite()) {
+        Some(place) => {
+            let coordinate = &description.coordinates[place].name;
+            Err(PyValueError::new_err(format!(
+                "{name}[{place}] ({coordinate}) is {}, not a finite number",
+                argument.numbers[place]
+            )))
+        }
+        None => Ok(argument.numbers),
+    }
+}
+
+#[pymethods]
+impl Crane {
+    /// A run with all its results.
+    #[pyo3(signature = (timing, q=None, v=None, verify=true, bend=cautions::BEND))]
+    fn record<'py>(
+        &self,
+        py: Python<'py>,
+        timing: Timing,
+        q: Option<&Bound<'py, PyAny>>,
+        v: Option<&Bound<'py, PyAny>>,
+        verify: bool,
+        bend: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let crane: &dyn DynCrane = &self.live;
+        let description = crane.description();
+        if !self.is_single() {
+            return Err(PyValueError::new_err("the crane has arrays of parameters: `simulate_ensemble` runs them all"));
+        }
+        timing.settings(description)?;
+        let [q, v] =
+            [("q", q), ("v", v)].map(|(name, state)| state.map(|state| given(name, state, description)).transpose());
+        let (q, v) = (q?, v?);
+        let watch = Watch::new();
+        let result = py.detach(|| {
+            let mut start = match &q {
+                Some(q) => Start { v: vec![0.0; q.len()], q: q.clone(), what: GIVEN.to_owned(), rests: false },
+                None => Start::of(crane).map_err(|failed| raised(&failed))?,
+            };
+            if let Some(v) = v {
+                start = Start { v, what: GIVEN.to_owned(), rests: false, ..start };
+            }
+            let settings = timing.stable(crane, &start)?;
+            let recorded = record_checked(crane, &start, &settings, (verify, bend), &mut |_| unless(watch.look()));
+            Ok::<_, PyErr>((settings, recorded.map_err(|failed| raised(&failed))?))
+        });
+        watch.finish(py)?;
+        let (settings, Recorded { start, run, table, wall, verification, cautions }) = result?;
+        let all = PyDict::new(py);
+        all.set_item("columns", named(&table.columns))?;
+        let rows = table.rows.len();
+        all.set_item("table", array(py, table.rows.concat(), &[rows], &[table.columns.len()])?)?;
+        all.set_item("start", start)?;
+        all.set_item("method", settings.method.name())?;
+        all.set_item("tolerance", settings.method.is_adaptive().then_some(settings.tolerance))?;
+        all.set_item("step", run.step)?;
+        all.set_item("statistics", statistics(py, &run.statistics)?)?;
+        all.set_item("differences", verification.as_ref().map(|found| found.differences.clone()))?;
+        all.set_item("divergence", verification.as_ref().and_then(|found| found.divergence))?;
+        all.set_item("cautions", cautions)?;
+        all.set_item("wall_time", wall.as_secs_f64())?;
+        Ok(all)
+    }
+
+    /// Runs with every row of parameters, and what is left of each.
+    #[pyo3(signature = (timing, invalid="raise", progress=None))]
+    fn run_ensemble<'py>(
+        &self,
+        py: Python<'py>,
+        timing: Timing,
+        invalid: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let invalid = Invalid::named(invalid)?;
+        let crane: &dyn DynCrane = &self.live;
+        let description = crane.description();
+        let Argument { shape, numbers, width } = &self.parameters;
+        let count = self.parameters.rows();
+        let rows: Vec<Vec<f64>> = (0..count).map(|row| numbers[row * width..(row + 1) * width].to_vec()).collect();
+        let settings = Settings { audit: false, ..timing.settings(description)? };
+        let watch = Watch::reporting(progress, count);
+        let outcomes = py.detach(|| {
+            let mut settings = settings;
+            if !settings.method.is_adaptive() {
+                // A step that is stable for the first and the last row that rest.
+                for row in [rows.first(), rows.last()].into_iter().flatten() {
+                    let mut own = crane.boxed_clone();
+                    if own.set_parameters(row).is_ok()
+                        && let Ok(start) = Start::of(own.as_ref())
+                    {
+                        settings.step = settings.step.min(timing.stable(own.as_ref(), &start)?.step);
+                    }
+                }
+            }
+            let called_off = |caller: bool| if caller { watch.look() } else { watch.is_off() };
+            let conduct = Conduct { threads: threads(), done: &|_, _| watch.count(), called_off: &called_off };
+            Ok::<_, PyErr>(ensemble::run(crane, &rows, &settings, &conduct))
+        });
+        watch.finish(py)?;
+        let outcomes = outcomes?;
+        let reason = |(row, outcome): (usize, &ensemble::Outcome)| {
+            Some(BadRow { row, reason: outcome.run.as_ref().err()?.to_string() })
+        };
+        let bad: Vec<BadRow> = outcomes.iter().enumerate().filter_map(reason).collect();
+        if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
+            return Err(PyRuntimeError::new_err(describe(first, shape)));
+        }
+        warn_of_rows(py, &bad, shape)?;
+        let columns = Peaks::columns(description);
+        let values = outcomes.iter().flat_map(|outcome| match &outcome.peaks {
+            Some(peaks) => peaks.values().collect(),
+            None => vec![f64::NAN; columns.len()],
+        });
+        let n = crane.size();
+        let or_nan = |state: &Vec<f64>| if state.len() == n { state.clone() } else { vec![f64::NAN; n] };
+        let all = PyDict::new(py);
+        all.set_item("columns", named(&columns))?;
+        all.set_item("table", array(py, values.collect(), shape, &[columns.len()])?)?;
+        all.set_item("time", array(py, outcomes.iter().map(ensemble::Outcome::time).collect(), shape, &[])?)?;
+        let ends =
+            |of: fn(&InitialState) -> &Vec<f64>| outcomes.iter().flat_map(|outcome| or_nan(of(&outcome.end))).collect();
+        all.set_item("q", array(py, ends(|end| &end.q), shape, &[n])?)?;
+        all.set_item("v", array(py, ends(|end| &end.v), shape, &[n])?)?;
+        let status = |outcome: &ensemble::Outcome| match &outcome.run {
+            Ok(_) => "done".to_owned(),
+            Err(reason) => reason.to_string(),
+        };
+        all.set_item("status", outcomes.iter().map(status).collect::<Vec<_>>())?;
+        all.set_item("cautions", outcomes.iter().map(|outcome| outcome.cautions.join("; ")).collect::<Vec<_>>())?;
+        let steps =
+            outcomes.iter().map(|outcome| outcome.run.as_ref().map_or(f64::NAN, |run| run.statistics.steps as f64));
+        all.set_item("steps", array(py, steps.collect(), shape, &[])?)?;
+        all.set_item("shape", shape.clone())?;
+        Ok(all)
+    }
+
+    /// Time, pose, rates, work of the drives and dissipated energy after a while, from a time, a pose and rates.
+    fn advance<'py>(
+        &self,
+        py: Python<'py>,
+        timing: Timing,
+        t: f64,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let crane = &self.live;
+        let description = crane.description();
+        if !self.is_single() {
+            return Err(PyValueError::new_err("the crane has arrays of parameters: a simulation is of one crane"));
+        }
+        if !t.is_finite() {
+            return Err(PyValueError::new_err(format!("t is {t}, not a finite number")));
+        }
+        let settings = timing.settings(description)?;
+        let start = InitialState { q: given("q", q, description)?, v: given("v", v, description)? };
+        let watch = Watch::new();
+        let mut last = Last { end: (t, start.clone(), [0.0; 2]), watch: &watch };
+        let run = py.detach(|| dynamics::simulate_from(crane, t, &start, &settings, &mut last));
+        let (end, InitialState { q, v }, [work, dissipated]) = last.end;
+        watch.finish(py)?;
+        let run = run.map_err(|stopped| {
+            raised(&Reason::Stopped { stopped, near_singular: None, limit: None }.of(&description.name))
+        })?;
+        let [q, v] = [q, v].map(|state| numpy::PyArray1::from_vec(py, state));
+        (end, q, v, work, dissipated, run.statistics.steps).into_pyobject(py)
+    }
+}
+
+/// Keeps the last sample.
+struct Last<'a> {
+    end: (f64, InitialState, [f64; 2]),
+    watch: &'a Watch,
+}
+
+impl dynamics::Watch for Last<'_> {
+    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
+        let (q, v) = (sample.q.to_vec(), sample.v.to_vec());
+        self.end = (sample.t, InitialState { q, v }, [sample.work, sample.dissipated]);
+        ControlFlow::Continue(())
+    }
+
+    fn step(&mut self, _: f64) -> ControlFlow<()> {
+        unless(self.watch.look())
+    }
+}

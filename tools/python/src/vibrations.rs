@@ -1,0 +1,113 @@
+//! Modes and stability about poses at rest, row by row.
+
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::Method;
+use crane_model::modes::{DampedMode, Mode, NoModes, damped, undamped};
+use crane_model::stability::{cause, limit};
+use numpy::PyArray1;
+use pyo3::exceptions::PyArithmeticError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{Argument, Joined, array};
+use crate::crane::Crane;
+use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
+use crate::parallel::map_rows;
+
+/// Modes of a row.
+struct Modes {
+    undamped: Vec<Mode>,
+    damped: Vec<DampedMode>,
+}
+
+impl Modes {
+    fn of(crane: &LiveCrane, q: &[f64]) -> Result<Self, NoModes> {
+        if !q.iter().all(|x| x.is_finite()) {
+            return Err(NoModes::MassMatrix);
+        }
+        let motions = (crane as &dyn DynCrane).small_motions_at(q);
+        Ok(Self { undamped: undamped(&motions)?, damped: damped(&motions)? })
+    }
+}
+
+#[pymethods]
+impl Crane {
+    /// Modes about poses, over parameters and poses; `methods`: those whose largest stable step is told.
+    #[pyo3(signature = (q, invalid="raise"))]
+    fn vibrations<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> PyResult<Bound<'py, PyDict>> {
+        let invalid = Invalid::named(invalid)?;
+        let description = self.live.description();
+        let none = Argument { shape: Vec::new(), numbers: Vec::new(), width: 0 };
+        let q = Argument::coordinates("q", q, description)?;
+        let joined =
+            Joined::new(&[("t", &none), ("q", &q), ("v", &none), ("a", &none), ("the parameters", &self.parameters)])?;
+        let n = self.live.size();
+        let found = map_rows(py, joined.rows(), |row, _| {
+            let poses = &joined.arguments[1];
+            let first = if poses.len() <= n { 0 } else { row * n };
+            Modes::of(&self.of_joined_row(&joined, row), &poses[first..first + n])
+        })?;
+        let reason = |(row, found): (usize, &Result<Modes, NoModes>)| {
+            Some(BadRow { row, reason: found.as_ref().err()?.to_string() })
+        };
+        let bad: Vec<BadRow> = found.iter().enumerate().filter_map(reason).collect();
+        if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
+            return Err(PyArithmeticError::new_err(describe(first, &joined.shape)));
+        }
+        warn_of_rows(py, &bad, &joined.shape)?;
+        let undamped = |found: &Result<Modes, NoModes>| found.as_ref().map_or(0, |modes| modes.undamped.len());
+        let damped = |found: &Result<Modes, NoModes>| found.as_ref().map_or(0, |modes| modes.damped.len());
+        let (most, most_damped) =
+            (found.iter().map(undamped).max().unwrap_or(0), found.iter().map(damped).max().unwrap_or(0));
+
+        let (mut squares, mut shapes, mut real, mut imaginary) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for found in &found {
+            for index in 0..most {
+                let mode = found.as_ref().ok().and_then(|modes| modes.undamped.get(index));
+                squares.push(mode.map_or(f64::NAN, |mode| mode.omega_squared));
+                match mode {
+                    Some(mode) => shapes.extend_from_slice(mode.shape.as_slice()),
+                    None => shapes.extend(std::iter::repeat_n(f64::NAN, n)),
+                }
+            }
+            for index in 0..most_damped {
+                let eigenvalue =
+                    found.as_ref().ok().and_then(|modes| modes.damped.get(index)).map(|mode| mode.eigenvalue);
+                real.push(eigenvalue.map_or(f64::NAN, |eigenvalue| eigenvalue.re));
+                imaginary.push(eigenvalue.map_or(f64::NAN, |eigenvalue| eigenvalue.im));
+            }
+        }
+        let limits = |method: &Method| -> (Vec<f64>, Vec<String>) {
+            let limits = found.iter().map(|found| {
+                let limit = limit(&found.as_ref().ok()?.damped, &method.stability())?;
+                Some((limit.step, cause(description, &limit.mode)))
+            });
+            limits.map(|limit| limit.unwrap_or((f64::INFINITY, "nothing".to_owned()))).unzip()
+        };
+        let all = PyDict::new(py);
+        all.set_item("omega_squared", array(py, squares, &joined.shape, &[most])?)?;
+        all.set_item("shapes", array(py, shapes, &joined.shape, &[most, n])?)?;
+        all.set_item("real", array(py, real, &joined.shape, &[most_damped])?)?;
+        all.set_item("imaginary", array(py, imaginary, &joined.shape, &[most_damped])?)?;
+        let names = |indices: &[usize]| -> Vec<String> {
+            indices.iter().map(|&index| description.coordinates[index].name.to_string()).collect()
+        };
+        let of_undamped = |modes: &Modes| modes.undamped.iter().map(|mode| names(&mode.dominating)).collect::<Vec<_>>();
+        let of_damped = |modes: &Modes| modes.damped.iter().map(|mode| names(&mode.dominating)).collect::<Vec<_>>();
+        let dominating: Vec<_> =
+            found.iter().map(|found| found.as_ref().map_or_else(|_| Vec::new(), of_undamped)).collect();
+        let damped_dominating: Vec<_> =
+            found.iter().map(|found| found.as_ref().map_or_else(|_| Vec::new(), of_damped)).collect();
+        all.set_item("dominating", dominating)?;
+        all.set_item("damped_dominating", damped_dominating)?;
+        let steps = PyDict::new(py);
+        for method in &Method::ALL {
+            let (step, why) = limits(method);
+            steps.set_item(method.name(), (PyArray1::from_vec(py, step), why))?;
+        }
+        all.set_item("stable_steps", steps)?;
+        all.set_item("shape", joined.shape.clone())?;
+        Ok(all)
+    }
+}

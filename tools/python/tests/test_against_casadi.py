@@ -1,0 +1,75 @@
+"""Every quantity beside CasADi's derivation from the YAML alone, which shares no code with the compiler."""
+
+import crane
+import numpy as np
+import pytest
+
+from conftest import ROOT
+
+pytest.importorskip("casadi")
+
+NEAR_AND_FAR = 16
+
+
+def on_paper(c, t, q, v):
+    """Quantities under the names of the derivation: a row per state."""
+    small = c.linearise(q)
+    bodies = [body["degrees_of_freedom"] for body in c.info["bodies"]]
+    first, second = c.transform_derivatives(q), c.transform_second_derivatives(q)
+    stored = [first[:, p, i] for p, dof in enumerate(bodies) for i in range(dof)]
+    pairs = [second[:, p, m, n] for p, dof in enumerate(bodies) for m in range(dof) for n in range(m, dof)]
+    quantities = {
+        "transforms": c.transforms(q),
+        "transform_derivatives": np.stack(stored, axis=1),
+        "transform_second_derivatives": np.stack(pairs, axis=1),
+        "mass_matrix": c.mass_matrix(q),
+        "bias": c.bias(q, v),
+        "kinetic_energy": c.kinetic_energy(q, v),
+        "forces": c.forces(q, v, t),
+        "element_forces": c.element_forces(q, v),
+        "drive_forces": c.drive_forces(q, v, t),
+        "stop_forces": c.stop_forces(q, v),
+        "friction_forces": c.friction_forces(v),
+        "drive_forces_at_rest": c.drive_forces_at_rest(q),
+        "support_reactions": c.support_reactions(q, v),
+        "drive_motions": c.drive_motions(t),
+        "points": c.points(q),
+        "point_velocities": c.point_velocities(q, v),
+        "static_residual": c.static_residual(q),
+        "tangent_stiffness": c.tangent_stiffness(q),
+        "forward_dynamics": c.forward_dynamics(q, v, t),
+        "gravity_energy": c.gravity_energy(q),
+        "support_energy": c.support_energy(q),
+        "element_energy": c.element_energy(q),
+        "drive_energy": c.drive_energy(q, t),
+        "stop_energy": c.stop_energy(q),
+        "drive_power": c.drive_power(q, v, t),
+        "dissipation": c.dissipation(q, v, t),
+        "linearised_mass": small.mass,
+        "linearised_stiffness": small.stiffness,
+        "linearised_damping": small.damping,
+    }
+    return {name: values.reshape(len(t), -1) for name, values in quantities.items()}
+
+
+@pytest.mark.parametrize("name", ["eight_link_rigid", "eight_link_identified", "knuckle_boom", "double_pendulum"])
+def test_quantities(name):
+    """States near the guess and far from it, each with parameters of its own: one batch, each row a lane of eight."""
+    from comparison import compare
+    from crane_model import read_crane
+    from derivations import Derivations
+    from states import random_states
+
+    derived_crane = read_crane(ROOT / f"specs/{name}.yaml")
+    states = random_states(derived_crane, NEAR_AND_FAR, 1)
+    derived = Derivations(derived_crane).evaluate(states)
+    parameters = dict(zip(derived_crane.spec.defaults, states.parameters.T, strict=True))
+    c = crane.load(name, **parameters)
+    assert c.coordinates == [coordinate.name for coordinate in derived_crane.coordinates]
+    for quantity, values in on_paper(c, states.time, states.q, states.v).items():
+        if quantity not in derived or values.shape[1] == 0:
+            # A part that the crane does not have.
+            np.testing.assert_array_equal(values, 0)
+            continue
+        comparison = compare(quantity, derived[quantity], values, states.groups)
+        assert comparison.passed, comparison.row()

@@ -1,0 +1,181 @@
+"""Statics, modes, stability, runs, ensembles and simulations."""
+
+import time
+
+import crane
+import numpy as np
+import pytest
+
+
+def test_statics_balances_the_weight(flexible):
+    rest = flexible.statics()
+    assert rest.stable and rest.status == "stable" and rest.residual < 1e-10
+    np.testing.assert_allclose(flexible.static_residual(rest.q), 0, atol=1e-4)
+    # At rest the supports carry the weight, which is minus the bias of a translation of the base.
+    weight = flexible.bias(rest.q, np.zeros(25))[2]
+    np.testing.assert_allclose(rest.support_reactions.sum(axis=0), [0, 0, -weight], rtol=1e-9, atol=1e-4)
+
+
+def test_statics_over_parameters_are_those_of_each(flexible):
+    masses = np.array([[0.0, 100.0], [400.0, 900.0]])
+    rest = flexible.replace(load_mass=masses).statics()
+    assert rest.q.shape == (2, 2, 25) and rest.stable.all()
+    alone = flexible.replace(load_mass=400.0).statics()
+    np.testing.assert_array_equal(rest.q[1, 0], alone.q)
+    np.testing.assert_array_equal(rest.drive_efforts[1, 0], alone.drive_efforts)
+
+
+def test_statics_along_the_manoeuvre(flexible):
+    times = np.linspace(0, 5, 4)
+    rest = flexible.statics(t=times)
+    np.testing.assert_allclose(rest.q[0], flexible.statics().q, atol=1e-9)
+    # Where the drives stand at the end, the crane rests as far from there as their springs give.
+    psi = flexible.coordinates.index("column_psi")
+    assert abs(rest.q[-1, psi] - flexible.drive_motions(5.0)[0, 0]) < 1e-3
+
+
+def test_no_equilibrium_is_raised_or_said(pendulum):
+    with pytest.raises(crane.NoEquilibrium, match="change `guess:`"):
+        pendulum.statics(guess=[np.pi])
+    with pytest.warns(crane.InvalidRowWarning):
+        rest = pendulum.statics(guess=[[np.pi], [0.1]], invalid="nan")
+    assert list(rest.status) == ["unstable", "stable"]
+    np.testing.assert_allclose(rest.q[:, 0], [np.pi, 0], atol=1e-9)
+
+
+def test_modes_of_a_pendulum(pendulum):
+    modes = pendulum.modes()
+    # ω² = m g l/(J + m l²)
+    assert abs(modes.omega_squared[0] - 2 * 9.81 * 1.5 / (0.05 + 2 * 1.5**2)) < 1e-12
+    assert modes.dominating == [["rod_theta"]] or len(modes.dominating[0]) == 1
+    batch = pendulum.replace(bob=[1.0, 2.0]).modes()
+    np.testing.assert_allclose(batch.omega_squared[1], modes.omega_squared, rtol=1e-13)
+    np.testing.assert_allclose(np.abs(modes.eigenvalues.imag[0]), np.sqrt(modes.omega_squared[0]), rtol=1e-12)
+
+
+def test_modes_solve_the_eigenproblem(flexible):
+    rest = flexible.statics()
+    modes, small = flexible.modes(rest.q), flexible.linearise(rest.q)
+    left = modes.shapes @ small.stiffness @ modes.shapes.T
+    # Shapes are orthonormal in A and diagonalise K, to rounding of the greatest eigenvalue.
+    np.testing.assert_allclose(left, np.diag(modes.omega_squared), atol=1e-8 * modes.omega_squared[-1])
+    np.testing.assert_allclose(modes.shapes @ small.mass @ modes.shapes.T, np.eye(25), atol=1e-9)
+    stable = flexible.stability(rest.q)
+    # The classical Runge-Kutta method reaches 2.785 on the real axis and 2.83 on the imaginary one.
+    fastest = np.abs(modes.eigenvalues).max()
+    assert 2.5 / fastest < stable.steps["rk4"] < 2.9 / fastest
+    assert stable.steps["bdf"] == np.inf and "rad/s" in stable.limited_by["rk4"]
+
+
+def test_a_run_is_recorded_with_its_errors(knuckle):
+    run = knuckle.simulate(duration=1.0, output=0.01)
+    assert run.t[0] == 0 and run.t[-1] == 1.0 and len(run.t) == 101
+    assert run.units["main_boom_theta_drive_torque"] == "N m" and run.errors["main_boom_theta"] < 1e-4
+    assert run.statistics["steps"] > 0 and run.method == "bdf"
+    np.testing.assert_allclose(run["energy_balance"], 0, atol=1e-3 * np.ptp(run["drive_work"]))
+    finer = knuckle.simulate(duration=1.0, output=0.01, tolerance=1e-9, verify=False)
+    assert finer.errors is None
+    # The difference from a much finer run is what was estimated, but for a small part of it.
+    difference = np.abs(run["main_boom_theta"] - finer["main_boom_theta"]).max()
+    assert difference < 1.5 * run.errors["main_boom_theta"] + 1e-9
+    with pytest.raises(KeyError, match="did you mean"):
+        run["main_boom_tetha"]
+
+
+def test_a_run_goes_on_from_any_state(pendulum):
+    run = pendulum.simulate(duration=2.0, output=0.01, q=[0.5], v=[0.0], method="dopri5", tolerance=1e-10, verify=False)
+    energy = run["kinetic_energy"] + run["gravity_energy"]
+    np.testing.assert_allclose(energy, energy[0], atol=1e-7 * abs(energy[0]))
+    assert run.start == "as given"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"method": "rk5"}, "there is no method `rk5`"),
+        ({"duration": -1.0}, "duration=-1"),
+        ({"output": np.nan}, "output=NaN"),
+        ({"tolerance": 1e-20}, "tolerance=0.00000000000000000001|tolerance=1e-20"),
+        ({"step": "small"}, "step='small'"),
+        ({"step": 1e-3, "method": "bdf"}, "`step` means nothing to bdf"),
+        ({"step": 0.5}, "unstable; rk4 takes at most"),
+        ({"q": [np.nan] * 25}, r"q\[0\] \(truck_x\) is NaN"),
+    ],
+)
+def test_wrong_settings_say_what_to_write(flexible, arguments, words):
+    with pytest.raises(ValueError, match=words):
+        flexible.simulate(**{"duration": 1.0, "output": 0.5, **arguments})
+
+
+def test_an_ensemble_is_its_single_runs(knuckle):
+    loads = np.array([0.0, 200.0, 500.0])
+    told = []
+    ensemble = knuckle.replace(payload=loads).simulate_ensemble(duration=1.0, progress=lambda done, all: told.append((done, all)))
+    assert list(ensemble.status) == ["done"] * 3 and told[-1] == (3, 3)
+    name = "main_boom_theta_drive_torque"
+    for row, load in enumerate(loads):
+        run = knuckle.replace(payload=load).simulate(duration=1.0, verify=False)
+        extremes = run.extremes(name)
+        # The same steps of the same crane.
+        assert ensemble[f"{name}_min"][row] == extremes["minimum"]
+        assert ensemble[f"{name}_max_time"][row] == extremes["time_of_maximum"]
+        np.testing.assert_array_equal(ensemble.q[row], [run[coordinate][-1] for coordinate in knuckle.coordinates])
+
+
+def test_a_bad_row_of_an_ensemble_is_named_or_nan(knuckle):
+    batch = knuckle.replace(payload=[100.0, 1e12])
+    with pytest.raises(RuntimeError, match=r"row \[1\]: knuckle_boom: statics did not find"):
+        batch.simulate_ensemble(duration=0.2)
+    with pytest.warns(crane.InvalidRowWarning, match=r"row \[1\]"):
+        ensemble = batch.simulate_ensemble(duration=0.2, invalid="nan")
+    assert ensemble.status[0] == "done" and "statics did not find" in ensemble.status[1]
+    assert np.isfinite(ensemble.table[0]).all() and np.isnan(ensemble.table[1]).all()
+
+
+def test_a_simulation_comes_back_to_the_last_bit(knuckle):
+    simulation = knuckle.simulation()
+    for _ in range(5):
+        simulation.step(0.05)
+    saved = simulation.save()
+    first = [simulation.step(0.05) for _ in range(5)]
+    simulation.restore(saved)
+    second = [simulation.step(0.05) for _ in range(5)]
+    for a, b in zip(first, second, strict=True):
+        np.testing.assert_array_equal(a.q, b.q)
+        np.testing.assert_array_equal(a.v, b.v)
+    assert abs(simulation.t - 0.5) < 1e-12
+
+
+def test_a_simulation_is_the_run(knuckle):
+    simulation = knuckle.simulation(tolerance=1e-8)
+    path = [simulation.q[0]] + [simulation.step(0.1).q[0] for _ in range(10)]
+    run = knuckle.simulate(duration=1.0, output=0.1, tolerance=1e-9, verify=False)
+    # Errors of ten runs at 1e-8 each, some ten times that over a run.
+    np.testing.assert_allclose(path, run[knuckle.coordinates[0]], atol=1e-6)
+    energy = run["drive_work"][-1]
+    assert abs(simulation.work - energy) < 1e-4 * max(abs(energy), 1.0)
+
+
+def test_parameters_change_between_steps(knuckle):
+    simulation = knuckle.simulation()
+    before = simulation.save()
+    simulation.step(0.2, payload=900.0)
+    heavier = simulation.q
+    assert simulation.crane.parameters["payload"] == 900.0
+    simulation.restore(before)
+    assert simulation.crane.parameters == before.parameters
+    simulation.step(0.2)
+    assert np.abs(simulation.q - heavier).max() > 1e-6
+    with pytest.raises(crane.ParameterError):
+        simulation.step(0.1, payload=-1.0)
+    with pytest.raises(ValueError, match="has 4 coordinates"):
+        simulation.restore(crane.State(0.0, np.zeros(2), np.zeros(2)))
+
+
+def test_a_pendulum_swings_in_time(pendulum):
+    """A step for a controller costs no more than the motion needs: a second of a pendulum in far less than a second."""
+    simulation = pendulum.simulation(q=[0.1])
+    begin = time.perf_counter()
+    for _ in range(100):
+        simulation.step(0.01)
+    assert time.perf_counter() - begin < 1.0

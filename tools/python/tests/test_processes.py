@@ -1,0 +1,117 @@
+"""Threads, processes and signals."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import crane
+import numpy as np
+import pytest
+
+
+def test_two_threads_on_one_crane(flexible, states):
+    _, q, v = states
+    batch = np.repeat(q, 40, axis=0)
+    expected, alone = flexible.mass_matrix(batch), flexible.bias(q[0], v[0])
+    wrong = []
+
+    def work():
+        for _ in range(20):
+            if not np.array_equal(flexible.mass_matrix(batch), expected):
+                wrong.append("batch")
+            if not np.array_equal(flexible.bias(q[0], v[0]), alone):
+                wrong.append("one")
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def test_a_batch_leaves_the_lock_to_others(flexible):
+    q = np.repeat(flexible.guess[None], 60_000, axis=0)
+    ticks, done = [], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    begin = time.perf_counter()
+    flexible.transform_derivatives(q[:2000])
+    flexible.bias(q, 0 * q)
+    end = time.perf_counter()
+    done.set()
+    thread.join()
+    within = [tick for tick in ticks if begin < tick < end]
+    # Held for the whole call, the lock would let nobody tick.
+    assert len(within) > 5
+
+
+def _work(q):
+    c = crane.load("eight_link_flexible")
+    return float(c.gravity_energy(np.stack([q] * 200)).sum())
+
+
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_processes_compute_alike(flexible, method):
+    # Threads of this process have worked before the fork.
+    flexible.mass_matrix(np.repeat(flexible.guess[None], 1000, axis=0))
+    expected = _work(flexible.guess)
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        assert pool.map(_work, [flexible.guess] * 2) == [expected] * 2
+
+
+INTERRUPTED = """
+import crane, numpy as np
+c = crane.load("eight_link_flexible")
+print("ready", flush=True)
+try:
+    {call}
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+print(c.mass_matrix(c.guess).shape, flush=True)
+"""
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "c.simulate(duration=1e5, output=1e3)",
+        "c.replace(load_mass=np.linspace(0, 500, 2000)).simulate_ensemble()",
+        "c.simulation().step(1e5)",
+        "[c.small_motions(np.repeat(c.guess[None], 20000, axis=0)) for _ in range(1000)]",
+        "c.replace(load_mass=np.linspace(0, 500, 20000)).statics()",
+    ],
+)
+def test_ctrl_c_ends_a_long_call(call):
+    program = subprocess.Popen([sys.executable, "-c", INTERRUPTED.format(call=call)], stdout=subprocess.PIPE, text=True)
+    assert program.stdout.readline() == "ready\n"
+    time.sleep(0.5)
+    begin = time.monotonic()
+    os.kill(program.pid, signal.SIGINT)
+    out, _ = program.communicate(timeout=20)
+    # The interpreter goes on, soon.
+    assert out == "interrupted\n(25, 25)\n"
+    assert time.monotonic() - begin < 5
+
+
+def test_threads_are_set():
+    before = crane.threads()
+    try:
+        crane.set_threads(1)
+        assert crane.threads() == 1
+        with pytest.raises(ValueError, match="from 1 on"):
+            crane.set_threads(0)
+    finally:
+        crane.set_threads()
+    assert crane.threads() == before
