@@ -1,0 +1,150 @@
+"""Studies: in parts, interrupted and resumed, on workers that die, on a full disk."""
+
+import errno
+import json
+import os
+
+import crane
+import numpy as np
+import pytest
+
+pytest.importorskip("pyarrow")
+from crane import study  # noqa: E402
+
+SHORT = {"duration": 0.2, "output": 0.05}
+
+
+def cases(count=30):
+    return study.grid(payload=np.linspace(0, 600, count))
+
+
+def test_cases():
+    grid = study.grid(a=[1, 2], b=[3, 4, 5])
+    np.testing.assert_array_equal(grid["a"], [1, 1, 1, 2, 2, 2])
+    np.testing.assert_array_equal(grid["b"], [3, 4, 5, 3, 4, 5])
+    with pytest.raises(ValueError, match="different lengths"):
+        study.table({"a": [1, 2], "b": [1]})
+    pytest.importorskip("scipy")
+    cube = study.latin_hypercube(10, seed=1, a=(0, 1), b=(5, 6))
+    # One sample in each tenth of every range.
+    np.testing.assert_array_equal(np.sort((10 * cube["a"]).astype(int)), np.arange(10))
+    assert cube["b"].min() >= 5 and cube["b"].max() <= 6
+    assert len(study.sobol(8, seed=1, a=(0, 1))["a"]) == 8
+    with pytest.raises(ValueError, match="power of two, such as 8"):
+        study.sobol(7, seed=1, a=(0, 1))
+
+
+def test_a_study_is_its_cases(tmp_path, knuckle):
+    done = study.run("knuckle_boom", cases(), tmp_path, part=8, **SHORT)
+    assert done.computed == 4 and sorted(path.name for path in tmp_path.iterdir())[0] == "manifest.json"
+    table = done.table()
+    assert table.num_rows == 30 and done.units["payload"] == "kg" and set(table["status"].to_pylist()) == {"done"}
+    alone = knuckle.replace(payload=cases()["payload"]).simulate_ensemble(**SHORT)
+    name = "main_boom_theta_drive_torque_max"
+    np.testing.assert_array_equal(table[name].to_numpy(), alone[name])
+    manifest = json.loads((tmp_path / "manifest.json").read_text())
+    assert manifest["cases"] == 30 and manifest["settings"] == SHORT and manifest["spec_hash"] == knuckle.spec_hash
+
+
+def test_what_is_finished_is_never_computed_again(tmp_path):
+    first = study.run("knuckle_boom", cases(), tmp_path, part=8, **SHORT)
+    expected = first.table()
+    stamps = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    assert study.run("knuckle_boom", cases(), tmp_path, part=8, **SHORT).computed == 0
+    # One part is lost, one is cut short.
+    (tmp_path / "part-000001.parquet").unlink()
+    cut = tmp_path / "part-000003.parquet"
+    cut.write_bytes(cut.read_bytes()[:100])
+    again = study.run("knuckle_boom", cases(), tmp_path, part=8, **SHORT)
+    assert again.computed == 2 and again.table().equals(expected)
+    kept = tmp_path / "part-000000.parquet"
+    assert kept.stat().st_mtime_ns == stamps[kept]
+
+
+def test_another_study_in_the_folder_is_refused(tmp_path):
+    study.run("knuckle_boom", cases(4), tmp_path, what="statics")
+    with pytest.raises(ValueError, match="another study, which differs in: what, settings"):
+        study.run("knuckle_boom", cases(4), tmp_path, **SHORT)
+    with pytest.raises(ValueError, match="another study, which differs in: cases"):
+        study.run("knuckle_boom", cases(5), tmp_path, what="statics")
+
+
+def test_mistakes_are_found_before_anything_runs(tmp_path):
+    with pytest.raises(TypeError, match="no live parameter `load`"):
+        study.run("knuckle_boom", {"load": [1.0]}, tmp_path)
+    with pytest.raises(ValueError, match="no cases"):
+        study.run("knuckle_boom", {"payload": []}, tmp_path)
+    with pytest.raises(ValueError, match='write "simulate", "statics"'):
+        study.run("knuckle_boom", cases(2), tmp_path, what="dance")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_case_that_fails_says_why(tmp_path):
+    with pytest.warns(crane.InvalidRowWarning):
+        table = study.run("knuckle_boom", {"payload": [100.0, 1e12]}, tmp_path, **SHORT).table()
+    assert table["status"].to_pylist()[0] == "done" and "statics did not find" in table["status"].to_pylist()[1]
+    assert np.isnan(table["main_boom_theta_drive_torque_max"].to_numpy()[1])
+
+
+def test_a_function_of_ones_own(tmp_path):
+    def lowest(c):
+        return {"lowest": c.modes().frequencies[:, 0]}
+
+    table = study.run("knuckle_boom", cases(5), tmp_path, what=lowest, part=3).table()
+    expected = crane.load("knuckle_boom", payload=cases(5)["payload"]).modes().frequencies[:, 0]
+    np.testing.assert_array_equal(table["lowest"].to_numpy(), expected)
+
+
+def test_a_full_disk_loses_nothing(tmp_path, monkeypatch):
+    real, written = os.fsync, []
+
+    def full(file):
+        if len(written) == 3:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        written.append(file)
+        real(file)
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="finished parts are kept") as caught:
+        study.run("knuckle_boom", cases(), tmp_path, part=8, **SHORT)
+    assert caught.value.errno == errno.ENOSPC
+    # The manifest and two parts; nothing half-written.
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["manifest.json", "part-000000.parquet", "part-000001.parquet"]
+    monkeypatch.undo()
+    assert study.run("knuckle_boom", cases(), tmp_path, part=8, **SHORT).computed == 2
+
+
+@pytest.mark.filterwarnings("default")
+def test_a_killed_worker_costs_only_its_part(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    here = study.run("knuckle_boom", cases(), tmp_path / "here", part=3, **SHORT).table()
+    marker = tmp_path / "killed"
+
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        killed = study.run("knuckle_boom", cases(), tmp_path / "there", part=3, what=_Murderous(marker), engine=client)
+        # Ten parts, one of whose workers died at it: complete, and equal to the local result.
+        assert marker.exists() and killed.computed == 10
+        table = killed.table()
+        assert table["main_boom_theta_drive_torque_max"].equals(here["main_boom_theta_drive_torque_max"])
+        done = study.run("knuckle_boom", cases(), tmp_path / "plain", part=3, engine=client, **SHORT)
+        assert done.table().equals(here)
+
+
+class _Murderous:
+    """Runs a part; the first worker that comes to the fifth part is killed at it."""
+
+    def __init__(self, marker):
+        self.marker = str(marker)
+
+    def __call__(self, c):
+        if np.any(c.parameters["payload"] == cases()["payload"][13]):
+            try:
+                os.close(os.open(self.marker, os.O_CREAT | os.O_EXCL))
+            except FileExistsError:
+                pass
+            else:
+                os.kill(os.getpid(), 9)
+        return dict(c.simulate_ensemble(**SHORT))
