@@ -175,7 +175,7 @@ def test_parameters_change_between_steps(knuckle):
 def test_a_pendulum_swings_in_time(pendulum):
     """A step for a controller costs no more than the motion needs: a second of a pendulum in far less than a second."""
     simulation = pendulum.simulation(q=[0.1])
-    begin = time.perf_counter()
+    begin = time.process_time()
     for _ in range(100):
         simulation.step(0.01)
-    assert time.perf_counter() - begin < 1.0
+    assert time.process_time() - begin < 1.0

@@ -99,10 +99,10 @@ def test_ctrl_c_ends_a_long_call(call):
     time.sleep(0.5)
     begin = time.monotonic()
     os.kill(program.pid, signal.SIGINT)
-    out, _ = program.communicate(timeout=20)
+    out, _ = program.communicate(timeout=60)
     # The interpreter goes on, soon.
     assert out == "interrupted\n(25, 25)\n"
-    assert time.monotonic() - begin < 5
+    assert time.monotonic() - begin < 15
 
 
 def test_threads_are_set():
