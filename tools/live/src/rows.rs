@@ -250,9 +250,13 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             Name::BaseStiffness | Name::BaseDamping => 36,
             Name::DrivePieces => 2 * description.drives.iter().map(|drive| drive.pieces).sum::<usize>(),
             // What other functions need, or what is left as factors.
-            Name::PrescribedMotions | Name::Factorise | Name::Solve | Name::TransformSecondDerivatives => {
-                crane.library().routine(name).map_or(0, Routine::results)
-            }
+            Name::InternalForces
+            | Name::SupportPositions
+            | Name::SectionModuli
+            | Name::PrescribedMotions
+            | Name::Factorise
+            | Name::Solve
+            | Name::TransformSecondDerivatives => crane.library().routine(name).map_or(0, Routine::results),
         },
     }
 }

@@ -129,6 +129,7 @@ fn a_lane_computes_what_one_state_does() {
             t,
             q: &q,
             v: &v,
+            a: &right,
             right: &right,
             resistance: &resistance,
             base: &base,

@@ -7,12 +7,12 @@ mod tables;
 
 use std::io::Write;
 
-use crane_model::{dyn_crane::DynCrane, dynamics::Method, tipping::governing};
+use crane_model::{dyn_crane::DynCrane, dynamics::Method, results::cautions, tipping::governing};
 
 use crate::{
     Fleet,
     arguments::Strength,
-    cautions, files,
+    files,
     problem::{Outcome, Problem},
     report::Report,
     run::{progress, record_checked},

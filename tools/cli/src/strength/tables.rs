@@ -1,11 +1,12 @@
 //! Tables of loads.
 
-use crane_model::{Cut, Description, Wrench, results::Table, tipping::TippingLine};
-
-use crate::{
-    extremes::Extremes,
-    report::{Cell, Grid},
+use crane_model::{
+    Cut, Description, Wrench,
+    results::{Extremes, Table},
+    tipping::TippingLine,
 };
+
+use crate::report::{Cell, Grid};
 
 use super::history::{OF_JOINTS, OF_SECTIONS, UNITS, numbers, prefix};
 
