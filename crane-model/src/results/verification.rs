@@ -1,13 +1,18 @@
-//! How far off a run is: the same run once more, at a tenth of the tolerance or with half the step.
+//! How far off a run is: the same run once more, at a tenth of the tolerance or with half the step, with results four times as often.
 //!
 //! Where the method converges, the finer run is several times as exact, so the difference of the two is the error of the
-//! coarser one but for a small part of it.
+//! coarser one but for a small part of it. What a quantity does between two results, its peaks above all, shows in the additional
+//! results of the finer run.
 
 use super::{Extremes, Table, headlines};
 use crate::{Description, dynamics};
 
 /// Part of the tolerance of the finer run.
 const FINER: f64 = 0.1;
+/// Results of the finer run per result of the run.
+const RESULTS: usize = 4;
+/// Most results of the finer run: one with more has them as often as the run.
+const MOST_RESULTS: usize = 1_000_000;
 /// Part of a quantity's size from which a difference is a caution.
 const CAUTION: f64 = 0.01;
 /// What is smaller than this part of the greatest quantity of its kind is not worth a caution.
@@ -19,31 +24,46 @@ const STRAIGHT: f64 = 0.8;
 
 /// Settings of the finer run.
 pub fn finer(settings: &dynamics::Settings) -> dynamics::Settings {
+    let (count, interval) = settings.intervals();
+    let output = if count <= MOST_RESULTS / RESULTS { interval / RESULTS as f64 } else { settings.output };
     if settings.method.is_adaptive() {
-        dynamics::Settings { tolerance: settings.tolerance * FINER, ..*settings }
+        dynamics::Settings { tolerance: settings.tolerance * FINER, output, ..*settings }
     } else {
-        dynamics::Settings { step: settings.step_taken() / 2.0, ..*settings }
+        dynamics::Settings { step: settings.step_taken() / 2.0, output, ..*settings }
     }
 }
 
 /// What the finer run says about a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verification {
-    /// Greatest difference over the run, column by column, in the column's unit.
+    /// Greatest difference over the run, column by column, in the column's unit: of values at the same times, and of least and
+    /// greatest values.
     pub differences: Vec<f64>,
+    /// Whether that is of a least or greatest value between two results.
+    pub between: Vec<bool>,
     /// Time in which small differences grow by a factor e, s, where the motion is chaotic.
     pub divergence: Option<f64>,
 }
 
 impl Verification {
-    /// Compares two runs that were sampled at the same times.
+    /// Compares two runs, of which the finer was sampled at the same times and some equally often in between.
     pub fn new(run: &Table, finer: &Table, coordinates: usize) -> Self {
-        let rows = || run.rows.iter().zip(&finer.rows);
-        let difference = |column: usize| rows().map(|(a, b)| (a[column] - b[column]).abs()).fold(0.0, f64::max);
-        Self {
-            differences: (0..run.columns.len()).map(difference).collect(),
-            divergence: divergence(run, finer, coordinates),
-        }
+        let every = (finer.rows.len().max(1) - 1) / (run.rows.len().max(2) - 1);
+        let together: Vec<(&Vec<f64>, &Vec<f64>)> =
+            run.rows.iter().zip(finer.rows.iter().step_by(every.max(1))).collect();
+        let (differences, between) = (0..run.columns.len())
+            .map(|column| {
+                let at_results = together.iter().map(|(a, b)| (a[column] - b[column]).abs()).fold(0.0, f64::max);
+                let range = |table: &Table| {
+                    let values = table.rows.iter().map(|row| row[column]);
+                    values.fold([f64::MAX, f64::MIN], |[least, greatest], x| [x.min(least), x.max(greatest)])
+                };
+                let ([least, greatest], [finer_least, finer_greatest]) = (range(run), range(finer));
+                let missed = (least - finer_least).max(finer_greatest - greatest);
+                (missed.max(at_results), missed > at_results)
+            })
+            .unzip();
+        Self { differences, between, divergence: divergence(&together, coordinates) }
     }
 
     /// Greatest difference of the column of this name.
@@ -63,9 +83,18 @@ impl Verification {
                 if difference > CAUTION * size.max(NEGLIGIBLE * greatest) && difference > kind.noise(table, name) {
                     let percent = 100.0 * difference / size.max(f64::MIN_POSITIVE);
                     let unit = kind.unit;
+                    let between = table
+                        .columns
+                        .iter()
+                        .zip(&self.between)
+                        .any(|(column, between)| column.name == *name && *between);
+                    let remedy = if between {
+                        "it peaks between two results; use a shorter `--output`"
+                    } else {
+                        "a finer run differs by as much; use a smaller `--tolerance` or `--step`"
+                    };
                     cautions.push(format!(
-                        "{name} may be off by {difference:.2e} {unit}, {percent:.1} % of its {}: a finer run differs by \
-                         as much; use a smaller `--tolerance` or `--step`",
+                        "{name} may be off by {difference:.2e} {unit}, {percent:.1} % of its {}: {remedy}",
                         kind.measure
                     ));
                 }
@@ -83,13 +112,13 @@ impl Verification {
 
 /// Time in which the difference of two runs grows by a factor e, where it does so by [`CHAOS`] powers and along a straight
 /// line: least squares of the logarithm of the greatest difference of a coordinate over time.
-fn divergence(run: &Table, finer: &Table, coordinates: usize) -> Option<f64> {
-    let difference = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+fn divergence(together: &[(&Vec<f64>, &Vec<f64>)], coordinates: usize) -> Option<f64> {
+    let difference = |(a, b): &(&Vec<f64>, &Vec<f64>)| {
         let greatest =
             a[1..=coordinates].iter().zip(&b[1..=coordinates]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         (greatest > 0.0).then(|| (a[0], greatest.ln()))
     };
-    let points: Vec<(f64, f64)> = run.rows.iter().zip(&finer.rows).filter_map(difference).collect();
+    let points: Vec<(f64, f64)> = together.iter().filter_map(difference).collect();
     let count = points.len() as f64;
     let (first, last) = (points.first()?.0, points.last()?.0);
     let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
@@ -117,7 +146,7 @@ mod tests {
     fn exponential_growth_is_chaos_and_its_time_is_found() {
         let run = table(f64::sin);
         let finer = table(|t| t.sin() + 1e-8 * (1.5 * t).exp());
-        let time = divergence(&run, &finer, 1).expect("chaos");
+        let time = Verification::new(&run, &finer, 1).divergence.expect("chaos");
         // The fit is exact but for rounding of differences as small as 1e-8 of numbers of size 1.
         assert!((time * 1.5 - 1.0).abs() < 1e-3, "{time}");
     }
@@ -128,7 +157,7 @@ mod tests {
         // A frequency that is off makes a difference that grows with time; an integrator's error with its square.
         for power in [0, 1, 2] {
             let finer = table(|t| t.sin() + 1e-3 * (t + 0.1).powi(power));
-            assert_eq!(divergence(&run, &finer, 1), None, "power {power}");
+            assert_eq!(Verification::new(&run, &finer, 1).divergence, None, "power {power}");
         }
     }
 
@@ -138,5 +167,20 @@ mod tests {
         let verification = Verification::new(&run, &finer, 1);
         assert!((verification.difference(&run, "q").expect("a column") - 0.2).abs() < 1e-15);
         assert_eq!(verification.difference(&run, "none"), None);
+    }
+
+    /// A vibration that is sampled at its zeros has its peaks in between.
+    #[test]
+    fn peaks_between_results_are_noticed() {
+        let vibration = |count: i32| {
+            let mut table = table(|_| 0.0);
+            table.rows = (0..=count)
+                .map(|i| f64::from(i) * 10.0 / f64::from(count))
+                .map(|t| vec![t, (std::f64::consts::TAU * 5.0 * t).sin()])
+                .collect();
+            table
+        };
+        let verification = Verification::new(&vibration(100), &vibration(400), 1);
+        assert!((verification.differences[1] - 1.0).abs() < 1e-12 && verification.between[1], "{verification:?}");
     }
 }
