@@ -21,7 +21,8 @@ fn blocks<'a>(markdown: &'a str, language: &str) -> Vec<&'a str> {
 #[test]
 fn the_pages_show_the_files_to_the_byte() {
     let manual = text("docs/manual/own-program.md");
-    let shown = [("yaml", vec!["crane.yaml"]), ("rust,ignore", vec!["build.rs", "src/main.rs"]), ("toml", vec!["Cargo.toml"])];
+    let shown =
+        [("yaml", vec!["crane.yaml"]), ("rust,ignore", vec!["build.rs", "src/main.rs"]), ("toml", vec!["Cargo.toml"])];
     for (language, files) in shown {
         let files: Vec<String> = files.iter().map(|file| text(&format!("{FOLDER}/{file}"))).collect();
         assert_eq!(blocks(&manual, language), files, "{language}");

@@ -1,7 +1,7 @@
 //! A crane without coordinates: nothing moves.
 
 use crane_model::{
-    CraneModel, Description, Dynamics, Linearisation, Linearise, ParameterError, Statics, TransformDerivatives,
+    CraneModel, Description, Dynamics, InternalForces, Linearisation, Linearise, ParameterError, Statics, Wrench,
 };
 use nalgebra::{Matrix4, SMatrix, SVector};
 
@@ -63,8 +63,6 @@ impl Linearise<0> for Fixed {
     }
 }
 
-impl TransformDerivatives<0> for Fixed {
-    fn transform_derivatives(&self, _: &SVector<f64, 0>, _: &mut [Matrix4<f64>]) {}
-
-    fn transform_second_derivatives(&self, _: &SVector<f64, 0>, _: &mut [Matrix4<f64>]) {}
+impl InternalForces<0> for Fixed {
+    fn internal_forces(&self, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &mut [Wrench]) {}
 }

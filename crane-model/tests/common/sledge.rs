@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use crane_model::{
     BodyInfo, Bound, CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Base, CraneModel, Description,
-    Dynamics, Linearisation, Linearise, List, ParameterError, ParameterInfo, Statics, Text, TransformDerivatives,
+    Dynamics, InternalForces, Linearisation, Linearise, List, ParameterError, ParameterInfo, Statics, Text, Wrench,
 };
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2, Vector3};
 
@@ -122,12 +122,6 @@ impl Linearise<2> for Sledge {
     }
 }
 
-impl TransformDerivatives<2> for Sledge {
-    fn transform_derivatives(&self, _: &Vector2<f64>, out: &mut [Matrix4<f64>]) {
-        for (out, direction) in out.iter_mut().zip(Self::directions()) {
-            out.fixed_view_mut::<3, 1>(0, 3).copy_from(&direction);
-        }
-    }
-
-    fn transform_second_derivatives(&self, _: &Vector2<f64>, _: &mut [Matrix4<f64>]) {}
+impl InternalForces<2> for Sledge {
+    fn internal_forces(&self, _: &Vector2<f64>, _: &Vector2<f64>, _: &Vector2<f64>, _: &mut [Wrench]) {}
 }
