@@ -12,7 +12,7 @@ use crane_model::{dyn_crane::DynCrane, modes::undamped};
 use crate::{Fleet, problem::Outcome, statics::Case};
 
 /// Most coordinates of a crane whose frequencies are computed with twice the sections too: more take seconds.
-const MOST_COORDINATES: usize = 120;
+const MOST_COORDINATES: usize = 60;
 /// Modes from the lowest on that sections are to resolve; higher ones are those of the elements.
 const LOWEST: usize = 6;
 /// Change of a frequency that is worth a caution.
