@@ -1,11 +1,11 @@
-//! The `crane` command over the shipped cranes.
+//! The `crane` command over the shipped cranes, of which those of the default run are compiled.
 
 use std::process::ExitCode;
 
 use crane_cli::Fleet;
 
-include!(concat!(env!("OUT_DIR"), "/cranes.rs"));
+crane_model::cranes! { eight_link_flexible, eight_link_rigid }
 
 fn main() -> ExitCode {
-    crane_cli::main(Fleet::new(SPECS, all()))
+    crane_cli::main(Fleet::new(crane_specs::SPECS, all()))
 }
