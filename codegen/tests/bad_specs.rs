@@ -70,7 +70,7 @@ fn ten_mistakes_are_ten_messages() {
     let found = mistakes(&name, &bytes);
     let codes: BTreeSet<_> = found.mistakes().iter().map(|mistake| mistake.code).collect();
     assert_eq!((found.mistakes().len(), codes.len()), (10, 10), "{found}");
-    assert_eq!(found.headline(), "ten_mistakes:3:7: `Ten` cannot be a name [E020] (and 9 more)");
+    assert_eq!(found.headline(), "ten_mistakes:3:7: `Ten` is not a valid name [E020] (and 9 more)");
 }
 
 #[test]

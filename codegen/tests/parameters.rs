@@ -104,6 +104,6 @@ fn the_strictest_of_several_places_counts() {
         drives: []\nrun: {duration: 1, step: 1e-3}\ngravity: [p, 0, 0]\n";
     let least = chain(spec).expect("a sound spec").parameters.remove(0).least.expect("damping is not below zero");
     assert_eq!((least.value, least.allowed, least.refusal.code), (0.0, true, "E032"));
-    assert_eq!(least.refusal.title, "the damping of `arm_psi` must not be below zero, and is");
-    assert_eq!(least.refusal.help, "write 0 or a number above, in N m s/rad");
+    assert_eq!(least.refusal.title, "the damping of `arm_psi` must not be negative, but is");
+    assert_eq!(least.refusal.help, "write 0 or a positive number, in N m s/rad");
 }

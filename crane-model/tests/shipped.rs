@@ -29,8 +29,8 @@ fn every_crane_rests_in_a_stable_equilibrium_within_five_steps() {
 fn live_parameters_keep_the_rules_of_the_spec() {
     use cranes::knuckle_boom::{Crane, N, PARAMETERS, Params};
     let refused = Crane::new(Params { payload: -10.0 }).expect_err("a negative mass");
-    let said = "parameter `payload`: the mass of body `load` must not be below zero, and is -10 [E032]; \
-                write 0 or a number above, in kg";
+    let said = "parameter `payload`: the mass of body `load` must not be negative, but is -10 [E032]; \
+                write 0 or a positive number, in kg";
     assert_eq!(refused.to_string(), said);
     let mut crane = Crane::default();
     for payload in [-1e-6, f64::NAN, f64::INFINITY, 1e19, 1e-31] {

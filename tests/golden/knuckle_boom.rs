@@ -263,9 +263,9 @@ pub const PARAMETERS: [ParameterInfo; 1] = [
             refusal: Refusal {
                 code: Text::Static("E032"),
                 title: Text::Static(
-                    "the mass of body `load` must not be below zero, and is",
+                    "the mass of body `load` must not be negative, but is",
                 ),
-                help: Text::Static("write 0 or a number above, in kg"),
+                help: Text::Static("write 0 or a positive number, in kg"),
             },
         },
         greatest: Bound::GREATEST,

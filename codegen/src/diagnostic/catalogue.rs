@@ -1,4 +1,4 @@
-//! The rules of the spec language: each has a code, a title, a label and a remedy. A code E is of a mistake, W of a warning.
+//! The rules of the spec language: each has a code, a title, a label and a remedy. Codes with E are mistakes, those with W warnings.
 
 /// A rule, for documentation and for the test that each has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub struct Rule {
     pub about: &'static str,
 }
 
-/// A message on one line of bearable length, whatever the user's names are made of.
+/// A message on one line of limited length, whatever the user's names consist of.
 pub(crate) fn printable(message: &str) -> String {
     /// A list of the longest names of the language fits.
     const LONGEST: usize = 400;
@@ -21,14 +21,14 @@ pub(crate) fn printable(message: &str) -> String {
     line
 }
 
-/// Turns a table of rules into one constructor a rule, in the module `rule`, and into `CATALOGUE`.
+/// Turns a table of rules into one constructor per rule, in the module `rule`, and into `CATALOGUE`.
 macro_rules! catalogue {
     ($($(#[doc = $about:literal])+ $code:ident $name:ident($($word:ident),*) $title:literal, $label:literal, $help:literal;)+) => {
         /// Every rule, by code.
         pub const CATALOGUE: &[$crate::diagnostic::Rule] =
             &[$($crate::diagnostic::Rule { code: stringify!($code), about: concat!($($about),+) }),+];
 
-        /// One function a rule, that says how it was broken.
+        /// One function per rule, which says how the rule was broken.
         pub(crate) mod rule {
             use std::fmt::Display;
 
@@ -55,67 +55,67 @@ catalogue! {
     // The file.
     /// A file holds at most 4 MiB.
     E001 too_large(size, limit) "the file is too large for a crane: {size} bytes", "a spec is at most {limit} bytes",
-        "check that this is the right file; a crane takes some thousand bytes";
+        "check that this is the right file; a typical spec has a few thousand bytes";
     /// A file is UTF-8 text.
     E002 not_utf8(at) "the file is not text", "byte {at} is not UTF-8", "save the file as UTF-8 text";
     /// A file is not empty.
-    E003 empty() "the file is empty", "no crane here",
+    E003 empty() "the file is empty", "expected a crane here",
         "start with `format: 1`, `name:` and `links:`; specs/double_pendulum.yaml is a short example";
     /// A file is one YAML document.
-    E004 not_yaml(problem) "the file is not YAML: {problem}", "the reader stopped here",
-        "check indentation (by spaces, not tabs), brackets and quotes of this line and the one before";
+    E004 not_yaml(problem) "the file is not YAML: {problem}", "reading stopped here",
+        "check the indentation (spaces, not tabs), brackets and quotes of this line and the previous one";
     /// The top level is a mapping of keys to values.
-    E005 not_a_mapping(found) "the file describes no crane: its top level is {found}", "expected keys here",
-        "write `key: value` lines, beginning with `format: 1`";
+    E005 not_a_mapping(found) "the file does not describe a crane: its top level is {found}", "expected keys here",
+        "write `key: value` lines, starting with `format: 1`";
     /// `format` names a version of the language that this compiler reads.
-    E006 wrong_format(given) "format {given} is not known", "this compiler reads format 1", "write `format: 1`";
-    /// A file has at most 131072 values; what an alias repeats counts each time.
-    E007 too_many_values(most) "the file has more than {most} values", "too many from here on",
-        "an alias (`*name`) repeats all that its anchor holds: write out what differs, and give a beam `sections` instead of `elements`";
+    E006 wrong_format(given) "format {given} is not supported", "this compiler reads format 1", "write `format: 1`";
+    /// A file has at most 131072 values; values that an alias repeats count each time.
+    E007 too_many_values(most) "the file has more than {most} values", "the limit is exceeded here",
+        "an alias (`*name`) repeats everything its anchor holds: write out only what differs, and give beams `sections` instead of `elements`";
 
     // Keys and shapes.
-    /// Every key is one of the language.
+    /// Every key belongs to the language.
     E010 unknown_key(key, help) "unknown key `{key}`", "not a key here", "{help}";
-    /// A key stands once in its mapping.
-    E011 duplicate_key(key) "key `{key}` is given twice", "given before", "keep one of the two";
+    /// A key occurs once in its mapping.
+    E011 duplicate_key(key) "key `{key}` is given twice", "already given above", "keep one of the two";
     /// Keys without a default are given.
-    E012 missing_key(key, place) "{place} lacks `{key}`", "`{key}` is missing here", "add `{key}:`; docs/SPEC.md tells its meaning and unit";
-    /// A value has the shape that its key asks for.
+    E012 missing_key(key, place) "{place} lacks `{key}`", "`{key}` is missing here", "add `{key}:`; docs/SPEC.md gives its meaning and unit";
+    /// A value has the form that its key requires.
     E013 wrong_value(place, found, kind, expected) "{place} cannot be {found}", "this is {kind}", "write {expected}";
-    /// A choice is one of those offered.
+    /// A choice is one of those available.
     E014 unknown_choice(place, given, help) "{place} cannot be `{given}`", "not one of the choices", "{help}";
-    /// Of several ways to say it, one is used.
-    E015 not_one_choice(place, count, choices) "{place} needs exactly one choice, here are {count}", "one of {choices}",
+    /// Of several alternatives, exactly one is given.
+    E015 not_one_choice(place, count, choices) "{place} needs exactly one choice, but {count} are given", "one of {choices}",
         "write exactly one of {choices}";
-    /// A list has as many items as its key asks for.
+    /// A list has as many items as its key requires.
     E016 wrong_length(place, expected, found) "{place} has {found} items instead of {expected}",
-        "{expected} items belong here", "write {expected} items";
+        "expected {expected} items", "write {expected} items";
     /// Text is one line without control characters.
-    E017 not_one_line(place) "{place} is not one line of plain text", "has a line break, or a character that does not print",
+    E017 not_one_line(place) "{place} is not one line of plain text", "contains a line break or a character that cannot be printed",
         "write it on one line; `>-` folds a long text into one";
 
     // Names.
-    /// Names are `snake_case` identifiers of at most 64 letters: they become names in Rust.
-    E020 not_an_identifier(name, why) "`{name}` cannot be a name", "{why}",
-        "use up to 64 lower-case letters, digits and `_`, beginning with a letter, such as `outer_boom`";
-    /// Names are not keywords of Rust; a crane is not named as a crate that programs around it use.
-    E021 keyword(name, why) "`{name}` cannot be a name", "{why}", "choose another word, such as `{name}_1`";
-    /// Names are unique among their kind, rigid elements and coordinates included.
-    E022 duplicate_name(kinds, name, other) "two {kinds} are called `{name}`", "taken by {other}", "rename one of the two";
+    /// Names are `snake_case` identifiers of at most 64 characters: they become names in Rust.
+    E020 not_an_identifier(name, why) "`{name}` is not a valid name", "{why}",
+        "use up to 64 lower-case letters, digits and `_`, starting with a letter, such as `outer_boom`";
+    /// Names are not keywords of Rust; a crane does not have the name of a crate that its program uses.
+    E021 keyword(name, why) "`{name}` is not a valid name", "{why}", "choose another word, such as `{name}_1`";
+    /// Names are unique within their kind, including those of rigid elements and coordinates.
+    E022 duplicate_name(kinds, name, other) "two {kinds} are called `{name}`", "already used by {other}", "rename one of the two";
     /// A parameter that is referred to exists.
     E023 unknown_parameter(name, help) "there is no parameter `{name}`", "neither a number nor a parameter", "{help}";
     /// A material that is referred to exists.
-    E024 unknown_material(name, help) "there is no material `{name}`", "not under `materials:`", "{help}";
+    E024 unknown_material(name, help) "there is no material `{name}`", "not listed under `materials:`", "{help}";
     /// A link that is referred to exists.
-    E025 unknown_link(name, help) "there is no link `{name}`", "not under `links:`", "{help}";
+    E025 unknown_link(name, help) "there is no link `{name}`", "not listed under `links:`", "{help}";
     /// A coordinate that is referred to exists.
-    E026 unknown_coordinate(name, help) "there is no coordinate `{name}`", "no joint moves it", "{help}";
+    E026 unknown_coordinate(name, help) "there is no coordinate `{name}`", "no joint has this coordinate", "{help}";
     /// A parameter is used somewhere.
-    E027 unused_parameter(name) "parameter `{name}` is never used", "no number refers to it",
-        "write `{name}` where a number stands, or remove it";
-    /// The columns of a point in the results, `<point>_x`, `_y`, `_z`, are not other columns.
-    E028 shared_column(point, column) "point `{point}` shares a column of the results", "`{column}` is a column already",
-        "rename the point, such as `{point}_point`";
+    E027 unused_parameter(name) "parameter `{name}` is never used", "nothing refers to it",
+        "use `{name}` in place of a number, or remove it";
+    /// The result columns of a point, `<point>_x`, `_y`, `_z`, differ from all other columns.
+    E028 shared_column(point, column) "point `{point}` uses a result column that is taken", "column `{column}` already exists",
+        "rename the point, for example to `{point}_point`";
 
     // Numbers.
     /// Numbers are finite.
@@ -123,42 +123,42 @@ catalogue! {
     /// Masses, lengths, sections, moduli and durations are above zero.
     E031 not_positive(place, given, unit) "{place} must be above zero, not {given}", "{given} {unit}",
         "write a number above 0, in {unit}";
-    /// Stiffness, damping and what else may vanish are not below zero.
-    E032 negative(place, given, unit) "{place} must not be below zero, and is {given}", "{given} {unit}",
-        "write 0 or a number above, in {unit}";
-    /// Numbers are of a size that occurs: 0, or between 1e-30 and 1e18.
-    E033 out_of_range(place, given) "{place} is outside the allowed range: {given}", "0, or from 1e-30 to 1e18",
+    /// Stiffness, damping and other numbers that may be zero are not negative.
+    E032 negative(place, given, unit) "{place} must not be negative, but is {given}", "{given} {unit}",
+        "write 0 or a positive number, in {unit}";
+    /// Numbers are 0 or have a magnitude from 1e-30 to 1e18.
+    E033 out_of_range(place, given) "{place} is outside the allowed range: {given}", "allowed: 0, or a magnitude from 1e-30 to 1e18",
         "check the exponent; every number is in SI units";
-    /// An angle is written only where an angle belongs.
-    E034 misplaced_angle(place) "{place} is not an angle", "`deg` and `pi` belong to angles", "write a number, in SI units";
+    /// Angles are written only where an angle is expected.
+    E034 misplaced_angle(place) "{place} is not an angle", "`deg` and `pi` are for angles only", "write a number, in SI units";
 
     // Links.
     /// A crane has at least one link.
     E040 no_links() "the crane has no links", "empty", "add a link: `- {{name: boom, joint: revolute, ...}}`";
     /// Only the base is free.
-    E041 free_inside(link) "link `{link}` is free, but hangs on another link", "only the first link may be free",
+    E041 free_inside(link) "link `{link}` is free, but attached to another link", "only the first link may be free",
         "use `fixed`, `revolute` or `prismatic`";
     /// A free base has at least one coordinate, each once.
     E042 base_coordinates(link, problem) "the coordinates of base `{link}` are {problem}", "{problem}",
         "list some of x, y, z, psi, theta, phi, each once; or write `free` for all six, `fixed` for none";
-    /// The joint of a D-H row turns about z or moves along it.
-    E043 dh_axis(link) "the joint of link `{link}` is not about z", "a D-H row has its joint on z",
+    /// The joint of a D-H row rotates about z or slides along it.
+    E043 dh_axis(link) "the joint of link `{link}` is not about z", "the joint axis of a D-H row is z",
         "leave `axis` out, or place the link by `transform`";
     /// Mass, bodies and beam exclude one another.
-    E044 two_masses(link, first, second) "link `{link}` has both `{first}` and `{second}`", "beside `{first}`",
+    E044 two_masses(link, first, second) "link `{link}` has both `{first}` and `{second}`", "`{first}` is given too",
         "give one of `mass`, `bodies`, `beam`";
-    /// Centre of mass and inertia go with a mass.
-    E045 without_mass(link, key) "link `{link}` has `{key}` but no mass", "of what?", "add `mass:`, or remove `{key}`";
-    /// Every joint moves a mass of its own, else the mass matrix is singular.
+    /// A centre of mass and an inertia require a mass.
+    E045 without_mass(link, key) "link `{link}` has `{key}` but no mass", "`{key}` requires `mass`", "add `mass:`, or remove `{key}`";
+    /// Every joint moves a mass of its own; otherwise the mass matrix is singular.
     E046 moves_nothing(coordinate) "coordinate `{coordinate}` moves no mass of its own", "the mass matrix is singular",
         "give the links after this joint mass and inertia, or fix the joint";
     /// A crane has at most 10000 coordinates.
-    E047 too_many(what, count, most, help) "with {what} the crane has {count} coordinates", "at most {most} in all", "{help}";
+    E047 too_many(what, count, most, help) "with {what} the crane has {count} coordinates", "the limit is {most}", "{help}";
     /// A crane has a joint that moves, or a beam with sections.
     E048 nothing_moves() "nothing in the crane can move", "no link has a joint that moves or a beam with sections",
         "write `joint: revolute`, `prismatic` or, in the first link, `free`; or give a beam `sections`";
-    /// The elements of a beam are not too light beside what the beam carries, else the mass matrix is singular to rounding.
-    E049 too_light(link, mass) "beam `{link}` is too light for what it carries", "{mass} kg; the mass matrix is singular to rounding",
+    /// The elements of a beam are not too light for what the beam carries; otherwise the mass matrix is numerically singular.
+    E049 too_light(link, mass) "beam `{link}` is too light for what it carries", "{mass} kg; the mass matrix is numerically singular",
         "check `density` and the section, in kg/m³ and m; or write `sections: rigid`";
 
     // Inertias.
@@ -166,11 +166,11 @@ catalogue! {
     E050 not_positive_definite(place, smallest) "{place} is not positive definite",
         "smallest principal moment about the centre of mass: {smallest} kg m²",
         "check signs, products and `about`; leave `inertia` out for a point mass";
-    /// Principal moments satisfy the triangle inequality: none exceeds the sum of the other two, not even by 25 %.
-    E051 triangle(place, largest, others) "{place} belongs to no body", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
+    /// Principal moments satisfy the triangle inequality: none exceeds the sum of the other two by more than 25 %.
+    E051 triangle(place, largest, others) "{place} is not possible for a rigid body", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
         "no principal moment about the centre of mass may exceed the sum of the other two";
     /// An inertia is given by its tensor or by radii of gyration.
-    E052 two_inertias(place) "{place} is given in two ways", "beside `gyration`",
+    E052 two_inertias(place) "{place} is given in two ways", "`gyration` is given too",
         "give `gyration` alone, or `Ixx`, `Iyy`, `Izz`";
 
     // Beams.
@@ -178,19 +178,19 @@ catalogue! {
     E060 sections(given) "a beam cannot have {given} sections", "expected an integer from 1 to 1000, or `rigid`",
         "write an integer such as 4, or `rigid`";
     /// A beam is given by sections or by elements.
-    E061 two_beams(key) "the beam is given in two ways: `{key}` beside `elements`", "belongs to a beam of equal sections",
-        "give `sections`, `material`, `section`, or `elements` and `springs`";
+    E061 two_beams(key) "the beam is given in two ways: `{key}` and `elements`", "for a beam of equal sections",
+        "give either `sections`, `material` and `section`, or `elements` and `springs`";
     /// Between n + 1 elements there are n springs, at least one.
-    E062 springs(elements, springs) "{elements} elements cannot have {springs} springs", "a spring between each two elements",
+    E062 springs(elements, springs) "{elements} elements cannot have {springs} springs", "expected one spring between neighbouring elements",
         "give one spring fewer than elements, and at least one";
     /// Walls fit into their section.
-    E063 wall(thickness, size) "the wall of the section is too thick", "twice {thickness} m leaves no hollow in {size} m",
+    E063 wall(thickness, size) "the wall of the section is too thick", "two walls of {thickness} m do not fit into {size} m",
         "make `thickness` less than half of the smaller side, in m, or use `solid` or `circle`";
     /// The elements of a beam add up to its length.
     E064 beam_length(sum, length) "the elements do not add up to the beam", "{sum} m in all, the beam is {length} m long",
         "make the lengths of the elements add up to `length`, in m";
-    /// The sides of a solid rectangle are constants: its torsion constant is a series.
-    E065 live_side(place) "{place} cannot be a parameter", "the torsion constant of a solid rectangle is a series",
+    /// The sides of a solid rectangle are constants, since its torsion constant is a series.
+    E065 live_side(place) "{place} cannot be a parameter", "the torsion constant of a solid rectangle needs constant sides",
         "write a number, or give `numbers: {{area, Jy, Jz, Jo}}` with parameters";
 
     // Supports.
@@ -199,68 +199,68 @@ catalogue! {
         "write `joint: free` in the first link, or remove `supports`";
     /// Linear supports belong to a base that is placed without rotation and moves about the origin of its own frame.
     E071 linear_placed(support, how) "support `{support}` is linear, but the base is placed {how}",
-        "linear kinematics need the world's axes, about the centre of rotation",
+        "linear kinematics need the world's axes, and rotations about the base's origin",
         "write `kinematics: exact`, or place the base by `transform` without `rotation`";
     /// Supports carry a base that is rigid.
     E072 supports_on_beam(base) "the crane has supports, but its base `{base}` is a flexible beam",
-        "they would hold its first element alone", "put a rigid link with `joint: free` under the beam";
+        "they would hold only its first element", "put a rigid link with `joint: free` under the beam";
 
     // Drives, damping, profiles.
-    /// A coordinate has one drive, and one passive damping at most.
-    E080 driven_twice(coordinate) "coordinate `{coordinate}` is driven twice", "has a drive already", "keep one of the two";
+    /// A coordinate has at most one drive and one passive damping.
+    E080 driven_twice(coordinate) "coordinate `{coordinate}` is driven twice", "already has a drive", "keep one of the two";
     /// Drives act on joints, not on a free base or inside a beam.
     E081 cannot_drive(coordinate, owner) "coordinate `{coordinate}` cannot be driven", "it belongs to {owner}",
         "drive the coordinate of a revolute or prismatic joint";
     /// A table has as many values as times, at least two.
-    E082 table_length(times, values) "a table of {times} times and {values} values", "one value for each time, at least two",
+    E082 table_length(times, values) "the table has {times} times and {values} values", "expected one value per time, at least two",
         "give as many `values` as `times`";
     /// The times of a table increase.
-    E083 table_order(before, after) "the table runs backwards: {after} s after {before} s", "not later than {before} s",
-        "order `times` strictly increasing, in s";
-    /// The ramps of a trapezoid take more than nothing and at most half of its duration.
-    E084 blend(given) "a trapezoid cannot have blend {given}", "above 0, up to 0.5", "write the share of the duration spent accelerating, such as 0.25";
-    /// Passive damping is of joints that are not driven, nor inside a beam.
+    E083 table_order(before, after) "the times of the table do not increase: {before} s, then {after} s", "not later than {before} s",
+        "write `times` in strictly increasing order, in s";
+    /// The blend of a trapezoid is above 0 and at most 0.5.
+    E084 blend(given) "a trapezoid cannot have a blend of {given}", "must be above 0 and at most 0.5", "write the fraction of the duration spent accelerating, such as 0.25";
+    /// Passive damping belongs to joints that are neither driven nor inside a beam.
     E085 not_passive(coordinate, owner) "coordinate `{coordinate}` is not passive", "it belongs to {owner}",
         "give the damping there";
-    /// Rotors turn with joints; that of a driven joint belongs to its drive.
+    /// Rotors turn with joints; the rotor of a driven joint belongs to its drive.
     E086 no_rotor(coordinate, owner, help) "coordinate `{coordinate}` has no rotor of its own", "it belongs to {owner}",
         "{help}";
     /// A drive has a stiffness, or is rigid.
     E087 no_transmission(coordinate) "drive `{coordinate}` has no stiffness", "neither `stiffness` nor `rigid: true`",
         "write its `stiffness:`, or `rigid: true` where the coordinate follows the motion exactly";
     /// A rigid drive has neither stiffness nor damping.
-    E088 rigid_spring(coordinate, key) "drive `{coordinate}` is rigid and has a `{key}`", "a rigid drive does not give way",
-        "remove `{key}`, or `rigid: true`";
+    E088 rigid_spring(coordinate, key) "drive `{coordinate}` is rigid and has a `{key}`", "a rigid drive has no spring and no damper",
+        "remove either `{key}` or `rigid: true`";
     /// The speed of a rigid drive does not jump.
-    E089 jumps(coordinate, time) "the motion of rigid drive `{coordinate}` jumps to its speed at {time}",
-        "this takes an infinite force", "add a `ramp` in s, or let it `begin` at t = 0 or before";
+    E089 jumps(coordinate, time) "the speed of rigid drive `{coordinate}` jumps at {time}",
+        "this would need an infinite force", "add a `ramp` in s, or let it `begin` at t = 0 or before";
 
     // Run.
     /// `step` ≤ `output` ≤ `duration`.
     E090 run_order(smaller, larger) "`{smaller}` is longer than `{larger}`", "longer than `{larger}`",
         "choose step ≤ output ≤ duration, in s";
-    /// There is something to compute.
-    E091 no_analyses() "`analyses` is empty", "nothing to compute", "list some of statics, dynamics, modes, derivatives";
+    /// At least one analysis is requested.
+    E091 no_analyses() "`analyses` is empty", "nothing to compute", "list one or more of statics, dynamics, modes, derivatives";
     /// The guess of a coordinate is not prescribed by a rigid drive.
-    E092 prescribed_guess(coordinate) "the guess of `{coordinate}` has no effect", "its rigid drive prescribes where it is",
+    E092 prescribed_guess(coordinate) "the guess of `{coordinate}` has no effect", "its rigid drive prescribes its position",
         "remove it";
 
     // Stops and friction of joints.
-    /// Stops and friction are of joints, not of a free base or inside a beam.
+    /// Stops and friction belong to joints, not to a free base or the inside of a beam.
     E094 not_a_joint(coordinate, what, owner) "coordinate `{coordinate}` cannot have {what}", "it belongs to {owner}",
         "name the coordinate of a revolute or prismatic joint";
-    /// Stops stand at one end of a joint's range at least.
-    E095 no_stop(coordinate) "the stops of `{coordinate}` stand nowhere", "neither `min` nor `max`",
+    /// Stops limit at least one end of a joint's range.
+    E095 no_stop(coordinate) "the stops of `{coordinate}` have no position", "neither `min` nor `max`",
         "write `min:` or `max:` or both, in rad or m";
-    /// The least position of a joint is below its greatest.
+    /// The minimum position of a joint is below its maximum.
     E096 stops_crossed(coordinate, least, greatest) "the stops of `{coordinate}` leave no range", "from {least} to {greatest}",
         "make `min` less than `max`";
-    /// Breaking away takes no less than moving on.
+    /// The breakaway friction is at least the Coulomb friction.
     E097 breakaway(coordinate, coulomb, breakaway) "the friction of `{coordinate}` is less at rest than in motion",
-        "{breakaway} against {coulomb}", "write `breakaway` at least as great as `coulomb`, or leave it out";
-    /// Stribeck's decline is from a breakaway friction.
-    E098 stribeck_alone(coordinate) "the friction of `{coordinate}` has nothing to decline from", "`stribeck` without `breakaway`",
-        "add `breakaway:`, at least as great as `coulomb`, or remove `stribeck`";
+        "breakaway {breakaway}, coulomb {coulomb}", "make `breakaway` at least as large as `coulomb`, or leave it out";
+    /// Stribeck friction declines from a breakaway friction.
+    E098 stribeck_alone(coordinate) "the Stribeck friction of `{coordinate}` has no breakaway friction to decline from", "`stribeck` without `breakaway`",
+        "add `breakaway:`, at least as large as `coulomb`, or remove `stribeck`";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
@@ -271,23 +271,23 @@ catalogue! {
     /// Densities are from 100 to 25000 kg/m³.
     W003 density(place, given, help) "the density of {place} is {given} kg/m³", "usual: 100 to 25000 kg/m³", "{help}";
     /// Cross-sections are at most 5 m high and wide, their area at most 4 m², their moments at most 10 m⁴.
-    W004 section_size(place, what, help) "the section of {place} has {what}", "larger than any crane's", "{help}";
+    W004 section_size(place, what, help) "the section of {place} has {what}", "larger than in any crane", "{help}";
     /// Lengths and distances within a crane are at most 200 m.
-    W005 far(what, given, help) "{what} is {given} m", "longer than any crane", "{help}";
-    /// A beam is longer than its section is high and wide.
-    W006 stubby(place, key, side, length) "{place} is shorter than its section is large", "`{key}` is {side} m, the beam {length} m long",
-        "check both units; a beam this short does not bend as a beam: `sections: rigid` suits it";
+    W005 far(what, given, help) "{what} is {given} m", "larger than any crane", "{help}";
+    /// A beam is longer than its section is high or wide.
+    W006 stubby(place, key, side, length) "{place} is shorter than its section is high or wide", "`{key}` is {side} m, the beam {length} m long",
+        "check both units; a body this short does not bend as a beam: use `sections: rigid`";
     /// The torsion constant of a section is at most the sum of its two second moments of area.
     W007 torsion_constant(place, given, polar) "the torsion constant `Jo` of {place} exceeds Jy + Jz", "{given} m⁴ exceeds {polar} m⁴",
         "write the torsion constant: Jy + Jz for circles and tubes, less for boxes, far less for open sections";
     /// Angles without `deg` or `pi` are at most one turn, speeds one turn per second.
     W008 degrees(what, given, unit, turns) "{what} is {given} {unit}", "{turns}", "did you mean `{given} deg`? Write several turns as a multiple of `pi`";
-    /// The damping of a beam leaves its lowest bending vibration: β ω is at most 10 for the beam alone, clamped at one end.
+    /// The damping of a beam does not suppress its lowest bending vibration: β ω is at most 10 for the beam alone, clamped at one end.
     W009 overdamped(link, beta, frequency, product) "the damping of beam `{link}` suppresses all vibration: β ω = {product}",
         "β = {beta} s, the lowest bending frequency is {frequency} rad/s", "check the unit: `beta` is in s, 1e-4 to 1e-2 s for steel structures";
     /// A payload is not out of proportion to the crane that carries it.
-    W010 payload(place, mass, crane, help) "the mass of {place} is {mass} kg", "the crane that carries it has {crane} kg", "{help}";
-    /// Principal moments satisfy the triangle inequality, which measured ones may miss by up to 25 % (above: E051).
-    W011 slight_triangle(place, largest, others) "{place} violates the triangle inequality a little", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
-        "no principal moment about the centre of mass exceeds the sum of the other two; rounded or identified data may miss that a little";
+    W010 payload(place, mass, crane, help) "the mass of {place} is {mass} kg", "the crane that carries it has a mass of {crane} kg", "{help}";
+    /// Principal moments satisfy the triangle inequality; measured ones may exceed it by up to 25 % (beyond: E051).
+    W011 slight_triangle(place, largest, others) "{place} slightly violates the triangle inequality", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
+        "no principal moment about the centre of mass exceeds the sum of the other two; rounded or identified data may violate this slightly";
 }

@@ -12,7 +12,7 @@ pub(crate) fn suggest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>
         Some((distance, known)) if distance <= tolerance => format!("did you mean `{known}`?"),
         Some(_) if offered.len() <= MOST => format!("write one of {}", list(&offered)),
         Some(_) => format!("write one of {}, ...", list(&offered[..MOST])),
-        None => "there is none to refer to".into(),
+        None => "none is defined".into(),
     }
 }
 

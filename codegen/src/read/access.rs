@@ -149,7 +149,7 @@ impl<'a> Fields<'a> {
                 None => {
                     let help = match before {
                         Some(whole) if matches!(value.content, Content::Null) && is_fraction(&key.content) => {
-                            format!("did you mean `{whole}.{name}`? A decimal point, not a comma")
+                            format!("did you mean `{whole}.{name}`? Write a decimal point, not a comma")
                         }
                         _ => suggest(&name, names.iter().copied()),
                     };

@@ -98,7 +98,7 @@ fn too_many(error: &serde_yaml::Error) -> bool {
 /// The parser's message without the place, which the drawing shows, nor advice on how to call the parser.
 fn problem(error: &serde_yaml::Error) -> String {
     if matches!(error.without_snippet(), serde_yaml::Error::MultipleDocuments { .. }) {
-        return "it holds several documents".into();
+        return "it contains several documents".into();
     }
     let message = error.without_snippet().to_string();
     let first = message.lines().next().unwrap_or_default();

@@ -17,7 +17,7 @@ pub(super) const MOST_COORDINATES: usize = 10_000;
 const SAFETY_FACTOR: f64 = 1.5;
 /// What to do about too many of them.
 const FEWER_SECTIONS: &str =
-    "cut beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
+    "divide beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
 /// Rotations of an element after the first, in order.
 const ROTATIONS: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 

@@ -126,7 +126,7 @@ impl<'a> Check<'a> {
             let Some(id) = coordinate else { continue };
             let name_of = &self.coordinates[id.0].name;
             if let Some(owner) = self.not_a_joint(id) {
-                self.report(rule::no_rotor(name.span, name_of, owner, "leave it out: rotors turn with joints"));
+                self.report(rule::no_rotor(name.span, name_of, owner, "remove it: only joints have rotors"));
             } else if drives.iter().any(|drive| drive.coordinate == id) {
                 self.report(rule::no_rotor(name.span, name_of, "a drive", "write `armature:` in the drive"));
             } else if !armature.is_zero() {

@@ -54,7 +54,8 @@ impl<'a> Check<'a> {
             }
             let count = self.coordinates.len();
             if count > MOST_COORDINATES {
-                let help = "a crane has a joint for each drive and hinge: leave out what does not move by itself";
+                let help =
+                    "give each drive and each hinge one joint, and leave out parts that cannot move independently";
                 self.report(rule::too_many(link.span, format!("link {}", index + 1), count, MOST_COORDINATES, help));
                 self.unknown.links = true;
                 return;
@@ -76,7 +77,7 @@ impl<'a> Check<'a> {
         let first = self.bodies.len();
         let (starts, tip) = self.carried(link, name, path);
         if !name.is_empty() && self.links.insert(name, Place { first, starts }).is_some() {
-            self.report(rule::duplicate_name(link.name.span, "links", name, "a link before"));
+            self.report(rule::duplicate_name(link.name.span, "links", name, "an earlier link"));
         }
         tip
     }

@@ -47,7 +47,7 @@ impl Check<'_> {
         let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
         let identifier = name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(letters);
         if !identifier || name.len() > LONGEST {
-            let why = if identifier { "longer than 64 letters" } else { "not an identifier" };
+            let why = if identifier { "longer than 64 characters" } else { "not an identifier" };
             self.report(rule::not_an_identifier(given.span, name.chars().take(40).collect::<String>(), why));
             return None;
         }
@@ -63,7 +63,7 @@ impl Check<'_> {
     pub(super) fn crane_name<'n>(&mut self, given: &'n Given<String>) -> Option<&'n str> {
         let name = self.name(given)?;
         if CRATES.contains(&name) {
-            self.report(rule::keyword(given.span, name, "programs around a crane use a crate of this name"));
+            self.report(rule::keyword(given.span, name, "the crane's program uses a crate of this name"));
             return None;
         }
         Some(name)

@@ -76,7 +76,7 @@ impl Description {
                 && ["psi", "phi"].iter().all(|other| turns(&format!("{body}_{other}"), *role));
             (all && angle.cos().abs() < NEAR_SINGULAR.sin()).then(|| {
                 let degrees = angle.to_degrees();
-                format!("{name} is {degrees:.2}°: near ±90° {body}_psi and {body}_phi turn about one axis, and digits are lost")
+                format!("{name} is {degrees:.2}°: near ±90° {body}_psi and {body}_phi turn about the same axis and accuracy is lost")
             })
         })
     }
@@ -88,7 +88,7 @@ impl Description {
             let CoordinateInfo { name, role, kind } = coordinate;
             let turned = (*role, *kind) == (CoordinateRole::Base, CoordinateKind::Rotation) && angle.abs() > LARGE_TILT;
             turned.then(|| {
-                format!("{name} is {angle:.3} rad: supports with `kinematics: linear` hold up to about {LARGE_TILT} rad only")
+                format!("{name} is {angle:.3} rad: supports with `kinematics: linear` are valid only up to about {LARGE_TILT} rad")
             })
         })
     }

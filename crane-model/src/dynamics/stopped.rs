@@ -94,7 +94,7 @@ impl Stopped {
                 self.step
             ),
             Cause::Growth | Cause::Step => format!(
-                "nothing holds {} any more: look for a load that is too great, a spring or damper that is missing or negative, \
+                "nothing restrains {}: look for a load that is too large, a spring or damper that is missing or negative, \
                  and an initial state far from equilibrium; a smaller tolerance shows whether the motion is real",
                 self.coordinate
             ),
@@ -104,14 +104,14 @@ impl Stopped {
                     .to_owned()
             }
             Cause::Steps if self.method.is_adaptive() => format!(
-                "steps are {:.1e} s here: use a larger tolerance (1e-4 is typical) or a shorter duration, or look for what \
-                 vibrates that fast; the limit is a setting, `most_steps`",
+                "the steps are {:.1e} s here: use a larger tolerance (1e-4 is typical) or a shorter duration, or find out what \
+                 vibrates that fast; the setting `most_steps` is the limit",
                 self.step
             ),
-            Cause::Steps => "use a longer step or a shorter duration; the limit is a setting, `most_steps`".to_owned(),
+            Cause::Steps => "use a longer step or a shorter duration; the setting `most_steps` is the limit".to_owned(),
             Cause::MassMatrix => format!(
-                "give what {} moves a `mass` above zero, in kg, and where it only turns an `inertia`, in kg m², or hold \
-                 it by `joint: fixed`; a parameter set to zero may have taken it away",
+                "give the links that {} moves a `mass` above zero, in kg, and if it only rotates them an `inertia`, in kg m², or \
+                 write `joint: fixed`; a parameter may have been set to zero",
                 self.coordinate
             ),
         }
@@ -129,11 +129,11 @@ impl fmt::Display for Stopped {
             Cause::Tolerance => {
                 write!(f, "no step from t = {time:.6} s meets the tolerance; {coordinate} is {value:.3e} {unit}")
             }
-            Cause::Steps => write!(f, "the run took all the steps that it may take: it came to t = {time:.6} s"),
+            Cause::Steps => write!(f, "the run used up its number of steps at t = {time:.6} s"),
             Cause::MassMatrix => write!(
                 f,
-                "the mass matrix is not positive definite at t = {time:.6} s: nothing that {coordinate} \
-                 ({value:.3e} {unit}) moves has a mass or inertia of its own"
+                "the mass matrix is not positive definite at t = {time:.6} s: {coordinate} ({value:.3e} {unit}) moves nothing \
+                 with a mass or inertia of its own"
             ),
         }
     }

@@ -23,7 +23,7 @@ impl fmt::Display for NoModes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             NoModes::MassMatrix => "no modes: the mass matrix is not positive definite",
-            NoModes::Eigenvalues => "no modes: the iteration for the eigenvalues did not come to an end",
+            NoModes::Eigenvalues => "no modes: the eigenvalue iteration did not converge",
         })
     }
 }

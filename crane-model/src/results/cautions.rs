@@ -24,7 +24,7 @@ pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let stopped = description.stops.iter().zip(rig.stop_efforts_at(q, &vec![0.0; q.len()]));
     let stopped = stopped.filter(|(_, effort)| *effort != 0.0).map(|(&coordinate, effort)| {
         let coordinate = &description.coordinates[coordinate];
-        format!("{} rests on its stop, with {:.1} {}", coordinate.name, effort.abs(), coordinate.kind.force_unit())
+        format!("{} rests on its stop with {:.1} {}", coordinate.name, effort.abs(), coordinate.kind.force_unit())
     });
     pulled(&pulls).into_iter().chain(stopped).chain(bent_beyond(bent, bend)).collect()
 }
@@ -52,7 +52,7 @@ fn on_stop(description: &Description, table: &Table, coordinate: usize) -> Optio
     let met = samples as f64 * duration / (table.rows.len().max(2) - 1) as f64;
     (effort > 0.0).then(|| {
         let (name, unit) = (&coordinate.name, coordinate.kind.force_unit());
-        format!("{name} is on its stop for {met:.2} s, with up to {effort:.1} {unit} at {time:.2} s")
+        format!("{name} is on its stop for {met:.2} s; the stop takes up to {effort:.1} {unit}, at {time:.2} s")
     })
 }
 
@@ -77,8 +77,8 @@ fn pulled(pulls: &[(&str, f64, Option<f64>)]) -> Option<String> {
     let (pull, would) = if pulls.len() == 1 { ("pulls", "a real foot") } else { ("pull", "real feet") };
     (!pulls.is_empty()).then(|| {
         format!(
-            "{feet} {pull} on the ground: {would} would lift off and the crane might tip; forces and poses hold only for \
-             feet that are anchored"
+            "{feet} {pull} on the ground: {would} would lift off and the crane might tip; forces and poses are valid only for \
+             anchored feet"
         )
     })
 }
@@ -89,7 +89,7 @@ fn bent_beyond<'a>(angles: impl Iterator<Item = (&'a str, f64)>, limit: f64) -> 
     let degrees = angle.to_degrees();
     (degrees.abs() > limit).then(|| {
         format!(
-            "{name} turns by {degrees:.0}° in one section, beyond {limit}°: check E, G and the cross-section, and their units; \
+            "{name} turns by {degrees:.0}° in one section, beyond {limit}°: check E, G, the cross-section and their units; \
              if they are right, use more sections"
         )
     })
@@ -101,8 +101,8 @@ pub fn of_step(step: f64, limit: f64) -> Option<String> {
     const NEAR: f64 = 0.97;
     (step > NEAR * limit).then(|| {
         format!(
-            "the step of {step:.3e} s is within 3 % of the largest stable one, {limit:.3e} s: fast modes are wrong, and a \
-             change of pose may make the run unstable; `--step auto` takes a safe one"
+            "the step of {step:.3e} s is within 3 % of the largest stable step, {limit:.3e} s: fast modes are wrong, and a \
+             change of pose may make the run unstable; `--step auto` uses a safe step"
         )
     })
 }

@@ -64,7 +64,7 @@ impl std::fmt::Display for Reason {
         match self {
             Reason::Refused(refused) => write!(f, "{refused}"),
             Reason::Failed(failed) => write!(f, "{failed}"),
-            Reason::CalledOff => f.write_str("called off"),
+            Reason::CalledOff => f.write_str("cancelled"),
         }
     }
 }

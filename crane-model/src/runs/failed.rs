@@ -55,16 +55,16 @@ impl Reason {
     pub fn advice(&self) -> String {
         match self {
             Reason::Equilibrium(_) => {
-                "change `guess:` in its spec to a pose near a stable equilibrium, or drive or spring the coordinates named".to_owned()
+                "change `guess:` in its spec to a pose near a stable equilibrium, or add a drive or spring to the coordinates named".to_owned()
             }
             Reason::MassMatrix => {
-                "give every link a mass in kg and an inertia in kg m² that count beside those of the others".to_owned()
+                "give every link a mass in kg and an inertia in kg m² that are not negligible beside those of the others".to_owned()
             }
             Reason::Modes(_) => "check masses and inertias in the spec".to_owned(),
             Reason::Stopped { stopped, limit, .. } => {
                 let light = match stopped.cause {
                     Cause::Tolerance => {
-                        "; a link of hardly any mass beside a heavy one swings faster than any step: give it the mass it has"
+                        "; a very light link next to a heavy one vibrates too fast for any step: give it its real mass"
                     }
                     _ => "",
                 };
@@ -90,7 +90,9 @@ impl fmt::Display for Reason {
                 let left = if residual.is_finite() { format!(", residual {residual:.1e}") } else { String::new() };
                 write!(f, "statics did not find a stable equilibrium ({equilibrium}{left})")
             }
-            Reason::MassMatrix => f.write_str("the mass matrix is not positive definite, so nothing can be moved"),
+            Reason::MassMatrix => {
+                f.write_str("the mass matrix is not positive definite, so accelerations are not defined")
+            }
             Reason::Modes(no_modes) => write!(f, "{no_modes}"),
             Reason::Stopped { stopped, near_singular, .. } => {
                 let near = near_singular.as_ref().map_or_else(String::new, |said| format!("; {said}"));

@@ -106,9 +106,9 @@ pub fn record(
     let off = imbalance(&table);
     let unbalanced = (settings.audit && off > IMBALANCE).then(|| {
         format!(
-            "energy is off by {:.0} % of what was turned over: steps miss something, such as a motion shorter than they are \
-             or an angle near ±90°, or rounding moves springs that are too stiff; make step or tolerance smaller, the \
-             interval of results shorter, springs softer",
+            "the energy balance is off by {:.0} % of the energy exchanged: the steps may miss a short motion or an angle near ±90°, \
+             or springs may be too stiff for rounding; use a smaller step or tolerance, a shorter interval of results, or \
+             softer springs",
             100.0 * off
         )
     });

@@ -31,14 +31,12 @@ impl fmt::Display for Status {
         match self {
             Status::Converged => f.write_str("converged to a stable equilibrium"),
             Status::Unstable { coordinates } => {
-                write!(f, "unstable equilibrium: it falls away in {}", coordinates.join(", "))
+                write!(f, "unstable equilibrium in {}", coordinates.join(", "))
             }
             Status::Singular { coordinates } => {
-                write!(f, "singular: nothing holds {}", coordinates.join(", "))
+                write!(f, "singular: nothing constrains {}", coordinates.join(", "))
             }
-            Status::Overflow => {
-                f.write_str("forces beyond all numbers: a mass, a stiffness or a position is out of proportion")
-            }
+            Status::Overflow => f.write_str("forces overflow: a mass, a stiffness or a position is out of range"),
             Status::NotConverged => f.write_str("not converged: no equilibrium found from this guess"),
         }
     }

@@ -14,30 +14,30 @@ use crane_model::results::cautions::BEND;
 
 const EXAMPLES: &str = "\
 Examples:
-  crane                                the eight-link crane, rigid against flexible
+  crane                                compare the eight-link crane with a rigid and with a flexible boom
   crane statics                        pose, drive torques, support reactions
   crane statics cantilever --format json
-                                       the same of another crane, for a program
+                                       the same for another crane, as JSON
   crane simulate --set load_mass=0 --out empty
                                        the manoeuvre without the log
   crane simulate --method rk4 --step 1e-4
-                                       the manoeuvre as the paper integrates it
+                                       the manoeuvre, integrated as in the paper
   crane simulate --ensemble loads.csv -o peaks.csv
-                                       a crane for every row of a table of parameters
-  crane report -o report.html          the crane in 3-D, plots and tables as a page that needs no network
-  crane strength --run                 tipping margin, stresses, loads of joints, at rest and along the manoeuvre
+                                       one run per row of a table of parameters
+  crane report -o report.html          the crane in 3-D, plots and tables on one page
+  crane strength --run                 tipping margin, stresses and joint loads, at rest and during the manoeuvre
   crane modes                          frequencies and damping about the static pose
-  crane stability                      largest stable steps, what limits them, and a figure
-  crane work-precision                 what accuracy costs: methods, steps, tolerances, numbers of sections
-  crane stress --quick                 stiff and extreme cranes, as expected or not
+  crane stability                      largest stable steps and what limits them, with a figure
+  crane work-precision                 error against run time for methods, tolerances and numbers of sections
+  crane stress --quick                 run the stiff and extreme test cranes
   crane check my.yaml; crane run my.yaml
-                                       your own crane: its mistakes; everything about it
-  crane explain my.yaml --svg my.svg   its chain, in words and as a picture
-  crane new my-crane --from cantilever a crate that compiles your own crane
+                                       your own crane: find its mistakes, then compute everything
+  crane explain my.yaml --svg my.svg   its bodies and coordinates, in words and as a picture
+  crane new my-crane --from cantilever a Rust crate that compiles your own crane
   crane export my.yaml --format urdf -o my.urdf
-                                       the chain for other programs, its springs in my.springs.yaml beside it
-  crane import robot.urdf -o my.yaml   a spec from a robot of others
-  crane list                           the cranes to choose from
+                                       the crane for other programs, with its springs in my.springs.yaml
+  crane import robot.urdf -o my.yaml   convert a URDF robot to a spec
+  crane list                           the shipped cranes
   crane info                           coordinates, parameters, drives of a crane
   source <(crane completions bash)     completion of commands and options
 
@@ -48,8 +48,8 @@ Exit codes:
 
 /// Statics, motion and vibration of cranes compiled from YAML.
 ///
-/// Without a command: the eight-link forest crane, rigid and with a flexible boom. Static pose, a manoeuvre of 5 s
-/// followed to 10 s, and the comparison of both as figures (SVG) and data (CSV) in `out/`.
+/// Without a command, the eight-link forest crane with a rigid boom is compared with the same crane with a flexible boom:
+/// the static pose, then a manoeuvre of 5 s followed to 10 s. Figures (SVG), data (CSV) and a report (HTML) go to `out/`.
 #[derive(Debug, Parser)]
 #[command(name = "crane", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Arguments {
@@ -64,31 +64,31 @@ pub struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Action {
-    /// All of it: statics, motion, figures and the report, into a folder
+    /// Compute everything: statics, motion, figures and the report, written to a folder
     Run(Simulate),
-    /// Static equilibrium: pose, drive torques, support reactions
+    /// Find the static equilibrium: pose, drive torques, support reactions
     Statics(Analysis),
-    /// Tipping margin, stresses and utilisation of beams, loads of the ground and the joints; the load that tips the crane
+    /// Compute the tipping margin, stresses in beams, loads on the ground and the joints, and the load that tips the crane
     Strength(Strength),
-    /// Motion from the static pose: results, figures and a record of the run into a folder
+    /// Simulate the motion from the static pose; write results, figures and a record of the run to a folder
     Simulate(Simulate),
-    /// Frequencies, damping and dominating coordinates about the static pose, and the largest stable step
+    /// Compute frequencies, damping and dominant coordinates about the static pose, and the largest stable step
     Modes(Analysis),
-    /// Statics, motion and modes as one HTML page: the crane in 3-D, plots, tables
+    /// Write statics, motion and modes as one HTML page: the crane in 3-D, plots, tables
     Report(Page),
-    /// Largest stable step of every method and what limits it, at the static pose and along the manoeuvre
+    /// Compute the largest stable step of every method and what limits it, at the static pose and during the manoeuvre
     Stability(Stability),
-    /// Error against run time of every method and number of sections, and which of them are cheapest for an error
+    /// Measure error against run time for every method and number of sections
     WorkPrecision(WorkPrecision),
-    /// Stiff and extreme cranes: what is expected of each, and what happens
+    /// Run stiff and extreme test cranes and compare the results with what is expected
     Stress(Stress),
-    /// What a crane consists of: coordinates, bodies, supports, drives, parameters
+    /// Show what a crane consists of: coordinates, bodies, supports, drives, parameters
     Info(Analysis),
-    /// T, ∂T/∂q, ∂²T/∂q∂q, A and e at a state, for checks by other programs
+    /// Evaluate quantities such as T, ∂T/∂q, A and e at given states, for other programs
     Eval(Eval),
-    /// A crate for your own crane, begun from a shipped one
+    /// Create a Rust crate for your own crane, starting from a shipped one
     New(New),
-    /// Check a spec: every mistake in it, or what is implausible
+    /// Check a spec: report every mistake in it and everything implausible
     Check {
         /// The crane's YAML file
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -97,7 +97,7 @@ pub enum Action {
         #[arg(long)]
         strict: bool,
     },
-    /// The chain of a spec: bodies, coordinates, what is left out and why, what each function costs
+    /// Explain a spec: bodies, coordinates, what is left out and why, what each function costs
     Explain {
         /// The crane's YAML file
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -116,13 +116,13 @@ pub enum Action {
     },
     /// Print the JSON Schema of the spec language, for editors
     Schema,
-    /// A crane as URDF, its springs beside it, or as MJCF, for Pinocchio, `MuJoCo`, ROS and others
+    /// Export a crane as URDF, with its springs in a second file, or as MJCF, for Pinocchio, MuJoCo, ROS and others
     Export(Export),
-    /// A spec from URDF: a chain of joints of one axis each
+    /// Convert a URDF robot, a chain of joints with one axis each, to a spec
     Import(Import),
-    /// The cranes to choose from
+    /// List the shipped cranes
     List(List),
-    /// Completion script for a shell
+    /// Print a completion script for a shell
     Completions {
         /// Shell to write it for.
         shell: clap_complete::Shell,
@@ -130,7 +130,7 @@ pub enum Action {
 }
 
 impl Action {
-    /// The crane that is chosen by name, or by a YAML file in place of it.
+    /// The crane, chosen by its name or by a YAML file.
     pub fn choice(&mut self) -> Option<&mut Choice> {
         match self {
             Action::Run(options) | Action::Simulate(options) => Some(&mut options.analysis.crane),
@@ -139,7 +139,7 @@ impl Action {
             Action::Stability(options) => Some(&mut options.analysis.crane),
             Action::Report(options) => Some(&mut options.crane),
             Action::Eval(options) => Some(&mut options.crane),
-            // Compiles the crane with other numbers of sections along.
+            // Also compiles the crane with other numbers of sections.
             Action::WorkPrecision(_)
             | Action::New(_)
             | Action::Stress(_)
@@ -156,7 +156,7 @@ impl Action {
     }
 }
 
-/// Form of what is printed.
+/// Output format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// For people.
@@ -169,23 +169,23 @@ pub enum Format {
 /// A crane with its live parameters.
 #[derive(Debug, Args)]
 pub struct Choice {
-    /// Crane, or its YAML file; `crane list` shows all cranes
+    /// Shipped crane or YAML file; `crane list` shows the shipped cranes
     #[arg(default_value = "eight_link_flexible", value_name = "CRANE")]
     pub name: String,
-    /// Fail where the YAML file has warnings
+    /// Treat warnings about the YAML file as mistakes
     #[arg(long)]
     pub strict: bool,
     #[command(flatten)]
     pub parameters: Parameters,
     #[command(flatten)]
     pub limits: Limits,
-    /// Compile the crane to machine code first, with cargo, and keep it: some five times faster, for long studies
+    /// Compile the crane to machine code first (needs cargo) and keep it: about five times faster, for long studies
     #[arg(long)]
     pub compile: bool,
 }
 
 impl Choice {
-    /// The YAML file that is named in place of a crane.
+    /// The YAML file, if one is given instead of a shipped crane.
     pub fn file(&self) -> Option<&Path> {
         let path = Path::new(&self.name);
         path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml").then_some(path)
@@ -195,15 +195,15 @@ impl Choice {
 /// Values of live parameters.
 #[derive(Debug, Args)]
 pub struct Parameters {
-    /// Value of a live parameter, in the unit that `crane info` shows; may be given several times
+    /// Set a live parameter, in the unit that `crane info` shows; repeatable
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub settings: Vec<String>,
 }
 
-/// Limits of what the model holds for.
+/// Limits within which the model is valid.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Limits {
-    /// Angle by which one section of a beam may bend or twist before a caution says so, degrees
+    /// Bending or torsion of one beam section beyond which a caution is printed, degrees
     #[arg(long = "bend-limit", value_name = "DEGREES", default_value_t = BEND)]
     pub bend: f64,
 }
@@ -213,7 +213,7 @@ pub struct Limits {
 pub struct Analysis {
     #[command(flatten)]
     pub crane: Choice,
-    /// Form of what is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
 }
@@ -230,15 +230,15 @@ fn tolerance(text: &str) -> Result<f64, String> {
 
 /// A number of things, at least one.
 fn count(text: &str) -> Result<NonZeroUsize, String> {
-    text.parse().map_err(|_| "write a whole number from 1 on, such as 4".to_owned())
+    text.parse().map_err(|_| "write a whole number of 1 or more, such as 4".to_owned())
 }
 
 /// Step of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// The largest safe one.
+    /// The largest safe step.
     Auto,
-    /// So many seconds.
+    /// A number of seconds.
     Seconds(f64),
 }
 
@@ -256,33 +256,33 @@ impl FromStr for Step {
 /// Time and step of a run.
 #[derive(Clone, Debug, Args)]
 pub struct Timing {
-    /// Method: `bdf` and `rosw4` implicit and adaptive, for stiff cranes; `dopri5` explicit and adaptive; `rk4` with constant
-    /// step, the paper's [default: rk4 with --step and for the comparison, otherwise bdf]
+    /// Integrator: `bdf` and `rosw4` are implicit and adaptive, for stiff cranes; `dopri5` is explicit and adaptive; `rk4` has a
+    /// constant step, as in the paper [default: rk4 with --step and for the comparison, otherwise bdf]
     #[arg(long, value_name = "NAME")]
     pub method: Option<Method>,
-    /// Error that an adaptive method allows a step, m and rad [default: 2e-5]
+    /// Error per step that an adaptive method accepts, m and rad [default: 2e-5]
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = tolerance)]
     pub tolerance: Option<f64>,
-    /// Greatest step of rk4, s; `auto`: the largest safe one [default: the crane's]
+    /// Largest step of rk4, s; `auto`: the largest safe step [default: from the spec]
     #[arg(long, value_name = "SECONDS|auto", allow_negative_numbers = true)]
     pub step: Option<Step>,
-    /// Run even where the step is beyond the largest stable one
+    /// Run even if the step exceeds the largest stable step
     #[arg(long)]
     pub force: bool,
-    /// Do not repeat the run at a tenth of the tolerance or half the step to estimate its error
+    /// Do not estimate the error by repeating the run with a tenth of the tolerance or half the step
     #[arg(long)]
     pub no_verify: bool,
-    /// Simulated time, s [default: the crane's]
+    /// Simulated time, s [default: from the spec]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub duration: Option<f64>,
-    /// Interval of recorded results, s [default: the crane's]
+    /// Interval between recorded results, s [default: from the spec]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub output: Option<f64>,
-    /// Start from the last row of a CSV file of results, with its rates; motions of drives begin at t = 0 again
+    /// Start from the last row of a CSV file of results, including velocities; drive motions start again at t = 0
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub from: Option<PathBuf>,
-    /// Start with other values: a coordinate in m or rad, or its rate, as in `boom_psi=0.3` and `boom_psi_rate=-0.1`; what is not
-    /// given is as at rest
+    /// Start from another value of a coordinate in m or rad, or of its rate, such as `boom_psi=0.3` or `boom_psi_rate=-0.1`; the
+    /// others start at rest; repeatable
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub start: Vec<String>,
 }
@@ -290,7 +290,7 @@ pub struct Timing {
 /// Folder of results.
 #[derive(Debug, Args)]
 pub struct Folder {
-    /// Folder for results; made where it is missing
+    /// Folder for results; created if missing
     #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
 }
@@ -302,7 +302,7 @@ pub struct Compare {
     pub parameters: Parameters,
     #[command(flatten)]
     pub limits: Limits,
-    /// Form of what is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
     #[command(flatten)]
@@ -327,13 +327,13 @@ pub struct Simulate {
 /// Runs of many cranes that differ in their parameters.
 #[derive(Debug, Args)]
 pub struct Ensemble {
-    /// Run a crane for every row of a CSV table whose header names live parameters
+    /// Run one crane per row of a CSV table whose header names live parameters
     #[arg(long = "ensemble", value_name = "TABLE.csv", value_hint = ValueHint::FilePath)]
     pub table: Option<PathBuf>,
-    /// File for peaks and final values, a row a crane [default: <CRANE>_ensemble.csv in the folder for results]
+    /// File for peaks and final values, one row per crane [default: <CRANE>_ensemble.csv in the folder for results]
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "table")]
     pub results: Option<PathBuf>,
-    /// Threads that run the cranes of the table [default: all of the machine]
+    /// Number of threads that run the cranes of the table [default: all cores]
     #[arg(long, value_name = "COUNT", requires = "table", value_parser = count)]
     pub threads: Option<NonZeroUsize>,
 }
@@ -353,10 +353,10 @@ pub struct Page {
 /// A crate for your own crane.
 #[derive(Debug, Args)]
 pub struct New {
-    /// Folder to make; its name is the crate's and the crane's
+    /// Folder to create; the crate and the crane get its name
     #[arg(value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
-    /// Shipped crane to begin from
+    /// Shipped crane to start from
     #[arg(long, value_name = "CRANE", default_value = "knuckle_boom")]
     pub from: String,
 }
@@ -370,10 +370,10 @@ pub struct Generate {
     /// File to write [default: standard output]
     #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
-    /// Generate everything there is, also what the spec's `analyses` do not ask for
+    /// Generate all functions, including those that the spec's `analyses` do not request
     #[arg(long)]
     pub all: bool,
-    /// Write every stage of the compilation as text into a folder too: spec, chain, expressions, statements, Rust
+    /// Also write every stage of the compilation as text to a folder: spec, chain, expressions, statements, Rust
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub dump: Option<PathBuf>,
 }
@@ -385,14 +385,14 @@ pub struct Strength {
     pub analysis: Analysis,
     #[command(flatten)]
     pub timing: Timing,
-    /// Along the manoeuvre, too: least tipping margin, extremes of all loads with their times
+    /// Also evaluate the manoeuvre: smallest tipping margin, extremes of all loads and their times
     #[arg(long)]
     pub run: bool,
-    /// Live parameter that is the load: which value of it lifts the first foot, and which tips the crane [default: the only
+    /// Live parameter to use as the load: find the values at which the first foot lifts and the crane tips [default: the only
     /// parameter in kg]
     #[arg(long, value_name = "PARAMETER")]
     pub load: Option<String>,
-    /// File for moments about tipping lines and all loads over the run, CSV
+    /// CSV file for the moments about the tipping lines and all loads during the run
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "run")]
     pub results: Option<PathBuf>,
 }
@@ -402,10 +402,10 @@ pub struct Strength {
 pub struct Stability {
     #[command(flatten)]
     pub analysis: Analysis,
-    /// Poses along the manoeuvre at which to look as well, evenly in time: where the crane would rest there
+    /// Number of further equilibria to evaluate, at times evenly spaced over the manoeuvre
     #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u16).range(..=1000))]
     pub along: u16,
-    /// Folder for the figure; made where it is missing
+    /// Folder for the figure; created if missing
     #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
 }
@@ -413,9 +413,9 @@ pub struct Stability {
 /// Language of other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Language {
-    /// Kinematics and masses; springs, dampers and supports in a file beside it.
+    /// Kinematics and masses; springs, dampers and supports go to a second file.
     Urdf,
-    /// `MuJoCo`'s, with stiffness, damping and spring references of joints; linear supports as tendons.
+    /// With stiffness, damping and spring references of joints; linear supports are tendons.
     Mjcf,
 }
 
@@ -441,7 +441,7 @@ pub struct Import {
     /// Spec to write [default: standard output]
     #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub spec: Option<PathBuf>,
-    /// Joint to hold at zero, such as a finger's; may be given several times
+    /// Joint to hold at zero, such as a gripper's; repeatable
     #[arg(long = "fix", value_name = "JOINT")]
     pub fixed: Vec<String>,
 }
@@ -451,19 +451,19 @@ pub struct Import {
 pub struct WorkPrecision {
     #[command(flatten)]
     pub analysis: Analysis,
-    /// Numbers of sections of every flexible link to compare, two or more; `none` compares the methods alone
+    /// Numbers of sections per flexible link to compare, at least two; `none` compares only the methods
     #[arg(long, value_name = "COUNTS|none", default_value = "1,2,3,4,6,8,12,20,30")]
     pub sections: Counts,
-    /// Simulated time, s [default: the crane's]
+    /// Simulated time, s [default: from the spec]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub duration: Option<f64>,
-    /// Fewer steps and tolerances, each run once, without compiling: to look whether it works
+    /// Fewer steps and tolerances, each run once, without compiling: a quick trial
     #[arg(long)]
     pub quick: bool,
-    /// Folder for tables (CSV) and figures (SVG); made where it is missing
+    /// Folder for tables (CSV) and figures (SVG); created if missing
     #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
-    /// Also write all of it as a Markdown page, with its figures in `images` beside it
+    /// Also write a Markdown page, with its figures in the folder `images` next to it
     #[arg(long, value_name = "FILE.md", value_hint = ValueHint::FilePath)]
     pub page: Option<PathBuf>,
 }
@@ -484,7 +484,7 @@ impl FromStr for Counts {
         counts.sort_unstable();
         counts.dedup();
         if counts.len() < 2 || counts[0] == 0 {
-            return Err("write two or more different numbers from 1 on, such as 2,4,8, or `none`".to_owned());
+            return Err("write two or more different numbers of 1 or more, such as 2,4,8, or `none`".to_owned());
         }
         Ok(Counts(counts))
     }
@@ -493,16 +493,16 @@ impl FromStr for Counts {
 /// The suite of extreme cases.
 #[derive(Debug, Args)]
 pub struct Stress {
-    /// Only the cases that take so little that every build can do them
+    /// Only the short cases
     #[arg(long)]
     pub quick: bool,
-    /// Only the cases with this word in their name or group
+    /// Only cases whose name or group contains this word
     #[arg(long, value_name = "WORD")]
     pub only: Option<String>,
-    /// Form of what is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-    /// Folder for the tables stress.csv and stress.md; made where it is missing
+    /// Folder for the tables stress.csv and stress.md; created if missing
     #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
 }
@@ -510,12 +510,12 @@ pub struct Stress {
 /// A list of the cranes.
 #[derive(Debug, Args)]
 pub struct List {
-    /// Form of what is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
 }
 
-/// Form of evaluated matrices.
+/// Output format of evaluated matrices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum EvalFormat {
     /// One object of nested arrays.
@@ -531,9 +531,9 @@ pub enum EvalFormat {
 pub enum Quantity {
     /// Transforms of the bodies into the world frame, 4 × 4 each; m
     Transforms,
-    /// ∂T/∂q, and which body and coordinate each belongs to
+    /// ∂T/∂q, with the body and coordinate of each
     TransformDerivatives,
-    /// ∂²T/∂q∂q, and which body and coordinates each belongs to
+    /// ∂²T/∂q∂q, with the body and coordinates of each
     TransformSecondDerivatives,
     /// Positions of the points of interest, m
     Points,
@@ -543,11 +543,11 @@ pub enum Quantity {
     MassMatrix,
     /// Velocity and gravity forces e, N and N m
     Bias,
-    /// Generalized forces of everything but inertia and gravity, N and N m
+    /// Generalized forces of everything except inertia and gravity, N and N m
     Forces,
     /// Accelerations q̈, m/s² and rad/s²
     Accelerations,
-    /// Slope of the potential energy at t = 0, N and N m
+    /// Gradient of the potential energy at t = 0, N and N m
     StaticResidual,
     /// Second derivative of the potential energy at t = 0, N/m and N m/rad
     TangentStiffness,
@@ -568,20 +568,20 @@ pub struct Eval {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "NAMES",
           default_values_t = [Quantity::Transforms, Quantity::TransformDerivatives, Quantity::MassMatrix, Quantity::Bias])]
     pub quantities: Vec<Quantity>,
-    /// Coordinates, m and rad: numbers separated by commas or blanks, or a file of them; those of several states one after
-    /// the other [default: the crane's guess]
+    /// Coordinates in m and rad: numbers separated by commas or blanks, or a file of them; several states follow one another
+    /// [default: the spec's guess]
     #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
     pub q: Option<String>,
-    /// Their rates, m/s and rad/s, likewise, of each state or of all [default: 0]
+    /// Velocities in m/s and rad/s, given likewise, per state or once for all states [default: 0]
     #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
     pub v: Option<String>,
-    /// Time of the drives' motions, s
+    /// Time at which the drive motions are evaluated, s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
     pub time: f64,
-    /// Form of the result
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     pub format: EvalFormat,
-    /// File to write; without it, standard output
+    /// File to write [default: standard output]
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! `crane` alone: the eight-link crane, rigid against flexible, as [Urbaś 2016, section 3] does it.
+//! `crane` alone: compares the eight-link crane with a rigid and with a flexible boom, as [Urbaś 2016, section 3] does.
 
 use std::{io::Write, mem, thread, time::Instant};
 
@@ -45,7 +45,7 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     files::folder(folder)?;
     let (settings, runs) = runs(&cases, &options.timing, options.limits, Method::Rk4)?;
     let [rigid_run, flexible_run] = runs.as_slice() else {
-        return Err(Problem::failed("a simulation is missing", "please report it"));
+        return Err(Problem::failed("a simulation is missing", "please report this as a bug"));
     };
 
     let mut written = Vec::new();
@@ -77,7 +77,7 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     }
     report.print(format, out)?;
     if format == Format::Table {
-        writeln!(out, "\nAll in {:.1} s", begin.elapsed().as_secs_f64())?;
+        writeln!(out, "\nTotal time: {:.1} s", begin.elapsed().as_secs_f64())?;
     }
     Ok(())
 }
@@ -109,7 +109,7 @@ pub fn runs(
                 scope.spawn(|| record_checked(case.rig, start, settings, (!timing.no_verify, limits), &bar))
             })
             .collect();
-        let broken = |_| Err(Problem::failed("a simulation broke off", "please report it"));
+        let broken = |_| Err(Problem::failed("a simulation broke off", "please report this as a bug"));
         runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
     });
     bar.finish_and_clear();

@@ -69,7 +69,7 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
     }
     Err(Problem::failed(
         format!("{} of {} cranes did not reach the end", rows.len() - done, rows.len()),
-        format!("the column `status` of {} says why", path.display()),
+        format!("see the column `status` of {}", path.display()),
     ))
 }
 
@@ -103,8 +103,8 @@ fn settings(
     let own = rig.description().step;
     let (step, from) = match timing.step {
         Some(Step::Seconds(step)) => (step, "`--step`"),
-        None if own <= settings.step => (own, "the spec, safe for the first and last row"),
-        _ => (settings.step, "the largest safe one of the first and last row"),
+        None if own <= settings.step => (own, "the spec; safe for the first and last row"),
+        _ => (settings.step, "the largest step that is safe for the first and last row"),
     };
     Ok((dynamics::Settings { step, audit: false, ..settings }, from))
 }

@@ -26,7 +26,9 @@ pub fn eval(options: &Eval, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let description = crane.description();
     let bytes = match options.format {
         EvalFormat::Json => format!("{}\n", json(description, &arrays)).into_bytes(),
-        EvalFormat::Npz => npz(&arrays).map_err(|error| Problem::failed(format!("no archive: {error}"), ""))?,
+        EvalFormat::Npz => {
+            npz(&arrays).map_err(|error| Problem::failed(format!("cannot write the archive: {error}"), ""))?
+        }
     };
     match &options.file {
         Some(path) => files::write(path, |file| file.write_all(&bytes)),
@@ -51,8 +53,8 @@ fn states(options: &Eval, crane: &LiveCrane) -> Outcome<States> {
     }
     if v.len() != q.len() {
         return Err(Problem::usage(
-            format!("`--q` has {} states and `--v` {}", q.len(), v.len()),
-            "give rates of each state, or of one for all",
+            format!("`--q` has {} states, but `--v` has {}", q.len(), v.len()),
+            "give one set of velocities per state, or one for all states",
         ));
     }
     Ok(States { q, v })
@@ -67,8 +69,8 @@ fn given(name: &str, given: Option<&str>, description: &Description) -> Outcome<
         let names: Vec<String> =
             description.coordinates.iter().map(|c| format!("{} [{}]", c.name, c.kind.unit())).collect();
         return Err(Problem::usage(
-            format!("`--{name}` has {} numbers, {} has {wanted} coordinates", numbers.len(), description.name),
-            format!("in this order, state by state: {}", names.join(", ")),
+            format!("`--{name}` has {} numbers, but {} has {wanted} coordinates", numbers.len(), description.name),
+            format!("write them state by state, in this order: {}", names.join(", ")),
         ));
     }
     Ok(Some(numbers.chunks(wanted).map(<[f64]>::to_vec).collect()))
@@ -78,13 +80,13 @@ fn parse_file(name: &str, path: &str) -> Outcome<Vec<f64>> {
     let text = fs::read_to_string(path).map_err(|error| {
         Problem::usage(
             format!("`--{name} {path}` is neither a list of numbers nor a file: {error}"),
-            "write finite numbers separated by commas, such as 0,0.1,-2e-3, or name a file of them",
+            "write finite numbers separated by commas, such as 0,0.1,-2e-3, or give a file of them",
         )
     })?;
     parse(&text).ok_or_else(|| {
         Problem::usage(
-            format!("{path} holds something else than finite numbers"),
-            "separate numbers by commas or blanks",
+            format!("{path} contains something other than finite numbers"),
+            "separate the numbers by commas or blanks",
         )
     })
 }

@@ -54,7 +54,7 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
 
 /// Writes a spec made from URDF, and checks it.
 pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
-    let source = own::open(&options.urdf, "name a URDF file")?;
+    let source = own::open(&options.urdf, "give a URDF file")?;
     let text = exchange::import(&source, &options.fixed).map_err(|mistakes| own::drawn(&mistakes))?;
     let Some(file) = &options.spec else { return Ok(out.write_all(text.as_bytes())?) };
     files::write_text(file, &text)?;
@@ -62,8 +62,8 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     // What the robot's own numbers get wrong is to be mended there.
     let (Chain { name, bodies, coordinates, .. }, _) = own::load(file, false)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
-    writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates; `crane run {file}` runs it")?;
-    Ok(writeln!(out, "URDF knows no springs and no drives: give `drives:` and `damping:` to what would fall")?)
+    writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates; next: `crane run {file}`")?;
+    Ok(writeln!(out, "URDF has no springs and no drives: add `drives:` and `damping:` for joints that must not fall")?)
 }
 
 /// Outlines of the beams of a spec, by link: height and width, m, and whether they are round.
@@ -97,7 +97,7 @@ fn chain(name: &str, strict: bool, fleet: &Fleet) -> Outcome<Chain> {
         None if Path::new(name).extension().is_some() => Ok(own::load(Path::new(name), strict)?.0),
         // Not a crane: told so, with the nearest that is.
         None => {
-            fleet.crane(name).and_then(|_| Err(Problem::failed(format!("the spec of {name} is not known here"), "")))
+            fleet.crane(name).and_then(|_| Err(Problem::failed(format!("the spec of {name} is not available"), "")))
         }
     }
 }

@@ -18,7 +18,7 @@ pub fn extremes(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
     let headers = ["quantity", "crane", "minimum", "time of minimum", "maximum", "time of maximum", "error", "unit"];
     let alone = runs.len() < 2;
     let headers: Vec<&str> = headers.into_iter().filter(|header| !alone || *header != "crane").collect();
-    let title = "Extremes of the run, their times in s, and the greatest difference from a finer run";
+    let title = "Extremes of the run with their times in s, and the largest difference from a finer run";
     let mut grid = Grid::new("extremes", title, &headers);
     for kind in headlines(description) {
         for name in &kind.names {

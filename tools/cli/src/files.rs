@@ -80,8 +80,8 @@ pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
 pub fn write_csv(path: &Path, table: &Table) -> Outcome<()> {
     if let Some((row, column)) = table.not_finite() {
         let what = &table.columns[column].name;
-        let title = format!("{what} in row {} is not a number: {} is not written", row + 1, path.display());
-        return Err(Problem::failed(title, "make masses, stiffnesses and positions of a size that a crane has"));
+        let title = format!("{what} in row {} is not a finite number; {} was not written", row + 1, path.display());
+        return Err(Problem::failed(title, "check the units of masses, stiffnesses and positions"));
     }
     let header = table.columns.iter().map(ToString::to_string);
     write_fields(path, header, table.rows.iter().map(|row| row.iter().copied().map(number).collect()))

@@ -17,7 +17,7 @@ use crate::{
 
 /// Writes the Rust module of a crane.
 pub fn generate(options: &Generate, out: &mut dyn Write) -> Outcome<()> {
-    let source = open(&options.spec, "name a YAML file that describes a crane")?;
+    let source = open(&options.spec, "give a YAML file that describes a crane")?;
     let analyses = options.all.then_some(Analyses::ALL);
     if let Some(folder) = &options.dump {
         files::folder(folder)?;

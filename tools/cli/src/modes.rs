@@ -59,7 +59,7 @@ pub fn undamped_modes(case: &Case<'_>, changes: Option<&[f64]>) -> Outcome<Grid>
 pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
     let mut grid = Grid::new(
         "damped",
-        "Damped modes (frequency |λ|/2π; ratio 1: creeps back without swinging)",
+        "Damped modes (frequency |λ|/2π; ratio 1: returns without oscillating)",
         &["mode", "frequency Hz", "damping ratio", "re 1/s", "im 1/s", "stable step s", "dominated by"],
     );
     for (index, mode) in modes.iter().enumerate() {

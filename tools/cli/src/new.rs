@@ -1,4 +1,4 @@
-//! `crane new`: a crate for your own crane, begun from a shipped one.
+//! `crane new`: a crate for your own crane, starting from a shipped one.
 
 use std::{fs, io::Write, path::Path};
 
@@ -46,8 +46,8 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     }
     if !own::root().join("crane-model").exists() {
         return Err(Problem::failed(
-            format!("the source of `crane`, which a new crate builds on, is not at {} any more", own::root().display()),
-            "build `crane` again where its source is now",
+            format!("the source of `crane`, which the new crate depends on, is no longer at {}", own::root().display()),
+            "build `crane` again from its new location",
         ));
     }
     let [model, codegen] = ["crane-model", "codegen"].map(|folder| own::root().join(folder));
@@ -68,7 +68,7 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     write(&options.folder, &texts)?;
     writeln!(
         out,
-        "{} written, from {}: change {SPEC} there, then `cargo run --release`; its first build takes some minutes",
+        "{} written, based on {}: edit {SPEC} there, then run `cargo run --release`; the first build takes a few minutes",
         options.folder.display(),
         description.name
     )?;
@@ -98,7 +98,7 @@ fn package(folder: &Path) -> Outcome<String> {
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
     if own::LOCK.contains(&format!("\nname = \"{name}\"\n")) {
-        let title = format!("`{name}` is the name of a crate that the new one is built from");
+        let title = format!("`{name}` is the name of a crate that the new crate depends on");
         return Err(Problem::usage(title, format!("choose another name, such as my-{name}")));
     }
     if name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(fits) {
@@ -106,7 +106,7 @@ fn package(folder: &Path) -> Outcome<String> {
     } else {
         Err(Problem::usage(
             format!("`{name}` is not a valid name for a crate"),
-            "begin with a small letter and go on with small letters, digits, `-` or `_`, such as my-crane",
+            "use lower-case letters, digits, `-` and `_`, starting with a letter, such as my-crane",
         ))
     }
 }

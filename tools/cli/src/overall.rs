@@ -19,10 +19,7 @@ use crate::{
 /// Statics and motion of a crane, beside its rigid twin where there is one; results, figures and the report.
 pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     if options.ensemble.table.is_some() {
-        return Err(Problem::usage(
-            "`run` runs one crane, not those of `--ensemble`",
-            "write `crane simulate` instead",
-        ));
+        return Err(Problem::usage("`crane run` does not support `--ensemble`", "use `crane simulate` instead"));
     }
     let rig = options.analysis.crane.open(fleet)?;
     let (rig, twin) = (rig.as_ref(), twin::rigid(rig.as_ref(), fleet));

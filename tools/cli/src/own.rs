@@ -34,7 +34,7 @@ pub fn root() -> &'static Path {
 pub fn check(spec: &Path, strict: bool, out: &mut dyn Write) -> Outcome<()> {
     let Chain { name, bodies, coordinates, spec_hash, .. } = load(spec, strict)?.0;
     let (bodies, coordinates) = (bodies.len(), coordinates.len());
-    Ok(writeln!(out, "{name}: sound; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?)
+    Ok(writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?)
 }
 
 /// Prints the chain of a spec, and draws it where that is asked for.
@@ -89,7 +89,7 @@ pub(super) fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
     let help = if meant != spec && meant.exists() {
         format!("did you mean {}?", meant.display())
     } else {
-        "name a YAML file that describes a crane".to_owned()
+        "give a YAML file that describes a crane".to_owned()
     };
     parse(open(spec, &help)?, strict)
 }

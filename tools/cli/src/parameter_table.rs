@@ -25,11 +25,14 @@ impl ParameterTable {
             let title = match error.kind() {
                 csv::ErrorKind::UnequalLengths { pos: Some(pos), expected_len, len } => {
                     let path = path.display();
-                    format!("{path}, line {}: {len} fields where the header names {expected_len}", pos.line())
+                    format!("{path}, line {}: {len} fields, but the header names {expected_len}", pos.line())
                 }
                 _ => format!("cannot use {}: {error}", path.display()),
             };
-            Problem::usage(title, "write a CSV table: names of live parameters, then a row of as many numbers a crane")
+            Problem::usage(
+                title,
+                "write a CSV table: a header with names of live parameters, then one row of numbers per crane",
+            )
         };
         let mut csv = csv.map_err(unreadable)?;
         let mut columns = Vec::new();
@@ -37,7 +40,7 @@ impl ParameterTable {
             let at = Place { path, line: 1, column: place + 1 };
             let index = at.parameter(header, description)?;
             if columns.contains(&index) {
-                return Err(at.problem(&format!("`{header}` a second time"), "give every parameter one column"));
+                return Err(at.problem(&format!("`{header}` occurs twice"), "give each parameter one column"));
             }
             columns.push(index);
         }
@@ -49,7 +52,7 @@ impl ParameterTable {
                 let (info, at) = (&description.parameters[index], Place { path, line, column: place + 1 });
                 let number = text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                     let help = format!("write a finite number, in {}, such as {}", info.unit, info.default);
-                    at.problem(&format!("`{text}` is not a value for {}", info.name), help)
+                    at.problem(&format!("`{text}` is not a valid value for {}", info.name), help)
                 })?;
                 info.check(number).map_err(|refused| {
                     let (title, help) = told(&refused);
@@ -61,8 +64,8 @@ impl ParameterTable {
         }
         if rows.is_empty() {
             return Err(Problem::usage(
-                format!("{} has no rows: there is no crane to run", path.display()),
-                "write names of live parameters in the first line, then the values of a crane in each further one",
+                format!("{} has no rows", path.display()),
+                "write a header with names of live parameters, then one row of numbers per crane",
             ));
         }
         Ok(Self { columns, rows })

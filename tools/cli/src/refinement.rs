@@ -47,7 +47,7 @@ pub fn changes(case: &Case<'_>, fleet: &Fleet) -> Outcome<Option<Vec<f64>>> {
 pub fn caution(changes: &[f64]) -> Option<String> {
     let (index, change) = changes.iter().enumerate().find(|(_, change)| change.abs() > CAUTION)?;
     Some(format!(
-        "the frequency of mode {} changes by {:.1} % with twice the sections: give the beams more `sections`",
+        "the frequency of mode {} changes by {:.1} % when the number of sections doubles: give the beams more `sections`",
         index + 1,
         100.0 * change
     ))

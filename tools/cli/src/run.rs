@@ -23,7 +23,7 @@ impl Timing {
         let mut settings = dynamics::Settings { method, audit: true, ..own };
         let given = [("step", self.step.is_some(), false), ("tolerance", self.tolerance.is_some(), true)];
         if let Some((name, ..)) = given.into_iter().find(|&(_, given, of)| given && of != method.is_adaptive()) {
-            let title = format!("`--{name}` means nothing to {method}, {}", method.title());
+            let title = format!("`--{name}` has no effect with {method}, {}", method.title());
             let (option, other) =
                 if method.is_adaptive() { ("tolerance", Method::Rk4) } else { ("step", Method::RECOMMENDED) };
             return Err(Problem::usage(title, format!("write `--{option}` or `--method {other}`")));
@@ -51,17 +51,16 @@ impl Timing {
             }
         }
         if self.output.is_some() && settings.output > settings.duration {
-            let title = format!("results every {} s of a run of {} s", settings.output, settings.duration);
-            return Err(Problem::usage(title, "write an `--output` no longer than the `--duration`"));
+            let title = format!("results every {} s in a run of {} s", settings.output, settings.duration);
+            return Err(Problem::usage(title, "write an `--output` that is not longer than `--duration`"));
         }
         let (least, greatest) = dynamics::Settings::TOLERANCES;
         if settings.tolerance < least {
-            let title = format!("a tolerance of {:e} is below what rounding leaves", settings.tolerance);
+            let title = format!("a tolerance of {:e} is below the rounding errors", settings.tolerance);
             return Err(Problem::usage(title, format!("write {least:e} or more, such as 1e-4")));
         }
         if settings.tolerance > greatest {
-            let title =
-                format!("a tolerance of {:e} holds nothing: no coordinate may be that far off", settings.tolerance);
+            let title = format!("a tolerance of {:e} is too large to mean anything", settings.tolerance);
             return Err(Problem::usage(title, format!("write {greatest} or less, such as 1e-4")));
         }
         for (name, value) in [("duration", settings.duration), ("output", settings.output)] {
@@ -69,20 +68,26 @@ impl Timing {
             if !(least..=greatest).contains(&value) {
                 return Err(Problem::usage(
                     format!("`--{name} {value:e}` is out of range"),
-                    format!("write seconds from {least:e} to {greatest:e}"),
+                    format!("write a number of seconds from {least:e} to {greatest:e}"),
                 ));
             }
         }
         if settings.duration / settings.output > dynamics::Settings::MOST_RESULTS {
             return Err(Problem::usage(
-                format!("results every {} s for {} s are more than a million", settings.output, settings.duration),
-                "write a longer interval with `--output`, in s",
+                format!(
+                    "one result every {} s for {} s makes more than a million results",
+                    settings.output, settings.duration
+                ),
+                "write a longer interval for `--output`, in s",
             ));
         }
         if !method.is_adaptive() && settings.duration / settings.step > dynamics::Settings::MOST_STEPS {
             return Err(Problem::usage(
-                format!("steps of {:e} s for {} s are more than ten billion", settings.step, settings.duration),
-                "write a longer step with `--step`, in s",
+                format!(
+                    "a run of {} s with steps of {:e} s has more than ten billion steps",
+                    settings.duration, settings.step
+                ),
+                "write a longer `--step`, in s",
             ));
         }
         match limit {
@@ -100,14 +105,14 @@ fn unstable(rig: &dyn DynCrane, step: f64, t: f64, limit: &Limit) -> Problem {
     let description = rig.description();
     Problem::failed(
         format!(
-            "{}: a step of {step:e} s is unstable; {} takes at most {:.3e} s, limited at t = {t} s by {}",
+            "{}: a step of {step:e} s is unstable; {} is stable up to {:.3e} s, limited at t = {t} s by {}",
             description.name,
             Method::Rk4,
             limit.step,
             cause(description, &limit.mode)
         ),
         format!(
-            "`--step auto` takes {:.2e} s; `--method {}` needs no such steps; `--force` runs all the same",
+            "`--step auto` uses {:.2e} s; `--method {}` can use longer steps; `--force` runs anyway",
             SAFE * limit.step,
             Method::RECOMMENDED
         ),

@@ -43,7 +43,7 @@ impl Entry {
         let crane = LiveCrane::from_spec(&source).map_err(|mistakes| own::drawn(&mistakes))?;
         let (count, most) = (crane.description().coordinates.len(), LiveCrane::MOST_COORDINATES);
         if count > most {
-            let title = format!("{} has {count} coordinates; the command takes at most {most}", self.name);
+            let title = format!("{} has {count} coordinates; the command supports at most {most}", self.name);
             return Err(Problem::failed(title, "give flexible links fewer `sections`"));
         }
         Ok(crane)
@@ -114,7 +114,7 @@ impl Fleet {
         let help = if Path::new(&file).exists() {
             format!("did you mean the file `{file}`?")
         } else if Path::new(name).is_file() {
-            "give the file the ending `.yaml`".to_owned()
+            "rename the file so that its name ends in `.yaml`".to_owned()
         } else {
             meant(name, &self.names(), "cranes")
         };
@@ -163,8 +163,8 @@ impl Parameters {
             let unit = known[index].1;
             let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                 Problem::usage(
-                    format!("`{value}` is not a value for {name}"),
-                    format!("write a finite number, in {unit}"),
+                    format!("`{value}` is not a valid value for {name}"),
+                    format!("write a finite number in {unit}"),
                 )
             })?;
             Ok((index, number))
@@ -211,7 +211,7 @@ fn place(name: &str, crane: &str, known: &[(&str, &str)]) -> Result<usize, (Stri
         let names: Vec<String> = known.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
         let title = format!("{crane} has no live parameter `{name}`");
         if names.is_empty() {
-            return (title, "it has none; name values under `parameters:` in its spec".to_owned());
+            return (title, "it has none; define some under `parameters:` in its spec".to_owned());
         }
         let guess = nearest(name, known.iter().map(|(name, _)| *name));
         (title, hint(guess, &names.join(", "), "parameters"))

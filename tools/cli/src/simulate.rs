@@ -206,7 +206,7 @@ pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
     let last = |run: &Recorded, column: &str| run.table.values(column).and_then(Iterator::last);
     row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
     row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
-    row("energy balance, greatest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
+    row("energy balance, largest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
     row("wall time".to_owned(), "s", &|run| Some(run.wall.as_secs_f64()));
     row("real-time factor".to_owned(), "", &|run| Some(run.real_time_factor()));
     grid

@@ -68,7 +68,7 @@ pub fn limits(description: &Description, poses: &[Pose]) -> Grid {
 
 /// Limits at every pose, one method after the other.
 fn along(description: &Description, poses: &[Pose]) -> Grid {
-    let title = "Along the manoeuvre, as if the drives stopped there";
+    let title = "During the manoeuvre, with the drives stopped at each time";
     let mut grid = Grid::new("along", title, &["method", "t s", "step s", "limited by"]);
     for method in Method::ALL {
         for pose in poses {

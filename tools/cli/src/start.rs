@@ -63,8 +63,8 @@ impl Timing {
             };
             let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                 Problem::usage(
-                    format!("`{value}` is not a value for {name}"),
-                    "write a finite number, in m, rad or per second",
+                    format!("`{value}` is not a valid value for {name}"),
+                    "write a finite number, in m or rad, and in m/s or rad/s for rates",
                 )
             })?;
             variable.set(&mut start, number);
@@ -83,13 +83,13 @@ fn unknown(name: &str, description: &Description) -> Problem {
     let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
     Problem::usage(
         format!("{} has no coordinate `{name}`", description.name),
-        format!("{guess}coordinates, and with `{RATE}` behind it their rates: {}", names.join(", ")),
+        format!("{guess}coordinates (append `{RATE}` for their rates): {}", names.join(", ")),
     )
 }
 
 /// Values of coordinates and rates in the last row of the results of a run.
 fn end(file: &Path, description: &Description) -> Outcome<Vec<(Variable, f64)>> {
-    let help = "name the CSV file of results that `crane simulate` or `crane run` has written";
+    let help = "give a CSV file of results written by `crane simulate` or `crane run`";
     let unreadable = |error: csv::Error| Problem::usage(format!("cannot use {}: {error}", file.display()), help);
     let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(unreadable)?;
     let headers = csv.headers().map_err(unreadable)?.clone();
@@ -104,13 +104,13 @@ fn end(file: &Path, description: &Description) -> Outcome<Vec<(Variable, f64)>> 
         let Some(variable) = Variable::of(name, description) else { continue };
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
         let number = number.ok_or_else(|| {
-            let title = format!("{}: `{text}` is not a value for {name}", file.display());
+            let title = format!("{}: `{text}` is not a valid value for {name}", file.display());
             Problem::usage(title, help)
         })?;
         values.push((variable, number));
     }
     if values.is_empty() {
-        let title = format!("{} names no coordinate of {}", file.display(), description.name);
+        let title = format!("{} has no column for any coordinate of {}", file.display(), description.name);
         return Err(Problem::usage(title, help));
     }
     Ok(values)

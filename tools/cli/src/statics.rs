@@ -79,7 +79,7 @@ pub fn tables(cases: &[Case<'_>], limits: Limits) -> Report {
         let residual = equilibrium.residual();
         report.fact(
             case.rig.description().name.as_str(),
-            format!("{equilibrium}, {residual:.1e} of the forces left over"),
+            format!("{equilibrium}, relative residual {residual:.1e}"),
             "",
         );
         let description = case.rig.description();

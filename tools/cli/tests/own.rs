@@ -28,10 +28,10 @@ fn spec(name: &str, from: &str, to: &str) -> String {
 }
 
 #[test]
-fn a_sound_spec_is_told_so_and_mistakes_are_drawn() {
+fn a_valid_spec_is_confirmed_and_mistakes_are_drawn() {
     let sound = crane(&["check", &spec("sound.yaml", "420", "421")]);
     assert!(sound.status.success(), "{}", text(&sound.stderr));
-    assert!(text(&sound.stdout).starts_with("knuckle_boom: sound; 5 bodies, 4 coordinates"), "{}", text(&sound.stdout));
+    assert!(text(&sound.stdout).starts_with("knuckle_boom: valid; 5 bodies, 4 coordinates"), "{}", text(&sound.stdout));
     for command in ["check", "statics", "run", "report"] {
         let wrong = crane(&[command, &spec("wrong.yaml", "mass: 420", "mass: -420")]);
         let message = text(&wrong.stderr);
@@ -58,7 +58,7 @@ fn warnings_are_drawn_and_end_a_strict_command() {
         checked.status.success() && message.contains(warned) && message.contains("light.yaml: 1 warning"),
         "{message}"
     );
-    assert!(text(&checked.stdout).starts_with("knuckle_boom: sound"));
+    assert!(text(&checked.stdout).starts_with("knuckle_boom: valid"));
     // Also where a parameter is set to such a value.
     let set = crane(&["statics", "knuckle_boom", "--set", "payload=0.8"]);
     assert!(set.status.success() && text(&set.stderr).contains(warned), "{}", text(&set.stderr));
@@ -90,7 +90,7 @@ fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
     // Kept: the second time nothing is compiled; parameters, options and exit codes are passed on.
     let again = crane(&["statics", &file, "--compile", "--set", "payload=1", "--format", "json"]);
     assert!(again.status.success(), "{}", text(&again.stderr));
-    assert!(text(&again.stderr).contains("compiled before"), "{}", text(&again.stderr));
+    assert!(text(&again.stderr).contains("compiled earlier"), "{}", text(&again.stderr));
     assert!(serde_json::from_slice::<serde_json::Value>(&again.stdout).is_ok_and(|report| report["pose"].is_array()));
     let refused = crane(&["statics", &file, "--set", "payload"]);
     assert_eq!(refused.status.code(), Some(2));
@@ -124,7 +124,7 @@ fn without_a_folder_of_ones_own_nothing_is_compiled() {
     }
     let refused = command.output().expect("the command starts");
     assert_eq!(refused.status.code(), Some(1));
-    assert!(text(&refused.stderr).contains("name a folder of yours in CRANE_CACHE"), "{}", text(&refused.stderr));
+    assert!(text(&refused.stderr).contains("set CRANE_CACHE to a folder of your own"), "{}", text(&refused.stderr));
 }
 
 #[test]

@@ -307,7 +307,7 @@ fn place(description: &Description, name: &str) -> PyResult<usize> {
         let known: Vec<String> =
             description.parameters.iter().map(|info| format!("{} [{}]", info.name, info.unit)).collect();
         let known = if known.is_empty() {
-            "it has none; name values under `parameters:` in its spec".to_owned()
+            "it has none; define some under `parameters:` in its spec".to_owned()
         } else {
             format!("parameters: {}", known.join(", "))
         };

@@ -117,7 +117,7 @@ impl Crane {
             .filter_map(|(row, found)| Some(BadRow { row, reason: reason(row, found)? }))
             .collect();
         if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
-            let hint = "change `guess:` in its spec to a pose near a stable equilibrium, or drive or spring the coordinates named";
+            let hint = "change `guess:` in its spec to a pose near a stable equilibrium, or add a drive or spring to the coordinates named";
             let said = describe(first, &joined.shape);
             return Err(NoEquilibrium::new_err(format!(
                 "{}: statics did not find a stable equilibrium ({said}); {hint}",

@@ -143,7 +143,7 @@ def test_bad_rows_are_named_or_nan(flexible, states):
 
 
 def test_bad_parameters_are_named_or_nan(flexible):
-    with pytest.raises(crane.ParameterError, match="must not be below zero"):
+    with pytest.raises(crane.ParameterError, match="must not be negative"):
         flexible.replace(load_mass=-1.0)
     with pytest.raises(crane.ParameterError, match=r"row \[1\]: .*E032"):
         flexible.replace(load_mass=[1.0, -1.0])

@@ -211,7 +211,7 @@ impl Reader {
         let found = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
         if found.is_none() {
             let expected =
-                if N == 1 { "a finite number".to_owned() } else { format!("{N} finite numbers with blanks between") };
+                if N == 1 { "a finite number".to_owned() } else { format!("{N} finite numbers separated by blanks") };
             self.mistakes.push(rule::wrong_numbers(given.span, place, &given.name, expected));
         }
         found

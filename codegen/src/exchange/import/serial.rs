@@ -101,15 +101,10 @@ fn root<'r>(robot: &'r Robot, mistakes: &mut Vec<Mistake>) -> Option<&'r Link> {
     let problem = match roots.as_slice() {
         [root] => match unreachable(robot, root) {
             None => return Some(root),
-            Some(link) => (link.span, format!("`{}` does not hang on `{}`", link.name, root.name)),
+            Some(link) => (link.span, format!("`{}` is not connected to `{}`", link.name, root.name)),
         },
-        [] => (
-            Span::START,
-            if robot.links.is_empty() { "there are none" } else { "they hang on each other in a ring" }.into(),
-        ),
-        [first, other, ..] => {
-            (other.span, format!("neither `{}` nor `{}` hangs on another link", first.name, other.name))
-        }
+        [] => (Span::START, if robot.links.is_empty() { "there are none" } else { "they form a closed loop" }.into()),
+        [first, other, ..] => (other.span, format!("neither `{}` nor `{}` has a parent", first.name, other.name)),
     };
     // A name that is wrong tears a tree apart: that is told already.
     if mistakes.is_empty() {

@@ -48,7 +48,7 @@ impl Look<'_> {
             let help = format!("write masses in kg: {mass} t = {} kg", rounded(1e3 * mass));
             self.warn(rule::payload(at, place, mass, rounded(crane), help));
         } else if mass > HEAVIEST * crane {
-            let help = "write all masses in kg, those of the links too";
+            let help = "write all masses in kg, also those of the links";
             self.warn(rule::payload(at, place, mass, rounded(crane), help));
         }
     }

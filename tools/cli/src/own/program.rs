@@ -35,7 +35,7 @@ pub fn run(package: &str, cranes: &[(String, String)], arguments: impl Fn(&mut C
     let names = cranes.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
     let kept = || program.exists() && fs::read_to_string(folder.join(STAMP)).is_ok_and(|stamp| stamp == this_command());
     if kept() {
-        say(&format!("{names}: compiled before, kept in {}", folder.display()));
+        say(&format!("{names}: compiled earlier, kept in {}", folder.display()));
         if let Some(outcome) = start(&program, &arguments) {
             return outcome;
         }
@@ -50,8 +50,8 @@ pub fn run(package: &str, cranes: &[(String, String)], arguments: impl Fn(&mut C
     files::write_text(&folder.join(STAMP), &this_command())?;
     say(&format!("{names}: compiled in {:.1} s", begin.elapsed().as_secs_f64()));
     start(&program, &arguments).unwrap_or_else(|| {
-        let title = format!("{}, just compiled, does not start", program.display());
-        Err(Problem::failed(title, "check that programs may run in this folder, or name another one in CRANE_CACHE"))
+        let title = format!("the compiled program {} does not start", program.display());
+        Err(Problem::failed(title, "check that programs may run in this folder, or set CRANE_CACHE to another folder"))
     })
 }
 
@@ -68,8 +68,8 @@ fn start(program: &Path, arguments: &impl Fn(&mut Command)) -> Option<Outcome<()
 /// The lock passes to cargo: should this command be killed, it lasts until cargo has ended too.
 fn compile(package: &str, cranes: &[(String, String)], names: &str, cache: &Path, lock: File) -> Outcome<PathBuf> {
     if !root().join("crane-model").exists() {
-        let title = format!("the source of `crane` is not at {} any more", root().display());
-        return Err(Problem::failed(title, "build `crane` again where its source is now, or leave out --compile"));
+        let title = format!("the source of `crane` is no longer at {}", root().display());
+        return Err(Problem::failed(title, "build `crane` again from its new location, or omit --compile"));
     }
     let folder = cache.join(package);
     let joined = |of: &dyn Fn(&str) -> String| cranes.iter().map(|(name, _)| of(name)).collect::<Vec<_>>().join(", ");
@@ -94,7 +94,7 @@ fn compile(package: &str, cranes: &[(String, String)], names: &str, cache: &Path
     keep(&folder.join("Cargo.lock"), LOCK)?;
 
     let target = target().unwrap_or_else(|| cache.join("target"));
-    say(&format!("{names}: compiling to a program of its own, kept for later"));
+    say(&format!("{names}: compiling; the program is kept for later runs"));
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut build = Command::new(&cargo);
     build.args(["build", "--release", "--manifest-path"]).arg(folder.join("Cargo.toml"));
@@ -106,7 +106,7 @@ fn compile(package: &str, cranes: &[(String, String)], names: &str, cache: &Path
     let status = build.status().map_err(|error| {
         Problem::failed(
             format!("cannot run {}: {error}", cargo.display()),
-            "leave out --compile: no compiler is needed then; or install Rust, so that `cargo` is on the path",
+            "omit --compile, which needs a compiler, or install Rust so that `cargo` is on the path",
         )
     })?;
     if !status.success() {
@@ -124,7 +124,7 @@ fn wait_for_other_compiles(cache: &Path) -> Outcome<File> {
     match file.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => {
-            say("waiting for another compile to end");
+            say("waiting for another compilation to finish");
             file.lock().map_err(failed)?;
         }
         Err(TryLockError::Error(error)) => return Err(failed(error)),
@@ -165,8 +165,8 @@ fn cache() -> Outcome<PathBuf> {
         .or_else(|| variable("XDG_CACHE_HOME").map(|cache| cache.join("crane")))
         .or_else(|| variable("HOME").map(|home| home.join(".cache/crane")))
         .ok_or_else(|| {
-            let title = "there is no folder to keep compiled cranes in: HOME is not set";
-            Problem::failed(title, format!("name a folder of yours in {CACHE}, or leave out --compile"))
+            let title = "no folder for compiled cranes: HOME is not set";
+            Problem::failed(title, format!("set {CACHE} to a folder of your own, or omit --compile"))
         })
 }
 

@@ -89,7 +89,7 @@ fn verdict(report: &mut Report, rig: &dyn DynCrane, instant: &Instant, of: &str)
         let why = if description.supports.is_empty() {
             "not computed: the crane has no supports"
         } else {
-            "not computed: the supports make no polygon"
+            "not computed: the supports do not form a polygon"
         };
         report.fact(format!("tipping margin{of}"), why, "");
         return;
@@ -100,7 +100,7 @@ fn verdict(report: &mut Report, rig: &dyn DynCrane, instant: &Instant, of: &str)
     report.fact(format!("governing line{of}"), format!("{from} – {to}"), "");
     if margin <= 0.0 {
         report.caution(Some(format!(
-            "the crane tips over the line {from} – {to}{of}: weight and inertia turn it over by {:.4} kN m",
+            "the crane tips over the line {from} – {to}{of}: the overturning moment exceeds the stabilising moment by {:.4} kN m",
             -line.balance() / 1e3
         )));
     }

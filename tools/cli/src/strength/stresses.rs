@@ -56,12 +56,12 @@ pub fn verdict(
     });
     let greatest = sections.max_by(|(_, a), (_, b)| by_use(a, b));
     let Some((t, Stressed { beam, x, stress, utilisation })) = greatest else { return };
-    let place = format!("{beam}, {x:.3} m from its beginning");
+    let place = format!("{beam}, {x:.3} m from its start");
     if let Some(utilisation) = utilisation {
         report.fact(format!("greatest utilisation{of_what}"), utilisation, "");
         if utilisation > 1.0 {
             report.caution(Some(format!(
-                "{place}{of_what}: the equivalent stress of {:.0} MPa is {:.2} times the allowable one",
+                "{place}{of_what}: the equivalent stress of {:.0} MPa is {:.2} times the allowable stress",
                 stress.equivalent / MEGA,
                 utilisation
             )));
