@@ -1,6 +1,6 @@
-//! For build scripts: compiles a spec while a user's crate is built.
+//! Entry point for build scripts: compiles a spec while a user's crate is built.
 //!
-//! The only module that reads the environment, touches files and ends the process.
+//! This is the only module that reads the environment, accesses files and ends the process.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -26,13 +26,13 @@ use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile};
 /// }
 /// ```
 ///
-/// Cargo runs the build script again when the spec changes. A spec with mistakes ends the build, with every mistake drawn;
-/// what is implausible in it becomes warnings of the build.
+/// Cargo runs the build script again when the spec changes. A spec with mistakes ends the build and shows every mistake;
+/// implausible numbers become warnings of the build.
 pub fn compile_spec(spec: impl AsRef<Path>) -> GeneratedCode {
     compile_spec_for(spec, None)
 }
 
-/// As [`compile_spec`], with other analyses than the spec's.
+/// Like [`compile_spec`], with other analyses than those of the spec.
 pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> GeneratedCode {
     let spec = spec.as_ref();
     println!("cargo::rerun-if-changed={}", spec.display());
@@ -47,10 +47,10 @@ pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> G
     code
 }
 
-/// Reads a spec; a file that is too large is not read to its end.
+/// Reads a spec; a file that is too large is not read completely.
 ///
 /// # Errors
-/// Those of the file system, a file that is too large or not text.
+/// Errors of the file system, and a file that is too large or not text.
 pub fn open(spec: &Path) -> Result<SourceFile, Failure> {
     let name = spec.display().to_string();
     let failed = |error: io::Error| Failure::File(format!("{name}: {error}"));
@@ -63,7 +63,7 @@ pub fn open(spec: &Path) -> Result<SourceFile, Failure> {
 /// Why a spec could not be opened or compiled.
 #[derive(Debug)]
 pub enum Failure {
-    /// The file system said no.
+    /// The file system refused.
     File(String),
     /// The spec has mistakes.
     Mistakes(Diagnostics),
@@ -94,10 +94,10 @@ pub fn out_dir() -> PathBuf {
     env::var_os("OUT_DIR").map_or_else(|| fail("OUT_DIR is set by cargo in build scripts only", ""), PathBuf::from)
 }
 
-/// Writes a file whole or not at all.
+/// Writes a file completely or not at all.
 ///
 /// # Errors
-/// Those of the file system.
+/// Errors of the file system.
 pub fn write(target: &Path, text: &str) -> io::Result<()> {
     let mut name = target.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.unfinished", process::id()));
@@ -106,7 +106,7 @@ pub fn write(target: &Path, text: &str) -> io::Result<()> {
     fs::rename(&unfinished, target)
 }
 
-/// Cargo shows one line of an error, so the headline goes there and the drawing to standard error.
+/// Cargo shows one line of an error, so the headline goes there and the full report to standard error.
 fn fail(headline: &str, drawn: &str) -> ! {
     eprintln!("{drawn}");
     println!("cargo::error={headline}");

@@ -1,4 +1,4 @@
-//! The pipeline, one stage a line.
+//! The pipeline, one stage per line.
 
 use std::path::Path;
 
@@ -11,29 +11,29 @@ use crate::read::read;
 use crate::report::Report;
 use crate::validate::{self, Checked};
 
-/// A crane's Rust, and what is implausible about the crane.
+/// A crane's Rust module, and warnings about the crane.
 #[derive(Clone, Debug)]
 pub struct Compiled {
     /// The module.
     pub code: GeneratedCode,
-    /// Warnings, with their places.
+    /// Warnings, with their locations.
     pub warnings: Diagnostics,
 }
 
-/// Compiles a spec to Rust: what its `analyses` ask for, or `analyses` in their place.
+/// Compiles a spec to Rust: the functions that its `analyses` request, or those of `analyses` instead.
 ///
 /// # Errors
 /// All mistakes of the spec at once.
 pub fn compile(source: &SourceFile, analyses: Option<Analyses>) -> Result<Compiled, Diagnostics> {
     let Checked { chain, warnings } = check(source)?;
-    // Eight cranes a call are asked for by the spec alone.
+    // Only the spec can request eight cranes per call.
     let analyses = Analyses { ensemble: chain.analyses.ensemble, ..analyses.unwrap_or(chain.analyses) };
-    // A path would differ from machine to machine.
+    // A path would differ between machines.
     let file = Path::new(&source.name).file_name().unwrap_or_default().to_string_lossy();
     Ok(Compiled { code: generate(&chain, analyses, &file), warnings })
 }
 
-/// A spec as a sound chain.
+/// Converts a spec to a valid chain.
 ///
 /// # Errors
 /// All mistakes of the spec at once.
@@ -41,7 +41,7 @@ pub fn load(source: &SourceFile) -> Result<Chain, Diagnostics> {
     check(source).map(|checked| checked.chain)
 }
 
-/// A spec as a sound chain, with warnings about what is implausible.
+/// Converts a spec to a valid chain, with warnings about implausible numbers.
 ///
 /// # Errors
 /// All mistakes of the spec at once.
@@ -49,7 +49,7 @@ pub fn check(source: &SourceFile) -> Result<Checked, Diagnostics> {
     check_with(source, &[])
 }
 
-/// As [`check`], with warnings for other values of parameters than the spec's: names and values.
+/// Like [`check`], with warnings for other parameter values than those of the spec: names and values.
 ///
 /// # Errors
 /// All mistakes of the spec at once.
@@ -65,7 +65,7 @@ pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> Generated
     emit(chain, analyses, &blocks, report_on(&blocks, chain, analyses), spec_file)
 }
 
-/// What the functions of a chain cost and what is left out, without writing them.
+/// The cost of the functions of a chain and what is left out, without writing them.
 #[must_use]
 pub fn report(chain: &Chain, analyses: Analyses) -> Report {
     report_on(&lower(&derive(chain, analyses), chain.loops.least_rounds()), chain, analyses)

@@ -1,4 +1,4 @@
-//! Every stage of a compilation as text, for whoever works on the compiler.
+//! Every stage of a compilation as text, for developers of the compiler.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::mechanics::derive;
 use crate::read::read;
 use crate::symbolic::{ExprId, Op, Program};
 
-/// A stage: name of a file, and what the stage hands on.
+/// A stage: name of a file, and the stage's result.
 pub type Stage = (&'static str, String);
 
 /// All stages of a spec, in the order of the pipeline: the spec as read, the chain, the program of expressions, its straight lines,
@@ -35,7 +35,7 @@ pub fn stages(source: &SourceFile, analyses: Option<Analyses>) -> Result<Vec<Sta
     ])
 }
 
-/// An expression: its number, or what it is where it costs nothing.
+/// An expression: its number, or its content if it costs nothing.
 fn operand(program: &Program, id: ExprId) -> String {
     match program.op(id) {
         Op::Constant(constant) => constant.value().to_string(),
@@ -57,7 +57,7 @@ fn definition(program: &Program, id: ExprId) -> String {
     format!("{} = {kind}{order}({})", operand(program, id), operands.join(", "))
 }
 
-/// Every function: its sweeps, then the expressions that it alone adds, then its results.
+/// Every function: its sweeps, then the expressions that only it adds, then its results.
 fn expressions(program: &Program) -> String {
     let mut text = String::new();
     let mut written = vec![false; program.operations.len()];

@@ -99,7 +99,7 @@ fn costs(report: &Report) -> String {
     text
 }
 
-/// Operations per function and crane as a Markdown table; an empty cell where the scene does not need the function.
+/// Operations per function and crane as a Markdown table; a cell is empty if the crane does not need the function.
 #[must_use]
 pub fn operations_table(reports: &[(String, Report)]) -> String {
     let mut functions: Vec<&str> = Vec::new();

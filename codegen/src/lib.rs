@@ -2,11 +2,11 @@
 //!
 //! ```text
 //! SourceFile ─read→ CraneSpec ─validate→ Chain ─derive→ Program ─lower→ Blocks ─emit→ GeneratedCode
-//! text              as written           proven sound   named functions  straight line,  Rust text and
+//! text              as written           validated      named functions  straight line,  Rust text and
 //!                                                       over one graph   split, ordered  operation counts
 //! ```
 //!
-//! Three ways in: [`build::compile_spec`] from a build script, the command `crane-codegen`, and [`compile::compile`].
+//! There are three entry points: [`build::compile_spec`] in a build script, the command `crane`, and [`compile::compile`].
 //! [`symbolic::Program::evaluate`] runs a program without rustc.
 
 pub mod build;

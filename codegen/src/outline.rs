@@ -1,4 +1,4 @@
-//! Outlines of beams, for pictures: what a spec says of their sections. Mechanics needs areas and moments alone.
+//! Outlines of beams, for pictures, from their sections in the spec. Mechanics needs only areas and moments.
 
 use crate::spec::{Beam, Crane, Given, Number, Scalar, Section};
 
@@ -9,11 +9,11 @@ pub struct Outline {
     pub link: String,
     /// Along the link's y and z, m.
     pub size: [f64; 2],
-    /// An ellipse in that box, not the box.
+    /// Whether it is an ellipse in that box instead of the box.
     pub round: bool,
 }
 
-/// Outlines of the beams whose section has a shape, with parameters at their defaults.
+/// Outlines of the beams whose sections have a shape, with parameters at their defaults.
 #[must_use]
 pub fn outlines(crane: &Crane) -> Vec<Outline> {
     let links = crane.links.value.iter().flatten().filter_map(|link| link.value.as_ref());
@@ -32,7 +32,7 @@ pub fn outlines(crane: &Crane) -> Vec<Outline> {
     links.filter_map(outline).collect()
 }
 
-/// A number, that of a parameter its default.
+/// A number; for a parameter, its default.
 fn number(crane: &Crane, given: &Given<Number>) -> Option<f64> {
     match &given.value.as_ref()?.0 {
         Scalar::Number(number) | Scalar::Angle(number) => Some(*number),

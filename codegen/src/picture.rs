@@ -84,7 +84,7 @@ fn poses(chain: &Chain) -> (Vec<Frame>, Vec<Joint>) {
     (frames.collect(), joints)
 }
 
-/// Who owns a coordinate, in a word.
+/// The role of a coordinate, in one word.
 fn role(chain: &Chain, id: CoordinateId) -> &'static str {
     if chain.base.contains(&Some(id)) {
         "base"
@@ -99,12 +99,12 @@ fn role(chain: &Chain, id: CoordinateId) -> &'static str {
     }
 }
 
-/// Whether a rigid element hangs on another one of its link.
+/// Whether a rigid element is attached to another one of its link.
 fn is_inner(chain: &Chain, body: &Body) -> bool {
     chain.bodies.iter().find(|other| other.link == body.link).is_some_and(|first| first.name != body.name)
 }
 
-/// Where a body ends: its length along x.
+/// The end of a body: its length along x.
 fn end(chain: &Chain, body: usize, frame: &Frame) -> Vector {
     frame.place([chain.bodies[body].length.at(&chain.parameter_defaults()), 0.0, 0.0])
 }
@@ -185,7 +185,7 @@ fn masses(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
     }
 }
 
-/// Coordinates of base and joints by their numbers, and flexible links in a line each.
+/// Coordinates of base and joints with their numbers, and flexible links in one line each.
 fn table(sheet: &mut Sheet, chain: &Chain, joints: &[&Joint]) {
     let left = DRAWING.0 + 10.0;
     let mut y = 62.0;
@@ -212,12 +212,12 @@ fn table(sheet: &mut Sheet, chain: &Chain, joints: &[&Joint]) {
     }
 }
 
-/// What is drawn, and where labels stand.
+/// The drawing, and the positions of labels.
 struct Sheet {
     svg: String,
     scale: f64,
     shift: (f64, f64),
-    /// Left, base line and width of what is taken.
+    /// Left edge, base line and width of occupied places.
     labels: Vec<(f64, f64, f64)>,
     /// Drawn last, over everything.
     texts: String,
@@ -266,7 +266,7 @@ impl Sheet {
         }
     }
 
-    /// A circle where something turns, a square where it slides, full where a drive moves it; with its number.
+    /// A circle for a rotation, a square for a translation, filled if a drive moves it; with its number.
     fn joint(&mut self, chain: &Chain, joint: &Joint, number: usize) {
         let (x, y) = self.project(joint.at);
         let fill = if matches!(role(chain, joint.coordinate), "driven" | "prescribed") { INK } else { "#fff" };
@@ -285,7 +285,7 @@ impl Sheet {
         self.label((x, y), &number.to_string());
     }
 
-    /// A label near a place, where no other stands yet.
+    /// A label near a position, where there is no other yet.
     fn label(&mut self, (x, y): (f64, f64), text: &str) {
         /// Width of a letter, and height of a line.
         const LETTER: (f64, f64) = (7.2, 14.0);
@@ -295,7 +295,7 @@ impl Sheet {
                 (level - line).abs() >= LETTER.1 || at + width < other || other + length < at
             })
         };
-        // Slantwise first, where no line of a link runs; then further away.
+        // First diagonally, where there is no line of a link; then further away.
         let candidates = (0..40_u8).map(|k| {
             let turn = f64::from([1, 7, 3, 5, 2, 6, 0, 4][usize::from(k % 8)]) * std::f64::consts::FRAC_PI_4;
             let reach = 17.0 + 11.0 * f64::from(k / 8);

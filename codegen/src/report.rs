@@ -1,4 +1,4 @@
-//! What a crane's functions cost, and what its scene does not need.
+//! The cost of a crane's functions, and what the crane does not need.
 
 use crate::chain::Loops;
 use crate::lower::Blocks;
@@ -7,13 +7,13 @@ use crate::symbolic::{OperationCount, Program, Shape};
 /// Costs and omissions of a generated module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// One row a function, in the order of the file.
+    /// One row per function, in the order of the file.
     pub costs: Vec<FunctionCost>,
-    /// How many second derivatives of transforms are computed in a loop, if they are.
+    /// The number of second derivatives of transforms that are computed in a loop, if any.
     pub second_derivative_pairs: Option<usize>,
-    /// Functions with loops over bodies that do the same, and how many bodies each loop goes over.
+    /// Functions with loops over bodies with equal work, and the number of bodies of each loop.
     pub loops: Vec<(String, Vec<usize>)>,
-    /// Why what repeats is a loop, or is written out.
+    /// Why repeated work is a loop, or is written out.
     pub loops_because: &'static str,
     /// Whether the mass matrix is filled in a loop, if there is one.
     pub mass_matrix_in_a_loop: Option<bool>,
@@ -26,17 +26,17 @@ pub struct Report {
 pub struct FunctionCost {
     /// Name of the function.
     pub function: String,
-    /// What it executes.
+    /// Operations that it executes.
     pub operations: OperationCount,
-    /// What it would execute without simplification.
+    /// Operations that it would execute without simplification.
     pub verbatim: OperationCount,
-    /// How many statements rustc has to compile.
+    /// The number of statements that rustc has to compile.
     pub statements: usize,
 }
 
-/// rustc's time for a statement at level 2, s: 2.8 s for the dynamics of 25 coordinates, 4.7 s for those of 103.
+/// rustc's time per statement at level 2, s: 2.8 s for the dynamics of 25 coordinates, 4.7 s for those of 103.
 const COMPILE_TIME: f64 = 3.5e-4;
-/// Longer than this, s, nobody should wait unwarned.
+/// A compile time, s, above which there is a warning.
 const COMPILE_BUDGET: f64 = 60.0;
 
 impl Report {
@@ -79,7 +79,7 @@ impl Report {
         }
     }
 
-    /// A warning where rustc will take long, and what would help.
+    /// A warning if rustc will take long, and what helps.
     #[must_use]
     pub fn warning(&self, crane: &str) -> Option<String> {
         let statements: usize = self.costs.iter().map(|cost| cost.statements).sum();

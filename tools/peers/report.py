@@ -71,23 +71,23 @@ def text(results, times, drawing):
     rounds = f"{results['rounds']} rounds of {1000 * results['seconds']:.0f} ms"
     return f"""# Performance
 
-What the generated functions cost beside libraries that read the same crane at run time, and beside C that CasADi wrote for
-it: the reference crane, `specs/eight_link_flexible.yaml`, with 0, 4, 10, 20 and 30 sections of the boom. One thread, everything
-compiled for the machine's own instructions, medians of {rounds} in which everybody takes turns; a time scatters by
-{100 * times.spread():.1f} %. Before it is timed, everybody's result is compared with recursions in 80-bit numbers; whoever is
-not right to {results["right"]:.0e} does not count.
+This page compares the run time of the generated functions with libraries that read the same crane at run time, and with C code that
+CasADi generated for it. The crane is the reference crane, `specs/eight_link_flexible.yaml`, with 0, 4, 10, 20 and 30 sections of the
+boom. All programs use one thread and are compiled for the instructions of this machine. Times are medians of {rounds} in which
+the programs take turns; their interquartile range is {100 * times.spread():.1f} %. Before timing, every result is compared with recursions in 80-bit numbers;
+results with an error above {results["right"]:.0e} are excluded.
 
 {facts["processor"]} (`{facts["target"]}`), {facts["system"]}, {facts["date"]}. {", ".join(facts["versions"])}.
 
-This page is written by `cargo xtask performance`. `cargo bench -p crane-bench` times the kernels alone.
+`cargo xtask performance` writes this page. `cargo bench -p crane-bench` times only the kernels.
 
 ![Time of one forward dynamics, and of A and e, over the number of coordinates, both axes logarithmic.]({drawing})
 
 ## Forward dynamics, q̈
 {times_table(times, "forward_dynamics", ["Pinocchio, gcc", "Pinocchio, clang", "CasADi C, gcc", "CasADi C, clang", "MuJoCo"])}
 
-How many times as long the others take. 8 lanes: one call computes eight cranes, each with its own state and parameters; the time is
-that of one crane.
+The next table shows how many times longer the others take. With 8 lanes, one call computes eight cranes, each with its own state and
+parameters; the time is per crane.
 {ratio_table(times)}
 
 ## A and e
@@ -99,32 +99,32 @@ transforms.
 ## One RK4 step with all forces
 {times_table(times, "rk4_step", ["MuJoCo", "Exudyn"])}
 
-## What is in these times
+## What these times include
 * **Ours**: from t, q, v to q̈; sines and cosines, supports, elements, drives with their motions, and gravity included.
 * **Pinocchio**: `aba`, or `crba`, `nonLinearEffects` and a Cholesky factorisation, whichever is fastest; forces are given. All of its
-  joint models of a base and of a rigid finite element take part: elementary joints, angles ψ θ φ as one joint, composite joints, a
-  free flyer with a quaternion, whose conversion is not timed. Headers alone, so that all of it is compiled here.
+  joint models of a base and of a rigid finite element are included: elementary joints, angles ψ θ φ as one joint, composite joints, a
+  free flyer with a quaternion, whose conversion is not timed. Only headers are used, so that all code is compiled for this machine.
 * **CasADi C**: an articulated-body recursion, and composite bodies with Newton's and Euler's equations, in the same coordinates,
-  with the crane's numbers and zeros folded in; forces are given. Where a general library pays for being general, this does not: what
-  remains between it and ours is algorithm, trigonometry and the compiler.
-* **MuJoCo**: `mj_forward` with forces applied, constraints, contacts, sensors and actuators off. The three rotations of an element are
-  three hinges of one body. In the step, springs and dampers are those of joints, and supports are fixed tendons, as few as will do.
-* **Exudyn**: a kinematic tree with springs in its joints and the supports as matrices, a run of 600 steps less one of 200.
-* **Compilers matter.** Ours is compiled by rustc, the others by gcc and by clang, both with `-O3 -march=native`; MuJoCo and Exudyn come
-  compiled by their makers for any machine of the kind.
+  with the crane's numbers and zeros folded in; forces are given. It does not pay the cost of generality that a library pays, so it differs
+  from ours only in algorithm, trigonometry and compiler.
+* **MuJoCo**: `mj_forward` with applied forces; constraints, contacts, sensors and actuators are off. The three rotations of an element are
+  three hinges of one body. In the step, springs and dampers belong to joints, and supports are as few fixed tendons as possible.
+* **Exudyn**: a kinematic tree with springs in its joints and the supports as matrices; the time of a run of 600 steps minus one of 200.
+* **Compilers matter.** Ours is compiled by rustc, the others by gcc and by clang, both with `-O3 -march=native`; MuJoCo and Exudyn are
+  the binaries that their authors distribute.
 
-The fastest of each kind:
+The fastest variants:
 {winners(times)}
 
 {wrong(results)}
 
 ## Our kernels
-ns a call for one crane{counters_heading(results)}.
+Times in ns per call for one crane{counters_heading(results)}.
 {kernels(times)}
 
-Operations of a call for one crane as the compiler counts them, sine and cosine of an angle as one, and their share of what one core
-can do at most: {peak["scalar"]:.1f} scalar and, for eight cranes at once, {peak["vector"]:.0f} vector operations a nanosecond, where every
-multiplication is fused with an addition.
+The next table shows the operations per call for one crane, as the compiler counts them (sine and cosine of an angle together count as
+one), and their share of the peak performance of one core: {peak["scalar"]:.1f} scalar operations per nanosecond and, for eight cranes at once, {peak["vector"]:.0f} vector
+operations per nanosecond, if every multiplication is fused with an addition.
 {operations(results, times)}
 
 {counters(results)}
@@ -204,7 +204,7 @@ def wrong(results):
     """Who was not right."""
     found = results["wrong"]
     if not found:
-        return "All variants of all libraries were right."
+        return "All variants of all libraries were correct."
     rows = {}
     for contestant in found:
         key = contestant["coordinates"], contestant["library"], contestant["variant"].split(",")[0]
@@ -220,7 +220,7 @@ def wrong(results):
         ]
         for key, group in sorted(rows.items())
     ]
-    return "Not right, and therefore not counted:\n" + table(
+    return "Excluded because of their errors:\n" + table(
         ["coordinates", "library", "algorithm", "variants", "worst error", "joints of elements"], lines
     )
 
@@ -262,4 +262,4 @@ def counters(results):
         for kernel, counts in kernels_of.items()
     ]
     names = next(iter(next(counts for counts in results["counters"].values() if counts).values()))
-    return "Counted by the processor, a call:\n" + table(["coordinates", "kernel", *names], rows)
+    return "Counted by the processor, per call:\n" + table(["coordinates", "kernel", *names], rows)

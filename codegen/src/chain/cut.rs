@@ -1,4 +1,4 @@
-//! Where a crane is cut to see what one part exerts on the other.
+//! Cuts through a crane, at which one part exerts forces on the other.
 
 use super::{BodyId, Chain};
 

@@ -1,4 +1,4 @@
-//! Force elements on single coordinates whose law is not linear.
+//! Force elements on single coordinates with nonlinear laws.
 
 use super::{CoordinateId, Value};
 
@@ -7,7 +7,7 @@ use super::{CoordinateId, Value};
 pub struct ForceElement {
     /// The coordinate.
     pub coordinate: CoordinateId,
-    /// What it does.
+    /// Its law.
     pub law: Law,
 }
 
@@ -20,13 +20,13 @@ pub enum Law {
     Friction(Friction),
 }
 
-/// An end stop, which pushes where the coordinate is beyond it and never pulls: with `δ` how far it is beyond,
+/// An end stop, which pushes when the coordinate is beyond it and never pulls: with the penetration `δ`,
 /// `F = k δ max(0, 1 + a δ̇)`.
 ///
 /// K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440, with a linear spring.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stop {
-    /// Where it stands, rad or m.
+    /// Its position, rad or m.
     pub at: Value,
     /// Which end of the joint's range it is.
     pub end: End,
@@ -39,21 +39,21 @@ pub struct Stop {
 /// An end of a joint's range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The least value of the coordinate.
+    /// The minimum of the coordinate.
     Least,
-    /// The greatest.
+    /// The maximum.
     Greatest,
 }
 
-/// Friction of a joint, `F = (F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) + b q̇`: Coulomb's with Stribeck's decline, smooth
-/// where the motion turns around.
+/// Friction of a joint, `F = (F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) + b q̇`: Coulomb friction with a Stribeck decline,
+/// smooth where the motion reverses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
     /// `F_c`, N m or N.
     pub coulomb: Value,
-    /// `F_b`, N m or N, and `v_s`, rad/s or m/s, where breaking away takes more.
+    /// `F_b`, N m or N, and `v_s`, rad/s or m/s, if the breakaway friction is larger.
     pub breakaway: Option<(Value, Value)>,
-    /// v₀, rad/s or m/s: at this rate friction has come to three quarters of its size.
+    /// v₀, rad/s or m/s: at this rate friction reaches three quarters of its full value.
     pub width: Value,
     /// b, N m s/rad or N s/m.
     pub viscous: Value,

@@ -1,11 +1,11 @@
-//! Frames in numbers: where bodies are at given coordinates.
+//! Numeric frames: poses of bodies at given coordinates.
 
 use super::{Axis, Chain, CoordinateKind, Step};
 
 /// A point or a direction: x, y, z.
 pub type Vector = [f64; 3];
 
-/// A frame, given in another one.
+/// A frame, expressed in another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Directions of its axes x, y, z.
@@ -18,39 +18,39 @@ impl Frame {
     /// The frame in which all are given.
     pub const WORLD: Frame = Frame { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
 
-    /// A direction of this frame, outside of it.
+    /// A direction given in this frame, expressed in the outer frame.
     #[must_use]
     pub fn direction(&self, local: Vector) -> Vector {
         [0, 1, 2].map(|row| (0..3).map(|i| self.axes[i][row] * local[i]).sum())
     }
 
-    /// A place in this frame, outside of it.
+    /// A point given in this frame, expressed in the outer frame.
     #[must_use]
     pub fn place(&self, local: Vector) -> Vector {
         let along = self.direction(local);
         [0, 1, 2].map(|row| self.origin[row] + along[row])
     }
 
-    /// A direction from outside, in this frame.
+    /// A direction given in the outer frame, expressed in this frame.
     #[must_use]
     pub fn local_direction(&self, outer: Vector) -> Vector {
         self.axes.map(|axis| (0..3).map(|i| axis[i] * outer[i]).sum())
     }
 
-    /// A frame from outside, in this frame.
+    /// A frame given in the outer frame, expressed in this frame.
     #[must_use]
     pub fn local(&self, outer: &Frame) -> Frame {
         let way = [0, 1, 2].map(|i| outer.origin[i] - self.origin[i]);
         Frame { axes: outer.axes.map(|axis| self.local_direction(axis)), origin: self.local_direction(way) }
     }
 
-    /// A frame that is given in this one, outside of it.
+    /// A frame given in this frame, expressed in the outer frame.
     #[must_use]
     pub fn outer(&self, local: &Frame) -> Frame {
         Frame { axes: local.axes.map(|axis| self.direction(axis)), origin: self.place(local.origin) }
     }
 
-    /// Turned about one of its axes.
+    /// This frame rotated about one of its axes.
     #[must_use]
     pub fn turned(mut self, axis: Axis, sin: f64, cos: f64) -> Frame {
         let (a, b) = ((axis.index() + 1) % 3, (axis.index() + 2) % 3);
@@ -60,7 +60,7 @@ impl Frame {
         self
     }
 
-    /// Carried along by a step of a path, at coordinates `q` and with the given parameter values.
+    /// This frame after a step of a path, at coordinates `q` and with the given parameter values.
     ///
     /// # Panics
     /// If `q` or `parameters` are shorter than the chain's lists of them.
@@ -90,7 +90,7 @@ impl Frame {
         }
     }
 
-    /// Turned by a rotation vector given in it.
+    /// This frame rotated by a rotation vector given in it.
     fn turned_by(self, rho: Vector) -> Frame {
         let angle = libm::sqrt(rho.iter().map(|x| x * x).sum());
         if angle == 0.0 {
@@ -121,7 +121,7 @@ mod tests {
                 assert!((a - b).abs() < 1e-15, "{axis:?}: {vector:?}");
             }
         }
-        // A third of a turn about (1, 1, 1) hands x to y, y to z, z to x.
+        // A third of a turn about (1, 1, 1) maps x to y, y to z, z to x.
         let third = std::f64::consts::TAU / 3.0 / 3.0_f64.sqrt();
         let axes = Frame::WORLD.turned_by([third; 3]).axes;
         for (k, axis) in axes.iter().enumerate() {
@@ -138,7 +138,7 @@ mod tests {
         let own = frame.local(&frame);
         let back = frame.outer(&Frame { origin: [4.0, 5.0, 6.0], ..Frame::WORLD });
         for (i, k) in (0..3).flat_map(|i| (0..3).map(move |k| (i, k))) {
-            // A few roundings of numbers of order 1.
+            // A few rounding errors of numbers of order 1.
             assert!((own.axes[i][k] - Frame::WORLD.axes[i][k]).abs() < 1e-15 && own.origin[k] == 0.0, "{own:?}");
             assert!((frame.local(&back).origin[k] - [4.0, 5.0, 6.0][k]).abs() < 1e-14);
         }

@@ -1,29 +1,29 @@
-//! Whether what repeats is written out or a loop, by what was measured on the reference crane.
+//! Whether repeated work is written out or a loop, based on measurements of the reference crane.
 
-/// When what repeats is a loop.
+/// When repeated work is a loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loops {
-    /// Where it is faster.
+    /// If it is faster.
     #[default]
     Auto,
-    /// Wherever it can be.
+    /// Wherever possible.
     Always,
-    /// Nowhere.
+    /// Never.
     Never,
 }
 
-/// Equal work at so many bodies in a row is a loop. Forward dynamics written out against in loops: 0.45 and 0.46 µs with 4
+/// Equal work at this many consecutive bodies is a loop. Forward dynamics written out and in loops: 0.45 and 0.46 µs with 4
 /// sections, of which 3 are equal, eight at once 0.98 and 1.10; 0.72 and 0.67 with 8; 4.07 and 2.44 with 30, whose code no
-/// longer fits into the first cache.
+/// longer fits into the first-level cache.
 const LEAST_ROUNDS: usize = 5;
 
 /// The mass matrix of more coordinates is filled in a loop over rows and columns: written out it grows with the square, and so
-/// does rustc's time. A and e written out against the loop: 0.47 and 0.59 µs at 13 coordinates, 0.53 and 0.56 at 16, 1.07 and
+/// does rustc's time. A and e written out and in a loop: 0.47 and 0.59 µs at 13 coordinates, 0.53 and 0.56 at 16, 1.07 and
 /// 0.76 at 19, 1.75 and 1.39 at 25.
 const LARGEST_WRITTEN_OUT: usize = 16;
 
 impl Loops {
-    /// How many bodies in a row make a loop, if any do.
+    /// The number of consecutive bodies that make a loop, if any do.
     #[must_use]
     pub fn least_rounds(self) -> Option<usize> {
         match self {
@@ -33,7 +33,7 @@ impl Loops {
         }
     }
 
-    /// Whether the mass matrix of so many coordinates is filled in a loop.
+    /// Whether the mass matrix of this many coordinates is filled in a loop.
     #[must_use]
     pub fn fill_mass_matrix(self, coordinates: usize) -> bool {
         match self {
@@ -43,7 +43,7 @@ impl Loops {
         }
     }
 
-    /// Why it is so, for the header.
+    /// The reason, for the header.
     #[must_use]
     pub fn reason(self) -> &'static str {
         match self {

@@ -1,6 +1,6 @@
-//! A sound crane: bodies on an open chain, with every reference resolved and every number checked.
+//! A valid crane: bodies on an open chain, with every reference resolved and every number checked.
 //!
-//! // AFTER THIS POINT: nobody knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
+//! // AFTER THIS POINT: no stage knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
 mod cut;
 mod force;
@@ -40,17 +40,17 @@ pub struct Chain {
     pub gravity: [Value; 3],
     /// Values that stay live at run time.
     pub parameters: Vec<Parameter>,
-    /// Rules that join several numbers of which some are live.
+    /// Rules about several numbers of which some are live.
     pub relations: Vec<Relation>,
     /// Generalized coordinates `q`, Eq. (1).
     pub coordinates: Vec<Coordinate>,
-    /// Bodies from the base to the tip; body `p` hangs on body `p − 1`, the first on the world.
+    /// Bodies from the base to the tip; body `p` is attached to body `p − 1`, the first to the world.
     pub bodies: Vec<Body>,
-    /// The base's coordinates in the order x, y, z, ψ, θ, φ, as far as it has them.
+    /// The base's coordinates in the order x, y, z, ψ, θ, φ; those that it has.
     pub base: [Option<CoordinateId>; 6],
     /// Supports of the base, Eqs. (16)–(18).
     pub supports: Vec<Support>,
-    /// What stresses of beams follow from, beam by beam from the base to the tip.
+    /// Data for the stresses of beams, beam by beam from the base to the tip.
     pub beams: Vec<Beam>,
     /// Springs and dampers between the rigid elements of flexible links, Eqs. (14)–(15).
     pub elements: Vec<ElementSpring>,
@@ -60,17 +60,17 @@ pub struct Chain {
     pub hinges: Vec<Hinge>,
     /// End stops and friction of joints.
     pub forces: Vec<ForceElement>,
-    /// Rotors that joints turn through gears.
+    /// Rotors that joints drive through gears.
     pub rotors: Vec<Rotor>,
-    /// Points whose motion is of interest.
+    /// Points of interest.
     pub points: Vec<Point>,
-    /// Where the static solution starts; one number a coordinate, m or rad.
+    /// Start of the static solution; one number per coordinate, m or rad.
     pub guess: Vec<f64>,
     /// Settings of a run.
     pub run: Run,
     /// What the user wants to compute; the rest is left out.
     pub analyses: Analyses,
-    /// When what repeats is a loop.
+    /// When repeated work is a loop.
     pub loops: Loops,
 }
 
@@ -81,9 +81,9 @@ pub struct Coordinate {
     pub name: String,
     /// Translation (m) or rotation (rad).
     pub kind: CoordinateKind,
-    /// Which axis of its frame it moves along or turns about.
+    /// The axis of its frame along which it translates or about which it rotates.
     pub axis: Axis,
-    /// The body it moves first.
+    /// The first body that it moves.
     pub body: BodyId,
 }
 
@@ -122,11 +122,11 @@ pub struct Body {
     pub name: String,
     /// Name of the link it belongs to.
     pub link: String,
-    /// The way from the previous body's frame to this one's, T̃, as elementary steps in order.
+    /// The transformation from the previous body's frame to this one's, T̃, as elementary steps in order.
     pub path: Vec<Step>,
     /// Mass properties about the origin of the body's frame; `None` for a massless frame.
     pub inertia: Option<Inertia>,
-    /// The named parts lumped into it, for tables.
+    /// The named parts combined into it, for tables.
     pub parts: Vec<Part>,
     /// Length along x for a rigid element, 0 otherwise, m; for pictures and moments along the beam.
     pub length: Value,
@@ -148,13 +148,13 @@ pub enum Step {
     },
     /// Translation by a coordinate along its axis, or rotation by it about its axis.
     Move(CoordinateId),
-    /// Rotation by the vector ρ whose components are three coordinates, one along each axis: `exp([ρ]×)`. They follow each
-    /// other in q.
+    /// Rotation by the vector ρ whose components are three coordinates, one along each axis: `exp([ρ]×)`. They are
+    /// consecutive in q.
     RotationVector([CoordinateId; 3]),
 }
 
 impl Step {
-    /// The coordinates that it moves by.
+    /// The coordinates on which it depends.
     #[must_use]
     pub fn coordinates(&self) -> &[CoordinateId] {
         match self {
@@ -200,16 +200,16 @@ pub struct Support {
     pub damping: [Value; 3],
     /// Free play δ along x, y, z, m.
     pub free_play: [Value; 3],
-    /// How its elongation follows from the base's coordinates.
+    /// How its elongation depends on the base's coordinates.
     pub kinematics: SupportKinematics,
 }
 
-/// How the elongation of a support follows from the base's coordinates.
+/// How the elongation of a support depends on the base's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SupportKinematics {
     /// `e = U q̃(1) − δ`, Eq. (16): small rotations.
     Linear,
-    /// `e = T(1) r_E − r_E0 − δ`, `r_E0` its place at q̃(1) = 0: any rotation.
+    /// `e = T(1) r_E − r_E0 − δ`, `r_E0` its position at q̃(1) = 0: any rotation.
     Exact,
 }
 
@@ -224,27 +224,27 @@ pub struct ElementSpring {
     pub damping: Value,
 }
 
-/// A beam, as far as stresses go.
+/// Data of a beam for its stresses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beam {
     /// Name of the link.
     pub link: String,
-    /// Moduli of its cross-section; `None` where the spec does not give them.
+    /// Moduli of its cross-section; `None` if the spec does not give them.
     pub moduli: Option<Moduli>,
     /// Yield stress over the safety factor, Pa; `None` without a yield stress.
     pub allowable_stress: Option<Value>,
 }
 
-/// What turns forces and moments of a section into its greatest stresses.
+/// Properties that relate forces and moments of a section to its largest stresses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moduli {
     /// Area, m²: `σ = N/A`.
     pub area: Value,
     /// Moduli of bending about y and about z, m³: `σ = M/W`.
     pub bending: [Value; 2],
-    /// Modulus of torsion, m³: the greatest `τ = Mx/W`.
+    /// Modulus of torsion, m³: the largest `τ = Mx/W`.
     pub torsion: Value,
-    /// Shear areas along y and along z, m²: the greatest `τ = Q/A`.
+    /// Shear areas along y and along z, m²: the largest `τ = Q/A`.
     pub shear: [Value; 2],
     /// Whether the stresses of both bendings add up in a corner; on a round section they are at right angles.
     pub has_corners: bool,
@@ -255,13 +255,13 @@ pub struct Moduli {
 pub struct Drive {
     /// The coordinate it drives.
     pub coordinate: CoordinateId,
-    /// How its motion reaches the coordinate.
+    /// The transmission between its motion and the coordinate.
     pub transmission: Transmission,
     /// Prescribed motion of the transmission's far end.
     pub profile: Profile,
 }
 
-/// What is between a prescribed motion and the coordinate.
+/// The transmission between a prescribed motion and the coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Transmission {
     /// A spring and a damper, Eqs. (19)–(21).
@@ -271,7 +271,7 @@ pub enum Transmission {
         /// Damping, N m s/rad or N s/m.
         damping: Value,
     },
-    /// Nothing that gives way: the coordinate is prescribed.
+    /// A rigid connection: the coordinate is prescribed.
     Rigid,
 }
 
@@ -295,9 +295,9 @@ pub struct Hinge {
     pub damping: Value,
 }
 
-/// A rotor that a joint turns through a gear, by its inertia reflected to the joint: `i² J`, i the gear ratio.
+/// A rotor that a joint drives through a gear, given by its inertia reflected to the joint: `i² J`, i the gear ratio.
 ///
-/// It resists the joint's acceleration and nothing else: neither its weight nor its gyroscopic moments count.
+/// It only resists the joint's acceleration: its weight and its gyroscopic moments are neglected.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rotor {
     /// The coordinate of the joint.
@@ -328,7 +328,7 @@ pub struct Run {
     pub output: f64,
 }
 
-/// What is to be computed: a set of independent choices.
+/// What to compute: a set of independent choices.
 #[allow(clippy::struct_excessive_bools)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Analyses {
@@ -338,18 +338,18 @@ pub struct Analyses {
     pub dynamics: bool,
     /// Linearisation: A, K and D at a pose.
     pub modes: bool,
-    /// What joints, beam sections and the ground transmit.
+    /// Forces and moments that joints, beam sections and the ground transmit.
     pub internal_forces: bool,
     /// ∂T/∂q and ∂²T/∂q∂q of every body.
     pub derivatives: bool,
-    /// Eight cranes a call, for simulations of many; needs dynamics.
+    /// Eight cranes per call, for simulations of many; needs dynamics.
     pub ensemble: bool,
 }
 
 impl Analyses {
-    /// What the command asks of a crane.
+    /// The analyses that the command needs.
     pub const COMMAND: Analyses = Analyses { derivatives: false, ..Analyses::ALL };
-    /// Everything there is about one crane, for checks.
+    /// All analyses of one crane, for checks.
     pub const ALL: Analyses = Analyses {
         statics: true,
         dynamics: true,

@@ -1,4 +1,4 @@
-//! Live parameters, and what the rules of the language ask of their values.
+//! Live parameters, and the rules of the language for their values.
 
 use super::{Chain, Value};
 
@@ -9,38 +9,38 @@ pub struct Parameter {
     pub name: String,
     /// Unit as written by the user, for tables.
     pub unit: String,
-    /// What it is.
+    /// Its description.
     pub about: String,
     /// Value unless set at run time.
     pub default: f64,
-    /// The least value that every use of the parameter allows; `None`: any that a number may have.
+    /// The smallest value that every use of the parameter allows; `None`: any number.
     pub least: Option<Bound>,
 }
 
 /// The lower end of the range of a live parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    /// The least value.
+    /// The smallest value.
     pub value: f64,
     /// Whether the parameter may be equal to it.
     pub allowed: bool,
-    /// What to say of a value beyond it.
+    /// The message for a value below it.
     pub refusal: Refusal,
 }
 
-/// What the compiler says of live parameters that break a rule.
+/// The compiler's message about live parameters that break a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
     /// Code of the rule, such as `E031`.
     pub code: &'static str,
-    /// What is wrong; of a [`Bound`], the value that is refused follows.
+    /// What is wrong; for a [`Bound`], the refused value is appended.
     pub title: String,
     /// What to write instead.
     pub help: String,
 }
 
 impl Parameter {
-    /// Raises the lower end of the range, unless it is as high already.
+    /// Raises the lower end of the range, unless it is already as high.
     pub fn raise(&mut self, bound: Bound) {
         let end = |bound: &Bound| (bound.value, !bound.allowed);
         if self.least.as_ref().is_none_or(|held| end(&bound) > end(held)) {
@@ -49,17 +49,17 @@ impl Parameter {
     }
 }
 
-/// A rule that joins several numbers of which some are live.
+/// A rule about several numbers of which some are live.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relation {
-    /// The rule holds where this is above zero.
+    /// The rule holds if this is above zero.
     pub margin: Value,
-    /// What to say where it does not hold.
+    /// The message if it does not hold.
     pub refusal: Refusal,
 }
 
 impl Chain {
-    /// The first rule that joins several numbers which these values of the parameters break.
+    /// The first rule about several numbers that these values of the parameters break.
     ///
     /// # Panics
     /// If `parameters` is shorter than the chain's list of parameters.

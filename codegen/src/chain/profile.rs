@@ -2,8 +2,8 @@
 
 use super::Value;
 
-/// A prescribed motion: constant before it begins and, unless it has a speed, after it ends; once continuously
-/// differentiable throughout, unless it jumps to its speed.
+/// A prescribed motion: constant before it begins and, unless it is a speed, after it ends; continuously differentiable,
+/// unless it jumps to its speed.
 ///
 /// With `τ = clamp((t − begin)/duration, 0, 1)` the normalised profiles move from `from` to `to` as
 /// `q_dr = from + (to − from) s(τ)`.
@@ -17,12 +17,12 @@ pub enum Profile {
     Cubic(Ramp),
     /// `s = τ − sin(2πτ)/2π`: smooth acceleration.
     Cycloid(Ramp),
-    /// Trapezoid of velocity: constant acceleration over the first and last `blend` of the duration, 0 < blend ≤ ½.
+    /// Trapezoidal velocity: constant acceleration over the first and last `blend` of the duration, 0 < blend ≤ ½.
     /// The acceleration jumps at the ends of the ramps.
     Trapezoid {
-        /// From where to where, and when.
+        /// Start, end and time.
         ramp: Ramp,
-        /// Share of the duration spent accelerating.
+        /// Fraction of the duration spent accelerating.
         blend: f64,
     },
     /// Constant speed from `begin` on, without end.
@@ -33,20 +33,20 @@ pub enum Profile {
         rate: Value,
         /// When it begins, s.
         begin: Value,
-        /// How long it takes to reach the speed, s: `q̇_dr = rate (3τ² − 2τ³)`. Without, the speed jumps.
+        /// Time to reach the speed, s: `q̇_dr = rate (3τ² − 2τ³)`. Without it, the speed jumps.
         ramp: Option<Value>,
     },
     /// Cubic spline through given positions, at rest at both ends.
     Table {
         /// Position before the first segment, m or rad.
         from: f64,
-        /// The spline's pieces in order of time, each starting where the one before ends.
+        /// The spline's pieces in order of time, each starting where the previous one ends.
         segments: Vec<Segment>,
     },
 }
 
 impl Profile {
-    /// Begin and end, s, of the pieces in which it is smooth: beyond their ends it jumps in some derivative, or is at rest.
+    /// Begin and end, s, of the intervals in which it is smooth: at their ends some derivative jumps, or it comes to rest.
     #[must_use]
     pub fn pieces(&self) -> Vec<[Value; 2]> {
         match self {
@@ -70,7 +70,7 @@ impl Profile {
 }
 
 impl Ramp {
-    /// The time at a share of the duration.
+    /// The time at a fraction of the duration.
     fn at(&self, share: f64) -> Value {
         self.begin.clone() + share * self.duration.clone()
     }
@@ -85,7 +85,7 @@ pub struct Ramp {
     pub to: Value,
     /// When it begins, s.
     pub begin: Value,
-    /// How long it takes, s.
+    /// Its duration, s.
     pub duration: Value,
 }
 
@@ -94,7 +94,7 @@ pub struct Ramp {
 pub struct Segment {
     /// When it begins, s.
     pub begin: f64,
-    /// How long it lasts, s.
+    /// Its duration, s.
     pub duration: f64,
     /// `c₁, c₂, c₃`.
     pub coefficients: [f64; 3],

@@ -1,4 +1,4 @@
-//! Where a prescribed motion is at the beginning of a run.
+//! Positions of prescribed motions at the start of a run.
 
 use std::f64::consts::PI;
 
@@ -37,7 +37,7 @@ impl Profile {
     }
 }
 
-/// Position along a trapezoid of velocity with ramps of length b: the velocity between them is `1/(1 − b)`.
+/// Position along a trapezoidal velocity profile with ramps of length b: the velocity between them is `1/(1 − b)`.
 fn trapezoid(tau: f64, blend: f64) -> f64 {
     let ramp = |t: f64| t * t / (2.0 * blend * (1.0 - blend));
     if tau < blend {

@@ -1,4 +1,4 @@
-//! Numbers of a chain: constants that are baked in, or expressions over live parameters.
+//! Numbers of a chain: compiled-in constants, or expressions over live parameters.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -9,7 +9,7 @@ pub struct ParameterId(pub usize);
 /// A number of the chain, in SI units.
 ///
 /// Arithmetic folds constants, so a `Value` without parameters is always [`Value::Constant`], and a term that is
-/// exactly zero disappears. What remains an expression is what the user asked to keep live.
+/// exactly zero disappears. Only numbers that the user keeps live remain expressions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// Known when the crane is compiled.
@@ -36,13 +36,13 @@ impl Value {
     /// Exactly one.
     pub const ONE: Value = Value::Constant(1.0);
 
-    /// Whether the value is the constant zero: such a term does not exist for the compiler.
+    /// Whether the value is the constant zero: the compiler drops such a term.
     #[must_use]
     pub fn is_zero(&self) -> bool {
         matches!(self, Value::Constant(c) if *c == 0.0)
     }
 
-    /// The number, if no live parameter is in it.
+    /// The number, if it contains no live parameter.
     #[must_use]
     pub fn as_constant(&self) -> Option<f64> {
         match self {
@@ -69,7 +69,7 @@ impl Value {
         }
     }
 
-    /// Sine and cosine of an angle in rad; exact at multiples of a quarter turn, so that a frame turned by 90° keeps
+    /// Sine and cosine of an angle in rad; exact at multiples of a quarter turn, so that a frame rotated by 90° keeps
     /// its zeros.
     #[must_use]
     pub fn sin_cos(&self) -> (Value, Value) {
@@ -83,11 +83,11 @@ impl Value {
     }
 }
 
-/// Sine and cosine with exact values where the angle is a quarter turn to within its own rounding.
+/// Sine and cosine, with exact values if the angle is a quarter turn to within its own rounding.
 fn exact_sin_cos(angle: f64) -> (f64, f64) {
     let quarters = angle / std::f64::consts::FRAC_PI_2;
     let nearest = quarters.round();
-    // Four ulp: the angle was written in decimal, or came from a rational multiple of pi.
+    // Four ulp: the angle was written as a decimal number, or came from a rational multiple of pi.
     if (quarters - nearest).abs() <= 4.0 * f64::EPSILON * nearest.abs().max(1.0) {
         #[allow(clippy::cast_possible_truncation)] // the remainder by 4 is one of -3..=3
         match (nearest % 4.0) as i8 {
@@ -97,7 +97,7 @@ fn exact_sin_cos(angle: f64) -> (f64, f64) {
             _ => (-1.0, 0.0),
         }
     } else {
-        // Not the platform's: the same bytes on any machine.
+        // libm instead of the platform's functions: the same bytes on any machine.
         (libm::sin(angle), libm::cos(angle))
     }
 }

@@ -1,4 +1,4 @@
-//! Operation counts: what a function costs, exactly.
+//! Exact operation counts of functions.
 
 use std::fmt;
 use std::ops::AddAssign;
@@ -30,7 +30,7 @@ pub struct OperationCount {
 }
 
 impl OperationCount {
-    /// All operations; an angle counts as one, and so does an argument of Stumpff's functions.
+    /// All operations; an angle counts as one operation, and so does an argument of Stumpff's functions.
     #[must_use]
     pub fn total(&self) -> usize {
         let arithmetic = self.additions + self.multiplications + self.divisions + self.comparisons + self.choices;
@@ -71,7 +71,7 @@ impl fmt::Display for OperationCount {
 }
 
 impl Program {
-    /// Operations that `roots` need, each distinct one once, without what `free` says is there already.
+    /// Operations that `roots` need, each distinct one counted once, without those that `free` declares available.
     pub fn count(&self, roots: &[ExprId], free: impl Fn(ExprId) -> bool) -> OperationCount {
         let mut seen = vec![false; self.operations.len()];
         let mut angles = vec![false; self.operations.len()];

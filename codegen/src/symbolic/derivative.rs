@@ -1,17 +1,17 @@
-//! Derivatives of expressions by a symbol, operation by operation.
+//! Derivatives of expressions with respect to a symbol, operation by operation.
 
 use super::Expr;
 use super::graph::Graph;
 use super::op::{ExprId, Op};
 
 impl Graph {
-    /// `∂f/∂x` of expressions by an input x, forward along the graph: one derivative for each node between x and an expression.
+    /// `∂f/∂x` of expressions with respect to an input x, forward along the graph: one derivative per node between x and an expression.
     ///
-    /// Where a minimum, a maximum or a choice changes branches, it is the derivative on the side that [`Op::Select`] takes.
-    /// Of Stumpff's functions `c_k' = (k c_{k+2} − c_{k+1})/2`, [`Op::STUMPFF_ORDERS`] permitting.
+    /// Where a minimum, a maximum or a choice changes branches, the result is the derivative on the side that [`Op::Select`] takes.
+    /// For Stumpff's functions `c_k' = (k c_{k+2} − c_{k+1})/2`, up to [`Op::STUMPFF_ORDERS`].
     ///
     /// # Panics
-    /// If a function `c_k` with k > 3 depends on x: its derivative would need an order that no operation has.
+    /// If a function `c_k` with k > 3 depends on x: its derivative would need an order without an operation.
     pub fn derivatives<'g>(&'g self, of: &[Expr<'g>], by: Expr<'g>) -> Vec<Expr<'g>> {
         let zero = self.constant(0.0);
         let last = of.iter().map(|f| f.id().0).max().unwrap_or(0);
@@ -24,7 +24,7 @@ impl Graph {
                 self.op(id).operands().for_each(|operand| needed[operand.index()] = true);
             }
         }
-        // Nothing older than x depends on it.
+        // Nothing constructed before x depends on it.
         let mut derivatives: Vec<Option<Expr<'g>>> = vec![None; last as usize + 1];
         for id in (by.id().0..=last).map(ExprId).filter(|id| needed[id.index()]) {
             let of = |operand: ExprId| derivatives[operand.index()];

@@ -1,4 +1,4 @@
-//! Expressions as values, so that equations read as they are printed.
+//! Expressions as values, so that code reads like the printed equations.
 
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -81,7 +81,7 @@ impl<'g> Expr<'g> {
         self.graph.build(Op::Exp(self.id))
     }
 
-    /// tanh x, by `sign x (1 − e)/(1 + e)` with `e = exp(−2|x|)`, which overflows nowhere.
+    /// tanh x, as `sign x (1 − e)/(1 + e)` with `e = exp(−2|x|)`, which never overflows.
     #[must_use]
     pub fn tanh(self) -> Self {
         let e = (-2.0 * self.max(-self)).exp();
@@ -89,7 +89,7 @@ impl<'g> Expr<'g> {
         self.select(size, -size)
     }
 
-    /// `positive` where x > 0, else `other`.
+    /// `positive` if x > 0, otherwise `other`.
     #[must_use]
     pub fn select(self, positive: Self, other: Self) -> Self {
         self.graph.build(Op::Select(self.id, positive.id, other.id))

@@ -27,13 +27,13 @@ struct Nodes {
 }
 
 impl Graph {
-    /// A graph that simplifies by local rules: 0, 1, constants, signs, order of commutative operands, `x + x`.
+    /// A graph that simplifies with local rules: 0, 1, constants, signs, order of commutative operands, `x + x`.
     #[must_use]
     pub fn simplifying() -> Self {
         Graph { nodes: RefCell::default(), recorder: RefCell::default(), simplify: true }
     }
 
-    /// A graph that keeps every operation as written; it tells what simplification is worth.
+    /// A graph that keeps every operation as written, to measure the effect of simplification.
     #[must_use]
     pub fn verbatim() -> Self {
         Graph { nodes: RefCell::default(), recorder: RefCell::default(), simplify: false }
@@ -78,7 +78,7 @@ impl Graph {
         self.nodes.borrow().operations[id.index()]
     }
 
-    /// Gives a node the name that the model has for it; the first name stays. Leaves keep their own.
+    /// Gives a node its name in the model; the first name is kept. Leaves keep their own.
     pub fn name(&self, expr: Expr<'_>, name: impl Into<String>) {
         if !self.op(expr.id()).is_leaf() {
             self.nodes.borrow_mut().names.entry(expr.id()).or_insert_with(|| name.into());

@@ -1,4 +1,4 @@
-//! The meaning of a program: runs it without rustc, over any scalar.
+//! The semantics of a program: runs it without rustc, over any scalar.
 
 use std::collections::BTreeMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -15,7 +15,7 @@ pub trait Scalar:
     fn from_f64(value: f64) -> Self;
     /// Sine and cosine.
     fn sin_cos(&self) -> (Self, Self);
-    /// Stumpff's function `c_k(x) = Σ (−x)^i/(2i + k)!`, 0 ≤ x ≤ 100: unless a number knows better, by its series.
+    /// Stumpff's function `c_k(x) = Σ (−x)^i/(2i + k)!`, 0 ≤ x ≤ 100; the default uses its series.
     #[must_use]
     fn stumpff(&self, k: u8) -> Self {
         stumpff::series(k, self)
@@ -32,7 +32,7 @@ pub trait Scalar:
     /// Exponential.
     #[must_use]
     fn exp(&self) -> Self;
-    /// `positive` if the number is above zero, else `other`.
+    /// `positive` if the number is above zero, otherwise `other`.
     #[must_use]
     fn select(&self, positive: Self, other: Self) -> Self;
 }

@@ -1,4 +1,4 @@
-//! Expressions, programs and their meaning. Knows no crane and no Rust.
+//! Expressions, programs and their semantics, independent of cranes and of Rust.
 
 mod count;
 mod derivative;

@@ -65,7 +65,7 @@ pub enum Op {
     Sqrt(ExprId),
     /// eᵃ
     Exp(ExprId),
-    /// b where a > 0, else c: both are computed, and there is no branch.
+    /// b if a > 0, otherwise c: both are computed, and there is no branch.
     Select(ExprId, ExprId, ExprId),
 }
 
@@ -73,7 +73,7 @@ impl Op {
     /// The number zero.
     pub const ZERO: Op = Op::Constant(Constant(0));
 
-    /// How many of Stumpff's functions there are as operations: c₀ to c₅.
+    /// The number of Stumpff's functions available as operations: c₀ to c₅.
     pub const STUMPFF_ORDERS: usize = 6;
 
     /// Operands, in order.
@@ -119,7 +119,7 @@ impl Op {
         matches!(self, Op::Sin(_) | Op::Cos(_) | Op::Stumpff(..))
     }
 
-    /// Whether it is an input or a number, at no cost.
+    /// Whether it is an input or a number, which cost nothing.
     #[must_use]
     pub fn is_leaf(self) -> bool {
         matches!(self, Op::Constant(_) | Op::Symbol(_))

@@ -11,11 +11,11 @@ use super::tape::Tape;
 pub struct Program {
     /// All operations, operands before their users.
     pub operations: Vec<Op>,
-    /// Where each operation stands.
+    /// The position of each operation.
     pub index: HashMap<Op, ExprId>,
-    /// What the model calls some of them.
+    /// Names that the model gives to some of them.
     pub names: HashMap<ExprId, String>,
-    /// Inputs; [`SymbolId`] is the place in this list.
+    /// Inputs; [`SymbolId`] is the index in this list.
     pub symbols: Vec<Symbol>,
     /// The functions, in the order in which they are printed.
     pub functions: Vec<Function>,
@@ -28,7 +28,7 @@ pub struct Symbol {
     pub name: String,
     /// The argument that carries it.
     pub argument: Argument,
-    /// Its place in that argument.
+    /// Its index in that argument.
     pub index: usize,
 }
 
@@ -49,24 +49,24 @@ pub enum Argument {
     Resistance,
     /// Resistance of the base, a symmetric 6×6 matrix.
     BaseResistance,
-    /// What an earlier function left for this one.
+    /// Results of an earlier function for this one.
     Factors,
-    /// What differs from one round of a loop to the next, in order of the loop's sources.
+    /// Values that differ from one round of a loop to the next, in order of the loop's sources.
     Round,
-    /// What a loop leaves, in order of the function's takings.
+    /// Values that a loop leaves, in order of the function's takings.
     Loop,
     /// Live parameters.
     Parameters,
 }
 
-/// A function: what it is, what it takes, what it returns.
+/// A function: its documentation, arguments and result.
 #[derive(Clone, Debug)]
 pub struct Function {
     /// Name, an identifier.
     pub name: &'static str,
     /// First line of its documentation: what it returns, with units.
     pub doc: &'static str,
-    /// Equations it implements, and where they are from.
+    /// Equations it implements, and their source.
     pub equation: &'static str,
     /// Arguments besides the live parameters, in order.
     pub arguments: &'static [Argument],
@@ -74,7 +74,7 @@ pub struct Function {
     pub shape: Shape,
     /// Expressions of the result's slots, as many as [`Shape::len`], in its order.
     pub outputs: Vec<ExprId>,
-    /// Where they come from, if by sweeps over the bodies.
+    /// The sweeps over the bodies that derived them, if any.
     pub tape: Tape,
 }
 
@@ -107,7 +107,7 @@ impl Program {
         (0..u32::try_from(self.operations.len()).expect("fewer than 2^32 expressions")).map(ExprId)
     }
 
-    /// Adds an operation of its own, whether or not there is one like it.
+    /// Adds an operation, even if an equal one exists.
     ///
     /// # Panics
     /// If there are 2^32 expressions or more, which no graph can hold.
@@ -145,7 +145,7 @@ impl Program {
         for root in roots {
             needed[root.index()] = true;
         }
-        // Users come after their operands, so one sweep from the end reaches everything.
+        // Operands precede their users, so one sweep from the end reaches everything.
         for index in (0..self.operations.len()).rev() {
             if needed[index] {
                 for operand in self.operations[index].operands() {
@@ -156,10 +156,10 @@ impl Program {
         needed
     }
 
-    /// A program of one of its functions, without what the function does not need.
+    /// A program with one of its functions and only the operations that this function needs.
     ///
     /// # Panics
-    /// If the function is another program's.
+    /// If the function belongs to another program.
     #[must_use]
     pub fn alone(&self, function: &Function) -> Program {
         let needed = self.needed(function.outputs.iter().copied());

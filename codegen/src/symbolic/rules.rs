@@ -1,6 +1,6 @@
 //! Local simplification: each rule looks at one operation and its operands.
 //!
-//! There is no distributing and no flattening of sums: on recursive dynamics it more than doubles the operations,
+//! The rules neither distribute products nor flatten sums: in recursive dynamics this more than doubles the operations,
 //! because it breaks up the intermediate results that the recursion shares.
 
 use super::Graph;
@@ -8,7 +8,7 @@ use super::op::{Constant, ExprId, Op};
 use super::stumpff;
 use Op::{Add, Cos, Div, Exp, Max, Min, Mul, Neg, Select, Sin, Sqrt, Stumpff, Sub};
 
-/// The node that stands for `op` after all rules that apply.
+/// The node of `op` after all applicable rules.
 pub(super) fn simplify(graph: &Graph, op: Op) -> ExprId {
     match op {
         Op::Constant(_) | Op::Symbol(_) => graph.intern(op),
@@ -42,7 +42,7 @@ fn number(graph: &Graph, id: ExprId) -> Option<f64> {
     }
 }
 
-/// `−a`, pushed to where it costs nothing.
+/// `−a`, moved to a place where it costs nothing.
 fn negate(graph: &Graph, a: ExprId) -> ExprId {
     match graph.op(a) {
         Op::Constant(c) => constant(graph, -c.value()),
@@ -86,7 +86,7 @@ fn subtract(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
             let sum = add(graph, x, b);
             negate(graph, sum)
         }
-        // Only the other order is known already: share it.
+        // Only the other order exists: share it.
         _ => match graph.known(Sub(b, a)) {
             Some(flipped) if graph.known(Sub(a, b)).is_none() => graph.intern(Neg(flipped)),
             _ => graph.intern(Sub(a, b)),
@@ -115,7 +115,7 @@ fn multiply(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
     }
 }
 
-/// `factor · a`; a constant factor always stands first and is positive, so that `2x` and `−2x` share a product.
+/// `factor · a`; a constant factor always comes first and is positive, so that `2x` and `−2x` share a product.
 fn multiply_by(graph: &Graph, factor: f64, a: ExprId) -> ExprId {
     if factor == 0.0 {
         return constant(graph, 0.0);
@@ -152,7 +152,7 @@ fn divide(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
 
 fn sine(graph: &Graph, a: ExprId) -> ExprId {
     match graph.op(a) {
-        // Not the platform's: the same bytes on any machine.
+        // libm instead of the platform's functions: the same bytes on any machine.
         Op::Constant(c) => constant(graph, libm::sin(c.value())),
         Neg(x) => {
             let sin = graph.intern(Sin(x));
@@ -170,7 +170,7 @@ fn cosine(graph: &Graph, a: ExprId) -> ExprId {
     }
 }
 
-/// A function of one number, which is computed here: not by the platform, the same bytes on any machine.
+/// A function of one number, computed without the platform's functions: the same bytes on any machine.
 fn of_number(graph: &Graph, op: Op, a: ExprId, of: fn(f64) -> f64) -> ExprId {
     number(graph, a).map_or_else(|| graph.intern(op), |x| constant(graph, of(x)))
 }

@@ -1,14 +1,14 @@
-//! Shapes of results, and what closes those that are left as factors.
+//! Shapes of results, and the completion of results that are left as factors.
 
 use super::count::OperationCount;
 use super::interpret::Scalar;
 
-/// Coordinates that follow each other and act at one point: at most three, and all of them turn or all slide.
+/// Consecutive coordinates that act at one point: at most three, and either all rotate or all translate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Point {
-    /// How many.
+    /// Their number.
     pub coordinates: usize,
-    /// Whether they turn.
+    /// Whether they rotate.
     pub turns: bool,
 }
 
@@ -17,7 +17,7 @@ pub struct Point {
 pub enum Struct {
     /// Force x, y, z, then moment x, y, z.
     Wrench,
-    /// Area, moduli of bending about y and z and of torsion, shear areas along y and z, share of corners, allowable stress.
+    /// Area, moduli of bending about y and z and of torsion, shear areas along y and z, weight of corners, allowable stress.
     SectionModuli,
 }
 
@@ -51,39 +51,39 @@ pub enum Shape {
     /// Homogeneous transformations or their derivatives, grouped by body; slots are the upper three rows of each, row
     /// by row. `corner` is the corner of the constant fourth row: 1 for a transformation, 0 for a derivative.
     Transforms {
-        /// How many matrices each body has.
+        /// The number of matrices per body.
         counts: Vec<usize>,
         /// Lower right corner.
         corner: u8,
     },
-    /// Second derivatives of transformations, left as factors because they are too many to be written out: slots are
+    /// Second derivatives of transformations, left as factors because there are too many to write out: slots are
     /// the axes ω_m of all coordinates (zero for a translation), then the columns of the first derivatives T_n, body by
     /// body, each as in [`Shape::Transforms`]. The result is `T_mn = ω_m × T_n` for m ≤ n. Three coordinates of one rotation
-    /// vector have `Σ_k share_k T_k` more, k running over the three; the shares come last, six times three a vector, row by
+    /// vector have an additional `Σ_k share_k T_k`, with k over the three; the shares come last, six times three per vector, row by
     /// row of a triangle.
     Turned {
-        /// How many coordinates move each body.
+        /// The number of coordinates that move each body.
         degrees: Vec<usize>,
         /// Whether each coordinate is a rotation.
         rotations: Vec<bool>,
         /// First coordinates of rotation vectors.
         vectors: Vec<usize>,
     },
-    /// A mass matrix by its factors: axes, linear and angular momenta and ways to the next point of all coordinates, three
+    /// A mass matrix by its factors: axes, linear and angular momenta and offsets to the next point of all coordinates, three
     /// slots each; then, with `bias`, a vector. The result is the upper triangle, row by row, and the vector.
     Columns {
-        /// How many coordinates there are.
+        /// The number of coordinates.
         n: usize,
-        /// The points that the coordinates act at, in order.
+        /// The points at which the coordinates act, in order.
         points: Vec<Point>,
-        /// Whether the bias comes with it.
+        /// Whether the bias is included.
         bias: bool,
     },
     /// The upper triangle of a symmetric matrix, row by row, and a vector.
     MassAndBias(usize),
     /// A symmetric 6×6 matrix over the base's coordinates, slots as in [`Shape::Symmetric`].
     Base,
-    /// Numbers for another function, in no order that means anything.
+    /// Numbers for another function, in an unspecified order.
     Factors(usize),
     /// Named results.
     Record(&'static str, Vec<(&'static str, Shape)>),
@@ -111,7 +111,7 @@ impl Shape {
         }
     }
 
-    /// How many homogeneous matrices the result has.
+    /// The number of homogeneous matrices in the result.
     #[must_use]
     pub fn matrices(&self) -> usize {
         match self {
@@ -121,7 +121,7 @@ impl Shape {
         }
     }
 
-    /// The result from its slots: themselves, unless they are factors.
+    /// The result from its slots: the slots themselves, unless they are factors.
     pub fn close<S: Scalar>(&self, slots: Vec<S>) -> Vec<S> {
         match self {
             Shape::Turned { degrees, rotations, vectors } => turned_pairs(degrees, rotations.len(), vectors, &slots),
@@ -152,7 +152,7 @@ impl Shape {
                 }
             }
             Shape::Columns { n, points, .. } => {
-                // An inner product for every entry, a cross product for every column after a point.
+                // An inner product per entry, a cross product per column after a point.
                 let entries = n * (n + 1) / 2;
                 let after = |left: &mut usize, point: &Point| {
                     *left -= point.coordinates;

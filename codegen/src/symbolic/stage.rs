@@ -1,23 +1,23 @@
-//! One function in two stages: what does not depend on some of its inputs is computed first and used many times.
+//! One function in two stages: the part that does not depend on some of its inputs is computed first and used many times.
 
 use super::Expr;
 use super::graph::Graph;
 use super::op::{ExprId, Op, SymbolId};
 use super::tape::{Tape, Visit};
 
-/// A computation cut in two.
+/// A computation split in two.
 #[derive(Debug)]
 pub struct Stages<'g> {
-    /// What the first stage leaves for the second, in order of construction.
+    /// Values that the first stage passes to the second, in order of construction.
     pub factors: Vec<Expr<'g>>,
-    /// The results, in terms of the factors' symbols and the late inputs alone.
+    /// The results, in terms of only the factors' symbols and the late inputs.
     pub results: Vec<Expr<'g>>,
-    /// What of the sweeps is left for the second stage.
+    /// The part of the sweeps that remains for the second stage.
     pub tape: Tape,
 }
 
 impl Graph {
-    /// Cuts the computation of `results` by the sweeps of `tape` where it first meets a `late` symbol. The factors get the
+    /// Splits the computation of `results` by the sweeps of `tape` where it first uses a `late` symbol. The factors get the
     /// symbols from `first` on.
     pub fn stages<'g>(
         &'g self,
@@ -44,7 +44,7 @@ impl Graph {
         }
         let mut factors = Vec::new();
         let mut next = (first.0..).map(SymbolId);
-        // Where each needed expression stands in the second stage.
+        // The position of each needed expression in the second stage.
         let mut moved = ids.clone();
         for id in ids.into_iter().filter(|id| needed[id.index()]) {
             let op = self.op(id);

@@ -1,13 +1,13 @@
-//! Stumpff's functions `c_k(x) = Σ (−x)^i/(2i + k)!`: entire, so that what is made of a rotation vector ρ needs no square
-//! root and no case where ρ vanishes. `c_0(ρ·ρ)` is the cosine of its length, `c_1(ρ·ρ)` the sine over the length.
+//! Stumpff's functions `c_k(x) = Σ (−x)^i/(2i + k)!`: entire functions, so that functions of a rotation vector ρ need no square
+//! root and no special case for ρ = 0. `c_0(ρ·ρ)` is the cosine of its length, `c_1(ρ·ρ)` the sine over the length.
 //!
 //! K. Stumpff, *Himmelsmechanik I*, Deutscher Verlag der Wissenschaften, Berlin 1959.
 
 use super::interpret::Scalar;
 
-/// Up to here the series loses no digit that matters; beyond, sines and cosines lose none.
+/// Up to here the series is accurate; beyond, sines and cosines are.
 const SERIES: f64 = 10.0;
-/// Orders from which the series starts: what it loses by cancellation there is lost in `1/k! − x c_{k+2}`.
+/// Orders at which the series starts: its cancellation error vanishes in `1/k! − x c_{k+2}`.
 const HIGHEST: u8 = 12;
 /// Terms of a series at x = 100: the last is below 2⁻²⁰⁰.
 const TERMS: u32 = 48;

@@ -1,4 +1,4 @@
-//! What a sweep over the bodies of a chain asks for, body by body: where lowering looks for work that repeats.
+//! The expressions that a sweep over the bodies of a chain requests, body by body: here lowering looks for repeated work.
 
 use std::collections::HashSet;
 
@@ -13,7 +13,7 @@ pub struct Tape {
 }
 
 impl Tape {
-    /// The sweeps of another tape after these.
+    /// Appends the sweeps of another tape.
     #[must_use]
     pub fn then(mut self, other: Tape) -> Tape {
         let first = self.visits.last().map_or(0, |visit| visit.sweep + 1);
@@ -31,11 +31,11 @@ pub struct Visit {
     pub body: String,
     /// Whether the sweep goes from base to tip.
     pub outward: bool,
-    /// What the sweep asked for at this body for the first time in this function, in the order in which it did.
+    /// The expressions that the sweep requested at this body for the first time in this function, in that order.
     pub nodes: Vec<ExprId>,
 }
 
-/// A tape while it is written.
+/// A tape while it is recorded.
 #[derive(Debug, Default)]
 pub(super) struct Recorder {
     tape: Tape,
@@ -45,7 +45,7 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// An expression was asked for.
+    /// Records that an expression was requested.
     pub fn ask(&mut self, id: ExprId) {
         if self.at_a_body
             && self.seen.insert(id)
@@ -56,14 +56,14 @@ impl Recorder {
     }
 }
 
-/// A sweep under way; it ends when it is dropped.
+/// A sweep in progress; it ends when it is dropped.
 #[derive(Debug)]
 pub struct Sweep<'g> {
     graph: &'g Graph,
 }
 
 impl Graph {
-    /// Begins a sweep over bodies, on the way to the first.
+    /// Begins a sweep over bodies, before the first.
     pub fn sweep(&self) -> Sweep<'_> {
         self.recorder.borrow_mut().sweeps += 1;
         let sweep = Sweep { graph: self };
@@ -71,7 +71,7 @@ impl Graph {
         sweep
     }
 
-    /// What `derive` derives, and the sweeps it makes.
+    /// The result of `derive`, and its sweeps.
     pub fn recorded<T>(&self, derive: impl FnOnce() -> T) -> (T, Tape) {
         *self.recorder.borrow_mut() = Recorder::default();
         let derived = derive();
@@ -80,7 +80,7 @@ impl Graph {
 }
 
 impl Sweep<'_> {
-    /// The sweep comes to a body, and to the joints between it and the one before.
+    /// The sweep reaches a body, and the joints between it and the previous one.
     pub fn visit(&self, body: &str) {
         let mut recorder = self.graph.recorder.borrow_mut();
         let sweep = recorder.sweeps;
@@ -88,7 +88,7 @@ impl Sweep<'_> {
         recorder.tape.visits.push(Visit { sweep, body: body.to_owned(), outward: false, nodes: vec![] });
     }
 
-    /// The sweep has come to a body by its joints, and goes on from it.
+    /// The sweep has passed the joints of a body and continues from the body.
     pub fn leave(&self, body: &str) {
         if let Some(visit) = self.graph.recorder.borrow_mut().tape.visits.last_mut() {
             body.clone_into(&mut visit.body);

@@ -1,4 +1,4 @@
-//! Every rule keeps the value, and does what it is for.
+//! Every rule keeps the value and has its intended effect.
 
 use super::{Argument, Expr, Function, Graph, Inputs, Op, Program, Shape, Symbol, SymbolId, Tape};
 
@@ -141,7 +141,7 @@ fn stumpff_functions_of_one_argument_count_once() {
     assert_eq!(p.count(&p.functions[0].outputs, |_| false).total(), 1);
 }
 
-/// By sines and cosines, by the series, and by the series in steps down, which must agree where all of them hold.
+/// By sines and cosines, by the series, and by the series with downward steps, which must agree where all are valid.
 #[test]
 fn stumpff_functions_are_sines_and_cosines() {
     let of = |k: u8, x: f64| super::Scalar::stumpff(&x, k);
@@ -158,8 +158,8 @@ fn stumpff_functions_are_sines_and_cosines() {
     assert_eq!([0, 1, 2, 3, 4, 5].map(|k| of(k, 0.0)), [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0]);
 }
 
-/// Every rule of differentiation against a quotient of differences, whose error is of second order in 1e-5: 1e-9 of numbers of
-/// order 1 to 10, which third derivatives here are.
+/// Every rule of differentiation against a difference quotient, whose error is of second order in 1e-5: 1e-9 for numbers of
+/// order 1 to 10, such as the third derivatives here.
 #[test]
 fn derivatives_are_those_of_differences() {
     let expressions = |g: &Graph, x: Expr<'_>, y: Expr<'_>| {

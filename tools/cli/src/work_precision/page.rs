@@ -9,45 +9,45 @@ const TEXTS: [(&str, &str, &str); 5] = [
     (
         "least",
         "Which method for which error",
-        "The least time in which a run meets an error of the load path, for each method. Runs are by the methods alone, without \
-         files; a run that starts at `crane simulate` also writes its results.",
+        "The shortest time in which a run achieves an error of the load path, for each method. Only the integration is timed; \
+         `crane simulate` also writes results.",
     ),
     (
         "methods",
         "Every method over its steps or tolerances",
-        "Errors are the greatest over all results: of the points' positions relative to the longest way of one from its start, of a \
-         drive's torque or force relative to its greatest, of the mechanical energy relative to the greatest kinetic energy. A \
-         tolerance is what a step may be off, in m and rad; what comes of it over a run is in this table.",
+        "Errors are the largest over all results: of the points' positions relative to the largest distance of a point from its \
+         start, of a drive's torque or force relative to its maximum, of the mechanical energy relative to the maximum kinetic \
+         energy. A tolerance limits the error of a step, in m and rad; this table shows the resulting error of the run.",
     ),
     (
         "advice",
         "Which number of sections, method and setting",
-        "Errors of model and method together, against what all numbers of sections come to: the least time for each error.",
+        "Errors of model and method together, relative to the limit of many sections: the shortest time for each error.",
     ),
     (
         "sections",
         "The model's own error",
-        "Against the limit of ever more sections, extrapolated from the two finest as the error of rigid elements goes, with 1/n². \
-         Static deflection: of the points, relative to how far they settle under gravity; frequencies and peak torques: the worst \
-         of them.",
+        "Relative to the limit of many sections, extrapolated from the two finest with the error of rigid elements, 1/n². The static \
+         deflection is that of the points, relative to their displacement under gravity; of frequencies and peak torques, the \
+         worst is shown.",
     ),
-    ("runs", "Runs with other numbers of sections", "What the advice was chosen from."),
+    ("runs", "Runs with other numbers of sections", "The advice is chosen from these runs."),
 ];
 
-/// Writes the page, and its figures into `images` beside it.
+/// Writes the page, and its figures into the folder `images` next to it.
 pub fn write(file: &Path, found: &Found<'_>) -> Outcome<()> {
     let name = &found.description.name;
     let mut text = format!(
-        "# Error against run time\n\nWhat accuracy costs on the crane `{name}`: of the methods that integrate its motion, and of the \
-         number of sections that stand for its flexible links. This page is written by `crane work-precision {name} --page …`; \
-         one thread, compiled for any machine of its kind, {}, {} {}.\n\n",
+        "# Error against run time\n\nThis page shows the run time needed for a given error on the crane `{name}`, depending on the \
+         integration method and on the number of sections of its flexible links. `crane work-precision {name} --page …` writes it; \
+         one thread, compiled for a generic processor, {}, {} {}.\n\n",
         machine(),
         env!("CARGO_PKG_NAME"),
         env!("CARGO_PKG_VERSION"),
     );
     text += &found.facts.markdown();
-    text += "\nThe reference is found by two methods, which must agree to 1e-11 of the load path and 1e-9 of torques and energy; otherwise the \
-             command ends with an error.\n";
+    text += "\nThe reference is computed by two methods, which must agree to 1e-11 of the load path and 1e-9 of torques and energy; otherwise \
+             the command ends with an error.\n";
     let folder = file.parent().unwrap_or(Path::new("")).join("images");
     files::folder(&folder)?;
     for (key, title, words) in TEXTS {
@@ -62,9 +62,9 @@ pub fn write(file: &Path, found: &Found<'_>) -> Outcome<()> {
         }
         text += &grid.markdown();
     }
-    text += "\n## The formulation\n\nThe same A and e by the triple sum of [Urbaś 2016, Eq. (5)] as printed, by composite bodies and \
-             Newton's and Euler's equations, and accelerations in O(n) without A differ in time alone, not in error: their times are in \
-             [performance.md](performance.md). All methods here take the accelerations in O(n).\n";
+    text += "\n## The formulation\n\nA and e by the triple sum of [Urbaś 2016, Eq. (5)] as printed, A and e by composite bodies and Newton's \
+             and Euler's equations, and accelerations in O(n) without A differ only in run time, not in error: \
+             [performance.md](performance.md) compares their times. All methods here use the accelerations in O(n).\n";
     files::write_text(file, &text)
 }
 
