@@ -28,8 +28,6 @@ Examples:
   crane strength --run                 tipping margin, stresses and joint loads, at rest and during the manoeuvre
   crane modes                          frequencies and damping about the static pose
   crane stability                      largest stable steps and what limits them, with a figure
-  crane work-precision                 error against run time for methods, tolerances and numbers of sections
-  crane stress --quick                 run the stiff and extreme test cranes
   crane check my.yaml; crane run my.yaml
                                        your own crane: find its mistakes, then compute everything
   crane explain my.yaml --svg my.svg   its bodies and coordinates, in words and as a picture
@@ -78,10 +76,6 @@ pub enum Action {
     Report(Page),
     /// Compute the largest stable step of every method and what limits it, at the static pose and during the manoeuvre
     Stability(Stability),
-    /// Measure error against run time for every method and number of sections
-    WorkPrecision(WorkPrecision),
-    /// Run stiff and extreme test cranes and compare the results with what is expected
-    Stress(Stress),
     /// Show what a crane consists of: coordinates, bodies, supports, drives, parameters
     Info(Analysis),
     /// Evaluate quantities such as T, ∂T/∂q, A and e at given states, for other programs
@@ -139,10 +133,7 @@ impl Action {
             Action::Stability(options) => Some(&mut options.analysis.crane),
             Action::Report(options) => Some(&mut options.crane),
             Action::Eval(options) => Some(&mut options.crane),
-            // Also compiles the crane with other numbers of sections.
-            Action::WorkPrecision(_)
-            | Action::New(_)
-            | Action::Stress(_)
+            Action::New(_)
             | Action::Check { .. }
             | Action::Explain { .. }
             | Action::Generate(_)
@@ -175,8 +166,10 @@ pub struct Choice {
     /// Treat warnings about the YAML file as mistakes
     #[arg(long)]
     pub strict: bool,
+    /// Values of its live parameters.
     #[command(flatten)]
     pub parameters: Parameters,
+    /// Limits of what the model holds for.
     #[command(flatten)]
     pub limits: Limits,
     /// Compile the crane to machine code first (needs cargo) and keep it: about five times faster, for long studies
@@ -211,6 +204,7 @@ pub struct Limits {
 /// An analysis that prints tables.
 #[derive(Debug, Args)]
 pub struct Analysis {
+    /// The crane.
     #[command(flatten)]
     pub crane: Choice,
     /// Output format
@@ -219,7 +213,10 @@ pub struct Analysis {
 }
 
 /// A length of time.
-fn seconds(text: &str) -> Result<f64, String> {
+///
+/// # Errors
+/// What to write instead.
+pub fn seconds(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "write a number of seconds, such as 0.5".to_owned())
 }
 
@@ -444,67 +441,6 @@ pub struct Import {
     /// Joint to hold at zero, such as a gripper's; repeatable
     #[arg(long = "fix", value_name = "JOINT")]
     pub fixed: Vec<String>,
-}
-
-/// Error against run time.
-#[derive(Debug, Args)]
-pub struct WorkPrecision {
-    #[command(flatten)]
-    pub analysis: Analysis,
-    /// Numbers of sections per flexible link to compare, at least two; `none` compares only the methods
-    #[arg(long, value_name = "COUNTS|none", default_value = "1,2,3,4,6,8,12,20,30")]
-    pub sections: Counts,
-    /// Simulated time, s [default: from the spec]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
-    pub duration: Option<f64>,
-    /// Fewer steps and tolerances, each run once, without compiling: a quick trial
-    #[arg(long)]
-    pub quick: bool,
-    /// Folder for tables (CSV) and figures (SVG); created if missing
-    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
-    /// Also write a Markdown page, with its figures in the folder `images` next to it
-    #[arg(long, value_name = "FILE.md", value_hint = ValueHint::FilePath)]
-    pub page: Option<PathBuf>,
-}
-
-/// Numbers of sections, ascending; none or at least two.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Counts(pub Vec<usize>);
-
-impl FromStr for Counts {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        if text == "none" {
-            return Ok(Counts(Vec::new()));
-        }
-        let counts: Result<Vec<usize>, _> = text.split(',').map(|count| count.trim().parse()).collect();
-        let mut counts = counts.map_err(|_| "write whole numbers such as 2,4,8, or `none`".to_owned())?;
-        counts.sort_unstable();
-        counts.dedup();
-        if counts.len() < 2 || counts[0] == 0 {
-            return Err("write two or more different numbers of 1 or more, such as 2,4,8, or `none`".to_owned());
-        }
-        Ok(Counts(counts))
-    }
-}
-
-/// The suite of extreme cases.
-#[derive(Debug, Args)]
-pub struct Stress {
-    /// Only the short cases
-    #[arg(long)]
-    pub quick: bool,
-    /// Only cases whose name or group contains this word
-    #[arg(long, value_name = "WORD")]
-    pub only: Option<String>,
-    /// Output format
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
-    /// Folder for the tables stress.csv and stress.md; created if missing
-    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
 }
 
 /// A list of the cranes.

@@ -19,11 +19,17 @@ use serde_json::{Map, Value, json};
 use crate::problem::{Outcome, Problem};
 
 /// Makes a folder where it is missing.
+///
+/// # Errors
+/// The file system refuses.
 pub fn folder(path: &Path) -> Outcome<()> {
     fs::create_dir_all(path).map_err(|error| Problem::file(path, &error))
 }
 
 /// Writes a file under another name and renames it when it is whole: nobody ever sees half a file.
+///
+/// # Errors
+/// The file system refuses.
 pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome<()> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.part", process::id()));
@@ -72,11 +78,17 @@ fn remove_parts_of_the_dead(path: &Path) {
 }
 
 /// Writes text.
+///
+/// # Errors
+/// The file system refuses.
 pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
     write(path, |file| file.write_all(text.as_bytes()))
 }
 
 /// Writes a table as CSV, units in the header: `boom_psi [rad]`. Only finite numbers: anything else is an error.
+///
+/// # Errors
+/// The file system refuses.
 pub fn write_csv(path: &Path, table: &Table) -> Outcome<()> {
     if let Some((row, column)) = table.not_finite() {
         let what = &table.columns[column].name;
@@ -93,6 +105,9 @@ pub fn number(number: f64) -> String {
 }
 
 /// Writes a header and rows of fields as CSV.
+///
+/// # Errors
+/// The file system refuses.
 pub fn write_fields(
     path: &Path,
     header: impl Iterator<Item = String>,

@@ -18,7 +18,7 @@ mod eval;
 mod exchange;
 mod extremes;
 mod figures;
-mod files;
+pub mod files;
 mod generate;
 mod info;
 mod modes;
@@ -29,7 +29,7 @@ mod own;
 mod page;
 mod parameter_table;
 mod problem;
-mod refinement;
+pub mod refinement;
 mod report;
 mod run;
 mod selection;
@@ -38,8 +38,6 @@ mod stability;
 mod start;
 mod statics;
 mod strength;
-mod stress;
-mod work_precision;
 
 use std::{io, io::Write, process::ExitCode};
 
@@ -49,9 +47,25 @@ use arguments::{Action, Arguments};
 use problem::Outcome;
 pub use selection::Fleet;
 
+/// What other commands over cranes are made of, with [`files`] and [`refinement`].
+pub mod toolbox {
+    pub use crate::arguments::{Analysis, Choice, Format, Limits, Parameters, Step, Timing, seconds};
+    pub use crate::figures::{Curve, Mark, PALETTE, Panel};
+    pub use crate::own::{Library, load, run_with};
+    pub use crate::problem::{Outcome, Problem};
+    pub use crate::report::{Cell, Grid, Report};
+    pub use crate::run::{progress, record, styled};
+    pub use crate::simulate::{file_list, write_figure};
+}
+
 /// Does what the arguments of the process ask for, with the cranes of a fleet or of a YAML file that the arguments name.
 pub fn main(fleet: Fleet) -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    with_arguments(|arguments, out| act(arguments, fleet, out))
+}
+
+/// Reads the arguments of the process and acts on them; the exit code says how that went.
+pub fn with_arguments<A: Parser>(act: impl FnOnce(A, &mut dyn Write) -> Outcome<()>) -> ExitCode {
+    let arguments = match A::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version come this way too. Nobody is left to tell where printing fails.
@@ -59,7 +73,7 @@ pub fn main(fleet: Fleet) -> ExitCode {
             return if error.use_stderr() { ExitCode::from(problem::USAGE) } else { ExitCode::SUCCESS };
         }
     };
-    match act(arguments, fleet, &mut io::stdout().lock()) {
+    match act(arguments, &mut io::stdout().lock()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(problem) => problem.report(),
     }
@@ -89,8 +103,6 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
         Some(Action::Modes(options)) => modes::modes(options, fleet, out),
         Some(Action::Stability(options)) => stability::stability(options, fleet, out),
         Some(Action::Strength(options)) => strength::strength(options, fleet, out),
-        Some(Action::Stress(options)) => stress::stress(options, fleet, out),
-        Some(Action::WorkPrecision(options)) => work_precision::work_precision(options, fleet, out),
         Some(Action::Report(options)) => page::report(options, fleet, out),
         Some(Action::Info(options)) => info::info(options, fleet, out),
         Some(Action::Eval(options)) => eval::eval(options, fleet, out),

@@ -22,6 +22,18 @@ use crate::{
 const CLI: &str = env!("CARGO_MANIFEST_DIR");
 /// The versions of everything that this program was built with.
 pub const LOCK: &str = include_str!("../../../Cargo.lock");
+/// What the program of compiled cranes runs: a crate with a function `main` over a fleet.
+pub struct Library {
+    /// The crate's name.
+    pub name: &'static str,
+    /// Where its source is.
+    pub folder: &'static str,
+    /// Its features that are on.
+    pub features: &'static [&'static str],
+}
+
+/// The command itself.
+const COMMAND: Library = Library { name: env!("CARGO_PKG_NAME"), folder: CLI, features: &[] };
 /// Variable of the environment that tells a crane's own program what was typed.
 const AS_TYPED: &str = "CRANE_AS_TYPED";
 
@@ -55,11 +67,14 @@ pub fn compiled(choice: &Choice, fleet: &Fleet) -> Outcome<()> {
         (Some(file), _) => load(file, choice.strict)?,
     };
     let package = format!("crane-{name}-{spec_hash}");
-    run_with(&package, OsStr::new(&choice.name), &[(name, text)])
+    run_with(&COMMAND, &package, OsStr::new(&choice.name), &[(name, text)])
 }
 
-/// The same with the program of several cranes, names and specs; the first one stands in place of `named`.
-pub fn run_with(package: &str, named: &OsStr, cranes: &[(String, String)]) -> Outcome<()> {
+/// Does it with a library and the program of several cranes, names and specs; the first one stands in place of `named`.
+///
+/// # Errors
+/// Cargo is missing or fails, or files cannot be written; the program has said itself what went wrong there.
+pub fn run_with(library: &Library, package: &str, named: &OsStr, cranes: &[(String, String)]) -> Outcome<()> {
     let mut place = cranes.first().map(|(name, _)| OsString::from(name));
     let arguments: Vec<OsString> = env::args_os()
         .skip(1)
@@ -69,7 +84,7 @@ pub fn run_with(package: &str, named: &OsStr, cranes: &[(String, String)]) -> Ou
             None => argument,
         })
         .collect();
-    program::run(package, cranes, |command| {
+    program::run(library, package, cranes, |command| {
         command.args(&arguments).env(AS_TYPED, typed());
     })
 }
@@ -83,7 +98,10 @@ pub fn typed() -> String {
 }
 
 /// A sound chain and its text, or every mistake. Warnings are drawn; `strict`: they are mistakes.
-pub(super) fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
+///
+/// # Errors
+/// The file cannot be read, or the spec has mistakes, which are drawn on standard error.
+pub fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
     // The name of a shipped crane, or a file without its extension.
     let meant = root().join("specs").join(spec).with_extension("yaml");
     let help = if meant != spec && meant.exists() {

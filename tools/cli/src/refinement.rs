@@ -20,6 +20,9 @@ const CAUTION: f64 = 0.01;
 
 /// Relative changes of the frequencies with twice the sections, lowest first; `None` for a crane without sections, with too many,
 /// or without a stable pose.
+///
+/// # Errors
+/// The modes of one of the cranes cannot be computed.
 pub fn changes(case: &Case<'_>, fleet: &Fleet) -> Outcome<Option<Vec<f64>>> {
     let description = case.rig.description();
     let text = fleet.spec(&description.name).filter(|_| description.coordinates.len() <= MOST_COORDINATES);

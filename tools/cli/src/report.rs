@@ -240,6 +240,9 @@ impl Report {
     }
 
     /// Prints it in the form asked for.
+    ///
+    /// # Errors
+    /// The output is closed.
     pub fn print(&self, format: Format, out: &mut dyn Write) -> Outcome<()> {
         match format {
             Format::Json => Ok(writeln!(out, "{:#}", self.json())?),

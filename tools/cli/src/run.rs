@@ -17,6 +17,9 @@ use crate::{
 
 impl Timing {
     /// Settings of a run from `start`: the crane's own unless given here, with a stable step unless forced.
+    ///
+    /// # Errors
+    /// An option has a value that cannot be used.
     pub fn settings(&self, rig: &dyn DynCrane, start: &Start, default: Method) -> Outcome<dynamics::Settings> {
         let own = dynamics::Settings::of(rig.description());
         let method = self.method.unwrap_or(if self.step.is_some() { Method::Rk4 } else { default });
@@ -153,6 +156,9 @@ fn show(bar: &ProgressBar) -> impl FnMut(f64) -> ControlFlow<()> {
 }
 
 /// Runs from `start` and records every result: [`runs::record`].
+///
+/// # Errors
+/// The run cannot be started as asked for.
 pub fn record(
     rig: &dyn DynCrane,
     start: &Start,

@@ -62,13 +62,13 @@ impl Fleet {
     }
 
     /// Adds a crane by its spec, in place of one of the same name.
-    pub(super) fn add(&mut self, name: &str, spec: String) {
+    pub fn add(&mut self, name: &str, spec: String) {
         self.entries.retain(|entry| entry.name != name);
         self.entries.push(Entry { name: name.to_owned(), spec: Cow::Owned(spec), compiled: None });
     }
 
     /// Names of all cranes.
-    pub(super) fn names(&self) -> Vec<&str> {
+    pub fn names(&self) -> Vec<&str> {
         self.entries.iter().map(|entry| entry.name.as_str()).collect()
     }
 
@@ -78,7 +78,7 @@ impl Fleet {
     }
 
     /// Whether a crane is machine code.
-    pub(super) fn is_compiled(&self, name: &str) -> bool {
+    pub fn is_compiled(&self, name: &str) -> bool {
         self.entries.iter().any(|entry| entry.name == name && entry.compiled.is_some())
     }
 
@@ -88,7 +88,7 @@ impl Fleet {
     }
 
     /// The spec of a crane.
-    pub(super) fn spec(&self, name: &str) -> Option<&str> {
+    pub fn spec(&self, name: &str) -> Option<&str> {
         self.entries.iter().find(|entry| entry.name == name).map(|entry| entry.spec.as_ref())
     }
 
@@ -106,7 +106,10 @@ impl Fleet {
     }
 
     /// A crane by its name.
-    pub(super) fn crane(&self, name: &str) -> Outcome<Box<dyn DynCrane>> {
+    ///
+    /// # Errors
+    /// There is no such crane, or its parameters cannot have these values.
+    pub fn crane(&self, name: &str) -> Outcome<Box<dyn DynCrane>> {
         if let Some(entry) = self.entries.iter().find(|entry| entry.name == name) {
             return entry.open();
         }
@@ -124,6 +127,9 @@ impl Fleet {
 
 impl Choice {
     /// The crane with its parameters.
+    ///
+    /// # Errors
+    /// There is no such crane, or its parameters cannot have these values.
     pub fn open(&self, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
         self.parameters.crane(&self.name, self.strict, fleet)
     }
@@ -131,6 +137,9 @@ impl Choice {
 
 impl Parameters {
     /// A crane with these parameters; `strict`: what is implausible about them is a mistake.
+    ///
+    /// # Errors
+    /// There is no such crane, or its parameters cannot have these values.
     pub fn crane(&self, name: &str, strict: bool, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
         let mut rig = fleet.crane(name)?;
         let description = rig.description();
@@ -151,6 +160,9 @@ impl Parameters {
     }
 
     /// Places of the parameters that are set, and their values; `known`: names and units of those that the crane has.
+    ///
+    /// # Errors
+    /// A setting is not `name=value`, or the crane has no such parameter.
     pub fn read(&self, crane: &str, known: &[(&str, &str)]) -> Outcome<Vec<(usize, f64)>> {
         let read = |setting: &String| {
             let (name, value) = setting.split_once('=').ok_or_else(|| {

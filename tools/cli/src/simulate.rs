@@ -114,6 +114,9 @@ pub fn write_figures(
 }
 
 /// Writes a figure.
+///
+/// # Errors
+/// The file system refuses.
 pub fn write_figure(file: &Path, panels: &[Panel], columns: usize) -> Outcome<()> {
     let text = svg(panels, columns)
         .map_err(|error| Problem::failed(format!("cannot draw {}: {error}", file.display()), ""))?;

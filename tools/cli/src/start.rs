@@ -36,6 +36,9 @@ impl Variable {
 
 impl Timing {
     /// The start that `--from` and `--start` ask for; `with_strangers`: names that this crane does not have are of another one.
+    ///
+    /// # Errors
+    /// An option has a value that cannot be used.
     pub fn start(&self, rig: &dyn DynCrane, with_strangers: bool) -> Outcome<Start> {
         if self.from.is_none() && self.start.is_empty() {
             return Ok(Start::of(rig)?);

@@ -71,9 +71,11 @@ fn main() -> ExitCode {
 }
 
 /// With diffsol beside our methods.
-const ERROR_VS_RUNTIME: [&str; 10] = [
+const ERROR_VS_RUNTIME: [&str; 12] = [
     "run",
     "--release",
+    "--package",
+    "crane-lab",
     "--features",
     "yardstick",
     "--",

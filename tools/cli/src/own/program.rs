@@ -10,7 +10,7 @@ use std::{
     time::{Instant, UNIX_EPOCH},
 };
 
-use super::{CLI, LOCK, root};
+use super::{LOCK, Library, root};
 use crate::{
     files,
     problem::{FAILED, Outcome, Problem},
@@ -28,7 +28,12 @@ const CACHE: &str = "CRANE_CACHE";
 const STAMP: &str = "compiled-by";
 
 /// Runs the program of some cranes, names and specs: the kept one, or one that is compiled now.
-pub fn run(package: &str, cranes: &[(String, String)], arguments: impl Fn(&mut Command)) -> Outcome<()> {
+pub fn run(
+    library: &Library,
+    package: &str,
+    cranes: &[(String, String)],
+    arguments: impl Fn(&mut Command),
+) -> Outcome<()> {
     let cache = cache()?;
     let folder = cache.join(package);
     let program = folder.join("program").with_extension(env::consts::EXE_EXTENSION);
@@ -44,7 +49,7 @@ pub fn run(package: &str, cranes: &[(String, String)], arguments: impl Fn(&mut C
     let begin = Instant::now();
     let lock = wait_for_other_compiles(&cache)?;
     // Another command may have compiled it meanwhile; one that does not start is of no use.
-    let built = compile(package, cranes, &names, &cache, lock)?;
+    let built = compile(library, package, cranes, &cache, lock)?;
     let _ = fs::remove_file(folder.join(STAMP));
     copy(&built, &program)?;
     files::write_text(&folder.join(STAMP), &this_command())?;
@@ -66,21 +71,31 @@ fn start(program: &Path, arguments: &impl Fn(&mut Command)) -> Option<Outcome<()
 /// Builds the program with cargo; the file that cargo made.
 ///
 /// The lock passes to cargo: should this command be killed, it lasts until cargo has ended too.
-fn compile(package: &str, cranes: &[(String, String)], names: &str, cache: &Path, lock: File) -> Outcome<PathBuf> {
+fn compile(
+    library: &Library,
+    package: &str,
+    cranes: &[(String, String)],
+    cache: &Path,
+    lock: File,
+) -> Outcome<PathBuf> {
     if !root().join("crane-model").exists() {
         let title = format!("the source of `crane` is no longer at {}", root().display());
         return Err(Problem::failed(title, "build `crane` again from its new location, or omit --compile"));
     }
     let folder = cache.join(package);
     let joined = |of: &dyn Fn(&str) -> String| cranes.iter().map(|(name, _)| of(name)).collect::<Vec<_>>().join(", ");
+    let names = &joined(&str::to_owned);
+    let features = library.features.iter().map(|feature| format!("\"{feature}\"")).collect::<Vec<_>>().join(", ");
     let [model, codegen] = ["crane-model", "codegen"].map(|folder| root().join(folder));
     let values = [
         ("{{package}}", package),
         ("{{names}}", names),
         ("{{files}}", &joined(&|name| format!("\"{name}.yaml\""))),
         ("{{specs}}", &joined(&|name| format!("(\"{name}\", include_str!(\"../{name}.yaml\"))"))),
-        ("{{yardstick}}", if cfg!(feature = "yardstick") { ", features = [\"yardstick\"]" } else { "" }),
-        ("{{cli}}", CLI),
+        ("{{library}}", library.name),
+        ("{{library_module}}", &library.name.replace('-', "_")),
+        ("{{folder}}", library.folder),
+        ("{{features}}", &features),
         ("{{model}}", &model.to_string_lossy()),
         ("{{codegen}}", &codegen.to_string_lossy()),
     ];

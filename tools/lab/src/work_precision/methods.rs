@@ -7,10 +7,9 @@ use crane_model::{
     dynamics::{Method, Run, Settings, Statistics},
 };
 
-use crate::{
-    report::{Cell, Grid},
-    work_precision::trace::{Errors, Timed, Trace, timed},
-};
+use crane_cli::toolbox::{Cell, Grid};
+
+use super::trace::{Errors, Timed, Trace, timed};
 
 /// A series ends where a run takes longer, s: what is left would cost more than it tells.
 const LONG: f64 = 2.0;

@@ -15,7 +15,7 @@ use crane_model::{
     statics::{Equilibrium, Settings},
 };
 
-use crate::{arguments::Timing, problem::Problem, run::record};
+use crane_cli::toolbox::{Problem, Timing, record};
 
 /// A crane under test.
 pub struct Subject {
@@ -87,7 +87,7 @@ pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
     Timing {
         method: Some(method),
         tolerance: adaptive.then_some(accuracy),
-        step: (!adaptive).then_some(crate::arguments::Step::Seconds(accuracy)),
+        step: (!adaptive).then_some(crane_cli::toolbox::Step::Seconds(accuracy)),
         no_verify: true,
         force: false,
         duration: Some(duration),

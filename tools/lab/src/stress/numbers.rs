@@ -8,7 +8,7 @@ use super::{
 };
 use crane_model::dynamics::Method;
 
-use crate::arguments::{Step, Timing};
+use crane_cli::toolbox::{Step, Timing};
 
 pub fn cases(specs: &Specs) -> Vec<Case> {
     let mut cases = Vec::new();

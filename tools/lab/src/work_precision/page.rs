@@ -2,7 +2,12 @@
 
 use std::{fmt::Write as _, fs, path::Path};
 
-use crate::{files, problem::Outcome, simulate::write_figure, work_precision::Found};
+use crane_cli::{
+    files,
+    toolbox::{Outcome, write_figure},
+};
+
+use super::Found;
 
 /// Above each table and figure, by its name.
 const TEXTS: [(&str, &str, &str); 5] = [
@@ -39,7 +44,7 @@ pub fn write(file: &Path, found: &Found<'_>) -> Outcome<()> {
     let name = &found.description.name;
     let mut text = format!(
         "# Error against run time\n\nThis page shows the run time needed for a given error on the crane `{name}`, depending on the \
-         integration method and on the number of sections of its flexible links. `crane work-precision {name} --page …` writes it; \
+         integration method and on the number of sections of its flexible links. `crane-lab work-precision {name} --page …` writes it; \
          one thread, compiled for a generic processor, {}, {} {}.\n\n",
         machine(),
         env!("CARGO_PKG_NAME"),

@@ -11,13 +11,11 @@ use crane_model::{
     stability::limit,
 };
 
-use crate::{
-    problem::{Outcome, Problem},
-    report::{Cell, Grid},
-    work_precision::{
-        methods::{Setting, TARGETS, with},
-        trace::{Timed, Trace, timed},
-    },
+use crane_cli::toolbox::{Cell, Grid, Outcome, Problem};
+
+use super::{
+    methods::{Setting, TARGETS, with},
+    trace::{Timed, Trace, timed},
 };
 
 /// Tolerance of a run whose error is the model's alone.

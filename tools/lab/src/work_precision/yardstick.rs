@@ -14,7 +14,7 @@ use crane_model::{
     dynamics::{Settings, Statistics},
 };
 
-use crate::work_precision::{
+use super::{
     methods::{Point, Setting},
     trace::Trace,
 };

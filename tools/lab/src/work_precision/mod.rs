@@ -1,4 +1,4 @@
-//! `crane work-precision`: error against run time, of the methods and of the model.
+//! `crane-lab work-precision`: error against run time, of the methods and of the model.
 
 mod figures;
 mod methods;
@@ -20,25 +20,28 @@ use crane_model::{
     runs::{Bound, POSES, SAFE, Start, manoeuvre},
 };
 
-use crate::{
-    Fleet,
-    arguments::WorkPrecision,
-    files, own,
-    problem::{Outcome, Problem},
-    refinement,
-    report::{Grid, Report},
-    run::progress,
-    simulate::{file_list, write_figure},
+use crane_cli::{
+    Fleet, files, refinement,
+    toolbox::{Grid, Library, Outcome, Problem, Report, file_list, load, progress, run_with, write_figure},
 };
+
+use crate::arguments::WorkPrecision;
 use methods::{REPEATS, least, series, table};
 use reference::reference;
 use sections::{Limit, Variant, announce, variant};
+
+/// What the programs of compiled cranes run.
+const LIBRARY: Library = Library {
+    name: "crane-lab",
+    folder: env!("CARGO_MANIFEST_DIR"),
+    features: if cfg!(feature = "yardstick") { &["yardstick"] } else { &[] },
+};
 
 /// Finds a reference, times every method and every number of sections, and writes tables and figures.
 pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let choice = &options.analysis.crane;
     let (crane, text) = if let Some(file) = choice.file() {
-        let (Chain { name, .. }, text) = own::load(file, options.analysis.crane.strict)?;
+        let (Chain { name, .. }, text) = load(file, options.analysis.crane.strict)?;
         (name, text)
     } else {
         let name = fleet.crane(&choice.name)?.description().name.to_string();
@@ -68,7 +71,7 @@ pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Writ
         _ => format!("crane-{crane}-{hash}-{}", listed.join("-")),
     };
     let cranes = [vec![(crane, text)], flexible].concat();
-    own::run_with(&package, choice.name.as_ref(), &cranes)
+    run_with(&LIBRARY, &package, choice.name.as_ref(), &cranes)
 }
 
 /// Names and specs of a crane with other numbers of sections; none of a crane without flexible links.

@@ -1,17 +1,17 @@
-//! The suite of stiff and extreme cases, as the command runs it.
+//! The suite of stiff and extreme cases, as `crane-lab stress` runs it.
 
 use std::{fs, path::PathBuf, process::Command};
 
 use serde_json::Value;
 
-fn crane(arguments: &[&str]) -> std::process::Output {
-    Command::new(env!("CARGO_BIN_EXE_crane")).args(arguments).output().expect("the command starts")
+fn lab(arguments: &[&str]) -> std::process::Output {
+    Command::new(env!("CARGO_BIN_EXE_crane-lab")).args(arguments).output().expect("the command starts")
 }
 
 #[test]
 fn every_quick_case_goes_as_expected() {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("stress");
-    let output = crane(&["stress", "--quick", "--format", "json", "--out", &folder.to_string_lossy()]);
+    let output = lab(&["stress", "--quick", "--format", "json", "--out", &folder.to_string_lossy()]);
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{error}");
 
@@ -30,7 +30,7 @@ fn every_quick_case_goes_as_expected() {
 
 #[test]
 fn a_word_that_no_case_has_is_refused() {
-    let output = crane(&["stress", "--only", "teapot"]);
+    let output = lab(&["stress", "--only", "teapot"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("`teapot`"));
 }

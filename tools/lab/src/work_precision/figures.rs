@@ -1,13 +1,13 @@
 //! Figures of errors, both axes logarithmic.
 
-pub use crate::figures::Panel;
+pub use crane_cli::toolbox::Panel;
 use crane_model::dynamics::Method;
 
 use super::{
     methods::Point,
     sections::{Limit, Variant},
 };
-use crate::figures::{Curve, Mark, PALETTE};
+use crane_cli::toolbox::{Curve, Mark, PALETTE};
 
 fn panel(x: &str, y: &str, curves: Vec<Curve>) -> Panel {
     Panel { x: x.to_owned(), y: y.to_owned(), equal: false, logarithmic: true, curves }

@@ -1,4 +1,4 @@
-//! `crane stress`: stiff and extreme cranes, what is expected of each and what happens.
+//! `crane-lab stress`: stiff and extreme cranes, what is expected of each and what happens.
 
 mod angles;
 mod beams;
@@ -22,14 +22,12 @@ use std::{
 
 use indicatif::ProgressBar;
 
-use crate::{
-    Fleet,
-    arguments::Stress,
-    files,
-    problem::{Outcome, Problem},
-    report::{Grid, Report},
-    run::styled,
+use crane_cli::{
+    Fleet, files,
+    toolbox::{Grid, Outcome, Problem, Report, styled},
 };
+
+use crate::arguments::Stress;
 use case::{Case, Verdict};
 use spec::Spec;
 
@@ -76,7 +74,10 @@ pub fn stress(options: &Stress, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     if let Some(word) = &options.only {
         cases.retain(|case| case.group.contains(word.as_str()) || case.name.contains(word.as_str()));
         if cases.is_empty() {
-            return Err(Problem::usage(format!("no case has `{word}` in its name"), "`crane stress` lists all names"));
+            return Err(Problem::usage(
+                format!("no case has `{word}` in its name"),
+                "`crane-lab stress` lists all names",
+            ));
         }
     }
     let bar = styled(ProgressBar::new(cases.len() as u64));

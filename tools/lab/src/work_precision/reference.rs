@@ -5,10 +5,9 @@ use crane_model::{
     dynamics::{Method, Settings},
 };
 
-use crate::{
-    problem::{Outcome, Problem},
-    work_precision::trace::{Errors, Timed, timed},
-};
+use crane_cli::toolbox::{Outcome, Problem};
+
+use super::trace::{Errors, Timed, timed};
 
 /// The load paths of the two solutions agree to this, relative.
 const PATH: f64 = 1e-11;
