@@ -8,8 +8,9 @@ use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::explain::explain;
 use crate::lower::{Blocks, Loop, Statement, lower};
 use crate::mechanics::derive;
+use crate::program::Program;
 use crate::read::read;
-use crate::symbolic::{ExprId, Op, Program};
+use crate::symbolic::{ExprId, Op};
 
 /// A stage: name of a file, and the stage's result.
 pub type Stage = (&'static str, String);
@@ -62,7 +63,7 @@ fn expressions(program: &Program) -> String {
     let mut text = String::new();
     let mut written = vec![false; program.operations.len()];
     for function in &program.functions {
-        let _ = writeln!(text, "{} -> {:?}\n  {}", function.name, function.shape, function.doc);
+        let _ = writeln!(text, "{} -> {:?}\n  {}", function.id.name(), function.shape, function.doc);
         let needed = program.needed(function.outputs.iter().copied());
         for id in program.ids().filter(|id| needed[id.index()] && !program.op(*id).is_leaf()) {
             if !std::mem::replace(&mut written[id.index()], true) {
@@ -90,7 +91,7 @@ fn lines(blocks: &Blocks<'_>) -> String {
         let _ = writeln!(
             text,
             "\n{}: {} statements in {} pieces, {} values carried, {inlined} expressions within others, {fused} products fused",
-            block.function.name,
+            block.function.id.name(),
             block.statements(),
             block.pieces.len(),
             block.carried

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! There are three entry points: [`build::compile_spec`] in a build script, the command `crane`, and [`compile::compile`].
-//! [`symbolic::Program::evaluate`] runs a program without rustc.
+//! [`program::Program::evaluate`] runs a program without rustc.
 
 pub mod build;
 pub mod chain;
@@ -22,6 +22,7 @@ pub mod lower;
 pub mod mechanics;
 pub mod outline;
 pub mod picture;
+pub mod program;
 mod read;
 pub mod report;
 pub mod spec;

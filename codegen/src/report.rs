@@ -2,7 +2,7 @@
 
 use crate::chain::Loops;
 use crate::lower::Blocks;
-use crate::symbolic::{OperationCount, Program, Shape};
+use crate::program::{FunctionId, OperationCount, Program, Shape};
 
 /// Costs and omissions of a generated module.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,10 +47,10 @@ impl Report {
             .functions
             .iter()
             .map(|block| FunctionCost {
-                function: block.function.name.to_owned(),
+                function: block.function.id.name().to_owned(),
                 operations: block.count,
                 verbatim: verbatim
-                    .function(block.function.name)
+                    .function(block.function.id)
                     .map(|f| {
                         let mut count = verbatim.count(&f.outputs, |_| false);
                         count += f.shape.closing_count();
@@ -63,11 +63,12 @@ impl Report {
         let in_a_loop = |shape: &&Shape| matches!(shape, Shape::Turned { .. });
         let mut shapes = blocks.functions.iter().map(|block| &block.function.shape);
         let second_derivative_pairs = shapes.find(in_a_loop).map(Shape::matrices);
-        let mass_matrix = blocks.functions.iter().find(|block| block.function.name == "mass_matrix");
+        let mass_matrix = blocks.functions.iter().find(|block| block.function.id == FunctionId::MassMatrix);
         let mass_matrix_in_a_loop = mass_matrix.map(|block| matches!(block.function.shape, Shape::Columns { .. }));
         let rolled = blocks.functions.iter().filter(|block| !block.rolled.loops.is_empty());
-        let rounds = rolled
-            .map(|block| (block.function.name.to_owned(), block.rolled.loops.iter().map(|of| of.rounds).collect()));
+        let rounds = rolled.map(|block| {
+            (block.function.id.name().to_owned(), block.rolled.loops.iter().map(|of| of.rounds).collect())
+        });
         let loops_because = loops.reason();
         Report {
             costs,

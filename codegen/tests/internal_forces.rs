@@ -1,7 +1,7 @@
 //! What joints, sections and the ground transmit, against exact laws.
 
 use crane_codegen::chain::{Analyses, Chain, Cut};
-use crane_codegen::symbolic::{Argument, Inputs};
+use crane_codegen::program::{Argument, FunctionId, Inputs};
 use crane_codegen::{SourceFile, compile, mechanics, read, validate};
 
 /// Sums of a few products: some roundings of the largest term.
@@ -50,7 +50,7 @@ links:
 fn wrenches(chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
     let analyses = Analyses { derivatives: false, ..Analyses::ALL };
     let program = mechanics::derive(chain, analyses);
-    let function = program.function("internal_forces").expect("the analyses ask for it");
+    let function = program.function(FunctionId::InternalForces).expect("the analyses ask for it");
     let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), chain.parameter_defaults());
     let slots = program.evaluate(function, &inputs.with(Argument::Acceleration, a.to_vec()));
     slots.as_chunks::<3>().0.as_chunks::<2>().0.to_vec()
@@ -165,8 +165,8 @@ fn a_classic_row_is_cut_at_its_axis() {
     // A a − e, what drives would have to do.
     let program = mechanics::derive(&chain, Analyses::ALL);
     let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), vec![]);
-    let get = |name| program.evaluate(program.function(name).expect("every crane has it"), &inputs);
-    let (mass, bias) = (get("mass_matrix"), get("bias"));
+    let get = |id| program.evaluate(program.function(id).expect("every crane has it"), &inputs);
+    let (mass, bias) = (get(FunctionId::MassMatrix), get(FunctionId::Bias));
     let efforts = [mass[0] * a[0] + mass[1] * a[1] - bias[0], mass[1] * a[0] + mass[2] * a[1] - bias[1]];
     // Of each link its joint, then its frame.
     for (effort, wrench) in efforts.iter().zip([&wrenches[1], &wrenches[3]]) {

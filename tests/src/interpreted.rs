@@ -2,7 +2,8 @@
 
 use crane_codegen::chain::{Analyses, Chain};
 use crane_codegen::mechanics;
-use crane_codegen::symbolic::{Inputs, Program, Scalar, Shape};
+use crane_codegen::program::{FunctionId, Inputs, Program, Shape};
+use crane_codegen::symbolic::Scalar;
 use crane_model::nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::quantities::State;
@@ -55,7 +56,8 @@ impl Interpreted {
 
     /// A function's result; zeros, as many as `otherwise`, where the scene does not need the function.
     pub fn get<S: Scalar>(&self, function: &str, inputs: &Inputs<S>, otherwise: usize) -> Vec<S> {
-        match self.program.function(function) {
+        let id = FunctionId::named(function).unwrap_or_else(|| panic!("there is no function `{function}`"));
+        match self.program.function(id) {
             Some(function) => expand(&function.shape, self.program.evaluate(function, inputs)),
             None => vec![S::from_f64(0.0); otherwise],
         }

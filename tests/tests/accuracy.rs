@@ -8,7 +8,8 @@ use std::ops::Add;
 
 use crane_codegen::chain::{Analyses, BodyId, Chain, Inertia};
 use crane_codegen::mechanics;
-use crane_codegen::symbolic::{Argument, Inputs, Program, Scalar};
+use crane_codegen::program::{Argument, FunctionId, Inputs, Program};
+use crane_codegen::symbolic::Scalar;
 use crane_tests::precise::{self, Precise};
 use crane_tests::quantities::State;
 use crane_tests::{random, states, workspace};
@@ -54,11 +55,11 @@ impl Crane {
     }
 
     fn evaluate(&self, function: &str, inputs: &Inputs<f64>) -> Vec<f64> {
-        self.simple.evaluate(self.simple.function(function).unwrap(), inputs)
+        self.simple.evaluate(self.simple.function(FunctionId::named(function).unwrap()).unwrap(), inputs)
     }
 
     fn precise(&self, function: &str, state: &State) -> Vec<Precise> {
-        match self.verbatim.function(function) {
+        match FunctionId::named(function).and_then(|id| self.verbatim.function(id)) {
             Some(function) => self.verbatim.evaluate(function, &self.inputs(state)),
             None => vec![Precise::from_f64(0.0); self.size()],
         }
@@ -190,7 +191,7 @@ fn resistance(crane: &Crane, inputs: &Inputs<f64>, h: f64) -> (Vec<f64>, Vec<f64
     let joints = crane.evaluate("joint_impedances", inputs);
     let diagonal = joints.chunks(2).map(|pair| step(pair[0], pair[1])).collect();
     let mut base = vec![0.0; 36];
-    if crane.simple.function("base_stiffness").is_some() {
+    if crane.simple.function(FunctionId::BaseStiffness).is_some() {
         let (stiffness, damping) = (crane.evaluate("base_stiffness", inputs), crane.evaluate("base_damping", inputs));
         let upper = (0..6).flat_map(|i| (i..6).map(move |j| (i, j)));
         for ((i, j), (stiffness, damping)) in upper.zip(stiffness.iter().zip(&damping)) {

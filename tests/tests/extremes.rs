@@ -1,7 +1,7 @@
 //! Identities on random cranes whose stiffnesses and masses span many powers of ten, by the interpreter.
 
 use crane_codegen::chain::{Chain, Transmission, Value};
-use crane_codegen::symbolic::{Argument, Inputs};
+use crane_codegen::program::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector};
 use crane_tests::dual::Dual;
 use crane_tests::interpreted::Interpreted;

@@ -1,7 +1,7 @@
 //! Physical identities on random cranes with fixed seeds, by the interpreter.
 
 use crane_codegen::chain::{Chain, CoordinateKind, Cut, Step};
-use crane_codegen::symbolic::{Argument, Inputs};
+use crane_codegen::program::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use crane_tests::dual::Dual;
 use crane_tests::interpreted::Interpreted;

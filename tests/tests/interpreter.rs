@@ -3,7 +3,7 @@
 use crane_codegen::chain::Analyses;
 use crane_codegen::compile;
 use crane_codegen::mechanics;
-use crane_codegen::symbolic::{Argument, Inputs, Program};
+use crane_codegen::program::{Argument, FunctionId, Inputs, Program};
 use crane_tests::interpreted::Interpreted;
 use crane_tests::quantities::{IMPLICIT_STEP, Quantity, State, quantities};
 use crane_tests::registry::{self, Entry};
@@ -121,16 +121,16 @@ fn simplification_changes_nothing_but_rounding() {
                 .with(Argument::Acceleration, state.v.clone())
                 .with(Argument::Resistance, vec![1.0; crane.size()])
                 .with(Argument::BaseResistance, diagonal);
-            let evaluate = |program: &Program, name: &str| {
-                let factors = program.evaluate(program.function("factorise").unwrap(), &inputs);
-                program.evaluate(program.function(name).unwrap(), &inputs.clone().with(Argument::Factors, factors))
+            let evaluate = |program: &Program, id: FunctionId| {
+                let factors = program.evaluate(program.function(FunctionId::Factorise).unwrap(), &inputs);
+                program.evaluate(program.function(id).unwrap(), &inputs.clone().with(Argument::Factors, factors))
             };
-            for function in crane.program.functions.iter().filter(|function| function.name != "factorise") {
-                let (simple, plain) = (evaluate(&crane.program, function.name), evaluate(&verbatim, function.name));
+            for function in crane.program.functions.iter().filter(|function| function.id != FunctionId::Factorise) {
+                let (simple, plain) = (evaluate(&crane.program, function.id), evaluate(&verbatim, function.id));
                 let size = plain.iter().fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
                 for (a, b) in simple.iter().zip(&plain) {
                     // Some hundred roundings of the largest intermediate results.
-                    assert!((a - b).abs() <= 1e-12 * size, "seed {seed} {}: {a} against {b}", function.name);
+                    assert!((a - b).abs() <= 1e-12 * size, "seed {seed} {}: {a} against {b}", function.id.name());
                 }
             }
         }

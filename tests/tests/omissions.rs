@@ -2,6 +2,7 @@
 
 use crane_codegen::chain::{Analyses, Axis};
 use crane_codegen::compile;
+use crane_codegen::program::FunctionId;
 use crane_codegen::symbolic::Op;
 use crane_tests::interpreted::Interpreted;
 use crane_tests::workspace;
@@ -47,7 +48,7 @@ fn a_planar_scene_holds_nothing_out_of_its_plane() {
     for name in ["knuckle_boom", "double_pendulum"] {
         let crane = Interpreted::new(workspace::chain(name));
         let program = &crane.program;
-        let transforms = &program.function("transforms").unwrap().outputs;
+        let transforms = &program.function(FunctionId::Transforms).unwrap().outputs;
         let constant = |slot: usize| matches!(program.op(transforms[slot]), Op::Constant(_));
         let planes: Vec<Axis> = [Axis::X, Axis::Y, Axis::Z]
             .into_iter()
@@ -75,7 +76,7 @@ fn the_header_says_what_is_left_out_and_why() {
 #[test]
 fn symmetric_supports_couple_nothing_by_rounding() {
     let crane = Interpreted::new(workspace::chain("eight_link_rigid"));
-    let forces = crane.program.function("support_forces").unwrap();
+    let forces = crane.program.function(FunctionId::SupportForces).unwrap();
     let needed = crane.program.needed(forces.outputs.iter().copied());
     let smallest = crane
         .program

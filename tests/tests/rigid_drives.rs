@@ -1,6 +1,6 @@
 //! Rigid drives and rotors against laws of mechanics that every textbook has.
 
-use crane_codegen::symbolic::Inputs;
+use crane_codegen::program::Inputs;
 use crane_tests::dual::Dual;
 use crane_tests::interpreted::Interpreted;
 use crane_tests::quantities::State;

@@ -11,46 +11,7 @@ use super::print::plain;
 use super::shape::{Storage, struct_name};
 use crate::chain::Chain;
 use crate::lower::{Block, Blocks};
-use crate::symbolic::{Argument, Shape};
-
-/// Traits of the runtime, and the functions that each needs.
-const TRAITS: [(&str, &[&str]); 7] = [
-    (
-        "CraneModel",
-        &[
-            "transforms",
-            "points",
-            "point_velocities",
-            "forces",
-            "support_forces",
-            "element_forces",
-            "drive_forces",
-            "hinge_forces",
-            "stop_forces",
-            "friction_forces",
-            "support_reactions",
-            "drive_motions",
-            PRESCRIBED,
-            "drive_pieces",
-            "gravity_energy",
-            "support_energy",
-            "element_energy",
-            "drive_energy",
-            "stop_energy",
-            "drive_power",
-            "dissipation",
-        ],
-    ),
-    ("Dynamics", &["forward_dynamics", "solve_mass", "mass_matrix", "mass_matrix_and_bias", "bias", "kinetic_energy"]),
-    ("Implicit", &["factorise", "solve", "joint_impedances", "nonlinear_impedances", "base_stiffness", "base_damping"]),
-    ("Statics", &["static_residual", "tangent_stiffness", "drive_forces_at_rest"]),
-    ("Linearise", &["linearise"]),
-    ("InternalForces", &["internal_forces", "support_positions", "section_moduli"]),
-    ("TransformDerivatives", &["transform_derivatives", "transform_second_derivatives"]),
-];
-
-/// What [`prescribe`] calls.
-const PRESCRIBED: &str = "prescribed_motions";
+use crate::program::{Argument, FunctionId, Seam, Shape};
 
 /// `Crane` and its traits.
 pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
@@ -90,23 +51,26 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
             }
         }
     });
-    for (name, functions) in TRAITS {
-        let methods: Vec<_> = functions
-            .iter()
-            .filter_map(|function| blocks.functions.iter().find(|b| b.function.name == *function))
-            .map(|block| if block.function.name == PRESCRIBED { prescribe(chain, block) } else { method(block) })
+    for seam in Seam::ALL {
+        let methods: Vec<_> = seam
+            .functions()
+            .filter_map(|id| blocks.functions.iter().find(|block| block.function.id == id))
+            .map(|block| match block.function.id {
+                FunctionId::PrescribedMotions => prescribe(chain, block),
+                _ => method(block),
+            })
             .collect();
         if methods.is_empty() {
             continue;
         }
-        let common = match name {
-            "CraneModel" => common_methods(chain),
-            "Implicit" => quote!(
+        let common = match seam {
+            Seam::CraneModel => common_methods(chain),
+            Seam::Implicit => quote!(
                 type Factors = Factors;
             ),
             _ => quote!(),
         };
-        let name = format_ident!("{name}");
+        let name = format_ident!("{}", seam.name());
         items.push(parse_quote! {
             impl #name<N> for Crane {
                 #common
@@ -200,7 +164,7 @@ fn prescribe(chain: &Chain, block: &Block) -> TokenStream {
 /// A method that calls the function of the same name.
 fn method(block: &Block) -> TokenStream {
     let function = block.function;
-    let name = format_ident!("{}", function.name);
+    let name = format_ident!("{}", function.id.name());
     let of = |argument: &Argument| {
         let (name, of) = argument_name(*argument, Number::Single);
         (format_ident!("{name}"), of)

@@ -16,7 +16,8 @@ use super::print::comment;
 use super::rounds;
 use super::shape::{Handover, Storage};
 use crate::lower::{Block, Blocks, Statement};
-use crate::symbolic::{Argument, ExprId, Op};
+use crate::program::Argument;
+use crate::symbolic::{ExprId, Op};
 
 /// The items of one function: itself, and its pieces if it is long.
 pub fn function(blocks: &Blocks, block: &Block, labels: &Labels, number: Number) -> Vec<syn::Item> {
@@ -51,7 +52,7 @@ impl Writer<'_> {
     }
 
     fn is_scalar(&self) -> bool {
-        matches!(self.block.function.shape, crate::symbolic::Shape::Scalar)
+        matches!(self.block.function.shape, crate::program::Shape::Scalar)
     }
 
     /// The storage, with its blank values.
@@ -89,7 +90,7 @@ impl Writer<'_> {
         let mut items = Vec::new();
         let total = self.block.pieces.len();
         for (index, piece) in self.block.pieces.iter().enumerate() {
-            let name = format_ident!("{}_{}", self.block.function.name, index + 1);
+            let name = format_ident!("{}_{}", self.block.function.id.name(), index + 1);
             let (body, used) = self.piece(piece);
             let unpack = Self::unpack(&used);
             let keeps = piece.iter().any(|s| matches!(s, Statement::Keep { .. } | Statement::Fetch { .. }));
@@ -111,7 +112,7 @@ impl Writer<'_> {
             }
             let called = call(&name.to_string(), arguments);
             statements.push(parse_quote!(#called;));
-            let doc = format!(" Part {} of {total} of [`{}`].", index + 1, self.block.function.name);
+            let doc = format!(" Part {} of {total} of [`{}`].", index + 1, self.block.function.id.name());
             let mut part: syn::ItemFn = parse_quote! {
                 #[doc = #doc]
                 #[inline(never)]
@@ -129,7 +130,7 @@ impl Writer<'_> {
     /// Signature and documentation.
     fn shell(&self) -> syn::ItemFn {
         let function = self.block.function;
-        let name = format_ident!("{}", function.name);
+        let name = format_ident!("{}", function.id.name());
         let docs = [
             format!(" {}", function.doc),
             String::new(),

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use crate::chain::{BodyId, Chain, Cut, Drive};
 use crate::lower::Blocks;
-use crate::symbolic::{ExprId, Function, Shape, Struct};
+use crate::program::{Function, FunctionId, Shape, Struct};
+use crate::symbolic::ExprId;
 
 use super::shape::{field_of, row_of_triangle};
 
@@ -50,15 +51,17 @@ impl<'a> Labels<'a> {
                 }
             }),
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
-            Shape::Vectors(_) if function.name.starts_with("support_") => Some(chain.supports[slot / 3].name.clone()),
+            Shape::Vectors(_) if matches!(function.id, FunctionId::SupportReactions | FunctionId::SupportPositions) => {
+                Some(chain.supports[slot / 3].name.clone())
+            }
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
-            Shape::Pairs(_) if matches!(function.name, "joint_impedances" | "nonlinear_impedances") => {
+            Shape::Pairs(_) if matches!(function.id, FunctionId::JointImpedances | FunctionId::NonlinearImpedances) => {
                 Some(coordinate(slot / 2).to_owned())
             }
-            Shape::Pairs(_) if function.name == "prescribed_motions" => {
+            Shape::Pairs(_) if function.id == FunctionId::PrescribedMotions => {
                 chain.rigid_drives().nth(slot / 2).map(|drive| coordinate(drive.coordinate.0).to_owned())
             }
-            Shape::Pairs(_) if function.name == "drive_pieces" => {
+            Shape::Pairs(_) if function.id == FunctionId::DrivePieces => {
                 let of = |drive: &'a Drive| std::iter::repeat_n(drive.coordinate.0, drive.profile.pieces().len());
                 chain.drives.iter().flat_map(of).nth(slot / 2).map(|i| coordinate(i).to_owned())
             }
@@ -71,7 +74,7 @@ impl<'a> Labels<'a> {
                 Cut::Joint(body) => format!("Joint of {}", chain.bodies[body.0].link),
                 Cut::Body(body) => format!("Before {}", chain.bodies[body.0].name),
             }),
-            Shape::Transforms { counts, .. } => Some(self.transform(function.name, counts, slot / 12)),
+            Shape::Transforms { counts, .. } => Some(self.transform(function.id, counts, slot / 12)),
             Shape::Turned { degrees, rotations, .. } => {
                 let axes = 3 * rotations.len();
                 if slot < axes {
@@ -80,7 +83,7 @@ impl<'a> Labels<'a> {
                 if slot >= axes + 12 * degrees.iter().sum::<usize>() {
                     return Some("Curvatures".into());
                 }
-                Some(self.transform("transform_derivatives", degrees, (slot - axes) / 12))
+                Some(self.transform(FunctionId::TransformDerivatives, degrees, (slot - axes) / 12))
             }
             Shape::Record(_, fields) => {
                 let (index, rest) = field_of(fields, slot);
@@ -92,7 +95,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    fn transform(&self, function: &str, counts: &[usize], mut matrix: usize) -> String {
+    fn transform(&self, function: FunctionId, counts: &[usize], mut matrix: usize) -> String {
         let mut body = 0;
         while matrix >= counts[body] {
             matrix -= counts[body];
@@ -101,8 +104,8 @@ impl<'a> Labels<'a> {
         let name = &self.chain.bodies[body].name;
         let coordinate = |i: usize| &self.chain.coordinates[i].name;
         match function {
-            "transform_derivatives" => format!("∂T({name})/∂{}", coordinate(matrix)),
-            "transform_second_derivatives" => {
+            FunctionId::TransformDerivatives => format!("∂T({name})/∂{}", coordinate(matrix)),
+            FunctionId::TransformSecondDerivatives => {
                 let (m, n) = row_of_triangle(self.chain.degrees_of_freedom(BodyId(body)), matrix);
                 format!("∂²T({name})/∂{}∂{}", coordinate(m), coordinate(n))
             }

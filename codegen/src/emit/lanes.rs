@@ -11,9 +11,10 @@ use super::number::Number;
 use super::parameters;
 use crate::chain::Chain;
 use crate::lower::{Block, Blocks, Statement};
+use crate::program::FunctionId;
 
 /// Functions that a simulation of many cranes calls in every step.
-const FUNCTIONS: [&str; 1] = ["forward_dynamics"];
+const FUNCTIONS: [FunctionId; 1] = [FunctionId::ForwardDynamics];
 
 /// Eight cranes of a spec that does not ask for them: one after the other.
 pub fn one_by_one() -> Item {
@@ -31,16 +32,16 @@ pub fn one_by_one() -> Item {
 /// The module `lanes`, and what makes eight cranes of one.
 pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
     let mut items = parameters::parameters(chain, blocks, labels, Number::Lanes);
-    for block in blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.name)) {
+    for block in blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.id)) {
         items.extend(function::function(blocks, block, labels, Number::Lanes));
     }
     let live = !chain.parameters.is_empty();
     let fields = if live { quote!({ constants: Constants }) } else { quote!(;) };
-    let constants = blocks.functions.iter().any(|b| b.function.name == "forward_dynamics" && b.reads_parameters);
+    let constants = blocks.functions.iter().any(|b| b.function.id == FunctionId::ForwardDynamics && b.reads_parameters);
     let constants = constants.then(|| quote!(, &self.constants));
     let takes_stumpff =
         |block: &Block| block.pieces.iter().flatten().any(|statement| matches!(statement, Statement::Stumpff(_)));
-    let in_lanes = || blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.name));
+    let in_lanes = || blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.id));
     let stumpff = in_lanes().any(takes_stumpff).then(|| quote!(, stumpff));
     let words = identifiers(&items);
     let functions = ["exp", "select", "sqrt"].into_iter().filter(|name| words.contains(*name)).map(variable);

@@ -25,8 +25,8 @@ use syn::parse_quote;
 
 use crate::chain::{Analyses, Chain};
 use crate::lower::Blocks;
+use crate::program::Shape;
 use crate::report::Report;
-use crate::symbolic::Shape;
 use arithmetic::integer;
 use labels::Labels;
 use number::Number;

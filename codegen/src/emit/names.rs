@@ -3,7 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use super::rounds;
-use crate::symbolic::{Argument, ExprId, Op, Program};
+use crate::program::{Argument, Program};
+use crate::symbolic::{ExprId, Op};
 
 /// Words that generated functions use themselves.
 const TAKEN: &[&str] = &[

@@ -10,7 +10,8 @@ use super::number::Number;
 use super::print::plain;
 use crate::chain::{Chain, Parameter};
 use crate::lower::Blocks;
-use crate::symbolic::{Argument, ExprId, Op};
+use crate::program::Argument;
+use crate::symbolic::{ExprId, Op};
 
 /// `Params` with defaults and units, and `Constants`, what functions read; nothing if all numbers are baked in.
 pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels, number: Number) -> Vec<Item> {

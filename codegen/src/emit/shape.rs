@@ -8,7 +8,7 @@ use super::arithmetic::{element, field, integer, variable};
 use super::number::Number;
 use super::rounds::{at, place};
 use crate::lower::Progression;
-use crate::symbolic::{Function, Point, Shape, Struct};
+use crate::program::{Function, Point, Shape, Struct};
 
 /// How a function hands over its result.
 pub enum Handover {

@@ -1,7 +1,8 @@
 //! Values that are used once and have no name of their own stand inside the expression that uses them.
 
 use super::Constants;
-use crate::symbolic::{ExprId, Program};
+use crate::program::Program;
+use crate::symbolic::ExprId;
 
 /// Operations in one statement at most: about one line of text.
 const LARGEST_EXPRESSION: usize = 7;

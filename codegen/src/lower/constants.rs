@@ -1,6 +1,8 @@
 //! Values that depend on live parameters alone: computed once when a parameter is set, read like inputs.
 
-use crate::symbolic::{Argument, ExprId, Op, Program};
+use crate::program::{Argument, Program};
+
+use crate::symbolic::{ExprId, Op};
 
 /// The constants of a program's live parameters.
 #[derive(Debug)]

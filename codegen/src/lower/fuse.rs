@@ -1,7 +1,8 @@
 //! Which products are fused into the sums that use them, `a b + c` with one rounding where the target can.
 
 use super::Constants;
-use crate::symbolic::{ExprId, Op, Program};
+use crate::program::Program;
+use crate::symbolic::{ExprId, Op};
 
 /// A product in more sums than this is computed once: its factors would stay alive too long.
 const MOST_SUMS: usize = 4;

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use super::Place;
-use crate::symbolic::{Argument, ExprId, Function, Visit};
+use crate::program::{Argument, Function};
+use crate::symbolic::{ExprId, Visit};
 
 /// Where a loop takes what differs from round to round; `k` counts the rounds.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::symbolic::{ExprId, Op, Program};
+use crate::program::Program;
+
+use crate::symbolic::{ExprId, Op};
 
 /// A visit that does what the first of its loop does.
 #[derive(Clone, Debug, Default)]

@@ -23,7 +23,9 @@ mod split;
 #[cfg(test)]
 mod tests;
 
-use crate::symbolic::{ExprId, Function, Op, OperationCount, Program, Visit};
+use crate::program::{Function, OperationCount, Program};
+
+use crate::symbolic::{ExprId, Op, Visit};
 
 pub use constants::Constants;
 pub use fuse::fuse;

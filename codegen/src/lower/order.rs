@@ -8,7 +8,8 @@
 use std::collections::HashMap;
 
 use super::{Angle, Constants, Rolled, Source, Statement, StumpffArgument, Taking, variables_of};
-use crate::symbolic::{Argument, ExprId, Function, Op, Program, Visit};
+use crate::program::{Argument, Function, Program};
+use crate::symbolic::{ExprId, Op, Visit};
 
 /// One straight line for a function, its loops in it as statements.
 pub(super) fn order(

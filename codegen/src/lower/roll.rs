@@ -9,7 +9,8 @@ use std::collections::HashMap;
 use super::loops::{Loop, Progression, Rolled, Source, Taking};
 use super::matching::{Match, matched};
 use super::{Angle, Constants, Place, StumpffArgument, order};
-use crate::symbolic::{Argument, ExprId, Function, Op, Program, Shape, Symbol, Visit};
+use crate::program::{Argument, Function, Program, Shape, Symbol};
+use crate::symbolic::{ExprId, Op, Visit};
 
 /// Where the operands of all rounds at one place come from.
 #[derive(Clone, Debug)]

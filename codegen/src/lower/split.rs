@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Constants, Statement, variables_of};
-use crate::symbolic::{ExprId, Op, Program};
+use crate::program::Program;
+use crate::symbolic::{ExprId, Op};
 
 /// A piece has at least this many statements before it is cut …
 const SHORTEST_PIECE: usize = 500;

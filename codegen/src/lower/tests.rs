@@ -1,7 +1,8 @@
 //! Each pass on a program small enough to be read.
 
 use super::{Constants, Statement, bundle, fuse::fuse, lower, split};
-use crate::symbolic::{Argument, Expr, ExprId, Function, Graph, Inputs, Op, Program, Shape, Symbol, SymbolId};
+use crate::program::{Argument, Function, FunctionId, Inputs, Program, Shape, Symbol};
+use crate::symbolic::{Expr, ExprId, Graph, Op, SymbolId};
 
 /// Inputs of the programs here: a, b, c, d are coordinates, p a live parameter.
 const INPUTS: [(&str, Argument, usize); 5] = [
@@ -20,7 +21,7 @@ fn program(build: impl for<'g> FnOnce(&'g Graph, [Expr<'g>; 5]) -> Vec<Expr<'g>>
         build(&graph, inputs).iter().map(|output| output.id()).collect::<Vec<ExprId>>()
     });
     let function = Function {
-        name: "f",
+        id: FunctionId::Forces,
         doc: "",
         equation: "",
         arguments: &[Argument::Position],
@@ -29,7 +30,7 @@ fn program(build: impl for<'g> FnOnce(&'g Graph, [Expr<'g>; 5]) -> Vec<Expr<'g>>
         tape,
     };
     let symbols = INPUTS.map(|(name, argument, index)| Symbol { name: name.into(), argument, index });
-    graph.into_program(symbols.to_vec(), vec![function])
+    Program::new(graph, symbols.to_vec(), vec![function])
 }
 
 fn roots(program: &Program) -> &[ExprId] {

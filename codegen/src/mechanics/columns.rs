@@ -20,7 +20,8 @@ use super::rotors;
 use super::turn::Turn;
 use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};
 use crate::chain::{Axis, CoordinateKind, Inertia};
-use crate::symbolic::{Expr, Point};
+use crate::program::Point;
+use crate::symbolic::Expr;
 
 /// What the mass matrix is made of: for each coordinate its axis, its momenta, and the way from its point to that of the
 /// coordinate after it.

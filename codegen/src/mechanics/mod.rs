@@ -37,7 +37,8 @@ mod vector;
 pub use omissions::left_out;
 
 use crate::chain::{Analyses, Chain};
-use crate::symbolic::{Graph, Program};
+use crate::program::Program;
+use crate::symbolic::Graph;
 
 /// The functions of a crane that `analyses` ask for and that its scene needs, over one simplified graph.
 #[must_use]

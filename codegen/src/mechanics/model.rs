@@ -1,7 +1,8 @@
 //! The chain's numbers and inputs as expressions.
 
 use crate::chain::{Chain, Inertia, ParameterId, Value};
-use crate::symbolic::{Argument, Expr, Graph, Symbol, SymbolId};
+use crate::program::{Argument, Symbol};
+use crate::symbolic::{Expr, Graph, SymbolId};
 
 use super::turn::Turn;
 use super::vector::{Symmetric3, Vec3};

@@ -5,7 +5,7 @@ use crate::chain::{
     Value,
 };
 use crate::mechanics::derive;
-use crate::symbolic::{Inputs, Program};
+use crate::program::{FunctionId, Inputs, Program};
 
 const MASS: [f64; 2] = [3.0, 2.0];
 const LENGTH: [f64; 2] = [1.5, 0.8];
@@ -65,7 +65,7 @@ fn double_pendulum() -> Chain {
 
 fn evaluate(program: &Program, name: &str, q: [f64; 2], v: [f64; 2]) -> Vec<f64> {
     let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), vec![]);
-    program.evaluate(program.function(name).unwrap(), &inputs)
+    program.evaluate(program.function(FunctionId::named(name).unwrap()).unwrap(), &inputs)
 }
 
 /// A few roundings of numbers of order 10.
@@ -111,7 +111,7 @@ fn double_pendulum_is_the_textbooks() {
 #[test]
 fn a_planar_crane_stays_planar() {
     let program = derive(&double_pendulum(), Analyses::ALL);
-    let tip = &program.function("points").unwrap().outputs;
+    let tip = &program.function(FunctionId::Points).unwrap().outputs;
     assert_eq!(program.op(tip[1]), crate::symbolic::Op::ZERO);
     assert!(super::left_out(&double_pendulum(), Analyses::ALL).iter().any(|(what, _)| what.contains("plane")));
 }

@@ -4,7 +4,8 @@ use super::kinematics::{Curvature, Generator, Kinematics, Pose};
 use super::model::Model;
 use super::vector::Vec3;
 use crate::chain::{BodyId, CoordinateKind};
-use crate::symbolic::{Expr, Shape};
+use crate::program::Shape;
+use crate::symbolic::Expr;
 
 /// The columns of a 4×4 matrix without its last row, row by row.
 fn rows(columns: [Vec3<'_>; 4]) -> impl Iterator<Item = Expr<'_>> {

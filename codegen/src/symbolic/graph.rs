@@ -4,7 +4,6 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 
 use super::op::{Constant, ExprId, Op, SymbolId};
-use super::program::{Function, Program, Symbol};
 use super::tape::Recorder;
 use super::{Expr, rules};
 
@@ -19,11 +18,15 @@ pub struct Graph {
     simplify: bool,
 }
 
+/// What a graph holds.
 #[derive(Debug, Default)]
-struct Nodes {
-    operations: Vec<Op>,
-    index: HashMap<Op, ExprId>,
-    names: HashMap<ExprId, String>,
+pub struct Nodes {
+    /// All operations, operands before their users.
+    pub operations: Vec<Op>,
+    /// Where each operation stands.
+    pub index: HashMap<Op, ExprId>,
+    /// What the model calls some of them.
+    pub names: HashMap<ExprId, String>,
 }
 
 impl Graph {
@@ -60,7 +63,7 @@ impl Graph {
         let Nodes { operations, index, .. } = &mut *self.nodes.borrow_mut();
         let id = *index.entry(op).or_insert_with(|| {
             operations.push(op);
-            ExprId(u32::try_from(operations.len() - 1).expect("fewer than 2^32 expressions"))
+            ExprId::at(operations.len() - 1)
         });
         if !op.is_leaf() {
             self.recorder.borrow_mut().ask(id);
@@ -85,11 +88,10 @@ impl Graph {
         }
     }
 
-    /// The program of `functions` over this graph, once it has all its expressions.
+    /// All nodes, once the graph has all its expressions.
     #[must_use]
-    pub fn into_program(self, symbols: Vec<Symbol>, functions: Vec<Function>) -> Program {
-        let Nodes { operations, index, names } = self.nodes.into_inner();
-        Program { operations, index, names, symbols, functions }
+    pub fn into_nodes(self) -> Nodes {
+        self.nodes.into_inner()
     }
 
     /// A node as an expression.

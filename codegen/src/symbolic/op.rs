@@ -5,7 +5,16 @@
 pub struct ExprId(pub(super) u32);
 
 impl ExprId {
-    /// Position in [`Program::operations`](super::Program::operations).
+    /// The expression at a position in [`Nodes::operations`](super::Nodes::operations).
+    ///
+    /// # Panics
+    /// If the position is 2^32 or beyond, which no graph can hold.
+    #[must_use]
+    pub fn at(index: usize) -> Self {
+        ExprId(u32::try_from(index).expect("fewer than 2^32 expressions"))
+    }
+
+    /// Position in [`Nodes::operations`](super::Nodes::operations).
     #[must_use]
     pub fn index(self) -> usize {
         self.0 as usize

@@ -3,7 +3,7 @@
 //!
 //! K. Stumpff, *Himmelsmechanik I*, Deutscher Verlag der Wissenschaften, Berlin 1959.
 
-use super::interpret::Scalar;
+use super::Scalar;
 
 /// Up to here the series is accurate; beyond, sines and cosines are.
 const SERIES: f64 = 10.0;

@@ -1,6 +1,7 @@
 //! Every rule keeps the value and has its intended effect.
 
-use super::{Argument, Expr, Function, Graph, Inputs, Op, Program, Shape, Symbol, SymbolId, Tape};
+use super::{Expr, Graph, Op, SymbolId, Tape};
+use crate::program::{Argument, Function, FunctionId, Inputs, Program, Shape, Symbol};
 
 fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>>, graph: Graph) -> Program {
     let outputs: Vec<_> = {
@@ -10,7 +11,7 @@ fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>
     let symbol = |name: &str, index| Symbol { name: name.into(), argument: Argument::Position, index };
     let shape = Shape::Vector(outputs.len());
     let function = Function {
-        name: "f",
+        id: FunctionId::Forces,
         doc: "",
         equation: "",
         arguments: &[Argument::Position],
@@ -18,7 +19,7 @@ fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>
         outputs,
         tape: Tape::default(),
     };
-    graph.into_program(vec![symbol("x", 0), symbol("y", 1)], vec![function])
+    Program::new(graph, vec![symbol("x", 0), symbol("y", 1)], vec![function])
 }
 
 fn values(program: &Program, x: f64, y: f64) -> Vec<f64> {

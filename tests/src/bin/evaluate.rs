@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use crane_codegen::chain::Chain;
-use crane_codegen::symbolic::Inputs;
+use crane_codegen::program::Inputs;
 use crane_codegen::{build, compile};
 use crane_tests::interpreted::Interpreted;
 use crane_tests::quantities::{State, quantities};

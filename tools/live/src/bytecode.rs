@@ -4,7 +4,7 @@
 //! which is kept beside its positive where both are needed. The numbers are those of the separate operations, but for the sign of
 //! a zero. So the inner loop has nothing to decide, and a processor guesses the few ends of runs.
 
-use crane_codegen::symbolic::Argument;
+use crane_codegen::program::Argument;
 
 /// Number of a register.
 pub type Register = u16;

@@ -2,7 +2,7 @@
 
 use std::ops::{Mul, Neg};
 
-use crane_codegen::symbolic::Point;
+use crane_codegen::program::Point;
 use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::support::fma;
 use crane_model::support::lanes::Fused;

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crane_codegen::chain::Chain;
-use crane_codegen::symbolic::Shape;
+use crane_codegen::program::{FunctionId, Shape};
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::{
     DynBlock, DynCrane, DynDerivatives, DynDynamics, DynEnsemble, DynImplicit, DynInternalForces, DynLinearise,
@@ -16,7 +16,7 @@ use crane_model::{Description, ParameterError, SectionModuli, Wrench};
 
 use crate::closing::{mass_matrix, second_derivatives};
 use crate::describe::{describe, refusal};
-use crate::library::{Library, Name};
+use crate::library::Library;
 use crate::machine::{Arguments, Machine};
 use crate::routine::Routine;
 
@@ -28,7 +28,7 @@ pub struct LiveCrane {
     description: Description,
     parameters: Vec<f64>,
     /// Room for a call of every function, kept from the last.
-    rooms: [Mutex<Option<Room>>; Name::ALL.len()],
+    rooms: [Mutex<Option<Room>>; FunctionId::ALL.len()],
 }
 
 /// What a call of a function needs besides its arguments.
@@ -66,12 +66,12 @@ impl LiveCrane {
     /// Calls a function and shows its results; nothing where the scene does not need it.
     fn call<R>(
         &self,
-        name: Name,
+        id: FunctionId,
         arguments: &Arguments<'_, f64>,
         show: impl FnOnce(&Routine, &mut [f64]) -> R,
     ) -> Option<R> {
-        let routine = self.library.routine(name)?;
-        let place = &self.rooms[name as usize];
+        let routine = self.library.routine(id)?;
+        let place = &self.rooms[id as usize];
         let kept = place.lock().unwrap_or_else(PoisonError::into_inner).take();
         let mut room = kept.unwrap_or_else(|| self.room(routine));
         routine.run(&mut room.machine, arguments, &mut room.results);
@@ -117,34 +117,34 @@ impl LiveCrane {
         Room { machine: routine.machine(&self.parameters), results: vec![0.0; routine.results()] }
     }
 
-    fn scalar(&self, name: Name, arguments: &Arguments<'_, f64>) -> f64 {
-        self.call(name, arguments, |_, results| results.first().copied().unwrap_or(0.0)).unwrap_or(0.0)
+    fn scalar(&self, id: FunctionId, arguments: &Arguments<'_, f64>) -> f64 {
+        self.call(id, arguments, |_, results| results.first().copied().unwrap_or(0.0)).unwrap_or(0.0)
     }
 
-    fn numbers(&self, name: Name, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
-        let called = self.call(name, arguments, |_, results| copy(results, out));
+    fn numbers(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
+        let called = self.call(id, arguments, |_, results| copy(results, out));
         if called.is_none() {
             out.fill(0.0);
         }
     }
 
-    fn vectors(&self, name: Name, arguments: &Arguments<'_, f64>, out: &mut [Vector3<f64>]) {
+    fn vectors(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [Vector3<f64>]) {
         let vector = |vector: &[f64; 3]| Vector3::from(*vector);
-        let called = self.call(name, arguments, |_, results| copy_as(results.as_chunks().0, vector, out));
+        let called = self.call(id, arguments, |_, results| copy_as(results.as_chunks().0, vector, out));
         if called.is_none() {
             out.fill(Vector3::zeros());
         }
     }
 
-    fn pairs(&self, name: Name, arguments: &Arguments<'_, f64>, out: &mut [[f64; 2]]) {
-        let called = self.call(name, arguments, |_, results| copy_as(results.as_chunks().0, |pair| *pair, out));
+    fn pairs(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [[f64; 2]]) {
+        let called = self.call(id, arguments, |_, results| copy_as(results.as_chunks().0, |pair| *pair, out));
         if called.is_none() {
             out.fill([0.0; 2]);
         }
     }
 
-    fn matrices(&self, name: Name, arguments: &Arguments<'_, f64>, out: &mut [Matrix4<f64>]) {
-        let called = self.call(name, arguments, |_, results| {
+    fn matrices(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [Matrix4<f64>]) {
+        let called = self.call(id, arguments, |_, results| {
             copy_as(results.as_chunks::<16>().0, |matrix| Matrix4::from_column_slice(matrix), out);
         });
         if called.is_none() {
@@ -152,12 +152,12 @@ impl LiveCrane {
         }
     }
 
-    fn over_the_base(&self, name: Name, q: &[f64]) -> Matrix6<f64> {
-        self.call(name, &at(q), |_, results| Matrix6::from_column_slice(results)).unwrap_or_default()
+    fn over_the_base(&self, id: FunctionId, q: &[f64]) -> Matrix6<f64> {
+        self.call(id, &at(q), |_, results| Matrix6::from_column_slice(results)).unwrap_or_default()
     }
 }
 
-fn no_rooms() -> [Mutex<Option<Room>>; Name::ALL.len()] {
+fn no_rooms() -> [Mutex<Option<Room>>; FunctionId::ALL.len()] {
     std::array::from_fn(|_| Mutex::new(None))
 }
 
@@ -207,47 +207,47 @@ impl DynModel for LiveCrane {
     }
 
     fn transforms(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
-        self.matrices(Name::Transforms, &at(q), out);
+        self.matrices(FunctionId::Transforms, &at(q), out);
     }
 
     fn points(&self, q: &[f64], out: &mut [Vector3<f64>]) {
-        self.vectors(Name::Points, &at(q), out);
+        self.vectors(FunctionId::Points, &at(q), out);
     }
 
     fn point_velocities(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
-        self.vectors(Name::PointVelocities, &state(0.0, q, v), out);
+        self.vectors(FunctionId::PointVelocities, &state(0.0, q, v), out);
     }
 
     fn forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
-        self.numbers(Name::Forces, &state(t, q, v), out);
+        self.numbers(FunctionId::Forces, &state(t, q, v), out);
     }
 
     fn element_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
-        self.numbers(Name::ElementForces, &state(0.0, q, v), out);
+        self.numbers(FunctionId::ElementForces, &state(0.0, q, v), out);
     }
 
     fn drive_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
-        self.numbers(Name::DriveForces, &state(t, q, v), out);
+        self.numbers(FunctionId::DriveForces, &state(t, q, v), out);
     }
 
     fn stop_forces(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
-        self.numbers(Name::StopForces, &state(0.0, q, v), out);
+        self.numbers(FunctionId::StopForces, &state(0.0, q, v), out);
     }
 
     fn friction_forces(&self, v: &[f64], out: &mut [f64]) {
-        self.numbers(Name::FrictionForces, &state(0.0, &[], v), out);
+        self.numbers(FunctionId::FrictionForces, &state(0.0, &[], v), out);
     }
 
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
-        self.vectors(Name::SupportReactions, &state(0.0, q, v), out);
+        self.vectors(FunctionId::SupportReactions, &state(0.0, q, v), out);
     }
 
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
-        self.pairs(Name::DriveMotions, &Arguments { t, ..Arguments::none() }, out);
+        self.pairs(FunctionId::DriveMotions, &Arguments { t, ..Arguments::none() }, out);
     }
 
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
-        self.call(Name::PrescribedMotions, &Arguments { t, ..Arguments::none() }, |_, results| {
+        self.call(FunctionId::PrescribedMotions, &Arguments { t, ..Arguments::none() }, |_, results| {
             for (drive, [position, rate]) in self.chain().rigid_drives().zip(results.as_chunks().0) {
                 (q[drive.coordinate.0], v[drive.coordinate.0]) = (*position, *rate);
             }
@@ -255,49 +255,49 @@ impl DynModel for LiveCrane {
     }
 
     fn drive_pieces(&self, out: &mut [[f64; 2]]) {
-        self.pairs(Name::DrivePieces, &Arguments::none(), out);
+        self.pairs(FunctionId::DrivePieces, &Arguments::none(), out);
     }
 
     fn gravity_energy(&self, q: &[f64]) -> f64 {
-        self.scalar(Name::GravityEnergy, &at(q))
+        self.scalar(FunctionId::GravityEnergy, &at(q))
     }
 
     fn support_energy(&self, q: &[f64]) -> f64 {
-        self.scalar(Name::SupportEnergy, &at(q))
+        self.scalar(FunctionId::SupportEnergy, &at(q))
     }
 
     fn element_energy(&self, q: &[f64]) -> f64 {
-        self.scalar(Name::ElementEnergy, &at(q))
+        self.scalar(FunctionId::ElementEnergy, &at(q))
     }
 
     fn drive_energy(&self, t: f64, q: &[f64]) -> f64 {
-        self.scalar(Name::DriveEnergy, &Arguments { t, ..at(q) })
+        self.scalar(FunctionId::DriveEnergy, &Arguments { t, ..at(q) })
     }
 
     fn stop_energy(&self, q: &[f64]) -> f64 {
-        self.scalar(Name::StopEnergy, &at(q))
+        self.scalar(FunctionId::StopEnergy, &at(q))
     }
 
     fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
-        self.scalar(Name::DrivePower, &state(t, q, v))
+        self.scalar(FunctionId::DrivePower, &state(t, q, v))
     }
 
     fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
-        self.scalar(Name::Dissipation, &state(t, q, v))
+        self.scalar(FunctionId::Dissipation, &state(t, q, v))
     }
 }
 
 impl DynStatics for LiveCrane {
     fn static_residual(&self, q: &[f64], out: &mut [f64]) {
-        self.numbers(Name::StaticResidual, &at(q), out);
+        self.numbers(FunctionId::StaticResidual, &at(q), out);
     }
 
     fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]) {
-        self.numbers(Name::TangentStiffness, &at(q), out);
+        self.numbers(FunctionId::TangentStiffness, &at(q), out);
     }
 
     fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {
-        if self.call(Name::DriveForcesAtRest, &at(q), |_, results| copy(results, out)).is_none() {
+        if self.call(FunctionId::DriveForcesAtRest, &at(q), |_, results| copy(results, out)).is_none() {
             // At the rates of their motions the dampers rest.
             let (mut v, mut motions) = (vec![0.0; q.len()], vec![[0.0; 2]; self.description.drives.len()]);
             self.drive_motions(0.0, &mut motions);
@@ -311,53 +311,53 @@ impl DynStatics for LiveCrane {
 
 impl DynDynamics for LiveCrane {
     fn mass_matrix(&self, q: &[f64], out: &mut [f64]) {
-        self.call(Name::MassMatrix, &at(q), |routine, results| match routine.shape() {
+        self.call(FunctionId::MassMatrix, &at(q), |routine, results| match routine.shape() {
             Shape::Columns { points, .. } => mass_matrix(points, results, out),
             _ => copy(results, out),
         });
     }
 
     fn bias(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
-        self.numbers(Name::Bias, &state(0.0, q, v), out);
+        self.numbers(FunctionId::Bias, &state(0.0, q, v), out);
     }
 
     fn forward_dynamics(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
-        self.numbers(Name::ForwardDynamics, &state(t, q, v), out);
+        self.numbers(FunctionId::ForwardDynamics, &state(t, q, v), out);
     }
 
     fn kinetic_energy(&self, q: &[f64], v: &[f64]) -> f64 {
-        self.scalar(Name::KineticEnergy, &state(0.0, q, v))
+        self.scalar(FunctionId::KineticEnergy, &state(0.0, q, v))
     }
 }
 
 impl DynImplicit for LiveCrane {
     fn system(&self) -> Box<dyn DynSystem + '_> {
-        let ready = |name: Name| {
-            let routine = self.library.routine(name)?;
+        let ready = |id: FunctionId| {
+            let routine = self.library.routine(id)?;
             Some((routine, routine.machine(&self.parameters)))
         };
-        let factors = self.library.routine(Name::Factorise).map_or(0, Routine::results);
+        let factors = self.library.routine(FunctionId::Factorise).map_or(0, Routine::results);
         Box::new(System {
-            factorise: ready(Name::Factorise),
-            solve: ready(Name::Solve),
+            factorise: ready(FunctionId::Factorise),
+            solve: ready(FunctionId::Solve),
             factors: vec![f64::NAN; factors],
         })
     }
 
     fn joint_impedances(&self, out: &mut [[f64; 2]]) {
-        self.pairs(Name::JointImpedances, &Arguments::none(), out);
+        self.pairs(FunctionId::JointImpedances, &Arguments::none(), out);
     }
 
     fn nonlinear_impedances(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
-        self.pairs(Name::NonlinearImpedances, &state(t, q, v), out);
+        self.pairs(FunctionId::NonlinearImpedances, &state(t, q, v), out);
     }
 
     fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64> {
-        self.over_the_base(Name::BaseStiffness, q)
+        self.over_the_base(FunctionId::BaseStiffness, q)
     }
 
     fn base_damping(&self, q: &[f64]) -> Matrix6<f64> {
-        self.over_the_base(Name::BaseDamping, q)
+        self.over_the_base(FunctionId::BaseDamping, q)
     }
 }
 
@@ -388,7 +388,7 @@ impl DynSystem for System<'_> {
 
 impl DynLinearise for LiveCrane {
     fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
-        self.call(Name::Linearise, &at(q), |_, results| {
+        self.call(FunctionId::Linearise, &at(q), |_, results| {
             let mut rest: &[f64] = results;
             for matrix in [mass, stiffness, damping] {
                 let (own, others) = rest.split_at(matrix.len().min(rest.len()));
@@ -401,7 +401,7 @@ impl DynLinearise for LiveCrane {
 
 impl DynInternalForces for LiveCrane {
     fn internal_forces(&self, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
-        self.call(Name::InternalForces, &Arguments { a, ..state(0.0, q, v) }, |_, results| {
+        self.call(FunctionId::InternalForces, &Arguments { a, ..state(0.0, q, v) }, |_, results| {
             let wrench = |[fx, fy, fz, mx, my, mz]: &[f64; 6]| Wrench {
                 force: Vector3::new(*fx, *fy, *fz),
                 moment: Vector3::new(*mx, *my, *mz),
@@ -411,7 +411,7 @@ impl DynInternalForces for LiveCrane {
     }
 
     fn section_moduli(&self, out: &mut [SectionModuli]) {
-        self.call(Name::SectionModuli, &Arguments::none(), |_, results| {
+        self.call(FunctionId::SectionModuli, &Arguments::none(), |_, results| {
             let moduli = |numbers: &[f64; 8]| {
                 let [area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress] = *numbers;
                 SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress }
@@ -421,7 +421,7 @@ impl DynInternalForces for LiveCrane {
     }
 
     fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]) {
-        self.vectors(Name::SupportPositions, &at(q), out);
+        self.vectors(FunctionId::SupportPositions, &at(q), out);
     }
 }
 
@@ -432,7 +432,7 @@ impl DynEnsemble for LiveCrane {
         let of = |lane: usize| lanes.get(lane).unwrap_or(&self.parameters);
         let eight = |index: usize| f64x8::new(std::array::from_fn(|lane| of(lane)[index]));
         let parameters: Vec<f64x8> = (0..self.parameters.len()).map(eight).collect();
-        let routine = self.library.routine(Name::ForwardDynamics);
+        let routine = self.library.routine(FunctionId::ForwardDynamics);
         Ok(Box::new(Block { ready: routine.map(|routine| (routine, routine.machine(&parameters))) }))
     }
 }
@@ -452,11 +452,11 @@ impl DynBlock for Block<'_> {
 
 impl DynDerivatives for LiveCrane {
     fn transform_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
-        self.matrices(Name::TransformDerivatives, &at(q), out);
+        self.matrices(FunctionId::TransformDerivatives, &at(q), out);
     }
 
     fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
-        self.call(Name::TransformSecondDerivatives, &at(q), |routine, results| match routine.shape() {
+        self.call(FunctionId::TransformSecondDerivatives, &at(q), |routine, results| match routine.shape() {
             Shape::Turned { degrees, rotations, vectors } => {
                 second_derivatives(degrees, rotations.len(), vectors, results, out);
             }

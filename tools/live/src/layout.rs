@@ -1,6 +1,6 @@
 //! Where the slots of a shape stand in a result.
 
-use crane_codegen::symbolic::Shape;
+use crane_codegen::program::Shape;
 
 /// A number of a result.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -35,5 +35,5 @@ mod routine;
 pub mod rows;
 
 pub use crane::LiveCrane;
-pub use library::Name;
+pub use crane_codegen::program::FunctionId;
 pub use routine::Routine;

@@ -1,55 +1,12 @@
-//! The functions of a crane, derived and assembled when one of their kind is first asked for.
+//! The functions of a crane: derived when one of their kind is first asked for, assembled one by one.
 
 use std::sync::OnceLock;
 
 use crane_codegen::chain::{Analyses, Chain};
 use crane_codegen::mechanics;
+use crane_codegen::program::{FunctionId, Program, Seam};
 
 use crate::routine::Routine;
-
-/// A function of the compiler that a crane calls, named as the method of [`crane_model::dyn_crane`] that calls it.
-#[expect(missing_docs, reason = "the methods are documented")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Name {
-    Transforms,
-    Points,
-    PointVelocities,
-    Forces,
-    ElementForces,
-    DriveForces,
-    StopForces,
-    FrictionForces,
-    SupportReactions,
-    DriveMotions,
-    DrivePieces,
-    PrescribedMotions,
-    GravityEnergy,
-    SupportEnergy,
-    ElementEnergy,
-    DriveEnergy,
-    StopEnergy,
-    DrivePower,
-    Dissipation,
-    StaticResidual,
-    TangentStiffness,
-    DriveForcesAtRest,
-    MassMatrix,
-    Bias,
-    ForwardDynamics,
-    KineticEnergy,
-    Factorise,
-    Solve,
-    JointImpedances,
-    NonlinearImpedances,
-    BaseStiffness,
-    BaseDamping,
-    Linearise,
-    InternalForces,
-    SupportPositions,
-    SectionModuli,
-    TransformDerivatives,
-    TransformSecondDerivatives,
-}
 
 /// Functions that are derived together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,97 +25,20 @@ pub enum Group {
     Derivatives,
 }
 
-impl Name {
-    /// All of them, in the order of their declaration.
-    pub const ALL: [Name; 38] = [
-        Name::Transforms,
-        Name::Points,
-        Name::PointVelocities,
-        Name::Forces,
-        Name::ElementForces,
-        Name::DriveForces,
-        Name::StopForces,
-        Name::FrictionForces,
-        Name::SupportReactions,
-        Name::DriveMotions,
-        Name::DrivePieces,
-        Name::PrescribedMotions,
-        Name::GravityEnergy,
-        Name::SupportEnergy,
-        Name::ElementEnergy,
-        Name::DriveEnergy,
-        Name::StopEnergy,
-        Name::DrivePower,
-        Name::Dissipation,
-        Name::StaticResidual,
-        Name::TangentStiffness,
-        Name::DriveForcesAtRest,
-        Name::MassMatrix,
-        Name::Bias,
-        Name::ForwardDynamics,
-        Name::KineticEnergy,
-        Name::Factorise,
-        Name::Solve,
-        Name::JointImpedances,
-        Name::NonlinearImpedances,
-        Name::BaseStiffness,
-        Name::BaseDamping,
-        Name::Linearise,
-        Name::InternalForces,
-        Name::SupportPositions,
-        Name::SectionModuli,
-        Name::TransformDerivatives,
-        Name::TransformSecondDerivatives,
-    ];
-
-    /// The name that the compiler gives it, and with what it is derived.
-    pub(crate) fn describe(self) -> (&'static str, Group) {
-        use Group::{Common, Derivatives, Dynamics, InternalForces, Modes, Statics};
-        match self {
-            Name::Transforms => ("transforms", Common),
-            Name::Points => ("points", Common),
-            Name::PointVelocities => ("point_velocities", Common),
-            Name::Forces => ("forces", Common),
-            Name::ElementForces => ("element_forces", Common),
-            Name::DriveForces => ("drive_forces", Common),
-            Name::StopForces => ("stop_forces", Common),
-            Name::FrictionForces => ("friction_forces", Common),
-            Name::SupportReactions => ("support_reactions", Common),
-            Name::DriveMotions => ("drive_motions", Common),
-            Name::DrivePieces => ("drive_pieces", Common),
-            Name::PrescribedMotions => ("prescribed_motions", Common),
-            Name::GravityEnergy => ("gravity_energy", Common),
-            Name::SupportEnergy => ("support_energy", Common),
-            Name::ElementEnergy => ("element_energy", Common),
-            Name::DriveEnergy => ("drive_energy", Common),
-            Name::StopEnergy => ("stop_energy", Common),
-            Name::DrivePower => ("drive_power", Common),
-            Name::Dissipation => ("dissipation", Common),
-            Name::StaticResidual => ("static_residual", Statics),
-            Name::TangentStiffness => ("tangent_stiffness", Statics),
-            Name::DriveForcesAtRest => ("drive_forces_at_rest", Statics),
-            Name::MassMatrix => ("mass_matrix", Dynamics),
-            Name::Bias => ("bias", Dynamics),
-            Name::ForwardDynamics => ("forward_dynamics", Dynamics),
-            Name::KineticEnergy => ("kinetic_energy", Dynamics),
-            Name::Factorise => ("factorise", Dynamics),
-            Name::Solve => ("solve", Dynamics),
-            Name::JointImpedances => ("joint_impedances", Dynamics),
-            Name::NonlinearImpedances => ("nonlinear_impedances", Dynamics),
-            Name::BaseStiffness => ("base_stiffness", Dynamics),
-            Name::BaseDamping => ("base_damping", Dynamics),
-            Name::Linearise => ("linearise", Modes),
-            Name::InternalForces => ("internal_forces", InternalForces),
-            Name::SupportPositions => ("support_positions", InternalForces),
-            Name::SectionModuli => ("section_moduli", InternalForces),
-            Name::TransformDerivatives => ("transform_derivatives", Derivatives),
-            Name::TransformSecondDerivatives => ("transform_second_derivatives", Derivatives),
-        }
-    }
-}
-
 impl Group {
     const COUNT: usize = 6;
+
+    /// With what a function is derived.
+    fn of(id: FunctionId) -> Self {
+        match id.seam() {
+            Seam::CraneModel => Group::Common,
+            Seam::Dynamics | Seam::Implicit => Group::Dynamics,
+            Seam::Statics => Group::Statics,
+            Seam::Linearise => Group::Modes,
+            Seam::InternalForces => Group::InternalForces,
+            Seam::TransformDerivatives => Group::Derivatives,
+        }
+    }
 
     /// What the compiler is asked for.
     fn analyses(self) -> Analyses {
@@ -185,13 +65,15 @@ impl Group {
 #[derive(Debug)]
 pub struct Library {
     chain: Chain,
-    groups: [OnceLock<Vec<Option<Routine>>>; Group::COUNT],
+    programs: [OnceLock<Program>; Group::COUNT],
+    routines: [OnceLock<Option<Routine>>; FunctionId::COUNT],
 }
 
 impl Library {
     /// The functions of a chain, none of them derived.
     pub fn new(chain: Chain) -> Self {
-        Self { chain, groups: Default::default() }
+        let routines = std::array::from_fn(|_| OnceLock::new());
+        Self { chain, programs: Default::default(), routines }
     }
 
     /// The chain.
@@ -200,20 +82,17 @@ impl Library {
     }
 
     /// A function; `None` where the scene does not need it.
-    pub fn routine(&self, name: Name) -> Option<&Routine> {
-        let (_, group) = name.describe();
-        let routines = self.groups[group as usize].get_or_init(|| self.assemble(group));
-        routines.get(name as usize)?.as_ref()
+    ///
+    /// # Panics
+    /// If the crane has far more than [`LiveCrane::MOST_COORDINATES`](crate::LiveCrane::MOST_COORDINATES).
+    pub fn routine(&self, id: FunctionId) -> Option<&Routine> {
+        self.routines[id as usize].get_or_init(|| self.assemble(id)).as_ref()
     }
 
-    /// The functions of a group, by their places among all.
-    fn assemble(&self, group: Group) -> Vec<Option<Routine>> {
-        let program = mechanics::derive(&self.chain, group.analyses());
-        let routine = |name: Name| {
-            let (word, own) = name.describe();
-            let function = program.function(word).filter(|_| own == group)?;
-            Routine::new(&program, function).ok()
-        };
-        Name::ALL.into_iter().map(routine).collect()
+    fn assemble(&self, id: FunctionId) -> Option<Routine> {
+        let group = Group::of(id);
+        let program = self.programs[group as usize].get_or_init(|| mechanics::derive(&self.chain, group.analyses()));
+        let routine = Routine::new(program, program.function(id)?);
+        Some(routine.expect("functions of MOST_COORDINATES coordinates fit into the registers"))
     }
 }

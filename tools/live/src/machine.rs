@@ -2,7 +2,7 @@
 
 use std::ops::{Div, Mul, Neg};
 
-use crane_codegen::symbolic::Argument;
+use crane_codegen::program::Argument;
 use crane_model::support::lanes::{Function, Fused, f64x8};
 use crane_model::support::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
 

@@ -1,7 +1,7 @@
 //! A function that is ready to run with any live parameters.
 
 use crane_codegen::lower::Constants;
-use crane_codegen::symbolic::{Function, Program, Shape};
+use crane_codegen::program::{Function, Program, Shape};
 
 use crate::assemble::{TooLarge, assemble, assemble_constants};
 use crate::bytecode::Code;

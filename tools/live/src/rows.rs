@@ -6,14 +6,14 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crane_codegen::symbolic::Shape;
+use crane_codegen::program::{FunctionId, Shape};
 use crane_model::Description;
 use crane_model::dyn_crane::DynModel;
 use crane_model::support::fma;
 
 use crate::LiveCrane;
 use crate::closing::mass_matrix;
-use crate::library::{Library, Name};
+use crate::library::Library;
 use crate::machine::{Arguments, Machine, Number};
 use crate::routine::Routine;
 
@@ -21,7 +21,7 @@ use crate::routine::Routine;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// A function of the compiler.
-    Of(Name),
+    Of(FunctionId),
     /// Derivatives of the points' positions with respect to q: points × 3 × n.
     PointJacobians,
     /// Generalized forces of supports, springs and drives that a motion takes, `A a − e`.
@@ -72,7 +72,7 @@ struct Lanes<T> {
 /// A function with room for its calls.
 #[derive(Debug)]
 struct Call<T> {
-    name: Name,
+    id: FunctionId,
     machine: Machine<T>,
     factors: Vec<T>,
     /// Where each number of the result stands among what the function writes; nowhere: zero.
@@ -83,10 +83,10 @@ impl<T: Number> Evaluation<T> {
     /// Room for a quantity of a crane, with its parameters.
     #[must_use]
     pub fn new(crane: &LiveCrane, quantity: Quantity) -> Self {
-        let names = match quantity {
-            Quantity::Of(name) => [Some(name), None],
-            Quantity::PointJacobians => [Some(Name::PointVelocities), None],
-            Quantity::InverseDynamics => [Some(Name::MassMatrix), Some(Name::Bias)],
+        let ids = match quantity {
+            Quantity::Of(id) => [Some(id), None],
+            Quantity::PointJacobians => [Some(FunctionId::PointVelocities), None],
+            Quantity::InverseDynamics => [Some(FunctionId::MassMatrix), Some(FunctionId::Bias)],
         };
         let width = width(crane, quantity);
         Self {
@@ -94,7 +94,7 @@ impl<T: Number> Evaluation<T> {
             quantity,
             width,
             sizes: [crane.size(), crane.parameters().len()],
-            calls: names.map(|name| Call::new(crane, name?)),
+            calls: ids.map(|id| Call::new(crane, id?)),
             lanes: Lanes { t: vec![], q: vec![], v: vec![], a: vec![], parameters: vec![] },
             results: vec![T::splat(0.0); width],
         }
@@ -174,26 +174,26 @@ impl<T: Number> Lanes<T> {
 }
 
 impl<T: Number> Call<T> {
-    fn new(crane: &LiveCrane, name: Name) -> Option<Self> {
+    fn new(crane: &LiveCrane, id: FunctionId) -> Option<Self> {
         let library = crane.library();
-        let routine = library.routine(name)?;
+        let routine = library.routine(id)?;
         let parameters: Vec<T> = crane.parameters().iter().copied().map(T::splat).collect();
         Some(Self {
-            name,
+            id,
             machine: routine.machine(&parameters),
             factors: vec![T::splat(0.0); routine.results()],
-            places: places(crane.description(), crane.size(), name),
+            places: places(crane.description(), crane.size(), id),
         })
     }
 
     fn set_parameters(&mut self, library: &Library, parameters: &[T]) {
-        if let Some(routine) = library.routine(self.name) {
+        if let Some(routine) = library.routine(self.id) {
             routine.set_parameters(&mut self.machine, parameters);
         }
     }
 
     fn run(&mut self, library: &Library, lanes: &Lanes<T>, out: &mut [T]) {
-        let Some(routine) = library.routine(self.name) else { return };
+        let Some(routine) = library.routine(self.id) else { return };
         let t = lanes.t.first().copied().unwrap_or(T::splat(0.0));
         let arguments = Arguments { t, q: &lanes.q, v: &lanes.v, ..Arguments::none() };
         match (routine.shape(), &self.places) {
@@ -221,53 +221,57 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
     match quantity {
         Quantity::PointJacobians => 3 * points * n,
         Quantity::InverseDynamics => n,
-        Quantity::Of(name) => match name {
-            Name::Transforms => 16 * bodies,
-            Name::TransformDerivatives => 16 * bodies * n,
-            Name::Points | Name::PointVelocities => 3 * points,
-            Name::SupportReactions => 3 * supports,
-            Name::DriveMotions => 2 * drives,
-            Name::GravityEnergy
-            | Name::SupportEnergy
-            | Name::ElementEnergy
-            | Name::DriveEnergy
-            | Name::StopEnergy
-            | Name::KineticEnergy
-            | Name::DrivePower
-            | Name::Dissipation => 1,
-            Name::MassMatrix | Name::TangentStiffness => n * n,
-            Name::Linearise => 3 * n * n,
-            Name::Forces
-            | Name::ElementForces
-            | Name::DriveForces
-            | Name::StopForces
-            | Name::FrictionForces
-            | Name::StaticResidual
-            | Name::DriveForcesAtRest
-            | Name::Bias
-            | Name::ForwardDynamics => n,
-            Name::JointImpedances | Name::NonlinearImpedances => 2 * n,
-            Name::BaseStiffness | Name::BaseDamping => 36,
-            Name::DrivePieces => 2 * description.drives.iter().map(|drive| drive.pieces).sum::<usize>(),
+        Quantity::Of(id) => match id {
+            FunctionId::Transforms => 16 * bodies,
+            FunctionId::TransformDerivatives => 16 * bodies * n,
+            FunctionId::Points | FunctionId::PointVelocities => 3 * points,
+            FunctionId::SupportReactions => 3 * supports,
+            FunctionId::DriveMotions => 2 * drives,
+            FunctionId::GravityEnergy
+            | FunctionId::SupportEnergy
+            | FunctionId::ElementEnergy
+            | FunctionId::DriveEnergy
+            | FunctionId::StopEnergy
+            | FunctionId::KineticEnergy
+            | FunctionId::DrivePower
+            | FunctionId::Dissipation => 1,
+            FunctionId::MassMatrix | FunctionId::TangentStiffness => n * n,
+            FunctionId::Linearise => 3 * n * n,
+            FunctionId::Forces
+            | FunctionId::SupportForces
+            | FunctionId::HingeForces
+            | FunctionId::ElementForces
+            | FunctionId::DriveForces
+            | FunctionId::StopForces
+            | FunctionId::FrictionForces
+            | FunctionId::StaticResidual
+            | FunctionId::DriveForcesAtRest
+            | FunctionId::Bias
+            | FunctionId::ForwardDynamics => n,
+            FunctionId::JointImpedances | FunctionId::NonlinearImpedances => 2 * n,
+            FunctionId::BaseStiffness | FunctionId::BaseDamping => 36,
+            FunctionId::DrivePieces => 2 * description.drives.iter().map(|drive| drive.pieces).sum::<usize>(),
             // What other functions need, or what is left as factors.
-            Name::InternalForces
-            | Name::SupportPositions
-            | Name::SectionModuli
-            | Name::PrescribedMotions
-            | Name::Factorise
-            | Name::Solve
-            | Name::TransformSecondDerivatives => crane.library().routine(name).map_or(0, Routine::results),
+            FunctionId::InternalForces
+            | FunctionId::SupportPositions
+            | FunctionId::SectionModuli
+            | FunctionId::PrescribedMotions
+            | FunctionId::MassMatrixAndBias
+            | FunctionId::SolveMass
+            | FunctionId::Factorise
+            | FunctionId::Solve
+            | FunctionId::TransformSecondDerivatives => crane.library().routine(id).map_or(0, Routine::results),
         },
     }
 }
 
 /// Where the numbers of transforms and their derivatives stand, whose matrices a function writes column by column.
-fn places(description: &Description, n: usize, name: Name) -> Option<Vec<Option<usize>>> {
+fn places(description: &Description, n: usize, id: FunctionId) -> Option<Vec<Option<usize>>> {
     let bodies = &description.bodies;
     let row_by_row = |matrix: usize| (0..16).map(move |place| 16 * matrix + 4 * (place % 4) + place / 4);
-    match name {
-        Name::Transforms => Some((0..bodies.len()).flat_map(row_by_row).map(Some).collect()),
-        Name::TransformDerivatives => {
+    match id {
+        FunctionId::Transforms => Some((0..bodies.len()).flat_map(row_by_row).map(Some).collect()),
+        FunctionId::TransformDerivatives => {
             let (mut places, mut first) = (Vec::new(), 0);
             for body in bodies {
                 places.extend((first..first + body.degrees_of_freedom).flat_map(row_by_row).map(Some));

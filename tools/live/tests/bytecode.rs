@@ -2,7 +2,8 @@
 
 use crane_codegen::SourceFile;
 use crane_codegen::chain::{Analyses, Chain};
-use crane_codegen::symbolic::{Argument, Expr, Function, Graph, Inputs, Program, Shape, Symbol, SymbolId, Tape};
+use crane_codegen::program::{Argument, Function, FunctionId, Inputs, Program, Shape, Symbol};
+use crane_codegen::symbolic::{Expr, Graph, SymbolId, Tape};
 use crane_codegen::{compile, mechanics};
 use crane_live::Routine;
 use crane_live::layout::{Entry, layout};
@@ -39,7 +40,7 @@ impl State {
             (0..count).map(|i| scale * (rate * (i as f64 + 1.0) + seed).sin()).collect()
         };
         let n = chain.coordinates.len();
-        let factors = program.function("factorise").map_or(0, |function| function.shape.len());
+        let factors = program.function(FunctionId::Factorise).map_or(0, |function| function.shape.len());
         let near = |guess: &[f64], wave: Vec<f64>| guess.iter().zip(wave).map(|(g, w)| g + w).collect();
         let mut base = vec![0.0; 36];
         (0..6).for_each(|i| base[7 * i] = 3.0 + seed);
@@ -104,11 +105,11 @@ fn bytecode_computes_what_the_interpreter_does() {
             routine.run(&mut routine.machine(&state.parameters), &state.arguments(), &mut result);
             let result = function.shape.close(slots(&function.shape, &result));
             let expected = program.evaluate(function, &state.inputs());
-            assert_eq!(result.len(), expected.len(), "{name} {}", function.name);
+            assert_eq!(result.len(), expected.len(), "{name} {}", function.id.name());
             let largest = expected.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
             for (result, expected) in result.iter().zip(&expected) {
                 let error = (result - expected).abs();
-                assert!(error <= 1e-12 * largest, "{name} {}: {result} for {expected}", function.name);
+                assert!(error <= 1e-12 * largest, "{name} {}: {result} for {expected}", function.id.name());
             }
         }
     }
@@ -144,7 +145,7 @@ fn a_lane_computes_what_one_state_does() {
                 let mut one = vec![0.0; routine.results()];
                 routine.run(&mut routine.machine(&state.parameters), &state.arguments(), &mut one);
                 for (eight, one) in eight.iter().zip(&one) {
-                    assert_eq!(eight.to_array()[lane], *one, "{name} {} lane {lane}", function.name);
+                    assert_eq!(eight.to_array()[lane], *one, "{name} {} lane {lane}", function.id.name());
                 }
             }
         }
@@ -166,7 +167,7 @@ fn functions_of_one_number_and_choices_are_the_interpreters() {
     let values = [(x * x + y * y).sqrt(), (x * y).exp(), (x - y).select(x * y, y + 1.0), x.tanh()];
     let outputs: Vec<_> = values.into_iter().flat_map(|value| [value, -value]).map(Expr::id).collect();
     let function = Function {
-        name: "f",
+        id: FunctionId::Forces,
         doc: "",
         equation: "",
         arguments: &[Argument::Position],
@@ -174,7 +175,7 @@ fn functions_of_one_number_and_choices_are_the_interpreters() {
         outputs,
         tape: Tape::default(),
     };
-    let program = graph.into_program(vec![symbol("x", 0), symbol("y", 1)], vec![function]);
+    let program = Program::new(graph, vec![symbol("x", 0), symbol("y", 1)], vec![function]);
     let routine = Routine::new(&program, &program.functions[0]).unwrap();
     let states: Vec<[f64; 2]> = (0..8).map(|i| [f64::from(i) - 3.5, 0.4 * f64::from(i) - 1.0]).collect();
     let q = [0, 1].map(|i| f64x8::new(std::array::from_fn(|lane| states[lane][i])));

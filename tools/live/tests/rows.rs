@@ -2,7 +2,7 @@
 
 use crane_codegen::SourceFile;
 use crane_live::rows::{Evaluation, Quantity, Rows};
-use crane_live::{LiveCrane, Name};
+use crane_live::{FunctionId, LiveCrane};
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
 use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::support::lanes::f64x8;
@@ -35,7 +35,7 @@ fn mass_matrices_with_parameters_of_their_own() {
         .collect();
     let mut out = vec![f64::NAN; COUNT * n * n];
     let rows = Rows { q: &q, parameters: &parameters, ..Rows::default() };
-    Evaluation::<f64x8>::new(&crane, Quantity::Of(Name::MassMatrix)).run(&rows, 0..COUNT, &mut out);
+    Evaluation::<f64x8>::new(&crane, Quantity::Of(FunctionId::MassMatrix)).run(&rows, 0..COUNT, &mut out);
     let mut alone = vec![f64::NAN; n * n];
     for row in 0..COUNT {
         let mut own = crane.clone();
@@ -52,7 +52,7 @@ fn transforms_are_written_row_by_row() {
     let q = poses(&crane);
     let mut out = vec![f64::NAN; COUNT * 16 * bodies];
     let rows = Rows { q: &q, ..Rows::default() };
-    Evaluation::<f64x8>::new(&crane, Quantity::Of(Name::Transforms)).run(&rows, 0..COUNT, &mut out);
+    Evaluation::<f64x8>::new(&crane, Quantity::Of(FunctionId::Transforms)).run(&rows, 0..COUNT, &mut out);
     let mut alone = vec![Matrix4::zeros(); bodies];
     for row in 0..COUNT {
         crane.transforms(&q[row * n..(row + 1) * n], &mut alone);

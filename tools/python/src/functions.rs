@@ -1,6 +1,6 @@
 //! What is computed of a state: arrays in, arrays out.
 
-use crane_live::Name;
+use crane_live::FunctionId;
 use crane_live::rows::{Evaluation, Quantity, Rows};
 use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, DynStatics};
 use crane_model::support::lanes::f64x8;
@@ -34,7 +34,7 @@ impl Crane {
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn transforms<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.description().bodies.len(), 4, 4];
-        self.compute(py, Quantity::Of(Name::Transforms), State { q: Some(q), ..State::default() }, &own, invalid)
+        self.compute(py, Quantity::Of(FunctionId::Transforms), State { q: Some(q), ..State::default() }, &own, invalid)
     }
 
     /// (..., bodies, n, 4, 4): `∂T/∂q_j`; zero for coordinates that do not move a body.
@@ -43,7 +43,7 @@ impl Crane {
         let own = [self.live.description().bodies.len(), self.live.size(), 4, 4];
         self.compute(
             py,
-            Quantity::Of(Name::TransformDerivatives),
+            Quantity::Of(FunctionId::TransformDerivatives),
             State { q: Some(q), ..State::default() },
             &own,
             invalid,
@@ -75,7 +75,7 @@ impl Crane {
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn points<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.description().points.len(), 3];
-        self.compute(py, Quantity::Of(Name::Points), State { q: Some(q), ..State::default() }, &own, invalid)
+        self.compute(py, Quantity::Of(FunctionId::Points), State { q: Some(q), ..State::default() }, &own, invalid)
     }
 
     /// (..., points, 3): their velocities, m/s.
@@ -90,7 +90,7 @@ impl Crane {
         let own = [self.live.description().points.len(), 3];
         self.compute(
             py,
-            Quantity::Of(Name::PointVelocities),
+            Quantity::Of(FunctionId::PointVelocities),
             State { q: Some(q), v: Some(v), ..State::default() },
             &own,
             invalid,
@@ -108,14 +108,20 @@ impl Crane {
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn mass_matrix<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.size(), self.live.size()];
-        self.compute(py, Quantity::Of(Name::MassMatrix), State { q: Some(q), ..State::default() }, &own, invalid)
+        self.compute(py, Quantity::Of(FunctionId::MassMatrix), State { q: Some(q), ..State::default() }, &own, invalid)
     }
 
     /// (..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m.
     #[pyo3(signature = (q, v, *, invalid="raise"))]
     fn bias<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, v: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.size()];
-        self.compute(py, Quantity::Of(Name::Bias), State { q: Some(q), v: Some(v), ..State::default() }, &own, invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::Bias),
+            State { q: Some(q), v: Some(v), ..State::default() },
+            &own,
+            invalid,
+        )
     }
 
     /// (..., n): generalized forces f of supports, elements, drives and hinges, N and N m. t: s, 0 unless given.
@@ -129,7 +135,7 @@ impl Crane {
         invalid: &str,
     ) -> Array<'py> {
         let own = [self.live.size()];
-        self.compute(py, Quantity::Of(Name::Forces), State { t, q: Some(q), v: Some(v), a: None }, &own, invalid)
+        self.compute(py, Quantity::Of(FunctionId::Forces), State { t, q: Some(q), v: Some(v), a: None }, &own, invalid)
     }
 
     /// (..., n): generalized forces of the springs and dampers between rigid elements, N m.
@@ -144,7 +150,7 @@ impl Crane {
         let own = [self.live.size()];
         self.compute(
             py,
-            Quantity::Of(Name::ElementForces),
+            Quantity::Of(FunctionId::ElementForces),
             State { q: Some(q), v: Some(v), ..State::default() },
             &own,
             invalid,
@@ -162,7 +168,13 @@ impl Crane {
         invalid: &str,
     ) -> Array<'py> {
         let own = [self.live.size()];
-        self.compute(py, Quantity::Of(Name::DriveForces), State { t, q: Some(q), v: Some(v), a: None }, &own, invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::DriveForces),
+            State { t, q: Some(q), v: Some(v), a: None },
+            &own,
+            invalid,
+        )
     }
 
     /// (..., n): generalized forces of the end stops, N and N m.
@@ -176,14 +188,20 @@ impl Crane {
     ) -> Array<'py> {
         let own = [self.live.size()];
         let state = State { q: Some(q), v: Some(v), ..State::default() };
-        self.compute(py, Quantity::Of(Name::StopForces), state, &own, invalid)
+        self.compute(py, Quantity::Of(FunctionId::StopForces), state, &own, invalid)
     }
 
     /// (..., n): generalized forces of friction in joints, N and N m.
     #[pyo3(signature = (v, *, invalid="raise"))]
     fn friction_forces<'py>(&self, py: Python<'py>, v: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.size()];
-        self.compute(py, Quantity::Of(Name::FrictionForces), State { v: Some(v), ..State::default() }, &own, invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::FrictionForces),
+            State { v: Some(v), ..State::default() },
+            &own,
+            invalid,
+        )
     }
 
     /// (..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m.
@@ -207,7 +225,7 @@ impl Crane {
         let own = [self.live.description().supports.len(), 3];
         self.compute(
             py,
-            Quantity::Of(Name::SupportReactions),
+            Quantity::Of(FunctionId::SupportReactions),
             State { q: Some(q), v: Some(v), ..State::default() },
             &own,
             invalid,
@@ -218,7 +236,13 @@ impl Crane {
     #[pyo3(signature = (t, *, invalid="raise"))]
     fn drive_motions<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.description().drives.len(), 2];
-        self.compute(py, Quantity::Of(Name::DriveMotions), State { t: Some(t), ..State::default() }, &own, invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::DriveMotions),
+            State { t: Some(t), ..State::default() },
+            &own,
+            invalid,
+        )
     }
 
     /// (..., n): accelerations q̈ of `A q̈ = e + f`, m/s² and rad/s².
@@ -234,7 +258,7 @@ impl Crane {
         let own = [self.live.size()];
         self.compute(
             py,
-            Quantity::Of(Name::ForwardDynamics),
+            Quantity::Of(FunctionId::ForwardDynamics),
             State { t, q: Some(q), v: Some(v), a: None },
             &own,
             invalid,
@@ -265,21 +289,33 @@ impl Crane {
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn static_residual<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.size()];
-        self.compute(py, Quantity::Of(Name::StaticResidual), State { q: Some(q), ..State::default() }, &own, invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::StaticResidual),
+            State { q: Some(q), ..State::default() },
+            &own,
+            invalid,
+        )
     }
 
     /// (..., n, n): `∂²E_p/∂q²` at t = 0, N/m, N and N m.
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn tangent_stiffness<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.size(), self.live.size()];
-        self.compute(py, Quantity::Of(Name::TangentStiffness), State { q: Some(q), ..State::default() }, &own, invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::TangentStiffness),
+            State { q: Some(q), ..State::default() },
+            &own,
+            invalid,
+        )
     }
 
     /// (..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them.
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn small_motions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [3, self.live.size(), self.live.size()];
-        self.compute(py, Quantity::Of(Name::Linearise), State { q: Some(q), ..State::default() }, &own, invalid)
+        self.compute(py, Quantity::Of(FunctionId::Linearise), State { q: Some(q), ..State::default() }, &own, invalid)
     }
 
     /// (...): kinetic energy, J.
@@ -293,7 +329,7 @@ impl Crane {
     ) -> Array<'py> {
         self.compute(
             py,
-            Quantity::Of(Name::KineticEnergy),
+            Quantity::Of(FunctionId::KineticEnergy),
             State { q: Some(q), v: Some(v), ..State::default() },
             &[],
             invalid,
@@ -303,19 +339,37 @@ impl Crane {
     /// (...): potential energy of gravity, zero at the world's origin, J.
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn gravity_energy<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
-        self.compute(py, Quantity::Of(Name::GravityEnergy), State { q: Some(q), ..State::default() }, &[], invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::GravityEnergy),
+            State { q: Some(q), ..State::default() },
+            &[],
+            invalid,
+        )
     }
 
     /// (...): energy of the supports' springs, J.
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn support_energy<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
-        self.compute(py, Quantity::Of(Name::SupportEnergy), State { q: Some(q), ..State::default() }, &[], invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::SupportEnergy),
+            State { q: Some(q), ..State::default() },
+            &[],
+            invalid,
+        )
     }
 
     /// (...): energy of the springs between rigid elements, J.
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn element_energy<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
-        self.compute(py, Quantity::Of(Name::ElementEnergy), State { q: Some(q), ..State::default() }, &[], invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::ElementEnergy),
+            State { q: Some(q), ..State::default() },
+            &[],
+            invalid,
+        )
     }
 
     /// (...): energy of the drives' springs, J.
@@ -327,13 +381,19 @@ impl Crane {
         t: Given<'_, 'py>,
         invalid: &str,
     ) -> Array<'py> {
-        self.compute(py, Quantity::Of(Name::DriveEnergy), State { t, q: Some(q), ..State::default() }, &[], invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::DriveEnergy),
+            State { t, q: Some(q), ..State::default() },
+            &[],
+            invalid,
+        )
     }
 
     /// (...): energy of the end stops, J.
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn stop_energy<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
-        self.compute(py, Quantity::Of(Name::StopEnergy), State { q: Some(q), ..State::default() }, &[], invalid)
+        self.compute(py, Quantity::Of(FunctionId::StopEnergy), State { q: Some(q), ..State::default() }, &[], invalid)
     }
 
     /// (...): power that the drives' motions put in, W.
@@ -346,7 +406,13 @@ impl Crane {
         t: Given<'_, 'py>,
         invalid: &str,
     ) -> Array<'py> {
-        self.compute(py, Quantity::Of(Name::DrivePower), State { t, q: Some(q), v: Some(v), a: None }, &[], invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::DrivePower),
+            State { t, q: Some(q), v: Some(v), a: None },
+            &[],
+            invalid,
+        )
     }
 
     /// (...): power that all dampers take out, W.
@@ -359,7 +425,13 @@ impl Crane {
         t: Given<'_, 'py>,
         invalid: &str,
     ) -> Array<'py> {
-        self.compute(py, Quantity::Of(Name::Dissipation), State { t, q: Some(q), v: Some(v), a: None }, &[], invalid)
+        self.compute(
+            py,
+            Quantity::Of(FunctionId::Dissipation),
+            State { t, q: Some(q), v: Some(v), a: None },
+            &[],
+            invalid,
+        )
     }
 }
 

@@ -2,11 +2,12 @@
 
 use super::{Derivation, function, sum};
 use crate::mechanics::{drives, gravity, joints, springs, supports};
-use crate::symbolic::Argument::{Position, Time, Velocity};
-use crate::symbolic::{Argument, Expr, Function, Shape, Tape};
+use crate::program::Argument::{Position, Time, Velocity};
+use crate::program::{Argument, Function, FunctionId, Shape};
+use crate::symbolic::{Expr, Tape};
 
-/// A part of the forces: name, documentation, equation and arguments of its function, and its expressions.
-type Part<'g> = (&'static str, &'static str, &'static str, &'static [Argument], Vec<Expr<'g>>);
+/// A part of the forces: which, documentation, equation and arguments of its function, and its expressions.
+type Part<'g> = (FunctionId, &'static str, &'static str, &'static [Argument], Vec<Expr<'g>>);
 
 impl<'g> Derivation<'g> {
     pub(super) fn forces(&self) -> Vec<Function> {
@@ -18,7 +19,7 @@ impl<'g> Derivation<'g> {
             let forces = supports::forces(model, &self.kinematics, &model.v);
             parts.push(forces.clone());
             functions.push(function(
-                "support_forces",
+                FunctionId::SupportForces,
                 "Generalized forces of the supports, N and N m.",
                 "−Jᵀ (s e + d ė) [Urbaś 2016, Eq. (18)]",
                 &[Position, Velocity],
@@ -26,7 +27,7 @@ impl<'g> Derivation<'g> {
                 forces,
             ));
             functions.push(function(
-                "support_reactions",
+                FunctionId::SupportReactions,
                 "Forces of the supports on the crane in the world frame, N.",
                 "−s e − d ė [Urbaś 2016, Eq. (16)]",
                 &[Position, Velocity],
@@ -38,7 +39,7 @@ impl<'g> Derivation<'g> {
             let forces = springs::element_forces(model, &model.q, &model.v);
             parts.push(forces.clone());
             functions.push(function(
-                "element_forces",
+                FunctionId::ElementForces,
                 "Generalized forces of the springs and dampers between rigid elements, N m.",
                 "−S q̃ − D q̃̇ [Urbaś 2016, Eq. (15)]",
                 &[Position, Velocity],
@@ -55,7 +56,7 @@ impl<'g> Derivation<'g> {
             let forces = springs::hinge_forces(model, &model.v);
             parts.push(forces.clone());
             functions.push(function(
-                "hinge_forces",
+                FunctionId::HingeForces,
                 "Generalized forces of viscous damping in passive joints, N and N m.",
                 "−d q̇",
                 &[Velocity],
@@ -63,14 +64,14 @@ impl<'g> Derivation<'g> {
                 forces,
             ));
         }
-        for (name, doc, equation, arguments, forces) in self.joint_forces() {
+        for (id, doc, equation, arguments, forces) in self.joint_forces() {
             parts.push(forces.clone());
-            functions.push(function(name, doc, equation, arguments, vector(), forces));
+            functions.push(function(id, doc, equation, arguments, vector(), forces));
         }
         if parts.len() > 1 {
             functions.push(
                 function(
-                    "forces",
+                    FunctionId::Forces,
                     "Generalized forces of all but inertia and gravity, N and N m.",
                     "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
                     &[Time, Position, Velocity],
@@ -89,7 +90,7 @@ impl<'g> Derivation<'g> {
         let mut parts: Vec<Part<'g>> = Vec::new();
         if model.chain.stops().next().is_some() {
             parts.push((
-                "stop_forces",
+                FunctionId::StopForces,
                 "Generalized forces of the end stops, N and N m.",
                 "−k δ max(0, 1 + a δ̇)",
                 &[Position, Velocity],
@@ -98,7 +99,7 @@ impl<'g> Derivation<'g> {
         }
         if model.chain.frictions().next().is_some() {
             parts.push((
-                "friction_forces",
+                FunctionId::FrictionForces,
                 "Generalized forces of joint friction, N and N m.",
                 "−(F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) − b q̇",
                 &[Velocity],
@@ -118,7 +119,7 @@ impl<'g> Derivation<'g> {
         };
         let mut functions = vec![
             function(
-                "drive_forces",
+                FunctionId::DriveForces,
                 "Generalized forces of the drives, N and N m.",
                 equation,
                 &[Time, Position, Velocity],
@@ -127,7 +128,7 @@ impl<'g> Derivation<'g> {
             )
             .by(tape),
             function(
-                "drive_motions",
+                FunctionId::DriveMotions,
                 "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
                 "q_dr(t), q̇_dr(t)",
                 &[Time],
@@ -138,7 +139,7 @@ impl<'g> Derivation<'g> {
         let pieces = drives::pieces(model);
         if !pieces.is_empty() {
             functions.push(function(
-                "drive_pieces",
+                FunctionId::DrivePieces,
                 "Begin and end of the pieces in which the drives' motions are smooth, drive by drive, s.",
                 "t_begin, t_end",
                 &[],
@@ -148,7 +149,7 @@ impl<'g> Derivation<'g> {
         }
         if self.rigid {
             functions.push(function(
-                "prescribed_motions",
+                FunctionId::PrescribedMotions,
                 "Position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every coordinate that a rigid drive prescribes.",
                 "q_dr(t), q̇_dr(t)",
                 &[Time],
@@ -203,9 +204,9 @@ impl<'g> Derivation<'g> {
     pub(super) fn energies(&self) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
         let scalar =
-            |name, doc, equation, arguments, expr| function(name, doc, equation, arguments, Shape::Scalar, vec![expr]);
+            |id, doc, equation, arguments, expr| function(id, doc, equation, arguments, Shape::Scalar, vec![expr]);
         let mut functions = vec![scalar(
-            "gravity_energy",
+            FunctionId::GravityEnergy,
             "Potential energy of gravity, zero at the world's origin, J.",
             "E_g = −Σ γ · ∫ x dm [Urbaś 2016, Eq. (6)]",
             &[Position],
@@ -213,7 +214,7 @@ impl<'g> Derivation<'g> {
         )];
         if !chain.supports.is_empty() {
             functions.push(scalar(
-                "support_energy",
+                FunctionId::SupportEnergy,
                 "Energy of the supports' springs, J.",
                 "½ Σ s e² [Urbaś 2016, Eqs. (16)–(17)]",
                 &[Position],
@@ -222,7 +223,7 @@ impl<'g> Derivation<'g> {
         }
         if !chain.elements.is_empty() {
             functions.push(scalar(
-                "element_energy",
+                FunctionId::ElementEnergy,
                 "Energy of the springs between rigid elements, J.",
                 "½ q̃ᵀ S q̃ [Urbaś 2016, Eq. (14)]",
                 &[Position],
@@ -232,7 +233,7 @@ impl<'g> Derivation<'g> {
         if !chain.drives.is_empty() {
             if chain.drives.iter().any(|drive| drive.spring().is_some()) {
                 functions.push(scalar(
-                    "drive_energy",
+                    FunctionId::DriveEnergy,
                     "Energy of the drives' springs, J.",
                     "½ Σ s (q_dr − q)² [Urbaś 2016, Eq. (19)]",
                     &[Time, Position],
@@ -245,7 +246,7 @@ impl<'g> Derivation<'g> {
             });
             functions.push(
                 scalar(
-                    "drive_power",
+                    FunctionId::DrivePower,
                     "Power that the prescribed motions put in, W.",
                     "Σ t_dr q̇_dr",
                     &[Time, Position, Velocity],
@@ -256,7 +257,7 @@ impl<'g> Derivation<'g> {
         }
         if chain.stops().next().is_some() {
             functions.push(scalar(
-                "stop_energy",
+                FunctionId::StopEnergy,
                 "Energy of the end stops, J.",
                 "½ Σ k δ²",
                 &[Position],
@@ -268,7 +269,7 @@ impl<'g> Derivation<'g> {
         let dissipation = if chain.forces.is_empty() { linear } else { linear + joints::dissipation(model) };
         if !dissipation.is_zero() {
             functions.push(scalar(
-                "dissipation",
+                FunctionId::Dissipation,
                 "Power that all dampers take out, W.",
                 "2R [Urbaś 2016, Eqs. (14), (17), (19)]",
                 &[Time, Position, Velocity],

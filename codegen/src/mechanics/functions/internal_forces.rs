@@ -4,8 +4,9 @@ use super::{Derivation, function};
 use crate::chain::{Beam, Moduli};
 use crate::mechanics::model::Model;
 use crate::mechanics::{newton_euler, supports};
-use crate::symbolic::Argument::{Acceleration, Position, Velocity};
-use crate::symbolic::{Expr, Function, Shape, Struct};
+use crate::program::Argument::{Acceleration, Position, Velocity};
+use crate::program::{Function, FunctionId, Shape, Struct};
+use crate::symbolic::Expr;
 
 impl Derivation<'_> {
     pub(super) fn internal_forces(&self) -> Vec<Function> {
@@ -13,7 +14,7 @@ impl Derivation<'_> {
         let (wrenches, tape) = model.graph.recorded(|| newton_euler::internal_forces(model, &self.factors));
         let mut functions = vec![
             function(
-                "internal_forces",
+                FunctionId::InternalForces,
                 "Force (N) and moment (N m) that what is beyond a cut exerts on what is before it, cut by cut.",
                 "−Σ ∫ (ẍ − γ) dm, −Σ ∫ r × (ẍ − γ) dm over everything beyond, by Newton and Euler",
                 &[Position, Velocity, Acceleration],
@@ -24,7 +25,7 @@ impl Derivation<'_> {
         ];
         if !model.chain.supports.is_empty() {
             functions.push(function(
-                "support_positions",
+                FunctionId::SupportPositions,
                 "Positions of the supports' attachment points in the world frame, m.",
                 "T(1) r_E",
                 &[Position],
@@ -34,7 +35,7 @@ impl Derivation<'_> {
         }
         if !model.chain.beams.is_empty() {
             functions.push(function(
-                "section_moduli",
+                FunctionId::SectionModuli,
                 "What stresses of beams follow from, beam by beam: areas (m²), moduli (m³), the allowable stress (Pa); 0 where not known.",
                 "A, W_y, W_z, W_t, A_y, A_z; yield stress over safety factor",
                 &[],

@@ -5,8 +5,9 @@ mod internal_forces;
 mod statics;
 
 use crate::chain::{Analyses, BodyId, Chain};
-use crate::symbolic::Argument::{self, BaseResistance, Factors, Position, Resistance, Right, Time, Velocity};
-use crate::symbolic::{Expr, Function, Graph, Program, Shape, Stages, Symbol, SymbolId, Tape};
+use crate::program::Argument::{self, BaseResistance, Factors, Position, Resistance, Right, Time, Velocity};
+use crate::program::{Function, FunctionId, Program, Shape, Symbol};
+use crate::symbolic::{Expr, Graph, Stages, SymbolId, Tape};
 
 use super::articulated::Effort;
 use super::columns::columns;
@@ -23,7 +24,7 @@ use super::{drives, energy, joints, newton_euler, points, resisted, rotors, spri
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
     let mut symbols = Model::symbols(chain);
     let functions = Derivation::new(&graph, chain).functions(analyses, &mut symbols);
-    graph.into_program(symbols, functions)
+    Program::new(graph, symbols, functions)
 }
 
 /// A model with everything that several functions share.
@@ -83,7 +84,7 @@ impl<'g> Derivation<'g> {
     fn poses(&self) -> Vec<Function> {
         let chain = self.model.chain;
         let mut functions = vec![function(
-            "transforms",
+            FunctionId::Transforms,
             "Transforms T of all bodies into the world frame; translations in m.",
             "T(p) = T(p−1) T̃(p) [Urbaś 2016, Eq. (3)]",
             &[Position],
@@ -93,7 +94,7 @@ impl<'g> Derivation<'g> {
         if !chain.points.is_empty() {
             let shape = || Shape::Vectors(chain.points.len());
             functions.push(function(
-                "points",
+                FunctionId::Points,
                 "Positions of the points of interest in the world frame, m.",
                 "T(p) r",
                 &[Position],
@@ -101,7 +102,7 @@ impl<'g> Derivation<'g> {
                 points::positions(&self.model, &self.kinematics),
             ));
             functions.push(function(
-                "point_velocities",
+                FunctionId::PointVelocities,
                 "Velocities of the points of interest in the world frame, m/s.",
                 "Ṫ(p) r = ω × x + υ",
                 &[Position, Velocity],
@@ -137,7 +138,7 @@ impl<'g> Derivation<'g> {
         both.extend(&bias);
         vec![
             function(
-                "forward_dynamics",
+                FunctionId::ForwardDynamics,
                 "Accelerations q̈, m/s² and rad/s².",
                 "A q̈ = e + f [Urbaś 2016, Eq. (23)], by articulated bodies",
                 &[Time, Position, Velocity],
@@ -146,7 +147,7 @@ impl<'g> Derivation<'g> {
             )
             .by(tape),
             function(
-                "solve_mass",
+                FunctionId::SolveMass,
                 "Solution x of `A x = r`; r in N and N m, x in m/s² and rad/s².",
                 "A x = r, by articulated bodies at rest",
                 &[Position, Right],
@@ -155,7 +156,7 @@ impl<'g> Derivation<'g> {
             )
             .by(solution_tape),
             function(
-                "mass_matrix",
+                FunctionId::MassMatrix,
                 "Mass matrix A; kg, kg m and kg m².",
                 "a_ij = tr(Ω_i W_max(i,j) Ω_jᵀ) [Urbaś 2016, Eq. (5)]",
                 &[Position],
@@ -164,7 +165,7 @@ impl<'g> Derivation<'g> {
             )
             .by(mass_tape.clone()),
             function(
-                "mass_matrix_and_bias",
+                FunctionId::MassMatrixAndBias,
                 "Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m.",
                 "A, e [Urbaś 2016, Eqs. (5), (9)]",
                 &[Position, Velocity],
@@ -173,7 +174,7 @@ impl<'g> Derivation<'g> {
             )
             .by(mass_tape.then(bias_tape.clone())),
             function(
-                "bias",
+                FunctionId::Bias,
                 "Bias e: velocity and gravity forces, N and N m.",
                 "e = −(h + g), h_i + g_i = tr(Ω_i Σ T H B̄ᵀ) [Urbaś 2016, Eqs. (5), (7), (9)]",
                 &[Position, Velocity],
@@ -182,7 +183,7 @@ impl<'g> Derivation<'g> {
             )
             .by(bias_tape),
             function(
-                "kinetic_energy",
+                FunctionId::KineticEnergy,
                 "Kinetic energy, J.",
                 "E_k = ½ Σ tr(Ṫ H Ṫᵀ) [Urbaś 2016, Eq. (4)]",
                 &[Position, Velocity],
@@ -225,7 +226,7 @@ impl<'g> Derivation<'g> {
         }));
         let mut functions = vec![
             function(
-                "factorise",
+                FunctionId::Factorise,
                 "Factors of `A + D̂` for [`solve`]: D̂ has `resistance` on its diagonal, but `base` in the base's rows and columns.",
                 "A + D̂, by articulated bodies at rest",
                 &[Position, Resistance, BaseResistance],
@@ -234,7 +235,7 @@ impl<'g> Derivation<'g> {
             )
             .by(tape),
             function(
-                "solve",
+                FunctionId::Solve,
                 "Solution x of `(A + D̂) x = r` from the factors of `A + D̂`.",
                 "(A + D̂) x = r",
                 &[Factors, Right],
@@ -248,7 +249,7 @@ impl<'g> Derivation<'g> {
         let diagonal =
             |j: usize| [&stiffness, &damping].map(|m| if base.contains(&j) { model.zero() } else { m.at(j, j) });
         functions.push(function(
-            "joint_impedances",
+            FunctionId::JointImpedances,
             "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, those of the base left out.",
             "s, d [Urbaś 2016, Eqs. (14), (19)]",
             &[],
@@ -257,7 +258,7 @@ impl<'g> Derivation<'g> {
         ));
         if !model.chain.forces.is_empty() {
             functions.push(function(
-                "nonlinear_impedances",
+                FunctionId::NonlinearImpedances,
                 "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates.",
                 "∂F/∂q, max(0, ∂F/∂q̇)",
                 &[Time, Position, Velocity],
@@ -273,20 +274,20 @@ impl<'g> Derivation<'g> {
                 };
                 (0..6).flat_map(|i| (i..6).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).collect()
             };
-            for (name, doc, matrix) in [
+            for (id, doc, matrix) in [
                 (
-                    "base_stiffness",
+                    FunctionId::BaseStiffness,
                     "Stiffness of supports and drives over the base's coordinates; N/m, N and N m.",
                     &stiffness,
                 ),
                 (
-                    "base_damping",
+                    FunctionId::BaseDamping,
                     "Damping of supports, drives and joints over the base's coordinates; N s/m, N s and N m s.",
                     &damping,
                 ),
             ] {
                 functions.push(function(
-                    name,
+                    id,
                     doc,
                     "Σ Jᵀ diag(s, d) J [Urbaś 2016, Eq. (18)]",
                     &[Position],
@@ -316,7 +317,7 @@ impl<'g> Derivation<'g> {
         let (second_shape, second) = transforms::second_derivatives(model, kinematics);
         vec![
             function(
-                "transform_derivatives",
+                FunctionId::TransformDerivatives,
                 "Derivatives ∂T/∂q_j of every body, j running over the coordinates that move it; 1, m, 1/m.",
                 "∂T/∂q_j = Ω_j T",
                 &[Position],
@@ -324,7 +325,7 @@ impl<'g> Derivation<'g> {
                 transforms::derivatives(model, kinematics),
             ),
             function(
-                "transform_second_derivatives",
+                FunctionId::TransformSecondDerivatives,
                 "Second derivatives ∂²T/∂q_m∂q_n of every body, m ≤ n running over the coordinates that move it.",
                 "∂²T/∂q_m∂q_n = Ω_m Ω_n T",
                 &[Position],
@@ -341,14 +342,14 @@ fn sum<'g>(parts: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
 }
 
 fn function(
-    name: &'static str,
+    id: FunctionId,
     doc: &'static str,
     equation: &'static str,
     arguments: &'static [Argument],
     shape: Shape,
     outputs: Vec<Expr<'_>>,
 ) -> Function {
-    debug_assert_eq!(shape.len(), outputs.len(), "{name}");
+    debug_assert_eq!(shape.len(), outputs.len(), "{id:?}");
     let outputs = outputs.into_iter().map(Expr::id).collect();
-    Function { name, doc, equation, arguments, shape, outputs, tape: Tape::default() }
+    Function { id, doc, equation, arguments, shape, outputs, tape: Tape::default() }
 }

@@ -4,14 +4,15 @@ use super::{Derivation, function, sum};
 use crate::mechanics::columns::columns;
 use crate::mechanics::vector::SymmetricMatrix;
 use crate::mechanics::{drives, gravity, joints, springs, supports};
-use crate::symbolic::Argument::Position;
-use crate::symbolic::{Expr, Function, Shape};
+use crate::program::Argument::Position;
+use crate::program::{Function, FunctionId, Shape};
+use crate::symbolic::Expr;
 
 impl<'g> Derivation<'g> {
     pub(super) fn statics(&self) -> Vec<Function> {
         let mut functions = vec![
             function(
-                "static_residual",
+                FunctionId::StaticResidual,
                 "Gradient of the potential energy at t = 0, zero in equilibrium; N and N m.",
                 "∂E_p/∂q [Urbaś 2016, Eqs. (7), (15), (18), (20)]",
                 &[Position],
@@ -19,7 +20,7 @@ impl<'g> Derivation<'g> {
                 self.static_residual(),
             ),
             function(
-                "tangent_stiffness",
+                FunctionId::TangentStiffness,
                 "Tangent stiffness K: second derivatives of the potential energy; N/m, N and N m.",
                 "∂²E_p/∂q∂q",
                 &[Position],
@@ -29,7 +30,7 @@ impl<'g> Derivation<'g> {
         ];
         if self.rigid {
             functions.push(function(
-                "drive_forces_at_rest",
+                FunctionId::DriveForcesAtRest,
                 "Generalized forces of the drives that hold the crane at rest at t = 0, N and N m.",
                 "s (q_dr − q) [Urbaś 2016, Eq. (20)]; of rigid drives ∂E_p/∂q_j",
                 &[Position],
@@ -104,7 +105,7 @@ impl<'g> Derivation<'g> {
         let shape =
             Shape::Record("Linearisation", vec![("mass", matrix()), ("stiffness", matrix()), ("damping", matrix())]);
         function(
-            "linearise",
+            FunctionId::Linearise,
             "Mass matrix A, tangent stiffness K and damping matrix D of small motions about a pose at rest.",
             "A δq̈ + D δq̇ + K δq = 0",
             &[Position],

@@ -11,7 +11,8 @@ mod registers;
 mod select;
 
 use crane_codegen::lower::{Constants, fuse};
-use crane_codegen::symbolic::{ExprId, Function, Program};
+use crane_codegen::program::{Function, Program};
+use crane_codegen::symbolic::ExprId;
 
 use crate::bytecode::Code;
 use crate::layout::layout;

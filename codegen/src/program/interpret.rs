@@ -1,68 +1,9 @@
 //! The semantics of a program: runs it without rustc, over any scalar.
 
 use std::collections::BTreeMap;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::op::{Constant, Op};
-use super::program::{Argument, Function, Program};
-use super::stumpff;
-
-/// What the interpreter needs from a number: f64, a dual number, a number of higher precision.
-pub trait Scalar:
-    Clone + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
-{
-    /// The number of a constant.
-    fn from_f64(value: f64) -> Self;
-    /// Sine and cosine.
-    fn sin_cos(&self) -> (Self, Self);
-    /// Stumpff's function `c_k(x) = Σ (−x)^i/(2i + k)!`, 0 ≤ x ≤ 100; the default uses its series.
-    #[must_use]
-    fn stumpff(&self, k: u8) -> Self {
-        stumpff::series(k, self)
-    }
-    /// The smaller of two.
-    #[must_use]
-    fn min(self, other: Self) -> Self;
-    /// The larger of two.
-    #[must_use]
-    fn max(self, other: Self) -> Self;
-    /// Square root.
-    #[must_use]
-    fn sqrt(&self) -> Self;
-    /// Exponential.
-    #[must_use]
-    fn exp(&self) -> Self;
-    /// `positive` if the number is above zero, otherwise `other`.
-    #[must_use]
-    fn select(&self, positive: Self, other: Self) -> Self;
-}
-
-impl Scalar for f64 {
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-    fn sin_cos(&self) -> (Self, Self) {
-        f64::sin_cos(*self)
-    }
-    fn stumpff(&self, k: u8) -> Self {
-        stumpff::of(k, *self)
-    }
-    fn min(self, other: Self) -> Self {
-        f64::min(self, other)
-    }
-    fn max(self, other: Self) -> Self {
-        f64::max(self, other)
-    }
-    fn sqrt(&self) -> Self {
-        f64::sqrt(*self)
-    }
-    fn exp(&self) -> Self {
-        f64::exp(*self)
-    }
-    fn select(&self, positive: Self, other: Self) -> Self {
-        if *self > 0.0 { positive } else { other }
-    }
-}
+use super::{Argument, Function, Program};
+use crate::symbolic::{Constant, ExprId, Op, Scalar};
 
 /// Values of a program's inputs, argument by argument.
 #[derive(Clone, Debug)]
@@ -98,7 +39,7 @@ impl Program {
         let needed = self.needed(function.outputs.iter().copied());
         let mut values: Vec<Option<S>> = vec![None; self.operations.len()];
         for (index, op) in self.operations.iter().enumerate().filter(|(index, _)| needed[*index]) {
-            let of = |id: super::ExprId| values[id.index()].clone().expect("operands come before their users");
+            let of = |id: ExprId| values[id.index()].clone().expect("operands come before their users");
             let value = match *op {
                 Op::Constant(c) => S::from_f64(Constant::value(c)),
                 Op::Symbol(id) => {

@@ -1,10 +1,19 @@
-//! Named functions over one graph.
+//! What is derived of a crane: named functions over one graph of expressions, and what they mean.
+
+mod closing;
+mod count;
+mod id;
+mod interpret;
+mod shape;
 
 use std::collections::HashMap;
 
-use super::op::{ExprId, Op, SymbolId};
-use super::shape::Shape;
-use super::tape::Tape;
+use crate::symbolic::{ExprId, Graph, Nodes, Op, SymbolId, Tape};
+
+pub use count::OperationCount;
+pub use id::{FunctionId, Seam};
+pub use interpret::Inputs;
+pub use shape::{Point, Shape, Struct};
 
 /// Functions that share one graph of expressions.
 #[derive(Clone, Debug, Default)]
@@ -62,8 +71,8 @@ pub enum Argument {
 /// A function: its documentation, arguments and result.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// Name, an identifier.
-    pub name: &'static str,
+    /// Which one it is.
+    pub id: FunctionId,
     /// First line of its documentation: what it returns, with units.
     pub doc: &'static str,
     /// Equations it implements, and their source.
@@ -87,10 +96,17 @@ impl Function {
 }
 
 impl Program {
-    /// The function of this name.
+    /// The program of `functions` over a graph, once it has all its expressions.
     #[must_use]
-    pub fn function(&self, name: &str) -> Option<&Function> {
-        self.functions.iter().find(|f| f.name == name)
+    pub fn new(graph: Graph, symbols: Vec<Symbol>, functions: Vec<Function>) -> Self {
+        let Nodes { operations, index, names } = graph.into_nodes();
+        Program { operations, index, names, symbols, functions }
+    }
+
+    /// A function, if the crane has it.
+    #[must_use]
+    pub fn function(&self, id: FunctionId) -> Option<&Function> {
+        self.functions.iter().find(|function| function.id == id)
     }
 
     /// The operation of an expression.
@@ -100,11 +116,8 @@ impl Program {
     }
 
     /// All expressions, operands before their users.
-    ///
-    /// # Panics
-    /// If there are 2^32 expressions or more, which no graph can hold.
     pub fn ids(&self) -> impl DoubleEndedIterator<Item = ExprId> + use<> {
-        (0..u32::try_from(self.operations.len()).expect("fewer than 2^32 expressions")).map(ExprId)
+        (0..self.operations.len()).map(ExprId::at)
     }
 
     /// Adds an operation, even if an equal one exists.
@@ -113,7 +126,7 @@ impl Program {
     /// If there are 2^32 expressions or more, which no graph can hold.
     pub fn append(&mut self, op: Op) -> ExprId {
         self.operations.push(op);
-        ExprId(u32::try_from(self.operations.len() - 1).expect("fewer than 2^32 expressions"))
+        ExprId::at(self.operations.len() - 1)
     }
 
     /// Adds an input.

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::ops::AddAssign;
 
-use super::op::{ExprId, Op};
-use super::program::Program;
+use super::Program;
+use crate::symbolic::{ExprId, Op};
 
 /// Floating-point operations by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

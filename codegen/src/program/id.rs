@@ -1,0 +1,130 @@
+//! The functions that a crane may have.
+
+/// Writes the list once: as an enumeration, with the name and the trait of each.
+macro_rules! functions {
+    ($($seam:ident { $($id:ident = $name:literal,)* })*) => {
+        /// A function of a crane, named as the method of the runtime that calls it; documentation and equation stand with its
+        /// derivation, see [`Function`](super::Function).
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[expect(missing_docs, reason = "the methods are documented")]
+        pub enum FunctionId {
+            $($($id,)*)*
+        }
+
+        impl FunctionId {
+            /// All of them, trait by trait.
+            pub const ALL: &[FunctionId] = &[$($(FunctionId::$id,)*)*];
+
+            /// Its name in generated code, an identifier.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $($(FunctionId::$id => $name,)*)*
+                }
+            }
+
+            /// The trait of the runtime that has it as a method.
+            #[must_use]
+            pub const fn seam(self) -> Seam {
+                match self {
+                    $($(FunctionId::$id => Seam::$seam,)*)*
+                }
+            }
+        }
+
+        /// A trait of the runtime that generated functions stand behind.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[expect(missing_docs, reason = "the traits are documented")]
+        pub enum Seam {
+            $($seam,)*
+        }
+
+        impl Seam {
+            /// All of them.
+            pub const ALL: &[Seam] = &[$(Seam::$seam,)*];
+
+            /// The name of the trait.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Seam::$seam => stringify!($seam),)*
+                }
+            }
+
+            /// Its functions, in the order of their methods.
+            pub fn functions(self) -> impl Iterator<Item = FunctionId> {
+                FunctionId::ALL.iter().copied().filter(move |id| id.seam() == self)
+            }
+        }
+    };
+}
+
+functions! {
+    CraneModel {
+        Transforms = "transforms",
+        Points = "points",
+        PointVelocities = "point_velocities",
+        Forces = "forces",
+        SupportForces = "support_forces",
+        ElementForces = "element_forces",
+        DriveForces = "drive_forces",
+        HingeForces = "hinge_forces",
+        StopForces = "stop_forces",
+        FrictionForces = "friction_forces",
+        SupportReactions = "support_reactions",
+        DriveMotions = "drive_motions",
+        PrescribedMotions = "prescribed_motions",
+        DrivePieces = "drive_pieces",
+        GravityEnergy = "gravity_energy",
+        SupportEnergy = "support_energy",
+        ElementEnergy = "element_energy",
+        DriveEnergy = "drive_energy",
+        StopEnergy = "stop_energy",
+        DrivePower = "drive_power",
+        Dissipation = "dissipation",
+    }
+    Dynamics {
+        ForwardDynamics = "forward_dynamics",
+        SolveMass = "solve_mass",
+        MassMatrix = "mass_matrix",
+        MassMatrixAndBias = "mass_matrix_and_bias",
+        Bias = "bias",
+        KineticEnergy = "kinetic_energy",
+    }
+    Implicit {
+        Factorise = "factorise",
+        Solve = "solve",
+        JointImpedances = "joint_impedances",
+        NonlinearImpedances = "nonlinear_impedances",
+        BaseStiffness = "base_stiffness",
+        BaseDamping = "base_damping",
+    }
+    Statics {
+        StaticResidual = "static_residual",
+        TangentStiffness = "tangent_stiffness",
+        DriveForcesAtRest = "drive_forces_at_rest",
+    }
+    Linearise {
+        Linearise = "linearise",
+    }
+    InternalForces {
+        InternalForces = "internal_forces",
+        SupportPositions = "support_positions",
+        SectionModuli = "section_moduli",
+    }
+    TransformDerivatives {
+        TransformDerivatives = "transform_derivatives",
+        TransformSecondDerivatives = "transform_second_derivatives",
+    }
+}
+
+impl FunctionId {
+    /// How many there are.
+    pub const COUNT: usize = FunctionId::ALL.len();
+
+    /// The function of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|id| id.name() == name)
+    }
+}
