@@ -2,17 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Complex, DVector, Schur, linalg::balancing};
+use nalgebra::{Complex, DMatrix, DVector, Schur, linalg::balancing};
 
-use super::{NoModes, SmallMotions};
+use super::{NoModes, SmallMotions, eigenvectors::Block};
 
 /// Iterations of the QR algorithm for each eigenvalue: 2 to 4 are usual.
 const ITERATIONS: usize = 100;
 /// Relative accuracy of the QR algorithm.
 const PRECISION: f64 = f64::EPSILON;
-/// Relative offset of the shift of inverse iteration: off the eigenvalue by enough for a regular matrix, by little enough
-/// for convergence in two steps.
-const OFFSET: f64 = 1e-7;
 
 /// A damped mode: a conjugate pair of eigenvalues, or one real one.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +32,7 @@ impl DampedMode {
     }
 }
 
-/// Damped modes, lowest frequency first: eigenvalues of the balanced state matrix, shapes by inverse iteration.
+/// Damped modes, lowest frequency first: eigenvalues and shapes of the balanced state matrix from its Schur form.
 ///
 /// # Errors
 /// The mass matrix is not positive definite, or the QR algorithm does not come to an end.
@@ -47,37 +44,29 @@ pub fn damped(motions: &SmallMotions) -> Result<Vec<DampedMode>, NoModes> {
     if !state.iter().all(|x| x.is_finite()) {
         return Err(NoModes::Eigenvalues);
     }
-    balancing::balance_parlett_reinsch(&mut state);
+    let scales = balancing::balance_parlett_reinsch(&mut state);
     let iterations = ITERATIONS * state.nrows();
-    let schur = Schur::try_new(state, PRECISION, iterations).ok_or(NoModes::Eigenvalues)?;
-    let mut modes: Vec<DampedMode> = schur
-        .complex_eigenvalues()
+    let (vectors, t) = Schur::try_new(state, PRECISION, iterations).ok_or(NoModes::Eigenvalues)?.unpack();
+    let blocks = Block::all(&t);
+    let mut modes: Vec<DampedMode> = blocks
         .iter()
-        .filter(|eigenvalue| eigenvalue.im >= 0.0)
-        .map(|&eigenvalue| {
-            let dominating = shape(motions, eigenvalue).map_or_else(Vec::new, |shape| motions.dominating(&shape));
-            DampedMode { eigenvalue, dominating }
+        .map(|block| {
+            let shape = shape(&vectors, &scales, &block.eigenvector(&t, &blocks));
+            DampedMode { eigenvalue: block.eigenvalue(&t), dominating: motions.dominating(&shape) }
         })
         .collect();
     modes.sort_by(|a, b| a.eigenvalue.norm().total_cmp(&b.eigenvalue.norm()));
     Ok(modes)
 }
 
-/// Shape of the mode with eigenvalue λ; `None` if the dynamic stiffness is singular at the shift too.
-fn shape(motions: &SmallMotions, eigenvalue: Complex<f64>) -> Option<DVector<Complex<f64>>> {
-    let n = motions.mass.nrows();
-    let shift = eigenvalue * (1.0 + OFFSET) + Complex::new(0.0, f64::EPSILON);
-    let factors = motions.dynamic_stiffness(shift).lu();
-    // Any start that is not orthogonal to the shape; equal displacements in the measure of energy.
-    let mut shape =
-        DVector::from_fn(n, |i, _| Complex::from(motions.mass[(i, i)].abs().max(f64::MIN_POSITIVE).sqrt().recip()));
-    for _ in 0..2 {
-        shape = factors.solve(&shape)?;
-        let size = shape.camax();
-        if !(size.is_normal()) {
-            return None;
+/// Displacements of a mode, the upper half of its state, from its eigenvector `y` in the basis of the Schur form.
+fn shape(vectors: &DMatrix<f64>, scales: &DVector<f64>, y: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
+    let n = scales.len() / 2;
+    let mut shape: DVector<Complex<f64>> = DVector::zeros(n);
+    for (column, y) in vectors.column_iter().zip(y) {
+        for (x, (entry, scale)) in shape.iter_mut().zip(column.iter().zip(scales)) {
+            *x += *y * (*entry * *scale);
         }
-        shape.unscale_mut(size);
     }
-    Some(shape)
+    shape
 }

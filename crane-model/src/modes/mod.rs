@@ -1,6 +1,7 @@
 //! Small vibrations about a pose at rest: `A δq̈ + D δq̇ + K δq = 0`.
 
 mod damped;
+mod eigenvectors;
 mod small_motions;
 mod undamped;
 

@@ -1,6 +1,6 @@
 //! Coefficients of small motions, of any number of coordinates.
 
-use nalgebra::{Complex, ComplexField, DMatrix, DVector};
+use nalgebra::{ComplexField, DMatrix, DVector, DVectorView};
 
 use super::NoModes;
 use crate::{Linearisation, dyn_crane::DynLinearise, model::state_blocks};
@@ -88,19 +88,15 @@ impl SmallMotions {
     ///
     /// In an undamped mode `K x = ω² A x`: the same shares for kinetic and strain energy, whatever the units.
     pub(super) fn dominating<T: ComplexField<RealField = f64>>(&self, shape: &DVector<T>) -> Vec<usize> {
-        let momentum = self.mass.map(T::from_real) * shape;
-        let share: Vec<f64> =
-            shape.iter().zip(&momentum).map(|(x, p)| (x.clone().conjugate() * p.clone()).modulus()).collect();
+        // A is symmetric: its rows are its columns, which stand together in memory.
+        let momentum = |column: DVectorView<'_, f64>| {
+            shape.iter().zip(&column).fold(T::zero(), |sum, (x, &a)| sum + x.clone().scale(a)).modulus()
+        };
+        let columns = self.mass.column_iter();
+        let share: Vec<f64> = shape.iter().zip(columns).map(|(x, a)| x.clone().modulus() * momentum(a)).collect();
         let least = SHARE * share.iter().copied().fold(0.0, f64::max);
         let mut dominating: Vec<usize> = (0..share.len()).filter(|&i| share[i] >= least).collect();
         dominating.sort_by(|&i, &j| share[j].total_cmp(&share[i]));
         dominating.into_iter().map(|i| self.unknowns[i]).collect()
-    }
-
-    /// `λ²A + λD + K`, singular where λ is an eigenvalue.
-    pub(super) fn dynamic_stiffness(&self, lambda: Complex<f64>) -> DMatrix<Complex<f64>> {
-        DMatrix::from_fn(self.mass.nrows(), self.mass.ncols(), |i, j| {
-            lambda * (lambda * self.mass[(i, j)] + self.damping[(i, j)]) + self.stiffness[(i, j)]
-        })
     }
 }
