@@ -20,7 +20,6 @@ mod expand;
 pub mod explain;
 pub mod lower;
 pub mod mechanics;
-pub mod outline;
 pub mod picture;
 pub mod program;
 mod read;

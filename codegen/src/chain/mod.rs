@@ -229,10 +229,21 @@ pub struct ElementSpring {
 pub struct Beam {
     /// Name of the link.
     pub link: String,
+    /// Outline of its cross-section, for pictures; `None` if the spec does not give a shape.
+    pub outline: Option<Outline>,
     /// Moduli of its cross-section; `None` if the spec does not give them.
     pub moduli: Option<Moduli>,
     /// Yield stress over the safety factor, Pa; `None` without a yield stress.
     pub allowable_stress: Option<Value>,
+}
+
+/// Outline of a cross-section. Pictures need it; mechanics needs only areas and moments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Height and width, along the link's y and z, m.
+    pub size: [Value; 2],
+    /// Whether it is an ellipse in that box instead of the box.
+    pub round: bool,
 }
 
 /// Properties that relate forces and moments of a section to its largest stresses.

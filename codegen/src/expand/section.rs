@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::chain::{Moduli, Value};
+use crate::chain::{Moduli, Outline, Value};
 
 /// What a beam needs to know of its cross-section.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub(crate) struct CrossSection {
     pub jo: Value,
     /// What stresses follow from, if known.
     pub moduli: Option<Moduli>,
+    /// What it looks like, if known.
+    pub outline: Option<Outline>,
 }
 
 fn power(base: &Value, exponent: usize) -> Value {
@@ -50,6 +52,7 @@ pub(crate) fn hollow_rectangle(height: &Value, width: &Value, thickness: &Value)
         jy,
         jz,
         moduli: Some(moduli),
+        outline: Some(Outline { size: [h.clone(), b.clone()], round: false }),
         jo: 2.0 * t.clone() * power(&middle(b), 2) * power(&middle(h), 2) / (b.clone() + h.clone() - 2.0 * t.clone()),
     }
 }
@@ -80,7 +83,9 @@ fn ring(outer: &Value, inner: &Value) -> CrossSection {
         shear: [shear.clone(), shear],
         has_corners: false,
     };
-    CrossSection { area, jy: second.clone(), jz: second, jo: polar, moduli: Some(moduli) }
+    let diameter = 2.0 * outer.clone();
+    let outline = Outline { size: [diameter.clone(), diameter], round: true };
+    CrossSection { area, jy: second.clone(), jz: second, jo: polar, moduli: Some(moduli), outline: Some(outline) }
 }
 
 /// Solid rectangle; torsion by Saint-Venant's series, with sides a ≥ b:
@@ -120,6 +125,7 @@ pub(crate) fn solid_rectangle(height: f64, width: f64) -> CrossSection {
         jz: (width * height.powi(3) / 12.0).into(),
         jo: jo.into(),
         moduli: Some(moduli),
+        outline: Some(Outline { size: [height.into(), width.into()], round: false }),
     }
 }
 
@@ -195,6 +201,18 @@ mod tests {
         // Of a thin tube twice the mean.
         let thin = tube(&0.2.into(), &1e-5.into());
         close(&(thin.area.clone() / moduli(thin).shear[0].clone()), 2.0, 1e-4);
+    }
+
+    #[test]
+    fn outlines_are_height_and_width_of_what_is_given() {
+        let size = |section: CrossSection| {
+            let Outline { size, round } = section.outline.expect("the section has a shape");
+            (size.map(|length| length.at(&[])), round)
+        };
+        assert_eq!(size(hollow_rectangle(&0.2.into(), &0.1.into(), &0.01.into())), ([0.2, 0.1], false));
+        assert_eq!(size(solid_rectangle(0.2, 0.1)), ([0.2, 0.1], false));
+        assert_eq!(size(tube(&0.3.into(), &0.01.into())), ([0.3, 0.3], true));
+        assert_eq!(size(circle(&0.3.into())), ([0.3, 0.3], true));
     }
 
     #[test]

@@ -34,7 +34,12 @@ impl<'a> Check<'a> {
             let length = self.number(&inside.length, "`length`", "m", Limit::Positive);
             match &inside.elements {
                 Some(elements) => {
-                    self.beams.push(chain::Beam { link: link.to_owned(), moduli: None, allowable_stress: None });
+                    self.beams.push(chain::Beam {
+                        link: link.to_owned(),
+                        outline: None,
+                        moduli: None,
+                        allowable_stress: None,
+                    });
                     self.one_by_one(inside, &length, elements)
                 }
                 None => self.equal_sections(inside, (link, given.span), &length),
@@ -127,6 +132,7 @@ impl<'a> Check<'a> {
         let (Elastic { youngs, shear, density, yield_stress }, section, sections) = (material?, section?, sections?);
         self.beams.push(chain::Beam {
             link: link.to_owned(),
+            outline: section.outline.clone(),
             moduli: section.moduli.clone(),
             allowable_stress: yield_stress.map(|stress| stress / safety),
         });

@@ -90,6 +90,7 @@ impl<'a> Check<'a> {
                     jz: positive(jz, "`Jz`", "m⁴"),
                     jo: positive(jo, "`Jo`", "m⁴"),
                     moduli,
+                    outline: None,
                 }
             }
         })

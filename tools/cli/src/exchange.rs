@@ -1,4 +1,4 @@
-//! `crane export` and `crane import`: cranes for other programs, and from them; and outlines for the page.
+//! `crane export` and `crane import`: cranes for other programs, and from them.
 
 use std::{
     io::Write,
@@ -9,10 +9,7 @@ use crane_codegen::{
     SourceFile,
     chain::{Bound, Chain, Refusal},
     compile, exchange,
-    outline::{self, Outline},
-    read,
 };
-use serde_json::{Value, json};
 
 use crate::{
     arguments::{Export, Import, Language},
@@ -64,13 +61,6 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
     writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates; next: `crane run {file}`")?;
     Ok(writeln!(out, "URDF has no springs and no drives: add `drives:` and `damping:` for joints that must not fall")?)
-}
-
-/// Outlines of the beams of a spec, by link: height and width, m, and whether they are round.
-pub fn outlines(spec: Option<&str>) -> Value {
-    let read = spec.and_then(|text| read(&SourceFile::new("spec", text)).ok());
-    let found = read.map_or_else(Vec::new, |spec| outline::outlines(&spec.crane));
-    found.into_iter().map(|Outline { link, size, round }| (link, json!({"size": size, "round": round}))).collect()
 }
 
 /// A problem where values of live parameters break a rule of the spec language.

@@ -49,7 +49,11 @@ pub fn stability(options: &Stability, fleet: &Fleet, out: &mut dyn Write) -> Out
 /// The largest stable step of every method over some poses, and what limits it.
 pub fn limits(description: &Description, poses: &[Pose]) -> Grid {
     let headers = ["method", "order", "step s", "safe step s", "at t s", "limited by"];
-    let mut grid = Grid::new("limits", "Largest stable steps", &headers);
+    let title = match poses.len() {
+        0 | 1 => "Largest stable steps at the static pose".to_owned(),
+        count => format!("Largest stable steps, the least at {count} poses during the manoeuvre"),
+    };
+    let mut grid = Grid::new("limits", title, &headers);
     for method in Method::ALL {
         let bound = Bound::of(poses, method);
         let step = bound.as_ref().map(|bound| bound.limit.step);

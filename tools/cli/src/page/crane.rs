@@ -1,6 +1,7 @@
 //! One crane of the page: what it is, how it is drawn, its run and its modes.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
+use crane_codegen::chain::{Beam, Outline};
 use crane_live::LiveCrane;
 use crane_model::{CoordinateRole, modes::undamped, results::Table, runs::Recorded};
 use serde_json::{Value, json};
@@ -37,9 +38,20 @@ pub fn data(case: &Case<'_>, live: &LiveCrane, run: &Recorded) -> Outcome<Value>
         "coordinates": coordinates,
         "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
         "scene": scene(live, &case.equilibrium.q),
+        "outlines": outlines(live),
         "modes": modes(case)?,
         "run": columns(&run.table),
     }))
+}
+
+/// Sections of the beams whose spec gives a shape, by the names of their links.
+fn outlines(live: &LiveCrane) -> Value {
+    let of = |beam: &Beam| {
+        let Outline { size, round } = beam.outline.as_ref()?;
+        let size = size.each_ref().map(|length| length.at(live.parameters()));
+        Some((beam.link.clone(), json!({"size": size, "round": round})))
+    };
+    live.chain().beams.iter().filter_map(of).collect()
 }
 
 /// Frequencies, Hz, and shapes in generalized coordinates, lowest first; none unless the pose is a stable equilibrium.

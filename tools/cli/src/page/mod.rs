@@ -19,7 +19,6 @@ use crate::{
     Fleet,
     arguments::{Limits, Page},
     compare::runs,
-    exchange,
     extremes::extremes,
     files, modes, own,
     problem::Outcome,
@@ -32,6 +31,8 @@ use crate::{
 
 /// The page without data: script, style and licences in one file.
 const PAGE: &str = include_str!("report.html");
+/// Coordinates of the largest crane whose modes are computed at all [`POSES`] along the manoeuvre.
+const AFFORDABLE: usize = 100;
 /// Where the data go.
 const PLACE: &str = "{\"data\":\"here\"}";
 
@@ -79,7 +80,6 @@ fn data(
     let mut cranes = Vec::new();
     for ((case, settings), run) in cases.iter().zip(settings).zip(runs) {
         let mut crane = crane::data(case, &fleet.live(case.rig)?, run)?;
-        crane["outlines"] = exchange::outlines(fleet.spec(&case.rig.description().name));
         crane["record"] = files::record(case.rig, settings, run);
         cranes.push(crane);
     }
@@ -105,10 +105,30 @@ fn all_tables(fleet: &Fleet, cases: &[Case<'_>], limits: Limits, runs: &[Recorde
             let changes = refinement::changes(case, fleet)?;
             report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
             report.grid(modes::undamped_modes(case, changes.as_deref())?);
-            let poses = manoeuvre(case.rig, &Start::of(case.rig)?, POSES)?;
+            let poses = manoeuvre(case.rig, &Start::of(case.rig)?, affordable_poses(case.rig.size()))?;
             report.grid(modes::damped_modes(case.rig.description(), poses.first().map_or(&[], |pose| &pose.modes)));
             report.grid(stability::limits(case.rig.description(), &poses));
         }
     }
     Ok(report)
+}
+
+/// Number of poses along the manoeuvre whose modes take no longer than all of them for a crane of [`AFFORDABLE`] coordinates: the
+/// time of the eigenvalue iteration grows with n³.
+fn affordable_poses(coordinates: usize) -> u16 {
+    let most = (1..=POSES).rev().find(|&count| {
+        let cubes = [coordinates, AFFORDABLE].map(|n| n.saturating_pow(3));
+        usize::from(count).saturating_mul(cubes[0]) <= usize::from(POSES).saturating_mul(cubes[1])
+    });
+    most.unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_cranes_have_fewer_poses() {
+        assert_eq!([1, 100, 101, 125, 215, 216, usize::MAX].map(affordable_poses), [10, 10, 9, 5, 1, 0, 0]);
+    }
 }
