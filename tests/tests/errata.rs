@@ -77,9 +77,22 @@ fn printed_u([x, y, z]: [f64; 3]) -> U {
     U::from_row_slice(&[1., 0., 0., 0., z, -y, 0., 1., 0., -z, 0., x, 0., 0., 1., y, -x, 0.])
 }
 
+/// Generalized forces of the supports of the rigid reference crane, displaced in one coordinate of its base.
+fn support_forces(coordinate: usize, by: f64) -> DVector<f64> {
+    let crane = Interpreted::new(workspace::chain("eight_link_rigid"));
+    let mut state = crane_tests::quantities::State { t: 0.0, q: vec![0.0; crane.size()], v: vec![0.0; crane.size()] };
+    state.q[coordinate] = by;
+    crane.vector("support_forces", &state)
+}
+
 #[test]
 fn eq_16_printed_column_order_lets_yaw_push_the_vertical_springs() {
     let yaw = Vector6::new(0.0, 0.0, 0.0, 0.01, 0.0, 0.0);
+    let force = |(at, s): ([f64; 3], Vector3<f64>)| -right_u(at).transpose() * s.component_mul(&(right_u(at) * yaw));
+    let right = reference_supports().into_iter().map(force).sum::<Vector6<f64>>();
+    let ours = support_forces(3, 0.01);
+    // Products and sums of eight feet.
+    assert!((right - ours.fixed_rows::<6>(0)).amax() < 1e-12 * right.amax(), "{ours} instead of {right}");
     let lift = |u: fn([f64; 3]) -> U| -> f64 {
         reference_supports().iter().map(|&(at, s)| (s.z * (u(at) * yaw).z).abs()).sum()
     };
@@ -91,10 +104,17 @@ fn eq_16_printed_column_order_lets_yaw_push_the_vertical_springs() {
 #[test]
 fn eq_16_with_an_absolute_value_is_undefined_at_rest_and_has_two_wells() {
     // Force s (|u| − l₀)/|u| u of Eq. (18), for one spring.
-    let force = |u: f64, free: f64| 1e7 * (u.abs() - free) / u.abs() * u;
-    assert!(force(0.0, 0.0).is_nan(), "0/0 where the crane stands");
-    assert!(force(0.01, 0.01).abs() < 1e-9 && force(-0.01, 0.01).abs() < 1e-9, "two places without force");
-    assert!(force(0.005, 0.01) < 0.0 && force(-0.005, 0.01) > 0.0, "and it pushes away in between");
+    let printed = |u: f64, free: f64| 1e7 * (u.abs() - free) / u.abs() * u;
+    assert!(printed(0.0, 0.0).is_nan(), "0/0 where the crane stands");
+    assert!(printed(0.005, 0.01) < 0.0 && printed(-0.005, 0.01) > 0.0, "it pushes away between two wells");
+    // Ours is defined where the crane stands, and pulls back from everywhere.
+    for coordinate in 0..6 {
+        assert_eq!(support_forces(coordinate, 0.0).amax(), 0.0);
+        for by in [1e-12, 1e-3, 0.1] {
+            let [up, down] = [by, -by].map(|by| support_forces(coordinate, by)[coordinate]);
+            assert!(up < 0.0 && (up + down).abs() <= 1e-12 * up.abs(), "{coordinate}: {up} and {down}");
+        }
+    }
 }
 
 #[test]
@@ -108,16 +128,9 @@ fn eq_18_with_u_transposed_u_counts_each_spring_three_times() {
     assert_eq!(right[(2, 2)], 8e7);
     assert_eq!(printed[(2, 2)], 8.0 * 1.6e7, "vertical stiffness 1.6 times too high");
     assert_eq!(printed[(0, 0)] / right[(0, 0)], 1.6e7 / 3e6, "horizontal stiffness 5.3 times too high");
-    let crane = Interpreted::new(workspace::chain("eight_link_rigid"));
-    let rest = crane_tests::quantities::State { t: 0.0, q: vec![0.0; crane.size()], v: vec![0.0; crane.size()] };
-    let forces = |j: usize| {
-        let mut moved = rest.clone();
-        moved.q[j] = 1e-3;
-        crane.vector("support_forces", &moved)
-    };
     for j in 0..6 {
         for i in 0..6 {
-            let (force, expected) = (forces(j)[i], -1e-3 * right[(i, j)]);
+            let (force, expected) = (support_forces(j, 1e-3)[i], -1e-3 * right[(i, j)]);
             assert!((force - expected).abs() <= 1e-12 * right.amax(), "{i} {j}: {force} against {expected}");
         }
     }
@@ -129,26 +142,42 @@ fn tip_deflection(springs: &[f64], d: f64) -> f64 {
     springs.iter().map(|x| d * (1.0 - x) * (1.0 - x)).sum()
 }
 
+/// Where the springs of the cantilever are, and the length of a section; its length is 1.
+fn cantilever() -> (Vec<f64>, f64) {
+    let chain = workspace::chain("cantilever");
+    let parameters = chain.parameter_defaults();
+    let lengths: Vec<f64> = chain.bodies.iter().map(|body| body.length.at(&parameters)).collect();
+    let whole: f64 = lengths.iter().sum();
+    let ends = lengths.iter().scan(0.0, |end, length| {
+        *end += length / whole;
+        Some(*end)
+    });
+    // Three springs at the beginning of every element but the first.
+    let joints = chain.elements.len() / 3;
+    (ends.take(joints).collect(), 1.0 / joints as f64)
+}
+
 #[test]
 fn translations_of_elements_as_printed_put_the_springs_in_the_wrong_places() {
-    let n = 4.0;
-    let d = 1.0 / n;
-    let places = |of: &dyn Fn(f64) -> f64| -> Vec<f64> { [0.0, 1.0, 2.0, 3.0].map(of).to_vec() };
-    // Right: spring i in the middle of section i, element i at l(i−1). Printed: at l(i), a whole section further from the
-    // first on, the last one half a section short.
-    let right = tip_deflection(&places(&|i| d * (i + 0.5)), d);
-    assert!((3.0 * right - (1.0 - 1.0 / (4.0 * n * n))).abs() < 1e-15, "the law of the cantilever");
-    let printed = tip_deflection(&places(&|i| if i < 3.0 { d * (i + 1.0) } else { d * 3.5 }), d);
-    assert!(printed < 0.7 * right, "{:.0} % of the right deflection", 100.0 * printed / right);
+    let (places, d) = cantilever();
+    let n = 1.0 / d;
+    let right = tip_deflection(&places, d);
+    // Some sums of numbers below 1.
+    assert!((3.0 * right - (1.0 - 1.0 / (4.0 * n * n))).abs() < 1e-14, "the law of the cantilever: {places:?}");
+    // Printed: element i at l(i) instead of l(i−1), a section further from the first on, the last one half a section short.
+    let last = places.len() - 1;
+    let printed: Vec<f64> = places.iter().enumerate().map(|(i, x)| x + if i < last { 0.5 * d } else { 0.0 }).collect();
+    let printed = tip_deflection(&printed, d);
+    assert!(printed < 0.9 * right, "{:.0} % of the right deflection", 100.0 * printed / right);
 }
 
 #[test]
 fn eqs_11_14_15_with_one_spring_too_many_are_too_soft() {
-    let d = 0.25;
-    let right = tip_deflection(&[0.125, 0.375, 0.625, 0.875], d);
+    let (places, d) = cantilever();
     // i = 1 … n_rfe = n + 1: the additional spring can only sit at the joint, where element 0 has none.
-    let printed = tip_deflection(&[0.0, 0.125, 0.375, 0.625, 0.875], d);
-    assert!(printed > 1.7 * right, "{:.2} times the right deflection", printed / right);
+    let printed = tip_deflection(&[&[0.0][..], &places].concat(), d);
+    let right = tip_deflection(&places, d);
+    assert!(printed > 1.3 * right, "{:.2} times the right deflection", printed / right);
 }
 
 #[test]
@@ -166,7 +195,18 @@ fn eq_14_with_positions_in_the_dissipation_dissipates_at_rest() {
 fn eq_23_with_rates_in_the_energy_gives_supports_without_stiffness() {
     let crane = Interpreted::new(workspace::chain("eight_link_rigid"));
     let state = crane.equilibrium();
-    let carried: f64 = crane.get("support_reactions", &crane.inputs(&state), 0).iter().skip(2).step_by(3).sum();
-    // ∂E_p/∂q̇ is zero: as printed nothing would carry the crane's 164 kN.
-    assert!(carried > 1.6e5, "{carried} N");
+    let energy = |state: &crane_tests::quantities::State| crane.scalar("support_energy", state);
+    let slope = |of: fn(&mut crane_tests::quantities::State) -> &mut f64| {
+        let at = |by: f64| {
+            let mut state = state.clone();
+            *of(&mut state) += by;
+            energy(&state)
+        };
+        (at(1e-6) - at(-1e-6)) / 2e-6
+    };
+    // ∂E_p/∂q̇ is zero: as printed nothing would carry the crane. −∂E_p/∂q is the force along z.
+    assert_eq!(slope(|state| &mut state.v[2]), 0.0);
+    let force = crane.vector("support_forces", &state)[2];
+    // A difference of energies of some kJ over 2 µm.
+    assert!(force > 1.6e5 && (slope(|state| &mut state.q[2]) + force).abs() < 1e-5 * force, "{force} N");
 }
