@@ -3,7 +3,7 @@
 // Double pendulum
 // Spec hash 8e06c265e090e7d5.
 // 2 coordinates, 2 bodies, 0 supports, 0 springs between rigid elements, 0 drives.
-// SI units, angles in rad; the world's z points up.
+// SI units, angles in rad; the world's z axis points up.
 // Equation numbers: A. Urbaś, Computational implementation of the rigid finite element method in the statics and
 // dynamics analysis of forest cranes, Applied Mathematical Modelling, 2016.
 //
@@ -15,16 +15,16 @@
 //   viscous damping of joints: the spec has none
 //   end stops: the spec has none
 //   friction of joints: the spec has none
-//   live parameters: the spec has none: all numbers are baked in
-//   everything out of the crane's plane: all joints turn about one direction, none moves along it
-//   static residual and tangent stiffness: `analyses` does not ask for statics
-//   linearisation: `analyses` does not ask for modes
-//   internal forces: `analyses` does not ask for internal_forces
-//   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives
+//   live parameters: the spec has none: all numbers are compiled in
+//   everything out of the crane's plane: all joints rotate about one direction, none translates along it
+//   static residual and tangent stiffness: `analyses` does not include statics
+//   linearisation: `analyses` does not include modes
+//   internal forces: `analyses` does not include internal_forces
+//   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not include derivatives
 //
 // The mass matrix is written out, which is faster for a crane of this size.
 //
-// Operations of each function, and before simplification:
+// Operations of each function, after and before simplification:
 //   transforms                          11        47
 //   points                              14        62
 //   point_velocities                    19       104
@@ -615,7 +615,7 @@ pub fn kinetic_energy(q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
             ))
 }
 
-/// What [`factorise`] leaves for [`solve`].
+/// The factors that [`factorise`] computes for [`solve`].
 pub type Factors = [f64; 6];
 
 /// Factors of `A + D̂` for [`solve`]: D̂ has `resistance` on its diagonal, but `base` in the base's rows and columns.
@@ -682,7 +682,7 @@ pub fn solve(f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
     SVector::from(out)
 }
 
-/// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, those of the base left out.
+/// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, without those of the base.
 ///
 /// `s, d`
 /// [Urbaś 2016, Eqs. (14), (19)]

@@ -3,7 +3,7 @@
 // Planar knuckle-boom crane on a fixed base
 // Spec hash 4b98de3d10084c62.
 // 4 coordinates, 5 bodies, 0 supports, 0 springs between rigid elements, 3 drives.
-// SI units, angles in rad; the world's z points up.
+// SI units, angles in rad; the world's z axis points up.
 // Equation numbers: A. Urbaś, Computational implementation of the rigid finite element method in the statics and
 // dynamics analysis of forest cranes, Applied Mathematical Modelling, 2016.
 //
@@ -13,13 +13,13 @@
 //   springs and dampers of rigid elements: no link is flexible
 //   end stops: the spec has none
 //   friction of joints: the spec has none
-//   everything out of the crane's plane: all joints turn about one direction, none moves along it
-//   internal forces: `analyses` does not ask for internal_forces
-//   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives
+//   everything out of the crane's plane: all joints rotate about one direction, none translates along it
+//   internal forces: `analyses` does not include internal_forces
+//   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not include derivatives
 //
 // The mass matrix is written out, which is faster for a crane of this size.
 //
-// Operations of each function, and before simplification:
+// Operations of each function, after and before simplification:
 //   transforms                          29        98
 //   points                              30       125
 //   point_velocities                    54       210
@@ -170,7 +170,7 @@ impl Default for Params {
     }
 }
 
-/// Live parameters, and what depends on them alone, computed once.
+/// Live parameters, and constants that depend only on them, computed once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constants {
     params: Params,
@@ -250,7 +250,7 @@ impl Constants {
     }
 }
 
-/// Live parameters: names, units, and the values that they may have.
+/// Live parameters: names, units and allowed values.
 pub const PARAMETERS: [ParameterInfo; 1] = [
     ParameterInfo {
         name: Text::Static("payload"),
@@ -273,10 +273,10 @@ pub const PARAMETERS: [ParameterInfo; 1] = [
 ];
 
 impl Params {
-    /// Whether the crane may have these values.
+    /// Checks these values against the rules of the spec language.
     ///
     /// # Errors
-    /// The first rule of the spec language that they break.
+    /// The first rule that they break.
     pub fn check(&self) -> Result<(), ParameterError> {
         PARAMETERS[0].check(self.payload)?;
         Ok(())
@@ -704,7 +704,7 @@ pub fn drive_motions(t: f64) -> [[f64; 2]; 3] {
     out
 }
 
-/// Begin and end of the pieces in which the drives' motions are smooth, drive by drive, s.
+/// Begin and end of the intervals in which the drives' motions are smooth, drive by drive, s.
 ///
 /// `t_begin, t_end`
 ///
@@ -748,7 +748,7 @@ pub fn hinge_forces(v: &SVector<f64, N>) -> SVector<f64, N> {
     SVector::from(out)
 }
 
-/// Generalized forces of all but inertia and gravity, N and N m.
+/// Generalized forces of everything except inertia and gravity, N and N m.
 ///
 /// `f_s + f_l + t_dr and viscous joints`
 /// [Urbaś 2016, Eq. (23)]
@@ -957,7 +957,7 @@ pub fn drive_energy(t: f64, q: &SVector<f64, N>) -> f64 {
         )
 }
 
-/// Power that the prescribed motions put in, W.
+/// Power of the prescribed motions, W.
 ///
 /// `Σ t_dr q̇_dr`
 ///
@@ -1043,7 +1043,7 @@ pub fn drive_power(t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
     )
 }
 
-/// Power that all dampers take out, W.
+/// Power that all dampers dissipate, W.
 ///
 /// `2R`
 /// [Urbaś 2016, Eqs. (14), (17), (19)]
@@ -2109,7 +2109,7 @@ pub fn kinetic_energy(q: &SVector<f64, N>, v: &SVector<f64, N>, c: &Constants) -
         ) + t025)
 }
 
-/// What [`factorise`] leaves for [`solve`].
+/// The factors that [`factorise`] computes for [`solve`].
 pub type Factors = [f64; 25];
 
 /// Factors of `A + D̂` for [`solve`]: D̂ has `resistance` on its diagonal, but `base` in the base's rows and columns.
@@ -2326,7 +2326,7 @@ pub fn solve(f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
     SVector::from(out)
 }
 
-/// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, those of the base left out.
+/// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, without those of the base.
 ///
 /// `s, d`
 /// [Urbaś 2016, Eqs. (14), (19)]
@@ -2852,7 +2852,7 @@ impl Linearise<N> for Crane {
     }
 }
 
-/// Eight cranes a call.
+/// Eight cranes per call.
 pub mod lanes {
     use ::crane_model::nalgebra::SVector;
     use ::crane_model::support::lanes::{f64x8, fma, sin_cos, splat};
@@ -2869,7 +2869,7 @@ pub mod lanes {
             Params { payload: splat(800.0) }
         }
     }
-    /// Live parameters, and what depends on them alone, computed once.
+    /// Live parameters, and constants that depend only on them, computed once.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Constants {
         params: Params,
@@ -3231,7 +3231,7 @@ pub mod lanes {
         }
     }
     impl Cranes {
-        /// Eight cranes with these values of their live parameters, each of which its crane has checked.
+        /// Eight cranes with these values of their live parameters, which each crane has checked.
         pub(super) fn new(params: &Params) -> Self {
             Cranes {
                 constants: Constants::of(params),

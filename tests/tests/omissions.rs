@@ -69,7 +69,7 @@ fn a_planar_scene_holds_nothing_out_of_its_plane() {
 fn the_header_says_what_is_left_out_and_why() {
     let text = text("double_pendulum");
     assert!(text.contains("//   supports: the spec has none\n"));
-    assert!(text.contains("//   static residual and tangent stiffness: `analyses` does not ask for statics\n"));
+    assert!(text.contains("//   static residual and tangent stiffness: `analyses` does not include statics\n"));
 }
 
 /// The feet of the reference crane are symmetric about x = 0: what cancels is gone, not a rounding error.

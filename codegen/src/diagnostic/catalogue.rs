@@ -5,7 +5,7 @@
 pub struct Rule {
     /// Code, such as `E031`.
     pub code: &'static str,
-    /// What the rule asks for.
+    /// What the rule requires.
     pub about: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! Draws mistakes under the lines they are on.
+//! Draws mistakes under their lines.
 
 use std::fmt;
 
@@ -6,12 +6,12 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
 use super::{Mistake, SourceFile};
 
-/// More mistakes than this are counted, not drawn: nobody reads on.
+/// Mistakes beyond this number are counted, not drawn.
 const MAX_DRAWN: usize = 100;
 /// A line longer than this is cut around the mistake, bytes.
 const MAX_LINE: usize = 400;
 
-/// Writes every mistake with file, line, column, the offending line, label and help, then how many there are.
+/// Writes every mistake with file, line, column, the offending line, label and help, then their number.
 pub(super) fn draw(source: &SourceFile, mistakes: &[Mistake], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let renderer = Renderer::plain();
     for mistake in mistakes.iter().take(MAX_DRAWN) {
@@ -31,7 +31,7 @@ fn draw_one(renderer: &Renderer, source: &SourceFile, mistake: &Mistake, f: &mut
     let line = source.line(start);
     let first = source.boundary(line.start.max(start.saturating_sub(MAX_LINE / 2)));
     let last = source.boundary(line.end.min(start + MAX_LINE / 2));
-    // A span that runs over its line, as that of a block, is drawn as far as the line goes.
+    // A span longer than its line, such as that of a block, is drawn up to the end of the line.
     let end = source.boundary(mistake.span.end).clamp(start, last);
     let (number, _) = source.position(start);
     let shown = harmless(&source.text[first..last]);
@@ -48,8 +48,8 @@ fn draw_one(renderer: &Renderer, source: &SourceFile, mistake: &Mistake, f: &mut
     f.write_str(&renderer.render(&[report]))
 }
 
-/// The text with signs in place of what a terminal would obey (C1 controls) or turn around (marks of direction). Each takes as
-/// many bytes as what it stands for, so that places stay.
+/// The text with visible replacements for characters that a terminal would execute (C1 controls) or that change the writing
+/// direction. Each replacement has the same number of bytes, so that locations stay valid.
 fn harmless(text: &str) -> String {
     let shown = |c: char| match c {
         '\u{80}'..='\u{9f}' => '¿',

@@ -18,7 +18,7 @@ use std::fmt;
 pub struct Mistake {
     /// Code of the rule it breaks, such as `E031`.
     pub code: &'static str,
-    /// Where it is, bytes of the source.
+    /// Its location, bytes of the source.
     pub span: Span,
     /// What is wrong, in the user's own names.
     pub title: String,
@@ -29,7 +29,7 @@ pub struct Mistake {
 }
 
 impl Mistake {
-    /// Whether the crane is compiled all the same.
+    /// Whether the crane is compiled nevertheless.
     #[must_use]
     pub fn is_warning(&self) -> bool {
         self.code.starts_with('W')
@@ -44,7 +44,7 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// What was found in a source file.
+    /// The mistakes found in a source file.
     pub(crate) fn new(source: &SourceFile, mut mistakes: Vec<Mistake>) -> Self {
         mistakes.sort_by_key(|m| (m.span.start, m.code));
         Diagnostics { source: source.clone(), mistakes }
@@ -62,14 +62,14 @@ impl Diagnostics {
         self.mistakes.is_empty()
     }
 
-    /// Those that are not among others.
+    /// Those that are not contained in others.
     #[must_use]
     pub fn without(mut self, others: &Diagnostics) -> Self {
         self.mistakes.retain(|mistake| !others.mistakes.contains(mistake));
         self
     }
 
-    /// Each in one line, for places that show no more: `crane.yaml:3:5: unknown key `masss` [E010]`.
+    /// Each in one line, for short displays: `crane.yaml:3:5: unknown key `masss` [E010]`.
     pub fn lines(&self) -> impl Iterator<Item = String> {
         self.mistakes.iter().map(|mistake| {
             let (line, column) = self.source.position(mistake.span.start);
@@ -77,7 +77,7 @@ impl Diagnostics {
         })
     }
 
-    /// The whole in one line, for places that show no more: `crane.yaml:3:5: unknown key `masss` [E010] (and 2 more)`.
+    /// All of them in one line, for short displays: `crane.yaml:3:5: unknown key `masss` [E010] (and 2 more)`.
     #[must_use]
     pub fn headline(&self) -> String {
         let Some(first) = self.lines().next() else { return format!("{}: no mistakes", self.source.name) };

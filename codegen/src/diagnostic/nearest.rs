@@ -1,11 +1,11 @@
-//! The word that was probably meant.
+//! The most similar valid word.
 
-/// Help that names the nearest of the words on offer, or all of them if none is near.
+/// Help that names the most similar of the valid words, or all of them if none is similar.
 pub(crate) fn suggest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>) -> String {
     /// More words than this are not listed.
     const MOST: usize = 16;
     let offered: Vec<&str> = offered.into_iter().collect();
-    // A longer word has room for more slips of the finger.
+    // A longer word may contain more typing errors.
     let tolerance = (word.chars().count() / 3).max(1);
     let nearest = offered.iter().map(|known| (distance(word, known), known)).min_by_key(|(distance, _)| *distance);
     match nearest {
@@ -21,7 +21,7 @@ pub(crate) fn list(words: &[&str]) -> String {
     words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// Edit distance of two words, case apart: insertions, deletions, replacements, and swaps of neighbours.
+/// Edit distance of two words, ignoring case: insertions, deletions, replacements, and swaps of neighbours.
 fn distance(a: &str, b: &str) -> usize {
     /// No name is longer; a file of one huge word must not take quadratic time.
     const LONGEST: usize = 64;

@@ -1,4 +1,4 @@
-//! The text of a spec and places in it.
+//! The text of a spec and locations in it.
 
 use super::{Diagnostics, rule};
 
@@ -21,10 +21,10 @@ impl SourceFile {
         SourceFile { name: name.into(), text: text.into() }
     }
 
-    /// A source file from bytes as they lie on disk.
+    /// A source file from bytes as stored on disk.
     ///
     /// # Errors
-    /// If there are more than [`MAX_BYTES`], or they are not UTF-8.
+    /// If there are more than [`MAX_BYTES`], or if they are not UTF-8.
     pub fn from_bytes(name: impl Into<String>, bytes: &[u8]) -> Result<Self, Diagnostics> {
         let name = name.into();
         let refuse = |text: String, mistake| Err(Diagnostics::new(&SourceFile::new(&name, text), vec![mistake]));
@@ -62,7 +62,7 @@ impl SourceFile {
         (number, self.text[line.start..self.boundary(byte)].chars().count() + 1)
     }
 
-    /// The line that holds a byte, without its end.
+    /// The line that contains a byte, without its end.
     pub(crate) fn line(&self, byte: usize) -> Span {
         let at = self.boundary(byte);
         let start = self.text[..at].rfind('\n').map_or(0, |i| i + 1);
@@ -90,7 +90,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// The beginning of the file, for mistakes of the file as a whole.
+    /// The start of the file, for mistakes of the file as a whole.
     pub const START: Span = Span { start: 0, end: 0 };
 }
 

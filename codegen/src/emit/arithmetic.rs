@@ -20,7 +20,7 @@ pub fn literal(value: f64) -> Expr {
     if value.is_sign_negative() { negative(magnitude) } else { magnitude }
 }
 
-/// An integer without a type.
+/// An integer literal without a type.
 pub fn integer(value: usize) -> Expr {
     let literal = syn::LitInt::new(&value.to_string(), Span::call_site());
     Expr::Lit(syn::ExprLit { attrs: vec![], lit: Lit::Int(literal) })
@@ -140,7 +140,7 @@ fn parenthesised(expr: Expr) -> Expr {
     Expr::Paren(ExprParen { attrs: vec![], paren_token: syn::token::Paren::default(), expr: Box::new(expr) })
 }
 
-/// Parentheses wherever the order of operations would change without: floating-point sums do not associate.
+/// Parentheses wherever the order of operations would otherwise change: floating-point sums are not associative.
 fn binary(a: Expr, op: BinOp, b: Expr) -> Expr {
     let own = match op {
         BinOp::Add(_) | BinOp::Sub(_) => Precedence::Sum,

@@ -175,7 +175,7 @@ impl Writer<'_> {
         inputs
     }
 
-    /// What statements and loops among them read.
+    /// The values that statements, and loops among them, read.
     fn use_inputs(&self, statements: &[Statement], used: &mut Used) {
         for statement in statements {
             match statement {
@@ -186,7 +186,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Arguments of a piece: what it uses.
+    /// Arguments of a piece: those that it uses.
     fn inputs(&self, used: &Used) -> Vec<TokenStream> {
         let mut inputs: Vec<TokenStream> = Vec::new();
         for argument in self.block.function.arguments.iter().filter(|a| used.contains(a)) {
@@ -439,12 +439,12 @@ pub fn local(name: &str, value: &Expr) -> Stmt {
     parse_quote!(let #name = #value;)
 }
 
-/// The name of a value, or `_` where it is not needed.
+/// The name of a value, or `_` if it is not needed.
 pub fn pattern(id: Option<ExprId>, names: &mut Names) -> TokenStream {
     id.map_or_else(|| quote!(_), |id| Ident::new(&names.of(id), Span::call_site()).into_token_stream())
 }
 
-/// The names of several values, or `_` where none is needed.
+/// The names of several values, or `_` if none is needed.
 fn row_pattern(ids: &[Option<ExprId>], names: &mut Names) -> TokenStream {
     if ids.iter().all(Option::is_none) {
         return quote!(_);
@@ -454,7 +454,7 @@ fn row_pattern(ids: &[Option<ExprId>], names: &mut Names) -> TokenStream {
     quote!([#(#patterns),*])
 }
 
-/// Which inputs a piece reads.
+/// The inputs that a piece reads.
 pub type Used = BTreeSet<Argument>;
 
 /// Arguments that are vectors, and their names.

@@ -1,4 +1,4 @@
-//! What the slots of results and the stored constants are called, for comments and fields.
+//! Names of the slots of results and of the stored constants, for comments and fields.
 
 use std::collections::HashMap;
 
@@ -29,7 +29,7 @@ impl<'a> Labels<'a> {
         self.constants[&id].clone()
     }
 
-    /// What the group of results that starts at a slot is.
+    /// Description of the group of results that starts at a slot.
     pub fn of(&self, function: &Function, slot: usize) -> Option<String> {
         let chain = self.chain;
         let coordinate = |i: usize| chain.coordinates[i].name.as_str();
@@ -46,9 +46,8 @@ impl<'a> Labels<'a> {
             }),
             Shape::Columns { n, .. } => Some(match slot.checked_sub(12 * n) {
                 Some(row) => format!("Bias of {}", coordinate(row)),
-                None => {
-                    ["Axes", "Linear momenta", "Angular momenta", "Ways to the next point"][slot / (3 * n)].to_owned()
-                }
+                None => ["Axes", "Linear momenta", "Angular momenta", "Offsets to the next point"][slot / (3 * n)]
+                    .to_owned(),
             }),
             Shape::Symmetric(n) => Some(format!("Row of {}", coordinate(row_of_triangle(*n, slot).0))),
             Shape::Vectors(_) if matches!(function.id, FunctionId::SupportReactions | FunctionId::SupportPositions) => {

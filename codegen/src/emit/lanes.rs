@@ -1,4 +1,4 @@
-//! Eight cranes a call: the same statements over vectors of eight numbers, each crane with its own state and parameters.
+//! Eight cranes per call: the same statements over vectors of eight numbers, each crane with its own state and parameters.
 
 use quote::{format_ident, quote};
 use syn::{Item, ItemMod, parse_quote};
@@ -16,7 +16,7 @@ use crate::program::FunctionId;
 /// Functions that a simulation of many cranes calls in every step.
 const FUNCTIONS: [FunctionId; 1] = [FunctionId::ForwardDynamics];
 
-/// Eight cranes of a spec that does not ask for them: one after the other.
+/// Eight cranes of a spec that does not request them: one after the other.
 pub fn one_by_one() -> Item {
     parse_quote! {
         impl Ensemble<N> for Crane {
@@ -29,7 +29,7 @@ pub fn one_by_one() -> Item {
     }
 }
 
-/// The module `lanes`, and what makes eight cranes of one.
+/// The module `lanes`, and the function that makes eight cranes from one.
 pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
     let mut items = parameters::parameters(chain, blocks, labels, Number::Lanes);
     for block in blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.id)) {
@@ -47,7 +47,7 @@ pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
     let functions = ["exp", "select", "sqrt"].into_iter().filter(|name| words.contains(*name)).map(variable);
     let functions: Vec<_> = functions.collect();
     let mut module: ItemMod = parse_quote! {
-        #[doc = " Eight cranes a call."]
+        #[doc = " Eight cranes per call."]
         pub mod lanes {
             use ::crane_model::nalgebra::SVector;
             use ::crane_model::support::lanes::{f64x8, fma, sin_cos, splat #stumpff #(, #functions)*};
@@ -71,7 +71,7 @@ pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
         let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
         items.push(parse_quote! {
             impl Cranes {
-                #[doc = " Eight cranes with these values of their live parameters, each of which its crane has checked."]
+                #[doc = " Eight cranes with these values of their live parameters, which each crane has checked."]
                 pub(super) fn new(params: &Params) -> Self {
                     Cranes { constants: Constants::of(params) }
                 }

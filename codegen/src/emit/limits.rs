@@ -1,4 +1,4 @@
-//! The rules that the values of live parameters keep, whenever they are set.
+//! The rules for the values of live parameters, checked whenever they are set.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -8,7 +8,7 @@ use super::arithmetic::{difference, field, integer, literal, negative, product, 
 use super::description::text;
 use crate::chain::{Bound, Chain, ParameterId, Refusal, Relation, Value};
 
-/// `PARAMETERS` with their ranges, and the check of all values together; nothing if all numbers are baked in.
+/// `PARAMETERS` with their ranges, and the check of all values together; nothing if all numbers are compiled in.
 pub fn limits(chain: &Chain) -> Vec<Item> {
     if chain.parameters.is_empty() {
         return vec![];
@@ -39,15 +39,15 @@ pub fn limits(chain: &Chain) -> Vec<Item> {
     });
     vec![
         parse_quote! {
-            #[doc = " Live parameters: names, units, and the values that they may have."]
+            #[doc = " Live parameters: names, units and allowed values."]
             pub const PARAMETERS: [ParameterInfo; #count] = [#(#infos),*];
         },
         parse_quote! {
             impl Params {
-                #[doc = " Whether the crane may have these values."]
+                #[doc = " Checks these values against the rules of the spec language."]
                 #[doc = ""]
                 #[doc = " # Errors"]
-                #[doc = " The first rule of the spec language that they break."]
+                #[doc = " The first rule that they break."]
                 pub fn check(&self) -> Result<(), ParameterError> {
                     #(#ranges)*
                     #(#relations)*

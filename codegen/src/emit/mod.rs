@@ -1,4 +1,4 @@
-//! Rust text from straight lines. The only module that knows Rust.
+//! Rust text from straight-line code. This is the only module that knows Rust.
 
 mod arithmetic;
 mod crane;
@@ -38,7 +38,7 @@ pub struct GeneratedCode {
     pub name: String,
     /// Rust text, to be included into a module.
     pub text: String,
-    /// What it costs and what is left out.
+    /// Its operation counts and what is left out.
     pub report: Report,
 }
 
@@ -58,7 +58,7 @@ pub fn emit(chain: &Chain, analyses: Analyses, blocks: &Blocks, report: Report, 
         if let Shape::Factors(count) = block.function.shape {
             let count = integer(count);
             items.push(parse_quote!(
-                #[doc = " What [`factorise`] leaves for [`solve`]."]
+                #[doc = " The factors that [`factorise`] computes for [`solve`]."]
                 pub type Factors = [f64; #count];
             ));
         }
@@ -77,8 +77,8 @@ pub fn emit(chain: &Chain, analyses: Analyses, blocks: &Blocks, report: Report, 
     GeneratedCode { name: chain.name.clone(), text, report }
 }
 
-/// What the body uses, and nothing else; nalgebra comes through the runtime, so that a user's crate depends on the
-/// runtime alone.
+/// Imports of only what the body uses; nalgebra comes through the runtime, so that a user's crate depends only on the
+/// runtime.
 fn imports(items: &[syn::Item]) -> String {
     const SOURCES: [(&str, &[&str]); 3] = [
         ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),
@@ -139,7 +139,7 @@ fn imports(items: &[syn::Item]) -> String {
     syn::parse_file(&text).map(|file| prettyplease::unparse(&file)).unwrap_or(text)
 }
 
-/// A name of the user's that ends in `_` makes names such as `box__psi`, which rustc does not take for snake case.
+/// A user's name that ends in `_` leads to names such as `box__psi`, which rustc does not accept as snake case.
 fn allow_double_underscores(item: &mut syn::Item) {
     if !identifiers(std::slice::from_ref(item)).iter().any(|name| name.contains("__")) {
         return;
@@ -154,7 +154,7 @@ fn allow_double_underscores(item: &mut syn::Item) {
     attributes.push(parse_quote!(#[allow(non_snake_case)]));
 }
 
-/// All identifiers of the code; not what stands in strings and documentation, which is the user's.
+/// All identifiers of the code, without the contents of strings and documentation, which belong to the user.
 fn identifiers(items: &[syn::Item]) -> HashSet<String> {
     let mut found = HashSet::new();
     let mut streams: Vec<TokenStream> = items.iter().map(ToTokens::to_token_stream).collect();

@@ -1,4 +1,4 @@
-//! Names of variables in one function: the model's where it has one, else numbered.
+//! Names of variables in one function: the model's name if there is one, otherwise a number.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,7 +6,7 @@ use super::rounds;
 use crate::program::{Argument, Program};
 use crate::symbolic::{ExprId, Op};
 
-/// Words that generated functions use themselves.
+/// Names that generated functions use themselves.
 const TAKEN: &[&str] = &[
     "factors",
     "fma",
@@ -48,7 +48,7 @@ pub struct Names<'p> {
 }
 
 impl<'p> Names<'p> {
-    /// For a function with so many loops.
+    /// For a function with this many loops.
     pub fn new(program: &'p Program, loops: usize) -> Self {
         let of_loops = (0..loops).flat_map(|of| rounds::NAMES.map(|name| rounds::owned_name(name, of)));
         let taken = TAKEN.iter().map(ToString::to_string).chain(of_loops).collect();
@@ -75,7 +75,7 @@ impl<'p> Names<'p> {
         name
     }
 
-    /// The next `t017` that nobody has.
+    /// The next free `t017`.
     fn numbered(&mut self) -> String {
         loop {
             self.next += 1;

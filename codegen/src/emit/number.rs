@@ -1,4 +1,4 @@
-//! What a number is in generated code: one, or eight of eight cranes.
+//! The number type of generated code: one number, or eight for eight cranes.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -24,7 +24,7 @@ impl Number {
         }
     }
 
-    /// A number that is written down.
+    /// A literal number.
     pub fn literal(self, value: f64) -> Expr {
         match self {
             Number::Single => literal(value),

@@ -1,4 +1,4 @@
-//! Live parameters and the constants made of them.
+//! Live parameters and the constants computed from them.
 
 use quote::format_ident;
 use syn::{Item, Stmt, parse_quote};
@@ -13,7 +13,7 @@ use crate::lower::Blocks;
 use crate::program::Argument;
 use crate::symbolic::{ExprId, Op};
 
-/// `Params` with defaults and units, and `Constants`, what functions read; nothing if all numbers are baked in.
+/// `Params` with defaults and units, and `Constants`, what functions read; nothing if all numbers are compiled in.
 pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels, number: Number) -> Vec<Item> {
     if chain.parameters.is_empty() {
         return vec![];
@@ -40,7 +40,7 @@ pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels, number: Numbe
             }
         },
         parse_quote! {
-            #[doc = " Live parameters, and what depends on them alone, computed once."]
+            #[doc = " Live parameters, and constants that depend only on them, computed once."]
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct Constants {
                 params: Params,
@@ -58,7 +58,7 @@ pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels, number: Numbe
     ]
 }
 
-/// What a parameter is, and its unit, as far as the user said.
+/// Description and unit of a parameter, if the user gave them.
 fn documentation(parameter: &Parameter) -> String {
     let words = [&parameter.about, &parameter.unit].map(|text| plain(text));
     let said: Vec<String> = words.into_iter().filter(|text| !text.is_empty()).collect();

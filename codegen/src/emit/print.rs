@@ -34,13 +34,13 @@ pub fn file(items: Vec<syn::Item>) -> String {
     out
 }
 
-/// Whether nothing of the item follows this line.
+/// Whether this line ends the item.
 fn ends_item(line: &str) -> bool {
     line.ends_with([';', '}'])
 }
 
-/// The comment that a line carries, and its indentation. The formatter breaks a long one into three lines; then the other
-/// two are taken from `following`.
+/// The comment on a line, and its indentation. The formatter breaks a long comment into three lines; the other two are then
+/// taken from `following`.
 fn comment_of<'t>(line: &'t str, following: &mut std::str::Lines<'t>) -> Option<(&'t str, String)> {
     let call = line.trim_start().strip_prefix("comment!(")?;
     let indent = &line[..line.len() - line.trim_start().len()];

@@ -12,11 +12,11 @@ use super::print::comment;
 use crate::lower::{Place, Progression, Source, Statement, Taking};
 use crate::symbolic::ExprId;
 
-/// Names of what belongs to a loop.
+/// Names of the variables of a loop.
 pub const NAMES: [&str; 4] = ["numbers", "gathered", "carried", "kept"];
 
 impl Writer<'_> {
-    /// What a loop starts from, and the loop.
+    /// The initial values of a loop, and the loop.
     pub(super) fn rounds(&self, of: usize, body: &[Statement], names: &mut Names, used: &mut Used) -> Vec<Stmt> {
         let own = &self.block.rolled.loops[of];
         let [numbers, gathered, carried, kept] = NAMES.map(|name| owned(name, of));
@@ -59,7 +59,7 @@ impl Writer<'_> {
         statements
     }
 
-    /// What differs from round to round.
+    /// The values that differ from round to round.
     pub(super) fn source(&self, index: usize, used: &mut Used) -> Expr {
         let (of, source) = &self.block.rolled.sources[index];
         match source {
@@ -80,7 +80,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What a loop leaves.
+    /// The values that a loop leaves.
     pub(super) fn taking(&self, index: usize) -> Expr {
         match self.block.rolled.takings[index] {
             Taking::Carried { of, place } => element(owned("carried", of), place),
@@ -106,7 +106,7 @@ fn owned(name: &str, of: usize) -> Expr {
     variable(&owned_name(name, of))
 }
 
-/// Name of what belongs to a loop.
+/// Name of a variable of a loop.
 pub fn owned_name(name: &str, of: usize) -> String {
     let name = format!("{name}_{}", of + 1);
     // Tables are statics.

@@ -1,4 +1,4 @@
-//! How results are stored while they are computed, and what is returned.
+//! Storage of results while they are computed, and returned types.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -10,15 +10,15 @@ use super::rounds::{at, place};
 use crate::lower::Progression;
 use crate::program::{Function, Point, Shape, Struct};
 
-/// How a function hands over its result.
+/// How a function returns its result.
 pub enum Handover {
     /// Returned by value.
     Return,
     /// Written to the caller's array, because it may be larger than a stack.
     OutArgument,
-    /// Made from factors into the caller's array.
+    /// Computed from factors into the caller's array.
     FromFactors,
-    /// A vector returned by value, a matrix in the caller's place.
+    /// A vector returned by value, a matrix written to the caller's matrix.
     Both,
 }
 
@@ -62,7 +62,7 @@ impl<'f> Storage<'f> {
         }
     }
 
-    /// Name of the variable in which the result grows.
+    /// Name of the variable that collects the result.
     pub fn storage_name(&self) -> &'static str {
         match self.shape {
             Shape::Turned { .. } => "factors",
@@ -71,7 +71,7 @@ impl<'f> Storage<'f> {
         }
     }
 
-    /// Type of the variable `out` in which the result grows.
+    /// Type of the variable `out` that collects the result.
     pub fn storage_type(&self) -> TokenStream {
         let number = self.number.of();
         match self.shape {
@@ -86,7 +86,7 @@ impl<'f> Storage<'f> {
             Shape::Record(_, fields) => array(&quote!([[f64; N]; N]), fields.len()),
             Shape::Turned { degrees, vectors, .. } => {
                 let total = integer(degrees.iter().sum());
-                // Without rotation vectors the parameter has its default.
+                // Without rotation vectors the parameter keeps its default.
                 let vectors = (!vectors.is_empty()).then(|| integer(vectors.len())).map(|count| quote!(, #count));
                 quote!(TransformFactors<N, #total #vectors>)
             }
@@ -94,7 +94,7 @@ impl<'f> Storage<'f> {
         }
     }
 
-    /// A storage in which every slot that no statement writes has its value.
+    /// A storage in which every slot that no statement writes already has its value.
     pub fn blank(&self) -> TokenStream {
         let zero = self.number.literal(0.0);
         match self.shape {
@@ -160,12 +160,12 @@ impl<'f> Storage<'f> {
         }
     }
 
-    /// The place of a slot in the storage.
+    /// The position of a slot in the storage.
     pub fn place(&self, slot: usize) -> Expr {
         slot_of(self.shape, slot, variable(self.storage_name()))
     }
 
-    /// The place of slots in a loop.
+    /// The position of slots in a loop.
     pub fn place_at(&self, slots: Progression) -> Expr {
         let out = variable(self.storage_name());
         let Progression { first, step } = slots;
@@ -225,7 +225,7 @@ fn point(point: &Point) -> TokenStream {
     quote!(Point { coordinates: #coordinates, turns: #turns })
 }
 
-/// What the runtime calls a type; it has a constant `ZERO`.
+/// The runtime's name of a type; the type has a constant `ZERO`.
 pub fn struct_name(of: Struct) -> TokenStream {
     match of {
         Struct::Wrench => quote!(Wrench),
@@ -321,7 +321,7 @@ pub fn row_of_triangle(n: usize, mut slot: usize) -> (usize, usize) {
     (row, row + slot)
 }
 
-/// The field of a record that a slot is in, and the slot in it.
+/// The field of a record that contains a slot, and the index of the slot within it.
 pub fn field_of(fields: &[(&'static str, Shape)], mut slot: usize) -> (usize, usize) {
     let mut index = 0;
     while slot >= fields[index].1.len() {

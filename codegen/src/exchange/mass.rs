@@ -1,4 +1,4 @@
-//! Mass properties as other programs have them: mass, centre of mass, tensor about it.
+//! Mass properties in the form of other programs: mass, centre of mass, and the tensor about it.
 
 use crate::chain::{Frame, Inertia, Vector};
 
@@ -14,7 +14,7 @@ pub(super) struct Lump {
 }
 
 impl Lump {
-    /// Of a pseudo-inertia: with `S = ∫ r rᵀ dm − m c cᵀ`, the tensor is `tr(S) 1 − S`.
+    /// From a pseudo-inertia: with `S = ∫ r rᵀ dm − m c cᵀ`, the tensor is `tr(S) 1 − S`.
     pub(super) fn of(inertia: &Inertia, parameters: &[f64]) -> Self {
         let mass = inertia.mass.at(parameters);
         let com = inertia.first.each_ref().map(|first| first.at(parameters) / mass);
@@ -33,7 +33,7 @@ impl Lump {
         Lump { mass, com, tensor: tensor.map(|entry| without_rounding(entry, size)) }
     }
 
-    /// The same in the frame in which this one's frame is given: `c' = p + R c`, `I' = R I Rᵀ`.
+    /// The same expressed in the outer frame: `c' = p + R c`, `I' = R I Rᵀ`.
     pub(super) fn seen_through(&self, frame: &Frame) -> Lump {
         let [xx, yy, zz, xy, xz, yz] = self.tensor;
         let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
@@ -49,12 +49,12 @@ impl Lump {
     }
 }
 
-/// Zero where a number is what rounding has left of numbers of a size: some twenty roundings of 1.1e-16.
+/// Zero if a number is only a rounding residue of larger numbers: about twenty rounding errors of 1.1e-16.
 pub(super) fn without_rounding(number: f64, size: f64) -> f64 {
     if number.abs() <= 2e-15 * size { 0.0 } else { number }
 }
 
-/// A vector without what rounding has left in some of its components.
+/// A vector without rounding residues in its components.
 pub(super) fn clean(vector: Vector) -> Vector {
     let size = vector.iter().map(|component| component.abs()).sum();
     vector.map(|component| without_rounding(component, size))
@@ -71,7 +71,7 @@ mod tests {
         let (mass, com, tensor) = (12.0, [1.0, -2.0, 3.0], [52.0, 40.0, 20.0, -1.0, 2.0, -3.0]);
         let back = Lump::of(&about_com(mass.into(), &com.map(Into::into), &tensor.map(Into::into)), &[]);
         assert_eq!((back.mass, back.com, back.tensor), (mass, com, tensor));
-        // A point has no inertia of its own, not even by rounding.
+        // A point mass has no inertia, not even from rounding.
         assert_eq!(Lump::of(&point(0.3.into(), &[0.1.into(), 0.7.into(), 1.3.into()]), &[]).tensor, [0.0; 6]);
     }
 

@@ -9,11 +9,11 @@ use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, approximations, bars, hinged, origin, placements};
 use crate::chain::{Chain, CoordinateId, CoordinateKind, Frame, Step, Support, SupportKinematics};
 
-/// `MuJoCo` refuses what moves without mass or inertia: a massless frame, a point, gets this much, kg or kg m². That is
-/// below the rounding of any sum that it enters.
+/// `MuJoCo` refuses moving bodies without mass or inertia: a massless frame, or a point, gets this value, kg or kg m². It is
+/// below the rounding of any sum that contains it.
 const LEAST: f64 = 1e-14;
 
-/// What of a crane MJCF cannot express.
+/// A part of a crane that MJCF cannot express.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Inexpressible {
     /// What, in the user's own names, and why.
@@ -32,12 +32,13 @@ impl std::error::Error for Inexpressible {}
 
 /// The MJCF text of a crane with the given parameter values.
 ///
-/// A joint a coordinate, of its name. Springs of elements, drives, held where they stand at t = 0, and passive damping become
-/// stiffness, damping and spring reference of joints, rotors their armature, rigid drives equalities; a linear support becomes three tendons, whose lengths are linear in the
-/// base's coordinates. The guess is the key frame `start`.
+/// There is one joint per coordinate, with its name. Springs of elements, drives (held at their positions at t = 0) and passive
+/// damping become stiffness, damping and spring reference of joints, rotors become armature, rigid drives equality
+/// constraints; a linear support becomes three tendons, whose lengths are linear in the base's coordinates. The guess is the
+/// key frame `start`.
 ///
 /// # Errors
-/// A support with exact kinematics; a body that is called as the ground is.
+/// A support with exact kinematics, or a body with the name of the ground.
 ///
 /// # Panics
 /// If `parameters` is shorter than the chain's list of parameters.
@@ -100,7 +101,7 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
     Ok(xml.finish())
 }
 
-/// All bodies, each within the one before, left open.
+/// All bodies, each within the previous one, left open.
 fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
     let placements = placements(chain, parameters);
     let bars = bars(chain, &placements, parameters);
@@ -136,7 +137,7 @@ fn bodies(xml: &mut Xml, chain: &Chain, parameters: &[f64]) {
     }
 }
 
-/// A joint with its spring, damper and rotor; `frame`: where it acts, in the frame of its body at `q = 0`.
+/// A joint with its spring, damper and rotor; `frame`: its pose in the frame of its body at `q = 0`.
 fn joint(xml: &mut Xml, chain: &Chain, id: CoordinateId, frame: &Frame, parameters: &[f64]) {
     let coordinate = &chain.coordinates[id.0];
     let kind = if coordinate.kind == CoordinateKind::Rotation { "hinge" } else { "slide" };

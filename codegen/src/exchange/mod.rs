@@ -1,7 +1,8 @@
 //! Cranes in the languages of other programs: URDF and MJCF written, URDF read.
 //!
 //! URDF: <https://docs.ros.org/en/rolling/p/urdfdom_headers>; MJCF: <https://mujoco.readthedocs.io/en/stable/XMLreference.html>.
-//! What is written has the coordinates of the crane: a joint of one degree of freedom each, of its name, in the order of `q`.
+//! Exported files have the coordinates of the crane: one joint of one degree of freedom per coordinate, with its name, in the
+//! order of `q`.
 
 mod import;
 mod mass;
@@ -20,7 +21,7 @@ use std::fmt::Write;
 
 use crate::chain::{Body, Chain, Frame, Step, Vector};
 
-/// Where a crane came from, and with which values of its parameters it was written.
+/// The origin of a crane, and the values of its parameters.
 fn origin(chain: &Chain, parameters: &[f64]) -> String {
     let mut text = format!("{}, spec hash {}. Units: SI, rad.", chain.title, chain.spec_hash);
     for (parameter, value) in chain.parameters.iter().zip(parameters) {
@@ -29,8 +30,8 @@ fn origin(chain: &Chain, parameters: &[f64]) -> String {
     text
 }
 
-/// The path with a hinge for each coordinate of a rotation vector, in the order of the coordinates: neither format has a joint
-/// that turns by a vector with a spring on each component. To second order in the angles it is the same.
+/// The path with one hinge per coordinate of a rotation vector, in the order of the coordinates: neither format has a joint
+/// that rotates by a vector with a spring on each component. To second order in the angles both are equal.
 fn hinged(path: &[Step]) -> Vec<Step> {
     let hinges = |step: &Step| match step {
         Step::RotationVector(ids) => ids.map(Step::Move).to_vec(),
@@ -39,7 +40,7 @@ fn hinged(path: &[Step]) -> Vec<Step> {
     path.iter().flat_map(hinges).collect()
 }
 
-/// What is lost in an export, for the head of the file and the screen; none if nothing is.
+/// The parts that an export omits, for the header of the file and the screen; `None` if nothing is omitted.
 #[must_use]
 pub fn approximations(chain: &Chain) -> Option<String> {
     let symmetric = |body: &&Body| body.path.iter().any(|step| matches!(step, Step::RotationVector(_)));
@@ -55,7 +56,7 @@ pub fn approximations(chain: &Chain) -> Option<String> {
     (!lost.is_empty()).then(|| lost.join(" "))
 }
 
-/// Poses of all bodies at `q = 0`, each in the frame of the body before it.
+/// Poses of all bodies at `q = 0`, each in the frame of the previous body.
 fn placements(chain: &Chain, parameters: &[f64]) -> Vec<Frame> {
     let rest = vec![0.0; chain.coordinates.len()];
     let along =
@@ -63,7 +64,7 @@ fn placements(chain: &Chain, parameters: &[f64]) -> Vec<Frame> {
     chain.bodies.iter().map(|body| along(&body.path)).collect()
 }
 
-/// Where the bar ends by which a body is drawn, from the origin of its frame: at the next body, or at its centre of mass.
+/// The end of the bar that represents a body in pictures, from the origin of its frame: the next body, or its centre of mass.
 fn bars(chain: &Chain, placements: &[Frame], parameters: &[f64]) -> Vec<Option<Vector>> {
     let end = |(index, body): (usize, &Body)| {
         let next = placements.get(index + 1).map(|next| next.origin);
@@ -73,7 +74,7 @@ fn bars(chain: &Chain, placements: &[Frame], parameters: &[f64]) -> Vec<Option<V
     chain.bodies.iter().enumerate().map(end).collect()
 }
 
-/// Nothing shorter is drawn, m.
+/// Shorter bars are not drawn, m.
 const SHORTEST_BAR: f64 = 1e-3;
-/// Radius of the bars that bodies are drawn by, m.
+/// Radius of the bars that represent bodies, m.
 const RADIUS: f64 = 0.03;

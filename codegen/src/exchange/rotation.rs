@@ -1,14 +1,14 @@
-//! Rotations as other programs write them.
+//! Rotations in the form of other programs.
 
 use crate::chain::{Frame, Vector};
 
 /// Roll, pitch and yaw of a frame, `Rz(yaw) Ry(pitch) Rx(roll)`, rad.
 ///
-/// Pitch and roll are taken of the frame turned back by the yaw, so that they are right however yaw and roll share a turn
-/// where the pitch is a quarter.
+/// Pitch and roll are computed from the frame rotated back by the yaw, so that they are correct however yaw and roll share a
+/// rotation if the pitch is a quarter turn.
 pub(super) fn roll_pitch_yaw(frame: &Frame) -> Vector {
     let [x, y, z] = frame.axes;
-    // Yaw is arbitrary where x points along the third axis: then it is none.
+    // Yaw is arbitrary if x points along the third axis: then it is set to zero.
     let yaw = if x[0].hypot(x[1]) > 1e-9 { x[1].atan2(x[0]) } else { 0.0 };
     let (sin, cos) = yaw.sin_cos();
     let pitch = (-x[2]).atan2(cos * x[0] + sin * x[1]);
@@ -34,7 +34,7 @@ pub(super) fn quaternion(frame: &Frame) -> [f64; 4] {
     row.map(|component| component / sign)
 }
 
-/// A frame with its z axis along a direction, turned there by the shortest way.
+/// A frame with its z axis along a direction, by the shortest rotation.
 pub(super) fn along_z(direction: Vector) -> Frame {
     let size = length(direction);
     let [a, b, c] = direction.map(|component| component / size);

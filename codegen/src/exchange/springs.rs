@@ -12,13 +12,13 @@ pub(super) struct JointSpring {
     pub(super) stiffness: f64,
     /// N m s/rad or N s/m.
     pub(super) damping: f64,
-    /// Where the spring is at rest, rad or m: of a drive, where it stands at t = 0.
+    /// Position at which the spring is unstressed, rad or m: for a drive, its position at t = 0.
     pub(super) rest: f64,
 }
 
-/// What acts on a coordinate: the spring of an element, a drive held where it begins, passive damping, or nothing.
+/// The spring of a coordinate: that of an element, of a drive held at its initial position, passive damping, or none.
 ///
-/// The language lets one of these act on a coordinate at most.
+/// The language allows at most one of these per coordinate.
 pub(super) fn on(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> JointSpring {
     let number = |value: &crate::chain::Value| value.at(parameters);
     if let Some(spring) = chain.elements.iter().find(|spring| spring.coordinate == id) {
@@ -39,16 +39,17 @@ pub(super) fn linear_rows([x, y, z]: Vector) -> [[f64; 6]; 3] {
     [[1.0, 0.0, 0.0, -y, z, 0.0], [0.0, 1.0, 0.0, x, 0.0, -z], [0.0, 0.0, 1.0, 0.0, -x, y]]
 }
 
-/// The springs and dampers of a crane as YAML, to stand beside a URDF file, which knows none; with gravity and the guess.
+/// The springs and dampers of a crane as YAML, to accompany a URDF file, which cannot contain them; with gravity and the guess.
 #[must_use]
 pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
     let at = |values: &[crate::chain::Value; 3]| values.each_ref().map(|value| value.at(parameters));
     let list = |values: &[crate::chain::Value; 3]| format!("[{}]", numbers(&at(values)).replace(' ', ", "));
     let mut text = format!("# Springs and dampers of {}\n", super::origin(chain, parameters));
-    text += "# URDF knows none; A and e follow from the URDF file beside this one, the forces from here.\n";
+    text += "# URDF cannot contain them: A and e follow from the URDF file, the forces from this file.\n";
     let _ = writeln!(text, "gravity: {}   # m/s^2", list(&chain.gravity));
 
-    text += "\n# Force on a joint: stiffness * (rest - q) - damping * v. Drives are held where they stand at t = 0.\n";
+    text +=
+        "\n# Force on a joint: stiffness * (rest - q) - damping * v. Drives are held at their positions at t = 0.\n";
     text += "# Revolute: N m/rad, N m s/rad, rad; prismatic: N/m, N s/m, m.\njoints:\n";
     for (index, coordinate) in chain.coordinates.iter().enumerate() {
         let JointSpring { stiffness, damping, rest } = on(chain, CoordinateId(index), parameters);
@@ -60,15 +61,14 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
     }
 
     if chain.rigid_drives().next().is_some() {
-        text += "\n# Joints whose motion rigid drives prescribe, where they stand at t = 0, rad or m.\nprescribed:\n";
+        text += "\n# Joints whose motion rigid drives prescribe: positions at t = 0, rad or m.\nprescribed:\n";
         for drive in chain.rigid_drives() {
             let name = &chain.coordinates[drive.coordinate.0].name;
             let _ = writeln!(text, "  {name}: {}", number_text(drive.profile.start(parameters)));
         }
     }
     if !chain.rotors.is_empty() {
-        text +=
-            "\n# Inertia of the joints' rotors, on the diagonal of A besides the bodies', kg m^2 or kg.\narmature:\n";
+        text += "\n# Inertia of the joints' rotors, added to the diagonal of A, kg m^2 or kg.\narmature:\n";
         for rotor in &chain.rotors {
             let name = &chain.coordinates[rotor.coordinate.0].name;
             let _ = writeln!(text, "  {name}: {}", number_text(rotor.armature.at(parameters)));
@@ -99,7 +99,7 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
         }
     }
 
-    text += "\n# Where the static solution starts, rad and m.\nguess:\n";
+    text += "\n# Start of the static solution, rad and m.\nguess:\n";
     for (coordinate, guess) in chain.coordinates.iter().zip(&chain.guess) {
         let _ = writeln!(text, "  {}: {}", coordinate.name, number_text(*guess));
     }

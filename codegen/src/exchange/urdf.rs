@@ -1,4 +1,4 @@
-//! A crane as URDF: kinematics and masses; springs and dampers stand beside it.
+//! A crane as URDF: kinematics and masses; springs and dampers are in a second file.
 
 use super::mass::Lump;
 use super::rotation::{along_z, length, roll_pitch_yaw};
@@ -6,14 +6,14 @@ use super::xml::{Xml, number_text, numbers};
 use super::{RADIUS, approximations, bars, hinged, origin, placements};
 use crate::chain::{Chain, CoordinateKind, Frame, Step, Vector};
 
-/// URDF asks for limits of a joint that is not `continuous`, which would be two coordinates in Pinocchio. The crane has none:
-/// so far, rad or m; as fast, rad/s or m/s; as strong, N m or N.
+/// URDF requires limits for joints that are not `continuous`, which would have two coordinates in Pinocchio. The crane has no
+/// limits: this value is used for positions (rad or m), velocities (rad/s or m/s) and efforts (N m or N).
 pub(super) const NO_LIMIT: [f64; 3] = [1e3, 1e3, 1e9];
 
 /// The URDF text of a crane with the given parameter values.
 ///
-/// A joint a coordinate, of its name; a body that moves by several coordinates hangs on massless links between them. Joints
-/// that do not move end in `_mount`, points of interest are massless links.
+/// There is one joint per coordinate, with its name; a body with several coordinates has massless links between them. Names of
+/// fixed joints end in `_mount`; points of interest are massless links.
 ///
 /// # Panics
 /// If `parameters` is shorter than the chain's list of parameters.
@@ -24,8 +24,8 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
     if let Some(text) = approximations(chain) {
         xml.comment(&text);
     }
-    xml.comment("Joints have no stiffness and no damping here: the file of springs beside this one has them.");
-    // A crane may have a link of the world's name.
+    xml.comment("Stiffness and damping of the joints are in the springs file, not here.");
+    // A crane may have a link with the name of the world.
     let taken = chain.bodies.iter().any(|body| body.name == WORLD);
     let ground = if taken { format!("{WORLD}_0") } else { WORLD.to_owned() };
     xml.leaf("link", &[("name", ground.clone())]);
@@ -69,10 +69,10 @@ pub fn urdf(chain: &Chain, parameters: &[f64]) -> String {
     xml.finish()
 }
 
-/// The link that does not move.
+/// The fixed link.
 const WORLD: &str = "world";
 
-/// A joint that moves by one coordinate, its kind and axis given, or one that does not.
+/// A joint of one coordinate with its kind and axis, or a fixed joint.
 fn joint(xml: &mut Xml, name: &str, (parent, child): (&str, &str), placement: &Frame, moves: Option<(&str, Vector)>) {
     let kind = moves.map_or("fixed", |(kind, _)| kind);
     xml.open("joint", &[("name", name.to_owned()), ("type", kind.to_owned())]);
@@ -90,7 +90,7 @@ fn joint(xml: &mut Xml, name: &str, (parent, child): (&str, &str), placement: &F
     xml.close();
 }
 
-/// A body: its mass, and the bar by which it is drawn.
+/// A body: its mass, and the bar that represents it.
 fn link(xml: &mut Xml, name: &str, mass: Option<&Lump>, bar: Option<Vector>) {
     let named = [("name", name.to_owned())];
     if mass.is_none() && bar.is_none() {

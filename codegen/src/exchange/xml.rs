@@ -1,8 +1,8 @@
-//! XML as it is written: elements, attributes, comments, indented.
+//! Writes indented XML: elements, attributes, comments.
 
 use std::fmt::Write;
 
-/// A document that is being written.
+/// A document under construction.
 pub(super) struct Xml {
     text: String,
     open: Vec<&'static str>,
@@ -32,7 +32,7 @@ impl Xml {
         self.open.push(name);
     }
 
-    /// Ends the element that was begun last.
+    /// Ends the innermost open element.
     pub(super) fn close(&mut self) {
         if let Some(name) = self.open.pop() {
             self.line(&format!("</{name}>"));
@@ -68,13 +68,13 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-/// Numbers with blanks between, each the shortest text that reads back as the same.
+/// Numbers separated by blanks, each the shortest text that reads back as the same number.
 pub(super) fn numbers(numbers: &[f64]) -> String {
     let words: Vec<String> = numbers.iter().map(|number| number_text(*number)).collect();
     words.join(" ")
 }
 
-/// A number: whole ones without a fraction, no negative zero.
+/// A number: integers without a fraction, no negative zero.
 pub(super) fn number_text(number: f64) -> String {
     let text = format!("{:?}", number + 0.0);
     text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)

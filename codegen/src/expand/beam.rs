@@ -9,7 +9,7 @@ use crate::chain::{Inertia, Value};
 pub(crate) struct RigidElement {
     /// Length along x, m.
     pub length: Value,
-    /// Pseudo-inertia about its beginning.
+    /// Pseudo-inertia about its start.
     pub inertia: Inertia,
 }
 
@@ -22,16 +22,16 @@ pub(crate) struct Joint {
     pub damping: [Value; 3],
 }
 
-/// A beam of rigid elements with a joint between each two.
+/// A beam of rigid elements with a joint between neighbours.
 #[derive(Clone, Debug)]
 pub(crate) struct Elements {
-    /// Elements, from the beginning to the tip.
+    /// Elements, from the start to the tip.
     pub elements: Vec<RigidElement>,
     /// Joints, one fewer.
     pub joints: Vec<Joint>,
 }
 
-/// Lengths of the elements of a beam of n equal sections, [Urbaś 2016, section 2.2]: a spring sits in the middle of each
+/// Lengths of the elements of a beam of n equal sections, [Urbaś 2016, section 2.2]: a spring is in the middle of each
 /// section of length `d = l/n`, so that the elements are `d/2, d, …, d, d/2` long.
 pub(crate) fn element_lengths(length: &Value, sections: usize) -> Vec<Value> {
     let section = length.clone() / (sections as f64).into();
@@ -88,7 +88,7 @@ mod tests {
         let line_density = Value::from(7850.0) * boom().area + 62.0896.into();
         let mass: f64 =
             lengths.iter().map(|l| prismatic((*l).into(), &line_density, &boom()).inertia.mass.at(&[])).sum();
-        // 116.6 kg/m over 3.5 m, to all digits written.
+        // 116.6 kg/m over 3.5 m, to all given digits.
         assert!((mass - 408.1).abs() < 1e-9, "{mass}");
     }
 
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn halves_have_the_pseudo_inertia_of_the_whole() {
-        // Two halves end to end are the whole beam: ∫x² = m l²/3 however it is cut.
+        // Two halves end to end are the whole beam: ∫x² = m l²/3 however it is divided.
         let density = Value::from(100.0);
         let whole = prismatic(2.0.into(), &density, &boom()).inertia;
         let half = prismatic(1.0.into(), &density, &boom()).inertia;

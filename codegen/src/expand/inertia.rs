@@ -11,7 +11,7 @@ pub(crate) fn gyration(mass: &Value, radii: &[Value; 3]) -> Tensor {
     [moment(&radii[0]), moment(&radii[1]), moment(&radii[2]), Value::ZERO, Value::ZERO, Value::ZERO]
 }
 
-/// Pseudo-inertia of a body whose tensor is about its centre of mass: the parallel axes shift it by `m c cᵀ`.
+/// Pseudo-inertia of a body whose tensor is about its centre of mass, by the parallel axis theorem with `m c cᵀ`.
 pub(crate) fn about_com(mass: Value, com: &[Value; 3], tensor: &Tensor) -> Inertia {
     let shift = point(mass, com);
     let own = planar_moments(tensor);
@@ -50,7 +50,7 @@ fn planar_moments([xx, yy, zz, xy, xz, yz]: &Tensor) -> [Value; 6] {
     [planar(xx, yy, zz), planar(yy, xx, zz), planar(zz, xx, yy), -xy.clone(), -xz.clone(), -yz.clone()]
 }
 
-/// Tensor about the centre of mass, of a tensor about the origin: the parallel axes back.
+/// Tensor about the centre of mass, from a tensor about the origin: the inverse of the parallel axis theorem.
 pub(crate) fn tensor_at_com(mass: &Value, com: &[Value; 3], tensor: &Tensor) -> Tensor {
     let product = |i: usize, j: usize| com[i].clone() * com[j].clone();
     let square = product(0, 0) + product(1, 1) + product(2, 2);
@@ -61,7 +61,7 @@ pub(crate) fn tensor_at_com(mass: &Value, com: &[Value; 3], tensor: &Tensor) -> 
     })
 }
 
-/// Leading principal minors of a tensor: all above zero where it is positive definite, and only there (Sylvester).
+/// Leading principal minors of a tensor: all are above zero if and only if it is positive definite (Sylvester).
 pub(crate) fn leading_minors([xx, yy, zz, xy, xz, yz]: Tensor) -> [Value; 3] {
     let of_two = xx.clone() * yy.clone() - xy.clone() * xy.clone();
     let determinant = of_two.clone() * zz + 2.0 * (xy * xz.clone() * yz.clone())
@@ -70,12 +70,12 @@ pub(crate) fn leading_minors([xx, yy, zz, xy, xz, yz]: Tensor) -> [Value; 3] {
     [xx, of_two, determinant]
 }
 
-/// `I − ε tr(I) 1`: positive definite where the smallest principal moment is above a share ε of their sum.
+/// `I − ε tr(I) 1`: positive definite if the smallest principal moment is above a fraction ε of their sum.
 pub(crate) fn definite_margin(tensor: &Tensor, share: f64) -> Tensor {
     with_trace(tensor, -share, 1.0)
 }
 
-/// `(1 + τ) tr(I) 1 − (2 + τ) I`: positive definite where no principal moment exceeds the sum of the other two by a share τ.
+/// `(1 + τ) tr(I) 1 − (2 + τ) I`: positive definite if no principal moment exceeds the sum of the other two by a fraction τ.
 pub(crate) fn triangle_margin(tensor: &Tensor, share: f64) -> Tensor {
     with_trace(tensor, 1.0 + share, -2.0 - share)
 }

@@ -1,6 +1,6 @@
 //! Formulas by which links become bodies: placements to steps, mass properties to pseudo-inertias, cross-sections to
-//! stiffnesses, flexible links to rigid finite elements, tables to splines. Nothing here can fail; what goes in has
-//! been checked by [`validate`](crate::validate()).
+//! stiffnesses, flexible links to rigid finite elements, tables to splines. Nothing here can fail;
+//! [`validate`](crate::validate()) has checked the input.
 
 pub(crate) mod beam;
 pub(crate) mod inertia;

@@ -14,7 +14,7 @@ pub(crate) fn modified_dh(a: Value, alpha: &Value, d: Value, theta: &Value, moti
     path
 }
 
-/// Classic D-H row, `Rz(θ) Tz(d) Tx(a) Rx(α)`: the motion about or along z comes before the way to the link's frame.
+/// Classic D-H row, `Rz(θ) Tz(d) Tx(a) Rx(α)`: the motion about or along z precedes the transformation to the link's frame.
 pub(crate) fn classic_dh(a: Value, alpha: &Value, d: Value, theta: &Value, motion: Vec<Step>) -> Vec<Step> {
     let mut path = Vec::new();
     rotate(&mut path, Axis::Z, theta);
@@ -24,7 +24,7 @@ pub(crate) fn classic_dh(a: Value, alpha: &Value, d: Value, theta: &Value, motio
     path
 }
 
-/// Constant translation, rotations each about the axes turned by the ones before, then the motion.
+/// Constant translation, rotations each about the axes as rotated by the previous ones, then the motion.
 pub(crate) fn transform(translation: [Value; 3], turns: &[(Axis, Value)], motion: Vec<Step>) -> Vec<Step> {
     let mut path = Vec::new();
     translate(&mut path, translation);
@@ -35,14 +35,14 @@ pub(crate) fn transform(translation: [Value; 3], turns: &[(Axis, Value)], motion
     path
 }
 
-/// Appends a translation, unless it is none.
+/// Appends a translation, unless it is zero.
 pub(crate) fn translate(path: &mut Vec<Step>, by: [Value; 3]) {
     if !by.iter().all(Value::is_zero) {
         path.push(Step::Translate(by));
     }
 }
 
-/// Appends a rotation, unless it is none.
+/// Appends a rotation, unless it is zero.
 fn rotate(path: &mut Vec<Step>, axis: Axis, angle: &Value) {
     let (sin, cos) = angle.sin_cos();
     if !sin.is_zero() || cos != Value::ONE {

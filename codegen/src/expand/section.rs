@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::chain::{Moduli, Outline, Value};
 
-/// What a beam needs to know of its cross-section.
+/// Properties of a cross-section that a beam needs.
 #[derive(Clone, Debug)]
 pub(crate) struct CrossSection {
     /// Area A, m².
@@ -15,7 +15,7 @@ pub(crate) struct CrossSection {
     pub jz: Value,
     /// Torsion constant, m⁴.
     pub jo: Value,
-    /// What stresses follow from, if known.
+    /// Section moduli for stresses, if known.
     pub moduli: Option<Moduli>,
     /// What it looks like, if known.
     pub outline: Option<Outline>,

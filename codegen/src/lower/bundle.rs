@@ -1,13 +1,13 @@
-//! Values that are used once and have no name of their own stand inside the expression that uses them.
+//! Values that are used once and have no name are inlined into the expression that uses them.
 
 use super::Constants;
 use crate::program::Program;
 use crate::symbolic::ExprId;
 
-/// Operations in one statement at most: about one line of text.
+/// Maximum number of operations in a statement: about one line of text.
 const LARGEST_EXPRESSION: usize = 7;
 
-/// For every node, whether it stands inside the expressions that use it: more than one only for a fused product.
+/// For every node, whether it is inlined into the expressions that use it: more than one only for a fused product.
 pub(super) fn bundle(
     program: &Program,
     constants: &Constants,
@@ -35,7 +35,7 @@ pub(super) fn bundle(
         if op.is_leaf() {
             continue;
         }
-        // What is written more than once is a product of two variables.
+        // Only products of two variables are written more than once.
         let operands = op.operands().filter(|_| !shared[id.index()]);
         let mut candidates: Vec<ExprId> =
             operands.filter(|operand| may_be_inlined(program, constants, *operand, uses[operand.index()])).collect();
@@ -55,7 +55,7 @@ pub(super) fn bundle(
         }
         size[id.index()] = total;
     }
-    // A result that nothing else reads is written where it is stored.
+    // A result that nothing else reads is computed where it is stored.
     for root in roots {
         inlined[root.index()] |= may_be_inlined(program, constants, *root, uses[root.index()]);
     }

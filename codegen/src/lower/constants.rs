@@ -1,4 +1,4 @@
-//! Values that depend on live parameters alone: computed once when a parameter is set, read like inputs.
+//! Values that depend only on live parameters: computed once when a parameter is set, and read like inputs.
 
 use crate::program::{Argument, Program};
 
@@ -10,7 +10,7 @@ pub struct Constants {
     /// The values that functions read, in order of construction.
     pub stored: Vec<ExprId>,
     is_stored: Vec<bool>,
-    /// Whether a node depends on at least one parameter, and on parameters alone.
+    /// Whether a node depends on at least one parameter, and only on parameters.
     is_constant: Vec<bool>,
 }
 
@@ -37,7 +37,7 @@ impl Constants {
     /// Whether functions read this value instead of computing it.
     #[must_use]
     pub fn is_stored(&self, id: ExprId) -> bool {
-        // What loops add comes after.
+        // Expressions added by loops come after these.
         self.is_stored.get(id.index()).is_some_and(|stored| *stored)
     }
 
@@ -59,9 +59,9 @@ impl Constants {
     }
 }
 
-/// For every node, whether it depends on parameters and on nothing else but numbers.
+/// For every node, whether it depends only on parameters and numbers.
 fn parameters_alone(program: &Program) -> Vec<bool> {
-    // Numbers alone fit with everything; they are constants of no parameter.
+    // Numbers are compatible with everything, but are not constants of a parameter.
     #[derive(Clone, Copy, PartialEq, PartialOrd)]
     enum Depends {
         Number,

@@ -1,16 +1,16 @@
-//! Which products are fused into the sums that use them, `a b + c` with one rounding where the target can.
+//! Selects the products that are fused into the sums that use them, `a b + c` with one rounding if the target supports it.
 
 use super::Constants;
 use crate::program::Program;
 use crate::symbolic::{ExprId, Op};
 
-/// A product in more sums than this is computed once: its factors would stay alive too long.
+/// A product in more sums than this is computed once, because its factors would stay alive too long.
 const MOST_SUMS: usize = 4;
 
 /// For every sum or difference of `roots`, the product among its operands that is fused into it.
 ///
-/// A product is fused into all the sums that use it, or into none, so that it needs no operation of its own. Products of one
-/// sum come first; where a sum could take either of its two operands, it takes the one constructed later, whose factors are
+/// A product is fused into all sums that use it, or into none, so that it needs no separate operation. Products used by one
+/// sum come first; if a sum could fuse either of its two operands, it fuses the one constructed later, whose factors are
 /// known later.
 #[must_use]
 pub fn fuse(program: &Program, constants: &Constants, roots: &[ExprId]) -> Vec<Option<ExprId>> {

@@ -1,4 +1,4 @@
-//! Loops: what they take, hand from round to round, and leave.
+//! Loops: the values that they take, pass from round to round, and leave.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use super::Place;
 use crate::program::{Argument, Function};
 use crate::symbolic::{ExprId, Visit};
 
-/// Where a loop takes what differs from round to round; `k` counts the rounds.
+/// Source of a value that differs from round to round; `k` counts the rounds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     /// A column of the loop's table of numbers.
@@ -19,18 +19,18 @@ pub enum Source {
     Cosine(Progression),
     /// Stumpff's function of this order of the argument at `first + k step`.
     Stumpff(u8, Progression),
-    /// What the round before hands over.
+    /// A value passed on by the previous round.
     Carried(usize),
-    /// What another loop kept in its round `first + k step`.
+    /// A value that another loop kept in its round `first + k step`.
     Kept {
-        /// Which loop.
+        /// The loop.
         of: usize,
-        /// Which of the values it kept.
+        /// The index of the kept value.
         slot: usize,
-        /// In which of its rounds.
+        /// The round in which it was kept.
         round: Progression,
     },
-    /// A value computed before the loop, one a round.
+    /// A value computed before the loop, one per round.
     Gathered(usize),
 }
 
@@ -39,27 +39,27 @@ pub enum Source {
 pub struct Progression {
     /// In round 0.
     pub first: usize,
-    /// From round to round.
+    /// Increment per round.
     pub step: isize,
 }
 
-/// What is taken from a loop after its last round.
+/// A value taken from a loop after its last round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taking {
-    /// What the last round hands over.
+    /// A value that the last round passes on.
     Carried {
-        /// By which loop.
+        /// The loop.
         of: usize,
-        /// Which value.
+        /// The index of the value.
         place: usize,
     },
-    /// What was kept in a round.
+    /// A value that was kept in a round.
     Kept {
-        /// By which loop.
+        /// The loop.
         of: usize,
-        /// Which value.
+        /// The index of the value.
         slot: usize,
-        /// In which round.
+        /// The round.
         round: usize,
     },
 }
@@ -67,15 +67,15 @@ pub enum Taking {
 /// One loop.
 #[derive(Clone, Debug, Default)]
 pub struct Loop {
-    /// How many rounds.
+    /// The number of rounds.
     pub rounds: usize,
-    /// Where the sweep is in the first and in the last round.
+    /// The position of the sweep in the first and in the last round.
     pub places: [Place; 2],
     /// Numbers, column by column.
     pub numbers: Vec<Vec<f64>>,
-    /// Values computed before the loop, one a round.
+    /// Values computed before the loop, one per round.
     pub gathered: Vec<Vec<ExprId>>,
-    /// What a round hands to the next: the value before the first round, and the one computed in each.
+    /// Values that a round passes to the next: the value before the first round, and the one computed in each.
     pub carried: Vec<(ExprId, ExprId)>,
     /// Values that are the same in every round.
     pub same: Vec<ExprId>,
@@ -83,22 +83,22 @@ pub struct Loop {
     pub kept: Vec<ExprId>,
     /// Slots of the result, and their values.
     pub results: Vec<(Progression, ExprId)>,
-    /// Where each expression of the first visit stands in the loop.
+    /// The position of each expression of the first visit in the loop.
     pub(super) body: HashMap<ExprId, ExprId>,
 }
 
 /// A function with loops.
 #[derive(Debug, Default)]
 pub struct Rolled {
-    /// The loops, each after those it takes from.
+    /// The loops, each after those from which it takes values.
     pub loops: Vec<Loop>,
-    /// What differs from round to round, by the place of its [`Argument::Round`] symbol, and whose loop it is.
+    /// The values that differ from round to round, by the index of their [`Argument::Round`] symbols, and their loops.
     pub sources: Vec<(usize, Source)>,
-    /// What is taken from loops, by the place of its [`Argument::Loop`] symbol.
+    /// The values taken from loops, by the index of their [`Argument::Loop`] symbols.
     pub takings: Vec<Taking>,
     /// The slots that no loop writes.
     pub outputs: Vec<Option<ExprId>>,
-    /// What is computed outside of loops or taken from them, as the sweeps did.
+    /// The expressions computed outside of loops or taken from them, in the order of the sweeps.
     pub visits: Vec<Visit>,
 }
 
@@ -109,7 +109,7 @@ impl Rolled {
         Rolled { outputs, visits: function.tape.visits.clone(), ..Rolled::default() }
     }
 
-    /// Everything that is computed outside of loops, then what the loops compute.
+    /// Everything that is computed outside of loops, then the expressions of the loops.
     pub fn roots(&self) -> Vec<ExprId> {
         let before = |l: &Loop| -> Vec<ExprId> {
             let initial = l.carried.iter().map(|(initial, _)| *initial);
@@ -121,7 +121,7 @@ impl Rolled {
 }
 
 impl Loop {
-    /// What a round computes for others.
+    /// The values that a round computes for others.
     pub fn roots(&self) -> Vec<ExprId> {
         let next = self.carried.iter().map(|(_, next)| *next);
         let results = self.results.iter().map(|(_, value)| *value);

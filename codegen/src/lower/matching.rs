@@ -1,4 +1,4 @@
-//! Whether two visits do the same, operation by operation.
+//! Compares two visits operation by operation.
 
 use std::collections::HashMap;
 
@@ -6,24 +6,24 @@ use crate::program::Program;
 
 use crate::symbolic::{ExprId, Op};
 
-/// A visit that does what the first of its loop does.
+/// A visit with the same operations as the first visit of its loop.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Match {
-    /// Its expression for each of the first visit's.
+    /// Its expression for each expression of the first visit.
     pub nodes: HashMap<ExprId, ExprId>,
-    /// Its operands from outside, by the first visit's expression and the place among its operands.
+    /// Its operands from outside, by the first visit's expression and the operand's index.
     pub outside: HashMap<(ExprId, usize), ExprId>,
     templates: HashMap<ExprId, ExprId>,
 }
 
 impl Match {
-    /// The expression of the first visit that one of this visit stands for.
+    /// The expression of the first visit that corresponds to one of this visit.
     pub fn template_of(&self, id: ExprId) -> Option<ExprId> {
         self.templates.get(&id).copied()
     }
 }
 
-/// Pairs the expressions of two visits, from those that each asked for itself down to what only it needs.
+/// Pairs the expressions of two visits, from those that each requested itself down to those that only it needs.
 pub(super) fn matched(
     program: &Program,
     rank: &[usize],
@@ -34,7 +34,7 @@ pub(super) fn matched(
         return None;
     }
     let mut found = Match::default();
-    // What an operand from outside was paired with before.
+    // The previous partner of an operand from outside.
     let mut known: HashMap<ExprId, ExprId> = HashMap::new();
     let mut stack: Vec<(ExprId, ExprId)> = own.iter().copied().zip(others.iter().copied()).rev().collect();
     let asked: HashMap<ExprId, ExprId> = stack.iter().copied().collect();
@@ -92,7 +92,7 @@ pub(super) fn matched(
     Some(found)
 }
 
-/// What kind of operand something from outside is.
+/// The kind of an operand from outside.
 fn class(program: &Program, id: ExprId) -> usize {
     match program.op(id) {
         Op::Constant(_) => 0,

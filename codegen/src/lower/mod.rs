@@ -1,14 +1,14 @@
-//! From functions over a graph to straight lines of statements: dead code gone, ordered, split, with constants of the
-//! live parameters set apart.
+//! Lowers functions over a graph to straight-line statements: without dead code, ordered and split, with the constants of
+//! the live parameters separated.
 //!
 //! | pass | file | after it |
 //! |---|---|---|
-//! | roll, loops, matching | `roll` | what repeats from body to body is a loop over the operations of one |
-//! | constants | `constants` | what depends on live parameters alone is computed once, outside of all functions |
+//! | roll, loops, matching | `roll` | repeated work of consecutive bodies is a loop over the operations of one |
+//! | constants | `constants` | values that depend only on live parameters are computed once, outside of all functions |
 //! | fuse | `fuse` | a product that only sums use is part of them, `a b + c` |
-//! | bundle | `bundle` | a value used once stands where it is used, as long as the expression stays bounded |
+//! | bundle | `bundle` | a value used once is inlined where it is used, as long as the expression stays bounded |
 //! | order | `order` | angles first, then each value shortly before its use, each output as soon as it is known |
-//! | split | `split` | no piece is longer than rustc likes; only what crosses a cut is carried |
+//! | split | `split` | no piece is too long for rustc; only values that cross a cut are carried |
 //!
 //! No pass recurses over the depth of the graph.
 
@@ -31,40 +31,40 @@ pub use constants::Constants;
 pub use fuse::fuse;
 pub use loops::{Loop, Progression, Rolled, Source, Taking};
 
-/// A program as straight lines.
+/// A program as straight-line code.
 #[derive(Debug)]
 pub struct Blocks<'p> {
     /// The program it came from, and the bodies of loops.
     pub program: Program,
-    /// Values that depend on live parameters alone, and the statements that compute them.
+    /// Values that depend only on live parameters, and the statements that compute them.
     pub constants: Constants,
-    /// One block a function, in the program's order.
+    /// One block per function, in the program's order.
     pub functions: Vec<Block<'p>>,
 }
 
 /// A function as straight-line pieces that run one after the other.
 #[derive(Debug)]
 pub struct Block<'p> {
-    /// What it computes.
+    /// The function that it computes.
     pub function: &'p Function,
-    /// Whether it reads live parameters or constants made of them.
+    /// Whether it reads live parameters or constants computed from them.
     pub reads_parameters: bool,
-    /// The pieces; one unless the function is long.
+    /// The pieces: one, unless the function is long.
     pub pieces: Vec<Vec<Statement>>,
-    /// How many values are carried from piece to piece.
+    /// The number of values carried from piece to piece.
     pub carried: usize,
-    /// Its loops; their statements stand in the pieces.
+    /// Its loops; their statements are in the pieces.
     pub rolled: Rolled,
     /// Its operations, without those of the constants.
     pub count: OperationCount,
-    /// For every node of the graph, whether it stands inside the expressions that use it.
+    /// For every node of the graph, whether it is inlined into the expressions that use it.
     pub inlined: Vec<bool>,
     /// For every sum or difference, the product that is fused into it.
     pub fused: Vec<Option<ExprId>>,
 }
 
 impl Block<'_> {
-    /// How many statements it has, those of a loop once.
+    /// The number of its statements; those of a loop count once.
     #[must_use]
     pub fn statements(&self) -> usize {
         let within = |statement: &Statement| match statement {
@@ -86,7 +86,7 @@ pub enum Statement {
     Stumpff(Vec<StumpffArgument>),
     /// Computes a value: `let t017 = …;`
     Let(ExprId),
-    /// A sweep comes to a body: `// Outward: boom_1`. None when all sweeps are done.
+    /// A sweep reaches a body: `// Outward: boom_1`. `None` when all sweeps are done.
     At(Option<Place>),
     /// A loop and the statements of a round.
     Loop {
@@ -97,7 +97,7 @@ pub enum Statement {
     },
     /// Writes a slot of the result.
     Output {
-        /// Which slot, in the order of the function's shape.
+        /// The slot, in the order of the function's shape.
         slot: usize,
         /// Its value.
         value: ExprId,
@@ -118,7 +118,7 @@ pub enum Statement {
     },
 }
 
-/// Where a sweep is.
+/// Position of a sweep.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
     /// Name of the body.
@@ -133,7 +133,7 @@ impl From<&Visit> for Place {
     }
 }
 
-/// An angle and what is needed of it.
+/// An angle and the functions of it that are needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Angle {
     /// The angle.
@@ -144,7 +144,7 @@ pub struct Angle {
     pub cos: Option<ExprId>,
 }
 
-/// An argument of Stumpff's functions and what is needed of it.
+/// An argument of Stumpff's functions and the functions of it that are needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StumpffArgument {
     /// The argument.
@@ -153,7 +153,7 @@ pub struct StumpffArgument {
     pub values: [Option<ExprId>; Op::STUMPFF_ORDERS],
 }
 
-/// Lowers a program; equal work at `least_rounds` bodies in a row becomes a loop.
+/// Lowers a program; equal work at `least_rounds` or more consecutive bodies becomes a loop.
 #[must_use]
 pub fn lower(program: &Program, least_rounds: Option<usize>) -> Blocks<'_> {
     let constants = Constants::of(program);
@@ -173,7 +173,7 @@ fn block<'p>(
     let rolled = least_rounds.and_then(|least| roll::roll(program, constants, function, least));
     let in_line = || Rolled::in_line(function);
     let (line, rolled, inlined, fused) = match rolled.map(|rolled| line(program, constants, function, rolled)) {
-        // Loops and what they leave stay in one piece.
+        // Loops and the values that they leave stay in one piece.
         Some(loops) if !split::is_long(&loops.0) => loops,
         _ => line(program, constants, function, in_line()),
     };
@@ -195,7 +195,7 @@ fn block<'p>(
     Block { function, reads_parameters, pieces, carried, rolled, count, inlined, fused }
 }
 
-/// Statements in order, with what stands inside of others and what is fused.
+/// Statements in order, with inlined expressions and fused products.
 fn line(program: &Program, constants: &Constants, function: &Function, rolled: Rolled) -> Line {
     let roots = rolled.roots();
     let fused = fuse::fuse(program, constants, &roots);
@@ -206,8 +206,8 @@ fn line(program: &Program, constants: &Constants, function: &Function, rolled: R
 
 type Line = (Vec<Statement>, Rolled, Vec<bool>, Vec<Option<ExprId>>);
 
-/// The values that must stand in variables of their own before `id` can be written down: its operands, or, where an
-/// operand is inlined, what that needs in turn.
+/// The values that need variables before `id` can be written: its operands, or, for an inlined operand, the values that it
+/// needs in turn.
 fn variables_of(program: &Program, constants: &Constants, inlined: &[bool], id: ExprId) -> Vec<ExprId> {
     let mut variables = Vec::new();
     let mut stack: Vec<ExprId> = program.op(id).operands().rev().collect();

@@ -1,9 +1,10 @@
-//! Order of statements: all angles and all arguments of Stumpff's functions first; then what sweeps derive, as they do, body by body, each result written as soon
-//! as it is known; the rest depth first from each output, so that a value stands near its use.
+//! Order of statements: first all angles and all arguments of Stumpff's functions; then the values of the sweeps in the order
+//! of their derivation, body by body, each result written as soon as it is known; the rest depth first from each output, so
+//! that a value is computed near its use.
 //!
-//! In the order of its sweeps, where what does not depend on each other stands side by side, forward dynamics takes
-//! 0.26 µs at 13 coordinates against 0.28 depth first, the bias 0.12 against 0.15. Within a loop, where rounds overlap
-//! anyway, depth first is faster: 1.74 µs against 1.89 at 103.
+//! In the order of the sweeps, independent operations are close together: at 13 coordinates forward dynamics takes 0.26 µs
+//! instead of 0.28 in depth-first order, and the bias 0.12 instead of 0.15. Within a loop, where rounds overlap anyway,
+//! depth-first order is faster: 1.74 µs instead of 1.89 at 103 coordinates.
 
 use std::collections::HashMap;
 
@@ -11,7 +12,7 @@ use super::{Angle, Constants, Rolled, Source, Statement, StumpffArgument, Taking
 use crate::program::{Argument, Function, Program};
 use crate::symbolic::{ExprId, Op, Visit};
 
-/// One straight line for a function, its loops in it as statements.
+/// The straight-line code of a function, with its loops as statements.
 pub(super) fn order(
     program: &Program,
     constants: &Constants,
@@ -72,7 +73,7 @@ pub(super) fn stumpff_arguments(program: &Program, needed: &[bool]) -> Vec<Stump
     arguments
 }
 
-/// What the function itself computes or reads: not what stored constants are made of.
+/// The nodes that the function itself computes or reads, without those from which stored constants are computed.
 pub(super) fn needed_here(program: &Program, constants: &Constants, roots: &[ExprId]) -> Vec<bool> {
     let mut needed = vec![false; program.operations.len()];
     let mut stack = roots.to_vec();
@@ -84,7 +85,7 @@ pub(super) fn needed_here(program: &Program, constants: &Constants, roots: &[Exp
     needed
 }
 
-/// The slots that values are written to outside of loops; what is zero is there already.
+/// The slots to which values are written outside of loops; zeros are already there.
 fn slots(program: &Program, rolled: &Rolled) -> HashMap<ExprId, Vec<usize>> {
     let mut slots: HashMap<ExprId, Vec<usize>> = HashMap::new();
     for (slot, value) in rolled.outputs.iter().enumerate() {
@@ -101,16 +102,16 @@ struct Line<'a> {
     inlined: &'a [bool],
     rolled: &'a Rolled,
     needed: Vec<bool>,
-    /// Slots of the result that wait for a value that sweeps may know.
+    /// Slots of the result that wait for a value of a sweep.
     unwritten: HashMap<ExprId, Vec<usize>>,
     done: Vec<bool>,
-    /// Which loops are written.
+    /// The loops that have been written.
     run: Vec<bool>,
     statements: Vec<Statement>,
 }
 
 impl Line<'_> {
-    /// Sines and cosines of all angles, in one pass. No angle is made of another's sine.
+    /// Sines and cosines of all angles, in one pass. No angle depends on the sine of another.
     fn angles(&mut self, outputs: &[ExprId]) {
         let mut angles = angles(self.program, &needed_here(self.program, self.constants, outputs));
         for known in &angles {
@@ -119,7 +120,7 @@ impl Line<'_> {
         for id in angles.iter().flat_map(|known| [known.sin, known.cos]).flatten() {
             self.done[id.index()] = true;
         }
-        // Loops take theirs by place.
+        // Loops take theirs by index.
         let outside = needed_here(self.program, self.constants, &self.rolled.roots());
         let named = |id: &ExprId| self.rolled.loops.is_empty() || outside[id.index()];
         for known in &mut angles {
@@ -130,7 +131,7 @@ impl Line<'_> {
         }
     }
 
-    /// Stumpff's functions of all arguments, in one pass. No argument is made of another's function.
+    /// Stumpff's functions of all arguments, in one pass. No argument depends on a function of another.
     fn stumpff(&mut self, outputs: &[ExprId]) {
         let mut arguments = stumpff_arguments(self.program, &needed_here(self.program, self.constants, outputs));
         for known in &arguments {
@@ -139,7 +140,7 @@ impl Line<'_> {
         for id in arguments.iter().flat_map(|known| known.values).flatten() {
             self.done[id.index()] = true;
         }
-        // Loops take theirs by place.
+        // Loops take theirs by index.
         let outside = needed_here(self.program, self.constants, &self.rolled.roots());
         let named = |id: &ExprId| self.rolled.loops.is_empty() || outside[id.index()];
         for known in &mut arguments {
@@ -172,7 +173,7 @@ impl Line<'_> {
         self.statements.push(Statement::Loop { of, body });
     }
 
-    /// Computes what is needed of what sweeps asked for, in their order, and writes what is a result at once.
+    /// Computes the needed expressions of the sweeps in their order, and writes results immediately.
     fn follow(&mut self, visits: &[Visit]) {
         for visit in visits {
             let before = self.statements.len();
@@ -184,7 +185,7 @@ impl Line<'_> {
                     self.write(*id, &slots);
                 }
             }
-            // A loop says itself where it is.
+            // A loop states its position itself.
             let begins = self.statements.get(before).is_some_and(|first| !matches!(first, Statement::Loop { .. }));
             if begins && !visit.body.is_empty() {
                 self.statements.insert(before, Statement::At(Some(visit.into())));
@@ -201,7 +202,7 @@ impl Line<'_> {
         self.statements.extend(slots.iter().map(|&slot| Statement::Output { slot, value }));
     }
 
-    /// What has to stand in variables before `id` can be an argument.
+    /// The values that need variables before `id` can be an argument.
     fn compute_variables(&mut self, id: ExprId) {
         if self.inlined[id.index()] {
             for variable in variables_of(self.program, self.constants, self.inlined, id) {
@@ -212,7 +213,7 @@ impl Line<'_> {
         }
     }
 
-    /// Statements for `root` and everything it needs that is not there yet, operands first.
+    /// Statements for `root` and everything it needs that has not been computed yet, operands first.
     fn compute(&mut self, root: ExprId) {
         let mut stack = vec![(root, false)];
         while let Some((id, ready)) = stack.pop() {

@@ -1,8 +1,8 @@
-//! Work that repeats from body to body, as loops.
+//! Turns work that repeats from body to body into loops.
 //!
-//! The sweeps of a recursion do the same at every rigid element of a flexible link. Visits of one sweep that follow each
-//! other, and whose operations are the same one by one, become a loop over the operations of the first. Its operands from
-//! outside differ from round to round as [`Source`] tells; what is needed outside of the loop is kept, round by round.
+//! The sweeps of a recursion do the same at every rigid element of a flexible link. Consecutive visits of one sweep with
+//! identical operations become a loop over the operations of the first. [`Source`] describes how its operands from outside
+//! differ from round to round; values needed outside of the loop are kept, round by round.
 
 use std::collections::HashMap;
 
@@ -12,27 +12,27 @@ use super::{Angle, Constants, Place, StumpffArgument, order};
 use crate::program::{Argument, Function, Program, Shape, Symbol};
 use crate::symbolic::{ExprId, Op, Visit};
 
-/// Where the operands of all rounds at one place come from.
+/// The source of one operand in all rounds.
 #[derive(Clone, Debug)]
 enum Operands {
     /// They are the same in every round.
     Same,
     /// From this source.
     From(Source),
-    /// Another loop keeps them, once it is told to.
+    /// Another loop can keep them.
     Kept { of: usize, template: ExprId, round: Progression },
 }
 
-/// A loop before it is written.
+/// A loop before it is written out.
 #[derive(Debug, Default)]
 struct Plan {
     /// The expressions of the first visit, operands before their users.
     own: Vec<ExprId>,
-    /// Its rounds, and what their operands need.
+    /// Its rounds, and the requirements of their operands.
     making: Loop,
-    /// Where operands come from, by what they are in each round.
+    /// Sources of operands, by their expressions in each round.
     sources: HashMap<Vec<ExprId>, Operands>,
-    /// Operands from outside, by the expression that uses them and the place among its operands.
+    /// Operands from outside, by the expression that uses them and their index.
     sites: Vec<((ExprId, usize), Vec<ExprId>)>,
 }
 
@@ -56,7 +56,7 @@ pub(super) fn roll(program: &mut Program, constants: &Constants, function: &Func
     let mut start = 0;
     while start < visits.len() {
         let matches = rolling.run(visits, start);
-        // A round more may cost values that have to be gathered, because another loop has a round less.
+        // One more round may require gathering values, because another loop has one round less.
         let shorter = matches.split_last().map_or(&[][..], |(_, rest)| rest);
         let later = if shorter.len() >= least { rolling.run(visits, start + 1) } else { vec![] };
         let candidates = [(0, &matches[..]), (0, shorter), (1, &later)];
@@ -80,7 +80,7 @@ pub(super) fn roll(program: &mut Program, constants: &Constants, function: &Func
     Some(rolling.rolled)
 }
 
-/// The visit in which each expression is computed: the first that asks for it or needs it.
+/// The visit in which each expression is computed: the first that requests or needs it.
 fn ranks(program: &Program, function: &Function, needed: &[bool]) -> Vec<usize> {
     let mut rank = vec![usize::MAX; needed.len()];
     for (visit, id) in function.tape.visits.iter().enumerate().flat_map(|(i, v)| v.nodes.iter().map(move |id| (i, id)))
@@ -90,7 +90,7 @@ fn ranks(program: &Program, function: &Function, needed: &[bool]) -> Vec<usize> 
     for index in (0..needed.len()).rev() {
         let op = program.operations[index];
         if !needed[index] || op.is_leaf() || op.is_elementary() {
-            // Inputs, and functions of angles and arguments, are there before every visit.
+            // Inputs, and functions of angles and arguments, are available before every visit.
             rank[index] = usize::MAX;
             continue;
         }
@@ -101,27 +101,27 @@ fn ranks(program: &Program, function: &Function, needed: &[bool]) -> Vec<usize> 
     rank
 }
 
-/// Loops as they are made.
+/// Loops under construction.
 struct Rolling<'a> {
     program: &'a mut Program,
     constants: &'a Constants,
     rank: Vec<usize>,
     angles: Vec<Angle>,
     stumpff: Vec<StumpffArgument>,
-    /// Expressions that loops compute: which loop, as which expression of its first visit, in which round.
+    /// Expressions that loops compute: the loop, the expression of its first visit, and the round.
     places: HashMap<ExprId, (usize, ExprId, usize)>,
-    /// Expressions outside of loops in terms of what the loops leave.
+    /// Expressions outside of loops in terms of the values that loops leave.
     moved: HashMap<ExprId, ExprId>,
     rolled: Rolled,
 }
 
 impl Rolling<'_> {
-    /// What a visit asked for itself.
+    /// The expressions that a visit requested itself.
     fn anchors(&self, visit: &Visit, at: usize) -> Vec<ExprId> {
         visit.nodes.iter().copied().filter(|id| self.rank[id.index()] == at).collect()
     }
 
-    /// The visits from `start` on that do the same.
+    /// The visits from `start` on with the same operations.
     fn run(&self, visits: &[Visit], start: usize) -> Vec<Match> {
         let Some(visit) = visits.get(start) else { return vec![] };
         let first = self.anchors(visit, start);
@@ -155,7 +155,7 @@ impl Rolling<'_> {
         Some(plan)
     }
 
-    /// Where operands come from.
+    /// The source of operands.
     fn source(&self, operands: &[ExprId], matches: &[Match], making: &mut Loop) -> Option<Operands> {
         let program = &*self.program;
         let first = operands[0];
@@ -201,7 +201,7 @@ impl Rolling<'_> {
                 return Some(Operands::From(Source::Stumpff(k, places)));
             }
         }
-        // The same expression of the round before, and anything from before the loop in the first.
+        // The same expression in the previous round; in the first round, any value from before the loop.
         let before = |k: usize| matches[k - 1].template_of(operands[k]);
         if let Some(next) = before(1)
             && (1..operands.len()).all(|k| before(k) == Some(next))
@@ -225,7 +225,7 @@ impl Rolling<'_> {
         Some(Operands::From(Source::Gathered(making.gathered.len() - 1)))
     }
 
-    /// Writes the loop's body as expressions of their own.
+    /// Writes the loop's body as separate expressions.
     fn write(&mut self, Plan { own, mut making, sources, sites }: Plan, visits: &[Visit], matches: &[Match]) {
         making.places = [&visits[0], &visits[visits.len() - 1]].map(Place::from);
         let number = self.rolled.loops.len();
@@ -289,7 +289,7 @@ impl Rolling<'_> {
         self.rolled.loops.push(making);
     }
 
-    /// What the model calls a value in all rounds.
+    /// The model's name for a value in all rounds.
     fn name_of(&self, operands: &[ExprId], source: &Source) -> String {
         let of = |id: &ExprId| match self.program.op(*id) {
             Op::Symbol(symbol) => Some(self.program.symbol(symbol).name.clone()),
@@ -318,7 +318,7 @@ impl Rolling<'_> {
         })
     }
 
-    /// An expression outside of loops, in terms of what the loops leave.
+    /// An expression outside of loops, in terms of the values that loops leave.
     fn straight(&mut self, root: ExprId) -> ExprId {
         let mut stack = vec![root];
         while let Some(&id) = stack.last() {
@@ -369,7 +369,7 @@ impl Rolling<'_> {
         self.program.append_symbol(Symbol { name, argument: Argument::Loop, index })
     }
 
-    /// The slots of the result: written in a loop where they follow each other, else outside.
+    /// The slots of the result: written in a loop if they are consecutive, otherwise outside.
     fn hand_over(&mut self, function: &Function) {
         let mut rows: HashMap<(usize, ExprId), Vec<(usize, usize)>> = HashMap::new();
         if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. }) {
@@ -413,7 +413,7 @@ fn number(op: Op) -> Option<f64> {
     }
 }
 
-/// The arithmetic progression that all of at least two places make.
+/// The arithmetic progression of at least two indices.
 fn progression(places: impl Iterator<Item = Option<usize>>) -> Option<Progression> {
     let places: Vec<isize> =
         places.map(|place| place.and_then(|place| isize::try_from(place).ok())).collect::<Option<_>>()?;
@@ -422,7 +422,7 @@ fn progression(places: impl Iterator<Item = Option<usize>>) -> Option<Progressio
     fits.then_some(Progression { first: usize::try_from(first).ok()?, step })
 }
 
-/// What names have in common: `omega_boom_1_x` and `omega_boom_2_x` are `omega_boom_x`.
+/// The common part of names: `omega_boom_1_x` and `omega_boom_2_x` become `omega_boom_x`.
 fn common_name(names: &[Option<&String>]) -> Option<String> {
     let words: Vec<Vec<&str>> =
         names.iter().map(|name| name.map(|name| name.split('_').collect())).collect::<Option<_>>()?;

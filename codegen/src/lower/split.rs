@@ -1,4 +1,4 @@
-//! Cutting a long line into pieces that rustc compiles fast.
+//! Splits long straight-line code into pieces that rustc compiles fast.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,11 +8,11 @@ use crate::symbolic::{ExprId, Op};
 
 /// A piece has at least this many statements before it is cut …
 const SHORTEST_PIECE: usize = 500;
-/// … and at most this many; in between the cut that carries the fewest values is taken. Every `let` opens a scope in the one
-/// before, and rustc's stack overflows over the debug information of some 2,000 of them.
+/// … and at most this many; the cut in between that carries the fewest values is chosen. Every `let` opens a scope within the
+/// previous one, and rustc's stack overflows on the debug information of about 2,000 of them.
 const LONGEST_PIECE: usize = 1500;
 
-/// Whether a line has to be cut: by the scopes that are open at most, those of a loop in those before it.
+/// Whether the code has to be split: by the maximum number of open scopes, where those of a loop are inside those before it.
 pub(super) fn is_long(line: &[Statement]) -> bool {
     let round = |statement: &Statement| match statement {
         Statement::Loop { body, .. } => body.len(),
@@ -42,13 +42,13 @@ pub(super) fn split(
     lives.pieces(program, &line, &cuts)
 }
 
-/// From where to where the variables of a line live.
+/// Lifetimes of the variables.
 struct Lives {
     /// Statement that defines a value.
     defined: BTreeMap<ExprId, usize>,
     /// Values that a statement reads.
     reads: Vec<Vec<ExprId>>,
-    /// How many computed values live across the cut before a statement.
+    /// The number of computed values that live across the cut before a statement.
     alive: Vec<usize>,
 }
 
@@ -81,7 +81,7 @@ impl Lives {
                 defined.insert(id, at);
             }
         }
-        // Inputs are read again in each piece, so they cost nothing to cut.
+        // Inputs are read again in each piece, so they cost nothing at a cut.
         let mut change = vec![0isize; line.len() + 1];
         for (id, last) in last_read {
             if !matches!(program.op(id), Op::Symbol(_)) {
@@ -125,7 +125,7 @@ impl Lives {
             .map(|(window, mut piece)| {
                 let read_here: BTreeSet<ExprId> = self.reads[window[0]..window[1]].iter().flatten().copied().collect();
                 for statement in &line[window[0]..window[1]] {
-                    // An input at the end of a piece is read in the next, which reads it again.
+                    // An input at the end of a piece is needed by the next, which reads it again.
                     if matches!(statement, Statement::Input(id) if !read_here.contains(id)) {
                         continue;
                     }

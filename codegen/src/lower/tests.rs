@@ -1,4 +1,4 @@
-//! Each pass on a program small enough to be read.
+//! Each pass, on a program small enough to read.
 
 use super::{Constants, Statement, bundle, fuse::fuse, lower, split};
 use crate::program::{Argument, Function, FunctionId, Inputs, Program, Shape, Symbol};
@@ -13,7 +13,7 @@ const INPUTS: [(&str, Argument, usize); 5] = [
     ("p", Argument::Parameters, 0),
 ];
 
-/// A program of one function with the outputs that `build` makes of a, b, c, d and p.
+/// A program of one function with the outputs that `build` derives from a, b, c, d and p.
 fn program(build: impl for<'g> FnOnce(&'g Graph, [Expr<'g>; 5]) -> Vec<Expr<'g>>) -> Program {
     let graph = Graph::simplifying();
     let (outputs, tape) = graph.recorded(|| {
@@ -37,7 +37,7 @@ fn roots(program: &Program) -> &[ExprId] {
     &program.functions[0].outputs
 }
 
-/// The only expression of an operation that `is` one.
+/// The only expression whose operation satisfies `is`.
 fn only(program: &Program, is: impl Fn(Op) -> bool) -> ExprId {
     let found: Vec<ExprId> = program.ids().filter(|id| is(program.op(*id))).collect();
     assert_eq!(found.len(), 1);
@@ -63,7 +63,7 @@ fn a_product_that_is_a_result_or_is_divided_is_not_fused() {
     let of = |program: &Program| fuse(program, &Constants::of(program), roots(program)).iter().flatten().count();
     assert_eq!(of(&program(|_, [a, b, c, ..]| vec![a * b, a * b + c])), 0);
     assert_eq!(of(&program(|_, [a, b, c, d, _]| vec![a * b + c, d / (a * b)])), 0);
-    // Into both sums that use it, so that it is not computed by itself.
+    // It is fused into both sums that use it, so that it is not computed separately.
     assert_eq!(of(&program(|_, [a, b, c, d, _]| vec![a * b + c, a * b + d])), 2);
 }
 
@@ -83,7 +83,7 @@ fn what_depends_on_parameters_alone_is_stored() {
     let constants = Constants::of(&program);
     let square = only(&program, |op| matches!(op, Op::Mul(x, y) if x == y));
     let factor = program.ids().find(|id| program.op(*id).operands().any(|operand| operand == square)).expect("p² + 1");
-    // The whole factor, not its parts, and not the parameter itself, which is read as it is.
+    // The whole factor is stored, not its parts, and not the parameter itself, which is read directly.
     assert_eq!(constants.stored, [factor]);
     assert!(constants.is_free(&program, factor) && !constants.is_free(&program, roots(&program)[0]));
 }
@@ -103,12 +103,12 @@ fn a_value_used_once_stands_where_it_is_used_and_one_used_twice_does_not() {
     assert!(inlined[once.index()] && !inlined[twice.index()]);
 }
 
-/// A sum of many quotients does not become one line.
+/// A sum of many quotients does not become one statement.
 #[test]
 fn expressions_stay_bounded() {
     let program = program(|_, [a, b, c, ..]| vec![(0..40).fold(a, |sum, _| (sum + b) / c)]);
     let block = &lower(&program, None).functions[0];
-    // 80 operations, at most seven a statement.
+    // 80 operations, at most seven per statement.
     assert!(block.statements() >= 80 / 7, "{}", block.statements());
 }
 
@@ -124,7 +124,7 @@ fn angles_come_first_and_operands_before_their_users() {
     let [line] = blocks.functions[0].pieces.as_slice() else { panic!("one piece") };
     let sines = line.iter().position(|statement| matches!(statement, Statement::SinCos(_))).expect("sines");
     let angle = only(&program, |op| matches!(op, Op::Add(x, y) if program.op(x).is_leaf() && program.op(y).is_leaf()));
-    // Before the sines stand inputs and the angle that is a sum, nothing else.
+    // Only inputs and the angle that is a sum precede the sines.
     assert!(computed(&line[..sines]).iter().all(|id| *id == angle));
     let mut known: Vec<ExprId> = vec![];
     for statement in line {
@@ -143,7 +143,7 @@ fn angles_come_first_and_operands_before_their_users() {
 
 #[test]
 fn a_long_line_is_cut_and_what_crosses_a_cut_is_carried() {
-    // Each value is used by the next two, so that it has a variable of its own.
+    // Each value is used by the next two, so it needs a variable.
     let program = program(|_, [a, b, ..]| {
         let (mut x, mut y) = (a, b);
         for _ in 0..2000 {
@@ -151,7 +151,7 @@ fn a_long_line_is_cut_and_what_crosses_a_cut_is_carried() {
         }
         vec![x, y]
     });
-    // Sines depend on each other, which no crane's do, so the line is made here.
+    // Sines depend on each other, unlike in any crane, so the code is constructed here.
     let constants = Constants::of(&program);
     let inlined = vec![false; program.operations.len()];
     let line: Vec<Statement> = program
@@ -165,7 +165,7 @@ fn a_long_line_is_cut_and_what_crosses_a_cut_is_carried() {
     assert_eq!(pieces.iter().flat_map(|piece| computed(piece)).collect::<Vec<_>>(), computed(&line));
     for piece in &pieces {
         assert!(piece.len() <= 1600, "{}", piece.len());
-        // What a piece reads it has computed, fetched or read as an input.
+        // A piece reads only values that it has computed, fetched or read as inputs.
         let mut known: Vec<ExprId> = vec![];
         for statement in piece {
             match statement {
@@ -182,14 +182,14 @@ fn a_long_line_is_cut_and_what_crosses_a_cut_is_carried() {
     }
 }
 
-/// Equal work at one body after the other, as a sweep does it.
+/// Equal work at consecutive bodies, as in a sweep.
 fn swept(bodies: u8) -> Program {
     program(|graph, [a, b, c, d, _]| {
         let sweep = graph.sweep();
         let mut x = a;
         for body in 0..bodies {
             sweep.leave(&format!("body_{body}"));
-            // Numbers that differ from body to body become a table.
+            // Numbers that differ between bodies become a table.
             let number = graph.constant(1.5 + f64::from(body));
             x = (x * b + number) * c + d * number;
         }
@@ -209,7 +209,7 @@ fn what_repeats_from_body_to_body_becomes_a_loop_that_computes_the_same() {
     assert!(statements(Some(4)) < statements(None) / 2);
     // Too few bodies for a loop.
     assert!(lower(&swept(3), Some(4)).functions[0].rolled.loops.is_empty());
-    // The graph itself is what it was.
+    // The graph itself is unchanged.
     let inputs = Inputs::state(0.0, vec![0.3, 0.7, -0.2, 1.1], vec![], vec![1.0]);
     let mut x = 0.3;
     for body in 0..BODIES {

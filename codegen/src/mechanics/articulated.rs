@@ -1,7 +1,7 @@
-//! Articulated inertia: what the base side of a joint feels of all that hangs on it, every joint further out free to move.
+//! Articulated inertia: the inertia of everything beyond a joint, as seen from its base side, with all outer joints free.
 //!
 //! Notation
-//! : at the origin of a frame, in its components, moment and force that must act on what hangs there:
+//! : at the origin of a frame, in its components, the moment and force that must act on everything beyond:
 //!   `n = J α + H a + n₀`, `f = Hᵀ α + M a + f₀`. J and M are symmetric; for one rigid body of mass m and first moments s
 //!   `H = [s]×`, `M = m 1`.
 //!
@@ -37,7 +37,7 @@ pub struct Effort<'g> {
     pub resistance: Expr<'g>,
 }
 
-/// How q̈ of a single joint follows from the accelerations before it: `q̈ = rest − ⟨angular, α⟩ − ⟨linear, a⟩`.
+/// q̈ of a single joint from the accelerations before it: `q̈ = rest − ⟨angular, α⟩ − ⟨linear, a⟩`.
 #[derive(Clone, Copy, Debug)]
 pub struct Response<'g> {
     pub rest: Expr<'g>,
@@ -45,7 +45,7 @@ pub struct Response<'g> {
     pub linear: Vec3<'g>,
 }
 
-/// What a joint takes whose q̈ is prescribed, from the accelerations before it: `τ = rest + ⟨angular, α⟩ + ⟨linear, a⟩`.
+/// The effort of a joint whose q̈ is prescribed, from the accelerations before it: `τ = rest + ⟨angular, α⟩ + ⟨linear, a⟩`.
 #[derive(Clone, Copy, Debug)]
 pub struct Reaction<'g> {
     pub rest: Expr<'g>,
@@ -53,8 +53,8 @@ pub struct Reaction<'g> {
     pub linear: Vec3<'g>,
 }
 
-/// How the acceleration of a ball joint follows from those before it: `α' − α = rest − B α − G a`, with B only where there
-/// is resistance; without, α' itself.
+/// The acceleration of a ball joint from those before it: `α' − α = rest − B α − G a`, with B only if there is resistance;
+/// without it, α' itself.
 #[derive(Clone, Copy, Debug)]
 pub struct BallResponse<'g> {
     pub rest: Vec3<'g>,
@@ -91,7 +91,7 @@ impl<'g> Articulated<'g> {
         self.force.named(&format!("force_{body}"));
     }
 
-    /// From the origin at d back to the frame's own, where a is less by `α × d` and `acceleration`.
+    /// From the origin at d back to the frame's own origin, where a is smaller by `α × d` and `acceleration`.
     pub fn shift(&mut self, d: Vec3<'g>, acceleration: Vec3<'g>) {
         self.moment = self.moment + self.coupling.apply(acceleration);
         self.force = self.force + self.translational.apply(acceleration);
@@ -126,17 +126,17 @@ impl<'g> Articulated<'g> {
         };
     }
 
-    /// Components in the frame before a rotation R, of what a freed ball joint transmits: a force, and the moment n.
+    /// Components in the frame before a rotation R of the wrench that a released ball joint transmits: a force, and the moment n.
     pub fn rotate_force(&mut self, rotation: Rotation<'g>, moment: Vec3<'g>) {
         self.translational = self.translational.rotated(rotation);
         self.moment = moment;
         self.force = rotation.apply(self.force);
     }
 
-    /// Frees the rotation about an axis, in the frame after it; `gyration` is `ω × e q̇`.
+    /// Releases the rotation about an axis, in the frame after it; `gyration` is `ω × e q̇`.
     ///
-    /// `D = J_kk + d̂`, `q̈ = (τ − n₀_k − J_k α − H_k a) / D`. Row k of J, H and n₀ is what the joint transmits, d̂/D of what
-    /// was there: nothing but τ where there is no resistance. It is written so, not left to a difference that should be zero.
+    /// `D = J_kk + d̂`, `q̈ = (τ − n₀_k − J_k α − H_k a) / D`. Row k of J, H and n₀ is what the joint transmits: d̂/D of the
+    /// previous value, and only τ without resistance. This is computed directly instead of as a difference that should be zero.
     pub fn free_rotation(&mut self, axis: Axis, effort: Effort<'g>, gyration: Vec3<'g>) -> Response<'g> {
         let k = axis.index();
         self.moment = self.moment + self.rotational.apply(gyration);
@@ -165,11 +165,11 @@ impl<'g> Articulated<'g> {
                 }),
             );
         self.force = self.force + free * linear;
-        // α of the response does not hold the gyration: its own moment is in n₀ already.
+        // α of the response does not include the gyration: its moment is already in n₀.
         Response { rest: free, angular: scaled_angular, linear: scaled_linear }
     }
 
-    /// Frees the translation along an axis. `D = M_kk + d̂`, `q̈ = (τ − f₀_k − H_kᵀ α − M_k a) / D`.
+    /// Releases the translation along an axis. `D = M_kk + d̂`, `q̈ = (τ − f₀_k − H_kᵀ α − M_k a) / D`.
     pub fn free_translation(&mut self, axis: Axis, effort: Effort<'g>) -> Response<'g> {
         let k = axis.index();
         let reciprocal = 1.0 / (self.translational.at(k, k) + effort.resistance);
@@ -199,10 +199,10 @@ impl<'g> Articulated<'g> {
         Response { rest: free, angular: scaled_angular, linear: scaled_linear }
     }
 
-    /// Turns about an axis with a prescribed `q̈`, in the frame after it; `gyration` is `ω × e q̇`.
+    /// Prescribes `q̈` of a rotation about an axis, in the frame after it; `gyration` is `ω × e q̇`.
     ///
-    /// What hangs on the joint moves with what is before it but for `e q̈` and the gyration: J, H and M stay, n₀ and f₀ take
-    /// these accelerations in. `τ = n₀_k + J_k α + H_k a + d̂ q̈`. Featherstone 2008, section 9.2.
+    /// The part beyond the joint moves with the part before it except for `e q̈` and the gyration: J, H and M stay, and n₀ and f₀
+    /// include these accelerations. `τ = n₀_k + J_k α + H_k a + d̂ q̈`. Featherstone 2008, section 9.2.
     pub fn prescribe_rotation(
         &mut self,
         axis: Axis,
@@ -218,7 +218,7 @@ impl<'g> Articulated<'g> {
         Reaction { rest, angular: self.rotational.row(k), linear: self.coupling.row(k) }
     }
 
-    /// Moves along an axis with a prescribed `q̈`. `τ = f₀_k + H_kᵀ α + M_k a + d̂ q̈`.
+    /// Prescribes `q̈` of a translation along an axis. `τ = f₀_k + H_kᵀ α + M_k a + d̂ q̈`.
     pub fn prescribe_translation(&mut self, axis: Axis, acceleration: Expr<'g>, resistance: Expr<'g>) -> Reaction<'g> {
         let k = axis.index();
         let own = Vec3::along(axis, acceleration);
@@ -228,11 +228,11 @@ impl<'g> Articulated<'g> {
         Reaction { rest, angular: self.coupling.column(k), linear: self.translational.row(k) }
     }
 
-    /// Frees all rotations about the origin, against the moment `n_τ − D' (α' − α)`; everything in one frame.
+    /// Releases all rotations about the origin, against the moment `n_τ − D' (α' − α)`; everything in one frame.
     ///
     /// With `K = J + D'`: `α' − α = K⁻¹ (n_τ − n₀ − H a − J α)`. What is transmitted,
-    /// `J ← D' K⁻¹ J`, `H ← D' K⁻¹ H`, `M ← M − Hᵀ K⁻¹ H`, is a force alone where nothing resists: no digit of J or H is
-    /// left to be lost.
+    /// `J ← D' K⁻¹ J`, `H ← D' K⁻¹ H`, `M ← M − Hᵀ K⁻¹ H`, is a pure force without resistance: J and H then cannot lose
+    /// digits.
     pub fn free_ball(&mut self, moment: Vec3<'g>, resistance: Option<Symmetric3<'g>>) -> BallResponse<'g> {
         let blocks = resistance.map_or(self.rotational, |d| self.rotational + d).inverse();
         let graph = moment[0].graph();

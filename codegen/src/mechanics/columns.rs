@@ -1,18 +1,18 @@
 //! Mass matrix from composite bodies.
 //!
 //! Notation
-//! : all that hangs on a joint, taken as one body: its mass m, first moments s and inertia I about the joint's point, in the
+//! : everything beyond a joint, as one composite body: its mass m, first moments s and inertia I about the joint's point, in the
 //!   joint's own frame; its momenta at unit rate of coordinate j, `P_j` and, about the point, `L_j`, and the axis `n_j`, in the
 //!   world's.
 //!
 //! Output
-//! : `a_ij = n_i · L_j` where i turns and `n_i · P_j` where it slides, i ≤ j, with L_j taken about the point of i
+//! : `a_ij = n_i · L_j` for a rotation i and `n_i · P_j` for a translation, i ≤ j, with L_j about the point of i
 //!   [Urbaś 2016, Eq. (5)].
 //!
 //! In its own frame a joint's axis is one of the unit vectors: momenta are a column of I and two entries of s, and most
-//! placements are shifts along one axis. In the world's axes a row of A is one scalar product a column, with no rotation
-//! from joint to joint. About local points nothing large is subtracted: the torsional inertia of a slender element keeps
-//! its digits beside the inertia of a whole crane about the world's origin.
+//! placements are shifts along one axis. In the world's axes a row of A is one scalar product per column, without rotations
+//! from joint to joint. About local points nothing large is subtracted, so the torsional inertia of a slender element keeps
+//! its digits; about the world's origin it would be small beside the inertia of the whole crane.
 
 use super::factors::Factor;
 use super::model::Model;
@@ -23,8 +23,8 @@ use crate::chain::{Axis, CoordinateKind, Inertia};
 use crate::program::Point;
 use crate::symbolic::Expr;
 
-/// What the mass matrix is made of: for each coordinate its axis, its momenta, and the way from its point to that of the
-/// coordinate after it.
+/// The factors of the mass matrix: for each coordinate its axis, its momenta, and the offset from its point to that of the
+/// next coordinate.
 pub struct Columns<'g> {
     pub axes: Vec<Vec3<'g>>,
     pub linear: Vec<Vec3<'g>>,
@@ -32,7 +32,7 @@ pub struct Columns<'g> {
     pub shifts: Vec<Vec3<'g>>,
 }
 
-/// Axes, momenta and ways of all coordinates, in the world's axes.
+/// Axes, momenta and offsets of all coordinates, in the world's axes.
 pub fn columns<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Columns<'g> {
     let mut frames = frames(model, factors);
     let mut frame_before = || frames.pop().expect("as many as outward");
@@ -111,7 +111,7 @@ fn frames<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Rotation<'g>> {
     frames
 }
 
-/// All that hangs on a frame, taken as one body: mass, first and second moments about the frame's origin in its components.
+/// Everything beyond a frame, as one composite body: mass, first and second moments about the frame's origin in its components.
 struct Composite<'g> {
     mass: Expr<'g>,
     first: Vec3<'g>,
@@ -147,7 +147,7 @@ impl<'g> Composite<'g> {
         self.second = self.second.rotated(rotation);
     }
 
-    /// From the origin at d back to the frame's own: `Σ + u dᵀ + d uᵀ` with `u = s + ½ m d`.
+    /// From the origin at d back to the frame's own origin: `Σ + u dᵀ + d uᵀ` with `u = s + ½ m d`.
     fn shift(&mut self, d: Vec3<'g>) {
         self.second = self.second + Symmetric3::outer(self.first + (0.5 * self.mass) * d, d);
         self.first = self.first + self.mass * d;
@@ -186,7 +186,7 @@ impl<'g> Columns<'g> {
         self.shifts[j] = way;
     }
 
-    /// The mass matrix, written out, rotors included.
+    /// The mass matrix, written out, including rotors.
     pub fn mass_matrix(&self, model: &Model<'g>) -> SymmetricMatrix<'g> {
         let mut matrix = SymmetricMatrix::zero(model.graph, model.size());
         let mut angular = self.angular.clone();
@@ -208,10 +208,10 @@ impl<'g> Columns<'g> {
         matrix
     }
 
-    /// The points that the coordinates act at, in order.
+    /// The points at which the coordinates act, in order.
     pub fn points(&self, model: &Model<'g>) -> Vec<Point> {
         let mut points: Vec<Point> = Vec::new();
-        // The way from the coordinate before; there is none before the first.
+        // The offset from the previous coordinate; the first has none.
         let mut apart = true;
         for (coordinate, way) in model.chain.coordinates.iter().zip(&self.shifts) {
             let turns = coordinate.kind == CoordinateKind::Rotation;
@@ -224,7 +224,7 @@ impl<'g> Columns<'g> {
         points
     }
 
-    /// All numbers, for a loop: axes, P, L and shifts, coordinate by coordinate.
+    /// All numbers for a loop: axes, P, L and offsets, coordinate by coordinate.
     pub fn slots(&self) -> Vec<Expr<'g>> {
         let vectors = [&self.axes, &self.linear, &self.angular, &self.shifts];
         vectors.into_iter().flatten().flat_map(|vector| vector.0).collect()

@@ -5,7 +5,7 @@ use super::profile;
 use crate::chain::{Drive, Value};
 use crate::symbolic::Expr;
 
-/// Drives with a spring, its stiffness and its damping.
+/// Drives with a spring, with its stiffness and damping.
 fn flexible<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value, &'a Value)> {
     model.chain.drives.iter().filter_map(|drive| drive.spring().map(|(s, d)| (drive, s, d)))
 }
@@ -41,8 +41,8 @@ pub fn forces<'g>(model: &Model<'g>, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g
     forces
 }
 
-/// Generalized forces of the flexible drives' springs at t = 0, when nothing moves: dampers do not count, though a motion
-/// may be under way.
+/// Generalized forces of the flexible drives' springs at t = 0 with the crane at rest: dampers do not act, even if a motion
+/// is in progress.
 pub fn forces_at_rest<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let mut forces = model.zeros();
     for (drive, stiffness, _) in flexible(model) {
@@ -57,7 +57,7 @@ pub fn accelerations<'g>(model: &Model<'g>) -> Vec<Option<Expr<'g>>> {
     prescribed(model, |drive| profile::acceleration(model, &drive.profile, model.t))
 }
 
-/// Zero for the coordinates that rigid drives prescribe: no part of a solution.
+/// Zero for the coordinates that rigid drives prescribe, which are not part of a solution.
 pub fn at_rest<'g>(model: &Model<'g>) -> Vec<Option<Expr<'g>>> {
     prescribed(model, |_| model.zero())
 }
@@ -87,13 +87,13 @@ pub fn motions<'g, 'a>(model: &Model<'g>, drives: impl Iterator<Item = &'a Drive
     drives.flat_map(motion).collect()
 }
 
-/// Begin and end of the pieces of every drive's motion.
+/// Begin and end of the smooth intervals of every drive's motion.
 pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let pieces = model.chain.drives.iter().flat_map(|drive| drive.profile.pieces());
     pieces.flatten().map(|time| model.number(&time)).collect()
 }
 
-/// Power that the prescribed motions put in, `Σ t_dr q̇_dr`: of rigid drives, whose efforts are given, `τ q̇`.
+/// Power of the prescribed motions, `Σ t_dr q̇_dr`; for rigid drives, whose efforts are given, `τ q̇`.
 pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
     let flexible = flexible(model).fold(model.zero(), |sum, drive| {
         sum + effort(model, drive, model.t, &model.v) * profile::rate(model, &drive.0.profile, model.t)
@@ -101,7 +101,7 @@ pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
     model.chain.rigid_drives().map(|drive| drive.coordinate.0).fold(flexible, |sum, j| sum + efforts[j] * model.v[j])
 }
 
-/// Power that the drives' dampers take out, `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]).
+/// Power that the drives' dampers dissipate, `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]).
 pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     flexible(model).fold(model.zero(), |sum, (drive, _, damping)| {
         let rate = profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];

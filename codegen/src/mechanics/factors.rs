@@ -1,4 +1,4 @@
-//! The way from the base to the tip as one row of factors: constant placements, joints, bodies.
+//! The chain from the base to the tip as a sequence of factors: constant placements, joints, bodies.
 
 use crate::chain::{Axis, CoordinateKind, Step};
 
@@ -7,7 +7,7 @@ use super::rotation_vector::RotationVector;
 use super::turn::Turn;
 use super::vector::Vec3;
 
-/// One factor of the way from the base to the tip.
+/// One factor of the chain from the base to the tip.
 #[derive(Clone, Debug)]
 pub enum Factor<'g> {
     /// Constant translation.
@@ -18,8 +18,7 @@ pub enum Factor<'g> {
     Revolute { j: usize, turn: Turn<'g> },
     /// Translation by coordinate `j` along an axis.
     Prismatic { j: usize, axis: Axis },
-    /// Three rotations through one point about three different axes, by coordinates `j`, `j + 1`, `j + 2`: what moves
-    /// with them turns freely.
+    /// Three rotations through one point about three different axes, by coordinates `j`, `j + 1`, `j + 2`: a ball joint.
     Ball { j: usize, turns: [Turn<'g>; 3] },
     /// Rotation by the vector of coordinates `j`, `j + 1`, `j + 2`.
     RotationVector { j: usize, vector: Box<RotationVector<'g>> },
@@ -28,12 +27,12 @@ pub enum Factor<'g> {
 }
 
 impl<'g> Factor<'g> {
-    /// Whether coordinates move it.
+    /// Whether it depends on coordinates.
     pub fn moves(&self) -> bool {
         !matches!(self, Factor::Translate(_) | Factor::Turn(_) | Factor::Body(_))
     }
 
-    /// Its elementary rotations, from the base to the tip, and whose coordinates they are.
+    /// Its elementary rotations, from the base to the tip, with their coordinates.
     pub fn turns(&self) -> Vec<(Option<usize>, Turn<'g>)> {
         match self {
             Factor::Turn(turn) => vec![(None, *turn)],
@@ -90,7 +89,7 @@ fn joint<'g>(model: &Model<'g>, j: usize) -> Factor<'g> {
     }
 }
 
-/// The turns of coordinates j, j + 1, j + 2, all elementary motions without a placement between them, if they make a ball
+/// The rotations of coordinates j, j + 1, j + 2, all elementary motions without a placement between them, if they form a ball
 /// joint.
 fn ball<'g>(model: &Model<'g>, j: usize, first: Turn<'g>) -> Option<[Turn<'g>; 3]> {
     let (Factor::Revolute { turn: second, .. }, Factor::Revolute { turn: third, .. }) =

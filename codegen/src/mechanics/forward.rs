@@ -4,8 +4,8 @@
 //! The mass matrix is never formed, and nothing is lost to its condition number.
 //!
 //! With velocities and gravity: `q̈` of `A q̈ = e + f` [Urbaś 2016, Eq. (23)]. At rest without gravity: `A x = r`, and with
-//! resistances D̂, block-diagonal, `(A + D̂) x = r`. Where a coordinate's acceleration is prescribed, its joint is not freed but
-//! moves as it must, and what that takes is found on the way out (hybrid dynamics).
+//! resistances D̂, block-diagonal, `(A + D̂) x = r`. If a coordinate's acceleration is prescribed, its joint is not released, and
+//! the outward sweep computes its effort (hybrid dynamics).
 
 use super::articulated::{Articulated, BallResponse, Effort, Reaction, Response};
 use super::factors::Factor;
@@ -17,27 +17,27 @@ use super::vector::{Rotation, Symmetric3, Vec3, plane};
 use crate::chain::Axis;
 use crate::symbolic::Expr;
 
-/// What acts on the chain.
+/// The loads on the chain.
 pub struct Loads<'a, 'g> {
     /// Velocities of the coordinates.
     pub v: &'a [Expr<'g>],
     /// Efforts on the coordinates.
     pub efforts: &'a [Effort<'g>],
-    /// Accelerations of the coordinates where they are prescribed: there the effort is what is sought.
+    /// Accelerations of the prescribed coordinates, whose efforts are the unknowns.
     pub prescribed: &'a [Option<Expr<'g>>],
     /// Acceleration of gravity in the world frame.
     pub gravity: Vec3<'g>,
 }
 
-/// How a chain moves under its loads.
+/// The motion of a chain under its loads.
 pub struct Motion<'g> {
     /// q̈ of all coordinates.
     pub accelerations: Vec<Expr<'g>>,
-    /// Efforts that the prescribed accelerations take; zero elsewhere.
+    /// Efforts that the prescribed accelerations require; zero elsewhere.
     pub efforts: Vec<Expr<'g>>,
 }
 
-/// How a joint responds, found on the way in and used on the way out.
+/// The response of a joint, computed in the inward sweep and used in the outward sweep.
 pub(super) enum Joint<'g> {
     None,
     Single(Response<'g>),
@@ -47,14 +47,14 @@ pub(super) enum Joint<'g> {
     RotationVector(Box<BallResponse<'g>>),
 }
 
-/// q̈ of all coordinates, and the efforts of those that are prescribed (hybrid dynamics).
+/// q̈ of all coordinates, and the efforts of the prescribed ones (hybrid dynamics).
 pub fn hybrid_dynamics<'g>(model: &Model<'g>, factors: &[Factor<'g>], loads: &Loads<'_, 'g>) -> Motion<'g> {
     let velocities = velocities(model, factors, loads.v);
     let (joints, _) = inward(model, factors, &velocities, loads.efforts, loads.prescribed);
     outward(model, factors, &velocities, &joints, (Vec3::zero(model.graph), -loads.gravity))
 }
 
-/// Articulated inertias from tip to base, and what is left there.
+/// Articulated inertias from tip to base, and the remaining inertia at the base.
 pub(super) fn inward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],
@@ -126,7 +126,7 @@ pub(super) fn inward<'g>(
     (joints, articulated)
 }
 
-/// Accelerations from base to tip; angular and linear ones before the first factor are `start`.
+/// Accelerations from base to tip; `start` contains the angular and linear accelerations before the first factor.
 pub(super) fn outward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],
@@ -201,7 +201,7 @@ impl<'g> Joint<'g> {
     }
 }
 
-/// Frees a rotation vector and leaves the articulated inertia in the frame before it.
+/// Releases a rotation vector and transforms the articulated inertia to the frame before it.
 fn free_rotation_vector<'g>(
     vector: &RotationVector<'g>,
     articulated: &mut Articulated<'g>,
@@ -220,7 +220,7 @@ fn free_rotation_vector<'g>(
     response
 }
 
-/// A rotation vector's own accelerations, and α and a after it.
+/// The accelerations of a rotation vector, and α and a after it.
 fn move_by_vector<'g>(
     vector: &RotationVector<'g>,
     response: &BallResponse<'g>,
@@ -241,8 +241,8 @@ fn move_by_vector<'g>(
 /// Three rotations through one point, `R_a(ψ) R_b(θ) R_c(φ)`.
 ///
 /// In the frame after the second, with `σ = ±1` so that `e_b × e_a = σ e_c`, the relative angular acceleration is
-/// `w = (cos θ ψ̈) e_a + θ̈ e_b + (φ̈ − σ sin θ ψ̈) e_c`: as long as θ is not ±90° every w has its q̈, and the three behave
-/// as a free ball.
+/// `w = (cos θ ψ̈) e_a + θ̈ e_b + (φ̈ − σ sin θ ψ̈) e_c`: unless θ is ±90°, every w corresponds to a q̈, and the three
+/// behave as a ball joint.
 pub(super) struct Ball<'g> {
     turns: [Turn<'g>; 3],
     resists: bool,
@@ -259,10 +259,10 @@ impl<'g> Ball<'g> {
         ([a, b, c], if cyclic { tangent } else { -tangent }, secant)
     }
 
-    /// Frees the joint and leaves the articulated inertia in the frame before it.
+    /// Releases the joint and transforms the articulated inertia to the frame before it.
     ///
-    /// Without resistance it is freed in the body's own frame, where its inertia has most zeros; with resistance in the
-    /// frame after the second rotation, where D' has.
+    /// Without resistance it is released in the body's own frame, where its inertia has most zeros; with resistance in the
+    /// frame after the second rotation, where D' has most zeros.
     fn free(&self, articulated: &mut Articulated<'g>, efforts: [Effort<'g>; 3]) -> BallResponse<'g> {
         let ([a, b, c], tangent, secant) = self.geometry();
         let [first, second, third] = &self.turns;
@@ -290,15 +290,15 @@ impl<'g> Ball<'g> {
         }
     }
 
-    /// `R_a(ψ) R_b(θ) R_c(φ)` as a matrix, known long before the inertias: the chain of dependent operations is shorter than
-    /// by plane rotations.
+    /// `R_a(ψ) R_b(θ) R_c(φ)` as a matrix, which is known long before the inertias: the chain of dependent operations is shorter
+    /// than with plane rotations.
     fn rotation(&self) -> Rotation<'g> {
         let graph = self.turns[0].sin.graph();
         let rotate = |rotation: Rotation<'g>, turn: &Turn<'g>| rotation.turned(turn.axis, turn.sin, turn.cos);
         self.turns.iter().fold(Rotation::identity(graph), rotate)
     }
 
-    /// The joint's own accelerations, and α and a after it.
+    /// The accelerations of the joint, and α and a after it.
     fn move_on(
         &self,
         response: &BallResponse<'g>,

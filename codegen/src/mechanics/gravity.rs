@@ -25,7 +25,7 @@ pub fn gradient<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, inertias: &I
         .collect()
 }
 
-/// `∂²E_g/∂q_i∂q_j = −γ · Ω_i Ω_j s_j`, i ≤ j, and what curvatures add.
+/// `∂²E_g/∂q_i∂q_j = −γ · Ω_i Ω_j s_j`, i ≤ j, and the contribution of curvatures.
 pub fn stiffness<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,

@@ -1,7 +1,7 @@
 //! Pseudo-inertias in the world frame.
 //!
-//! `W(p) = T H Tᵀ` of a body, and the composite `W_j = Σ W(p)` over the bodies that coordinate j moves. Of the ten
-//! numbers of W we keep the mass, the first moments `s = ∫ x dm` and, for the second moments `Σ = ∫ x xᵀ dm`, the inertia
+//! `W(p) = T H Tᵀ` of a body, and the composite `W_j = Σ W(p)` over the bodies that coordinate j moves. The ten
+//! numbers of W are stored as the mass, the first moments `s = ∫ x dm` and, for the second moments `Σ = ∫ x xᵀ dm`, the inertia
 //! tensor `I = tr(Σ) 1 − Σ`, all about the world's origin.
 
 use crate::chain::Inertia;

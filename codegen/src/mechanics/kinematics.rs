@@ -11,7 +11,7 @@
 //! Output
 //! : `T(p) = T(p−1) T̃(p)` [Urbaś 2016, Eq. (3)], and Ω_j, with which `∂T/∂q_j = Ω_j T`. Second derivatives are
 //!   `∂²T/∂q_m∂q_n = Ω_m Ω_n T`, m ≤ n; for two coordinates of one rotation vector, whose axes depend on each other both ways,
-//!   with a rotation about the same point more ([`Curvature`]).
+//!   with an additional rotation about the same point ([`Curvature`]).
 
 use crate::chain::{CoordinateId, CoordinateKind, Step};
 use crate::symbolic::Expr;
@@ -62,7 +62,7 @@ impl<'g> Generator<'g> {
     }
 }
 
-/// A rotation vector whose second derivatives `∂²T/∂q_m∂q_n` have a rotation `E_mn` about the joint's point beside `Ω_m Ω_n T`.
+/// A rotation vector whose second derivatives `∂²T/∂q_m∂q_n` contain a rotation `E_mn` about the joint's point in addition to `Ω_m Ω_n T`.
 #[derive(Clone, Copy, Debug)]
 pub struct Curvature<'g> {
     /// First of the three coordinates.
@@ -75,7 +75,7 @@ pub struct Curvature<'g> {
 }
 
 impl<'g> Curvature<'g> {
-    /// Places m ≤ n among the three coordinates, row by row of a triangle.
+    /// Indices m ≤ n among the three coordinates, row by row of a triangle.
     pub const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
     /// Axes of two coordinates.
@@ -104,11 +104,11 @@ impl<'g> Curvature<'g> {
 
 /// Poses and generators of a chain.
 pub struct Kinematics<'g> {
-    /// T(p), one a body.
+    /// T(p), one per body.
     pub poses: Vec<Pose<'g>>,
-    /// Ω_j, one a coordinate.
+    /// Ω_j, one per coordinate.
     pub generators: Vec<Generator<'g>>,
-    /// One for each rotation vector.
+    /// One per rotation vector.
     pub curvatures: Vec<Curvature<'g>>,
 }
 

@@ -1,8 +1,8 @@
-//! The model: from a chain to a program, one equation a function.
+//! The model: from a chain to a program, one equation per function.
 //!
-//! The only module that knows both the chain and the graph. Equation numbers are those of A. Urbaś, *Computational
+//! This is the only module that knows both the chain and the graph. Equation numbers are those of A. Urbaś, *Computational
 //! implementation of the rigid finite element method in the statics and dynamics analysis of forest cranes*, Applied
-//! Mathematical Modelling, 2016; where we depart from the print, `docs/EQUATIONS.md` says why.
+//! Mathematical Modelling, 2016; `docs/EQUATIONS.md` explains where we deviate from it.
 
 mod articulated;
 mod columns;
@@ -40,13 +40,13 @@ use crate::chain::{Analyses, Chain};
 use crate::program::Program;
 use crate::symbolic::Graph;
 
-/// The functions of a crane that `analyses` ask for and that its scene needs, over one simplified graph.
+/// The functions of a crane that `analyses` request and that the crane needs, over one simplified graph.
 #[must_use]
 pub fn derive(chain: &Chain, analyses: Analyses) -> Program {
     functions::program(Graph::simplifying(), chain, analyses)
 }
 
-/// The same without simplification, to tell what simplification is worth.
+/// The same without simplification, to measure its effect.
 #[must_use]
 pub fn derive_verbatim(chain: &Chain, analyses: Analyses) -> Program {
     functions::program(Graph::verbatim(), chain, analyses)

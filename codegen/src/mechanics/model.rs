@@ -49,7 +49,7 @@ impl<'g> Model<'g> {
         }
     }
 
-    /// All inputs in their order; the factors of staged functions come after them.
+    /// All inputs in their order; the factors of staged functions follow them.
     pub fn symbols(chain: &Chain) -> Vec<Symbol> {
         let symbol = |name: String, argument, index| Symbol { name, argument, index };
         let each = |argument, suffix: &str| {

@@ -1,7 +1,7 @@
 //! Inverse dynamics by Newton's and Euler's equations in local frames: two sweeps, O(n).
 //!
 //! J. Y. S. Luh, M. W. Walker, R. P. C. Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69. At q̈ = 0 the efforts are the bias; at
-//! any q̈ the forces and moments that the sweep carries inward are what the crane transmits.
+//! any q̈ the forces and moments of the inward sweep are those that the crane transmits.
 
 use super::factors::Factor;
 use super::model::Model;
@@ -10,13 +10,13 @@ use super::vector::Vec3;
 use crate::chain::{BodyId, Cut};
 use crate::symbolic::Expr;
 
-/// `e = −(h + g)` [Urbaś 2016, Eqs. (5), (7), (9), by recursion]; the base is accelerated against gravity.
+/// `e = −(h + g)` [Urbaś 2016, Eqs. (5), (7), (9), by recursion]; gravity is an upward acceleration of the base.
 pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let motions = outward(model, factors, None);
     inward(model, factors, &motions, |_, _| None).bias
 }
 
-/// What the part beyond each cut exerts on the part before it, force and moment: the inertia and the weight of everything
+/// Force and moment that the part beyond each cut exerts on the part before it: the inertia and the weight of everything
 /// beyond.
 pub fn internal_forces<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let motions = outward(model, factors, Some(&model.a));
@@ -29,16 +29,16 @@ pub fn internal_forces<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Exp
     wrenches.flatten().flat_map(|vector| vector.0).collect()
 }
 
-/// What one factor does to the motion of the frame reached.
+/// The contribution of one factor to the motion of the frame after it.
 struct Motion<'g> {
     velocities: Velocities<'g>,
-    /// Angular acceleration of the frame after the factor, by its components in it.
+    /// Angular acceleration of the frame after the factor, in its components.
     alpha: Vec3<'g>,
     /// Acceleration of its origin, gravity subtracted.
     a: Vec3<'g>,
 }
 
-/// From base to tip: ω, α and a of each frame. In one sweep the three chains of dependent operations run side by side.
+/// From base to tip: ω, α and a of each frame. In one sweep the three chains of dependent operations are interleaved.
 fn outward<'g>(model: &Model<'g>, factors: &[Factor<'g>], accelerations: Option<&[Expr<'g>]>) -> Vec<Motion<'g>> {
     let zero = Vec3::zero(model.graph);
     let (mut omega, mut alpha, mut a) = (zero, zero, -model.vector(&model.chain.gravity));
@@ -82,22 +82,22 @@ fn outward<'g>(model: &Model<'g>, factors: &[Factor<'g>], accelerations: Option<
     motions
 }
 
-/// Force and moment about the origin of the frame in which both are given.
+/// Force and moment about the origin of the frame in whose components both are given.
 type Wrench<'g> = [Vec3<'g>; 2];
 
-/// What a motion asks for.
+/// The forces that a motion requires.
 struct Inward<'g> {
-    /// Generalized forces that the motion lacks.
+    /// Generalized forces that the motion requires.
     bias: Vec<Expr<'g>>,
-    /// What was noted of each body in the frame after its last coordinate; nothing where it has none of its own.
+    /// The record of each body in the frame after its last coordinate; `None` if it has no coordinate.
     joints: Vec<Option<Wrench<'g>>>,
-    /// What was noted of each body in its own frame.
+    /// The record of each body in its own frame.
     bodies: Vec<Option<Wrench<'g>>>,
-    /// What was noted in the world frame.
+    /// The record in the world frame.
     ground: Option<Wrench<'g>>,
 }
 
-/// From tip to base: force and moment that each frame takes. `note` makes of them what is kept of every cut.
+/// From tip to base: the force and moment that each frame requires. `note` converts them to the record of every cut.
 fn inward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],
@@ -109,7 +109,7 @@ fn inward<'g>(
     let mut bias = model.zeros();
     let mut joints = vec![None; model.chain.bodies.len()];
     let mut bodies = joints.clone();
-    // The body whose path the sweep is on.
+    // The body whose path the sweep follows.
     let mut on = 0;
     let sweep = model.graph.sweep();
     for (factor, Motion { velocities, alpha, a }) in factors.iter().zip(motions).rev() {
@@ -140,7 +140,7 @@ fn inward<'g>(
                 }
             }
             (Factor::RotationVector { j, vector }, _) => {
-                // Jᵀ R = J: what the moment does to the coordinates, by its components after the joint.
+                // Jᵀ R = J: the effect of the moment on the coordinates, from its components after the joint.
                 let efforts = vector.jacobian().apply(moment);
                 for (k, effort) in vector.by_coordinates(efforts.0).into_iter().enumerate() {
                     bias[j + k] = -effort;

@@ -1,4 +1,4 @@
-//! What a crane's scene does not need, and is therefore not derived.
+//! Parts of the model that a crane does not need, which are therefore not derived.
 
 use super::kinematics::{Generator, Kinematics};
 use super::model::Model;
@@ -6,7 +6,7 @@ use super::vector::Vec3;
 use crate::chain::{Analyses, Chain, CoordinateKind};
 use crate::symbolic::{Expr, Graph};
 
-/// What the scene does not need, and why.
+/// The parts that the crane does not need, and why.
 #[must_use]
 pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'static str)> {
     let mut rows = Vec::new();
@@ -25,21 +25,21 @@ pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'stati
     out(chain.stops().next().is_none(), "end stops", "the spec has none");
     out(chain.frictions().next().is_none(), "friction of joints", "the spec has none");
     out(chain.points.is_empty(), "points of interest", "the spec has none");
-    out(chain.parameters.is_empty(), "live parameters", "the spec has none: all numbers are baked in");
+    out(chain.parameters.is_empty(), "live parameters", "the spec has none: all numbers are compiled in");
     out(
         planar(chain),
         "everything out of the crane's plane",
-        "all joints turn about one direction, none moves along it",
+        "all joints rotate about one direction, none translates along it",
     );
-    out(!analyses.statics, "static residual and tangent stiffness", "`analyses` does not ask for statics");
-    out(!analyses.dynamics, "mass matrix, bias and kinetic energy", "`analyses` does not ask for dynamics");
-    out(!analyses.modes, "linearisation", "`analyses` does not ask for modes");
-    out(!analyses.internal_forces, "internal forces", "`analyses` does not ask for internal_forces");
-    out(!analyses.derivatives, "∂T/∂q and ∂²T/∂q∂q", "`analyses` does not ask for derivatives");
+    out(!analyses.statics, "static residual and tangent stiffness", "`analyses` does not include statics");
+    out(!analyses.dynamics, "mass matrix, bias and kinetic energy", "`analyses` does not include dynamics");
+    out(!analyses.modes, "linearisation", "`analyses` does not include modes");
+    out(!analyses.internal_forces, "internal forces", "`analyses` does not include internal_forces");
+    out(!analyses.derivatives, "∂T/∂q and ∂²T/∂q∂q", "`analyses` does not include derivatives");
     rows
 }
 
-/// Whether all rotations keep one direction of the world and no translation is along it: the chain moves in a plane.
+/// Whether the chain moves in a plane: all rotations keep one direction of the world, and no translation is along it.
 fn planar(chain: &Chain) -> bool {
     let graph = Graph::simplifying();
     let kinematics = Kinematics::new(&Model::new(&graph, chain));

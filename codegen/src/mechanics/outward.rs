@@ -1,13 +1,13 @@
 //! The first sweep of every recursion along the chain: from base to tip, in local frames.
 //!
 //! Notation
-//! : `ω` angular velocity of the frame reached, `a` acceleration of its origin, `α` its angular acceleration, all by their
-//!   components in that frame. Accelerations are the classical ones of points, so that no linear velocity is needed.
+//! : `ω` angular velocity of the frame reached, `a` acceleration of its origin, `α` its angular acceleration, all in
+//!   components of that frame. Accelerations are the classical ones of points, so that no linear velocity is needed.
 //!
 //! Output
-//! : ω after every factor, and the part of the accelerations that velocities alone make:
+//! : ω after every factor, and the part of the accelerations that depends only on velocities:
 //!   `α = Rᵀ α₋ + e q̈ + ω × e q̇` at a rotation, `a = a₋ + α × d + ω × (ω × d)` at a translation by d, and
-//!   `e q̈ + 2 ω × e q̇` more where d grows.
+//!   `e q̈ + 2 ω × e q̇` in addition where d changes.
 
 use super::factors::Factor;
 use super::model::Model;
@@ -15,7 +15,7 @@ use super::turn::Turn;
 use super::vector::Vec3;
 use crate::symbolic::Expr;
 
-/// What velocities alone do at one factor.
+/// The velocity-dependent terms at one factor.
 #[derive(Clone, Copy, Debug)]
 pub enum Velocities<'g> {
     /// Angular velocity after a rotation, and `ω × e q̇`.
@@ -24,9 +24,9 @@ pub enum Velocities<'g> {
     Ball { gyrations: [Vec3<'g>; 3] },
     /// Rates of a rotation vector, the relative angular velocity w after it, and `ω × w`.
     RotationVector { rates: Vec3<'g>, gyration: Vec3<'g> },
-    /// The way d of a translation, and `ω × (ω × d)` with Coriolis' acceleration.
+    /// The displacement d of a translation, and `ω × (ω × d)` with the Coriolis acceleration.
     Translation { by: Vec3<'g>, acceleration: Vec3<'g> },
-    /// A constant rotation changes nothing but components.
+    /// A constant rotation changes only components.
     Turn,
     /// The frame of a body, with its angular velocity.
     Body { omega: Vec3<'g> },
@@ -48,7 +48,7 @@ pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>])
         .collect()
 }
 
-/// Takes ω along one factor.
+/// Transforms ω across one factor.
 pub fn along<'g>(model: &Model<'g>, omega: &mut Vec3<'g>, factor: &Factor<'g>, v: &[Expr<'g>]) -> Velocities<'g> {
     let mut rotate = |turn: &Turn<'g>, rate: Expr<'g>| {
         let spin = Vec3::along(turn.axis, rate);

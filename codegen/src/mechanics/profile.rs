@@ -1,6 +1,6 @@
 //! Prescribed motions as expressions of time.
 //!
-//! All are written with clamped times, so they hold their first value before and their last value after, without a
+//! All use clamped times, so that they hold their first value before and their last value after the motion, without a
 //! branch.
 
 use std::f64::consts::TAU;
@@ -89,14 +89,14 @@ pub fn rate<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
     }
 }
 
-/// `q̈_dr(t)`, m/s² or rad/s². Where it jumps, a motion that begins or ends has the acceleration that it begins or ends with.
+/// `q̈_dr(t)`, m/s² or rad/s². At a jump, a motion that begins or ends has the acceleration with which it begins or ends.
 pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
     let scale = |ramp: &Ramp, curvature: Expr<'g>| {
         let travel = model.number(&ramp.to) - model.number(&ramp.from);
         travel / model.number(&ramp.duration).squared() * curvature
     };
     match profile {
-        // A speed that jumps does so before a run, or its drive would not be rigid.
+        // A speed that jumps does so before a run; otherwise its drive would not be rigid.
         Profile::Hold(_) | Profile::Speed { ramp: None, .. } => model.zero(),
         Profile::Quintic(ramp) => {
             let tau = tau(model, ramp, t);
@@ -117,7 +117,7 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
             let (tau, _) = since(model, begin, Some(ramp), t);
             model.number(rate) / model.number(ramp) * (tau * (1.0 - tau) * 6.0)
         }
-        // The spline's second derivative changes along its pieces, and jumps at both ends.
+        // The spline's second derivative varies along its pieces, and jumps at both ends.
         Profile::Table { segments, .. } => {
             let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return model.zero() };
             let [_, c2, _] = first.coefficients;
@@ -130,7 +130,7 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
     }
 }
 
-/// 1 from the beginning of a motion on, and 1 after its end; 0 before.
+/// 1 from the start of a motion on, and 1 after its end; 0 before.
 fn bounds<'g>(model: &Model<'g>, begin: &Value, duration: &Value, t: Expr<'g>) -> [Expr<'g>; 2] {
     let passed = t - model.number(begin);
     [1.0 - after(model, -passed), after(model, passed - model.number(duration))]
@@ -144,7 +144,7 @@ fn tau<'g>(model: &Model<'g>, ramp: &Ramp, t: Expr<'g>) -> Expr<'g> {
     ((t - model.number(&ramp.begin)) * per_second).clamp(zero, one)
 }
 
-/// Of a constant speed: the share τ of its ramp that has passed, from 0 to 1 at once without one, and the time since, s.
+/// For a constant speed: the fraction τ of its ramp that has passed, which jumps from 0 to 1 without a ramp, and the time since, s.
 fn since<'g>(model: &Model<'g>, begin: &Value, ramp: Option<&Value>, t: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
     let (zero, one) = (model.zero(), model.graph.constant(1.0));
     let passed = t - model.number(begin);
@@ -157,13 +157,13 @@ fn since<'g>(model: &Model<'g>, begin: &Value, ramp: Option<&Value>, t: Expr<'g>
     }
 }
 
-/// 1 where x > 0, and 0 elsewhere: times are 0, or not as small as the reciprocal of this.
+/// 1 if x > 0, otherwise 0: times are 0, or not as small as the reciprocal of this.
 fn after<'g>(model: &Model<'g>, x: Expr<'g>) -> Expr<'g> {
     const STEEP: f64 = 1e300;
     (x * STEEP).clamp(model.zero(), model.graph.constant(1.0))
 }
 
-/// Share of τ spent speeding up, at constant rate, and slowing down, each from 0 to its length.
+/// Parts of τ spent accelerating, at constant rate, and decelerating, each from 0 to its length.
 fn phases<'g>(model: &Model<'g>, ramp: &Ramp, blend: f64, t: Expr<'g>) -> [Expr<'g>; 3] {
     let tau = tau(model, ramp, t);
     let within = |low: f64, high: f64| (tau - low).clamp(model.zero(), model.graph.constant(high - low));

@@ -1,7 +1,7 @@
-//! `(A + D̂) x = r` in O(n), D̂ diagonal but for the base's own block.
+//! `(A + D̂) x = r` in O(n), D̂ diagonal except for the block of the base.
 //!
-//! The springs and dampers of elements and drives sit on single coordinates, those of the supports on the base: whatever an
-//! implicit step adds to A has this structure, and costs what A alone costs.
+//! The springs and dampers of elements and drives act on single coordinates, those of the supports on the base: the terms
+//! that an implicit step adds to A have this structure, and cost nothing beyond the solution with A.
 
 use super::articulated::{Articulated, Effort};
 use super::drives;
@@ -18,7 +18,7 @@ use crate::symbolic::Expr;
 
 /// x of `(A + D̂) x = r`, without the rows and columns of prescribed coordinates: their x is 0.
 ///
-/// All that hangs on the base is freed joint by joint; what is left is a system of the base's coordinates, with the columns
+/// Everything beyond the base is released joint by joint; a system of the base's coordinates remains, with the columns
 /// `(ω_j, υ_j)` of the motions of the first body's origin.
 pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let base: Vec<usize> = model.chain.base.iter().flatten().map(|CoordinateId(j)| *j).collect();
@@ -66,7 +66,7 @@ pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[F
     x
 }
 
-/// Where the frame of the first body is reached.
+/// The factor at which the frame of the first body is reached.
 fn first_body(factors: &[Factor]) -> usize {
     factors.iter().position(|factor| matches!(factor, Factor::Body(_))).unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! A joint that turns by a rotation vector: `R = exp([ρ]×)`, ρ by its components along the frame's axes, one coordinate each.
+//! A joint that rotates by a rotation vector: `R = exp([ρ]×)`; the components of ρ along the frame's axes are coordinates.
 //!
 //! Notation
 //! : `x = ρ·ρ`; `c_k` Stumpff's functions of x; `f = c_1/(2 c_2)` and `g = (1 − f)/x = (c_3 − 2 c_4)/(2 c_2)`. *Before* and *after*
@@ -6,8 +6,8 @@
 //!   before.
 //!
 //! Output
-//! : with `J = c_1 1 + c_2 [ρ]× + c_3 ρρᵀ` the relative angular velocity is `J ρ̇` by its components before and `w = Jᵀ ρ̇` after;
-//!   `J⁻¹ = f 1 − ½ [ρ]× + g ρρᵀ`. R, J and J⁻¹ are smooth at ρ = 0; J is singular where a rotation comes round to 360°.
+//! : with `J = c_1 1 + c_2 [ρ]× + c_3 ρρᵀ` the relative angular velocity is `J ρ̇` in components before and `w = Jᵀ ρ̇` after;
+//!   `J⁻¹ = f 1 − ½ [ρ]× + g ρρᵀ`. R, J and J⁻¹ are smooth at ρ = 0; J is singular at a rotation of 360°.
 
 use super::model::Model;
 use super::vector::{Matrix3, Rotation, Symmetric3, Vec3};
@@ -17,7 +17,7 @@ use crate::symbolic::Expr;
 /// A rotation vector and the functions of its length.
 #[derive(Clone, Copy, Debug)]
 pub struct RotationVector<'g> {
-    /// For each axis, the place among the joint's coordinates of the one along it.
+    /// For each axis, the index of its coordinate among those of the joint.
     places: [usize; 3],
     rho: Vec3<'g>,
     /// c₀ to c₅
@@ -89,7 +89,7 @@ impl<'g> RotationVector<'g> {
         self.project(rates)
     }
 
-    /// `dJᵀ/dt ρ̇`, the part of `ẇ` that rates alone make:
+    /// `dJᵀ/dt ρ̇`, the part of `ẇ` that depends only on rates:
     /// `σ (2c_3 − c_2) ρ̇ + σ (c_3 − 2c_4) ρ × ρ̇ + (c_3 ρ̇·ρ̇ + σ² (3c_5 − c_4)) ρ` with `σ = ρ·ρ̇`.
     pub fn spin_rate(&self, rates: Vec3<'g>) -> Vec3<'g> {
         let [_, _, c2, c3, c4, c5] = self.c;
@@ -98,7 +98,7 @@ impl<'g> RotationVector<'g> {
         (sigma * (2.0 * c3 - c2)) * rates + (sigma * (c3 - 2.0 * c4)) * self.rho.cross(rates) + along * self.rho
     }
 
-    /// The moment n of efforts τ on the three coordinates, `τ = J n`-wise by its components before and after:
+    /// The moment n of efforts τ on the three coordinates, in components before and after:
     /// `J⁻ᵀ τ` and `J⁻¹ τ`, which differ in the sign of one product.
     pub fn moments(&self, efforts: Vec3<'g>) -> [Vec3<'g>; 2] {
         let [f, g] = self.inverse_functions();
@@ -107,7 +107,7 @@ impl<'g> RotationVector<'g> {
         [even + odd, even - odd]
     }
 
-    /// `J⁻ᵀ D̂ J⁻¹`… by components after the joint: what resistances D̂ of the coordinates are to the relative angular
+    /// `J⁻ᵀ D̂ J⁻¹`, in components after the joint: the effect of resistances D̂ of the coordinates on the relative angular
     /// acceleration.
     pub fn resistance(&self, resistances: Vec3<'g>) -> Symmetric3<'g> {
         let [f, g] = self.inverse_functions();
@@ -119,16 +119,16 @@ impl<'g> RotationVector<'g> {
         })
     }
 
-    /// ρ̈ from the relative angular acceleration Jᵀ ρ̈ alone, at rest.
+    /// ρ̈ from the relative angular acceleration Jᵀ ρ̈, at rest.
     pub fn accelerations_at_rest(&self, relative: Vec3<'g>) -> Vec3<'g> {
         let [before, _] = self.moments(relative);
         before
     }
 
-    /// ρ̈ from the angular accelerations before and after, each by the components of its own frame, and what rates make of them:
+    /// ρ̈ from the angular accelerations before and after, each in components of its own frame, with the terms of the rates:
     /// `J⁻ᵀ (α' − ω' × w) − J⁻¹ α + 2gσ ρ̇ − (c_3 (ρ̇·ρ̇ + 2gσ²) + (3c_5 − c_4) σ²) ρ`.
     ///
-    /// `ρ̇ = J⁻ᵀ w` with `J⁻ᵀ = J⁻¹ R`, so α never is turned into the frame after. The terms in σ are `−J⁻ᵀ dJᵀ/dt ρ̇`, in which
+    /// `ρ̇ = J⁻ᵀ w` with `J⁻ᵀ = J⁻¹ R`, so α is never transformed to the frame after. The terms in σ are `−J⁻ᵀ dJᵀ/dt ρ̇`, in which
     /// the part along `ρ × ρ̇` cancels.
     pub fn accelerations(&self, before: Vec3<'g>, after: Vec3<'g>, gyration: Vec3<'g>, rates: Vec3<'g>) -> Vec3<'g> {
         let [_, _, _, c3, c4, c5] = self.c;
@@ -141,7 +141,7 @@ impl<'g> RotationVector<'g> {
         f * difference + self.half().cross(sum) + twice * rates + (g * self.rho.dot(difference) - along) * self.rho
     }
 
-    /// `∂(J e_n)/∂ρ_m − (J e_m) × (J e_n)`, in the frame before: what the second derivative by two components has beside the
+    /// `∂(J e_n)/∂ρ_m − (J e_m) × (J e_n)`, in the frame before: the term of the second derivative with respect to two components in addition to the
     /// product of their generators, `∂²R/∂ρ_m∂ρ_n = Ω_m Ω_n R + [·]× R`.
     pub fn curvature(&self, (m, n): (usize, usize)) -> Vec3<'g> {
         let [_, _, c2, c3, c4, c5] = self.c;

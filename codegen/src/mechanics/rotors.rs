@@ -1,7 +1,7 @@
-//! Rotors: inertia I of a joint's own, reflected from the motor by the square of the gear ratio.
+//! Rotors: additional inertia I of a joint, reflected from the motor by the square of the gear ratio.
 //!
-//! It adds `I` to the diagonal of A and `½ I q̇²` to the kinetic energy. Freeing the joint, it is a resistance: `τ − I q̈` acts on
-//! what the joint carries ([`super::articulated`]).
+//! It adds `I` to the diagonal of A and `½ I q̇²` to the kinetic energy. When the joint is released, it is a resistance: `τ − I q̈` acts on
+//! the part beyond the joint ([`super::articulated`]).
 
 use super::model::Model;
 use crate::symbolic::Expr;
@@ -11,7 +11,7 @@ pub fn by_coordinate<'a, 'g>(model: &'a Model<'g>) -> impl Iterator<Item = (usiz
     model.chain.rotors.iter().map(|rotor| (rotor.coordinate.0, model.number(&rotor.armature)))
 }
 
-/// The inertia of every coordinate's rotor; zero where there is none.
+/// The inertia of every coordinate's rotor; zero if there is none.
 pub fn armatures<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let mut armatures = model.zeros();
     for (j, armature) in by_coordinate(model) {

@@ -1,4 +1,4 @@
-//! Springs and dampers that sit on single coordinates: rigid elements and passive joints.
+//! Springs and dampers on single coordinates: rigid elements and passive joints.
 
 use super::model::Model;
 use super::vector::SymmetricMatrix;
@@ -52,7 +52,7 @@ pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     }
 }
 
-/// Power that elements' and joints' dampers take out, `Σ d q̇²` (2R of [Urbaś 2016, Eq. (14)]).
+/// Power that elements' and joints' dampers dissipate, `Σ d q̇²` (2R of [Urbaś 2016, Eq. (14)]).
 pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     let elements = model.chain.elements.iter().map(|s| (s.coordinate.0, &s.damping));
     let hinges = model.chain.hinges.iter().map(|h| (h.coordinate.0, &h.damping));

@@ -1,4 +1,4 @@
-//! The model on a crane small enough for a textbook: a double pendulum of two rods in the x–z plane, turning about y.
+//! The model on a crane small enough for a textbook: a double pendulum of two rods in the x–z plane, rotating about y.
 
 use crate::chain::{
     Analyses, Axis, Body, BodyId, Chain, Coordinate, CoordinateId, CoordinateKind, Inertia, Loops, Point, Run, Step,
@@ -68,7 +68,7 @@ fn evaluate(program: &Program, name: &str, q: [f64; 2], v: [f64; 2]) -> Vec<f64>
     program.evaluate(program.function(FunctionId::named(name).unwrap()).unwrap(), &inputs)
 }
 
-/// A few roundings of numbers of order 10.
+/// A few rounding errors of numbers of order 10.
 fn assert_close(actual: &[f64], expected: &[f64]) {
     assert_eq!(actual.len(), expected.len());
     for (a, b) in actual.iter().zip(expected) {

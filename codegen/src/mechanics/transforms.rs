@@ -44,8 +44,8 @@ pub fn derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Ex
     outputs
 }
 
-/// Pairs (m, n) with second derivatives other than zero above which these are left as factors: 36 operations each,
-/// written out, take rustc longer than the whole rest of the crane.
+/// Number of nonzero pairs (m, n) above which second derivatives are left as factors: written out, 36 operations each take
+/// rustc longer than the rest of the crane.
 const MOST_PAIRS_WRITTEN_OUT: usize = 500;
 
 /// `∂²T(p)/∂q_m∂q_n = Ω_m Ω_n T(p)`, m ≤ n, for every body and every pair of coordinates before it; written out for a
@@ -73,7 +73,7 @@ fn written_out<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'
         let first: Vec<_> = (0..count).map(|j| derivative(kinematics, body, j)).collect();
         for m in 0..count {
             for n in m..count {
-                // The columns of Ω_n T are directions, so Ω_m only turns them.
+                // The columns of Ω_n T are directions, so Ω_m only rotates them.
                 let turned = first[n].map(|column| kinematics.generators[m].turn(column));
                 let within = |curvature: &&Curvature<'g>| curvature.first <= m && n < curvature.first + 3;
                 outputs.extend(rows(match kinematics.curvatures.iter().find(within) {

@@ -1,6 +1,6 @@
 //! Elementary rotations of frames, applied as plane rotations: no 3×3 product with known zeros.
 //!
-//! A turn is `R = R_axis(angle)`, from the inner frame (towards the tip) to the outer one (towards the base).
+//! A rotation is `R = R_axis(angle)`, from the inner frame (towards the tip) to the outer one (towards the base).
 //! `inward` is `x ↦ Rᵀ x`, from base to tip; `outward` is `x ↦ R x`, `S ↦ R S Rᵀ`, from tip to base.
 
 use super::vector::{Matrix3, Symmetric3, Vec3, plane};
@@ -32,8 +32,8 @@ impl<'g> Turn<'g> {
 
     /// `R S Rᵀ`
     ///
-    /// In the plane of rotation `S_aa` loses to `S_bb` what `w` is: entries of very different size keep their digits as the
-    /// angle goes to zero.
+    /// In the plane of rotation, `w` is subtracted from `S_aa` and added to `S_bb`: entries of very different size keep their
+    /// digits as the angle goes to zero.
     pub fn outward_symmetric(&self, s: &Symmetric3<'g>) -> Symmetric3<'g> {
         let (a, b) = plane(self.axis);
         let k = self.axis.index();
@@ -66,19 +66,19 @@ impl<'g> Turn<'g> {
         Matrix3(turned)
     }
 
-    /// What a rotation moves between the entries of a 2×2 block `[[p, q], [r, s]]`, from `p − s` and `q + r`:
+    /// The amounts that a rotation moves between the entries of a 2×2 block `[[p, q], [r, s]]`, from `p − s` and `q + r`:
     /// `w = sin² (p − s) + sin cos (q + r)` and `t = sin cos (p − s) − sin² (q + r)`.
     fn exchange(&self, difference: Expr<'g>, sum: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
         let (squared, product) = (self.sin * self.sin, self.sin * self.cos);
         (squared * difference + product * sum, product * difference - squared * sum)
     }
 
-    /// `own + change`, or the other's value where the turn swaps the two.
+    /// `own + change`, or the other's value if the rotation swaps the two.
     fn diagonal(&self, own: Expr<'g>, other: Expr<'g>, change: Expr<'g>) -> Expr<'g> {
         if self.is_quarter() { other } else { own + change }
     }
 
-    /// `own + change`, or what a quarter turn leaves.
+    /// `own + change`, or the result of a quarter turn.
     fn off_diagonal(&self, own: Expr<'g>, swapped: Expr<'g>, change: Expr<'g>) -> Expr<'g> {
         if self.is_quarter() { swapped } else { own + change }
     }

@@ -109,7 +109,7 @@ impl<'g> Rotation<'g> {
         Rotation(other.0.map(|column| self.apply(column)))
     }
 
-    /// `R · R_axis(angle)`: a plane rotation of two columns, the third stays.
+    /// `R · R_axis(angle)`: a plane rotation of two columns; the third is unchanged.
     pub fn turned(self, axis: Axis, sin: Expr<'g>, cos: Expr<'g>) -> Self {
         let (first, second) = plane(axis);
         let (a, b) = (self.0[first], self.0[second]);
@@ -120,7 +120,7 @@ impl<'g> Rotation<'g> {
     }
 }
 
-/// The axes that a rotation about `axis` turns, the first towards the second.
+/// The axes that a rotation about `axis` moves, the first towards the second.
 pub fn plane(axis: Axis) -> (usize, usize) {
     match axis {
         Axis::X => (1, 2),
@@ -233,7 +233,7 @@ impl<'g> Symmetric3<'g> {
         Matrix3([0, 1, 2].map(|i| self.row(i).0))
     }
 
-    /// `S⁻¹ = Σ r C` as pairs of reciprocals r and cofactors C, one for each block of coupled axes: what is made of C need
+    /// `S⁻¹ = Σ r C` as pairs of reciprocals r and cofactors C, one per block of coupled axes: expressions of C need
     /// not wait for the divisions.
     pub fn inverse(&self) -> Vec<(Expr<'g>, Self)> {
         let zero = || Self::zero(self.0[0].graph());
@@ -332,7 +332,7 @@ impl<'g> SymmetricMatrix<'g> {
         self.upper[self.slot(row, column)]
     }
 
-    /// The matrix with `x` on the diagonal of row and column j, and zeros beside it.
+    /// The matrix with `x` on the diagonal of row and column j, and zeros elsewhere in them.
     pub fn without(mut self, j: usize, x: Expr<'g>) -> Self {
         for i in 0..self.size {
             let slot = self.slot(i.min(j), i.max(j));

@@ -1,4 +1,4 @@
-//! How a [`Reader`] hands out what is inside a node.
+//! Access of a [`Reader`] to the contents of a node.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use super::deserializer::{Place, Reader, Unread};
 use super::tree::{Content, Node};
 use crate::diagnostic::{Span, rule, suggest};
 
-/// Where a value is shown: a scalar where it stands, a list or mapping at its key.
+/// The location shown for a value: a scalar itself, a list or mapping at its key.
 fn shown(key: Span, value: &Node) -> Span {
     match value.content {
         Content::Sequence(_) | Content::Mapping(_) | Content::Null => key,
@@ -17,7 +17,7 @@ fn shown(key: Span, value: &Node) -> Span {
     }
 }
 
-/// Where an item of a list is shown: a mapping at its first key.
+/// The location shown for an item of a list: a mapping at its first key.
 fn shown_item(item: &Node) -> Span {
     match &item.content {
         Content::Mapping(entries) => entries.first().map_or(item.span, |(key, _)| key.span),
@@ -25,7 +25,7 @@ fn shown_item(item: &Node) -> Span {
     }
 }
 
-/// The name that an item of a list gives itself.
+/// The `name` of an item of a list.
 fn name_of(item: &Node) -> Option<&str> {
     let Content::Mapping(entries) = &item.content else { return None };
     entries.iter().find_map(|(key, value)| match (&key.content, &value.content) {
@@ -85,7 +85,7 @@ impl<'a> SeqAccess<'a> for Items<'a> {
     }
 }
 
-/// Names of the user's own and their values; the second of two equal names is reported and skipped.
+/// User-defined names and their values; the second of two equal names is reported and skipped.
 pub(super) struct Entries<'a> {
     reader: Reader<'a>,
     pairs: &'a [(Node, Node)],
@@ -129,7 +129,7 @@ impl<'a> MapAccess<'a> for Entries<'a> {
     }
 }
 
-/// Fields of a struct: those that are given, then those that are not, so that the ones that are required get reported.
+/// Fields of a struct: those that are given, then those that are not, so that missing required ones are reported.
 pub(super) struct Fields<'a> {
     reader: Reader<'a>,
     names: &'static [&'static str],
@@ -138,10 +138,10 @@ pub(super) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// Reports unknown and duplicate keys, and leaves them out.
+    /// Reports and skips unknown and duplicate keys.
     pub fn new(reader: Reader<'a>, entries: &'a [(Node, Node)], names: &'static [&'static str]) -> Self {
         let mut given = vec![None; names.len()];
-        // A whole number just before: a comma within a number ends it in `{mass: 50,5}`.
+        // The preceding whole number: in `{mass: 50,5}` the decimal comma ends the number.
         let mut before = None;
         for (key, value) in entries {
             let name = key.key_text();
@@ -169,7 +169,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Whether a key can be what follows the comma of a number.
+/// Whether a key can be the digits after a decimal comma.
 fn is_fraction(key: &Content) -> bool {
     matches!(key, Content::Number(digits) if *digits >= 0.0 && digits.fract() == 0.0)
 }
@@ -193,7 +193,7 @@ impl<'a> MapAccess<'a> for Fields<'a> {
     }
 }
 
-/// A chosen variant, and what was given with it.
+/// A chosen variant, and its content.
 pub(super) struct Choice<'a> {
     pub reader: Reader<'a>,
     pub variant: &'static str,
@@ -201,13 +201,13 @@ pub(super) struct Choice<'a> {
 }
 
 impl<'a> Choice<'a> {
-    /// Reader of what was given with the variant.
+    /// Reader of the variant's content.
     fn content(&self) -> Reader<'a> {
         let span = self.node.map_or(self.reader.span, |node| shown(self.reader.span, node));
         Reader { node: self.node, span, place: Place::Key(self.variant), owner: self.reader.place, ..self.reader }
     }
 
-    /// Reports here what the content cannot report itself, as it has no place of its own.
+    /// Reports what the content cannot report itself, because it has no location.
     fn placed<T>(reader: Reader<'a>, result: Result<T, Unread>) -> Result<T, Unread> {
         result.map_err(|unread| {
             reader.report_unread(unread);

@@ -1,4 +1,4 @@
-//! Reads derived types from a [`Node`], notes mistakes and goes on.
+//! Reads derived types from a [`Node`], notes mistakes and continues.
 
 use std::cell::RefCell;
 use std::fmt::Display;
@@ -14,9 +14,9 @@ use crate::spec::{EITHER, GIVEN, MANY};
 /// Why a value could not be read.
 #[derive(Debug)]
 pub(super) enum Unread {
-    /// It has been reported.
+    /// A mistake was reported.
     Reported,
-    /// It is not what its type asks for.
+    /// It is not what its type expects.
     Expected(String),
 }
 
@@ -43,7 +43,7 @@ impl de::Error for Unread {
     }
 }
 
-/// The number that a text with a decimal comma means.
+/// The number meant by a text with a decimal comma.
 fn with_decimal_point(content: &Content) -> Option<String> {
     let Content::Text(text) = content else { return None };
     let (whole, fraction) = text.split_once(',')?;
@@ -51,7 +51,7 @@ fn with_decimal_point(content: &Content) -> Option<String> {
     (digits(whole.trim_start_matches('-')) && digits(fraction)).then(|| format!("{whole}.{fraction}"))
 }
 
-/// What a node is called in messages.
+/// The description of a node in messages.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Place<'a> {
     /// The whole file.
@@ -63,7 +63,7 @@ pub(super) enum Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    /// The key that it stands under.
+    /// The key that contains it.
     pub fn key(self) -> &'a str {
         match self {
             Place::Whole => "",
@@ -83,16 +83,16 @@ impl Display for Place<'_> {
     }
 }
 
-/// A node to read, or the place where one is missing.
+/// A node to read, or the location where one is missing.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a> {
     /// The node, unless it is missing.
     pub node: Option<&'a Node>,
-    /// Where it stands, or where it is missed.
+    /// Its location, or the location where it is missing.
     pub span: Span,
-    /// What it is called in messages.
+    /// Its description in messages.
     pub place: Place<'a>,
-    /// What it is part of.
+    /// The description of its owner.
     pub owner: Place<'a>,
     /// The mistakes so far.
     pub mistakes: &'a RefCell<Vec<Mistake>>,
@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
         Unread::Reported
     }
 
-    /// Notes that the value is not what was expected, unless that was said.
+    /// Notes that the value is not what was expected, unless that was reported already.
     pub fn report_unread(&self, unread: Unread) {
         if let (Unread::Expected(mut expected), Some(node)) = (unread, self.node) {
             if let Some(number) = with_decimal_point(&node.content) {
@@ -227,7 +227,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                 visitor.visit_enum(Choice { reader: self, variant, node: None })
             }
             Content::Mapping(entries) => {
-                // All are looked up before any is refused.
+                // All are read before any is refused.
                 let choices: Vec<_> = entries
                     .iter()
                     .map(|(key, node)| Ok((key.span, self.variant(&key.key_text(), key.span, variants)?, node)))

@@ -1,7 +1,7 @@
 //! `SourceFile ─read→ CraneSpec`: text to the types of [`spec`](crate::spec).
 //!
-//! The text becomes a [`tree`] that keeps places and duplicate keys; the derived types are read from that tree by a
-//! [`deserializer`] that notes every mistake and goes on.
+//! The text becomes a [`tree`] that keeps locations and duplicate keys; a [`deserializer`] reads the derived types from that
+//! tree, notes every mistake and continues.
 
 mod access;
 mod deserializer;
@@ -15,11 +15,11 @@ use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile, Span, rule};
 use crate::spec::{Crane, CraneSpec};
 use deserializer::Reader;
 
-/// Reads a spec as far as it can be read. Mistakes of keys and shapes do not end the reading: they stay with the spec,
-/// and [`validate`](crate::validate()) reports them together with its own.
+/// Reads a spec as far as possible. Mistakes of keys and forms do not stop it: they are stored with the spec, and
+/// [`validate`](crate::validate()) reports them together with its own.
 ///
 /// # Errors
-/// If there is nothing to go on with: the file is too large, empty, not YAML, or lacks what every crane has.
+/// If reading cannot continue: the file is too large, empty, not YAML, or lacks keys that every crane has.
 pub fn read(source: &SourceFile) -> Result<CraneSpec, Diagnostics> {
     let refuse = |mistakes| Diagnostics::new(source, mistakes);
     if source.text.len() > MAX_BYTES {

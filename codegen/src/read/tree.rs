@@ -1,4 +1,4 @@
-//! YAML as a tree that keeps every place and every key, duplicates included.
+//! YAML as a tree that keeps every location and every key, including duplicates.
 
 use std::fmt;
 
@@ -10,20 +10,20 @@ use crate::diagnostic::{Mistake, Span, rule};
 /// A node of the tree.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
-    /// Where it stands; of a list or mapping, where it begins.
+    /// Its location; for a list or mapping, its start.
     pub span: Span,
-    /// What it is.
+    /// Its content.
     pub content: Content,
 }
 
-/// What a node is.
+/// Content of a node.
 #[derive(Clone, Debug)]
 pub(super) enum Content {
     /// Nothing, `null` or `~`.
     Null,
     /// `true` or `false`.
     Boolean(bool),
-    /// A number; NaN and infinities too, which validation refuses by name.
+    /// A number, including NaN and infinities, which validation refuses explicitly.
     Number(f64),
     /// Any other scalar.
     Text(String),
@@ -34,7 +34,7 @@ pub(super) enum Content {
 }
 
 impl Node {
-    /// What a key says, whatever it was written as.
+    /// The text of a key, whatever its type.
     pub fn key_text(&self) -> String {
         match &self.content {
             Content::Text(text) => text.clone(),
@@ -46,9 +46,9 @@ impl Node {
     }
 }
 
-/// Depth at which no spec is nested, and recursion over the tree is still harmless.
+/// Maximum nesting depth: no spec is nested this deeply, and recursion over the tree is still safe.
 const MAX_DEPTH: usize = 24;
-/// Values of a crane with as many joints as there may be, twice over; aliases may not multiply them beyond this.
+/// Twice the number of values of a crane with the maximum number of joints; aliases may not multiply them beyond this.
 const MAX_NODES: usize = 1 << 17;
 
 /// Parses YAML.
@@ -84,7 +84,7 @@ pub(super) fn parse(text: &str) -> Result<Node, Mistake> {
     }
 }
 
-/// Whether the parser gave up over the number of values, aliases resolved, and not over what they are.
+/// Whether the parser stopped because of the number of values, with aliases resolved.
 fn too_many(error: &serde_yaml::Error) -> bool {
     use serde_yaml::{Error, budget::BudgetBreach};
     match error.without_snippet() {
@@ -95,7 +95,7 @@ fn too_many(error: &serde_yaml::Error) -> bool {
     }
 }
 
-/// The parser's message without the place, which the drawing shows, nor advice on how to call the parser.
+/// The parser's message without the location, which the drawing shows, and without advice on how to call the parser.
 fn problem(error: &serde_yaml::Error) -> String {
     if matches!(error.without_snippet(), serde_yaml::Error::MultipleDocuments { .. }) {
         return "it contains several documents".into();
@@ -106,7 +106,7 @@ fn problem(error: &serde_yaml::Error) -> String {
     first[..end].to_owned()
 }
 
-/// Bytes of a place. The parser counts bytes of values, but only lines and columns of its own errors.
+/// The byte range of a location. The parser counts bytes for values, but only lines and columns for its own errors.
 fn span(text: &str, location: &Location) -> Span {
     let count = |number: u64| usize::try_from(number).unwrap_or(usize::MAX);
     let span = location.span();
@@ -138,7 +138,7 @@ impl Content {
         }
     }
 
-    /// What it says, for messages.
+    /// Its text, for messages.
     pub fn describe(&self) -> String {
         match self {
             Content::Null => "left empty".into(),
@@ -150,7 +150,7 @@ impl Content {
     }
 }
 
-/// The beginning of a text, for messages.
+/// The start of a text, for messages.
 fn abridged(text: &str) -> String {
     const LONGEST: usize = 40;
     match text.char_indices().nth(LONGEST) {

@@ -15,19 +15,19 @@ use super::{Either, Given, Inertia, Number, Vector};
 pub struct Beam {
     /// Length, m.
     pub length: Given<Number>,
-    /// Number of equal sections, an integer from 1 to 1000: n springs between n + 1 rigid elements; or `rigid`.
+    /// Number of equal sections, an integer from 1 to 1000 (n springs between n + 1 rigid elements), or `rigid`.
     pub sections: Option<Given<Sections>>,
-    /// Material: the name of an entry of `materials`, or written out.
+    /// Material: the name of an entry of `materials`, or a mapping of its properties.
     pub material: Option<Given<Either<String, Material>>>,
     /// Cross-section, exactly one shape.
     pub section: Option<Given<Section>>,
-    /// Mass besides the section's, kg/m, smeared with the section's radii of gyration. Default 0.
+    /// Additional distributed mass, kg/m, with the section's radii of gyration. Default 0.
     pub extra_mass: Option<Given<Number>>,
-    /// Factor by which stresses have to stay below the material's `yield_stress`. Default 1.5.
+    /// Factor by which stresses must stay below the material's `yield_stress`. Default 1.5.
     pub safety_factor: Option<Given<Number>>,
     /// Damping of the springs. Default none.
     pub damping: Option<Given<BeamDamping>>,
-    /// How two elements turn against each other. Default `symmetric`.
+    /// Rotation between two elements. Default `symmetric`.
     pub section_joint: Option<Given<SectionJoint>>,
     /// Rigid elements one by one, n + 1 of them.
     pub elements: Option<Given<Vec<Given<Element>>>>,
@@ -38,7 +38,7 @@ pub struct Beam {
 /// Number of sections of a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sections {
-    /// As many as written, checked later.
+    /// The number as written, checked later.
     Count(f64),
     /// None: the beam does not bend.
     Rigid,
@@ -75,13 +75,13 @@ impl JsonSchema for Sections {
     }
 }
 
-/// How two rigid elements of a beam turn against each other.
+/// Rotation between two rigid elements of a beam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SectionJoint {
-    /// By the rotation vector (phi, theta, psi): no direction of bending comes before another.
+    /// By the rotation vector (phi, theta, psi), which treats both directions of bending alike.
     Symmetric,
-    /// As in the paper, first psi, then theta, then phi.
+    /// By successive rotations as in the paper: psi, theta, phi.
     Paper,
 }
 
@@ -133,7 +133,7 @@ pub enum Section {
         /// Diameter, m.
         diameter: Given<Number>,
     },
-    /// Any section, by its numbers.
+    /// Any section, given by its numbers.
     Numbers {
         /// Area, m².
         area: Given<Number>,
@@ -164,7 +164,7 @@ pub struct Moduli {
     /// Modulus of torsion, m³.
     #[serde(rename = "Wt")]
     pub wt: Given<Number>,
-    /// Shear area along y, m²: the force over the greatest shear stress.
+    /// Shear area along y, m²: the force over the largest shear stress.
     #[serde(rename = "Ay")]
     pub ay: Given<Number>,
     /// Shear area along z, m².
@@ -176,13 +176,13 @@ pub struct Moduli {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BeamDamping {
-    /// Kelvin–Voigt: damping = beta × stiffness, s; one number, or one a direction.
+    /// Kelvin–Voigt: damping = beta × stiffness, s; one number, or one per direction.
     Beta(Given<Either<Number, Directions>>),
     /// Damping of each spring, N m s/rad.
     Coefficients(Directions),
 }
 
-/// One number a direction of a spring.
+/// One number per direction of a spring.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `psi`, `theta`, `phi`")]
 pub struct Directions {
@@ -202,7 +202,7 @@ pub struct Element {
     pub length: Given<Number>,
     /// Mass, kg.
     pub mass: Given<Number>,
-    /// Centre of mass in the element's frame, whose origin is at its beginning, m.
+    /// Centre of mass in the element's frame, whose origin is at its start, m.
     pub com: Given<Vector>,
     /// Inertia.
     pub inertia: Given<Inertia>,

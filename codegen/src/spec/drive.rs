@@ -40,13 +40,13 @@ pub enum Motion {
     Cycloid(Ramp),
     /// Constant acceleration, constant velocity, constant deceleration.
     Trapezoid(Trapezoid),
-    /// Constant speed without end.
+    /// Constant speed, without end.
     Speed(Speed),
     /// Cubic spline through given positions, at rest at both ends.
     Table(Table),
 }
 
-/// From where to where, and when.
+/// Start, end and time of a motion.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `from`, `to`, `begin`, `duration`")]
 pub struct Ramp {
@@ -54,13 +54,13 @@ pub struct Ramp {
     pub from: Given<Angle>,
     /// Position after, rad or m.
     pub to: Given<Angle>,
-    /// When it begins, s. Default 0.
+    /// Time at which it begins, s. Default 0.
     pub begin: Option<Given<Number>>,
-    /// How long it takes, s.
+    /// Duration, s.
     pub duration: Given<Number>,
 }
 
-/// A trapezoid of velocity.
+/// A trapezoidal velocity.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `from`, `to`, `begin`, `duration`, `blend`")]
 pub struct Trapezoid {
@@ -68,11 +68,11 @@ pub struct Trapezoid {
     pub from: Given<Angle>,
     /// Position after, rad or m.
     pub to: Given<Angle>,
-    /// When it begins, s. Default 0.
+    /// Time at which it begins, s. Default 0.
     pub begin: Option<Given<Number>>,
-    /// How long it takes, s.
+    /// Duration, s.
     pub duration: Given<Number>,
-    /// Share of the duration spent accelerating, and as much decelerating, above 0, up to 0.5. Default 0.25.
+    /// Fraction of the duration spent accelerating, and equally decelerating, above 0 and at most 0.5. Default 0.25.
     pub blend: Option<Given<Constant>>,
 }
 
@@ -84,9 +84,9 @@ pub struct Speed {
     pub rate: Given<Angle>,
     /// Position before, rad or m. Default 0.
     pub from: Option<Given<Angle>>,
-    /// When it begins, s. Default 0.
+    /// Time at which it begins, s. Default 0.
     pub begin: Option<Given<Number>>,
-    /// How long it takes to reach the speed, smoothly, s. Default: it jumps to its speed.
+    /// Time to reach the speed smoothly, s. Default: the speed jumps.
     pub ramp: Option<Given<Number>>,
 }
 

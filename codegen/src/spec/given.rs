@@ -1,6 +1,6 @@
-//! What surrounds a value in the file: where it stands, and in which of its forms.
+//! The context of a value in the file: its location and its form.
 //!
-//! These types speak to the reader's deserializer by the name of a newtype, which JSON Schema does not see.
+//! These types communicate with the reader's deserializer through the name of a newtype, which JSON Schema does not see.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -11,20 +11,20 @@ use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use crate::diagnostic::Span;
 
-/// Newtype name by which [`Given`] asks for a span: a sequence of start, end and value follows.
+/// Newtype name with which [`Given`] requests a span: a sequence of start, end and value follows.
 pub(crate) const GIVEN: &str = "Given";
-/// Newtype name by which [`Either`] asks for the form: `visit_some` is a mapping, `visit_newtype_struct` is not.
+/// Newtype name with which [`Either`] requests the form: `visit_some` is a mapping, `visit_newtype_struct` is not.
 pub(crate) const EITHER: &str = "Either";
-/// Newtype name by which [`Many`] asks for a sequence, of one item where none is written.
+/// Newtype name with which [`Many`] requests a sequence; a single item is a sequence of one.
 pub(crate) const MANY: &str = "Many";
 
-/// A value and its place. Reading it never fails, so that its neighbours are read as well: a value that is missing or
-/// wrong is reported where it is read, and has no value here.
+/// A value and its location. Reading it never fails, so that its neighbours are read as well: a value that is missing or
+/// wrong is reported while reading, and is `None` here.
 #[derive(Clone, Debug)]
 pub struct Given<T> {
-    /// The value, unless it was reported.
+    /// The value, unless a mistake was reported.
     pub value: Option<T>,
-    /// Where it stands, or where it should.
+    /// Its location, or the location where it should be.
     pub span: Span,
 }
 
@@ -61,7 +61,7 @@ impl<T: JsonSchema> JsonSchema for Given<T> {
     }
 }
 
-/// A mapping from names of the user's own, in the order of the file.
+/// A mapping from user-defined names, in the order of the file.
 #[derive(Clone, Debug)]
 pub struct Entries<T>(pub Vec<(Given<String>, Given<T>)>);
 
@@ -97,7 +97,7 @@ impl<T: JsonSchema> JsonSchema for Entries<T> {
     }
 }
 
-/// A short form `A`, or the full form `B`, a mapping.
+/// A short form `A`, or the full form `B`, which is a mapping.
 #[derive(Clone, Debug)]
 pub enum Either<A, B> {
     /// Anything but a mapping.

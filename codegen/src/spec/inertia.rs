@@ -9,7 +9,7 @@ use super::{Given, Number, Vector};
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `Ixx`, `Iyy`, `Izz`, or of `gyration`")]
 pub struct Inertia {
-    /// The point it is about. Default `com`.
+    /// Reference point. Default `com`.
     pub about: Option<Given<About>>,
     /// Moment about x, ∫ (y² + z²) dm, kg m².
     #[serde(rename = "Ixx")]
@@ -29,11 +29,11 @@ pub struct Inertia {
     /// Element of the tensor, −∫ y z dm, kg m². Default 0.
     #[serde(rename = "Iyz")]
     pub yz: Option<Given<Number>>,
-    /// Radii of gyration about the centre of mass, m: I = m k², so that the inertia follows a live mass.
+    /// Radii of gyration about the centre of mass, m: I = m k², so that the inertia is proportional to a live mass.
     pub gyration: Option<Given<Vector>>,
 }
 
-/// The point an inertia is about; the axes are those of the link's frame.
+/// The reference point of an inertia; the axes are those of the link's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum About {

@@ -1,36 +1,36 @@
-//! What acts within a joint besides its drive: end stops and friction.
+//! End stops and friction of joints.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Angle, Given, Number};
 
-/// End stops of a joint, which push where it is beyond its range and never pull.
+/// End stops of a joint, which push when it is beyond its range and never pull.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `min`, `max`, `stiffness` and `damping`")]
 pub struct Stops {
-    /// Least position, rad or m; no stop there unless it is given.
+    /// Minimum position, rad or m. Default: no stop.
     pub min: Option<Given<Angle>>,
-    /// Greatest position, rad or m; no stop there unless it is given.
+    /// Maximum position, rad or m. Default: no stop.
     pub max: Option<Given<Angle>>,
-    /// Stiffness of either stop, N m/rad or N/m.
+    /// Stiffness of both stops, N m/rad or N/m.
     pub stiffness: Given<Number>,
-    /// What a stop resists more on the way in than on the way out, by the rate: the force is `stiffness δ (1 + damping δ̇)`
-    /// with δ the way beyond the stop; s/rad or s/m. Default 0.
+    /// Damping of both stops per rate: the force is `stiffness δ (1 + damping δ̇)` with the penetration δ; s/rad or s/m.
+    /// Default 0.
     pub damping: Option<Given<Number>>,
 }
 
-/// Friction of a joint: Coulomb's, with Stribeck's decline where breaking away takes more.
+/// Friction of a joint: Coulomb friction, with a Stribeck decline from a larger breakaway friction.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `coulomb`, `breakaway`, `stribeck`, `width` and `viscous`")]
 pub struct Friction {
-    /// Friction while the joint moves, N m or N.
+    /// Coulomb friction, N m or N.
     pub coulomb: Given<Number>,
-    /// Friction that breaking away takes, N m or N, at least `coulomb`. Default: as `coulomb`.
+    /// Breakaway friction, N m or N, at least `coulomb`. Default: as `coulomb`.
     pub breakaway: Option<Given<Number>>,
     /// Rate at which `breakaway` has declined towards `coulomb` by a factor of e, rad/s or m/s. Default 0.01.
     pub stribeck: Option<Given<Number>>,
-    /// Rate at which friction has come to three quarters of its size, rad/s or m/s: below, the joint creeps. Default 0.001.
+    /// Rate at which friction reaches three quarters of its full value, rad/s or m/s; below it, the joint creeps. Default 0.001.
     pub width: Option<Given<Number>>,
     /// Viscous friction, N m s/rad or N s/m. Default 0.
     pub viscous: Option<Given<Number>>,

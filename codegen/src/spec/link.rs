@@ -5,16 +5,16 @@ use serde::Deserialize;
 
 use super::{AxisName, Beam, Given, Inertia, Number, Placement, Vector};
 
-/// A link: placement, joint, and what moves with it: `mass`, `com` and `inertia`, or several `bodies`, or a `beam`, or
+/// A link: its placement, its joint, and its mass: `mass`, `com` and `inertia`, or several `bodies`, or a `beam`, or
 /// nothing (a massless frame).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `placement`, `joint` and what the link carries")]
 pub struct Link {
     /// Name, a `snake_case` identifier; coordinates are named after it, such as `boom_psi`.
     pub name: Given<String>,
-    /// Where it sits on the link before. Default: in the same place.
+    /// Its pose on the previous link. Default: the same frame.
     pub placement: Option<Given<Placement>>,
-    /// How it moves. Default `fixed`.
+    /// Its joint. Default `fixed`.
     pub joint: Option<Given<Joint>>,
     /// Mass, kg.
     pub mass: Option<Given<Number>>,
@@ -22,13 +22,13 @@ pub struct Link {
     pub com: Option<Given<Vector>>,
     /// Inertia. Default none: a point mass.
     pub inertia: Option<Given<Inertia>>,
-    /// Several bodies lumped into the link.
+    /// Several bodies combined into the link.
     pub bodies: Option<Given<Vec<Given<Body>>>>,
-    /// A beam along x, of rigid finite elements; the next link sits on its tip.
+    /// A beam along x, of rigid finite elements; the next link is attached to its tip.
     pub beam: Option<Given<Beam>>,
 }
 
-/// One of several bodies lumped into a link.
+/// One of several bodies combined into a link.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `mass`, `com` and `inertia`")]
 pub struct Body {
@@ -47,13 +47,13 @@ pub struct Body {
 #[serde(rename_all = "snake_case")]
 #[schemars(transform = allow_bare_words)]
 pub enum Joint {
-    /// Not at all.
+    /// No motion.
     Fixed,
-    /// Turns about its axis; the coordinate is `<link>_psi` (z), `_theta` (y) or `_phi` (x), rad.
+    /// Rotates about its axis; the coordinate is `<link>_psi` (z), `_theta` (y) or `_phi` (x), rad.
     Revolute(Option<JointAxis>),
     /// Slides along its axis; the coordinate is `<link>_x`, `_y` or `_z`, m.
     Prismatic(Option<JointAxis>),
-    /// Base only: moves along x, y, z, then turns by psi about z, theta about y, phi about x; or some of these six.
+    /// Base only: translates along x, y, z, then rotates by psi about z, theta about y, phi about x; or a subset of these six.
     Free(Option<Vec<Given<BaseCoordinate>>>),
 }
 

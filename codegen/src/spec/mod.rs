@@ -1,6 +1,6 @@
-//! The spec language as written: one type a mapping, whose doc comments are its documentation and its JSON Schema.
+//! The spec language as written: one type per mapping, whose doc comments are its documentation and its JSON Schema.
 //!
-//! A key's type says what may stand there; [`Given`] says where it stands. A key that may be left out is an `Option`.
+//! The type of a key defines its allowed values; [`Given`] holds its location. An optional key is an `Option`.
 
 mod beam;
 mod drive;
@@ -30,18 +30,18 @@ use serde::Deserialize;
 
 use crate::diagnostic::Mistake;
 
-/// A crane as written, with the mistakes that reading it has found; [`validate`](crate::validate()) reports them along
-/// with its own.
+/// A crane as written, with the mistakes found while reading it; [`validate`](crate::validate()) reports them together with
+/// its own.
 #[derive(Clone, Debug)]
 pub struct CraneSpec {
-    /// What stands in the file.
+    /// The contents of the file.
     pub crane: Crane,
     /// Mistakes of keys and shapes.
     pub(crate) mistakes: Vec<Mistake>,
 }
 
-/// A crane: an open chain of links from the base to the tip. Every number is in SI units; where a number stands, the
-/// name of an entry of `parameters` may stand instead, which keeps it live at run time.
+/// A crane: an open chain of links from the base to the tip. Every number is in SI units; the name of an entry of
+/// `parameters` can replace a number, which keeps it live at run time.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of keys to values")]
 pub struct Crane {
@@ -53,15 +53,15 @@ pub struct Crane {
     pub title: Option<Given<String>>,
     /// Acceleration of gravity in the world frame, m/s². Default `[0, 0, -9.81]`.
     pub gravity: Option<Given<Vector>>,
-    /// What is to be computed; the rest is left out of the generated code. Default `[statics, dynamics, modes]`.
+    /// Quantities to compute; the rest is left out of the generated code. Default `[statics, dynamics, modes]`.
     pub analyses: Option<Given<Vec<Given<Analysis>>>>,
-    /// Whether generated code writes out what repeats from element to element, or loops over it. Default `auto`.
+    /// Whether generated code loops over equal elements or is written out. Default `auto`.
     pub loops: Option<Given<Loops>>,
     /// Values that stay live at run time, by name.
     pub parameters: Option<Given<Entries<Parameter>>>,
     /// Materials of beams, by name.
     pub materials: Option<Given<Entries<Material>>>,
-    /// The links in order from the base to the tip; each hangs on the one before.
+    /// The links in order from the base to the tip; each is attached to the previous one.
     pub links: Given<Vec<Given<Link>>>,
     /// Springs and dampers between a free base and the ground.
     pub supports: Option<Given<Vec<Given<Support>>>>,
@@ -75,10 +75,10 @@ pub struct Crane {
     pub stops: Option<Given<Entries<Stops>>>,
     /// Friction of joints by coordinate.
     pub friction: Option<Given<Entries<Friction>>>,
-    /// Points whose motion is of interest.
+    /// Points of interest, whose motion is reported.
     pub points: Option<Given<Vec<Given<Point>>>>,
-    /// Where the static solution starts, by coordinate, rad or m. Default: a driven coordinate at its drive's position
-    /// at t = 0, all others at 0.
+    /// Start of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at
+    /// t = 0, all others at 0.
     pub guess: Option<Given<Entries<FixedAngle>>>,
     /// Settings of a run.
     pub run: Option<Given<Run>>,
@@ -98,19 +98,19 @@ pub enum Analysis {
     InternalForces,
     /// First and second derivatives of every body's transformation.
     Derivatives,
-    /// Accelerations of eight cranes a call, for simulations of many with other parameters; includes `dynamics`.
+    /// Accelerations of eight cranes per call, for simulations of many with different parameters; includes `dynamics`.
     Ensemble,
 }
 
-/// When what repeats is a loop in generated code.
+/// When repeated work is a loop in generated code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Loops {
-    /// Where it was measured to be faster.
+    /// Where measurements showed it to be faster.
     Auto,
-    /// Wherever it can be.
+    /// Wherever possible.
     Always,
-    /// Nowhere.
+    /// Never.
     Never,
 }
 
@@ -118,11 +118,11 @@ pub enum Loops {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `value`, `unit` and `about`")]
 pub struct Parameter {
-    /// Value unless set at run time, in SI units.
+    /// Default value, in SI units.
     pub value: Given<FixedAngle>,
-    /// Unit, for tables, such as `kg`. Default: none.
+    /// Unit shown in tables, such as `kg`. Default: none.
     pub unit: Option<Given<String>>,
-    /// What it is. Default: empty.
+    /// Description. Default: empty.
     pub about: Option<Given<String>>,
 }
 

@@ -1,11 +1,11 @@
-//! Where a link sits on the one before.
+//! Poses of links on their previous links.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Angle, Given, Many, Number, Vector};
 
-/// Where a link sits on the one before (after a beam: on its tip), exactly one of these.
+/// Pose of a link on the previous one (after a beam: on its tip), exactly one of these.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Placement {
@@ -14,7 +14,7 @@ pub enum Placement {
     /// A row of classic D-H parameters, `Rz(theta) Tz(d) Tx(a) Rx(alpha)`; the joint adds to theta or d, so the link's
     /// frame is at the far end.
     ClassicDh(ClassicDh),
-    /// A constant translation, then rotations; the joint comes after.
+    /// A constant translation, then rotations; the joint's motion follows.
     Transform(Transform),
 }
 
@@ -22,13 +22,13 @@ pub enum Placement {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `a`, `alpha`, `d`, `theta`")]
 pub struct ModifiedDh {
-    /// Link length, along x of the frame before, m. Default 0.
+    /// Link length, along x of the previous frame, m. Default 0.
     pub a: Option<Given<Number>>,
-    /// Link twist, about x of the frame before, rad. Default 0.
+    /// Link twist, about x of the previous frame, rad. Default 0.
     pub alpha: Option<Given<Angle>>,
-    /// Offset along z, m; where the travel of a prismatic joint starts. Default 0.
+    /// Offset along z, m; the zero position of a prismatic joint. Default 0.
     pub d: Option<Given<Number>>,
-    /// Angle about z, rad; where the turn of a revolute joint starts. Default 0.
+    /// Angle about z, rad; the zero position of a revolute joint. Default 0.
     pub theta: Option<Given<Angle>>,
 }
 
@@ -40,9 +40,9 @@ pub struct ClassicDh {
     pub a: Option<Given<Number>>,
     /// Link twist, about x of this frame, rad. Default 0.
     pub alpha: Option<Given<Angle>>,
-    /// Offset along z of the frame before, m; where the travel of a prismatic joint starts. Default 0.
+    /// Offset along z of the previous frame, m; the zero position of a prismatic joint. Default 0.
     pub d: Option<Given<Number>>,
-    /// Angle about z of the frame before, rad; where the turn of a revolute joint starts. Default 0.
+    /// Angle about z of the previous frame, rad; the zero position of a revolute joint. Default 0.
     pub theta: Option<Given<Angle>>,
 }
 
@@ -50,10 +50,10 @@ pub struct ClassicDh {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `translation` and `rotation`")]
 pub struct Transform {
-    /// Translation in the frame before, m. Default `[0, 0, 0]`.
+    /// Translation in the previous frame, m. Default `[0, 0, 0]`.
     pub translation: Option<Given<Vector>>,
-    /// Rotation `{x: angle}`, `{y: angle}` or `{z: angle}`, or a list of such, each about the axes that the one before
-    /// has turned. Default none.
+    /// Rotation `{x: angle}`, `{y: angle}` or `{z: angle}`, or a list of these, each about the axes as rotated by the
+    /// previous ones. Default none.
     pub rotation: Option<Given<Many<Turn>>>,
 }
 

@@ -12,7 +12,7 @@ use super::Given;
 /// Three numbers along x, y, z.
 pub type Vector = [Given<Number>; 3];
 
-/// What may be written where a number is expected.
+/// The forms of a number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Scalar {
     /// A plain number, in SI units.
@@ -39,7 +39,7 @@ impl Scalar {
 /// `1/2 pi` is the double nearest to π/2.
 pub(crate) fn parse_angle(word: &str) -> Option<f64> {
     let word = word.trim();
-    // How many of the unit make half a turn, and whether one of it may go without saying.
+    // The number of units in half a turn, and whether a factor of one may be omitted.
     let (ratio, half_turn, bare) = match word.strip_suffix("pi") {
         Some(ratio) => (ratio, 1.0, true),
         None => (word.strip_suffix("deg")?, 180.0, false),
@@ -56,14 +56,14 @@ pub(crate) fn parse_angle(word: &str) -> Option<f64> {
     Some(numerator * PI / (denominator * half_turn))
 }
 
-/// A decimal number; words that Rust reads as numbers, such as `nan`, are none.
+/// A decimal number; words that Rust reads as numbers, such as `nan`, are not accepted.
 fn plain_number(text: &str) -> Option<f64> {
     let text = text.trim();
     let decimal = text.ends_with(|c: char| c.is_ascii_digit() || c == '.');
     text.parse().ok().filter(|_| decimal)
 }
 
-/// Reads a [`Scalar`]; `EXPECTED` is what a message asks for.
+/// Reads a [`Scalar`]; `EXPECTED` is the expectation in messages.
 struct ScalarVisitor {
     expected: &'static str,
     angle: bool,
@@ -89,7 +89,7 @@ impl Visitor<'_> for ScalarVisitor {
     }
 }
 
-/// Declares a kind of number: what it accepts, what a message asks for, its schema.
+/// Declares a kind of number: its accepted forms, the expectation in messages, and its schema.
 macro_rules! scalar {
     ($(#[doc = $about:literal])+ $name:ident, angle: $angle:literal, parameter: $parameter:literal, $expected:literal) => {
         $(#[doc = $about])+
@@ -98,7 +98,7 @@ macro_rules! scalar {
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                // An angle in place of a number gets a message of its own, from validation.
+                // An angle in place of a number gets a separate message from validation.
                 let visitor = ScalarVisitor { expected: $expected, angle: $angle || $parameter, name: $parameter };
                 deserializer.deserialize_any(visitor).map($name)
             }

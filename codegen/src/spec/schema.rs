@@ -4,10 +4,10 @@ use serde_json::Value;
 
 use super::Crane;
 
-/// JSON Schema of the spec language, for editors that complete and check a spec while it is written.
+/// JSON Schema of the spec language, for editors that complete and check a spec.
 ///
 /// # Panics
-/// Never: a schema is always printable.
+/// Never, because a schema is always printable.
 #[must_use]
 pub fn json_schema() -> String {
     let mut schema = schemars::schema_for!(Crane).to_value();
@@ -15,7 +15,7 @@ pub fn json_schema() -> String {
     format!("{schema:#}\n")
 }
 
-/// A key that may be left out may not be left empty: removes the `null` that stands for `Option`.
+/// An optional key may be omitted but not left empty: removes the `null` that represents `Option`.
 fn forbid_null(schema: &mut Value) {
     match schema {
         Value::Object(object) => {

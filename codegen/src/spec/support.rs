@@ -11,19 +11,19 @@ use super::{Given, Vector};
 pub struct Support {
     /// Name, a `snake_case` identifier.
     pub name: Given<String>,
-    /// Where it holds the base, in the base's frame, m.
+    /// Its attachment point in the base's frame, m.
     pub at: Given<Vector>,
     /// Stiffness along x, y, z, N/m.
     pub stiffness: Given<Vector>,
     /// Damping along x, y, z, N s/m. Default `[0, 0, 0]`.
     pub damping: Option<Given<Vector>>,
-    /// Elongation at which the springs are at rest, along x, y, z, m. Default `[0, 0, 0]`.
+    /// Elongation at which the springs are unstressed, along x, y, z, m. Default `[0, 0, 0]`.
     pub free_play: Option<Given<Vector>>,
-    /// How the elongation follows from the base's coordinates. Default `linear`.
+    /// How the elongation depends on the base's coordinates. Default `linear`.
     pub kinematics: Option<Given<Kinematics>>,
 }
 
-/// How the elongation of a support follows from the base's coordinates.
+/// How the elongation of a support depends on the base's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kinematics {
@@ -41,6 +41,6 @@ pub struct Point {
     pub name: Given<String>,
     /// The link that carries it.
     pub link: Given<String>,
-    /// Where, in the frame of the link (of a beam: undeformed), m.
+    /// Its position in the frame of the link (for a beam: undeformed), m.
     pub at: Given<Vector>,
 }

@@ -9,20 +9,20 @@ use crate::expand::beam::{self, Elements, Joint, RigidElement};
 use crate::expand::placement::translate;
 use crate::spec::{Beam, BeamDamping, Directions, Either, Given, SectionJoint, Sections};
 
-/// The most sections a beam may have.
+/// Maximum number of sections of a beam.
 const MOST_SECTIONS: f64 = 1000.0;
-/// The most coordinates that a crane may have: far more than make sense, few enough to answer at once.
+/// Maximum number of coordinates of a crane: far more than make sense, few enough for an immediate answer.
 pub(super) const MOST_COORDINATES: usize = 10_000;
-/// Factor between the yield stress and the allowable stress unless given.
+/// Default factor between the yield stress and the allowable stress.
 const SAFETY_FACTOR: f64 = 1.5;
-/// What to do about too many of them.
+/// Advice about too many of them.
 const FEWER_SECTIONS: &str =
     "divide beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
 /// Rotations of an element after the first, in order.
 const ROTATIONS: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 
 impl<'a> Check<'a> {
-    /// Appends the elements of a beam; where they begin along x, and where the next link sits.
+    /// Appends the elements of a beam; returns their starts along x, and the position of the next link.
     pub(super) fn beam(
         &mut self,
         given: &'a Given<Beam>,
@@ -60,7 +60,7 @@ impl<'a> Check<'a> {
         self.unroll((link, span), path, (elements, joints), section_joint)
     }
 
-    /// Appends rigid elements as bodies: element 0 on the link's joint, element i ≥ 1 at the end of the one before
+    /// Appends rigid elements as bodies: element 0 on the link's joint, element i ≥ 1 at the end of the previous one
     /// by the rotation vector (φ, θ, ψ), or through `Rz(ψ) Ry(θ) Rx(φ)`.
     fn unroll(
         &mut self,
@@ -186,7 +186,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// One number a direction.
+    /// One number per direction.
     pub(super) fn directions(&mut self, each: &Directions, place: &str, unit: &str, limit: Limit) -> [Value; 3] {
         [&each.psi, &each.theta, &each.phi].map(|number| self.number(number, place, unit, limit))
     }
@@ -194,9 +194,9 @@ impl<'a> Check<'a> {
 
 /// Damping of a beam's springs.
 enum Damping {
-    /// In proportion to stiffness, s.
+    /// Proportional to stiffness, s.
     Beta([Value; 3]),
-    /// Outright, N m s/rad.
+    /// Given directly, N m s/rad.
     Coefficients([Value; 3]),
 }
 

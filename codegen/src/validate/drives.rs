@@ -7,7 +7,7 @@ use crate::diagnostic::{Span, rule};
 use crate::expand::spline;
 use crate::spec::{self, Angle, Crane, Given, Motion, Number, Table};
 
-/// Units on a coordinate.
+/// Units for a coordinate.
 pub(super) struct Units {
     pub(super) stiffness: &'static str,
     pub(super) damping: &'static str,
@@ -22,7 +22,7 @@ pub(super) fn units(kind: Option<CoordinateKind>) -> Units {
 }
 
 impl<'a> Check<'a> {
-    /// The drives, and the rotors that they turn.
+    /// The drives and their rotors.
     pub(super) fn drives(&mut self, crane: &'a Crane) -> (Vec<Drive>, Vec<Rotor>) {
         let mut drives: Vec<Drive> = Vec::new();
         let mut rotors = Vec::new();
@@ -57,7 +57,7 @@ impl<'a> Check<'a> {
         (drives, rotors)
     }
 
-    /// A spring and a damper, or nothing that gives way.
+    /// A spring and a damper, or a rigid transmission.
     fn transmission(
         &mut self,
         drive: &spec::Drive,
@@ -82,7 +82,7 @@ impl<'a> Check<'a> {
             }
             return Transmission::Rigid;
         }
-        // What `rigid` says may have been wrong.
+        // The value of `rigid` may have been wrong.
         if stiffness.is_none() && drive.rigid.as_ref().is_none_or(|rigid| rigid.value.is_some()) {
             self.report(rule::no_transmission(span, name));
         }
@@ -136,7 +136,7 @@ impl<'a> Check<'a> {
         rotors
     }
 
-    /// What a coordinate belongs to, if that is not a joint.
+    /// The owner of a coordinate, if it is not a joint.
     pub(super) fn not_a_joint(&self, CoordinateId(index): CoordinateId) -> Option<String> {
         match &self.owners[index] {
             Owner::Joint => None,
@@ -214,7 +214,7 @@ impl<'a> Check<'a> {
     }
 }
 
-/// When a motion jumps to its speed, in words, if it does so in a run.
+/// When a motion jumps to its speed, in words, if it does so during a run.
 fn jump(profile: &Profile) -> Option<String> {
     match profile {
         Profile::Speed { begin: Value::Constant(begin), ramp: None, .. } => {

@@ -7,7 +7,7 @@ use crate::diagnostic::rule;
 use crate::expand::beam::{Elements, Joint, RigidElement};
 use crate::spec::{Beam, Directions, Element, Given, Spring};
 
-/// Elements may miss the length of their beam by this share: lengths are written in decimal.
+/// The elements may differ from the length of their beam by this fraction, because lengths are decimal numbers.
 const WRITTEN: f64 = 1e-9;
 
 impl<'a> Check<'a> {

@@ -7,10 +7,10 @@ use crate::chain::{CoordinateId, CoordinateKind, End, ForceElement, Friction, La
 use crate::diagnostic::rule;
 use crate::spec::{self, Crane, Given};
 
-/// Rate at which friction has come to three quarters of its size unless the spec says so, rad/s or m/s: of the drives of a crane
-/// a hundredth.
+/// Default rate at which friction reaches three quarters of its full value, rad/s or m/s: a hundredth of the rates of crane
+/// drives.
 const WIDTH: f64 = 1e-3;
-/// Rate of Stribeck's decline unless the spec says so, rad/s or m/s.
+/// Default rate of the Stribeck decline, rad/s or m/s.
 const STRIBECK: f64 = 1e-2;
 
 impl<'a> Check<'a> {
@@ -96,7 +96,7 @@ impl<'a> Check<'a> {
             if more < less {
                 self.report(broken.clone());
             }
-            // A live one may be as great, but no less.
+            // A live one may be equal, but not smaller.
             let margin = breakaway.clone() - coulomb.clone() + Value::Constant(f64::MIN_POSITIVE);
             self.keep_positive(margin, &broken);
             (breakaway, stribeck.clone())

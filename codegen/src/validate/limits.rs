@@ -1,29 +1,29 @@
-//! Limits of numbers: constants are checked here, live parameters get bounds that hold whenever they are set.
+//! Limits of numbers: constants are checked here, live parameters get bounds that are checked whenever they are set.
 
 use super::Check;
 use crate::chain::{Bound, Chain, ParameterId, Refusal, Relation, Value};
 use crate::diagnostic::{Mistake, Span, rule};
 
-/// What a number may be.
+/// The allowed range of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Limit {
-    /// Anything finite.
+    /// Any finite number.
     Any,
-    /// Zero or above.
+    /// Not negative.
     NotNegative,
     /// Above zero.
     Positive,
-    /// Above zero; a live one may be zero where the crane can do without this mass.
+    /// Above zero; a live mass may be zero if the crane stays regular without it.
     Mass,
 }
 
-/// What a rule says before the number that breaks it, or without one.
+/// The message of a rule before the number that breaks it, or without one.
 fn refusal(mistake: &Mistake) -> Refusal {
     Refusal { code: mistake.code, title: mistake.title.trim_end().to_owned(), help: mistake.help.clone() }
 }
 
 impl Check<'_> {
-    /// Reports a number beyond its limit; a live parameter keeps the limit as a bound.
+    /// Reports a number beyond its limit; for a live parameter, records the limit as a bound.
     pub(super) fn keep_limit(&mut self, value: &Value, span: Span, place: &str, unit: &str, limit: Limit) {
         let live = match value {
             Value::Parameter(id) => Some(*id),
@@ -53,20 +53,20 @@ impl Check<'_> {
         }
     }
 
-    /// A rule that holds where `smaller` is below `larger`, and is checked for the defaults elsewhere: with live numbers it
-    /// is to hold whenever they are set.
+    /// A rule that holds if `smaller` is below `larger`, whose defaults are checked elsewhere: with live numbers it must hold
+    /// whenever they are set.
     pub(super) fn keep_below(&mut self, smaller: &Value, larger: &Value, broken: &Mistake) {
         self.keep_positive(larger.clone() - smaller.clone(), broken);
     }
 
-    /// A rule that holds where `margin` is above zero, and is checked for the defaults elsewhere.
+    /// A rule that holds if `margin` is above zero, whose defaults are checked elsewhere.
     pub(super) fn keep_positive(&mut self, margin: Value, broken: &Mistake) {
         if margin.as_constant().is_none() {
             self.relations.push(Relation { margin, refusal: refusal(broken) });
         }
     }
 
-    /// A live mass without which a joint would move nothing cannot be zero.
+    /// A live mass cannot be zero if a joint would move nothing without it.
     pub(super) fn keep_masses(&mut self, chain: &mut Chain) {
         for (ParameterId(index), above) in std::mem::take(&mut self.live_masses) {
             let mut without = self.defaults.clone();

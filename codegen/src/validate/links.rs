@@ -45,7 +45,7 @@ impl<'a> Check<'a> {
         if links.is_empty() {
             self.report(rule::no_links(given.span));
         }
-        // Where the next link sits in the frame of the last body: the tip of a beam.
+        // Position of the next link in the frame of the last body: the tip of a beam.
         let mut tip = Value::ZERO;
         for (index, link) in links.iter().enumerate() {
             match &link.value {
@@ -63,7 +63,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Appends the bodies of a link to the chain; returns where the next link sits along x.
+    /// Appends the bodies of a link to the chain; returns the position of the next link along x.
     fn link(&mut self, link: &'a Link, is_base: bool, tip: Value) -> Value {
         let name = self.name(&link.name).unwrap_or_else(|| {
             self.unknown.links = true;
@@ -88,7 +88,7 @@ impl<'a> Check<'a> {
         self.bodies.push(body);
     }
 
-    /// Appends a coordinate of the next body, named after the link or, of a beam, the element.
+    /// Appends a coordinate of the next body, named after the link or, in a beam, the element.
     pub(super) fn push_coordinate(
         &mut self,
         (link, stem): (&str, &str),
@@ -165,7 +165,7 @@ impl<'a> Check<'a> {
         steps
     }
 
-    /// The placement of a link with its joint's motion in it.
+    /// The placement of a link, including its joint's motion.
     fn placed(&mut self, link: &Link, motion: Vec<Step>) -> Vec<Step> {
         match link.placement.as_ref().and_then(|placement| placement.value.as_ref()) {
             Some(Placement::ModifiedDh(row)) => {

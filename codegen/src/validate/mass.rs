@@ -1,4 +1,4 @@
-//! What a link carries: masses and inertias.
+//! Masses and inertias of links.
 
 use super::Check;
 use super::limits::Limit;
@@ -7,15 +7,15 @@ use crate::diagnostic::{Span, rule};
 use crate::expand::inertia::{self, Tensor};
 use crate::spec::{About, Body, Given, Inertia, Link, Number, Vector};
 
-/// Published inertias are measured or rounded: the triangle inequality may be missed by this share.
+/// Published inertias are measured or rounded: they may violate the triangle inequality by this fraction.
 const SLIGHT: f64 = 0.25;
-/// Rounding that people do when they write an inertia down, which is not worth a warning.
+/// Rounding of written inertias, which is not worth a warning.
 const WRITTEN: f64 = 1e-6;
-/// A smallest principal moment below this share of the largest is zero to rounding.
+/// A smallest principal moment below this fraction of the largest is zero to rounding.
 const VANISHING: f64 = 1e-12;
 
 impl<'a> Check<'a> {
-    /// Appends the bodies of a link; where they begin along x, and where the next link sits.
+    /// Appends the bodies of a link; returns their starts along x, and the position of the next link.
     pub(super) fn carried(&mut self, link: &'a Link, name: &'a str, path: Vec<Step>) -> (Vec<Value>, Value) {
         let carried: Vec<(&str, Span)> = [
             ("mass", link.mass.as_ref().map(|given| given.span)),
@@ -50,7 +50,7 @@ impl<'a> Check<'a> {
         (vec![Value::ZERO], Value::ZERO)
     }
 
-    /// `com` and `inertia` of a link go with `mass`.
+    /// `com` and `inertia` of a link require `mass`.
     fn alone(&mut self, link: &Link, name: &str) {
         let com = link.com.as_ref().map(|given| ("com", given.span));
         let inertia = link.inertia.as_ref().map(|given| ("inertia", given.span));
@@ -65,7 +65,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Several bodies in one.
+    /// Several bodies combined into one.
     fn lumped(&mut self, bodies: &[Given<Body>]) -> (Option<chain::Inertia>, Vec<Part>) {
         let mut parts: Vec<Part> = Vec::new();
         let mut whole = None;
@@ -101,7 +101,7 @@ impl<'a> Check<'a> {
         let written = given.value.as_ref()?;
         let (tensor, about) = self.tensor(written, given.span, &m, &place)?;
         match &written.gyration {
-            // Radii are possible or not whatever the mass, which may be zero.
+            // Whether radii are possible does not depend on the mass, which may be zero.
             Some(_) => {
                 let (unit, _) = self.tensor(written, given.span, &Value::ONE, &place)?;
                 self.possible(&Value::ONE, &com, &unit, about, given.span, &place);
@@ -143,7 +143,7 @@ impl<'a> Check<'a> {
         Some((tensor, about))
     }
 
-    /// An inertia that a body can have.
+    /// Checks that an inertia is physically possible.
     fn possible(&mut self, mass: &Value, com: &[Value; 3], tensor: &Tensor, about: About, span: Span, place: &str) {
         let tensor = match about {
             About::Com => tensor.clone(),

@@ -1,7 +1,7 @@
 //! `CraneSpec ─validate→ Chain`: checks every rule of the language and expands links into bodies.
 //!
-//! A mistake never ends the checking. In place of a number that is wrong stands NaN, of which no comparison is true, so
-//! that a number is reported once.
+//! A mistake never ends the checks. An invalid number is replaced by NaN; every comparison with NaN is false, so each
+//! number is reported only once.
 
 mod base;
 mod beam;
@@ -35,7 +35,7 @@ use section::Elastic;
 pub struct Checked {
     /// The chain of its bodies.
     pub chain: Chain,
-    /// What looks like another unit or a slip, and is compiled all the same.
+    /// Warnings about numbers that suggest a wrong unit or a slip; the crane is compiled nevertheless.
     pub warnings: Diagnostics,
 }
 
@@ -47,7 +47,7 @@ pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnost
     check(spec, source).map(|checked| checked.chain)
 }
 
-/// Checks a spec, expands it into the chain of its bodies, and looks for what is implausible.
+/// Checks a spec, expands it into the chain of its bodies, and looks for implausible numbers.
 ///
 /// # Errors
 /// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
@@ -55,7 +55,7 @@ pub fn check(spec: &CraneSpec, source: &SourceFile) -> Result<Checked, Diagnosti
     check_with(spec, source, &[])
 }
 
-/// As [`check`], with warnings for other values of parameters than the spec's: names and values.
+/// Like [`check`], with warnings for other parameter values than those of the spec: names and values.
 ///
 /// # Errors
 /// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
@@ -63,7 +63,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
     let mut check = Check { mistakes: spec.mistakes.clone(), ..Check::default() };
     let mut chain = check.crane(&spec.crane, source);
     if check.mistakes.is_empty() {
-        // The mass matrix exists only where all else is sound.
+        // The mass matrix exists only if there are no other mistakes.
         check.regular(&chain, &spec.crane);
         check.keep_masses(&mut chain);
     }
@@ -79,7 +79,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
     Ok(Checked { chain, warnings: Diagnostics::new(source, warnings) })
 }
 
-/// What a coordinate belongs to.
+/// The owner of a coordinate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Owner {
     /// The free base.
@@ -90,33 +90,33 @@ enum Owner {
     Beam(String),
 }
 
-/// Where a link went in the chain.
+/// The position of a link in the chain.
 #[derive(Clone, Debug)]
 struct Place {
     /// Index of its first body.
     first: usize,
-    /// Where its bodies begin along x when undeformed, m.
+    /// The starts of its bodies along x when undeformed, m.
     starts: Vec<Value>,
 }
 
-/// The check of one spec: what is known so far, and what was found wrong.
+/// The check of one spec: its state so far, and the mistakes found.
 #[derive(Debug, Default)]
 struct Check<'a> {
     mistakes: Vec<Mistake>,
-    /// Warnings of rules that are broken a little.
+    /// Warnings about rules that are slightly violated.
     warnings: Vec<Mistake>,
     parameters: Vec<Parameter>,
-    /// Their values, at which live numbers are checked.
+    /// Their values at which live numbers are checked.
     defaults: Vec<f64>,
-    /// Which of them some number refers to.
+    /// Those to which some number refers.
     used: Vec<bool>,
     /// Live masses, and the bound of those that cannot be zero.
     live_masses: Vec<(ParameterId, Bound)>,
-    /// Rules that join several numbers of which some are live.
+    /// Rules about several numbers of which some are live.
     relations: Vec<Relation>,
     materials: BTreeMap<&'a str, Elastic>,
     coordinates: Vec<Coordinate>,
-    /// What each coordinate belongs to.
+    /// The owner of each coordinate.
     owners: Vec<Owner>,
     bodies: Vec<Body>,
     elements: Vec<ElementSpring>,
@@ -125,11 +125,11 @@ struct Check<'a> {
     links: BTreeMap<&'a str, Place>,
     /// Names of bodies and coordinates after expansion.
     expanded: Names,
-    /// What could not be read, so that references to it may be right.
+    /// Kinds of names that could not be read, so that references to them may be correct.
     unknown: Unknown,
 }
 
-/// Kinds of names of which some could not be read: an unknown reference is then no mistake of its own.
+/// Kinds of names of which some could not be read: an unknown reference is then not a separate mistake.
 #[derive(Clone, Copy, Debug, Default)]
 struct Unknown {
     parameters: bool,
@@ -197,7 +197,7 @@ impl<'a> Check<'a> {
     }
 
     fn something_moves(&mut self, crane: &Crane) {
-        // A joint that is wrong may be the one that moves.
+        // A joint with a mistake may be the one that moves.
         if self.mistakes.is_empty() && self.coordinates.is_empty() {
             self.report(rule::nothing_moves(crane.links.span));
         }

@@ -7,9 +7,9 @@ use crate::chain::CoordinateId;
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::Given;
 
-/// The longest name, letters: names of files, and lines of generated code, are made of it.
+/// Maximum length of a name, characters: it is part of file names and of lines of generated code.
 const LONGEST: usize = 64;
-/// Crates whose names are looked up at the root of a program: a module of the same name would hide them.
+/// Crates whose names are resolved at the root of a program: a module of the same name would hide them.
 const CRATES: [&str; 10] = [
     "std",
     "core",
@@ -23,12 +23,12 @@ const CRATES: [&str; 10] = [
     "crane_live",
 ];
 
-/// Names taken so far, by kind and name, and what took them.
+/// Names used so far, by kind and name, with their owners.
 #[derive(Debug, Default)]
 pub(super) struct Names(BTreeMap<(&'static str, String), String>);
 
 impl Names {
-    /// Takes a name, or tells what has it already.
+    /// Takes a name, or returns its owner.
     fn take(&mut self, kind: &'static str, name: &str, taker: String) -> Result<(), String> {
         match self.0.entry((kind, name.to_owned())) {
             std::collections::btree_map::Entry::Vacant(free) => {
@@ -41,7 +41,7 @@ impl Names {
 }
 
 impl Check<'_> {
-    /// A name that is a `snake_case` identifier and no keyword.
+    /// A name that is a `snake_case` identifier and not a keyword.
     pub(super) fn name<'n>(&mut self, given: &'n Given<String>) -> Option<&'n str> {
         let name = given.value.as_deref()?;
         let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
@@ -69,7 +69,7 @@ impl Check<'_> {
         Some(name)
     }
 
-    /// A text for people, which comments of the generated code repeat: a line without characters that break or turn it.
+    /// A text for people that comments of the generated code repeat: one line without characters that break or reverse it.
     pub(super) fn text(&mut self, given: Option<&Given<String>>, place: &str) -> Option<String> {
         let given = given?;
         let text = given.value.as_ref()?;
@@ -94,7 +94,7 @@ impl Check<'_> {
         }
     }
 
-    /// The coordinate of that name.
+    /// The coordinate with that name.
     pub(super) fn coordinate(&mut self, given: &Given<String>) -> Option<CoordinateId> {
         let name = given.value.as_deref()?;
         let found = self.coordinates.iter().position(|coordinate| coordinate.name == name);

@@ -6,8 +6,8 @@ use crate::chain::{CoordinateKind, Parameter, ParameterId, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{Angle, Constant, Crane, FixedAngle, Given, Number, Scalar, Vector};
 
-/// Magnitudes outside of this range, zero apart, come from a slip in an exponent. Inside, no product or quotient that
-/// the expansion forms leaves the range of a double.
+/// Magnitudes outside of this range, except zero, come from a slip in an exponent. Inside, no product or quotient in the
+/// expansion leaves the range of a double.
 const SMALLEST: f64 = 1e-30;
 const LARGEST: f64 = 1e18;
 
@@ -45,7 +45,7 @@ impl<'a> Check<'a> {
     }
 
     pub(super) fn every_parameter_used(&mut self, crane: &Crane) {
-        // A number that could not be read may have been the one that refers to it.
+        // A number that could not be read may refer to it.
         if !self.mistakes.is_empty() {
             return;
         }
@@ -69,7 +69,7 @@ impl<'a> Check<'a> {
         value
     }
 
-    /// A number that may be left out.
+    /// An optional number.
     pub(super) fn number_or(
         &mut self,
         given: Option<&Given<Number>>,
@@ -89,7 +89,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Three numbers that may be left out, and are then zero.
+    /// Three optional numbers, zero by default.
     pub(super) fn vector_or_zero(
         &mut self,
         given: Option<&Given<Vector>>,
@@ -105,7 +105,7 @@ impl<'a> Check<'a> {
         self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, true)
     }
 
-    /// A position of a coordinate, rad or m; of an unknown kind, either.
+    /// A position of a coordinate, rad or m; either if the kind is unknown.
     pub(super) fn position(&mut self, given: &Given<Angle>, kind: Option<CoordinateKind>, place: &str) -> Value {
         let turns = kind != Some(CoordinateKind::Translation);
         self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, turns)
@@ -145,7 +145,7 @@ impl<'a> Check<'a> {
             self.report(rule::out_of_range(span, place, format!("{number:e}")));
             return reported;
         }
-        // The sign of zero means nothing here, and would show in the generated code.
+        // The sign of zero has no meaning here, and would appear in the generated code.
         Value::Constant(number + 0.0)
     }
 

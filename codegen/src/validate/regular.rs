@@ -8,11 +8,11 @@ use crate::chain::{Axis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Ine
 use crate::diagnostic::{Span, rule};
 use crate::spec::Crane;
 
-/// A pivot below this share of what the coordinate would feel with all later joints locked is zero to rounding. The
-/// smallest that a crane reaches, torsion of one of 1000 elements below a long load, is four orders above.
+/// A pivot below this fraction of the coordinate's inertia with all later joints locked is zero to rounding. The smallest
+/// pivot of a realistic crane, torsion of one of 1000 elements below a long load, is four orders above.
 const VANISHING: f64 = 1e-10;
 
-/// Of a rotation: moment first; of a motion: angular velocity first.
+/// Forces have the moment first, motions the angular velocity.
 type Spatial = [f64; 6];
 type SpatialInertia = [[f64; 6]; 6];
 
@@ -28,7 +28,7 @@ fn apply(inertia: &SpatialInertia, motion: &Spatial) -> Spatial {
     inertia.each_ref().map(|row| dot(row, motion))
 }
 
-/// Velocity of the world's origin, were it carried along by a unit velocity of a coordinate.
+/// Velocity of the point at the world's origin, if it moved with a unit velocity of a coordinate.
 fn unit_motion(frame: &Frame, kind: CoordinateKind, axis: Axis) -> Spatial {
     let direction = frame.axes[axis.index()];
     let (turning, moving) = match kind {
@@ -81,7 +81,7 @@ impl Check<'_> {
             let mass: f64 = inertias.map(|inertia| self.now(&inertia.mass)).sum();
             self.report(rule::too_light(joint_span(crane, link), link, format!("{mass:.3e}")));
         }
-        // Beside a beam without mass, which joints are lost to rounding is chance.
+        // Next to a massless beam, it is arbitrary which joints are lost to rounding.
         if light.is_empty() {
             for (body, CoordinateId(index)) in idle {
                 let span = joint_span(crane, &chain.bodies[body.0].link);
@@ -90,18 +90,18 @@ impl Check<'_> {
         }
     }
 
-    /// Coordinates that move no mass of their own, and the bodies behind them, at a pose that no structure singles out.
+    /// Coordinates that move no mass of their own, and the bodies behind them, at a generic pose.
     pub(super) fn idle_coordinates(&self, chain: &Chain, parameters: &[f64]) -> Vec<(BodyId, CoordinateId)> {
         let mut idle = Vec::new();
         let mut frame = Frame::WORLD;
         let mut frames = Vec::with_capacity(chain.bodies.len());
         let mut motions = vec![[0.0; 6]; chain.coordinates.len()];
-        // Beams stay nearly straight; joints turn by an angle of their own each, off any symmetry.
+        // Beams stay nearly straight; each joint has a different angle, without symmetry.
         let offset = |n: usize| if matches!(self.owners[n], Owner::Beam(_)) { 0.0 } else { generic(n) };
         let q: Vec<f64> = chain.guess.iter().enumerate().map(|(n, guess)| guess + offset(n)).collect();
         for body in &chain.bodies {
             for step in &body.path {
-                // Beams are straight here: a rotation vector's axes are those of the frame.
+                // Beams are straight here, so a rotation vector's axes are those of the frame.
                 for id in step.coordinates() {
                     let coordinate = &chain.coordinates[id.0];
                     motions[id.0] = unit_motion(&frame, coordinate.kind, coordinate.axis);
@@ -148,7 +148,7 @@ fn generic(n: usize) -> f64 {
     0.3 + 0.5 * (1.7 * n as f64 + 0.4).sin()
 }
 
-/// Where the joint of a link stands.
+/// The location of a link's joint.
 fn joint_span(crane: &Crane, name: &str) -> Span {
     let links = crane.links.value.as_deref().unwrap_or_default().iter().filter_map(|link| link.value.as_ref());
     let named = links.into_iter().find(|link| link.name.value.as_deref() == Some(name));

@@ -6,8 +6,8 @@ use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Support, Transmissio
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{self, Constant, Crane, Given};
 
-/// A point belongs to the element that begins at its x, were it off by this share of the beam's length: both are
-/// written or computed in decimal.
+/// A point belongs to the element that starts at its x, with this fraction of the beam's length as tolerance, because both
+/// are rounded numbers.
 const AT_THE_JOINT: f64 = 1e-12;
 
 impl<'a> Check<'a> {
@@ -28,7 +28,7 @@ impl<'a> Check<'a> {
         points
     }
 
-    /// Tables of results name the motion of a point as they name coordinates and the forces of supports.
+    /// Tables of results have columns for points, coordinates and support forces, whose names must differ.
     fn own_columns(&mut self, point: &str, supports: &[Support], span: Span) {
         let reactions =
             supports.iter().flat_map(|support| ["x", "y", "z"].map(|axis| format!("{}_reaction_{axis}", support.name)));
@@ -39,7 +39,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The body of a link that carries a point, and where: of a beam, the element that holds the point's x.
+    /// The body of a link that carries a point, and the position on it: for a beam, the element that contains the point's x.
     fn attach(&mut self, link: &Given<String>, at: [Value; 3]) -> Option<(BodyId, [Value; 3])> {
         let name = link.value.as_deref()?;
         let Some(place) = self.links.get(name) else {

@@ -21,7 +21,7 @@ pub(super) struct Elastic {
 }
 
 impl<'a> Check<'a> {
-    /// A material written out, or the one of a name.
+    /// A material given in place, or by its name.
     pub(super) fn material(&mut self, given: &'a Given<Either<String, Material>>) -> Option<Elastic> {
         let name = match given.value.as_ref()? {
             Either::Full(material) => return Some(self.elastic(material)),
@@ -96,7 +96,7 @@ impl<'a> Check<'a> {
         })
     }
 
-    /// Walls leave a hollow.
+    /// Checks that walls leave a hollow.
     fn wall<'v>(&mut self, span: Span, thickness: &Value, sizes: impl Iterator<Item = &'v Value>) {
         let sizes: Vec<&Value> = sizes.collect();
         let smallest = sizes.iter().map(|size| self.now(size)).fold(f64::INFINITY, f64::min);

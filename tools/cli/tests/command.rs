@@ -336,7 +336,10 @@ fn a_run_goes_on_from_the_end_of_another() {
         &["simulate", "double_pendulum", "--start", "uper_theta=1"],
         &["no coordinate `uper_theta`", "`upper_theta`"],
     );
-    refused(&["simulate", "double_pendulum", "--start", "upper_theta=x"], &["`x` is not a value for upper_theta"]);
+    refused(
+        &["simulate", "double_pendulum", "--start", "upper_theta=x"],
+        &["`x` is not a valid value for upper_theta"],
+    );
     refused(&["simulate", "double_pendulum", "--from", "no_such.csv"], &["no_such.csv"]);
 }
 
@@ -464,15 +467,18 @@ fn table(name: &str, text: &str) -> String {
 fn a_table_with_mistakes_is_refused_with_its_place() {
     for (text, said) in [
         ("payload,paylod\n1,2\n", &["line 1, column 2", "no live parameter `paylod`", "did you mean `payload`?"][..]),
-        ("payload,payload\n1,2\n", &["line 1, column 2", "a second time"]),
+        ("payload,payload\n1,2\n", &["line 1, column 2", "occurs twice"]),
         ("payload [t]\n1\n", &["line 1, column 1", "in kg, not in t", "`payload [kg]`"]),
-        ("payload\n100\nheavy\n", &["line 3, column 1", "`heavy` is not a value for payload", "in kg, such as 800"]),
+        (
+            "payload\n100\nheavy\n",
+            &["line 3, column 1", "`heavy` is not a valid value for payload", "in kg, such as 800"],
+        ),
         ("payload\ninf\n", &["line 2, column 1", "finite"]),
         (
             "payload\n100\n-1e6\n",
             &["line 3, column 1", "the mass of body `load` must not be negative, but is -1000000 [E032]"],
         ),
-        ("payload\n1,2\n", &["line 2: 2 fields where the header names 1"]),
+        ("payload\n1,2\n", &["line 2: 2 fields, but the header names 1"]),
         ("payload\n", &["has no rows"]),
         ("", &["has no rows"]),
     ] {
@@ -480,8 +486,8 @@ fn a_table_with_mistakes_is_refused_with_its_place() {
     }
     refused(&["simulate", "knuckle_boom", "--ensemble", "no_such_table.csv"], &["cannot use no_such_table.csv"]);
     refused(&["simulate", "knuckle_boom", "--threads", "2"], &["--ensemble"]);
-    refused(&["simulate", "knuckle_boom", "--ensemble", "t.csv", "--threads", "0"], &["--threads", "from 1 on"]);
-    refused(&["run", "knuckle_boom", "--ensemble", "t.csv"], &["`run` runs one crane", "crane simulate"]);
+    refused(&["simulate", "knuckle_boom", "--ensemble", "t.csv", "--threads", "0"], &["--threads", "1 or more"]);
+    refused(&["run", "knuckle_boom", "--ensemble", "t.csv"], &["does not support `--ensemble`", "crane simulate"]);
 }
 
 #[test]

@@ -184,7 +184,7 @@ fn explain_shows_chain_coordinates_omissions_and_costs() {
     for expected in [
         "boom_4                     51.013     20  T(0.8750, 0.0000, 0.0000) Rz(boom_4_psi) Ry(boom_4_theta) Rx(boom_4_phi)",
         "telescope_z              m          2.000000",
-        "∂T/∂q and ∂²T/∂q∂q: `analyses` does not ask for derivatives",
+        "∂T/∂q and ∂²T/∂q∂q: `analyses` does not include derivatives",
         "unsimplified",
     ] {
         assert!(shown.contains(expected), "{expected}\n{shown}");

@@ -29,7 +29,7 @@ pub(super) enum SpecMotion {
     Fixed,
     Revolute(Axis),
     Prismatic(Axis),
-    /// A base that moves along and about these, in the order of the language.
+    /// A base with these motions, in the order of the language.
     Free(Vec<(bool, Axis)>),
 }
 
@@ -49,7 +49,7 @@ impl SpecMotion {
     }
 }
 
-/// The links of a spec, a group each; what stands still is left out if it carries nothing.
+/// The links of a spec, one per group; the fixed group is left out if it carries nothing.
 pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
     let mut names = Names::default();
     let mut links: Vec<SpecLink> = Vec::new();
@@ -91,7 +91,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
             }
         }
         if link.joint.is_some() || !link.bodies.is_empty() {
-            // What stands still is known by what it carries, not by `world`.
+            // The fixed group is named after what it carries, not `world`.
             let heavy = group.links.iter().find(|(member, _)| member.lump.is_some() && link.joint.is_none());
             link.was = &heavy.map_or(carrier, |(heavy, _)| heavy).name;
             link.name = names.unique(link.was);
@@ -106,7 +106,8 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
     links
 }
 
-/// Makes one free base of joints along x, y, z and about z, y, x at the beginning that carry nothing but the next.
+/// Combines joints along x, y, z and about z, y, x at the start of the chain, which carry only the next joint, into a free
+/// base.
 fn free_base(links: &mut Vec<SpecLink>) {
     /// x, y, z, psi, theta, phi.
     const ORDER: [(bool, Axis); 6] =
@@ -129,7 +130,7 @@ fn free_base(links: &mut Vec<SpecLink>) {
             break;
         }
     }
-    // One motion is a joint like any other.
+    // A single motion is an ordinary joint.
     if motions.len() > 1 && links.get(motions.len() - 1).is_some_and(|base| !base.bodies.is_empty()) {
         let placement = links[0].placement;
         links.drain(..motions.len() - 1);
@@ -142,7 +143,7 @@ fn free_base(links: &mut Vec<SpecLink>) {
 /// it can be.
 fn onto_an_axis(direction: Vector) -> (Axis, Frame) {
     for (index, axis) in [Axis::X, Axis::Y, Axis::Z].into_iter().enumerate() {
-        // Half a turn about another axis makes a negative one positive.
+        // Half a turn about another axis makes a negative direction positive.
         let other = if axis == Axis::Z { Axis::X } else { Axis::Z };
         if direction[index] == 1.0 {
             return (axis, Frame::WORLD);
@@ -153,12 +154,12 @@ fn onto_an_axis(direction: Vector) -> (Axis, Frame) {
     (Axis::Z, along_z(direction))
 }
 
-/// Names that are taken.
+/// Names that are in use.
 #[derive(Default)]
 struct Names(BTreeSet<String>);
 
 impl Names {
-    /// An identifier like a name, not taken yet.
+    /// An identifier derived from a name that is not in use yet.
     fn unique(&mut self, name: &str) -> String {
         self.free(identifier(name), |_, _| true)
     }

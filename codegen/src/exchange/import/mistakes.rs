@@ -1,4 +1,4 @@
-//! What a URDF file may not be, for a crane to be made of it.
+//! The rules for a URDF file that can be converted to a crane.
 
 use crate::diagnostic::catalogue;
 

@@ -4,8 +4,8 @@
 //! SourceFile ─robot::read→ Robot ─serial::chain→ groups of links ─links::links→ links of a spec ─yaml::write→ text
 //! ```
 //!
-//! Links that fixed joints hold together become one link of several bodies, frames without mass at their ends points. Joints
-//! keep their coordinates: where the axis of a joint is none of x, y, z, the frame of the link is turned so that it is.
+//! Links connected by fixed joints become one link of several bodies; massless frames at their ends become points. Joints
+//! keep their coordinates: if the axis of a joint is not x, y or z, the frame of the link is rotated so that it is.
 
 mod links;
 mod mistakes;
@@ -19,10 +19,11 @@ use crate::diagnostic::{Diagnostics, SourceFile};
 
 /// The spec of a robot, as commented YAML. `fixed`: joints that are held at zero.
 ///
-/// Masses and inertias are passed on as they are: whether they are sound is for the reader of the spec to say.
+/// Masses and inertias are passed on unchanged; the validation of the spec checks them.
 ///
 /// # Errors
-/// What is wrong with the file, or cannot be a crane: branches, joints other than of one axis or fixed.
+/// Mistakes in the file, and structures that cannot be a crane: branches, and joints that are neither fixed nor about or along
+/// one axis.
 pub fn import(source: &SourceFile, fixed: &[String]) -> Result<String, Diagnostics> {
     let told = |mistakes| Diagnostics::new(source, mistakes);
     let robot = robot::read(source).map_err(told)?;

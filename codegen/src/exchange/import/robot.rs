@@ -1,4 +1,4 @@
-//! A URDF file as written: links and joints with their places.
+//! A URDF file as written: links and joints with their locations.
 
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
 
@@ -15,7 +15,7 @@ pub(super) struct Robot {
     pub(super) joints: Vec<Joint>,
 }
 
-/// A link and its mass, in the link's frame; none, or zero, where it carries nothing.
+/// A link and its mass, in the link's frame; `None`, or zero, if it carries nothing.
 pub(super) struct Link {
     pub(super) name: String,
     pub(super) span: Span,
@@ -29,7 +29,7 @@ pub(super) struct Joint {
     pub(super) motion: Motion,
     pub(super) parent: Named,
     pub(super) child: Named,
-    /// Where the child sits on the parent at zero.
+    /// Pose of the child on the parent at zero.
     pub(super) placement: Frame,
     /// Unit vector in the frame of the child.
     pub(super) axis: Vector,
@@ -47,19 +47,19 @@ pub(super) enum Motion {
     Fixed,
     Revolute,
     Prismatic,
-    /// As no joint of a crane does.
+    /// In a way that cranes do not support.
     Other(Named),
 }
 
-/// A name or a word, and where it stands.
+/// A name or a word, and its location.
 pub(super) struct Named {
     pub(super) name: String,
     pub(super) span: Span,
 }
 
-/// Reads a file; what could be read, and all mistakes.
+/// Reads a file; returns what could be read, and all mistakes.
 pub(super) fn read(source: &SourceFile) -> Result<Robot, Vec<Mistake>> {
-    // Attributes of one element are compared with each other: more than a robot has are refused.
+    // Attributes of one element are compared with each other, so an excessive number is refused.
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(&source.text, options).map_err(|error| {
         let at = byte(&source.text, error.pos().row, error.pos().col);
@@ -140,7 +140,7 @@ impl Reader {
             "prismatic" => Motion::Prismatic,
             _ => Motion::Other(kind),
         };
-        // A joint that does not move has no axis, whatever is written.
+        // A fixed joint has no axis, whatever is written.
         let axis = if matches!(motion, Motion::Fixed) { None } else { child(node, "axis") };
         let axis = axis.map_or([1.0, 0.0, 0.0], |given| self.direction(given, &name));
         let (damping, friction) = (damping.unwrap_or(0.0), friction.unwrap_or(0.0));
@@ -194,7 +194,7 @@ impl Reader {
         })
     }
 
-    /// An attribute that must be there.
+    /// A required attribute.
     fn required(&mut self, node: Node, key: &str, owner: &str) -> Option<Named> {
         let Some(attribute) = node.attribute_node(key) else {
             self.mistakes.push(rule::missing(tag(node), owner, format!("`{key}=\"…\"`")));
@@ -203,7 +203,7 @@ impl Reader {
         Some(Named { name: attribute.value().to_owned(), span: value_span(attribute) })
     }
 
-    /// So many finite numbers of an attribute, or a mistake.
+    /// A given number of finite numbers of an attribute, or a mistake.
     fn numbers<const N: usize>(&mut self, node: Node, key: &str, place: &str) -> Option<[f64; N]> {
         let given = self.required(node, key, place)?;
         let numbers: Option<Vec<f64>> =
@@ -222,13 +222,13 @@ fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|child| child.has_tag_name(name))
 }
 
-/// `<name`, where an element begins.
+/// `<name`, the start of an element.
 fn tag(node: Node) -> Span {
     let start = node.range().start;
     Span { start, end: start + 1 + name_of(node).len() }
 }
 
-/// The name of an element as written, prefix included.
+/// The name of an element as written, including its prefix.
 fn name_of<'a>(node: Node<'a, '_>) -> &'a str {
     let text = &node.document().input_text()[node.range()];
     let name = text.trim_start_matches('<');

@@ -1,4 +1,4 @@
-//! A robot as a chain: groups of links that move as one, each on a joint.
+//! A robot as a chain: groups of links that move together, each on a joint.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,17 +7,17 @@ use super::robot::{Joint, Link, Motion, Robot};
 use crate::chain::Frame;
 use crate::diagnostic::{Mistake, Span, suggest};
 
-/// Links that move as one.
+/// Links that move together.
 pub(super) struct Group<'r> {
-    /// The joint that moves it, and where its frame at zero is in that of the group before; none for what stands still.
+    /// The joint that moves it, and the pose of its frame at zero in that of the previous group; `None` for the fixed group.
     pub(super) joint: Option<(&'r Joint, Frame)>,
     /// Its links, each in the frame of the first.
     pub(super) links: Vec<(&'r Link, Frame)>,
-    /// Joints in it that are held at zero because that was asked for.
+    /// Joints in it that are held at zero on request.
     pub(super) held: Vec<&'r Joint>,
 }
 
-/// The chain of a robot with some of its joints held at zero; the first group stands still.
+/// The chain of a robot with some of its joints held at zero; the first group is fixed.
 pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<'r>>, Vec<Mistake>> {
     let mut mistakes = Vec::new();
     names(robot, fixed, &mut mistakes);
@@ -49,7 +49,7 @@ pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<
                 }
             }
         }
-        // The first of the file goes on.
+        // The first one in the file continues the chain.
         moving.sort_by_key(|(joint, _)| joint.span.start);
         if let [(first, _), others @ ..] = moving.as_slice() {
             let branch =
@@ -94,7 +94,7 @@ fn names(robot: &Robot, fixed: &[String], mistakes: &mut Vec<Mistake>) {
     }
 }
 
-/// The link that hangs on none, if all others hang on it.
+/// The root link, if all others are connected to it.
 fn root<'r>(robot: &'r Robot, mistakes: &mut Vec<Mistake>) -> Option<&'r Link> {
     let children: BTreeSet<&str> = robot.joints.iter().map(|joint| joint.child.name.as_str()).collect();
     let roots: Vec<&Link> = robot.links.iter().filter(|link| !children.contains(link.name.as_str())).collect();
@@ -106,14 +106,14 @@ fn root<'r>(robot: &'r Robot, mistakes: &mut Vec<Mistake>) -> Option<&'r Link> {
         [] => (Span::START, if robot.links.is_empty() { "there are none" } else { "they form a closed loop" }.into()),
         [first, other, ..] => (other.span, format!("neither `{}` nor `{}` has a parent", first.name, other.name)),
     };
-    // A name that is wrong tears a tree apart: that is told already.
+    // A wrong name disconnects the tree, and is reported already.
     if mistakes.is_empty() {
         mistakes.push(rule::not_a_tree(problem.0, problem.1));
     }
     None
 }
 
-/// A link that does not hang on the root: part of a ring.
+/// A link that is not connected to the root: part of a closed loop.
 fn unreachable<'r>(robot: &'r Robot, root: &Link) -> Option<&'r Link> {
     let mut reached = BTreeSet::from([root.name.as_str()]);
     loop {
@@ -127,7 +127,7 @@ fn unreachable<'r>(robot: &'r Robot, root: &Link) -> Option<&'r Link> {
     }
 }
 
-/// Notes a joint that moves as no joint of a crane does.
+/// Notes a joint with a motion that cranes do not support.
 fn cannot_move(joint: &Joint, mistakes: &mut Vec<Mistake>) {
     if let Motion::Other(kind) = &joint.motion {
         mistakes.push(rule::unsupported(kind.span, &joint.name, &kind.name));

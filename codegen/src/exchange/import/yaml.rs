@@ -16,9 +16,8 @@ use crate::exchange::xml::number_text;
 pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> String {
     let file = Path::new(&source.name).file_name().unwrap_or_default().to_string_lossy();
     let (file, robot_name) = (plain(&file), plain(&robot.name));
-    let mut text =
-        format!("# The robot {robot_name}, from {file}. Units: SI; angles in rad, or written as `90 deg`.\n");
-    text += "# Positions and velocities of joints are those of the robot; zero is where its zero is.\n";
+    let mut text = format!("# The robot {robot_name}, from {file}. SI units; angles in rad, or written as `90 deg`.\n");
+    text += "# Positions, velocities and zero positions of joints are those of the robot.\n";
     let _ =
         write!(text, "format: 1\nname: {}\ntitle: \"{robot_name}, from {file}\"\n\nlinks:\n", identifier(&robot.name));
     for link in links {
@@ -31,7 +30,7 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
         .flat_map(|(link, damping)| link.motion.coordinates(&link.name).into_iter().map(move |name| (name, damping)))
         .collect();
     if !damped.is_empty() {
-        text += "damping:                        # N m s/rad, N s/m; leave a joint out that gets a drive\n";
+        text += "damping:                        # N m s/rad, N s/m; omit joints with a drive\n";
         for (name, damping) in damped {
             let _ = writeln!(text, "  {name}: {}", decimal(damping));
         }
@@ -75,7 +74,7 @@ fn link_text(link: &SpecLink) -> String {
     match (link.joint, &link.motion) {
         (_, SpecMotion::Free(_)) => comments.push("the base, free".to_owned()),
         (Some(joint), _) => comments.push(format!("joint {}", plain(&joint.name))),
-        (None, _) => comments.push("stands still".to_owned()),
+        (None, _) => comments.push("fixed".to_owned()),
     }
     if link.name != link.was {
         comments.push(format!("link {}", plain(link.was)));
@@ -110,7 +109,7 @@ fn link_text(link: &SpecLink) -> String {
     text
 }
 
-/// Translation and rotation, as far as there are.
+/// Translation and rotation, unless they are zero.
 fn placement(frame: &Frame) -> Option<String> {
     let mut parts = Vec::new();
     let at = clean(frame.origin);
@@ -146,7 +145,7 @@ fn motion(motion: &SpecMotion) -> Option<String> {
     }
 }
 
-/// Mass, centre of mass, inertia: a key each.
+/// Mass, centre of mass, inertia: one key each.
 fn mass(Lump { mass, com, tensor }: &Lump) -> Vec<String> {
     let mut lines = vec![format!("mass: {}", decimal(*mass)), format!("com: {}", list(*com))];
     if *tensor != [0.0; 6] {
@@ -162,24 +161,24 @@ fn list(vector: Vector) -> String {
     format!("[{}]", vector.map(decimal).join(", "))
 }
 
-/// An angle: in degrees where these are a multiple of 5, else in rad.
+/// An angle: in degrees if it is a multiple of 5°, otherwise in rad.
 fn angle(angle: f64) -> String {
     let degrees = angle.to_degrees();
     let round = (degrees / 5.0).round() * 5.0;
-    // Some roundings of matrices between the file and here.
+    // A few rounding errors of matrices between the file and here.
     if (degrees - round).abs() <= 1e-15 * 180.0 { format!("{} deg", number_text(round)) } else { decimal(angle) }
 }
 
-/// The shortest decimal that is the same but for some roundings of what was computed: 0.3 for 0.30000000000000004.
+/// The shortest decimal number that is equal up to a few rounding errors: 0.3 for 0.30000000000000004.
 fn decimal(number: f64) -> String {
-    /// Some five roundings.
+    /// About five rounding errors.
     const ROUNDING: f64 = 1e-15;
     let rounded = (0..17).map(|digits| format!("{number:.digits$e}").parse().unwrap_or(number));
     let short = rounded.into_iter().find(|short: &f64| (short - number).abs() <= ROUNDING * number.abs());
     number_text(short.unwrap_or(number))
 }
 
-/// A name on one line, without what would end a comment or a text.
+/// A name on one line, without characters that would end a comment or a text.
 fn plain(name: &str) -> String {
     printable(name).replace(['"', '\\'], "'")
 }

@@ -1,4 +1,4 @@
-//! Forces and energies by part, and what drives do.
+//! Forces and energies by part, and the functions of drives.
 
 use super::{Derivation, function, sum};
 use crate::mechanics::{drives, gravity, joints, springs, supports};
@@ -72,7 +72,7 @@ impl<'g> Derivation<'g> {
             functions.push(
                 function(
                     FunctionId::Forces,
-                    "Generalized forces of all but inertia and gravity, N and N m.",
+                    "Generalized forces of everything except inertia and gravity, N and N m.",
                     "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
                     &[Time, Position, Velocity],
                     vector(),
@@ -84,7 +84,7 @@ impl<'g> Derivation<'g> {
         functions
     }
 
-    /// What acts in joints besides drives and viscous damping, as far as the crane has it.
+    /// Forces in joints besides drives and viscous damping, if the crane has any.
     fn joint_forces(&self) -> Vec<Part<'g>> {
         let model = &self.model;
         let mut parts: Vec<Part<'g>> = Vec::new();
@@ -109,7 +109,7 @@ impl<'g> Derivation<'g> {
         parts
     }
 
-    /// What drives do and how they move, from their generalized forces.
+    /// Efforts, powers and motions of drives, from their generalized forces.
     fn drives(&self, forces: Vec<Expr<'g>>, tape: Tape) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
         let equation = if self.rigid {
@@ -140,7 +140,7 @@ impl<'g> Derivation<'g> {
         if !pieces.is_empty() {
             functions.push(function(
                 FunctionId::DrivePieces,
-                "Begin and end of the pieces in which the drives' motions are smooth, drive by drive, s.",
+                "Begin and end of the intervals in which the drives' motions are smooth, drive by drive, s.",
                 "t_begin, t_end",
                 &[],
                 Shape::Pairs(pieces.len() / 2),
@@ -160,14 +160,14 @@ impl<'g> Derivation<'g> {
         functions
     }
 
-    /// Generalized forces of all drives: of the springs, and what the prescribed motions take.
+    /// Generalized forces of all drives: those of the springs, and those that the prescribed motions require.
     fn drive_forces(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
         let flexible = drives::forces(model, model.t, &model.v);
         if self.rigid { sum(&[flexible, self.rigid_efforts()]) } else { flexible }
     }
 
-    /// Efforts of rigid drives: what the prescribed motions take, less what acts on their joints anyway.
+    /// Efforts of rigid drives: the forces that the prescribed motions require, minus the other forces on their joints.
     fn rigid_efforts(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
         let given = self.given_forces(model.t, &model.v);
@@ -181,12 +181,12 @@ impl<'g> Derivation<'g> {
         efforts
     }
 
-    /// What efforts of rigid drives need comes in the order of the recursion that finds them.
+    /// Operations for efforts of rigid drives are in the order of the recursion that computes them.
     fn recorded_if_rigid<T>(&self, derive: impl FnOnce() -> T) -> (T, Tape) {
         if self.rigid { self.model.graph.recorded(derive) } else { (derive(), Tape::default()) }
     }
 
-    /// Generalized forces of all but inertia, gravity and rigid drives.
+    /// Generalized forces of everything except inertia, gravity and rigid drives.
     pub(super) fn given_forces(&self, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let model = &self.model;
         let mut parts = vec![
@@ -247,7 +247,7 @@ impl<'g> Derivation<'g> {
             functions.push(
                 scalar(
                     FunctionId::DrivePower,
-                    "Power that the prescribed motions put in, W.",
+                    "Power of the prescribed motions, W.",
                     "Σ t_dr q̇_dr",
                     &[Time, Position, Velocity],
                     power,
@@ -270,7 +270,7 @@ impl<'g> Derivation<'g> {
         if !dissipation.is_zero() {
             functions.push(scalar(
                 FunctionId::Dissipation,
-                "Power that all dampers take out, W.",
+                "Power that all dampers dissipate, W.",
                 "2R [Urbaś 2016, Eqs. (14), (17), (19)]",
                 &[Time, Position, Velocity],
                 dissipation,

@@ -1,4 +1,4 @@
-//! Which functions a crane gets: signatures, documentation, and what is left out.
+//! The functions of a crane: signatures, documentation, and what is left out.
 
 mod forces;
 mod internal_forces;
@@ -27,7 +27,7 @@ pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
     Program::new(graph, symbols, functions)
 }
 
-/// A model with everything that several functions share.
+/// A model with the expressions that several functions share.
 struct Derivation<'g> {
     model: Model<'g>,
     factors: Vec<Factor<'g>>,
@@ -38,7 +38,7 @@ struct Derivation<'g> {
     rigid: bool,
 }
 
-/// What moves a chain: velocities, forces, prescribed accelerations, gravity.
+/// The loads of a chain: velocities, forces, prescribed accelerations, gravity.
 #[derive(Clone, Copy)]
 struct Load<'a, 'g> {
     v: &'a [Expr<'g>],
@@ -125,7 +125,7 @@ impl<'g> Derivation<'g> {
         let (solution, solution_tape) = model.graph.recorded(|| self.hybrid_dynamics(&at_rest).accelerations);
         let (columns, mass_tape) = model.graph.recorded(|| columns(model, &self.factors));
         let (bias, bias_tape) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
-        // The loop knows bodies alone.
+        // The loop handles only bodies.
         let looped = model.chain.loops.fill_mass_matrix(model.size()) && model.chain.rotors.is_empty();
         let (mass_shape, both_shape, mass, mut both) = if looped {
             let slots = columns.slots();
@@ -202,7 +202,7 @@ impl<'g> Derivation<'g> {
         self.hybrid_dynamics(&Load { v: &model.v, forces: &forces, prescribed: &prescribed, gravity })
     }
 
-    /// How the chain moves, rotors included.
+    /// The motion of the chain, including rotors.
     fn hybrid_dynamics(&self, load: &Load<'_, 'g>) -> Motion<'g> {
         let Load { v, forces, prescribed, gravity } = *load;
         let armatures = rotors::armatures(&self.model);
@@ -211,7 +211,7 @@ impl<'g> Derivation<'g> {
         forward::hybrid_dynamics(&self.model, &self.factors, &Loads { v, efforts: &efforts, prescribed, gravity })
     }
 
-    /// What implicit integration needs: structured stiffness and damping, and systems with them.
+    /// Functions for implicit integration: structured stiffness and damping, and systems with them.
     fn implicit(&self, symbols: &mut Vec<Symbol>) -> Vec<Function> {
         let model = &self.model;
         let solve = || resisted::solution(model, &self.kinematics, &self.factors);
@@ -250,7 +250,7 @@ impl<'g> Derivation<'g> {
             |j: usize| [&stiffness, &damping].map(|m| if base.contains(&j) { model.zero() } else { m.at(j, j) });
         functions.push(function(
             FunctionId::JointImpedances,
-            "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, those of the base left out.",
+            "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, without those of the base.",
             "s, d [Urbaś 2016, Eqs. (14), (19)]",
             &[],
             Shape::Pairs(model.size()),
@@ -299,7 +299,7 @@ impl<'g> Derivation<'g> {
         functions
     }
 
-    /// Stiffness and damping of supports, elements, drives and joints; gravity's stiffness is not among them.
+    /// Stiffness and damping of supports, elements, drives and joints, without the stiffness of gravity.
     fn impedances(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
         let model = &self.model;
         let zero = || SymmetricMatrix::zero(model.graph, model.size());
@@ -318,7 +318,7 @@ impl<'g> Derivation<'g> {
         vec![
             function(
                 FunctionId::TransformDerivatives,
-                "Derivatives ∂T/∂q_j of every body, j running over the coordinates that move it; 1, m, 1/m.",
+                "Derivatives ∂T/∂q_j of every body, for all coordinates j that move it; 1, m, 1/m.",
                 "∂T/∂q_j = Ω_j T",
                 &[Position],
                 Shape::Transforms { counts, corner: 0 },
@@ -326,7 +326,7 @@ impl<'g> Derivation<'g> {
             ),
             function(
                 FunctionId::TransformSecondDerivatives,
-                "Second derivatives ∂²T/∂q_m∂q_n of every body, m ≤ n running over the coordinates that move it.",
+                "Second derivatives ∂²T/∂q_m∂q_n of every body, for all pairs m ≤ n of the coordinates that move it.",
                 "∂²T/∂q_m∂q_n = Ω_m Ω_n T",
                 &[Position],
                 second_shape,

@@ -50,7 +50,7 @@ impl<'g> Derivation<'g> {
         residual
     }
 
-    /// Of rigid drives all that the other forces leave to them.
+    /// Rigid drives hold what the other forces leave.
     fn drive_forces_at_rest(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
         let mut forces = drives::forces_at_rest(model);
@@ -68,7 +68,7 @@ impl<'g> Derivation<'g> {
         self.model.chain.rigid_drives().fold(matrix, |matrix, drive| matrix.without(drive.coordinate.0, diagonal))
     }
 
-    /// `∂E_p/∂q`: gravity less all forces at rest and t = 0.
+    /// `∂E_p/∂q`: gravity minus all forces at rest and t = 0.
     fn gradient(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
         let rest = model.zeros();

@@ -8,7 +8,7 @@ use crate::chain::{Coordinate, CoordinateKind};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Angle, Given, Link, Motion, Placement, Scalar, Turn};
 
-/// Bare angles beyond a full turn look like degrees. Four ulp of it: `6.283185307179586` is 2π.
+/// Bare angles beyond a full turn look like degrees; with four ulp of tolerance, because `6.283185307179586` is 2π.
 const FULL_TURN: f64 = TAU * (1.0 + 4.0 * f64::EPSILON);
 
 impl Look<'_> {
@@ -62,7 +62,7 @@ impl Look<'_> {
                 values.map(|value| (value.value.as_ref().map(|value| &value.0), value.span)).collect()
             }
         };
-        // The first that is wrong says it for the motion.
+        // The first implausible number is reported for the motion.
         let before = self.warnings.len();
         if let Motion::Speed(speed) = motion {
             self.speed(&speed.rate, coordinate);
@@ -92,7 +92,7 @@ impl Look<'_> {
         }
     }
 
-    /// A position of a coordinate: an angle, or a way along a slide.
+    /// A position of a coordinate: an angle, or a displacement.
     fn position(&mut self, scalar: Option<&Scalar>, at: Span, coordinate: &str, what: &str) {
         let known = self.chain.coordinates.iter().find(|known| known.name == coordinate);
         match known.map(|known| known.kind) {
@@ -116,12 +116,12 @@ impl Look<'_> {
         }
     }
 
-    /// A number without `deg` or `pi`, itself or as the value of the parameter that it names.
+    /// A number without `deg` or `pi`, given directly or as the value of the parameter that it names.
     fn bare(&self, scalar: Option<&Scalar>) -> Option<f64> {
         match scalar? {
             Scalar::Number(number) => Some(*number),
             Scalar::Angle(_) => None,
-            // One that was set is a number in radians.
+            // A parameter that was set is a number in radians.
             Scalar::Name(name) => match (self.parameter(name)?, self.set(name)) {
                 (Scalar::Angle(_), false) => None,
                 _ => self.value(name),
@@ -130,7 +130,7 @@ impl Look<'_> {
     }
 }
 
-/// What is written for an angle, and where.
+/// The text of an angle, and its location.
 fn written(angle: &Given<Angle>) -> (Option<&Scalar>, Span) {
     (angle.value.as_ref().map(|angle| &angle.0), angle.span)
 }

@@ -5,9 +5,9 @@ use crate::chain::CoordinateKind;
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Beam, Either, Given, Link, Material, Number, Section};
 
-/// Moduli of what beams are made of, from plastics (2e9 Pa) to tungsten (4e11 Pa), with room to spare. Pa.
+/// Moduli of beam materials, from plastics (2e9 Pa) to tungsten (4e11 Pa), with room to spare. Pa.
 const YOUNGS_MODULUS: std::ops::RangeInclusive<f64> = 1e9..=1e12;
-/// Shear moduli, those of wood (5e8 Pa) included. Pa.
+/// Shear moduli, including wood (5e8 Pa). Pa.
 const SHEAR_MODULUS: std::ops::RangeInclusive<f64> = 1e8..=5e11;
 /// Yield stresses, from soft plastics to piano wire, Pa.
 const YIELD_STRESS: std::ops::RangeInclusive<f64> = 1e6..=5e9;
@@ -19,7 +19,7 @@ const LONGEST_SIDE: f64 = 5.0;
 const LARGEST_AREA: f64 = 4.0;
 /// A second moment of area beyond this is not in m⁴: that of a box of 2 m × 2 m with walls of 5 cm is 0.25.
 const LARGEST_MOMENT: f64 = 10.0;
-/// Rounding of a second moment of area that is written to a few digits.
+/// Rounding of a second moment of area written with a few digits.
 const WRITTEN: f64 = 0.01;
 /// `β ω` of the lowest bending vibration beyond which the damping is a slip: the vibration is overdamped from 2 on.
 const MOST_DAMPED: f64 = 10.0;
@@ -112,7 +112,7 @@ impl Look<'_> {
             Section::Tube { diameter, .. } | Section::Circle { diameter } => vec![("diameter", diameter)],
             Section::Numbers { area, jy, jz, jo, .. } => return self.section_numbers([area, jy, jz, jo], place),
         };
-        // The first side that is wrong says it for all.
+        // The first implausible side is reported for all.
         for (key, given) in sides {
             let (side, at) = self.number(given);
             if side > LONGEST_SIDE {
@@ -144,7 +144,7 @@ impl Look<'_> {
         }
     }
 
-    /// Damping in proportion to stiffness, seen by the lowest bending vibration of the beam alone, clamped at one end.
+    /// Damping proportional to stiffness, evaluated for the lowest bending vibration of the beam alone, clamped at one end.
     fn damping_of(&mut self, link: &str, at: Span) {
         let bodies: Vec<_> = self.chain.bodies.iter().filter(|body| body.link == link).collect();
         let now = |value: &crate::chain::Value| value.at(&self.values);
@@ -152,14 +152,14 @@ impl Look<'_> {
         let mass: f64 = bodies.iter().filter_map(|body| body.inertia.as_ref()).map(|inertia| now(&inertia.mass)).sum();
         let springs = self.chain.elements.iter().filter(|spring| {
             let coordinate = &self.chain.coordinates[spring.coordinate.0];
-            // Torsion is about x, its frequencies are higher.
+            // Torsion is about x; its frequencies are higher.
             coordinate.kind == CoordinateKind::Rotation
                 && coordinate.axis != crate::chain::Axis::X
                 && self.chain.bodies[coordinate.body.0].link == link
         });
         let of = |spring: &crate::chain::ElementSpring| {
             let (stiffness, damping) = (now(&spring.stiffness), now(&spring.damping));
-            // n springs of stiffness s stand for EJ = s l/n.
+            // n springs of stiffness s correspond to EJ = s l/n.
             let frequency = LOWEST_BENDING * (stiffness / (mass * (bodies.len() - 1) as f64)).sqrt() / length;
             (damping / stiffness, frequency)
         };
@@ -171,7 +171,7 @@ impl Look<'_> {
     }
 }
 
-/// Help for a length that is likely in mm.
+/// Help for a length that is probably in mm.
 pub(super) fn in_metres(given: f64) -> String {
     format!("write it in m: {given} mm = {} m", rounded(1e-3 * given))
 }

@@ -1,11 +1,11 @@
-//! Lengths of beams, and places within the crane.
+//! Lengths of beams, and positions within the crane.
 
 use super::beams::in_metres;
 use super::{Look, items, rounded};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Given, Link, Number, Placement, Vector};
 
-/// Nothing in a crane is longer or further away, m.
+/// Upper limit of lengths and distances in a crane, m.
 const LONGEST: f64 = 200.0;
 
 impl Look<'_> {
@@ -34,7 +34,7 @@ impl Look<'_> {
             let body_name = body.name.value.as_deref().unwrap_or_default();
             self.place(Some(&body.com), &format!("the centre of mass of body `{body_name}`"));
         }
-        // The crane as a whole may stand anywhere in the world.
+        // The crane as a whole may be anywhere in the world.
         let placement = link.placement.as_ref().filter(|_| !first).and_then(|placement| placement.value.as_ref());
         let what = format!("the placement of link `{name}`");
         let along = match placement {
@@ -48,7 +48,7 @@ impl Look<'_> {
         }
     }
 
-    /// Three lengths, of which the first that is too long says it for all.
+    /// Three lengths; the first that is too long is reported for all.
     fn place(&mut self, given: Option<&Given<Vector>>, what: &str) {
         let Some(numbers) = given.and_then(|given| given.value.as_ref()) else { return };
         let far = numbers.each_ref().map(|number| self.number(number)).into_iter().find(|(number, _)| is_far(*number));

@@ -1,7 +1,7 @@
 //! Plausibility: numbers that no rule refuses, but that look like another unit than SI or like a slip.
 //!
-//! Looked for in a crane without mistakes, at the default values of its parameters or at others. Each finding is a warning: the crane
-//! is compiled as it is written.
+//! They are looked for in a crane without mistakes, at the default values of its parameters or at others. Each finding is a
+//! warning: the crane is compiled as it is written.
 
 mod angles;
 mod beams;
@@ -17,7 +17,7 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     let mut look = Look { crane, chain, values, warnings: Vec::new() };
     look.beams();
     look.lengths();
-    // Frequencies and masses that follow from such numbers would be named a second time.
+    // Frequencies and masses that follow from such numbers would be reported a second time.
     if look.warnings.is_empty() {
         look.damping();
         look.masses();
@@ -26,11 +26,11 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     look.warnings
 }
 
-/// A look over a crane: as it is written, and as it was understood.
+/// The state of the check: the crane as written, and as validated.
 struct Look<'a> {
     crane: &'a Crane,
     chain: &'a Chain,
-    /// Values of the parameters at which the numbers are looked at.
+    /// Values of the parameters at which the numbers are checked.
     values: Vec<f64>,
     warnings: Vec<Mistake>,
 }
@@ -40,7 +40,7 @@ impl<'a> Look<'a> {
         self.warnings.push(warning);
     }
 
-    /// A number, and where it stands.
+    /// A number, and its location.
     fn number(&self, given: &Given<Number>) -> (f64, Span) {
         (given.value.as_ref().map_or(f64::NAN, |number| self.scalar(&number.0)), given.span)
     }
@@ -64,7 +64,7 @@ impl<'a> Look<'a> {
         parameter.is_some_and(|parameter| self.value(name) != Some(parameter.default))
     }
 
-    /// What stands under `value` of a parameter.
+    /// The scalar under `value` of a parameter.
     fn parameter(&self, name: &str) -> Option<&'a Scalar> {
         let entries = &self.crane.parameters.as_ref()?.value.as_ref()?.0;
         let named = entries.iter().find(|(known, _)| known.value.as_deref() == Some(name));

@@ -119,7 +119,7 @@ fn swing(upper: f64, lower: f64) -> Case {
                 let mut told = String::new();
                 for (method, accuracy) in [(Method::DormandPrince, 1e-9), (Method::RECOMMENDED, 1e-6)] {
                     match subject.run(&timing(method, accuracy, 2.0)) {
-                        Err(said) if said.contains("hardly any mass") => told = said,
+                        Err(said) if said.contains("very light link") => told = said,
                         Err(said) => return Err(said),
                         Ok(_) => return Err(format!("{method} came to the end")),
                     }
