@@ -1,20 +1,26 @@
-//! Pictures of the shipped cranes: everything is in them, and in view.
+//! Pictures of the shipped cranes: everything is in them, and in view; the gallery of the manual.
 
-use std::fs;
-use std::path::Path;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
 
 use crane_codegen::chain::Chain;
 use crane_codegen::{SourceFile, compile, picture};
 
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The shipped cranes, by name.
 fn shipped() -> Vec<Chain> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs");
-    let files = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("a file").path());
-    let specs = files.filter(|path| path.extension().is_some_and(|extension| extension == "yaml"));
-    let chain = |path: std::path::PathBuf| {
+    let files = fs::read_dir(root().join("specs")).expect("a folder").map(|entry| entry.expect("a file").path());
+    let mut specs: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|found| found == "yaml")).collect();
+    specs.sort();
+    let chain = |path: PathBuf| {
         let source = SourceFile::new("shipped.yaml", fs::read_to_string(path).expect("a spec"));
         compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"))
     };
-    specs.map(chain).collect()
+    specs.into_iter().map(chain).collect()
 }
 
 /// Values of an attribute.
@@ -57,4 +63,43 @@ fn a_horizontal_beam_is_drawn_as_long_as_it_is() {
         let part = if index == 0 || index == 8 { 0.5 } else { 1.0 };
         assert!((length(line) / length(&beams[4]) - part).abs() < 0.01, "{line}");
     }
+}
+
+/// `UPDATE_GOLDEN=1` writes the page and its pictures.
+#[test]
+fn the_gallery_shows_every_shipped_crane() {
+    let update = env::var_os("UPDATE_GOLDEN").is_some();
+    let images = root().join("docs/images/cranes");
+    let mut page = "# Gallery\n\nThe shipped cranes at the poses of their specs, with frames, joints, beams, supports and drives. \
+                    `crane explain CRANE --svg FILE`\ndraws such a picture of any crane. Masses are those with default parameters.\n"
+        .to_owned();
+    for chain in shipped() {
+        let image = images.join(format!("{}.svg", chain.name));
+        if update {
+            fs::create_dir_all(&images).expect("a folder");
+            fs::write(&image, picture::picture(&chain)).expect("a picture");
+        }
+        assert!(image.exists(), "there is no {}: run this test with UPDATE_GOLDEN=1", image.display());
+        let (name, title) = (&chain.name, &chain.title);
+        let parameters = chain.parameter_defaults();
+        let mass: f64 = chain
+            .bodies
+            .iter()
+            .filter_map(|body| body.inertia.as_ref())
+            .map(|inertia| inertia.mass.at(&parameters))
+            .sum();
+        let (coordinates, bodies) = (chain.coordinates.len(), chain.bodies.len());
+        let (supports, drives) = (chain.supports.len(), chain.drives.len());
+        let _ = write!(
+            page,
+            "\n## {title}\n\n`crane run {name}`: {coordinates} coordinates, {bodies} bodies, {supports} supports, {drives} drives, \
+             {mass:.0} kg\n\n![{title}: frames, joints and beams, with a table of coordinates](../images/cranes/{name}.svg)\n"
+        );
+    }
+    let path = root().join("docs/manual/gallery.md");
+    if update {
+        fs::write(&path, &page).expect("a page");
+    }
+    let written = fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(written, page, "{} is not current: run this test with UPDATE_GOLDEN=1", path.display());
 }

@@ -3,16 +3,13 @@
 use crate::workspace;
 
 const DOCUMENT: &str = "docs/EQUATIONS.md";
-/// The folder where the generated functions are listed.
-const FUNCTIONS: &str = "codegen/src/mechanics/functions";
+/// The file that lists the generated functions.
+const FUNCTIONS: &str = "codegen/src/program/id.rs";
 
 /// Every name that is stale, and every generated function without a row.
 pub fn check() -> Result<(), String> {
     let document = workspace::read(DOCUMENT)?;
-    let mut generated = Vec::new();
-    for file in workspace::files(FUNCTIONS, "rs")? {
-        generated.extend(generated_functions(&workspace::read(&file)?));
-    }
+    let generated = generated_functions(&workspace::read(FUNCTIONS)?);
     let mut stale = Vec::new();
     let mut documented = Vec::new();
     for (index, line) in document.lines().enumerate().filter(|(_, line)| line.starts_with('|')) {
@@ -66,11 +63,8 @@ fn exists(name: &str) -> Result<bool, String> {
     Ok(false)
 }
 
-/// First arguments of `function(` and `scalar(` calls: the names of the generated functions.
+/// Names in lines `Id = "name",`.
 fn generated_functions(text: &str) -> Vec<String> {
-    text.lines()
-        .filter_map(|line| line.trim().strip_prefix('"')?.strip_suffix("\","))
-        .filter(|name| name.chars().all(|c| c.is_ascii_lowercase() || c == '_'))
-        .map(str::to_owned)
-        .collect()
+    let names = text.lines().filter_map(|line| line.split_once(" = \"")?.1.strip_suffix("\","));
+    names.map(str::to_owned).collect()
 }

@@ -1,4 +1,4 @@
-//! Who may import whom; ARCHITECTURE.md tells why.
+//! The permitted imports; ARCHITECTURE.md gives the reasons.
 
 use crate::workspace;
 

@@ -2,6 +2,7 @@
 //!
 //! `cargo xtask test` runs every check there is; the others are its parts, for the time in between.
 
+mod book;
 mod equations;
 mod fused;
 mod imports;
@@ -24,17 +25,17 @@ use step::Step;
 
 const USAGE: &str = "cargo xtask TASK [WORD …]
 
-With words, only the steps whose titles contain one of them.
+With words, only the steps whose titles contain one of them run.
 
-  test     every check: lint, unit and whole-system tests, oracles, the example crate, the default run and its report, the
+  test     all checks: lint, unit and whole-system tests, oracles, the example crate, the default run and its report, the
            Python package
   lint     formatting, clippy, documentation, import rules, docs/EQUATIONS.md
   oracles  generated code against CasADi, Pinocchio and MuJoCo, over all shipped and some random cranes
   performance [--quick]
-           time the generated functions and other libraries in turns, write docs/performance.md; g++ or clang needed
+           time the generated functions and other libraries in turns, write docs/performance.md; needs g++ or clang
   error-vs-runtime
            time methods and numbers of sections of the reference crane, write docs/error-vs-runtime.md
-  bless    rewrite what tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md";
+  bless    rewrite the files that tests compare with: goldens, snapshots, schema, docs/OPERATIONS.md, the gallery";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -64,7 +65,7 @@ fn main() -> ExitCode {
         .filter(|step| words.is_empty() || words.iter().any(|word| step.title.contains(word)))
         .collect();
     if chosen.is_empty() {
-        eprintln!("no step of `{task}` is called so");
+        eprintln!("no step of `{task}` has a title with these words");
         return ExitCode::from(2);
     }
     run(&chosen)
@@ -125,6 +126,7 @@ fn lint() -> Vec<Step> {
         Step::cargo("formatting", &["fmt", "--all", "--", "--check"]),
         Step::check("import rules", imports::check),
         Step::check("plain English", prose::check),
+        Step::check("pages and links of the manual", book::check),
         Step::check("docs/EQUATIONS.md is current", equations::check),
         Step::cargo("clippy", &["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
             .with(SECTIONS, "0"),

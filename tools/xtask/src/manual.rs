@@ -1,7 +1,7 @@
-//! Commands of the manual, `docs/manual`: run as a reader would, chapter after chapter in one folder.
+//! Runs the commands of the manual, `docs/manual`, as a reader would, chapter after chapter in one folder.
 //!
-//! A block after `<!-- file: NAME -->` is a file to write, a block ```` ```sh ```` commands to run. Blocks of other words, such as
-//! ```` ```console ````, are for the eye alone.
+//! A block after `<!-- file: NAME -->` is a file to write, a block ```` ```sh ```` commands to run. Other blocks, such as
+//! ```` ```console ````, are not run.
 
 use std::process::Command;
 use std::{env, fs, io};

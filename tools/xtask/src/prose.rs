@@ -3,19 +3,27 @@
 use crate::workspace;
 
 /// What is looked for, and what to write instead.
-const STUMBLES: [(&str, &str); 7] = [
+const STUMBLES: [(&str, &str); 15] = [
     (" of one's own", "your own"),
-    (" tells of ", "describes"),
+    (" of ours", "our own"),
+    (" an own ", "its own"),
+    (" tells ", "describes"),
+    (" is told ", "receives"),
     ("beforehand", "in advance"),
     (" anew", "again"),
+    (" shortly ", "just"),
+    (" but for ", "except for"),
+    ("whoever", "anyone who"),
+    (" the one before", "the previous one"),
+    (" one a ", "one per"),
+    (" a call for one ", "per call for one"),
     (" is no ", "is not a"),
     (" are no ", "are not"),
-    (" an own ", "its own"),
 ];
 /// Where `is no` is plain English.
 const PLAIN: [&str; 5] = ["here is no ", "here are no ", " is no longer ", " are no longer ", " is no more "];
 /// Folders and files, by extension, of texts that people write.
-const TEXTS: [(&str, &str); 15] = [
+const TEXTS: [(&str, &str); 22] = [
     ("codegen", "rs"),
     ("crane-model", "rs"),
     ("docs", "md"),
@@ -28,8 +36,15 @@ const TEXTS: [(&str, &str); 15] = [
     ("tools/casadi", "py"),
     ("tools/cli", "rs"),
     ("tools/cli", "template"),
+    ("tools/lab", "md"),
+    ("tools/lab", "rs"),
     ("tools/live", "rs"),
     ("tools/peers", "py"),
+    ("tools/python", "md"),
+    ("tools/python/crane", "py"),
+    ("tools/python/crane", "pyi"),
+    ("tools/python/src", "rs"),
+    ("tools/report/src", "js"),
     ("tools/xtask", "rs"),
 ];
 const DOCUMENTS: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];

@@ -1,0 +1,136 @@
+//! The manual as a book: docs/SUMMARY.md lists every page, and every link leads to an existing page and heading.
+//!
+//! `mdbook build docs` turns the same files into a site. mdBook takes minutes to compile, so this check does without it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::workspace;
+
+const FOLDER: &str = "docs";
+const SUMMARY: &str = "docs/SUMMARY.md";
+/// Pages outside of the book.
+const OUTSIDE: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
+
+/// Every page that is not listed exactly once, and every link that leads nowhere.
+pub fn check() -> Result<(), String> {
+    let mut pages = BTreeMap::new();
+    let inside = workspace::files(FOLDER, "md")?;
+    for path in inside.into_iter().chain(OUTSIDE.map(str::to_owned)) {
+        let text = workspace::read(&path)?;
+        pages.insert(path, text);
+    }
+    let mut wrong = unlisted(&pages);
+    for (path, text) in &pages {
+        for (line, link) in links(text) {
+            if let Some(problem) = problem(path, link, &pages) {
+                wrong.push(format!("{path}:{line}: {problem}"));
+            }
+        }
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(format!("\n{}", wrong.join("\n"))) }
+}
+
+/// Pages of the book that its summary does not list exactly once.
+fn unlisted(pages: &BTreeMap<String, String>) -> Vec<String> {
+    let summary = pages.get(SUMMARY).map_or("", String::as_str);
+    let listed: Vec<String> = links(summary).into_iter().map(|(_, link)| resolve(SUMMARY, link)).collect();
+    let inside = pages.keys().filter(|page| page.starts_with(FOLDER) && *page != SUMMARY);
+    let count = |page: &str| listed.iter().filter(|listed| *listed == page).count();
+    inside
+        .map(|page| (page, count(page)))
+        .filter(|(_, count)| *count != 1)
+        .map(|(page, count)| format!("{SUMMARY}: lists {page} {count} times instead of once"))
+        .collect()
+}
+
+/// What is wrong with a link of a page, if anything is.
+fn problem(page: &str, link: &str, pages: &BTreeMap<String, String>) -> Option<String> {
+    if link.contains("://") {
+        return None;
+    }
+    let (file, anchor) = link.split_once('#').map_or((link, None), |(file, anchor)| (file, Some(anchor)));
+    let target = if file.is_empty() { page.to_owned() } else { resolve(page, file) };
+    if !workspace::root().join(&target).exists() {
+        return Some(format!("`{link}`: there is no {target}"));
+    }
+    let anchor = anchor?;
+    let known = pages.get(&target)?;
+    (!headings(known).contains(anchor)).then(|| format!("`{link}`: {target} has no such heading"))
+}
+
+/// The path from the root of a link on a page.
+fn resolve(page: &str, link: &str) -> String {
+    let mut parts: Vec<&str> = page.split('/').collect();
+    parts.pop();
+    for part in link.split('/') {
+        match part {
+            "." | "" => {}
+            ".." => drop(parts.pop()),
+            part => parts.push(part),
+        }
+    }
+    parts.join("/")
+}
+
+/// Lines of a page outside of blocks of code, with their numbers.
+fn prose(page: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut in_code = false;
+    (1..).zip(page.lines()).filter(move |(_, line)| {
+        let fence = line.starts_with("```");
+        in_code ^= fence;
+        !in_code && !fence && !line.starts_with("    ")
+    })
+}
+
+/// Links of a page, with the numbers of their lines.
+fn links(page: &str) -> Vec<(usize, &str)> {
+    prose(page)
+        .flat_map(|(number, line)| {
+            line.split("](").skip(1).filter_map(move |rest| Some((number, rest.split(')').next()?)))
+        })
+        .collect()
+}
+
+/// Anchors of a page's headings, as mdBook and forges make them.
+fn headings(page: &str) -> BTreeSet<String> {
+    prose(page)
+        .filter_map(|(_, line)| line.strip_prefix('#'))
+        .map(|rest| anchor(rest.trim_start_matches('#')))
+        .collect()
+}
+
+/// The anchor of a heading: letters, digits, `-` and `_` in lower case, blanks as `-`.
+fn anchor(heading: &str) -> String {
+    let kept = heading.trim().chars().filter_map(|c| match c {
+        c if c.is_whitespace() => Some('-'),
+        c if c.is_alphanumeric() || c == '-' || c == '_' => Some(c),
+        _ => None,
+    });
+    kept.flat_map(char::to_lowercase).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_and_headings_are_found_outside_of_code() {
+        let page =
+            "# A page\n[one](b.md#Two) and [two](../c.md)\n```sh\n# no heading [x](y)\n```\n## T̃(3,i), `loops`: why?\n";
+        assert_eq!(links(page), [(2, "b.md#Two"), (2, "../c.md")]);
+        let expected = ["a-page", "t3i-loops-why"].map(str::to_owned);
+        assert_eq!(headings(page), BTreeSet::from(expected));
+        assert_eq!(resolve("docs/manual/a.md", "../SPEC.md"), "docs/SPEC.md");
+    }
+
+    #[test]
+    fn pages_and_anchors_that_are_missing_are_named() {
+        let pages = [(SUMMARY, "[A](a.md)"), ("docs/a.md", "# A\n[b](b.md) [c](#c)"), ("docs/d.md", "")];
+        let pages: BTreeMap<String, String> = pages.map(|(path, text)| (path.to_owned(), text.to_owned())).into();
+        assert_eq!(unlisted(&pages), [format!("{SUMMARY}: lists docs/d.md 0 times instead of once")]);
+        let of = |link| problem("docs/a.md", link, &pages).unwrap_or_default();
+        assert!(of("b.md").contains("there is no docs/b.md"), "{}", of("b.md"));
+        // This page exists in the workspace.
+        assert_eq!(problem("docs/manual/a.md", "../SPEC.md", &pages), None);
+    }
+}
