@@ -250,7 +250,7 @@ await browser.close();
 // Without 3-D, everything else is there.
 const flat = await chromium.launch({ executablePath, args: [...FLAGS.filter((flag) => !/gl|swift/.test(flag)), "--disable-3d-apis"] });
 const complaints = await open(flat, { viewport: { width: 1000, height: 700 } }, async (page) => {
-  assert.match(await page.locator("#view").textContent(), /no 3-D/);
+  assert.match(await page.locator("#view").textContent(), /3-D is not available/);
   assert.equal((await panels(page)).length, count);
 });
 assert(complaints.every((line) => !/^(error: (?!.*WebGL)|request)/.test(line)), complaints.join("\n"));

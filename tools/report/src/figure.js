@@ -260,7 +260,7 @@ export class Figure {
     for (const { geometry, elements } of this.beams) geometry.follow(elements.map((p) => frames[p]));
   }
 
-  /** Colours the legs: `colours`, one a support. */
+  /** Colours the legs: `colours`, one per support. */
   paint(colours) {
     this.legs.forEach((paint, index) => paint.color.set(colours[index]));
   }

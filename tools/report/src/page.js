@@ -62,7 +62,7 @@ if (!matchMedia("(prefers-reduced-motion: reduce)").matches && viewer) player.pl
 function thinned() {
   const { every, rows } = crane.run;
   if (every === 1) return;
-  const text = `A long run: of every ${every} recorded samples this page shows one, ${rows} in all. Tables, and the CSV files that crane run writes, are of all.`;
+  const text = `This page shows one of every ${every} recorded samples, ${rows} in all. Tables and the CSV files of crane run contain every sample.`;
   Object.assign($("#thinned"), { textContent: text, hidden: false });
 }
 
@@ -84,7 +84,7 @@ function threeD() {
   try {
     return new Viewer($("#view canvas"), data, player);
   } catch (error) {
-    const text = `This browser shows no 3-D (${error.message}). Plots and tables are complete.`;
+    const text = `3-D is not available in this browser (${error.message}). Plots and tables are complete.`;
     $("#view canvas").replaceWith(Object.assign(document.createElement("p"), { textContent: text, className: "sorry" }));
     return null;
   }

@@ -104,7 +104,7 @@ function deflection(overTime, crane, rigid) {
   }
   found.forEach(({ name }, index) => {
     const curves = tips[index].map((values, colour) => ({ label: `along its ${"yz"[colour]}`, colour, values }));
-    overTime("boom", `bent_${name}`, `${spoken(name)}: tip off the straight line`, "deflection", "m", curves);
+    overTime("boom", `bent_${name}`, `${spoken(name)}: deflection of the tip from the straight line`, "deflection", "m", curves);
   });
 }
 

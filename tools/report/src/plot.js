@@ -36,7 +36,7 @@ export class Plot {
     this.tools = element(
       "span", { className: "tools" },
       button("⤢", "Show everything (0)", () => this.reset()),
-      button("SVG", "Download this plot as SVG, as it is zoomed", () => save(`${this.file}.svg`, svg(this), "image/svg+xml")),
+      button("SVG", "Download this plot as SVG, at the current zoom", () => save(`${this.file}.svg`, svg(this), "image/svg+xml")),
       button("CSV", "Download these curves as CSV", () => save(`${this.file}.csv`, csv(this), "text/csv")),
     );
     this.head = element("figcaption", {}, element("span", { textContent: this.title }), this.tools);
@@ -188,7 +188,7 @@ export class Plot {
     u.setCursor({ left: u.valToPos(x[this.index], "x"), top: u.valToPos(y[this.index], "y") });
   }
 
-  /** Marks the player's time; the legend tells its values unless the cursor asks for others. */
+  /** Marks the player's time; the legend shows its values unless the cursor selects others. */
   now(t, here) {
     this.at = { t, here };
     this.mark();

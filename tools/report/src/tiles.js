@@ -36,14 +36,14 @@ export function tiles({ crane, rigid }) {
     });
     const most = greatest(ways, t);
     const rest = greatest(ways.map(({ values, ...way }) => ({ ...way, values: values.slice(0, 1) })), t);
-    add("deflection at rest", text(rest.size, "m"), `against the rigid crane; in motion up to ${text(most.size, "m")} (${spoken(most.name)}, ${when(most.t)})`);
+    add("deflection at rest", text(rest.size, "m"), `compared with the rigid crane; up to ${text(most.size, "m")} in motion (${spoken(most.name)}, ${when(most.t)})`);
   }
   for (const [effort, unit] of [["torque", "N m"], ["force", "N"]]) {
     const columns = drives.map((j) => coordinates[j].name).map((name) => ({ name, values: run.column(`${name}_drive_${effort}`)?.values }));
     const known = columns.filter(({ values }) => values);
     if (!known.length) continue;
     const most = greatest(known, t);
-    add(`greatest ${effort} of a drive`, text(most.value, unit), `${spoken(most.name)}, ${when(most.t)}`);
+    add(`largest drive ${effort}`, text(most.value, unit), `${spoken(most.name)}, ${when(most.t)}`);
   }
   if (scene.supports.length) {
     const columns = scene.supports.map(({ name }) => ({ name, values: run.column(`${name}_reaction_z`).values }));
@@ -54,11 +54,11 @@ export function tiles({ crane, rigid }) {
     });
     const { unit, factor } = scaled("N", [high.value, low.value]);
     const [from, to] = [low, high].map(({ value }) => Number((value * factor).toPrecision(4)));
-    add("vertical reactions", `${from} … ${to} ${unit}`, low.value < 0 ? `${low.name} is pulled: the foot would lift` : `least ${low.name}, greatest ${high.name}: no foot lifts`);
+    add("vertical reactions", `${from} … ${to} ${unit}`, low.value < 0 ? `${low.name} pulls on the ground: a real foot would lift` : `smallest ${low.name}, largest ${high.name}: no foot lifts`);
   }
   if (modes.length && modes[0].frequency !== null) {
     add("lowest frequency", `${readable(Number(modes[0].frequency.toPrecision(4)))} Hz`, modes[0].moves.slice(0, 2).map(spoken).join(", "));
   }
   const error = greatest([{ values: run.column("energy_balance").values }], t);
-  add("error of the energy balance", `${readable(Number(error.size.toPrecision(2)))} J`, `greatest, ${when(error.t)}`);
+  add("error of the energy balance", `${readable(Number(error.size.toPrecision(2)))} J`, `largest, ${when(error.t)}`);
 }
