@@ -37,7 +37,7 @@ Examples:
   crane import robot.urdf -o my.yaml   convert a URDF robot to a spec
   crane list                           the shipped cranes
   crane info                           coordinates, parameters, drives of a crane
-  source <(crane completions bash)     completion of commands and options
+  source <(crane completions bash)     completion of commands, options and shipped cranes
 
 Exit codes:
   0  done
@@ -62,47 +62,47 @@ pub struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Action {
-    /// Compute everything: statics, motion, figures and the report, written to a folder
+    /// Compute statics, motion, figures and the report, written to a folder
     Run(Simulate),
     /// Find the static equilibrium: pose, drive torques, support reactions
     Statics(Analysis),
-    /// Compute the tipping margin, stresses in beams, loads on the ground and the joints, and the load that tips the crane
+    /// Compute tipping margin, stresses, loads on joints and ground, and the tipping load
     Strength(Strength),
-    /// Simulate the motion from the static pose; write results, figures and a record of the run to a folder
+    /// Simulate the motion from the static pose; write results and figures to a folder
     Simulate(Simulate),
-    /// Compute frequencies, damping and dominant coordinates about the static pose, and the largest stable step
+    /// Compute frequencies, damping and dominant coordinates about the static pose
     Modes(Analysis),
-    /// Write statics, motion and modes as one HTML page: the crane in 3-D, plots, tables
+    /// Write statics, motion and modes as one HTML page with the crane in 3-D
     Report(Page),
-    /// Compute the largest stable step of every method and what limits it, at the static pose and during the manoeuvre
+    /// Compute the largest stable step of every method and what limits it
     Stability(Stability),
-    /// Show what a crane consists of: coordinates, bodies, supports, drives, parameters
+    /// Show coordinates, bodies, supports, drives and parameters of a crane
     Info(Analysis),
-    /// Evaluate quantities such as T, ∂T/∂q, A and e at given states, for other programs
+    /// Evaluate quantities such as T, A and e at given states, for other programs
     Eval(Eval),
-    /// Create a Rust crate for your own crane, starting from a shipped one
+    /// Create a Rust crate for your own crane
     New(New),
-    /// Check a spec: report every mistake in it and everything implausible
+    /// Check a spec: report every mistake and everything implausible
     Check {
-        /// The crane's YAML file
-        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-        spec: PathBuf,
-        /// Fail on warnings, too
+        /// Shipped crane or YAML file
+        #[arg(value_name = "CRANE", value_hint = ValueHint::FilePath)]
+        spec: String,
+        /// Treat warnings as mistakes
         #[arg(long)]
         strict: bool,
     },
-    /// Explain a spec: bodies, coordinates, what is left out and why, what each function costs
+    /// Explain a spec: bodies, coordinates, omissions and operation counts; draw a picture
     Explain {
-        /// The crane's YAML file
-        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-        spec: PathBuf,
+        /// Shipped crane or YAML file
+        #[arg(value_name = "CRANE", value_hint = ValueHint::FilePath)]
+        spec: String,
         /// Also draw the chain into this file
         #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
         svg: Option<PathBuf>,
     },
-    /// Write the crane's Rust module, for a program of your own
+    /// Write a crane's Rust module, for your own program
     Generate(Generate),
-    /// Print a Markdown table of operations: one row per function, one column per spec
+    /// Print a Markdown table of operation counts: functions by cranes
     Operations {
         /// The cranes' YAML files
         #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -110,9 +110,9 @@ pub enum Action {
     },
     /// Print the JSON Schema of the spec language, for editors
     Schema,
-    /// Export a crane as URDF, with its springs in a second file, or as MJCF, for Pinocchio, MuJoCo, ROS and others
+    /// Export a crane as URDF or MJCF, for Pinocchio, MuJoCo, ROS and others
     Export(Export),
-    /// Convert a URDF robot, a chain of joints with one axis each, to a spec
+    /// Convert a URDF robot to a spec
     Import(Import),
     /// List the shipped cranes
     List(List),
@@ -328,7 +328,7 @@ pub struct Ensemble {
     #[arg(long = "ensemble", value_name = "TABLE.csv", value_hint = ValueHint::FilePath)]
     pub table: Option<PathBuf>,
     /// File for peaks and final values, one row per crane [default: <CRANE>_ensemble.csv in the folder for results]
-    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "table")]
+    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath, requires = "table")]
     pub results: Option<PathBuf>,
     /// Number of threads that run the cranes of the table [default: all cores]
     #[arg(long, value_name = "COUNT", requires = "table", value_parser = count)]
@@ -353,19 +353,19 @@ pub struct New {
     /// Folder to create; the crate and the crane get its name
     #[arg(value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
-    /// Shipped crane to start from
-    #[arg(long, value_name = "CRANE", default_value = "knuckle_boom")]
+    /// Shipped crane or YAML file to start from
+    #[arg(long, value_name = "CRANE", default_value = "knuckle_boom", value_hint = ValueHint::FilePath)]
     pub from: String,
 }
 
 /// The Rust module of a crane.
 #[derive(Debug, Args)]
 pub struct Generate {
-    /// The crane's YAML file
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub spec: PathBuf,
+    /// Shipped crane or YAML file
+    #[arg(value_name = "CRANE", value_hint = ValueHint::FilePath)]
+    pub spec: String,
     /// File to write [default: standard output]
-    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
     /// Generate all functions, including those that the spec's `analyses` do not request
     #[arg(long)]
@@ -390,7 +390,7 @@ pub struct Strength {
     #[arg(long, value_name = "PARAMETER")]
     pub load: Option<String>,
     /// CSV file for the moments about the tipping lines and all loads during the run
-    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "run")]
+    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath, requires = "run")]
     pub results: Option<PathBuf>,
 }
 
@@ -425,7 +425,7 @@ pub struct Export {
     #[arg(long, value_enum)]
     pub format: Language,
     /// File to write [default: the crane's name with .urdf or .xml]
-    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
 }
 
@@ -436,7 +436,7 @@ pub struct Import {
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub urdf: PathBuf,
     /// Spec to write [default: standard output]
-    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub spec: Option<PathBuf>,
     /// Joint to hold at zero, such as a gripper's; repeatable
     #[arg(long = "fix", value_name = "JOINT")]
@@ -518,6 +518,6 @@ pub struct Eval {
     #[arg(long, value_enum, default_value_t)]
     pub format: EvalFormat,
     /// File to write [default: standard output]
-    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
 }

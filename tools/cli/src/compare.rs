@@ -38,7 +38,10 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     report.grid(deflection(rigid_case, flexible_case));
     if format == Format::Table {
         // Something to read while the cranes move.
-        writeln!(out, "Statics of {}\n", flexible.description().title)?;
+        let [rigid, flexible] = [&rigid, &flexible].map(|crane| crane.description());
+        writeln!(out, "Comparing {} and {}.", rigid.name, flexible.name)?;
+        writeln!(out, "Figures (SVG), results (CSV) and report.html go to the folder {}.\n", folder.display())?;
+        writeln!(out, "Statics of {}\n", flexible.title)?;
         mem::take(&mut report).print(format, out)?;
     }
 

@@ -86,7 +86,7 @@ fn settings(
         Ok::<_, Problem>((crane, start))
     };
     let rests = |row: &Vec<f64>| startable(row).ok();
-    // Where no crane rests, the first tells why.
+    // If no crane rests, the first one gives the reason.
     let (crane, from) =
         startable(&table.rows[0]).or_else(|problem| table.rows.iter().find_map(rests).ok_or(problem))?;
     let method = timing.method.unwrap_or(if timing.step.is_some() { Method::Rk4 } else { Method::RECOMMENDED });

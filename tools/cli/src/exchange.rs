@@ -1,14 +1,10 @@
 //! `crane export` and `crane import`: cranes for other programs, and from them.
 
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::{io::Write, path::PathBuf};
 
 use crane_codegen::{
-    SourceFile,
     chain::{Bound, Chain, Refusal},
-    compile, exchange,
+    exchange,
 };
 
 use crate::{
@@ -20,7 +16,7 @@ use crate::{
 
 /// Writes a crane as URDF, with its springs beside it, or as MJCF.
 pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let chain = chain(&options.crane.name, options.crane.strict, fleet)?;
+    let (chain, _) = own::load_named(&options.crane.name, options.crane.strict, fleet)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
     for (index, value) in options.crane.parameters.read(&chain.name, &known)? {
@@ -78,16 +74,4 @@ fn keep_rules(chain: &Chain, values: &[f64]) -> Outcome<()> {
         }),
     };
     refused.map_or(Ok(()), |(title, refusal)| Err(Problem::usage(title, refusal.help.as_str())))
-}
-
-/// The chain of a shipped crane, or of a YAML file.
-fn chain(name: &str, strict: bool, fleet: &Fleet) -> Outcome<Chain> {
-    match fleet.spec(name) {
-        Some(text) => compile::load(&SourceFile::new(name, text)).map_err(|mistakes| own::drawn(&mistakes)),
-        None if Path::new(name).extension().is_some() => Ok(own::load(Path::new(name), strict)?.0),
-        // Not a crane: told so, with the nearest that is.
-        None => {
-            fleet.crane(name).and_then(|_| Err(Problem::failed(format!("the spec of {name} is not available"), "")))
-        }
-    }
 }

@@ -1,4 +1,4 @@
-//! Figures as SVG: panels of curves with labelled axes and one legend, in colours that colour-blind readers tell apart.
+//! Figures as SVG: panels of curves with labelled axes and one legend, in colours that colour-blind readers can distinguish.
 
 use plotters::{
     coord::Shift,

@@ -26,7 +26,7 @@ pub fn folder(path: &Path) -> Outcome<()> {
     fs::create_dir_all(path).map_err(|error| Problem::file(path, &error))
 }
 
-/// Writes a file under another name and renames it when it is whole: nobody ever sees half a file.
+/// Writes a file under another name and renames it when it is complete, so that no half-written file is ever visible.
 ///
 /// # Errors
 /// The file system refuses.
@@ -45,7 +45,7 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
         fs::rename(&part, path)
     })();
     written.map_err(|error| {
-        // What is left of the part; the first error is the one to tell.
+        // Remove the rest of the part; the first error is reported.
         let _ = fs::remove_file(&part);
         Problem::file(path, &error)
     })

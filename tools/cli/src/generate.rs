@@ -9,15 +9,16 @@ use crane_codegen::{
 };
 
 use crate::{
+    Fleet,
     arguments::Generate,
     files,
-    own::{drawn, load, open},
+    own::{self, drawn, load},
     problem::Outcome,
 };
 
 /// Writes the Rust module of a crane.
-pub fn generate(options: &Generate, out: &mut dyn Write) -> Outcome<()> {
-    let source = open(&options.spec, "give a YAML file that describes a crane")?;
+pub fn generate(options: &Generate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let source = own::source(&options.spec, fleet)?;
     let analyses = options.all.then_some(Analyses::ALL);
     if let Some(folder) = &options.dump {
         files::folder(folder)?;

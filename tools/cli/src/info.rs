@@ -1,4 +1,4 @@
-//! `crane info` and `crane list`: what there is.
+//! `crane info` and `crane list`: the contents of a crane, and the shipped cranes.
 
 use std::io::Write;
 
@@ -11,7 +11,7 @@ use crate::{
     report::{Cell, Grid, Report},
 };
 
-/// Prints the cranes to choose from.
+/// Prints the available cranes.
 pub fn list(format: Format, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let mut grid = Grid::new("cranes", "Cranes", &["name", "coordinates", "title"]);
     for rig in fleet.all() {
@@ -28,7 +28,7 @@ pub fn list(format: Format, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     report.print(format, out)
 }
 
-/// Prints what a crane consists of.
+/// Prints the parts of a crane.
 pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.crane.open(fleet)?;
     let description = rig.description();

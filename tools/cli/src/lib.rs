@@ -20,6 +20,7 @@ mod extremes;
 mod figures;
 pub mod files;
 mod generate;
+mod help;
 mod info;
 mod modes;
 mod new;
@@ -39,15 +40,16 @@ mod start;
 mod statics;
 mod strength;
 
-use std::{io, io::Write, process::ExitCode};
+use std::{env, io, io::Write, process::ExitCode};
 
-use clap::{CommandFactory, Parser};
+use clap::{Command, CommandFactory, FromArgMatches};
+use clap_complete::Shell;
 
 use arguments::{Action, Arguments};
 use problem::Outcome;
 pub use selection::Fleet;
 
-/// What other commands over cranes are made of, with [`files`] and [`refinement`].
+/// Parts for other commands that work with cranes, with [`files`] and [`refinement`].
 pub mod toolbox {
     pub use crate::arguments::{Analysis, Choice, Format, Limits, Parameters, Step, Timing, seconds};
     pub use crate::figures::{Curve, Mark, PALETTE, Panel};
@@ -60,15 +62,21 @@ pub mod toolbox {
 
 /// Does what the arguments of the process ask for, with the cranes of a fleet or of a YAML file that the arguments name.
 pub fn main(fleet: Fleet) -> ExitCode {
-    with_arguments(|arguments, out| act(arguments, fleet, out))
+    with_arguments(help::grouped(Arguments::command()), |arguments, out| act(arguments, fleet, out))
 }
 
-/// Reads the arguments of the process and acts on them; the exit code says how that went.
-pub fn with_arguments<A: Parser>(act: impl FnOnce(A, &mut dyn Write) -> Outcome<()>) -> ExitCode {
-    let arguments = match A::try_parse() {
+/// Reads the arguments of the process, as `command` describes them, and acts on them; returns the exit code.
+pub fn with_arguments<A: FromArgMatches>(
+    mut command: Command,
+    act: impl FnOnce(A, &mut dyn Write) -> Outcome<()>,
+) -> ExitCode {
+    let parsed = command
+        .try_get_matches_from_mut(env::args_os())
+        .and_then(|matches| A::from_arg_matches(&matches).map_err(|error| error.format(&mut command)));
+    let arguments = match parsed {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version come this way too. Nobody is left to tell where printing fails.
+            // Help and version arrive here too. If printing fails, there is no one to inform.
             let _ = error.print();
             return if error.use_stderr() { ExitCode::from(problem::USAGE) } else { ExitCode::SUCCESS };
         }
@@ -93,7 +101,7 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
     let fleet = &fleet;
     match &arguments.action {
         None if fleet.has(compare::CRANES) => compare::compare(&arguments.compare, fleet, out),
-        None => Ok(Arguments::command().print_help()?),
+        None => Ok(help::grouped(Arguments::command()).print_help()?),
         Some(Action::Run(options)) => overall::run(options, fleet, out),
         Some(Action::Statics(options)) => statics::statics(options, fleet, out),
         Some(Action::Simulate(options)) => match &options.ensemble.table {
@@ -107,9 +115,9 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
         Some(Action::Info(options)) => info::info(options, fleet, out),
         Some(Action::Eval(options)) => eval::eval(options, fleet, out),
         Some(Action::New(options)) => new::new(options, fleet, out),
-        Some(Action::Check { spec, strict }) => own::check(spec, *strict, out),
-        Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), out),
-        Some(Action::Generate(options)) => generate::generate(options, out),
+        Some(Action::Check { spec, strict }) => own::check(spec, *strict, fleet, out),
+        Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), fleet, out),
+        Some(Action::Generate(options)) => generate::generate(options, fleet, out),
         Some(Action::Operations { specs }) => generate::operations(specs, out),
         Some(Action::Schema) => generate::schema(out),
         Some(Action::Export(options)) => exchange::export(options, fleet, out),
@@ -118,7 +126,11 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
         Some(Action::Completions { shell }) => {
             // Into memory first: the generator panics where the other end of a pipe is gone.
             let mut script = Vec::new();
-            clap_complete::generate(*shell, &mut Arguments::command(), "crane", &mut script);
+            let mut command = Arguments::command();
+            if *shell == Shell::Bash {
+                command = help::with_cranes(command, fleet.shipped());
+            }
+            clap_complete::generate(*shell, &mut command, "crane", &mut script);
             Ok(out.write_all(&script)?)
         }
     }

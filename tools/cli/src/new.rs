@@ -27,9 +27,16 @@ const SCHEMA: (&str, &str) = ("crane.schema.json", include_str!("../../../specs/
 pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let package = package(&options.folder)?;
     let name = package.replace('-', "_");
-    let from = fleet.crane(&options.from.replace('-', "_"))?;
-    let description = from.description();
-    let spec = renamed(fleet.spec(&description.name).unwrap_or_default(), &description.name, &name);
+    // The name of a shipped crane may be written like that of a crate.
+    let shipped = options.from.replace('-', "_");
+    let from = if fleet.spec(&shipped).is_some() { &shipped } else { &options.from };
+    let (from, text) = own::load_named(from, false, fleet)?;
+    let spec = renamed(&text, &from.name, &name).ok_or_else(|| {
+        Problem::failed(
+            format!("cannot rename the crane {} in its spec", from.name),
+            format!("write `name: {}` on a line of its own", from.name),
+        )
+    })?;
     // Before anything is written: not every name of a crate can be that of a crane.
     compile::load(&SourceFile::new(SPEC, spec.as_str())).map_err(|mistakes| {
         let said =
@@ -54,8 +61,8 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let values = [
         ("{{package}}", package.as_str()),
         ("{{name}}", &name),
-        ("{{title}}", description.title.as_str()),
-        ("{{from}}", &description.name),
+        ("{{title}}", from.title.as_str()),
+        ("{{from}}", &from.name),
         ("{{model}}", &model.to_string_lossy()),
         ("{{codegen}}", &codegen.to_string_lossy()),
     ];
@@ -70,7 +77,7 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
         out,
         "{} written, based on {}: edit {SPEC} there, then run `cargo run --release`; the first build takes a few minutes",
         options.folder.display(),
-        description.name
+        from.name
     )?;
     Ok(())
 }
@@ -87,7 +94,7 @@ fn write(folder: &Path, texts: &[(&str, String)]) -> Outcome<()> {
         fs::rename(&part, folder).map_err(|error| Problem::file(folder, &error))
     })();
     if written.is_err() {
-        // What is left of the part; the first error is the one to tell.
+        // Remove the rest of the part; the first error is reported.
         let _ = fs::remove_dir_all(&part);
     }
     written
@@ -111,7 +118,18 @@ fn package(folder: &Path) -> Outcome<String> {
     }
 }
 
-/// A spec with another name of the crane, and all its comments.
-fn renamed(spec: &str, from: &str, to: &str) -> String {
-    spec.replacen(&format!("\nname: {from}\n"), &format!("\nname: {to}\n"), 1)
+/// A spec with another name of the crane, and all its comments; `None` if the name is not on a line of its own.
+fn renamed(spec: &str, from: &str, to: &str) -> Option<String> {
+    let mut found = false;
+    let lines = spec.split_inclusive('\n').map(|line| {
+        match line.strip_prefix("name:").filter(|rest| !found && rest.contains(from)) {
+            Some(rest) => {
+                found = true;
+                format!("name:{}", rest.replacen(from, to, 1))
+            }
+            None => line.to_owned(),
+        }
+    });
+    let renamed: String = lines.collect();
+    found.then_some(renamed)
 }

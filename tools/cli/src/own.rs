@@ -18,11 +18,11 @@ use crate::{
     problem::{FAILED, Outcome, Problem},
 };
 
-/// Where this program was built from: the crate of the command, which the program of a crane depends on.
+/// The crate of the command, from which this program was built and on which the program of a crane depends.
 const CLI: &str = env!("CARGO_MANIFEST_DIR");
 /// The versions of everything that this program was built with.
 pub const LOCK: &str = include_str!("../../../Cargo.lock");
-/// What the program of compiled cranes runs: a crate with a function `main` over a fleet.
+/// The library of a program of compiled cranes: a crate with a function `main` over a fleet.
 pub struct Library {
     /// The crate's name.
     pub name: &'static str,
@@ -34,24 +34,45 @@ pub struct Library {
 
 /// The command itself.
 const COMMAND: Library = Library { name: env!("CARGO_PKG_NAME"), folder: CLI, features: &[] };
-/// Variable of the environment that tells a crane's own program what was typed.
+/// Environment variable with the command line as typed, for a crane's own program.
 const AS_TYPED: &str = "CRANE_AS_TYPED";
+
+/// What to do about a file that cannot be read as a spec.
+const SPEC: &str = "give a YAML file that describes a crane, or the name of a shipped crane";
 
 /// Root of the workspace that this program was built from.
 pub fn root() -> &'static Path {
     Path::new(CLI).ancestors().nth(2).unwrap_or(Path::new(CLI))
 }
 
-/// Says whether a spec is sound.
-pub fn check(spec: &Path, strict: bool, out: &mut dyn Write) -> Outcome<()> {
-    let Chain { name, bodies, coordinates, spec_hash, .. } = load(spec, strict)?.0;
+/// The spec of a shipped crane, or of a YAML file.
+pub(super) fn source(given: &str, fleet: &Fleet) -> Outcome<SourceFile> {
+    let file = Path::new(given);
+    match fleet.spec(given) {
+        Some(text) => Ok(SourceFile::new(format!("{given}.yaml"), text)),
+        None if file.extension().is_some() || file.exists() => open(file, SPEC),
+        // Neither: the message names the most similar crane.
+        None => {
+            fleet.crane(given).and_then(|_| Err(Problem::failed(format!("the spec of {given} is not available"), "")))
+        }
+    }
+}
+
+/// The chain of a shipped crane or of a YAML file, and its text; warnings are shown, and are mistakes if `strict`.
+pub(super) fn load_named(given: &str, strict: bool, fleet: &Fleet) -> Outcome<(Chain, String)> {
+    parse(source(given, fleet)?, strict)
+}
+
+/// Checks a spec and confirms that it is valid.
+pub fn check(spec: &str, strict: bool, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let Chain { name, bodies, coordinates, spec_hash, .. } = load_named(spec, strict, fleet)?.0;
     let (bodies, coordinates) = (bodies.len(), coordinates.len());
     Ok(writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?)
 }
 
-/// Prints the chain of a spec, and draws it where that is asked for.
-pub fn explain(spec: &Path, svg: Option<&Path>, out: &mut dyn Write) -> Outcome<()> {
-    let (chain, _) = load(spec, false)?;
+/// Prints the chain of a spec, and draws it on request.
+pub fn explain(spec: &str, svg: Option<&Path>, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let (chain, _) = load_named(spec, false, fleet)?;
     if let Some(file) = svg {
         files::write_text(file, &picture(&chain))?;
     }
@@ -70,10 +91,10 @@ pub fn compiled(choice: &Choice, fleet: &Fleet) -> Outcome<()> {
     run_with(&COMMAND, &package, OsStr::new(&choice.name), &[(name, text)])
 }
 
-/// Does it with a library and the program of several cranes, names and specs; the first one stands in place of `named`.
+/// Runs a library in the program of several cranes, given by names and specs; the first one replaces `named`.
 ///
 /// # Errors
-/// Cargo is missing or fails, or files cannot be written; the program has said itself what went wrong there.
+/// Cargo is missing or fails, or files cannot be written; the program reports its own errors.
 pub fn run_with(library: &Library, package: &str, named: &OsStr, cranes: &[(String, String)]) -> Outcome<()> {
     let mut place = cranes.first().map(|(name, _)| OsString::from(name));
     let arguments: Vec<OsString> = env::args_os()
@@ -102,17 +123,10 @@ pub fn typed() -> String {
 /// # Errors
 /// The file cannot be read, or the spec has mistakes, which are drawn on standard error.
 pub fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
-    // The name of a shipped crane, or a file without its extension.
-    let meant = root().join("specs").join(spec).with_extension("yaml");
-    let help = if meant != spec && meant.exists() {
-        format!("did you mean {}?", meant.display())
-    } else {
-        "give a YAML file that describes a crane".to_owned()
-    };
-    parse(open(spec, &help)?, strict)
+    parse(open(spec, SPEC)?, strict)
 }
 
-/// A sound chain and its text, or every mistake; warnings are drawn, and are mistakes if `strict`.
+/// A valid chain and its text, or every mistake; warnings are drawn, and are mistakes if `strict`.
 fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
     let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| drawn(&mistakes))?;
     if !warnings.is_empty() {
@@ -124,8 +138,7 @@ fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
     Ok((chain, source.text))
 }
 
-/// Draws what is implausible about a crane with these values of its parameters, and not without them: a problem of its own if
-/// warnings are.
+/// Shows warnings about a crane that appear only with these values of its parameters; returns them as a problem if there are any.
 pub(super) fn warn_of(source: &SourceFile, set: &[(String, f64)]) -> Option<Problem> {
     let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     let known = compile::check(source).ok()?.warnings;

@@ -21,7 +21,7 @@ pub type Outcome<T> = Result<T, Problem>;
 pub enum Problem {
     /// The reader of our output has gone; nothing to say.
     NobodyListens,
-    /// Another program has told it, and ended with this code.
+    /// Another program has reported it, and ended with this code.
     Elsewhere(u8),
     /// Something for the user to read.
     Told {

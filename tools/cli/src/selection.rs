@@ -19,6 +19,8 @@ use crate::{
 #[derive(Default)]
 pub struct Fleet {
     entries: Vec<Entry>,
+    /// Names of the shipped cranes.
+    shipped: Vec<&'static str>,
 }
 
 /// A crane of the fleet.
@@ -58,13 +60,18 @@ impl Fleet {
             let compiled = index.map(|index| compiled.swap_remove(index));
             Entry { name: name.to_owned(), spec: Cow::Borrowed(spec), compiled }
         };
-        Self { entries: specs.iter().map(entry).collect() }
+        Self { entries: specs.iter().map(entry).collect(), shipped: specs.iter().map(|(name, _)| *name).collect() }
     }
 
     /// Adds a crane by its spec, in place of one of the same name.
     pub fn add(&mut self, name: &str, spec: String) {
         self.entries.retain(|entry| entry.name != name);
         self.entries.push(Entry { name: name.to_owned(), spec: Cow::Owned(spec), compiled: None });
+    }
+
+    /// Names of the shipped cranes.
+    pub(super) fn shipped(&self) -> &[&'static str] {
+        &self.shipped
     }
 
     /// Names of all cranes.

@@ -53,7 +53,7 @@ impl<'a> Case<'a> {
         vec![0.0; self.equilibrium.q.len()]
     }
 
-    /// Value of `values`, one a coordinate, at the coordinate of this name.
+    /// Value of `values`, one per coordinate, at the coordinate of this name.
     fn value(&self, name: &str, values: &[f64]) -> Option<f64> {
         self.coordinates().iter().position(|coordinate| coordinate.name == name).map(|index| values[index])
     }
@@ -98,7 +98,7 @@ pub fn tables(cases: &[Case<'_>], limits: Limits) -> Report {
     report
 }
 
-/// Adds the cautions of labelled runs; the label stands before each where there are several.
+/// Adds the cautions of labelled runs, with the label as prefix if there are several.
 pub fn caution_of_runs<'a>(report: &mut Report, runs: impl ExactSizeIterator<Item = (&'a str, &'a Recorded)>) {
     let alone = runs.len() == 1;
     for (label, run) in runs {

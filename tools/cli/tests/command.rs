@@ -174,7 +174,7 @@ fn a_crane_without_statics_swings_from_its_guess() {
     // The guess of the spec: the upper rod level. It swings through the vertical and out on the other side.
     assert!((angles[0] - std::f64::consts::FRAC_PI_2).abs() < 1e-15, "{}", angles[0]);
     assert!(angles.iter().any(|angle| *angle < -1.0), "{angles:?}");
-    // Without springs, dampers and drives the energy stays, but for h⁴: 3.5e-8 J at 1e-3 s, a 16th of it at half the step.
+    // Without springs, dampers and drives the energy is constant up to h⁴: 3.5e-8 J at 1e-3 s, a 16th of it at half the step.
     let rows = report["summary"].as_array().expect("a table");
     let balance = rows.iter().find(|row| row["quantity"] == "energy balance, largest error").expect("a row");
     assert!(balance["double_pendulum"].as_f64().is_some_and(|error| error < 1e-7), "{balance}");
@@ -400,6 +400,37 @@ fn a_new_crane_is_a_crate_with_the_comments_of_its_spec() {
     refused(&["new", "fn"], &["`fn` is not a valid name: a keyword of Rust", "`fn_1`"]);
     refused(&["new", "crane-model"], &["`crane-model` is the name of a crate", "my-crane-model"]);
     refused(&["new", "other", "--from", "cantilver"], &["no crane `cantilver`", "`cantilever`"]);
+}
+
+#[test]
+fn a_new_crate_starts_from_a_spec_of_your_own() {
+    let out = folder("new_from_file");
+    fs::create_dir_all(&out).expect("a folder");
+    let (spec, target) = (out.join("mine.yaml"), out.join("their-crane"));
+    let shipped = fs::read_to_string("../../specs/double_pendulum.yaml").expect("a spec");
+    let mine = shipped.replace("name: double_pendulum\n", "name: \"mine\"   # a comment\n");
+    fs::write(&spec, &mine).expect("a file");
+    let output = crane(&["new", target.to_str().expect("a path"), "--from", spec.to_str().expect("a path")]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let written = fs::read_to_string(target.join("crane.yaml")).expect("a spec");
+    assert_eq!(written, mine.replace("name: \"mine\"", "name: \"their_crane\""));
+    // A name that is not on a line of its own.
+    fs::write(&spec, "{format: 1, name: mine, links: [{name: a, joint: revolute, mass: 1, com: [1, 0, 0]}]}\n")
+        .expect("a file");
+    let elsewhere = out.join("other-crane");
+    let output = crane(&["new", elsewhere.to_str().expect("a path"), "--from", spec.to_str().expect("a path")]);
+    assert!(text(&output.stderr).contains("write `name: mine` on a line of its own"), "{}", text(&output.stderr));
+    assert!(!elsewhere.exists());
+}
+
+#[test]
+fn help_groups_commands_by_task() {
+    let help = text(&crane(&["--help"]).stdout);
+    let place = |words: &str| help.find(words).unwrap_or_else(|| panic!("`{words}` not in: {help}"));
+    assert!(place("Describe a crane:") < place("  check ") && place("  check ") < place("Compute:"), "{help}");
+    assert!(place("Compute:") < place("  statics ") && place("  statics ") < place("For developers:"), "{help}");
+    assert!(place("For developers:") < place("  schema ") && place("  schema ") < place("Options:"), "{help}");
+    assert!(place("Options:") < place("Exit codes:"), "{help}");
 }
 
 #[test]

@@ -28,6 +28,21 @@ fn spec(name: &str, from: &str, to: &str) -> String {
 }
 
 #[test]
+fn shipped_cranes_are_checked_explained_and_generated_by_name() {
+    let checked = crane(&["check", "cantilever"]);
+    let said = text(&checked.stdout);
+    assert!(said.starts_with("cantilever: valid; ") && said.contains(" 24 coordinates"), "{said}");
+    assert!(text(&crane(&["explain", "cantilever"]).stdout).starts_with("cantilever: "));
+    let module = crane(&["generate", "double_pendulum"]);
+    assert!(text(&module.stdout).contains("from double_pendulum.yaml; do not edit."), "{}", text(&module.stderr));
+    for command in ["check", "explain", "generate"] {
+        let unknown = crane(&[command, "cantilevr"]);
+        assert_eq!(unknown.status.code(), Some(2), "{command}");
+        assert!(text(&unknown.stderr).contains("did you mean `cantilever`?"), "{}", text(&unknown.stderr));
+    }
+}
+
+#[test]
 fn a_valid_spec_is_confirmed_and_mistakes_are_drawn() {
     let sound = crane(&["check", &spec("sound.yaml", "420", "421")]);
     assert!(sound.status.success(), "{}", text(&sound.stderr));
@@ -144,7 +159,7 @@ fn a_spec_runs_live_without_cargo_from_any_folder() {
     }
     run(&["run", &file, "--duration", "0.5", "--out", "."]);
     assert!(folder.join("knuckle_boom.html").exists());
-    // The same pose as machine code finds, but for rounding.
+    // The same pose as machine code finds, up to rounding.
     let pose = |crane: &str| -> Vec<f64> {
         let report: serde_json::Value =
             serde_json::from_str(&run(&["statics", crane, "--format", "json"])).expect("JSON");

@@ -8,17 +8,17 @@ use crane_cli::toolbox::{Analysis, Format, seconds};
 
 const EXAMPLES: &str = "\
 Examples:
-  crane-lab work-precision             what accuracy costs: methods, steps, tolerances, numbers of sections
+  crane-lab work-precision             error against run time for methods, tolerances and numbers of sections
   crane-lab work-precision my.yaml --sections none
-                                       the methods alone, for your own crane
-  crane-lab stress --quick             stiff and extreme cranes, as expected or not
+                                       only the methods, for your own crane
+  crane-lab stress --quick             run the stiff and extreme test cranes
 
 Exit codes:
   0  done
-  1  a case that did not go as expected, a file that cannot be used
+  1  a case that differs from what is expected, a file that cannot be used
   2  wrong arguments";
 
-/// Measures and stresses the methods and models that the command `crane` uses.
+/// Measures and stress-tests the methods and models that the command `crane` uses.
 #[derive(Debug, Parser)]
 #[command(name = "crane-lab", version, after_help = EXAMPLES)]
 pub struct Arguments {

@@ -1,6 +1,6 @@
-//! What measures and stresses the methods and models of the command `crane`.
+//! Measurements and stress tests of the methods and models of the command `crane`.
 //!
-//! `work-precision` runs compiled cranes: the program that it compiles is this library over them.
+//! `work-precision` runs compiled cranes: it compiles a program of this library with these cranes.
 
 mod arguments;
 mod stress;
@@ -8,12 +8,14 @@ mod work_precision;
 
 use std::process::ExitCode;
 
+use clap::CommandFactory;
+
 use arguments::{Action, Arguments};
 pub use crane_cli::Fleet;
 
 /// Does what the arguments of the process ask for, with the cranes of a fleet or of a YAML file that the arguments name.
 pub fn main(fleet: Fleet) -> ExitCode {
-    crane_cli::with_arguments(move |arguments: Arguments, out| match &arguments.action {
+    crane_cli::with_arguments(Arguments::command(), move |arguments: Arguments, out| match &arguments.action {
         Action::WorkPrecision(options) => work_precision::work_precision(options, &fleet, out),
         Action::Stress(options) => stress::stress(options, &fleet, out),
     })

@@ -114,7 +114,7 @@ fn compile(
     let mut build = Command::new(&cargo);
     build.args(["build", "--release", "--manifest-path"]).arg(folder.join("Cargo.toml"));
     build.arg("--target-dir").arg(&target).stdin(Stdio::from(lock)).stdout(Stdio::null());
-    // Cargo's own progress bar for whoever watches.
+    // Cargo's own progress bar in a terminal.
     if !io::stderr().is_terminal() {
         build.arg("--quiet");
     }
@@ -185,7 +185,7 @@ fn cache() -> Outcome<PathBuf> {
         })
 }
 
-/// Cargo's folder that this program stands in: what is built there serves again.
+/// Cargo's target folder that contains this program, so that its builds can be reused.
 fn target() -> Option<PathBuf> {
     let program = env::current_exe().ok()?;
     let profile = program.parent()?;

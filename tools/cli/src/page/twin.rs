@@ -4,7 +4,7 @@ use crane_model::{ParameterInfo, dyn_crane::DynCrane};
 
 use crate::Fleet;
 
-/// The crane of the fleet that is `rig` but for its elements, with the same parameters.
+/// The crane of the fleet that equals `rig` except for its elements, with the same parameters.
 pub fn rigid(rig: &dyn DynCrane, fleet: &Fleet) -> Option<Box<dyn DynCrane>> {
     let parameters = &rig.description().parameters;
     fleet.all().flatten().find_map(|mut other| {
@@ -47,7 +47,7 @@ fn is_rigid(rig: &dyn DynCrane, other: &dyn DynCrane) -> bool {
     alike(&numbers(rig, &straight), &numbers(other, &pose))
 }
 
-/// Equal but for rounding.
+/// Equal up to rounding.
 fn alike(left: &[f64], right: &[f64]) -> bool {
     /// Relative to the numbers, and to 1.
     const ROUNDING: f64 = 1e-9;

@@ -28,7 +28,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
 }
 
 /// A carriage of 100 kg on a drive of 1e4 N/m and 400 N s/m, moved by 1 m in a time: for a step `x = 1 − e^{−δt} (cos ωt +
-/// δ/ω sin ωt)`, δ = d/2m, ω² = s/m − δ², but for the damper, which adds the impulse d: x gains `d/(mω) e^{−δt} sin ωt`.
+/// δ/ω sin ωt)`, δ = d/2m, ω² = s/m − δ², except for the damper, which adds the impulse d: x gains `d/(mω) e^{−δt} sin ωt`.
 fn step(method: Method, accuracy: f64, duration: f64) -> Case {
     let (mass, stiffness, damping, end) = (100.0, 1e4, 400.0, 0.5_f64);
     let decay: f64 = damping / (2.0 * mass);
@@ -60,7 +60,7 @@ drives:
         ));
         let recorded = match Subject::new(&spec)?.run(&timing(method, accuracy, end)) {
             Ok(recorded) => recorded,
-            // A run that ends with a reason has not misled anybody.
+            // A run that ends with a reason does not mislead.
             Err(said) => return expect(missed, said),
         };
         let last = recorded.table.rows.last().map_or(f64::NAN, |row| row[1]);

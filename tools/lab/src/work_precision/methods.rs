@@ -11,7 +11,7 @@ use crane_cli::toolbox::{Cell, Grid};
 
 use super::trace::{Errors, Timed, Trace, timed};
 
-/// A series ends where a run takes longer, s: what is left would cost more than it tells.
+/// A series ends when a run takes longer, s: the rest would cost more than it is worth.
 const LONG: f64 = 2.0;
 /// A series ends where the error of the load path is below this: next come rounding and the reference.
 const EXACT: f64 = 1e-10;
@@ -33,7 +33,7 @@ pub struct Point {
     pub errors: Errors,
 }
 
-/// What a method is told.
+/// The setting of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Setting {
     /// A constant step, s.

@@ -52,7 +52,7 @@ pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Writ
     let known = fleet.names();
     let missing = counts.iter().any(|&count| !known.contains(&refinement::name(&crane, count).as_str()));
     let flexible = if missing { others(&crane, &text, counts) } else { Vec::new() };
-    // Times are those of machine code, but for a quick look.
+    // Times are those of machine code, except with `--quick`.
     if flexible.is_empty() && choice.file().is_none() && fleet.is_compiled(&crane) {
         return study(options, &crane, if missing { &[] } else { counts }, fleet, out);
     }

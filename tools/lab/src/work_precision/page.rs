@@ -89,7 +89,7 @@ fn pictures(key: &str) -> &'static [(&'static str, &'static str)] {
     }
 }
 
-/// What this runs on, where the system tells.
+/// The machine, if the system reports it.
 fn machine() -> String {
     let told = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = told.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));

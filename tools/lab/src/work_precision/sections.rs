@@ -107,7 +107,7 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// `x∞ = x_n + (x_n − x_m)/((n/m)² − 1)` of the finest, n, and the one before, m.
+    /// `x∞ = x_n + (x_n − x_m)/((n/m)² − 1)` of the finest, n, and the next coarser, m.
     pub fn of(variants: &[Variant]) -> Option<Self> {
         let [.., before, finest] = variants else { return None };
         let weight = ((finest.sections as f64 / before.sections as f64).powi(2) - 1.0).recip();
@@ -145,7 +145,7 @@ impl Limit {
             format!("Errors of the model over the number of sections, relative; frequencies: the first {FREQUENCIES}");
         let mut grid = Grid::new("sections", title, &headers);
         for variant in variants {
-            // A crane that does not settle, or whose statics nobody asked for, has no deflection to be off.
+            // A crane that does not settle, or without statics, has no deflection to compare.
             let errors =
                 self.errors(variant).map(|error| if error.is_finite() { Cell::Error(error) } else { Cell::Empty });
             grid.row([vec![variant.sections.into(), variant.coordinates.into()], errors.to_vec()].concat());
