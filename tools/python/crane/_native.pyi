@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 class SpecError(ValueError):
-    """The mistakes of a spec, drawn with their places and remedies."""
+    """The mistakes of a spec, shown with their locations and remedies."""
 
     codes: list[str]
 
@@ -20,10 +20,10 @@ class NoEquilibrium(ArithmeticError):
     """Statics found no stable equilibrium."""
 
 class SpecWarning(UserWarning):
-    """What is implausible about a spec, drawn with its places and remedies."""
+    """Implausible numbers of a spec, shown with their locations and remedies."""
 
 class InvalidRowWarning(UserWarning):
-    """Rows of a batch whose results are NaN, and why."""
+    """Rows of a batch whose results are NaN, with the reasons."""
 
 def shipped() -> list[str]:
     """Names of the cranes that come with the package."""

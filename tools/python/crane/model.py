@@ -53,12 +53,12 @@ class Crane(_native.Crane):
         return f"<crane {self.name}: {self.n} coordinates{', ' if values else ''}{values}{batch}>"
 
     def replace(self, *, invalid: str = "raise", **parameters: ArrayLike) -> Self:
-        """The same crane with other live parameters; what is not named keeps its value. Nothing is derived again."""
+        """The same crane with other live parameters; the others keep their values. Nothing is derived again."""
         return type(self)(self.source, parameters=parameters, invalid=invalid, like=self)
 
     @property
     def info(self) -> dict[str, Any]:
-        """Coordinates, bodies, drives, supports, points and parameters: names, units and what they are."""
+        """Coordinates, bodies, drives, supports, points and parameters: names, units and descriptions."""
         return self.describe()
 
     @property
@@ -73,13 +73,13 @@ class Crane(_native.Crane):
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """Live parameters: a number each, or an array over the leading axes."""
+        """Live parameters: one number each, or an array over the leading axes."""
         names = [parameter["name"] for parameter in self.info["parameters"]]
         return {name: self.parameter_rows(index) for index, name in enumerate(names)}
 
     @property
     def guess(self) -> Array:
-        """Where statics begins, (..., n), m and rad."""
+        """Start of statics, (..., n), m and rad."""
         return self.guess_rows()
 
     def linearise(self, q: ArrayLike, *, invalid: str = "raise") -> Linearisation:
@@ -197,7 +197,7 @@ class Crane(_native.Crane):
         return Ensemble(units=dict(found.pop("columns")), **found, **words)
 
     def simulation(self, *, method: str | None = None, tolerance: float | None = None, step: float | None = None, **start: Any) -> Simulation:
-        """A run to be driven from outside, step by step: `Simulation`. `start`: t, q and v; the static equilibrium at rest unless given."""
+        """A simulation that is stepped from outside: `Simulation`. `start`: t, q and v; the static equilibrium at rest unless given."""
         return Simulation(self, _timing(method, None, None, tolerance, step, True), **start)
 
 
@@ -209,7 +209,7 @@ def _timing(
     step: float | str | None,
     force: bool,
 ) -> dict[str, Any]:
-    """How to run, for the native part."""
+    """Settings of a run, for the native part."""
     if isinstance(step, str) and step != "auto":
         raise ValueError(f'step={step!r}: write a number of seconds, or "auto"')
     return {
@@ -224,5 +224,5 @@ def _timing(
 
 
 def _shaped(rows: list, shape: tuple[int, ...]) -> Any:
-    """What a list of rows is over leading axes: the row itself where there are none."""
+    """A list of rows over leading axes: the row itself if there are none."""
     return np.asarray(rows).reshape(shape) if shape else rows[0]

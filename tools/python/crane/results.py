@@ -1,4 +1,4 @@
-"""What the functions of a crane return."""
+"""Results of the functions of a crane."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -82,13 +82,13 @@ class Modes:
 
     @property
     def frequencies(self) -> Array:
-        """Undamped frequencies ω/2π, Hz; NaN where the pose is unstable in a mode."""
+        """Undamped frequencies ω/2π, Hz; NaN if the pose is unstable in a mode."""
         with np.errstate(invalid="ignore"):
             return np.sqrt(self.omega_squared) / (2.0 * np.pi)
 
     @property
     def damping_ratios(self) -> Array:
-        """Damping ratios −Re λ/|λ|: 1 for a mode that creeps back without swinging, negative for one that grows."""
+        """Damping ratios −Re λ/|λ|: 1 for a mode that returns without oscillating, negative for one that grows."""
         size = np.abs(self.eigenvalues)
         return np.divide(-self.eigenvalues.real, size, out=np.zeros_like(size), where=size != 0.0)
 
@@ -144,7 +144,7 @@ class Run(Mapping[str, Array]):
         return self["t"]
 
     def extremes(self, name: str) -> dict[str, float]:
-        """Least and greatest value of a column, and when it had them first, s."""
+        """Minimum and maximum of a column, and their first times, s."""
         column, t = self[name], self.t
         least, greatest = int(np.argmin(column)), int(np.argmax(column))
         return {
@@ -164,13 +164,13 @@ class Run(Mapping[str, Array]):
 
 @dataclass(frozen=True)
 class Ensemble(Mapping[str, Array]):
-    """Runs of a crane over arrays of parameters: what is left of each, by name, over their axes.
+    """Runs of a crane over arrays of parameters: results of each, by name, over their axes.
 
     Columns: `_min`, `_min_time`, `_max`, `_max_time` of `<point>_x`, `_y`, `_z`, of `<coordinate>_drive_torque` or
     `_drive_force` and of `<support>_reaction_x`, `_y`, `_z`, signed; `<point>_x_end` and so on, the last values.
     NaN where a run did not reach its end.
 
-    units: unit of every column. status: "done", or why not. cautions: what to be careful about, or "".
+    units: unit of every column. status: "done", or why not. cautions: warnings about the run, or "".
     time: time reached, s. steps: steps taken. q, v: (..., n), the last pose and rates.
     """
 
@@ -199,7 +199,7 @@ class Ensemble(Mapping[str, Array]):
 
 
 def _place(units: dict[str, str], name: str) -> int:
-    """Place of a column; a KeyError that names those alike."""
+    """Index of a column; otherwise a KeyError that names similar ones."""
     try:
         return list(units).index(name)
     except ValueError:

@@ -1,4 +1,4 @@
-"""Runs that are driven from outside, for controllers and learning."""
+"""Simulations that are stepped from outside, for controllers and learning."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -50,7 +50,7 @@ class Simulation:
         v: ArrayLike | None = None,
     ) -> None:
         if crane.shape:
-            raise ValueError("the crane has arrays of parameters: a simulation is of one crane")
+            raise ValueError("the parameters are arrays: a simulation needs one value of each")
         # Each step starts from the state alone: methods of one step lose nothing by that.
         method = timing["method"] or ("rk4" if timing["step"] else "rosw4")
         self._timing = {**timing, "method": method}
@@ -77,12 +77,12 @@ class Simulation:
 
     @property
     def work(self) -> float:
-        """Work that the drives' motions put in since the start, J."""
+        """Work of the drives' motions since the start, J."""
         return self._state.work
 
     @property
     def dissipated(self) -> float:
-        """Energy that the dampers took out since the start, J."""
+        """Energy that the dampers dissipated since the start, J."""
         return self._state.dissipated
 
     def step(self, dt: float, **parameters: float) -> State:
@@ -100,7 +100,7 @@ class Simulation:
         return self._state
 
     def save(self) -> State:
-        """The present state."""
+        """The current state."""
         return self._state
 
     def restore(self, state: State) -> None:

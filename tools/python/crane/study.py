@@ -61,14 +61,14 @@ def table(columns: Mapping[str, ArrayLike]) -> Cases:
 
 
 def latin_hypercube(count: int, *, seed: int, **ranges: tuple[float, float]) -> Cases:
-    """So many samples of a Latin hypercube over ranges of parameters, (least, greatest) each."""
+    """`count` samples of a Latin hypercube over ranges of parameters, (minimum, maximum) each."""
     from scipy.stats import qmc
 
     return _scaled(qmc.LatinHypercube(len(ranges), rng=seed).random(count), ranges)
 
 
 def sobol(count: int, *, seed: int, **ranges: tuple[float, float]) -> Cases:
-    """So many points of a scrambled Sobol sequence, a power of two, over ranges of parameters, (least, greatest) each."""
+    """`count` points of a scrambled Sobol sequence, a power of two, over ranges of parameters, (minimum, maximum) each."""
     from scipy.stats import qmc
 
     if count < 1 or count & (count - 1):
@@ -139,7 +139,7 @@ def run(
     what: "simulate": extremes, ends and status of a run of each case; `settings` are those of `Crane.simulate_ensemble`.
         "statics": pose, efforts of the drives, reactions, points and status; `settings` are those of `Crane.statics`.
         A function: it gets a crane with the cases of a part as arrays of parameters and returns columns, each as long as those;
-        it is told apart from another one by its name, so give a changed one another name or folder.
+        its name identifies it, so give a changed one another name or folder.
     part: cases per part. engine: None for the threads of this machine, or a `distributed.Client`.
     retries: how often a worker's part that failed is repeated. progress: whether to write a line on standard error; by default
         where that is a terminal.
@@ -150,10 +150,10 @@ def run(
     if not callable(what) and what not in _RESULTS:
         raise ValueError(f'what={what!r}: write "simulate", "statics" or give a function')
     if part < 1:
-        raise ValueError(f"part={part}: write a number of cases from 1 on")
+        raise ValueError(f"part={part}: write a number of cases, 1 or more")
     crane = spec if isinstance(spec, Crane) else load(spec)
     if crane.shape:
-        raise ValueError("the crane has arrays of parameters: give them as cases")
+        raise ValueError("the parameters are arrays: give them as cases")
     cases = table({**crane.parameters, **dict(cases)} if not cases else cases)
     fixed = {name: value for name, value in crane.parameters.items() if name not in cases}
     count = len(next(iter(cases.values()), []))
@@ -254,7 +254,7 @@ def _compute(part: _Part) -> Any:
 
 
 def _simulate(crane: Crane, settings: dict[str, Any]) -> dict[str, tuple[np.ndarray, str]]:
-    """What is left of a run of each case."""
+    """Results of a run of each case."""
     found = crane.simulate_ensemble(invalid="nan", **settings)
     columns = {name: (found[name], unit) for name, unit in found.units.items()}
     return columns | {
@@ -266,7 +266,7 @@ def _simulate(crane: Crane, settings: dict[str, Any]) -> dict[str, tuple[np.ndar
 
 
 def _statics(crane: Crane, settings: dict[str, Any]) -> dict[str, tuple[np.ndarray, str]]:
-    """Where each case rests."""
+    """The equilibrium of each case."""
     found = crane.statics(invalid="nan", **settings)
     info = crane.info
     columns = {}
@@ -287,7 +287,7 @@ _RESULTS = {"simulate": _simulate, "statics": _statics}
 
 
 def _digest(crane: Crane, cases: Cases, fixed: dict, what: Any, settings: dict, part: int) -> str:
-    """What tells a study from another one."""
+    """What distinguishes a study from another one."""
     said = [FORMAT, crane.spec_hash, fixed, list(cases), _name(what), settings, part]
     digest = hashlib.sha256(json.dumps(said, sort_keys=True).encode())
     for column in cases.values():
@@ -296,7 +296,7 @@ def _digest(crane: Crane, cases: Cases, fixed: dict, what: Any, settings: dict, 
 
 
 def _name(what: Any) -> str:
-    """What is computed, by name."""
+    """The computations, by name."""
     if isinstance(what, str):
         return what
     kind = what if hasattr(what, "__qualname__") else type(what)
@@ -320,13 +320,13 @@ def _claim(folder: Path, manifest: dict[str, Any]) -> None:
         differs = [key for key in ("crane", "spec_hash", "what", "settings", "parameters", "columns", "cases", "cases_per_part")
                    if known.get(key) != manifest[key]]
         why = ", ".join(differs) or "cases"
-        raise ValueError(f"{folder} has another study, which differs in: {why}; use another folder, or remove that one")
+        raise ValueError(f"{folder} has another study, which differs in: {why}; use another folder, or remove that study")
     if known is None:
         _replace(path, lambda file: file.write((json.dumps(manifest, indent=2) + "\n").encode()))
 
 
 def _is_finished(path: Path, digest: str, rows: int) -> bool:
-    """Whether a part is there and whole."""
+    """Whether a part exists and is complete."""
     try:
         with pyarrow.parquet.ParquetFile(path) as file:
             return file.metadata.num_rows == rows and (file.schema_arrow.metadata or {}).get(DIGEST) == digest.encode()

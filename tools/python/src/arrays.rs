@@ -39,7 +39,7 @@ impl Argument {
             let coordinates: Vec<&str> = description.coordinates.iter().map(|coordinate| &*coordinate.name).collect();
             let has = last.map_or("is one number".to_owned(), |last| format!("has {last} numbers in its last axis"));
             return Err(PyValueError::new_err(format!(
-                "{name} {has} where {} has {width} coordinates: {}",
+                "{name} {has}, but {} has {width} coordinates: {}",
                 description.name,
                 coordinates.join(", ")
             )));
@@ -122,7 +122,7 @@ impl<'a> Joined<'a> {
                     (_, 1) => {}
                     (size, own) => {
                         return Err(PyValueError::new_err(format!(
-                            "the leading axes of {name} do not fit those of the other arguments: {own} beside {size}"
+                            "the leading axes of {name} do not fit those of the other arguments: {own} and {size}"
                         )));
                     }
                 }

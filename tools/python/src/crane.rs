@@ -47,7 +47,7 @@ fn open(py: Python<'_>, named: &str) -> PyResult<SourceFile> {
     let yaml = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
     if !yaml && !path.is_file() {
         return Err(PyFileNotFoundError::new_err(format!(
-            "there is no crane `{named}` and no such file; cranes: {}; a spec of your own is a file that ends with .yaml",
+            "there is no crane `{named}` and no such file; cranes: {}; your own spec needs the extension .yaml",
             shipped().join(", ")
         )));
     }
@@ -91,7 +91,7 @@ impl Crane {
         if count > LiveCrane::MOST_COORDINATES {
             let most = LiveCrane::MOST_COORDINATES;
             return Err(mistakes::SpecError::new_err(format!(
-                "{} has {count} coordinates, and at most {most} can be computed: give flexible links fewer `sections`",
+                "{} has {count} coordinates; at most {most} are supported: give flexible links fewer `sections`",
                 chain.name
             )));
         }
@@ -187,7 +187,7 @@ impl Crane {
     /// The crane for other programs: "urdf", "springs" (what URDF does not hold, YAML) or "mjcf", with the present parameters.
     fn export(&self, format: &str) -> PyResult<String> {
         if !self.is_single() {
-            return Err(PyValueError::new_err("the crane has arrays of parameters: export one of them"));
+            return Err(PyValueError::new_err("the parameters are arrays: export a crane with one value of each"));
         }
         let (chain, parameters) = (self.live.chain(), self.live.parameters());
         match format {

@@ -5,7 +5,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyArithmeticError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 
-create_exception!(crane, SpecError, PyValueError, "The mistakes of a spec, drawn with their places and remedies.");
+create_exception!(crane, SpecError, PyValueError, "The mistakes of a spec, shown with their locations and remedies.");
 create_exception!(
     crane,
     ParameterError,
@@ -17,9 +17,9 @@ create_exception!(
     crane,
     SpecWarning,
     PyUserWarning,
-    "What is implausible about a spec, drawn with its places and remedies."
+    "Implausible numbers of a spec, shown with their locations and remedies."
 );
-create_exception!(crane, InvalidRowWarning, PyUserWarning, "Rows of a batch whose results are NaN, and why.");
+create_exception!(crane, InvalidRowWarning, PyUserWarning, "Rows of a batch whose results are NaN, with the reasons.");
 
 /// The mistakes of a spec as an exception that prints them as the command draws them; its `codes` are those of the rules.
 pub fn spec_error(py: Python<'_>, mistakes: &Diagnostics) -> PyErr {
@@ -45,7 +45,7 @@ pub fn warn(py: Python<'_>, category: &Bound<'_, PyAny>, message: String) -> PyR
     PyErr::warn(py, category, &message, 1)
 }
 
-/// What to do with rows that nothing can be computed of.
+/// Treatment of rows that cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Invalid {
     /// Raise an exception that names the first.
@@ -65,7 +65,7 @@ impl Invalid {
     }
 }
 
-/// A row that nothing can be computed of, and why.
+/// A row that cannot be computed, and why.
 #[derive(Clone, Debug)]
 pub struct BadRow {
     /// Its place.

@@ -53,12 +53,12 @@ impl Timing {
         };
         if constant && method.is_adaptive() {
             return Err(PyValueError::new_err(format!(
-                "`step` means nothing to {method}: give `tolerance`, or method=\"rk4\""
+                "`step` has no effect with {method}: give `tolerance`, or method=\"rk4\""
             )));
         }
         if self.tolerance.is_some() && !method.is_adaptive() {
             return Err(PyValueError::new_err(format!(
-                "`tolerance` means nothing to {method}: give `step`, or method=\"bdf\""
+                "`tolerance` has no effect with {method}: give `step`, or method=\"bdf\""
             )));
         }
         let own = Settings::of(description);
@@ -88,10 +88,10 @@ impl Timing {
             return Err(PyValueError::new_err(format!("output={output} is longer than the run of {duration} s")));
         }
         if settings.duration / settings.output > Settings::MOST_RESULTS {
-            return Err(PyValueError::new_err("results are more than a million: write a longer `output`, in s"));
+            return Err(PyValueError::new_err("more than a million results: write a longer `output`, in s"));
         }
         if !method.is_adaptive() && settings.duration / settings.step > Settings::MOST_STEPS {
-            return Err(PyValueError::new_err("steps are more than ten billion: write a longer `step`, in s"));
+            return Err(PyValueError::new_err("more than ten billion steps: write a longer `step`, in s"));
         }
         Ok(settings)
     }
@@ -109,7 +109,7 @@ impl Timing {
                 let cause = cause(crane.description(), &limit.mode);
                 Err(PyValueError::new_err(format!(
                     "{name}: a step of {step:e} s is unstable; rk4 takes at most {:.3e} s, limited at t = {t} s by {cause}; \
-                     step=\"auto\" takes {:.2e} s, method=\"bdf\" needs no such steps, force=True runs all the same",
+                     step=\"auto\" uses {:.2e} s, method=\"bdf\" can use longer steps, force=True runs anyway",
                     limit.step,
                     SAFE * limit.step
                 )))
@@ -182,7 +182,7 @@ impl Crane {
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
         if !self.is_single() {
-            return Err(PyValueError::new_err("the crane has arrays of parameters: `simulate_ensemble` runs them all"));
+            return Err(PyValueError::new_err("the parameters are arrays: use `simulate_ensemble`"));
         }
         timing.settings(description)?;
         let [q, v] =
@@ -303,7 +303,7 @@ impl Crane {
         let crane = &self.live;
         let description = crane.description();
         if !self.is_single() {
-            return Err(PyValueError::new_err("the crane has arrays of parameters: a simulation is of one crane"));
+            return Err(PyValueError::new_err("the parameters are arrays: a simulation needs one value of each"));
         }
         if !t.is_finite() {
             return Err(PyValueError::new_err(format!("t is {t}, not a finite number")));

@@ -19,7 +19,7 @@ static THREADS: AtomicUsize = AtomicUsize::new(0);
 #[pyo3(signature = (count=None))]
 pub fn set_threads(count: Option<usize>) -> PyResult<()> {
     if count == Some(0) {
-        return Err(PyValueError::new_err("set_threads(0): write a number from 1 on, or None for all of the machine"));
+        return Err(PyValueError::new_err("set_threads(0): write a number of 1 or more, or None for all cores"));
     }
     THREADS.store(count.unwrap_or(0), Ordering::Relaxed);
     Ok(())
@@ -54,7 +54,7 @@ impl Watch {
         Self::reporting(None, 0)
     }
 
-    /// A call over rows that begins, and a function of Python that is told how many are done, and of how many.
+    /// A call over rows that begins, and a Python function that receives the numbers of finished and of all rows.
     pub fn reporting(report: Option<Py<PyAny>>, all: usize) -> Self {
         let looked = Mutex::new((Instant::now(), None));
         Self { off: AtomicBool::new(false), looked, done: AtomicUsize::new(0), all, report }
@@ -90,7 +90,7 @@ impl Watch {
         }
     }
 
-    /// The exception that called it off: a signal's, or one of the function that is told how far it is.
+    /// The exception that called it off: that of a signal, or of the function that receives the progress.
     pub fn finish(self, py: Python<'_>) -> PyResult<()> {
         let signal = self.looked.lock().unwrap_or_else(PoisonError::into_inner).1.take();
         match signal {

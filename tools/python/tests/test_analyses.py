@@ -75,7 +75,7 @@ def test_a_run_is_recorded_with_its_errors(knuckle):
     np.testing.assert_allclose(run["energy_balance"], 0, atol=1e-3 * np.ptp(run["drive_work"]))
     finer = knuckle.simulate(duration=1.0, output=0.01, tolerance=1e-9, verify=False)
     assert finer.errors is None
-    # The difference from a much finer run is what was estimated, but for a small part of it.
+    # The difference from a much finer run is what was estimated, up to a small part of it.
     difference = np.abs(run["main_boom_theta"] - finer["main_boom_theta"]).max()
     assert difference < 1.5 * run.errors["main_boom_theta"] + 1e-9
     with pytest.raises(KeyError, match="did you mean"):
@@ -97,7 +97,7 @@ def test_a_run_goes_on_from_any_state(pendulum):
         ({"output": np.nan}, "output=NaN"),
         ({"tolerance": 1e-20}, "tolerance=0.00000000000000000001|tolerance=1e-20"),
         ({"step": "small"}, "step='small'"),
-        ({"step": 1e-3, "method": "bdf"}, "`step` means nothing to bdf"),
+        ({"step": 1e-3, "method": "bdf"}, "`step` has no effect with bdf"),
         ({"step": 0.5}, "unstable; rk4 takes at most"),
         ({"q": [np.nan] * 25}, r"q\[0\] \(truck_x\) is NaN"),
     ],

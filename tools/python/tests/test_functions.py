@@ -114,7 +114,7 @@ def test_anything_that_numpy_understands_is_taken(knuckle):
 @pytest.mark.parametrize(
     ("given", "error", "words"),
     [
-        ([0.0, 1.0], ValueError, "q has 2 numbers in its last axis where knuckle_boom has 4 coordinates: "),
+        ([0.0, 1.0], ValueError, "q has 2 numbers in its last axis, but knuckle_boom has 4 coordinates: "),
         (1.0, ValueError, "q is one number"),
         ("abcd", TypeError, "q is not an array of numbers"),
         ([0.0, np.nan, 0.0, 0.0], ValueError, r"q\[1\] \(.*\) is NaN, not a finite number"),

@@ -110,7 +110,7 @@ def test_threads_are_set():
     try:
         crane.set_threads(1)
         assert crane.threads() == 1
-        with pytest.raises(ValueError, match="from 1 on"):
+        with pytest.raises(ValueError, match="1 or more"):
             crane.set_threads(0)
     finally:
         crane.set_threads()
