@@ -1,4 +1,4 @@
-//! Whatever stands in a file, reader and validator answer with a chain or with mistakes, and never panic.
+//! Whatever a file contains, reader and validator answer with a chain or with mistakes, and never panic.
 
 use std::path::Path;
 

@@ -150,7 +150,7 @@ fn a_hoist_pulls_more_as_it_speeds_up() {
     assert_close("joint", wrenches[1], [[0.0, 0.0, force], [0.0, -0.3 * force, 0.0]]);
 }
 
-/// A joint of a classic D-H row is cut at its axis, not where the link's frame stands: there the moment about z is the effort.
+/// A joint of a classic D-H row is cut at its axis, not at the link's frame: there the moment about z is the effort.
 #[test]
 fn a_classic_row_is_cut_at_its_axis() {
     let row = |name: &str, alpha: &str| {

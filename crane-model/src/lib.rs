@@ -1,5 +1,5 @@
-//! Runtime of cranes compiled by `crane-codegen`: statics, motion and small vibrations of whatever implements the traits
-//! of a generated crane.
+//! Runtime of cranes compiled by `crane-codegen`: statics, motion and small vibrations of types that implement the traits of
+//! a generated crane.
 //!
 //! | what | where | needs |
 //! |---|---|---|
@@ -9,7 +9,7 @@
 //! | equilibrium | `statics` | `std` |
 //! | a run with recorded results | `dynamics::simulate` | `std` |
 //! | runs of many cranes, eight at a time | `dynamics::ensemble` | `std` |
-//! | runs as users ask for them: from rest, recorded, verified; ensembles on threads | `runs` | `std` |
+//! | complete runs: from rest, recorded, verified; ensembles on threads | `runs` | `std` |
 //! | frequencies, damping | `modes` | `std` |
 //! | largest stable step | `stability` | `std` |
 //! | moments about tipping lines | `tipping` | `std` |
@@ -53,7 +53,7 @@ pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,
     Statics, TransformDerivatives,
 };
-/// The linear algebra of every signature, so that generated code needs this crate alone.
+/// The linear algebra of every signature, so that generated code needs only this crate.
 pub use nalgebra;
 pub use parameter::{Bound, ParameterError, Refusal};
 pub use stress::SectionModuli;

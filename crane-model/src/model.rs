@@ -1,7 +1,7 @@
-//! The seam between generated cranes and everything that is computed with them.
+//! The interface between generated cranes and everything that is computed with them.
 //!
-//! Generated code implements these traits, statics, integrators and reports are generic over them. What a crane does not
-//! have (supports, flexible links, drives, damping) keeps the default: zero, at no cost.
+//! Generated code implements these traits; statics, integrators and reports are generic over them. Parts that a crane does not
+//! have (supports, flexible links, drives, damping) keep the default: zero, at no cost.
 //!
 //! Throughout: `N` coordinates, `q` in m and rad, `v = q̇` in m/s and rad/s, `t` in s, world frame with z up.
 
@@ -17,34 +17,34 @@ pub trait CraneModel<const N: usize> {
     /// Names, units and settings.
     fn description(&self) -> &Description;
 
-    /// Value of a live parameter, by its place in [`Description::parameters`].
+    /// Value of a live parameter, by its index in [`Description::parameters`].
     fn parameter(&self, index: usize) -> f64;
 
     /// Sets a live parameter. An index out of range changes nothing.
     ///
     /// # Errors
-    /// The value breaks a rule of the spec language; the crane stays as it is.
+    /// The value breaks a rule of the spec language; the crane stays unchanged.
     fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError>;
 
-    /// Sets the first live parameters together, as many as there are values: rules that join several parameters are checked
-    /// for all of them at once.
+    /// Sets as many of the first live parameters together as there are values: rules about several parameters are checked for
+    /// all of them at once.
     ///
     /// # Errors
-    /// A value breaks a rule of the spec language; a generated crane then stays as it is.
+    /// A value breaks a rule of the spec language; a generated crane then stays unchanged.
     fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
         values.iter().enumerate().try_for_each(|(index, &value)| self.set_parameter(index, value))
     }
 
-    /// Transforms T of all bodies into the world frame, Eq. (3). `out`: one a body.
+    /// Transforms T of all bodies into the world frame, Eq. (3). `out`: one per body.
     fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]);
 
-    /// Positions of the points of interest in the world frame, m. `out`: one a point.
+    /// Positions of the points of interest in the world frame, m. `out`: one per point.
     fn points(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
-    /// Velocities of the points of interest in the world frame, m/s. `out`: one a point.
+    /// Velocities of the points of interest in the world frame, m/s. `out`: one per point.
     fn point_velocities(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
-    /// Generalized forces of everything but inertia and gravity: supports, elements, drives, hinges. N and N m.
+    /// Generalized forces of everything except inertia and gravity: supports, elements, drives, hinges. N and N m.
     fn forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::zeros()
     }
@@ -79,18 +79,17 @@ pub trait CraneModel<const N: usize> {
         SVector::zeros()
     }
 
-    /// Forces of the supports on the crane, world frame, N. `out`: one a support.
+    /// Forces of the supports on the crane, world frame, N. `out`: one per support.
     fn support_reactions(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
-    /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair a drive.
+    /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair per drive.
     fn drive_motions(&self, _t: f64, _out: &mut [[f64; 2]]) {}
 
-    /// Sets the coordinates that rigid drives prescribe, and their rates, as they are at time t. A crane without rigid drives
-    /// has none.
+    /// Sets the coordinates that rigid drives prescribe, and their rates, at time t. A crane without rigid drives has none.
     fn prescribe(&self, _t: f64, _q: &mut SVector<f64, N>, _v: &mut SVector<f64, N>) {}
 
-    /// Begin and end of the pieces in which the drives' motions are smooth, s. `out`: one pair per piece, drive by drive, as
-    /// many as [`DriveInfo::pieces`](crate::DriveInfo::pieces) says.
+    /// Begin and end of the intervals in which the drives' motions are smooth, s. `out`: one pair per interval, drive by drive;
+    /// [`DriveInfo::pieces`](crate::DriveInfo::pieces) is their number.
     fn drive_pieces(&self, _out: &mut [[f64; 2]]) {}
 
     /// Potential energy of gravity, zero at the world's origin, Eq. (6). J.
@@ -116,12 +115,12 @@ pub trait CraneModel<const N: usize> {
         0.0
     }
 
-    /// Power that the drives' prescribed motions put in, `Σ t_dr q̇_dr`. W.
+    /// Power of the drives' prescribed motions, `Σ t_dr q̇_dr`. W.
     fn drive_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
         0.0
     }
 
-    /// Power that all dampers take out, 2R ≥ 0. W.
+    /// Power that all dampers dissipate, 2R ≥ 0. W.
     fn dissipation(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
         0.0
     }
@@ -138,7 +137,7 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
     /// Mass matrix A(q), Eq. (5), symmetric positive definite.
     fn mass_matrix(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N>;
 
-    /// A and e together. Of `mass` only the lower triangle is written, which is what Cholesky's factorisation reads.
+    /// A and e together. Only the lower triangle of `mass` is written, which Cholesky's factorisation reads.
     fn mass_matrix_and_bias(
         &self,
         q: &SVector<f64, N>,
@@ -159,7 +158,7 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
 
     /// x of `A(q) x = r`, in O(n). `r` in N and N m, x in m/s² and rad/s².
     ///
-    /// A model written by hand may leave it to A: by Cholesky's factors, NaN where A is not positive definite.
+    /// The default for models written by hand uses Cholesky's factors of A; the result is NaN unless A is positive definite.
     fn solve_mass(&self, q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
         Cholesky::new(self.mass_matrix(q)).map_or(SVector::repeat(f64::NAN), |factors| factors.solve(r))
     }
@@ -177,13 +176,13 @@ pub trait Ensemble<const N: usize>: Dynamics<N> + Sized {
     fn lanes(cranes: [&Self; 8]) -> Self::Lanes;
 }
 
-/// Equations of motion of eight cranes, one a lane.
+/// Equations of motion of eight cranes, one per lane.
 pub trait LaneDynamics<const N: usize> {
-    /// Accelerations q̈ as [`Dynamics::forward_dynamics`], lane by lane.
+    /// Accelerations q̈ like [`Dynamics::forward_dynamics`], lane by lane.
     fn forward_dynamics(&self, t: f64x8, q: &SVector<f64x8, N>, v: &SVector<f64x8, N>) -> SVector<f64x8, N>;
 }
 
-/// Eight cranes, moved one after the other: for a crane whose spec does not ask for `ensemble`.
+/// Eight cranes, evaluated one after the other: for a crane whose spec does not request `ensemble`.
 #[derive(Clone, Copy, Debug)]
 pub struct OneByOne<C>(pub [C; 8]);
 
@@ -200,23 +199,23 @@ impl<const N: usize, C: Dynamics<N>> LaneDynamics<N> for OneByOne<C> {
     }
 }
 
-/// What an implicit step needs: stiffness and damping by their structure, and systems with them at the price of A alone.
+/// Functions for an implicit step: structured stiffness and damping, and systems with them at the cost of those with A.
 ///
-/// All springs and dampers sit on single coordinates, or in the block of the base's coordinates, which are the first of q. Those
-/// of linear springs and dampers on single coordinates are constants; those of other laws are taken at each step.
+/// All springs and dampers act on single coordinates, or in the block of the base's coordinates, which are the first of q. Those
+/// of linear springs and dampers on single coordinates are constants; those of other laws are evaluated at each step.
 pub trait Implicit<const N: usize>: Dynamics<N> {
-    /// What [`Implicit::factorise`] leaves for [`Implicit::solve`].
+    /// The factors that [`Implicit::factorise`] computes for [`Implicit::solve`].
     type Factors;
 
-    /// Factors of `A(q) + D̂`, in O(n). D̂ is block-diagonal: `base` in the rows and columns of the base's coordinates, as far
-    /// as the crane has them, and `resistance` on the diagonal of all others. Positive semidefinite; kg and kg m².
+    /// Factors of `A(q) + D̂`, in O(n). D̂ is block-diagonal: `base` in the rows and columns of the base's coordinates that
+    /// the crane has, and `resistance` on the diagonal of all others. Positive semidefinite; kg and kg m².
     fn factorise(&self, q: &SVector<f64, N>, resistance: &SVector<f64, N>, base: &SMatrix<f64, 6, 6>) -> Self::Factors;
 
     /// x of `(A + D̂) x = r`.
     fn solve(&self, f: &Self::Factors, r: &SVector<f64, N>) -> SVector<f64, N>;
 
     /// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of elements, drives and joints on single coordinates; zero for
-    /// the base's. `out`: one pair a coordinate.
+    /// the base's. `out`: one pair per coordinate.
     fn joint_impedances(&self, out: &mut [[f64; 2]]);
 
     /// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates at a state.
@@ -241,16 +240,16 @@ pub trait Statics<const N: usize>: CraneModel<N> {
     /// `∂E_p/∂q` at t = 0; zero in equilibrium. N and N m.
     fn static_residual(&self, q: &SVector<f64, N>) -> SVector<f64, N>;
 
-    /// `∂²E_p/∂q²`, symmetric; positive definite where the equilibrium is stable. A prescribed coordinate, whose residual is 0,
-    /// has 1 on the diagonal and zeros beside it.
+    /// `∂²E_p/∂q²`, symmetric; positive definite if the equilibrium is stable. A prescribed coordinate, whose residual is 0,
+    /// has 1 on the diagonal and zeros elsewhere in its row and column.
     fn tangent_stiffness(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N>;
 
-    /// Generalized forces of the drives that hold the crane at rest at t = 0: of springs, and all that is left to rigid drives.
+    /// Generalized forces of the drives that hold the crane at rest at t = 0: those of springs, and those that remain for rigid drives.
     /// N and N m.
     fn drive_forces_at_rest(&self, q: &SVector<f64, N>) -> SVector<f64, N> {
         let mut motions = [[0.0; 2]; N];
         self.drive_motions(0.0, &mut motions);
-        // At the rates of their motions the dampers rest.
+        // At the rates of the motions the dampers are unloaded.
         let mut v = SVector::<f64, N>::zeros();
         for (drive, [_, rate]) in self.description().drives.iter().zip(motions) {
             if let Some(v) = v.get_mut(drive.coordinate) {
@@ -267,25 +266,25 @@ pub trait Linearise<const N: usize>: CraneModel<N> {
     fn linearise(&self, q: &SVector<f64, N>) -> Linearisation<N>;
 }
 
-/// What the parts of a crane exert on each other.
+/// Forces and moments between the parts of a crane.
 pub trait InternalForces<const N: usize>: CraneModel<N> {
-    /// At every cut, what the part beyond it exerts on the part before it, in the cut's frame about its origin, at pose q,
+    /// At every cut, the wrench that the part beyond it exerts on the part before it, in the cut's frame about its origin, at pose q,
     /// rates v and accelerations a. `out`: one per cut, as [`Description::cuts`] lists them.
     ///
-    /// It is the inertia and the weight of everything beyond, so it holds where nothing but the joints holds that: supports
-    /// act on the base alone. At the ground it is the load on the foundation or on the supports. In a section of a beam it
-    /// is `N, Qy, Qz` and `Mx, My, Mz`: N pulls where it is positive, Mx, My and Mz have the signs of the deformations that they
-    /// cause, φ, θ and ψ.
+    /// It is the inertia and the weight of everything beyond, so it is valid where only joints hold that part: supports act only
+    /// on the base. At the ground it is the load on the foundation or on the supports. In a section of a beam it is
+    /// `N, Qy, Qz` and `Mx, My, Mz`: a positive N is tension; Mx, My and Mz have the signs of the deformations that they cause,
+    /// φ, θ and ψ.
     fn internal_forces(&self, q: &SVector<f64, N>, v: &SVector<f64, N>, a: &SVector<f64, N>, out: &mut [Wrench]);
 
     /// Positions of the supports' attachment points in the world frame, m. `out`: one per support.
     fn support_positions(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
-    /// What stresses of beams follow from. `out`: one per beam, from the base to the tip.
+    /// Section moduli for stresses of beams. `out`: one per beam, from the base to the tip.
     fn section_moduli(&self, _out: &mut [SectionModuli]) {}
 }
 
-/// Derivatives of the transforms. Each body has derivatives by the coordinates that move it, the first
+/// Derivatives of the transforms. Each body has derivatives with respect to the coordinates that move it, the first
 /// [`degrees_of_freedom`](crate::BodyInfo::degrees_of_freedom) of `q`; all others are zero and not stored.
 pub trait TransformDerivatives<const N: usize>: CraneModel<N> {
     /// `∂T/∂q_j`, body by body, j = 0 …: in all `Σ n_dof(p)` matrices.
@@ -313,7 +312,7 @@ impl<const N: usize> Linearisation<N> {
     /// d/dt [δq; δq̇] = [[0, I], [−A⁻¹K, −A⁻¹D]] [δq; δq̇]
     /// ```
     ///
-    /// `None` unless A is positive definite. Needs neither `std` nor heap.
+    /// `None` unless A is positive definite. This needs neither `std` nor a heap.
     pub fn state_blocks(&self) -> Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>)> {
         state_blocks::<Const<N>>(self.mass, &self.stiffness, &self.damping).map(Into::into)
     }

@@ -1,4 +1,4 @@
-//! The values that a live parameter may take: the rules of the spec language hold whenever it is set.
+//! The values that a live parameter may take: the rules of the spec language are checked whenever it is set.
 
 use core::fmt;
 
@@ -16,16 +16,16 @@ pub struct Bound {
     pub value: f64,
     /// Whether the parameter may be equal to it.
     pub allowed: bool,
-    /// What to say of a value beyond it.
+    /// The message for a value beyond it.
     pub refusal: Refusal,
 }
 
-/// What the compiler says of a value that breaks a rule of the spec language.
+/// The compiler's message about a value that breaks a rule of the spec language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
     /// Code of the rule, such as `E031`.
     pub code: Text,
-    /// What is wrong; the value follows.
+    /// What is wrong; the value is appended.
     pub title: Text,
     /// What to write instead.
     pub help: Text,
@@ -43,9 +43,9 @@ const NOT_FINITE: Refusal = Refusal {
 };
 
 impl Bound {
-    /// The least number of the spec language.
+    /// The smallest number of the spec language.
     pub const LEAST: Bound = Bound { value: -LARGEST, allowed: true, refusal: OUT_OF_RANGE };
-    /// The greatest number of the spec language.
+    /// The largest number of the spec language.
     pub const GREATEST: Bound = Bound { value: LARGEST, allowed: true, refusal: OUT_OF_RANGE };
 }
 
@@ -76,9 +76,9 @@ impl ParameterInfo {
 /// Live parameters cannot have these values: they break a rule of the spec language.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterError {
-    /// Name and value of the parameter; `None` where the rule joins several parameters.
+    /// Name and value of the parameter; `None` for a rule about several parameters.
     pub given: Option<(Text, f64)>,
-    /// The rule and what it says.
+    /// The rule and its message.
     pub refusal: Refusal,
 }
 

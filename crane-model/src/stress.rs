@@ -1,12 +1,12 @@
-//! Stresses of beams from what their sections transmit.
+//! Stresses of beams from the forces and moments of their sections.
 //!
-//! Elastic, of a straight prismatic beam: no buckling of plates or of the beam, no notches, welds, holes or load introduction, no
-//! fatigue, no proof by a design code.
+//! The stresses are elastic, for a straight prismatic beam: they do not cover buckling of plates or of the beam, notches, welds,
+//! holes, load introduction or fatigue, and are not a proof by a design code.
 
 #[cfg(feature = "std")]
 use crate::Wrench;
 
-/// What turns forces and moments of a section into its greatest stresses; all zero where the spec does not say.
+/// Properties that relate forces and moments of a section to its largest stresses; all zero if the spec does not give them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionModuli {
     /// Area, m²: `σ = N/A`.
@@ -15,20 +15,20 @@ pub struct SectionModuli {
     pub bending_y: f64,
     /// Modulus of bending about z, m³.
     pub bending_z: f64,
-    /// Modulus of torsion, m³: the greatest `τ = Mx/W`.
+    /// Modulus of torsion, m³: the largest `τ = Mx/W`.
     pub torsion: f64,
-    /// Shear area along y, m²: the greatest `τ = Qy/A`.
+    /// Shear area along y, m²: the largest `τ = Qy/A`.
     pub shear_y: f64,
     /// Shear area along z, m².
     pub shear_z: f64,
-    /// 1 where the stresses of both bendings add up in a corner, 0 of a round section, where they are at right angles.
+    /// 1 if the stresses of both bendings add up in a corner, 0 for a round section, where they are perpendicular.
     pub corners: f64,
     /// Yield stress over the safety factor, Pa; 0 without a yield stress.
     pub allowable_stress: f64,
 }
 
 impl SectionModuli {
-    /// Nothing known.
+    /// Unknown moduli.
     pub const ZERO: SectionModuli = SectionModuli {
         area: 0.0,
         bending_y: 0.0,
@@ -41,24 +41,24 @@ impl SectionModuli {
     };
 }
 
-/// Greatest stresses of a section, Pa, not negative.
+/// Largest stresses of a section, Pa, not negative.
 #[cfg(feature = "std")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stress {
-    /// Normal stress of N, My and Mz, at the corner or on the rim where it is greatest.
+    /// Normal stress of N, My and Mz, at the corner or on the rim where it is largest.
     pub normal: f64,
     /// Shear stress of Qy and Qz, at the neutral axis.
     pub shear: f64,
     /// Shear stress of Mx.
     pub torsion: f64,
-    /// Von Mises' equivalent stress `√(σ² + 3τ²)` with the greatest σ and the sum of both τ, as if they met at one point: not below
-    /// the true one.
+    /// Von Mises equivalent stress `√(σ² + 3τ²)` with the largest σ and the sum of both τ, as if they acted at one point: an upper
+    /// bound of the true one.
     pub equivalent: f64,
 }
 
 #[cfg(feature = "std")]
 impl SectionModuli {
-    /// Stresses of a section that transmits a wrench, in the section's frame; `None` where its moduli are not known.
+    /// Stresses of a section that transmits a wrench, in the section's frame; `None` if its moduli are not known.
     pub fn stress(&self, Wrench { force, moment }: &Wrench) -> Option<Stress> {
         if self.area <= 0.0 {
             return None;

@@ -17,7 +17,7 @@ use crane_model::{
 };
 use nalgebra::{Complex, Matrix4, SMatrix, SVector, Vector1, Vector2};
 
-/// A crane that tells the integrator a Jacobian of its own: stiffness and damping of every coordinate.
+/// A crane that gives the integrator a different Jacobian: stiffness and damping of every coordinate.
 #[derive(Clone)]
 struct Misled<C> {
     crane: C,
@@ -387,7 +387,7 @@ fn backward_differences_keep_their_orders_where_a_stiff_spring_is_forced() {
         let measured = (errors[0][1] / errors[2][1]).log2() / 2.0;
         println!("order {order}: {measured:.3} of rates, {errors:?}");
         assert!((measured - order as f64).abs() < ORDER, "order {order}: {measured}, {errors:?}");
-        // Positions are off by the rates' error times d/s, but for the spring's own way.
+        // Positions are off by the rates' error times d/s, except for the spring's own deflection.
         assert!(errors[0][0] < 1e-5 * errors[0][1] + 1e-9, "order {order}: {errors:?}");
     }
 }

@@ -164,7 +164,7 @@ fn the_limit_of_the_reference_crane_in_plain_words() {
     let modes = damped(&SmallMotions::from(&crane.linearise(&q))).expect("modes");
     let limit = limit(&modes, &Method::Rk4.stability()).expect("a limit");
     assert_eq!(cause(&DESCRIPTION, &limit.mode), "torsion of boom elements 3, 2; 22,900 rad/s");
-    // A mode of every kind of coordinate is told apart.
+    // Modes of all kinds of coordinates are distinguished.
     let words: Vec<String> = modes.iter().map(|mode| cause(&DESCRIPTION, mode)).collect();
     for part in ["base (truck_x)", "drive of telescope_z", "joint upper_hinge_psi", "bending in x-y of boom"] {
         assert!(words.iter().any(|words| words.contains(part)), "{part}: {words:?}");

@@ -1,4 +1,4 @@
-//! Dual numbers through the interpreter: derivatives without a rule of ours.
+//! Dual numbers through the interpreter: derivatives that do not use our own rules.
 
 use crane_codegen::symbolic::Scalar;
 use num_dual::{Dual64, DualNum};

@@ -1,4 +1,5 @@
-//! How far off the printed formulas are [Urbaś 2016], each on a crane where it shows. docs/EQUATIONS.md tells why.
+//! The effect of the errors in the printed formulas [Urbaś 2016], each on a crane where it is visible. docs/EQUATIONS.md
+//! explains them.
 
 use crane_codegen::chain::Inertia;
 use crane_model::nalgebra::{DVector, Matrix3, Matrix4, Matrix6, SMatrix, Vector3, Vector6};

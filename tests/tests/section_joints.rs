@@ -105,7 +105,7 @@ fn buckling_excess(joint: &str, sections: usize) -> f64 {
     let section = Section { jy: 1.0, jz: 1e-6, jo: 2e-6 };
     let beam = Beam::new(joint, sections, &section, [0.0, 0.0, -1.0]);
     let stiffness = |load: f64| beam.with_load(load).matrix("tangent_stiffness", &beam.straight());
-    // K(P) = K₀ + P K₁, K₀ diagonal but for the beam's own weight.
+    // K(P) = K₀ + P K₁, K₀ diagonal except for the beam's own weight.
     let (unloaded, loaded) = (stiffness(1e-9), stiffness(1.0 + 1e-9));
     let geometric: DMatrix<f64> = loaded - &unloaded;
     let lower = unloaded.cholesky().expect("an unloaded beam is stable").l();

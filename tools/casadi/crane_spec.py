@@ -32,7 +32,7 @@ class CraneSpec:
         return default if value is None else value
 
     def number(self, written):
-        """A number in SI units, or the symbol of the parameter that stands in its place."""
+        """A number in SI units, or the symbol of the parameter that replaces it."""
         if isinstance(written, str) and written in self.parameters:
             return self.parameters[written]
         return float(written)

@@ -101,7 +101,7 @@ def equations(crane):
 
 
 def given_rates(crane, derivations):
-    """Zero, but for coordinates that rigid drives prescribe."""
+    """Zero, except for coordinates that rigid drives prescribe."""
     rates = ca.SX.zeros(crane.q.shape)
     for place, drive in crane.rigid_drives.items():
         rates[place] = derivations.rate(ca.SX(drive.motion))

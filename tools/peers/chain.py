@@ -183,7 +183,7 @@ def mass_com_tensor(pseudo_inertia):
 
 
 def whole(numbers):
-    """The numbers, those that are whole but for round-off as whole numbers."""
+    """The numbers; those that are whole up to round-off become integers."""
     rounded = np.round(numbers)
     return np.where(np.abs(numbers - rounded) < ROUND_OFF, rounded, numbers) + 0.0
 

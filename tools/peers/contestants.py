@@ -27,7 +27,7 @@ PINOCCHIO_ALGORITHMS = {
 }
 # Coordinates; a step takes 5 ms with 73.
 EXUDYN_UP_TO = 25
-# Kernels of ours that compute what others do as well.
+# Our kernels that compute the same quantities as the others.
 SHARED = {
     "forward_dynamics": "forward_dynamics",
     "forward_dynamics_lanes": "forward_dynamics",
@@ -166,7 +166,7 @@ class Arena:
         return right | {"rk4_step": step.values(len(self.records)) - self.records[:, 1 : 1 + 2 * n]}
 
     def error(self, contestant, reference):
-        """The largest error of any state over its largest entry; none where nobody else computes the same."""
+        """The largest error of any state over its largest entry; none if no other program computes the same."""
         if contestant.quantity not in reference:
             return None
         right = reference[contestant.quantity]

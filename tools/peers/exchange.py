@@ -77,7 +77,7 @@ class Mjcf(MuJoCo):
 
 
 class Springs:
-    """The file of springs beside a URDF file."""
+    """The springs file of a URDF file."""
 
     def __init__(self, path, names):
         content = YAML(typ="safe").load(path)
@@ -94,7 +94,7 @@ class Springs:
         self.base = [(i, letters.index(n.rpartition("_")[2])) for i, n in enumerate(names) if n.rpartition("_")[0] == base]
 
     def force(self, q, v):
-        """Generalized forces, as the comments in the file tell."""
+        """Generalized forces, as the comments in the file describe."""
         force = self.stiffness * (self.rest - q) - self.damping * v
         for support in self.supports:
             x, y, z = support["at"]

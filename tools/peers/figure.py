@@ -4,7 +4,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FormatStrFormatter, ScalarFormatter
 
-# Okabe and Ito's colours, which tell apart for all kinds of colour vision; the markers do without colour.
+# Okabe and Ito's colours, distinguishable with all kinds of colour vision; the markers work without colour.
 STYLES = {
     "ours": ("#000000", "o"),
     "ours, 8 lanes, each": ("#E69F00", "*"),

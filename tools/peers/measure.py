@@ -3,7 +3,7 @@
     python measure.py [--quick] [--rounds 11] [--seconds 0.03]
     python measure.py --report
 
-First all are compared: whoever is not right to 1e-8 does not count. What has been built once is not built again; results
+First all results are compared: those with an error above 1e-8 are excluded. What has been built once is not built again; results
 are kept after every round, and `--report` writes the document from what there is.
 """
 
@@ -111,7 +111,7 @@ def compare(arena):
 
 
 def shortlist(contestants):
-    """All of ours, of every library and compiler the best variants by a first look; rivals follow each other."""
+    """All our kernels, and the best variants of every library and compiler by a first look, in turns."""
     chosen = []
     for quantity in dict.fromkeys(c.quantity for c in contestants):
         rivals = [c for c in contestants if c.quantity == quantity]

@@ -17,7 +17,7 @@ HERE = Path(__file__).resolve().parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", WORKSPACE / "target"))
 # Generated Rust for this machine's instructions.
 NATIVE = {"RUSTFLAGS": "-C target-cpu=native", "CARGO_TARGET_DIR": str(TARGET / "native")}
-# gcc fuses multiplications and additions of different statements by default, clang has to be told.
+# gcc fuses multiplications and additions of different statements by default, clang needs an option.
 FLAGS = ["-O3", "-march=native", "-ffp-contract=fast"]
 
 VERSION = re.compile(r"\d+(\.\d+)+")

@@ -39,7 +39,7 @@ class Times:
         return next((t for kernel in BEST_OF_OURS[quantity] if (t := self.ours(coordinates, kernel))), None)
 
     def fastest(self, coordinates, **properties):
-        """The least median of those with the properties, and who it is; (None, None) if there is nobody."""
+        """The least median of those with the properties, and its contestant; (None, None) if there is none."""
         wanted = {"coordinates": coordinates, **properties}
         found = [c for c in self.contestants if all(c[key] == value for key, value in wanted.items())]
         return min(((median(c["times"]), c) for c in found), key=lambda pair: pair[0], default=(None, None))

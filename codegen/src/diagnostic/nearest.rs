@@ -16,7 +16,7 @@ pub(crate) fn suggest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>
     }
 }
 
-/// Words in a row: `a`, `b`, `c`.
+/// A list of words: `a`, `b`, `c`.
 pub(crate) fn list(words: &[&str]) -> String {
     words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
 }

@@ -7,7 +7,7 @@
 //! | constants | `constants` | values that depend only on live parameters are computed once, outside of all functions |
 //! | fuse | `fuse` | a product that only sums use is part of them, `a b + c` |
 //! | bundle | `bundle` | a value used once is inlined where it is used, as long as the expression stays bounded |
-//! | order | `order` | angles first, then each value shortly before its use, each output as soon as it is known |
+//! | order | `order` | angles first, then each value just before its use, each output as soon as it is known |
 //! | split | `split` | no piece is too long for rustc; only values that cross a cut are carried |
 //!
 //! No pass recurses over the depth of the graph.

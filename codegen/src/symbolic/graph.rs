@@ -23,7 +23,7 @@ pub struct Graph {
 pub struct Nodes {
     /// All operations, operands before their users.
     pub operations: Vec<Op>,
-    /// Where each operation stands.
+    /// The position of each operation.
     pub index: HashMap<Op, ExprId>,
     /// What the model calls some of them.
     pub names: HashMap<ExprId, String>,

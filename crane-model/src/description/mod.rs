@@ -1,4 +1,4 @@
-//! What a crane says about itself.
+//! Metadata of a crane.
 
 mod shared;
 
@@ -25,15 +25,15 @@ pub struct Description {
     pub supports: List<SupportInfo>,
     /// Drives.
     pub drives: List<DriveInfo>,
-    /// Coordinates with end stops, by their places in `q`.
+    /// Coordinates with end stops, by their indices in `q`.
     pub stops: List<usize>,
-    /// Coordinates with friction, by their places in `q`.
+    /// Coordinates with friction, by their indices in `q`.
     pub frictions: List<usize>,
     /// Names of the points of interest.
     pub points: List<Text>,
-    /// Whether the spec asks for statics: a run then starts from the static equilibrium, otherwise from the guess.
+    /// Whether the spec requests statics: a run then starts from the static equilibrium, otherwise from the guess.
     pub statics: bool,
-    /// Where the static solution starts, or the run without statics, with default parameters, m and rad.
+    /// Start of the static solution, or of the run without statics, with default parameters, m and rad.
     pub guess: List<f64>,
     /// Simulated time, s.
     pub duration: f64,
@@ -43,28 +43,28 @@ pub struct Description {
     pub output: f64,
 }
 
-/// Angle from ±90° below which θ of a base or an element is near its singularity, rad: ψ and φ then turn about axes that are
-/// hardly different, and three digits or more are lost.
+/// Angle from ±90° below which θ of a base or an element is near its singularity, rad: ψ and φ then rotate about nearly
+/// equal axes, and three digits or more are lost.
 pub const NEAR_SINGULAR: f64 = 0.03;
-/// Rotation of a base beyond which linear supports are no longer true, rad: they are off by half a percent of it.
+/// Rotation of a base beyond which linear supports are no longer accurate, rad: their error is half a percent of it.
 pub const LARGE_TILT: f64 = 0.1;
 
 #[cfg(feature = "std")]
 impl Description {
-    /// Places in `q` of the coordinates that rigid drives prescribe: no unknowns.
+    /// Indices in `q` of the coordinates that rigid drives prescribe, which are not unknowns.
     pub fn prescribed(&self) -> Vec<usize> {
         let prescribed = |i: &usize| self.coordinates[*i].role == CoordinateRole::Prescribed;
         (0..self.coordinates.len()).filter(prescribed).collect()
     }
 
-    /// Whether all unknowns of a pose are within a bound, m and rad: a prescribed motion may go as far as it likes.
+    /// Whether all unknowns of a pose are within a bound, m and rad: a prescribed motion has no bound.
     pub(crate) fn bounded(&self, q: &[f64], bound: f64) -> bool {
         let mut numbers = self.coordinates.iter().zip(q);
         numbers.all(|(info, x)| x.abs() <= bound || info.role == CoordinateRole::Prescribed)
     }
 
-    /// What to say of a pose in which θ of a base or an element is near ±90°, where ψ and φ turn about one axis: the equations
-    /// are singular there.
+    /// The caution about a pose in which θ of a base or an element is near ±90°, where ψ and φ rotate about the same axis and the
+    /// equations are singular.
     pub fn near_singular(&self, q: &[f64]) -> Option<String> {
         let turns = |name: &str, role| {
             self.coordinates.iter().any(|coordinate| coordinate.name == name && coordinate.role == role)
@@ -81,7 +81,7 @@ impl Description {
         })
     }
 
-    /// What to say of a pose in which a base on linear supports is turned too far for them.
+    /// The caution about a pose in which a base is rotated too far for its linear supports.
     pub fn large_tilt(&self, q: &[f64]) -> Option<String> {
         let linear = self.supports.iter().any(|support| support.linear);
         self.coordinates.iter().zip(q).filter(|_| linear).find_map(|(coordinate, angle)| {
@@ -101,13 +101,13 @@ pub struct ParameterInfo {
     pub name: Text,
     /// Unit.
     pub unit: Text,
-    /// What it is.
+    /// Description.
     pub about: Text,
-    /// Value unless set.
+    /// Default value.
     pub default: f64,
-    /// The least value that every use of the parameter allows.
+    /// The smallest value that every use of the parameter allows.
     pub least: Bound,
-    /// The greatest value that every use of the parameter allows.
+    /// The largest value that every use of the parameter allows.
     pub greatest: Bound,
 }
 
@@ -118,7 +118,7 @@ pub struct CoordinateInfo {
     pub name: Text,
     /// Motion along or about an axis.
     pub kind: CoordinateKind,
-    /// Who owns it.
+    /// Its role.
     pub role: CoordinateRole,
 }
 
@@ -149,26 +149,26 @@ impl CoordinateKind {
     }
 }
 
-/// What a coordinate describes.
+/// Role of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoordinateRole {
     /// Motion of the base.
     Base,
-    /// A joint with a drive that gives way.
+    /// A joint with a flexible drive.
     Driven,
-    /// A joint with a rigid drive: its motion is given, and no unknown.
+    /// A joint with a rigid drive: its motion is prescribed, not unknown.
     Prescribed,
     /// A joint without a drive.
     Passive,
     /// Deformation of a flexible link, an angle about one axis.
     Element,
-    /// Deformation of a flexible link, a component of the rotation vector of a section: with the two coordinates beside it, in
-    /// the order z, y, x, it turns what follows by `exp([ρ]×)`.
+    /// Deformation of a flexible link, a component of the rotation vector of a section: with its two neighbours, in
+    /// the order z, y, x, it rotates everything beyond by `exp([ρ]×)`.
     ElementVector,
 }
 
 impl CoordinateRole {
-    /// The role in a word.
+    /// The role in one word.
     pub const fn name(self) -> &'static str {
         match self {
             CoordinateRole::Base => "base",
@@ -218,6 +218,6 @@ pub struct DriveInfo {
     pub coordinate: usize,
     /// Prescribed position at t = 0 with default parameters, m or rad.
     pub start: f64,
-    /// In how many pieces its motion is smooth.
+    /// The number of intervals in which its motion is smooth.
     pub pieces: usize,
 }

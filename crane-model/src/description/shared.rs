@@ -1,6 +1,6 @@
 //! Text and lists of a description: constants of generated code, or owned by a crane that is made at run time.
 //!
-//! Constants need neither heap nor `std`. What is owned is counted: a copy is another pointer, and the last one frees it.
+//! Constants need neither heap nor `std`. Owned data are reference-counted: a copy is another pointer, and the last one frees them.
 
 use core::{fmt, ops::Deref};
 
@@ -113,7 +113,7 @@ impl AsRef<str> for Text {
     }
 }
 
-/// What `[Text]::join` needs.
+/// Needed by `[Text]::join`.
 impl core::borrow::Borrow<str> for Text {
     fn borrow(&self) -> &str {
         self

@@ -13,7 +13,7 @@ use crate::{
     ParameterError, SectionModuli, Statics, TransformDerivatives, Wrench, support::lanes::f64x8,
 };
 
-/// A crane compiled with every analysis but derivatives.
+/// A crane compiled with every analysis except derivatives.
 pub trait Crane<const N: usize>:
     Implicit<N> + Ensemble<N> + Statics<N> + Linearise<N> + InternalForces<N> + Clone
 {
@@ -26,7 +26,7 @@ impl<const N: usize, C> Crane<N> for C where
 
 /// A crane of `N` coordinates on slices, held by a reference or by a box: `Instance(&crane)`, `Instance(Box::new(crane))`.
 ///
-/// It has each of the traits here whose twin the crane has.
+/// It implements each trait of this module whose counterpart the crane implements.
 #[derive(Clone, Copy, Debug)]
 pub struct Instance<const N: usize, H>(pub H);
 

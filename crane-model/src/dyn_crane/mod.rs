@@ -1,9 +1,9 @@
 //! Cranes of any size through one pointer: the traits of a generated crane on slices.
 //!
-//! Statics, integrators, modes and stability are written over these traits, once for all cranes. A trait here is the twin of a
-//! trait with a number of coordinates in its type; [`Instance`] makes it of that one.
+//! Statics, integrators, modes and stability are written over these traits, once for all cranes. A trait here is the counterpart of
+//! a trait with the number of coordinates in its type; [`Instance`] adapts one to the other.
 //!
-//! | here | twin | who asks for it |
+//! | here | counterpart | used by |
 //! |---|---|---|
 //! | [`DynModel`] | [`CraneModel`](crate::CraneModel) | everything |
 //! | [`DynStatics`] | [`Statics`](crate::Statics) | equilibria |
@@ -13,13 +13,13 @@
 //! | [`DynInternalForces`] | [`InternalForces`](crate::InternalForces) | bearing loads, stresses |
 //! | [`DynEnsemble`] | [`Ensemble`](crate::Ensemble) | runs of many cranes |
 //! | [`DynDerivatives`] | [`TransformDerivatives`](crate::TransformDerivatives) | tables of derivatives |
-//! | [`DynCrane`] | all of them but derivatives | the command |
+//! | [`DynCrane`] | all of them except derivatives | the command |
 //!
 //! # Slices
 //! `q`, `v`, `r` and results per coordinate have as many numbers as [`Description::coordinates`], in that order; lists of
-//! bodies, points, supports and drives as many as the description has. Results overwrite whatever stands in `out`. Symmetric
-//! matrices are written in full. A method may panic where a slice has another length. None allocates when it is called again
-//! and again: room that it needs is kept.
+//! bodies, points, supports and drives as many as the description has. Results overwrite the contents of `out`. Symmetric
+//! matrices are written in full. A method may panic if a slice has another length. Repeated calls do not allocate, because each
+//! method keeps its workspace.
 
 mod declare;
 mod instance;
@@ -38,7 +38,7 @@ pub trait DynModel {
     /// Names, units and settings.
     fn description(&self) -> &Description;
 
-    /// Value of a live parameter, by its place in the description.
+    /// Value of a live parameter, by its index in the description.
     fn parameter(&self, index: usize) -> f64;
 
     /// Transforms T of all bodies into the world frame.
@@ -50,7 +50,7 @@ pub trait DynModel {
     /// Velocities of the points of interest, m/s.
     fn point_velocities(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
 
-    /// Generalized forces of everything but inertia and gravity.
+    /// Generalized forces of everything except inertia and gravity.
     fn forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
 
     /// Generalized forces of the springs and dampers between rigid elements.
@@ -71,10 +71,10 @@ pub trait DynModel {
     /// Prescribed position and rate of every drive.
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]);
 
-    /// Sets the coordinates that rigid drives prescribe, and their rates, as they are at time t.
+    /// Sets the coordinates that rigid drives prescribe, and their rates, at time t.
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]);
 
-    /// Begin and end of the pieces in which the drives' motions are smooth, s; one pair per piece, drive by drive.
+    /// Begin and end of the intervals in which the drives' motions are smooth, s; one pair per interval, drive by drive.
     fn drive_pieces(&self, out: &mut [[f64; 2]]);
 
     /// Potential energy of gravity, J.
@@ -92,10 +92,10 @@ pub trait DynModel {
     /// Energy of the end stops, J.
     fn stop_energy(&self, q: &[f64]) -> f64;
 
-    /// Power that the drives' motions put in, W.
+    /// Power of the drives' motions, W.
     fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
-    /// Power that all dampers take out, W.
+    /// Power that all dampers dissipate, W.
     fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
     /// Number of coordinates.
@@ -112,7 +112,7 @@ pub trait DynStatics: DynModel {
     /// `∂²E_p/∂q²` at t = 0, n × n.
     fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]);
 
-    /// Generalized forces of the drives that hold the crane at rest at t = 0, of rigid drives too.
+    /// Generalized forces of the drives that hold the crane at rest at t = 0, including rigid drives.
     fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]);
 }
 
@@ -131,9 +131,9 @@ pub trait DynDynamics: DynModel {
     fn kinetic_energy(&self, q: &[f64], v: &[f64]) -> f64;
 }
 
-/// What an implicit step needs: [`Implicit`](crate::Implicit) on slices.
+/// Functions for an implicit step: [`Implicit`](crate::Implicit) on slices.
 pub trait DynImplicit: DynDynamics {
-    /// Room for the factors of a system of this crane; made once per run.
+    /// Storage for the factors of a system of this crane; created once per run.
     fn system(&self) -> Box<dyn DynSystem + '_>;
 
     /// Stiffness and damping of elements, drives and joints on single coordinates; zero for the base's. `out`: one pair per
@@ -152,7 +152,7 @@ pub trait DynImplicit: DynDynamics {
 
 /// Systems `(A(q) + D̂) x = r` of a crane, one after the other.
 pub trait DynSystem {
-    /// Factorises `A(q) + D̂`, as [`Implicit::factorise`](crate::Implicit::factorise).
+    /// Factorises `A(q) + D̂`, like [`Implicit::factorise`](crate::Implicit::factorise).
     fn factorise(&mut self, q: &[f64], resistance: &[f64], base: &Matrix6<f64>);
 
     /// x of the system that was factorised last; NaN before the first.
@@ -165,21 +165,21 @@ pub trait DynLinearise: DynModel {
     fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]);
 }
 
-/// What the parts of a crane exert on each other: [`InternalForces`](crate::InternalForces) on slices.
+/// Forces and moments between the parts of a crane: [`InternalForces`](crate::InternalForces) on slices.
 pub trait DynInternalForces: DynModel {
-    /// What the part beyond each cut exerts on the part before it. `out`: one per cut, as [`Description::cuts`] lists them.
+    /// The wrench that the part beyond each cut exerts on the part before it. `out`: one per cut, as [`Description::cuts`] lists them.
     fn internal_forces(&self, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]);
 
     /// Positions of the supports' attachment points, m.
     fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]);
 
-    /// What stresses of beams follow from; one per beam, from the base to the tip.
+    /// Section moduli for stresses of beams; one per beam, from the base to the tip.
     fn section_moduli(&self, out: &mut [SectionModuli]);
 }
 
 /// Cranes that move several at a time, each with its own state and parameters: [`Ensemble`](crate::Ensemble) on slices.
 pub trait DynEnsemble: DynDynamics {
-    /// How many cranes a block holds: a multiple of eight.
+    /// The number of cranes in a block: a multiple of eight.
     fn lanes(&self) -> usize {
         8
     }
@@ -209,22 +209,22 @@ pub trait DynDerivatives: DynModel {
     fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]);
 }
 
-/// A crane with every analysis but the derivatives of transforms, which few ask for: [`DynDerivatives`].
+/// A crane with every analysis except the rarely needed derivatives of transforms: [`DynDerivatives`].
 ///
-/// What is computed from these, as lists and matrices of their own, stands with [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
+/// Functions that return owned lists and matrices are methods of [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
 pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynInternalForces + DynEnsemble + Send + Sync {
     /// Sets a live parameter. An index out of range changes nothing.
     ///
     /// # Errors
-    /// The value breaks a rule of the spec language; the crane stays as it is.
+    /// The value breaks a rule of the spec language; the crane stays unchanged.
     fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError>;
 
     /// Sets the first live parameters together: [`CraneModel::set_parameters`](crate::CraneModel::set_parameters).
     ///
     /// # Errors
-    /// A value breaks a rule of the spec language; the crane stays as it is.
+    /// A value breaks a rule of the spec language; the crane stays unchanged.
     fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError>;
 
-    /// A crane of its own with the same parameters.
+    /// A separate crane with the same parameters.
     fn boxed_clone(&self) -> Box<dyn DynCrane>;
 }

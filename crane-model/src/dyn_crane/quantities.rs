@@ -1,4 +1,4 @@
-//! What is computed of a crane as lists and matrices of their own, for whoever picks a crane at run time.
+//! Quantities of a crane as owned lists and matrices, for cranes chosen at run time.
 
 use std::ops::ControlFlow;
 
@@ -54,7 +54,7 @@ fn numbers(crane: &(impl DynModel + ?Sized), write: impl FnOnce(&mut [f64])) -> 
 }
 
 /// # Panics
-/// Where `q`, `v` or a start has not as many numbers as the crane has coordinates.
+/// If `q`, `v` or a start does not have as many numbers as the crane has coordinates.
 impl dyn DynCrane + '_ {
     /// Transforms of all bodies into the world frame.
     pub fn transforms_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
@@ -100,7 +100,7 @@ impl dyn DynCrane + '_ {
         self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
     }
 
-    /// Torques and forces of the drives that hold the crane at rest at t = 0, of rigid drives too: N m and N.
+    /// Torques and forces of the drives that hold the crane at rest at t = 0, including rigid drives: N m and N.
     pub fn drive_efforts_at_rest(&self, q: &[f64]) -> Vec<f64> {
         let forces = numbers(self, |out| self.drive_forces_at_rest(q, out));
         self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
@@ -114,20 +114,20 @@ impl dyn DynCrane + '_ {
     }
 
     /// Moments that the springs and dampers between rigid elements transmit, `k q + d q̇`, one per coordinate of an element in
-    /// the order of `q`: positive where they resist a positive deformation. N m.
+    /// the order of `q`: positive if they resist a positive deformation. N m.
     pub fn element_moments_at(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
         let forces = numbers(self, |out| self.element_forces(q, v, out));
         let coordinates = self.description().coordinates.iter().zip(&forces);
         coordinates.filter(|(coordinate, _)| coordinate.role.is_element()).map(|(_, force)| -force).collect()
     }
 
-    /// Torques and forces of the end stops on the coordinates that have some, in their order: N m and N.
+    /// Torques and forces of the end stops on the coordinates that have them, in order: N m and N.
     pub fn stop_efforts_at(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
         let forces = numbers(self, |out| self.stop_forces(q, v, out));
         self.description().stops.iter().map(|&coordinate| forces[coordinate]).collect()
     }
 
-    /// Torques and forces of friction on the coordinates that have some, in their order: N m and N.
+    /// Torques and forces of friction on the coordinates that have them, in order: N m and N.
     pub fn friction_efforts_at(&self, v: &[f64]) -> Vec<f64> {
         let forces = numbers(self, |out| self.friction_forces(v, out));
         self.description().frictions.iter().map(|&coordinate| forces[coordinate]).collect()
@@ -140,7 +140,7 @@ impl dyn DynCrane + '_ {
         out
     }
 
-    /// What the part beyond each cut exerts on the part before it, cut by cut: N and N m.
+    /// The wrench that the part beyond each cut exerts on the part before it, cut by cut: N and N m.
     pub fn internal_forces_at(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
         let mut out = vec![Wrench::ZERO; self.description().cuts().len()];
         self.internal_forces(q, v, a, &mut out);
@@ -154,7 +154,7 @@ impl dyn DynCrane + '_ {
         out
     }
 
-    /// What stresses of beams follow from, beam by beam as [`Description::beams`](crate::Description::beams) lists them.
+    /// Section moduli for stresses of beams, beam by beam as [`Description::beams`](crate::Description::beams) lists them.
     pub fn section_moduli_at(&self) -> Vec<SectionModuli> {
         let mut out = vec![SectionModuli::ZERO; self.description().beams().len()];
         self.section_moduli(&mut out);
@@ -163,10 +163,10 @@ impl dyn DynCrane + '_ {
 
     /// Weight of the crane with its load, world frame, N; unknown along an axis that the base cannot move along.
     ///
-    /// A translation of the base moves everything alike: its generalized force of gravity, the bias at rest, is the part
+    /// A translation of the base moves everything equally: its generalized force of gravity, the bias at rest, is the component
     /// of the weight along it.
     pub fn weight_at(&self, q: &[f64]) -> [Option<f64>; 3] {
-        /// A base moves along an axis where its directions hold all of it but for rounding.
+        /// A base moves along an axis if its directions contain the axis, up to rounding.
         const ROUNDING: f64 = 1e-9;
         let bias = self.bias_at(q, &vec![0.0; q.len()]);
         let place = |q: &[f64]| self.transforms_at(q).first().map(|frame| frame.fixed_view::<3, 1>(0, 3).into_owned());
@@ -206,7 +206,7 @@ impl dyn DynCrane + '_ {
         statics::solve_dyn(self, settings)
     }
 
-    /// Equilibrium with the drives as at time `t`, from pose `q`: [`statics::solve_at`].
+    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`].
     pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
         statics::solve_at_dyn(self, t, q, settings)
     }
@@ -219,7 +219,7 @@ impl dyn DynCrane + '_ {
     /// A run: [`dynamics::simulate`].
     ///
     /// # Errors
-    /// [`Stopped`] where the run ends before its time.
+    /// [`Stopped`] if the run ends early.
     pub fn simulate(
         &self,
         start: &InitialState,
@@ -243,10 +243,10 @@ impl dyn DynCrane + '_ {
     }
 }
 
-/// Lists of their own of the derivatives.
+/// The derivatives as owned lists.
 ///
 /// # Panics
-/// Where `q` has not as many numbers as the crane has coordinates.
+/// If `q` does not have as many numbers as the crane has coordinates.
 impl dyn DynDerivatives + '_ {
     /// `∂T/∂q_j`, body by body, for the coordinates j that move it.
     pub fn transform_derivatives_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {

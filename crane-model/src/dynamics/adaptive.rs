@@ -1,21 +1,21 @@
-//! Steps as long as a tolerance allows, of methods that look back no further than one step.
+//! Steps as long as a tolerance allows, for one-step methods.
 
 use super::{
     Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped, equations::Equations, norm::Norm,
     state::NotFinite, step::Step, stopped::Place,
 };
 
-/// First step tried, s: a crane starts gently, and steps may grow threefold.
+/// First step tried, s: a crane starts smoothly, and steps may grow by a factor of three.
 pub(super) const FIRST: f64 = 1e-4;
-/// Longest step, s: a load that swings once a second has ten steps for it.
+/// Longest step, s: ten steps per period for a load that swings once per second.
 pub(super) const LONGEST: f64 = 0.1;
-/// Part of the step at which the error would just be the tolerance.
+/// Fraction of the step at which the error would just be the tolerance.
 pub(super) const SAFETY: f64 = 0.9;
-/// Least and greatest ratio of a step to the one before.
+/// Smallest and largest ratio of a step to the previous one.
 const RATIO: (f64, f64) = (0.2, 3.0);
-/// A step as short as this, of the time ahead, goes nowhere.
+/// A step as short as this, relative to the remaining time, makes no progress.
 pub(super) const LEAST: f64 = 1e-13;
-/// A step that would end this near to a stop, in parts of its length, ends there.
+/// A step that would end this close to a stop, relative to its length, ends there.
 pub(super) const SLIVER: f64 = 0.01;
 
 /// A formula that takes a step.
@@ -23,14 +23,14 @@ pub(super) trait Formula {
     /// Its name.
     const METHOD: Method;
 
-    /// Tries a step from its beginning, length and first slope.
+    /// Tries a step from its start, length and first slope.
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite>;
 
     /// Factorisations so far.
     fn factorisations(&self) -> usize;
 }
 
-/// A motion that proceeds in steps of its own length: they go beyond the results, which are interpolated.
+/// A motion with adaptive steps, which go beyond the results; these are interpolated.
 pub(super) struct Adaptive<'a, F> {
     formula: F,
     equations: Equations<'a>,
@@ -51,14 +51,14 @@ impl<'a, F: Formula> Adaptive<'a, F> {
         Self { formula, equations, norm, next: FIRST, step, motion, steps: 0, rejections: 0 }
     }
 
-    /// No step leads on.
+    /// No further step is possible.
     fn stuck(&self, t: f64, h: f64) -> Stopped {
         let Equations { crane, n, .. } = self.equations;
         let q = &self.motion[..n];
         Place { method: F::METHOD, t, h, q, description: crane.description() }.failed(Cause::Tolerance, crane)
     }
 
-    /// Whether a step that was tried meets the tolerance; the length to try next in any case.
+    /// Whether a tried step meets the tolerance, and the length to try next.
     fn judge(&mut self, tried: Result<(), NotFinite>) -> bool {
         let Step { length, end, error, .. } = &self.step;
         let error = match tried {
@@ -68,14 +68,14 @@ impl<'a, F: Formula> Adaptive<'a, F> {
         let ideal = SAFETY * error.powf(-1.0 / F::METHOD.order() as f64);
         let meets = error <= 1.0;
         let next = length * ideal.clamp(RATIO.0, if meets { RATIO.1 } else { 1.0 });
-        // A step cut short by a stop says nothing against the length that was meant.
+        // A step shortened by a stop does not limit the intended length.
         self.next = if meets && *length < self.next { next.max(self.next) } else { next }.min(LONGEST);
         meets
     }
 }
 
 impl<F: Formula> Adaptive<'_, F> {
-    /// Goes over to the end of a step.
+    /// Moves to the end of a step.
     fn accept(&mut self, reached: f64) {
         let n = self.equations.n;
         self.motion.copy_from_slice(&self.step.end);

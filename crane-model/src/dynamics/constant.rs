@@ -14,7 +14,7 @@ pub struct Rk4<'a> {
     settings: Settings,
     roughness: Roughness,
     motion: Vec<f64>,
-    /// Rates at the beginning of a step.
+    /// Rates at the start of a step.
     before: Vec<f64>,
     room: Vec<f64>,
     steps: Equal,
@@ -24,16 +24,16 @@ pub struct Rk4<'a> {
 /// Steps of equal length up to a time ahead.
 #[derive(Clone, Copy, Debug, Default)]
 struct Equal {
-    /// Where they begin and end, s.
+    /// Their start and end, s.
     begin: f64,
     end: f64,
-    /// How many there are, and how many are done.
+    /// Their number, and the number done.
     count: usize,
     done: usize,
 }
 
 impl Equal {
-    /// Beginning and length of the next, s.
+    /// Start and length of the next, s.
     fn next(&self) -> (f64, f64) {
         let h = (self.end - self.begin) / self.count as f64;
         (self.begin + h * self.done as f64, h)
@@ -46,7 +46,7 @@ impl Equal {
 }
 
 impl<'a> Rk4<'a> {
-    /// Steps as the settings want them.
+    /// Steps according to the settings.
     pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
         let equations = Equations::new(crane, Guides::rigid(crane), settings.audit);
         let n = equations.n;
@@ -67,14 +67,14 @@ impl<'a> Rk4<'a> {
         Place { method: Method::Rk4, t, h, q, description: self.equations.crane.description() }
     }
 
-    /// A motion that grows from step to step, if it does, or else what is said.
+    /// The cause is growth from step to step if there is some, otherwise the given cause.
     fn rough(&self, place: &Place<'_>, otherwise: impl FnOnce(&Place<'_>) -> Stopped) -> Stopped {
         let rough = self.roughness.roughest().map(|coordinate| place.stopped(Cause::Step, coordinate));
         rough.unwrap_or_else(|| otherwise(place))
     }
 }
 
-/// Steps through a piece of a motion that is shorter than the step asked for: in one, a stroke would be off by a quarter.
+/// Steps through an interval of a motion that is shorter than the requested step: a single step would have an error of a quarter.
 const PIECE: usize = 16;
 
 impl Stepper for Rk4<'_> {
@@ -133,7 +133,7 @@ impl Stepper for Rk4<'_> {
         &self.motion
     }
 
-    /// Every result is the end of a step.
+    /// Every result is at the end of a step.
     fn interpolate(&mut self, _: f64, motion: &mut [f64]) {
         motion.copy_from_slice(&self.motion);
     }

@@ -51,7 +51,7 @@ const A: [&[f64]; STAGES] = [
 ];
 const ERROR: [f64; STAGES] =
     [71.0 / 57_600.0, 0.0, -71.0 / 16_695.0, 71.0 / 1_920.0, -17_253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];
-/// Weights of what the interpolation of order 4 adds to Hermite's cubic.
+/// Weights of the term that the interpolation of order 4 adds to Hermite's cubic.
 const DENSE: [f64; STAGES] = [
     -12_715_105_075.0 / 11_282_082_432.0,
     0.0,
@@ -91,13 +91,13 @@ impl<'a> DormandPrince<'a> {
 
 forward!(DormandPrince);
 
-/// The formula, with room for its stages.
+/// The formula, with storage for its stages.
 pub(super) struct Tableau {
     slopes: [Vec<f64>; STAGES],
 }
 
 impl Tableau {
-    /// Room for motions of so many numbers.
+    /// Storage for motions of this many numbers.
     pub fn new(len: usize) -> Self {
         Self { slopes: std::array::from_fn(|_| vec![0.0; len]) }
     }

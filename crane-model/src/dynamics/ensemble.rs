@@ -1,7 +1,7 @@
 //! Many cranes at a time: the classical Runge–Kutta method over lanes, one crane per lane.
 //!
 //! All lanes take the same step. Lane by lane the operations are those of [`rk4`], in the same order, with the accelerations of
-//! [`LaneDynamics`] or [`DynBlock`]: a crane moves alike whatever moves beside it.
+//! [`LaneDynamics`] or [`DynBlock`]: a crane's motion does not depend on the other lanes.
 
 use std::convert::Infallible;
 
@@ -56,10 +56,10 @@ pub fn step<const N: usize, L: LaneDynamics<N>>(cranes: &L, t: f64, h: f64, stat
         });
 }
 
-/// Integrates Eq. (23) of every crane from its state at t = 0, eight at a time, and shows `observe` its place in `cranes` and
+/// Integrates Eq. (23) of every crane from its state at t = 0, eight at a time, and passes `observe` its index in `cranes` and
 /// a sample at t = 0, at every interval and at the end, as [`simulate`](super::simulate) by RK4 without audit.
 ///
-/// A crane that leaves the bound of the settings ends with [`Stopped`], and the others go on. Returns one result per crane.
+/// A crane that leaves the bound of the settings ends with [`Stopped`], and the others continue. Returns one result per crane.
 pub fn simulate<const N: usize, C: Ensemble<N>>(
     cranes: &[(C, State<N>)],
     settings: &Settings,
@@ -83,7 +83,7 @@ pub fn simulate<const N: usize, C: Ensemble<N>>(
 /// The parameters of a member break a rule of the spec language.
 ///
 /// # Panics
-/// Where a start has not as many numbers as the crane has coordinates.
+/// If a start does not have as many numbers as the crane has coordinates.
 pub fn simulate_dyn(
     crane: &dyn DynCrane,
     members: &[Member],
@@ -112,11 +112,11 @@ fn with_parameters(crane: &dyn DynCrane, parameters: &[f64]) -> Result<Box<dyn D
     Ok(crane)
 }
 
-/// A block of cranes on their way. Lane l of coordinate i is element `l % 8` of vector `i w + l / 8`, w vectors per coordinate.
+/// A block of moving cranes. Lane l of coordinate i is element `l % 8` of vector `i w + l / 8`, w vectors per coordinate.
 struct Batch<'a> {
     block: &'a mut dyn DynBlock,
     description: &'a Description,
-    /// The cranes one by one; copies of the last one fill the lanes behind them, and nobody looks at those.
+    /// The cranes one by one; copies of the last one fill the remaining lanes, whose results are ignored.
     models: Vec<&'a dyn DynModel>,
     /// Whether rigid drives prescribe coordinates.
     prescribes: bool,
@@ -164,7 +164,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Whether a lane stays within `bound`, m and rad; false for what is not a number.
+    /// Whether a lane stays within `bound`, m and rad; false for NaN.
     fn bounded(&self, lane: usize, bound: f64) -> bool {
         self.q.iter().skip(lane / LANES).step_by(self.vectors).all(|x| x.to_array()[lane % LANES].abs() <= bound)
     }
@@ -176,7 +176,7 @@ impl<'a> Batch<'a> {
         within.to_bitmask() & 0xff == 0xff
     }
 
-    /// Sets a lane back to its start: numbers without bound would slow down all lanes.
+    /// Resets a lane to its start: unbounded numbers would slow down all lanes.
     fn reset(&mut self, lane: usize) {
         for (lanes, start) in [&mut self.q, &mut self.v].into_iter().zip(&self.start) {
             for (x, start) in lanes.iter_mut().zip(start).skip(lane / LANES).step_by(self.vectors) {
@@ -212,7 +212,7 @@ impl<'a> Batch<'a> {
         });
     }
 
-    /// Steps are as long as intervals of results and stops allow.
+    /// Steps are limited by the intervals of results and by stops.
     fn run(mut self, settings: &Settings, observe: &mut dyn FnMut(usize, &Sample<'_>)) -> Vec<Result<Run, Stopped>> {
         let run =
             Run { statistics: Statistics::default(), step: settings.step_taken(), time: 0.0, efforts: Vec::new() };

@@ -1,4 +1,4 @@
-//! The equations of motion as one of first order, with what is integrated along.
+//! The equations of motion in first-order form, with integrals along the motion.
 
 use super::{
     guides::Guides,
@@ -6,46 +6,46 @@ use super::{
 };
 use crate::dyn_crane::DynDynamics;
 
-/// Integrals along an audited motion: work of the drives, energy that the dampers took out.
+/// Integrals along an audited motion: work of the drives, energy that the dampers dissipated.
 const INTEGRALS: usize = 2;
 
-/// A crane, what its motions are counted from, and how often it was asked for its accelerations.
+/// A crane, the references of its motions, and the number of evaluations of its accelerations.
 pub(super) struct Equations<'a> {
     pub crane: &'a dyn DynDynamics,
     /// Number of coordinates.
     pub n: usize,
     audit: bool,
-    /// What the numbers that are integrated count from.
+    /// The references of the integrated numbers.
     pub guides: Guides,
     /// Evaluations of the accelerations so far.
     pub evaluations: usize,
-    /// Pose and rates of the motion that was asked for last.
+    /// Pose and rates of the last evaluated motion.
     state: Vec<f64>,
 }
 
 impl<'a> Equations<'a> {
-    /// Of a crane, with or without integrals.
+    /// For a crane, with or without integrals.
     pub fn new(crane: &'a dyn DynDynamics, guides: Guides, audit: bool) -> Self {
         let n = crane.size();
         Self { crane, n, audit, guides, evaluations: 0, state: vec![0.0; 2 * n] }
     }
 
-    /// Numbers of a motion: coordinates, rates and integrals.
+    /// The number of components of a motion: coordinates, rates and integrals.
     pub fn len(&self) -> usize {
         2 * self.n + if self.audit { INTEGRALS } else { 0 }
     }
 
-    /// Counts a motion from the guides.
+    /// Converts a motion to deviations from the guides.
     pub fn count(&mut self, t: f64, motion: &mut [f64]) {
         self.guides.count(self.crane, t, self.n, motion);
     }
 
-    /// The motion itself, of one that counts from the guides.
+    /// The motion from its deviations from the guides.
     pub fn restore(&mut self, t: f64, motion: &mut [f64]) {
         self.guides.add(self.crane, t, 1.0, self.n, motion);
     }
 
-    /// Pose and rates of a motion that counts from the guides.
+    /// Pose and rates of a motion given relative to the guides.
     pub fn state(&mut self, t: f64, motion: &[f64]) -> (&[f64], &[f64]) {
         self.state.copy_from_slice(&motion[..2 * self.n]);
         self.guides.add(self.crane, t, 1.0, self.n, &mut self.state);
@@ -64,14 +64,14 @@ impl<'a> Equations<'a> {
         [self.crane.drive_power(t, q, v), self.crane.dissipation(t, q, v)]
     }
 
-    /// Slope of a motion that counts from the guides: rates, accelerations and powers.
+    /// Slope of a motion given relative to the guides: rates, accelerations and powers.
     pub fn slope(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
         self.derivative(t, motion, out)?;
         self.powers(t, motion, out);
         Ok(())
     }
 
-    /// Rates and accelerations of a motion that counts from the guides.
+    /// Rates and accelerations of a motion given relative to the guides.
     pub fn derivative(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
         let n = self.n;
         out[..n].copy_from_slice(&motion[n..2 * n]);
@@ -84,7 +84,7 @@ impl<'a> Equations<'a> {
         finite(accelerations)
     }
 
-    /// Powers of a motion that counts from the guides into the last numbers of a slope, where it has them.
+    /// Powers of a motion given relative to the guides into the last numbers of a slope, where it has them.
     pub fn powers(&mut self, t: f64, motion: &[f64], slope: &mut [f64]) {
         if self.audit {
             self.state(t, motion);

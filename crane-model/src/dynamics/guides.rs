@@ -1,45 +1,45 @@
-//! Motions of the drives, from which driven coordinates are counted.
+//! Motions of the drives, relative to which driven coordinates are integrated.
 //!
-//! A stiff drive follows its prescribed motion `p(t)` closely, `q = p + u`, and its effort `−s u − d u̇` is made of what is left.
+//! A stiff drive follows its prescribed motion `p(t)` closely, `q = p + u`, and its effort `−s u − d u̇` depends on the deviation.
 //! Any error of q, however small, is multiplied by the stiffness; so implicit methods integrate u, and `q = p + u` holds at every
-//! stage and wherever a result is interpolated. Then a stiff drive is not forced at all: what drives u are accelerations `−p̈`,
-//! beside which stiffness does not count. The deviation of a rigid drive is zero, by every method.
+//! stage and wherever a result is interpolated. Then a stiff drive is not forced at all: u is driven by the accelerations `−p̈`,
+//! which do not depend on the stiffness. The deviation of a rigid drive is zero, with every method.
 
 use crate::{CoordinateRole, Description, dyn_crane::DynModel};
 
-/// Coordinates that count from the motions of their drives.
+/// Coordinates that are relative to the motions of their drives.
 pub(super) struct Guides {
     guided: Vec<Guided>,
-    /// `p`, `ṗ` of all drives at the time asked for last, and at two times near it.
+    /// `p`, `ṗ` of all drives at the last evaluated time, and at two times near it.
     motions: Vec<[f64; 2]>,
     near: [Vec<[f64; 2]>; 2],
-    /// The step that is taken, s.
+    /// The current step, s.
     within: [f64; 2],
 }
 
-/// A coordinate that counts from a motion.
+/// A coordinate that is relative to a motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Guided {
     pub coordinate: usize,
-    /// Place of its drive.
+    /// Index of its drive.
     drive: usize,
     /// Whether the drive is rigid.
     rigid: bool,
 }
 
 impl Guides {
-    /// Part of a step by which rates are differenced: the error is of second order in it.
+    /// Fraction of a step over which rates are differenced: the error is of second order in it.
     const DIFFERENCE: f64 = 1e-3;
-    /// Least time between rates that are differenced, s: rounding of a rate leaves 1e-8 m/s² or rad/s².
+    /// Shortest time between differenced rates, s: rounding of a rate leaves 1e-8 m/s² or rad/s².
     const LEAST: f64 = 1e-8;
 
-    /// All driven coordinates, unless the rate of a motion jumps: a coordinate that gives way does not follow a jump.
+    /// All driven coordinates, unless the rate of a motion jumps: a flexibly driven coordinate does not follow a jump.
     pub fn of(crane: &dyn DynModel) -> Self {
         let jumps = jumps(crane);
         Self::new(crane, |drive, rigid| rigid || !jumps[drive])
     }
 
-    /// The coordinates of rigid drives alone.
+    /// Only the coordinates of rigid drives.
     pub fn rigid(crane: &dyn DynModel) -> Self {
         Self::new(crane, |_, rigid| rigid)
     }
@@ -55,17 +55,17 @@ impl Guides {
         Self { guided, near: [motions.clone(), motions.clone()], motions, within: [0.0; 2] }
     }
 
-    /// The coordinates that count from a motion.
+    /// The coordinates that are relative to a motion.
     pub fn coordinates(&self) -> impl Iterator<Item = usize> {
         self.guided.iter().map(|guided| guided.coordinate)
     }
 
-    /// Says that a step goes from `begin` to `end`, s.
+    /// Sets the step from `begin` to `end`, s.
     pub fn step_within(&mut self, begin: f64, end: f64) {
         self.within = [begin, end];
     }
 
-    /// Counts a motion of `n` coordinates from the drives' motions.
+    /// Makes a motion of `n` coordinates relative to the drives' motions.
     pub fn count(&mut self, crane: &dyn DynModel, t: f64, n: usize, motion: &mut [f64]) {
         self.add(crane, t, -1.0, n, motion);
         for guided in self.guided.iter().filter(|guided| guided.rigid) {
@@ -87,14 +87,14 @@ impl Guides {
         }
     }
 
-    /// Takes `p̈` from accelerations; it is differenced on this side of the ends of the step, where a motion may be less smooth.
+    /// Subtracts `p̈` from accelerations; it is differenced inside the step, at whose ends a motion may be less smooth.
     pub fn take_accelerations(&mut self, crane: &dyn DynModel, t: f64, accelerations: &mut [f64]) {
         if self.guided.is_empty() {
             return;
         }
         let [begin, end] = self.within;
         let by = ((end - begin) * Self::DIFFERENCE).max(Self::LEAST);
-        // Weights of the rates at three times; in the middle of the step the first does not count.
+        // Weights of the rates at three times; in the middle of the step the first is zero.
         let (shifts, weights) = if t - by < begin {
             ([by, 2.0 * by], [-3.0, 4.0, -1.0])
         } else if t + by > end {
@@ -115,11 +115,11 @@ impl Guides {
     }
 }
 
-/// Whether the rate of each drive's motion jumps where one of its pieces begins or ends.
+/// Whether the rate of each drive's motion jumps where one of its intervals begins or ends.
 fn jumps(crane: &dyn DynModel) -> Vec<bool> {
-    /// Times beside a jump, s: no motion of a crane changes its rate by itself in so short a time.
+    /// Distance in time from a jump, s: no smooth motion of a crane changes its rate in such a short time.
     const BESIDE: f64 = 1e-7;
-    /// A change of rate is a jump where it is so many times what the motion does beside it.
+    /// A change of rate is a jump if it exceeds the change next to it by this factor.
     const STEEP: f64 = 10.0;
     /// Rates below this, m/s and rad/s, are rounding.
     const REST: f64 = 1e-12;

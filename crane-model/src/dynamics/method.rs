@@ -11,8 +11,8 @@ pub enum Method {
     DormandPrince,
     /// A linearly implicit W-method for stiff motions, adaptive: [`rosenbrock`](super::rosenbrock).
     Rosenbrock,
-    /// Backward differentiation formulas of variable order for stiff motions, adaptive: [`bdf`](super::bdf). What is best where
-    /// engineers look, on cranes from soft to stiff; measured in docs/error-vs-runtime.md.
+    /// Backward differentiation formulas of variable order for stiff motions, adaptive: [`bdf`](super::bdf). The best choice at
+    /// usual accuracies, for soft and stiff cranes; measured in docs/error-vs-runtime.md.
     #[default]
     Bdf,
 }
@@ -44,7 +44,7 @@ impl Method {
         }
     }
 
-    /// Order of consistency; the highest, where it varies.
+    /// Order of consistency; the highest, if it varies.
     pub const fn order(self) -> usize {
         match self {
             Method::Rk4 | Method::Rosenbrock | Method::Bdf => 4,
@@ -52,12 +52,12 @@ impl Method {
         }
     }
 
-    /// Whether it chooses its steps for a tolerance.
+    /// Whether it adapts its steps to a tolerance.
     pub const fn is_adaptive(self) -> bool {
         !matches!(self, Method::Rk4)
     }
 
-    /// Whether its steps have a limit of stability whatever the damping.
+    /// Whether its steps have a stability limit for any damping.
     pub const fn is_explicit(self) -> bool {
         matches!(self, Method::Rk4 | Method::DormandPrince)
     }

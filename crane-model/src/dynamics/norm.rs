@@ -1,25 +1,25 @@
-//! How large an error of a motion is, in units of the tolerance.
+//! The size of an error of a motion, in units of the tolerance.
 
 use super::equations::Equations;
 use crate::{CoordinateKind, dyn_crane::DynImplicit};
 
-/// What an error of a rate counts against one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
+/// Weight of an error of a rate relative to one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
 const RATE: f64 = 0.2;
-/// Part of a drive's effort that counts as much as an error of 1 m or rad.
+/// Fraction of a drive's effort that counts as much as an error of 1 m or rad.
 const EFFORT: f64 = 20.0;
-/// Least scale of an effort, as a part of the greatest force or moment by which the crane's weight acts on a coordinate.
+/// Smallest scale of an effort, as a fraction of the largest force or moment of the crane's weight on a coordinate.
 const LEAST: f64 = 0.01;
-/// Stiffness over the scale of an effort that nothing else is known of, 1/m or 1/rad.
+/// Stiffness over the scale of an effort about which nothing else is known, 1/m or 1/rad.
 const UNKNOWN: f64 = 2e3;
-/// Roundings of a coordinate and of the sums that it goes through.
+/// Number of rounding errors of a coordinate and of the sums that contain it.
 const ROUNDINGS: f64 = 4.0;
-/// How much stages that build on each other magnify rounding at most: their coefficients are up to 40.
+/// Maximum amplification of rounding by successive stages: their coefficients are up to 40.
 const MAGNIFIED: f64 = 1e3;
 
 /// The measure of errors: of coordinates, rates and the efforts of drives.
 pub(super) struct Norm {
     n: usize,
-    /// Error that a step may make, m and rad.
+    /// Allowed error of a step, m and rad.
     tolerance: f64,
     efforts: Vec<Effort>,
 }
@@ -31,33 +31,33 @@ struct Effort {
     /// s and d.
     stiffness: f64,
     damping: f64,
-    /// What errors are measured by.
+    /// The scale of errors.
     scale: f64,
-    /// Greatest so far.
+    /// Largest effort so far.
     peak: f64,
-    /// Greatest error of a step so far, and what rounding leaves.
+    /// Largest error of a step so far, and the error due to rounding.
     error: f64,
     rounding: f64,
 }
 
-/// The effort of a drive over a run, and how far off it may be.
+/// The effort of a drive over a run, and its estimated error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EffortAccuracy {
     /// Its coordinate.
     pub coordinate: usize,
-    /// Greatest effort at the end of a step, N or N m.
+    /// Largest effort at the end of a step, N or N m.
     pub peak: f64,
     /// Estimated error, N or N m.
     pub error: f64,
 }
 
 impl Norm {
-    /// Of coordinates and rates alone.
+    /// For coordinates and rates only.
     pub fn new(n: usize, tolerance: f64) -> Self {
         Self { n, tolerance, efforts: Vec::new() }
     }
 
-    /// Also of the drives' efforts, of a motion that counts from the drives' motions.
+    /// Also for the drives' efforts, for a motion relative to the drives' motions.
     pub fn with_efforts(crane: &dyn DynImplicit, tolerance: f64) -> Self {
         let n = crane.size();
         let mut impedances = vec![[0.0; 2]; n];
@@ -71,7 +71,7 @@ impl Norm {
         Self { n, tolerance, efforts: drives.collect() }
     }
 
-    /// Sets out from a pose: the crane's weight there says what efforts are to be expected.
+    /// Starts at a pose: the crane's weight there gives the scale of the efforts.
     pub fn start(&mut self, equations: &mut Equations<'_>, t: f64, motion: &[f64]) {
         if self.efforts.is_empty() {
             return;
@@ -94,8 +94,8 @@ impl Norm {
         self.note_rounding(&q, &v);
     }
 
-    /// Size of an error of a motion: the greatest of `|δq|` in m and rad, `|δv|/(1 + |v|)` times [`RATE`], and of efforts over
-    /// their scales, over the tolerance; infinite where one is not a number.
+    /// Size of an error of a motion: the largest of `|δq|` in m and rad, `|δv|/(1 + |v|)` times [`RATE`], and of efforts over
+    /// their scales, over the tolerance; infinite if one is NaN.
     pub fn size(&self, motion: &[f64], error: &[f64]) -> f64 {
         let mut greatest = Greatest::default();
         for error in &error[..self.n] {
@@ -110,7 +110,7 @@ impl Norm {
         greatest.value() / self.tolerance
     }
 
-    /// Notes the efforts after a step that was done, and its error.
+    /// Records the efforts after a completed step, and its error.
     pub fn note(&mut self, motion: &[f64], error: &[f64]) {
         let n = self.n;
         for effort in &mut self.efforts {
@@ -120,7 +120,7 @@ impl Norm {
         }
     }
 
-    /// Notes what rounding of a pose and its rates leaves of the efforts: no step is short enough to be better.
+    /// Records the error of the efforts due to rounding of a pose and its rates, which shorter steps cannot reduce.
     pub fn note_rounding(&mut self, q: &[f64], v: &[f64]) {
         for effort in &mut self.efforts {
             let Effort { coordinate, stiffness, damping, .. } = *effort;
@@ -148,7 +148,7 @@ impl Effort {
     }
 }
 
-/// The greatest of some sizes; several comparisons at once become vector instructions.
+/// The largest of some sizes; several comparisons at once become vector instructions.
 #[derive(Clone, Copy, Debug)]
 struct Greatest {
     lanes: [f64; Greatest::LANES],

@@ -70,7 +70,7 @@ pub(super) trait Number: Copy + Add<Output = Self> + Mul<f64, Output = Self> {}
 impl Number for f64 {}
 impl Number for f64x8 {}
 
-/// Slices as long as a pose that a step needs room for.
+/// Number of slices, each as long as a pose, that a step needs as workspace.
 pub(super) const ROOM: usize = 8;
 
 /// `x + ẋ h`
@@ -87,10 +87,10 @@ pub(super) fn increments<const M: usize>([i1, i2, i3, i4]: &[SVector<f64, M>; ST
     (i1 + (i2 + i3) * 2.0 + i4) * (h / 6.0)
 }
 
-/// Moves pose and rates from `t` to `t + h`, in `room` for [`ROOM`] slices of their length. `accelerate` writes the accelerations
-/// of a stage, 0 to 3; those of the first stand at the beginning of `room` afterwards.
+/// Moves pose and rates from `t` to `t + h`, with `room` as workspace of [`ROOM`] slices of their length. `accelerate` writes the accelerations
+/// of a stage, 0 to 3; those of the first are at the start of `room` afterwards.
 ///
-/// Each number of a pose is moved by the same operations in the same order, whatever stands beside it.
+/// Each number of a pose is updated by the same operations in the same order, independently of its neighbours.
 ///
 /// # Errors
 /// Those of `accelerate`; pose and rates are unchanged.

@@ -6,17 +6,17 @@
 //! (I/(hγ) − J) uᵢ = f(t + αᵢh, y + Σⱼ aᵢⱼ uⱼ) + Σⱼ (cᵢⱼ/h) uⱼ      j < i
 //! ```
 //!
-//! The order does not depend on J: an inexact Jacobian costs accuracy in the stiff parts alone. Nor does it depend on ∂f/∂t, which is
-//! left out: driven coordinates count from their drives' motions, so that no stiff spring is forced (`guides`). Six stages, γ = 1/4, order 4,
+//! The order does not depend on J: an inexact Jacobian costs accuracy only in the stiff parts. It does not depend on ∂f/∂t either, which is
+//! neglected: driven coordinates are relative to their drives' motions, so that no stiff spring is forced (`guides`). Six stages, γ = 1/4, order 4,
 //! R(∞) = 0, and with `J = ∂f/∂y` A(α)-stable with α = 89.8°: only modes damped by less than 0.35 % can grow, by less than 0.65 %
-//! a step, in steps that do not resolve them.
+//! per step, in steps that do not resolve them.
 //! A. Rahunanthan, D. Stanescu, High-order W-methods, J. Comput. Appl. Math. 233 (2010) 1798; the form
 //! of the stages: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.7.
 //!
 //! The published method has no embedded formula. Its conditions up to order 3 for arbitrary J are of rank 5 for six weights, so
-//! there is a line of weights of order 3: m + s n. Taken is the one without the last stage.
+//! there is a line of weights of order 3: m + s n. The one without the last stage is used.
 //!
-//! On the second-order form `A q̈ = e + f`, J holds stiffness and damping of springs and dampers alone,
+//! On the second-order form `A q̈ = e + f`, J contains only stiffness and damping of springs and dampers,
 //! `J = [[0, I], [−A⁻¹K̂, −A⁻¹D̂]]`: gravity, velocity forces and the change of A are left out. A stage then needs one system
 //! of half the size, which the O(n) recursion solves (`system.rs`).
 
@@ -38,7 +38,7 @@ use crate::{
     dyn_crane::{DynImplicit, Instance},
 };
 
-/// Stages, as many as evaluations a step: the slope at its end is the first of the next.
+/// Stages, as many as evaluations per step: the slope at its end is the first of the next.
 pub const STAGES: usize = 6;
 /// Coefficients of the numerator of R(z); the denominator is `(1 − z/4)⁶`.
 pub const NUMERATOR: [f64; 6] = [1.0, -0.5, -0.0625, 1.0 / 24.0, 0.006_510_416_666_666_667, -0.002_430_737_286_220_53];
@@ -128,7 +128,7 @@ impl<'a> Rosenbrock<'a> {
 
 forward!(Rosenbrock);
 
-/// The formula, with room for its stages.
+/// The formula, with storage for its stages.
 pub(super) struct Stages<'a> {
     system: System<'a>,
     /// uᵢ.
@@ -138,7 +138,7 @@ pub(super) struct Stages<'a> {
 }
 
 impl<'a> Stages<'a> {
-    /// Room for motions of so many numbers.
+    /// Storage for motions of this many numbers.
     pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
         let zeros = || vec![0.0; len];
         let u = std::array::from_fn(|_| zeros());
@@ -149,7 +149,7 @@ impl<'a> Stages<'a> {
 impl Formula for Stages<'_> {
     const METHOD: Method = Method::Rosenbrock;
 
-    /// Integrals go along; J is zero for them.
+    /// Integrals are included; J is zero for them.
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
         let h = step.length;
         self.system.factorise(step.t, equations.state(step.t, &step.start), h * GAMMA);

@@ -1,12 +1,12 @@
-//! Growth from step to step, recognised long before a run leaves all bounds.
+//! Detection of growth from step to step, long before a run exceeds its bounds.
 
-/// Rates below this, m/s and rad/s, are rounding about a rest.
+/// Rates below this, m/s and rad/s, are rounding near rest.
 const REST: f64 = 1e-6;
-/// Growth of roughness, as energy, while it outweighs the motion: a decaying mode loses energy from step to step, and one
+/// Growth of roughness, as energy, while it dominates the motion: a decaying mode loses energy from step to step, and one
 /// that is merely not resolved keeps it.
 const GROWTH: f64 = 1e2;
 
-/// Compares the rates that a step found with those that the acceleration at its beginning foretold,
+/// Compares the rates after a step with those predicted from the acceleration at its start,
 /// `ε = v(t) + h q̈(t) − v(t+h)`.
 ///
 /// A resolved motion has `ε ≈ h² v̈/2`, small against v. At the limit of stability a step multiplies the limiting mode by
@@ -15,7 +15,7 @@ const GROWTH: f64 = 1e2;
 #[derive(Clone, Debug)]
 pub(super) struct Roughness {
     weights: Vec<f64>,
-    /// Roughness when it came to outweigh the motion, and the coordinate that is roughest now.
+    /// Roughness when it started to dominate the motion, and the currently roughest coordinate.
     outweighs: Option<(f64, usize)>,
 }
 
@@ -25,7 +25,7 @@ impl Roughness {
         Self { weights, outweighs: None }
     }
 
-    /// The roughest coordinate, where roughness outweighs the motion.
+    /// The roughest coordinate, if roughness dominates the motion.
     pub(super) fn roughest(&self) -> Option<usize> {
         self.outweighs.map(|(_, roughest)| roughest)
     }

@@ -1,4 +1,4 @@
-//! What a run shows and what it took.
+//! Samples and summary of a run.
 
 use super::{EffortAccuracy, Statistics};
 
@@ -11,21 +11,21 @@ pub struct Sample<'a> {
     pub q: &'a [f64],
     /// Their rates, m/s and rad/s.
     pub v: &'a [f64],
-    /// Work that the drives' motions put in since t = 0, J; 0 without audit.
+    /// Work of the drives' motions since t = 0, J; 0 without audit.
     pub work: f64,
-    /// Energy that the dampers took out since t = 0, J; 0 without audit.
+    /// Energy that the dampers dissipated since t = 0, J; 0 without audit.
     pub dissipated: f64,
 }
 
-/// What a run took.
+/// Summary of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// What it did.
+    /// Counts of steps and evaluations.
     pub statistics: Statistics,
     /// Step, s; the mean of an adaptive method.
     pub step: f64,
     /// Time reached, s.
     pub time: f64,
-    /// The drives' efforts and how far off they may be, by a method that looks at them.
+    /// The drives' efforts and their estimated errors, if the method monitors them.
     pub efforts: Vec<EffortAccuracy>,
 }

@@ -1,4 +1,4 @@
-//! A run over time, with results at their own interval.
+//! A run over time, with results at a given interval.
 
 use std::ops::ControlFlow;
 
@@ -19,15 +19,15 @@ use crate::{
     dyn_crane::{DynDynamics, DynImplicit, DynModel, Instance},
 };
 
-/// Integrates Eq. (23) from `start` at t = 0 and shows `observe` a sample at t = 0, at every interval and at the end.
-/// `observe` may break off the run.
+/// Integrates Eq. (23) from `start` at t = 0 and passes `observe` a sample at t = 0, at every interval and at the end.
+/// `observe` may stop the run.
 ///
 /// With `audit`, work W of the drives and dissipated energy D are integrated along with the motion, so that
 /// `E(t) − E(0) − W + D`, zero for the exact motion, measures the error of the run.
 ///
 /// # Errors
-/// [`Stopped`] where the motion grows from step to step or beyond the bound, where no step meets the tolerance, where steps are
-/// more than allowed, or where the mass matrix is not positive definite.
+/// [`Stopped`] if the motion grows from step to step or beyond the bound, if no step meets the tolerance, if there are too many
+/// steps, or if the mass matrix is not positive definite.
 pub fn simulate<const N: usize, C: Implicit<N>>(
     crane: &C,
     start: State<N>,
@@ -37,18 +37,18 @@ pub fn simulate<const N: usize, C: Implicit<N>>(
     simulate_dyn(&Instance::<N, _>(crane), &InitialState::from(&start), settings, &mut observe)
 }
 
-/// What looks on while a run goes on, and may break it off.
+/// An observer of a run, which may stop it.
 pub trait Watch {
-    /// Is shown a sample: at the beginning, at every interval of results, and at the end.
+    /// Receives a sample: at the beginning, at every interval of results, and at the end.
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()>;
 
-    /// Is told the time after every step, s.
+    /// Receives the time after every step, s.
     fn step(&mut self, _t: f64) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
 
-/// Shows samples to a function.
+/// Passes samples to a function.
 struct Samples<'a>(&'a mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>);
 
 impl Watch for Samples<'_> {
@@ -63,7 +63,7 @@ impl Watch for Samples<'_> {
 /// As [`simulate`].
 ///
 /// # Panics
-/// Where the start has not as many numbers as the crane has coordinates.
+/// If the start does not have as many numbers as the crane has coordinates.
 pub fn simulate_dyn(
     crane: &dyn DynImplicit,
     start: &InitialState,
@@ -79,7 +79,7 @@ pub fn simulate_dyn(
 /// As [`simulate`].
 ///
 /// # Panics
-/// Where the start has not as many numbers as the crane has coordinates.
+/// If the start does not have as many numbers as the crane has coordinates.
 pub fn simulate_watched(
     crane: &dyn DynImplicit,
     start: &InitialState,
@@ -96,7 +96,7 @@ pub fn simulate_watched(
 /// As [`simulate`].
 ///
 /// # Panics
-/// Where the start has not as many numbers as the crane has coordinates.
+/// If the start does not have as many numbers as the crane has coordinates.
 pub fn simulate_from(
     crane: &dyn DynImplicit,
     begin: f64,
@@ -120,7 +120,7 @@ pub fn simulate_from(
 /// As [`simulate`].
 ///
 /// # Panics
-/// Where the start has not as many numbers as the crane has coordinates.
+/// If the start does not have as many numbers as the crane has coordinates.
 pub fn run(
     crane: &dyn DynDynamics,
     stepper: &mut dyn Stepper,
@@ -194,7 +194,7 @@ fn run_from(
 }
 
 /// Checks that the mass matrix at a pose is positive definite: the recursion of O(n) divides by inertias one by one and would go on
-/// with negative ones. Otherwise the coordinate to blame.
+/// with negative ones. Otherwise returns the coordinate responsible.
 fn check_inertia(crane: &dyn DynDynamics, q: &[f64]) -> Result<(), usize> {
     let mut mass = DMatrix::zeros(q.len(), q.len());
     crane.mass_matrix(q, mass.as_mut_slice());

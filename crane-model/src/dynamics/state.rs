@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use crate::Dynamics;
 
-/// An acceleration is not finite: a body without inertia, or a pose that is not a number any more.
+/// An acceleration is not finite: a body has no inertia, or the pose contains NaN.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotFinite;
 

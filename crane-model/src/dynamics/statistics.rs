@@ -1,11 +1,11 @@
-//! What a run did.
+//! Counts of a run.
 
-/// What a run did.
+/// Counts of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
-    /// Steps done.
+    /// Completed steps.
     pub steps: usize,
-    /// Steps tried in vain: their error was above the tolerance.
+    /// Rejected steps, whose error was above the tolerance.
     pub rejections: usize,
     /// Evaluations of the accelerations.
     pub evaluations: usize,

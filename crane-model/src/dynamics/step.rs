@@ -1,28 +1,28 @@
-//! A step that was done, and the motion within it.
+//! A completed step, and the motion within it.
 
 use super::motion::add;
 
 /// A step of an adaptive one-step method.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
-    /// When it begins, s.
+    /// Its start, s.
     pub t: f64,
     /// Its length, s.
     pub length: f64,
-    /// Motion at the beginning.
+    /// Motion at the start.
     pub start: Vec<f64>,
     /// Motion at the end.
     pub end: Vec<f64>,
     /// Difference to the embedded formula.
     pub error: Vec<f64>,
-    /// Slopes at the beginning and at the end; the latter is the first of the next step.
+    /// Slopes at the start and at the end; the latter is the first of the next step.
     pub slopes: [Vec<f64>; 2],
-    /// What a method adds to Hermite's cubic, `θ²(1−θ)² bulge`.
+    /// The term that a method adds to Hermite's cubic, `θ²(1−θ)² bulge`.
     pub bulge: Vec<f64>,
 }
 
 impl Step {
-    /// Room for motions of so many numbers.
+    /// Storage for motions of this many numbers.
     pub fn new(len: usize) -> Self {
         let zeros = || vec![0.0; len];
         let slopes = [zeros(), zeros()];
@@ -34,7 +34,7 @@ impl Step {
         self.t + self.length
     }
 
-    /// What ends here begins the next step.
+    /// The end of this step is the start of the next.
     pub fn proceed(&mut self) {
         self.t = self.reached();
         std::mem::swap(&mut self.start, &mut self.end);
@@ -44,7 +44,7 @@ impl Step {
 
     /// Motion at a time within the step: Hermite's cubic through values and slopes at both ends, and the bulge.
     ///
-    /// The cubic is off by at most `h⁴/384` times the fourth derivative, an order that methods of order 4 have themselves.
+    /// The error of the cubic is at most `h⁴/384` times the fourth derivative, the order of methods of order 4.
     pub fn at(&self, t: f64, motion: &mut [f64]) {
         let theta = if self.length > 0.0 { (t - self.t) / self.length } else { 1.0 };
         let rest = 1.0 - theta;
@@ -60,7 +60,7 @@ impl Step {
 
     /// Rate of a coordinate of `n` at a time within the step, as the slope of its cubic.
     ///
-    /// The acceleration of a stiff spring does not enter: what it is off by at the ends, its damper would magnify.
+    /// The acceleration of a stiff spring is not used: its damper would magnify the error at the ends.
     pub fn rate_at(&self, t: f64, n: usize, coordinate: usize) -> f64 {
         let [start, end] = [&self.start, &self.end].map(|motion| motion[coordinate]);
         let rates = [&self.start, &self.end].map(|motion| motion[n + coordinate]);

@@ -1,21 +1,21 @@
-//! What all methods have in common: one step, the motion within it, and what it took.
+//! The common interface of all methods: one step, the motion within it, and statistics.
 
 use super::{EffortAccuracy, Statistics, Stopped};
 
-/// A motion that proceeds step by step. It holds its crane, its state and all the room that it needs: no step allocates.
+/// A motion that proceeds step by step. It holds its crane, its state and its workspace: no step allocates.
 ///
-/// A motion is one slice: coordinates, rates and, where a run is audited, the work of the drives and what the dampers took out.
+/// A motion is one slice: coordinates, rates and, in an audited run, the work of the drives and the energy that the dampers dissipated.
 pub trait Stepper {
-    /// Sets out from a motion at time `t`, s.
+    /// Starts from a motion at time `t`, s.
     ///
     /// # Errors
-    /// [`Stopped`] where the accelerations there are not finite.
+    /// [`Stopped`] if the accelerations there are not finite.
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped>;
 
     /// Takes a step towards a time ahead, and returns the time reached, s.
     ///
     /// # Errors
-    /// [`Stopped`] where the motion grows from step to step or no step meets the tolerance.
+    /// [`Stopped`] if the motion grows from step to step or no step meets the tolerance.
     fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped>;
 
     /// Motion at the time reached.
@@ -24,10 +24,10 @@ pub trait Stepper {
     /// Motion at a time within the last step.
     fn interpolate(&mut self, t: f64, motion: &mut [f64]);
 
-    /// What was done so far.
+    /// Statistics so far.
     fn statistics(&self) -> Statistics;
 
-    /// The efforts of the drives so far, where the method looks at them.
+    /// The efforts of the drives so far, if the method monitors them.
     fn efforts(&self) -> Vec<EffortAccuracy> {
         Vec::new()
     }
@@ -42,7 +42,7 @@ pub struct Ahead {
     pub stop: f64,
 }
 
-/// A stepper by the one that it holds.
+/// A boxed stepper.
 macro_rules! forward {
     ($stepper:ident) => {
         impl Stepper for $stepper<'_> {

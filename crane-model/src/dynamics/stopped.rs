@@ -1,4 +1,4 @@
-//! A run that came to an early end.
+//! A run that ended early.
 
 use std::{error::Error, fmt};
 
@@ -7,12 +7,12 @@ use nalgebra::DMatrix;
 use super::Method;
 use crate::{Description, Text, dyn_crane::DynDynamics};
 
-/// Why a run stopped before its time.
+/// Why a run stopped early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// A coordinate left the bound of the settings, or is not a number any more.
+    /// A coordinate exceeded the bound of the settings, or is NaN.
     Growth,
-    /// The motion grows from step to step against its own acceleration: the step is beyond the limit of stability.
+    /// The motion grows from step to step against its own acceleration: the step is beyond the stability limit.
     Step,
     /// No step, however short, meets the tolerance of an adaptive method.
     Tolerance,
@@ -22,16 +22,16 @@ pub enum Cause {
     MassMatrix,
 }
 
-/// A run that stopped before its time, and where.
+/// A run that stopped early, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stopped {
     /// Why.
     pub cause: Cause,
-    /// By which method.
+    /// The method.
     pub method: Method,
     /// When, s.
     pub time: f64,
-    /// Coordinate that is furthest out, or that moves no inertia.
+    /// Coordinate with the largest value, or that moves no inertia.
     pub coordinate: Text,
     /// Its value.
     pub value: f64,
@@ -61,15 +61,15 @@ impl Place<'_> {
         Stopped { cause, method: self.method, time: self.t, coordinate: name, value, unit, step: self.h }
     }
 
-    /// As [`stopped`](Self::stopped), by the coordinate that is furthest out: the first that is not finite, else the greatest.
+    /// Like [`stopped`](Self::stopped), for the coordinate with the largest value: the first that is not finite, otherwise the largest.
     pub fn furthest(&self, cause: Cause) -> Stopped {
         let size = |x: f64| if x.is_finite() { x.abs() } else { f64::INFINITY };
         let worst = (0..self.q.len()).rev().max_by(|&i, &j| size(self.q[i]).total_cmp(&size(self.q[j])));
         self.stopped(cause, worst.unwrap_or(0))
     }
 
-    /// A step that came to nothing: for want of inertia where the mass matrix at its beginning is not positive definite, else
-    /// for another cause.
+    /// A failed step: because of missing inertia if the mass matrix at its start is not positive definite, otherwise for another
+    /// cause.
     pub fn failed(&self, cause: Cause, crane: &dyn DynDynamics) -> Stopped {
         let n = self.q.len();
         let mut mass = DMatrix::zeros(n, n);

@@ -1,4 +1,4 @@
-//! Times that no step passes: between them the drives' motions are smooth.
+//! Times at which steps end: between them the drives' motions are smooth.
 
 use crate::dyn_crane::DynModel;
 
@@ -7,10 +7,10 @@ use crate::dyn_crane::DynModel;
 pub(super) struct Stops(Vec<f64>);
 
 impl Stops {
-    /// Times nearer than this, as a part of the run, are one: no step is as short.
+    /// Times closer than this, relative to the run, are merged: no step is that short.
     const NEAR: f64 = 1e-9;
 
-    /// Where pieces of the motions of some cranes begin and end, within a run from one time to another, s.
+    /// Begins and ends of the smooth intervals of the motions of some cranes, within a run from one time to another, s.
     pub fn between<'a>(cranes: impl IntoIterator<Item = &'a dyn DynModel>, begin: f64, end: f64) -> Self {
         let near = Self::NEAR * (end - begin);
         let mut times = Vec::new();

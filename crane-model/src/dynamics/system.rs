@@ -1,8 +1,8 @@
 //! The linear system of an implicit step, of half the size.
 //!
-//! On the second-order form `A q̈ = e + f`, the Jacobian holds stiffness and damping of springs and dampers alone,
+//! On the second-order form `A q̈ = e + f`, the Jacobian contains only stiffness and damping of springs and dampers,
 //! `J = [[0, I], [−A⁻¹K̂, −A⁻¹D̂]]`: gravity, velocity forces and the change of A are left out. Then
-//! `(I/c − J) u = (P, G)` with `u = (p, w)` comes down to one system with as many unknowns as coordinates, which the
+//! `(I/c − J) u = (P, G)` with `u = (p, w)` reduces to one system with as many unknowns as coordinates, which the
 //! O(n) recursion solves:
 //!
 //! ```text
@@ -34,7 +34,7 @@ pub(super) struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    /// Room for the systems of a crane.
+    /// Storage for the systems of a crane.
     pub fn new(crane: &'a dyn DynImplicit) -> Self {
         let n = crane.size();
         let mut linear = vec![[0.0; 2]; n];
@@ -55,7 +55,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Factorises about a state.
+    /// Factorises at a state.
     pub fn factorise(&mut self, t: f64, (q, v): (&[f64], &[f64]), c: f64) {
         self.c = c;
         self.crane.nonlinear_impedances(t, q, v, &mut self.nonlinear);

@@ -16,7 +16,7 @@ const PRECISION: f64 = f64::EPSILON;
 pub struct DampedMode {
     /// Eigenvalue λ with Im λ ≥ 0, 1/s.
     pub eigenvalue: Complex<f64>,
-    /// Indices of the coordinates that dominate, greatest share of the energy first.
+    /// Indices of the dominant coordinates, largest share of the energy first.
     pub dominating: Vec<usize>,
 }
 
@@ -26,7 +26,7 @@ impl DampedMode {
         self.eigenvalue.norm() / TAU
     }
 
-    /// Damping ratio `ζ = −Re λ/|λ|`: 1 for a mode that creeps back without swinging, negative for one that grows.
+    /// Damping ratio `ζ = −Re λ/|λ|`: 1 for a mode that returns without oscillating, negative for one that grows.
     pub fn damping_ratio(&self) -> f64 {
         if self.eigenvalue.norm() > 0.0 { -self.eigenvalue.re / self.eigenvalue.norm() } else { 0.0 }
     }
@@ -35,7 +35,7 @@ impl DampedMode {
 /// Damped modes, lowest frequency first: eigenvalues and shapes of the balanced state matrix from its Schur form.
 ///
 /// # Errors
-/// The mass matrix is not positive definite, or the QR algorithm does not come to an end.
+/// The mass matrix is not positive definite, or the QR algorithm does not converge.
 pub fn damped(motions: &SmallMotions) -> Result<Vec<DampedMode>, NoModes> {
     if motions.mass.is_empty() {
         return Ok(Vec::new());

@@ -16,7 +16,7 @@ use std::{error::Error, fmt};
 pub enum NoModes {
     /// The mass matrix is not positive definite.
     MassMatrix,
-    /// The iteration for the eigenvalues did not come to an end.
+    /// The eigenvalue iteration did not converge.
     Eigenvalues,
 }
 

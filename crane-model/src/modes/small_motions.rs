@@ -5,7 +5,7 @@ use nalgebra::{ComplexField, DMatrix, DVector, DVectorView};
 use super::NoModes;
 use crate::{Linearisation, dyn_crane::DynLinearise, model::state_blocks};
 
-/// A coordinate belongs to a mode from this part of the greatest share of energy.
+/// A coordinate dominates a mode from this fraction of the largest share of energy.
 const SHARE: f64 = 0.2;
 
 /// Coefficients of `A δq̈ + D δq̇ + K δq = 0`, of the coordinates that can move.
@@ -17,13 +17,13 @@ pub struct SmallMotions {
     pub stiffness: DMatrix<f64>,
     /// Damping matrix D.
     pub damping: DMatrix<f64>,
-    /// Places in q of the rows and columns: all but those that rigid drives prescribe.
+    /// Indices in q of the rows and columns: all except those that rigid drives prescribe.
     pub unknowns: Vec<usize>,
     /// Number of coordinates.
     pub size: usize,
 }
 
-/// Of all coordinates: one that a rigid drive prescribes swings by itself at 1 rad/s, unless [`without`](SmallMotions::without) it.
+/// For all coordinates; a prescribed one oscillates separately at 1 rad/s, unless removed by [`without`](SmallMotions::without).
 impl<const N: usize> From<&Linearisation<N>> for SmallMotions {
     fn from(linearisation: &Linearisation<N>) -> Self {
         let Linearisation { mass, stiffness, damping } = linearisation;
@@ -43,7 +43,7 @@ impl SmallMotions {
         all.without(&crane.description().prescribed())
     }
 
-    /// Those of the other coordinates, when these stand still.
+    /// The coefficients of the other coordinates, with these held fixed.
     #[must_use]
     pub fn without(self, prescribed: &[usize]) -> Self {
         if prescribed.is_empty() {
@@ -60,7 +60,7 @@ impl SmallMotions {
         }
     }
 
-    /// A shape over all coordinates; those that stand still have none.
+    /// A shape over all coordinates; fixed ones have zeros.
     pub(super) fn shape(&self, of_unknowns: &DVector<f64>) -> DVector<f64> {
         let mut shape = DVector::zeros(self.size);
         for (place, x) in self.unknowns.iter().zip(of_unknowns) {
@@ -84,7 +84,7 @@ impl SmallMotions {
         Ok(state)
     }
 
-    /// Shares of the coordinates in the energy of a mode, `|x̄ᵢ (A x)ᵢ|`, and the names of those that dominate it.
+    /// Shares of the coordinates in the energy of a mode, `|x̄ᵢ (A x)ᵢ|`, and the names of the dominant ones.
     ///
     /// In an undamped mode `K x = ω² A x`: the same shares for kinetic and strain energy, whatever the units.
     pub(super) fn dominating<T: ComplexField<RealField = f64>>(&self, shape: &DVector<T>) -> Vec<usize> {

@@ -13,7 +13,7 @@ pub struct Mode {
     pub omega_squared: f64,
     /// Shape x in generalized coordinates, `xᵀ A x = 1`.
     pub shape: DVector<f64>,
-    /// Indices of the coordinates that dominate, greatest share of the energy first.
+    /// Indices of the dominant coordinates, largest share of the energy first.
     pub dominating: Vec<usize>,
 }
 
@@ -35,7 +35,7 @@ pub fn undamped(motions: &SmallMotions) -> Result<Vec<Mode>, NoModes> {
     let factor = motions.mass.clone().cholesky().ok_or(NoModes::MassMatrix)?.unpack();
     let half = factor.solve_lower_triangular(&motions.stiffness).ok_or(NoModes::MassMatrix)?;
     let whole = factor.solve_lower_triangular(&half.transpose()).ok_or(NoModes::MassMatrix)?;
-    // Symmetric but for rounding, of which the eigenvalue routine reads one half only.
+    // Symmetric up to rounding; the eigenvalue routine reads only one half.
     let SymmetricEigen { eigenvalues, eigenvectors } = ((&whole + whole.transpose()) * 0.5).symmetric_eigen();
     let shapes = factor.tr_solve_lower_triangular(&eigenvectors).ok_or(NoModes::MassMatrix)?;
 

@@ -1,14 +1,14 @@
-//! What a pose or a run does that the model does not hold for.
+//! Cautions about poses and runs for which the model is not valid.
 
 use nalgebra::Vector3;
 
 use super::{Extremes, Table, stop_effort};
 use crate::{Description, dyn_crane::DynCrane};
 
-/// Bend of one section of a beam from which that is said unless asked otherwise, degrees: linear springs and straight
-/// elements are then off by about a hundredth.
+/// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
+/// have an error of about 1 %.
 pub const BEND: f64 = 20.0;
-/// Part of the greatest reaction below which a pull is rounding.
+/// Fraction of the largest reaction below which a pull is rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Feet that pull the crane down, joints on their stops, and elements bent beyond `bend` degrees, at a pose at rest.
@@ -41,7 +41,7 @@ pub fn of_run(description: &Description, table: &Table, bend: f64) -> Vec<String
     pulls.into_iter().chain(stopped).chain(bent_beyond(bent, bend)).collect()
 }
 
-/// Says for how long a run has a joint on its stops, and what these took at most.
+/// Reports how long a joint is on its stops during a run, and the largest effort of these.
 fn on_stop(description: &Description, table: &Table, coordinate: usize) -> Option<String> {
     let coordinate = &description.coordinates[coordinate];
     let column = stop_effort(&coordinate.name, coordinate.kind);
@@ -67,7 +67,7 @@ pub fn of_reactions(description: &Description, extremes: &dyn Fn(&str) -> Option
     pulled(&pulls.collect::<Vec<_>>())
 }
 
-/// Says which feet pull, with how much, and when.
+/// Reports which feet pull, with which force, and when.
 fn pulled(pulls: &[(&str, f64, Option<f64>)]) -> Option<String> {
     let each = pulls.iter().map(|(name, force, time)| {
         let when = time.map_or_else(String::new, |t| format!(" at {t:.2} s"));
@@ -83,7 +83,7 @@ fn pulled(pulls: &[(&str, f64, Option<f64>)]) -> Option<String> {
     })
 }
 
-/// Says which element bends or twists furthest, where that is beyond `limit` degrees.
+/// Reports the element with the largest rotation, if it exceeds `limit` degrees.
 fn bent_beyond<'a>(angles: impl Iterator<Item = (&'a str, f64)>, limit: f64) -> Option<String> {
     let (name, angle) = angles.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     let degrees = angle.to_degrees();
@@ -95,9 +95,9 @@ fn bent_beyond<'a>(angles: impl Iterator<Item = (&'a str, f64)>, limit: f64) -> 
     })
 }
 
-/// Says where a step is so near the largest stable one that a change of pose may make it unstable.
+/// Reports a step that is so close to the largest stable one that a change of pose may make it unstable.
 pub fn of_step(step: f64, limit: f64) -> Option<String> {
-    /// Part of the limit.
+    /// Fraction of the limit.
     const NEAR: f64 = 0.97;
     (step > NEAR * limit).then(|| {
         format!(

@@ -1,17 +1,17 @@
-//! Least and greatest values of a quantity, signed, and when it had them.
+//! Minimum and maximum of a quantity, signed, and their times.
 
 use super::Table;
 
-/// Least and greatest value of a quantity, and when it had them first.
+/// Minimum and maximum of a quantity, and their first times.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extremes {
-    /// Least value.
+    /// Minimum.
     pub minimum: f64,
-    /// When, s.
+    /// Its time, s.
     pub time_of_minimum: f64,
-    /// Greatest value.
+    /// Maximum.
     pub maximum: f64,
-    /// When, s.
+    /// Its time, s.
     pub time_of_maximum: f64,
 }
 
@@ -26,17 +26,17 @@ impl Extremes {
         found
     }
 
-    /// The greatest size.
+    /// The largest absolute value.
     pub fn size(&self) -> f64 {
         self.minimum.abs().max(self.maximum.abs())
     }
 
-    /// Of one value.
+    /// The extremes of one value.
     pub fn at(t: f64, value: f64) -> Self {
         Self { minimum: value, time_of_minimum: t, maximum: value, time_of_maximum: t }
     }
 
-    /// Takes a later value in.
+    /// Includes a later value.
     pub fn widen(&mut self, t: f64, value: f64) {
         if value < self.minimum {
             (self.minimum, self.time_of_minimum) = (value, t);

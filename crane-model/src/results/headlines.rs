@@ -1,14 +1,14 @@
-//! The columns of a run that people look at first, by kind.
+//! The most important columns of a run, by kind.
 
 use super::{Extremes, Table, drive_effort};
 use crate::Description;
 
-/// What the size of a quantity is, against which its error counts.
+/// The measure of a quantity's size, relative to which its error is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Size {
-    /// The greatest value.
+    /// The largest absolute value.
     Peak,
-    /// The way from the least to the greatest value.
+    /// The range from the minimum to the maximum.
     Range,
 }
 
@@ -19,7 +19,7 @@ pub struct Kind {
     pub names: Vec<String>,
     /// Their unit.
     pub unit: &'static str,
-    /// What their error is measured by, in words.
+    /// The measure of their size, in words.
     pub measure: &'static str,
     size: Size,
 }
@@ -41,9 +41,9 @@ impl Kind {
         }
     }
 
-    /// Below this a difference is rounding or a motion too small to matter: a micrometre of a crane of some metres.
+    /// Below this a difference is rounding or a negligible motion: a micrometre on a crane of several metres.
     pub fn noise(&self, table: &Table, name: &str) -> f64 {
-        /// Part of the greatest value.
+        /// Fraction of the largest value.
         const NOISE: f64 = 1e-6;
         match self.size {
             Size::Peak => 0.0,
@@ -52,7 +52,7 @@ impl Kind {
     }
 }
 
-/// The columns that are headlines of a run: efforts of the drives, paths of the points, vertical forces of the supports.
+/// The most important columns of a run: efforts of the drives, paths of the points, vertical forces of the supports.
 pub fn headlines(description: &Description) -> Vec<Kind> {
     let efforts = |unit: &str| -> Vec<String> {
         let coordinates = description.drives.iter().map(|drive| &description.coordinates[drive.coordinate]);

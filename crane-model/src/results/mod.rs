@@ -1,4 +1,4 @@
-//! Results as columns with names and units, their extremes, how far off they may be, and what to be careful about.
+//! Results as columns with names and units, their extremes, their errors, and cautions about them.
 
 pub mod cautions;
 mod extremes;

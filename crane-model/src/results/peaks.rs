@@ -1,4 +1,4 @@
-//! What is left of a run when only the extremes and the last values are of interest.
+//! The extremes and final values of a run.
 
 use crate::{
     Description,
@@ -7,10 +7,10 @@ use crate::{
     results::{Column, Extremes, Table, drive_effort},
 };
 
-/// Extremes, signed, with their times, and last values over the samples of a run.
+/// Signed extremes with their times, and final values, over the samples of a run.
 ///
 /// Columns, `_min`, `_min_time`, `_max`, `_max_time` of each: of a point `<point>_x`, `_y`, `_z`; of a drive
-/// `<coordinate>_drive_torque` or `_drive_force`; of a support `<support>_reaction_x`, `_y`, `_z`. At last `_end` of every
+/// `<coordinate>_drive_torque` or `_drive_force`; of a support `<support>_reaction_x`, `_y`, `_z`. Finally `_end` of every
 /// coordinate of every point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {

@@ -1,25 +1,24 @@
-//! How far off a run is: the same run once more, at a tenth of the tolerance or with half the step, with results four times as often.
+//! The error of a run, estimated by repeating it with a tenth of the tolerance or half the step, and results four times as often.
 //!
-//! Where the method converges, the finer run is several times as exact, so the difference of the two is the error of the
-//! coarser one but for a small part of it. What a quantity does between two results, its peaks above all, shows in the additional
-//! results of the finer run.
+//! If the method converges, the finer run is several times more accurate, so the difference of the two is almost the error of
+//! the coarser one. The additional results of the finer run show what a quantity does between two results, above all its peaks.
 
 use super::{Extremes, Table, headlines};
 use crate::{Description, dynamics};
 
-/// Part of the tolerance of the finer run.
+/// Tolerance of the finer run relative to that of the run.
 const FINER: f64 = 0.1;
 /// Results of the finer run per result of the run.
 const RESULTS: usize = 4;
-/// Most results of the finer run: one with more has them as often as the run.
+/// Maximum number of results of the finer run; beyond it, the finer run has as many as the run.
 const MOST_RESULTS: usize = 1_000_000;
-/// Part of a quantity's size from which a difference is a caution.
+/// Fraction of a quantity's size above which a difference causes a caution.
 const CAUTION: f64 = 0.01;
-/// What is smaller than this part of the greatest quantity of its kind is not worth a caution.
+/// Quantities smaller than this fraction of the largest of their kind cause no caution.
 const NEGLIGIBLE: f64 = 1e-4;
 /// Growth of the difference of two runs, in powers of e, that only exponential growth explains.
 const CHAOS: f64 = 7.0;
-/// Part of the variance of the logarithm that a straight line explains where growth is exponential.
+/// Fraction of the variance of the logarithm that a straight line explains if growth is exponential.
 const STRAIGHT: f64 = 0.8;
 
 /// Settings of the finer run.
@@ -33,20 +32,20 @@ pub fn finer(settings: &dynamics::Settings) -> dynamics::Settings {
     }
 }
 
-/// What the finer run says about a run.
+/// The comparison of a run with a finer one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verification {
-    /// Greatest difference over the run, column by column, in the column's unit: of values at the same times, and of least and
-    /// greatest values.
+    /// Largest difference over the run, column by column, in the column's unit: of values at the same times, and of minima and
+    /// maxima.
     pub differences: Vec<f64>,
-    /// Whether that is of a least or greatest value between two results.
+    /// Whether it belongs to a minimum or maximum between two results.
     pub between: Vec<bool>,
     /// Time in which small differences grow by a factor e, s, where the motion is chaotic.
     pub divergence: Option<f64>,
 }
 
 impl Verification {
-    /// Compares two runs, of which the finer was sampled at the same times and some equally often in between.
+    /// Compares two runs; the finer one has samples at the same times, and possibly equally spaced ones in between.
     pub fn new(run: &Table, finer: &Table, coordinates: usize) -> Self {
         let every = (finer.rows.len().max(1) - 1) / (run.rows.len().max(2) - 1);
         let together: Vec<(&Vec<f64>, &Vec<f64>)> =
@@ -66,13 +65,13 @@ impl Verification {
         Self { differences, between, divergence: divergence(&together, coordinates) }
     }
 
-    /// Greatest difference of the column of this name.
+    /// Largest difference of the column with this name.
     pub fn difference(&self, table: &Table, name: &str) -> Option<f64> {
         let index = table.columns.iter().position(|column| column.name == name)?;
         self.differences.get(index).copied()
     }
 
-    /// Names what may be off by more than one percent of its size.
+    /// Reports quantities whose error may exceed one percent of their size.
     pub fn cautions(&self, description: &Description, table: &Table) -> Vec<String> {
         let mut cautions = Vec::new();
         for kind in headlines(description) {
@@ -110,8 +109,8 @@ impl Verification {
     }
 }
 
-/// Time in which the difference of two runs grows by a factor e, where it does so by [`CHAOS`] powers and along a straight
-/// line: least squares of the logarithm of the greatest difference of a coordinate over time.
+/// Time in which the difference of two runs grows by a factor e, if it grows by [`CHAOS`] powers and along a straight line:
+/// least squares of the logarithm of the largest difference of a coordinate over time.
 fn divergence(together: &[(&Vec<f64>, &Vec<f64>)], coordinates: usize) -> Option<f64> {
     let difference = |(a, b): &(&Vec<f64>, &Vec<f64>)| {
         let greatest =
@@ -147,14 +146,14 @@ mod tests {
         let run = table(f64::sin);
         let finer = table(|t| t.sin() + 1e-8 * (1.5 * t).exp());
         let time = Verification::new(&run, &finer, 1).divergence.expect("chaos");
-        // The fit is exact but for rounding of differences as small as 1e-8 of numbers of size 1.
+        // The fit is exact up to the rounding of differences as small as 1e-8 of numbers of size 1.
         assert!((time * 1.5 - 1.0).abs() < 1e-3, "{time}");
     }
 
     #[test]
     fn polynomial_growth_is_not_chaos() {
         let run = table(f64::sin);
-        // A frequency that is off makes a difference that grows with time; an integrator's error with its square.
+        // A frequency error causes a difference that grows with time; an integrator's error grows with its square.
         for power in [0, 1, 2] {
             let finer = table(|t| t.sin() + 1e-3 * (t + 0.1).powi(power));
             assert_eq!(Verification::new(&run, &finer, 1).divergence, None, "power {power}");

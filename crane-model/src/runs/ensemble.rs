@@ -1,7 +1,7 @@
-//! Runs of many cranes that differ in their parameters: by any method, on several threads.
+//! Runs of many cranes that differ in their parameters, with any method, on several threads.
 //!
-//! By the methods with adaptive steps every crane runs as it would alone; by [`Method::Rk4`] several run side by side in the lanes of
-//! [`dynamics::ensemble`]. A row is the same whatever the other rows are, and however many threads there are.
+//! With adaptive methods every crane runs separately; with [`Method::Rk4`] several run together in the lanes of
+//! [`dynamics::ensemble`]. The result of a row does not depend on the other rows or on the number of threads.
 
 use std::{
     ops::ControlFlow,
@@ -17,14 +17,14 @@ use crate::{
     results::{Extremes, Peaks, cautions},
 };
 
-/// What is left of the run of a row.
+/// The result of the run of a row.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Extremes and last values, if it reached the end.
+    /// Extremes and final values, if it reached the end.
     pub peaks: Option<Peaks>,
     /// Pose and rates reached.
     pub end: InitialState,
-    /// What the run did that the model does not hold for.
+    /// Cautions about the run.
     pub cautions: Vec<String>,
     /// Steps and time, or why it did not reach the end.
     pub run: Result<Run, Reason>,
@@ -37,7 +37,7 @@ pub enum Reason {
     Refused(ParameterError),
     /// It cannot start, or stopped before its time.
     Failed(Failed),
-    /// The ensemble was called off.
+    /// The ensemble was cancelled.
     CalledOff,
 }
 
@@ -69,13 +69,13 @@ impl std::fmt::Display for Reason {
     }
 }
 
-/// How an ensemble is run besides its settings.
+/// Execution of an ensemble, besides its settings.
 pub struct Conduct<'a> {
     /// Threads.
     pub threads: usize,
-    /// Called with every row that is done, in the order in which they are, from any thread.
+    /// Called with every completed row, in the order of completion, from any thread.
     pub done: &'a (dyn Fn(usize, &Outcome) + Sync),
-    /// Whether to give up what is not done; asked after every step, `true` for the thread that called.
+    /// Whether to cancel the rest; called after every step, with `true` on the calling thread.
     pub called_off: &'a (dyn Fn(bool) -> bool + Sync),
 }
 
@@ -114,7 +114,7 @@ pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, conduct
     finished.into_iter().map(|(_, outcome)| outcome).collect()
 }
 
-/// The crane with other parameters, and where its run starts.
+/// The crane with other parameters, and the start of its run.
 fn ready(crane: &dyn DynCrane, parameters: &[f64]) -> Result<(Box<dyn DynCrane>, Start), Reason> {
     let mut own = crane.boxed_clone();
     own.set_parameters(parameters).map_err(Reason::Refused)?;
@@ -122,7 +122,7 @@ fn ready(crane: &dyn DynCrane, parameters: &[f64]) -> Result<(Box<dyn DynCrane>,
     Ok((own, start))
 }
 
-/// What is kept of a run while it goes on.
+/// The record of a run in progress.
 struct Gathering<'a> {
     crane: &'a dyn DynCrane,
     peaks: Peaks,
@@ -202,7 +202,7 @@ fn alone(crane: &dyn DynCrane, parameters: &[f64], settings: &Settings, off: &dy
     gathering.finish(run)
 }
 
-/// Runs the cranes of some rows, those that can start, side by side.
+/// Runs the cranes of some rows together, those that can start.
 fn side_by_side(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings) -> Vec<Outcome> {
     let ready: Vec<_> = rows.iter().map(|row| ready(crane, row)).collect();
     let mut members = Vec::new();

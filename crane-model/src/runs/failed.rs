@@ -9,7 +9,7 @@ use crate::{
     statics::Equilibrium,
 };
 
-/// A crane without a run, or without all of it.
+/// A crane without a complete run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failed {
     /// Its name.
@@ -18,20 +18,20 @@ pub struct Failed {
     pub reason: Box<Reason>,
 }
 
-/// Why there is no run, or not all of it.
+/// Why there is no complete run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reason {
     /// Statics found no stable equilibrium to start from.
     Equilibrium(Equilibrium),
     /// The mass matrix at the start is not positive definite.
     MassMatrix,
-    /// There are no modes to tell a stable step by.
+    /// There are no modes, which are needed to compute a stable step.
     Modes(NoModes),
-    /// The run ended before its time.
+    /// The run ended early.
     Stopped {
         /// Where, and why.
         stopped: Stopped,
-        /// What was said of a pose near a singularity before.
+        /// An earlier caution about a pose near a singularity.
         near_singular: Option<String>,
         /// The largest stable step of a method with constant steps, in words.
         limit: Option<String>,
@@ -46,7 +46,7 @@ impl Failed {
 }
 
 impl Reason {
-    /// Of a crane of this name.
+    /// For a crane with this name.
     pub fn of(self, crane: &Text) -> Failed {
         Failed { crane: crane.clone(), reason: Box::new(self) }
     }

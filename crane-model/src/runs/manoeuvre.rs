@@ -1,4 +1,4 @@
-//! Poses along a manoeuvre, and the largest stable step over them.
+//! Poses during a manoeuvre, and the largest stable step over them.
 
 use super::{Failed, Reason, Start};
 use crate::{
@@ -9,10 +9,10 @@ use crate::{
     statics::Settings,
 };
 
-/// Poses along the manoeuvre at which the step is checked: 2 ms each for 25 coordinates.
+/// Number of poses during the manoeuvre at which the step is checked: 2 ms each for 25 coordinates.
 pub const POSES: u16 = 10;
 
-/// Part of the largest stable step that is safe to take: swinging moves the limit by some per cent.
+/// Fraction of the largest stable step that is safe: swinging changes the limit by a few per cent.
 pub const SAFE: f64 = 0.9;
 
 /// Damped modes of a crane at a moment of its manoeuvre.
@@ -24,17 +24,17 @@ pub struct Pose {
     pub modes: Vec<DampedMode>,
 }
 
-/// The least of the largest stable steps along a manoeuvre.
+/// The smallest of the largest stable steps during a manoeuvre.
 #[derive(Clone, Debug)]
 pub struct Bound {
-    /// When it holds, s.
+    /// Its time, s.
     pub t: f64,
-    /// It, and what limits it.
+    /// The limit and its mode.
     pub limit: Limit,
 }
 
 impl Bound {
-    /// The least over some poses; `None` where nothing limits the step.
+    /// The smallest over some poses; `None` if nothing limits the step.
     pub fn of(poses: &[Pose], method: Method) -> Option<Self> {
         let bounds =
             poses.iter().filter_map(|pose| Some(Self { t: pose.t, limit: limit(&pose.modes, &method.stability())? }));
@@ -42,11 +42,11 @@ impl Bound {
     }
 }
 
-/// The start and `count` further poses evenly in time, each where the crane would rest if its drives stopped there. As far
-/// as there are such: without statics, or where the crane would fall, the poses end.
+/// The start and `count` further poses evenly spaced in time, each the equilibrium with the drives stopped there. The poses end
+/// early without statics, or where the crane would fall.
 ///
 /// # Errors
-/// There are no modes: masses are not those of a crane.
+/// There are no modes because of the masses.
 pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<Pose>, Failed> {
     let description = crane.description();
     let mut q = start.q.clone();
@@ -69,7 +69,7 @@ fn modes_at(crane: &dyn DynCrane, q: &[f64]) -> Result<Vec<DampedMode>, Failed> 
     modes::damped(&crane.small_motions_at(q)).map_err(|no_modes| Reason::Modes(no_modes).of(&crane.description().name))
 }
 
-/// What limits the step of [`Method::Rk4`] along the manoeuvre; `None` where nothing does or there are no modes.
+/// The limit of the step of [`Method::Rk4`] during the manoeuvre; `None` if there is none or there are no modes.
 pub fn step_limit(crane: &dyn DynCrane, start: &Start) -> Option<Bound> {
     Bound::of(&manoeuvre(crane, start, POSES).ok()?, Method::Rk4)
 }

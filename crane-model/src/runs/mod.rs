@@ -1,5 +1,4 @@
-//! Runs as a user asks for them: from the pose where the crane rests, recorded, with an estimate of their error and with cautions;
-//! one crane, or many.
+//! Complete runs of one crane or many: from the equilibrium, recorded, with an estimate of their error and with cautions.
 
 pub mod ensemble;
 mod failed;

@@ -16,34 +16,34 @@ use crate::{
 /// A finished run.
 #[derive(Clone, Debug)]
 pub struct Recorded {
-    /// What it started from.
+    /// Description of its start.
     pub start: String,
     /// Steps and time.
     pub run: Run,
     /// All results.
     pub table: Table,
-    /// Time it took.
+    /// Wall time.
     pub wall: Duration,
-    /// How far off it may be, unless that was not asked for.
+    /// Its estimated errors, if requested.
     pub verification: Option<Verification>,
-    /// What the run did that the model or the method does not hold for.
+    /// Cautions: conditions for which the model or the method is not valid.
     pub cautions: Vec<String>,
 }
 
 impl Recorded {
-    /// Simulated time per time taken.
+    /// Simulated time per wall time.
     pub fn real_time_factor(&self) -> f64 {
         self.run.time / self.wall.as_secs_f64()
     }
 }
 
-/// Part of the energy turned over by which a run may be off before that is said: a hundred times what usual steps and
-/// tolerances leave.
+/// Error of the energy balance, relative to the energy exchanged, above which there is a caution: a hundred times that of usual
+/// steps and tolerances.
 const IMBALANCE: f64 = 0.01;
-/// Energy turned over counts at least as this part of the energy there is: that of a crane at rest is rounding.
+/// Lower limit of the energy exchanged, relative to the total energy: for a crane at rest it is only rounding.
 const LEAST_TURNED: f64 = 1e-9;
 
-/// Greatest error of the energy balance over the greatest energy that was turned over.
+/// Largest error of the energy balance over the largest energy exchanged.
 pub fn imbalance(table: &Table) -> f64 {
     let column = |name: &str| table.values(name).map_or_else(Vec::new, Iterator::collect::<Vec<f64>>);
     let parts = ["kinetic", "gravity", "support", "element", "drive", "stop"].map(|part| format!("{part}_energy"));
@@ -56,7 +56,7 @@ pub fn imbalance(table: &Table) -> f64 {
     error / turned.fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// Records every sample, says what is odd about poses, and asks after every step whether to go on.
+/// Records every sample, notes cautions about poses, and asks after every step whether to continue.
 struct Recorder<'a> {
     crane: &'a dyn DynCrane,
     recording: Recording<'a>,
@@ -79,8 +79,8 @@ impl Watch for Recorder<'_> {
     }
 }
 
-/// Runs from `start` and records every result. `proceed` is shown the time after every step, s, and may break off the run, which then
-/// ends with what it has.
+/// Runs from `start` and records every result. `proceed` receives the time after every step, s, and may stop the run, which then keeps
+/// its results so far.
 ///
 /// # Errors
 /// [`Reason::Stopped`].
@@ -116,8 +116,8 @@ pub fn record(
     Ok(Recorded { start: start.what.clone(), run, table, wall: begin.elapsed(), verification: None, cautions })
 }
 
-/// As [`record`], once more to estimate the error if `verify`, and says what the run did that the model does not hold for; `bend`:
-/// degrees by which one section of a beam may turn.
+/// As [`record`], once more to estimate the error if `verify`, and adds cautions; `bend`: degrees by which
+/// one section of a beam may rotate.
 ///
 /// # Errors
 /// [`Reason::Stopped`].
@@ -137,7 +137,7 @@ pub fn record_checked(
     }
     if verify {
         let finer = dynamics::Settings { audit: false, ..verification::finer(settings) };
-        // The time of the finer run is none of the reader's.
+        // The wall time of the finer run is not reported.
         match record(crane, start, &finer, &mut |_| proceed(settings.duration)) {
             Ok(finer) => {
                 let found = Verification::new(&recorded.table, &finer.table, description.coordinates.len());

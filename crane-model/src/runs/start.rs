@@ -1,4 +1,4 @@
-//! Where a run starts.
+//! Start of a run.
 
 use super::{Failed, Reason};
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     statics::{Equilibrium, Settings},
 };
 
-/// Start of a crane whose spec asks for statics.
+/// Start of a crane whose spec requests statics.
 pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
 /// Start of a crane whose spec does not.
 pub const GUESS: &str = "guess, at rest";
@@ -19,14 +19,14 @@ pub struct Start {
     pub q: Vec<f64>,
     /// Its rates, m/s and rad/s.
     pub v: Vec<f64>,
-    /// In words; [`EQUILIBRIUM`], [`GUESS`], or what was asked for.
+    /// In words: [`EQUILIBRIUM`], [`GUESS`], or the request.
     pub what: String,
-    /// Whether the crane would stay there if its drives did.
+    /// Whether the crane would stay there with its drives stopped.
     pub rests: bool,
 }
 
 impl Start {
-    /// The static equilibrium where the crane's spec asks for statics, otherwise its guess.
+    /// The static equilibrium if the crane's spec requests statics, otherwise its guess.
     ///
     /// # Errors
     /// There is no stable equilibrium, or the crane cannot be moved.
@@ -38,7 +38,7 @@ impl Start {
         }
     }
 
-    /// An equilibrium that was found.
+    /// A given equilibrium.
     ///
     /// # Errors
     /// It is not stable, or the crane cannot be moved.

@@ -1,6 +1,6 @@
-//! Stability of a time step, known before a run.
+//! Stability of a time step, computed before a run.
 //!
-//! A method multiplies a small motion `e^{λt}` by R(hλ) a step. The run is stable where |R(hλ)| ≤ 1 for every eigenvalue λ of
+//! A method multiplies a small motion `e^{λt}` by R(hλ) per step. The run is stable where |R(hλ)| ≤ 1 for every eigenvalue λ of
 //! the damped crane, linearised about its pose.
 
 mod boundary;

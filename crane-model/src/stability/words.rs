@@ -1,10 +1,10 @@
-//! What a mode is, in plain words.
+//! Descriptions of modes in plain words.
 
 use crate::{CoordinateRole, Description, modes::DampedMode};
 
 /// What moves in a mode and how fast: `torsion of boom elements 3, 2; 22,900 rad/s`.
 ///
-/// The frequency is |λ|, which for a mode that does not swing is the rate at which it creeps back.
+/// The frequency is |λ|, which for a mode that does not oscillate is its decay rate.
 pub fn cause(description: &Description, mode: &DampedMode) -> String {
     let mut parts: Vec<(String, Vec<&str>)> = Vec::new();
     for &coordinate in &mode.dominating {
@@ -33,7 +33,7 @@ fn moving(description: &Description, coordinate: usize) -> (String, Option<&str>
         CoordinateRole::Driven | CoordinateRole::Prescribed => (format!("drive of {name}"), None),
         CoordinateRole::Passive => (format!("joint {name}"), None),
         CoordinateRole::Element | CoordinateRole::ElementVector => {
-            // The rotations of an element come in a row; the first body that a coordinate moves carries it.
+            // The rotations of an element are consecutive; the first body that a coordinate moves carries it.
             let body = description.bodies.iter().find(|body| body.degrees_of_freedom > coordinate);
             let (link, body) = body.map_or(("", name.as_str()), |body| (&body.link, &body.name));
             let what = match name.rsplit('_').next() {
@@ -46,7 +46,7 @@ fn moving(description: &Description, coordinate: usize) -> (String, Option<&str>
     }
 }
 
-/// Three significant digits, thousands set apart: 22,900.
+/// Three significant digits, with thousands separators: 22,900.
 pub fn grouped(number: f64) -> String {
     /// Significant digits.
     const DIGITS: usize = 3;

@@ -1,4 +1,4 @@
-//! How far a pose is from equilibrium, in one number.
+//! The distance of a pose from equilibrium, as one number.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -66,8 +66,8 @@ impl Balance {
         ROUNDINGS * f64::EPSILON * self.norm(&(stiffness.abs() * q.abs()))
     }
 
-    /// Springs that hold the crane against all that balances here within about 1 rad and 1 m, and no coordinate by less than
-    /// its own stiffness. N m/rad and N/m.
+    /// Springs that hold the crane against all forces here within about 1 rad and 1 m, and each coordinate by at least its own
+    /// stiffness. N m/rad and N/m.
     pub(super) fn springs(&self, stiffness: &DMatrix<f64>) -> DVector<f64> {
         DVector::from_fn(self.scale.len(), |i, _| self.scale[i] + stiffness[(i, i)].abs())
     }

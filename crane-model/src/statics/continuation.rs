@@ -11,7 +11,7 @@ use crate::dyn_crane::DynStatics;
 
 /// Greatest change of a coordinate in a step, m or rad, and of λ.
 const LONGEST: f64 = 0.3;
-/// A step as short as this leads nowhere.
+/// A step as short as this makes no progress.
 const SHORTEST: f64 = 1e-9;
 /// Newton steps back to the path: where it takes more, the step was too long.
 const CORRECTIONS: usize = 6;
@@ -20,7 +20,7 @@ const EASY: usize = 3;
 /// Scaled residual of a point of the path: only the end has to be exact.
 const ON_PATH: f64 = 1e-6;
 
-/// What to do at the whole load: with the pose, the number of steps and the residual.
+/// Called at the full load with the pose, the number of steps and the residual.
 pub(super) type Arrive<'a, T> = dyn FnMut(DVector<f64>, usize, &mut Residual<'_>) -> Option<T> + 'a;
 
 /// Follows `H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0` from `(q₀, 0)` on. At λ = 1 `arrive` gets the pose, the number of
@@ -47,7 +47,7 @@ pub(super) fn follow<T>(
             if length < SHORTEST {
                 return None;
             }
-            // Not beyond the whole load.
+            // Not beyond the full load.
             let left = if tangent[n] > 0.0 { (1.0 - point[n]) / tangent[n] } else { f64::INFINITY };
             match path.corrected(&point + &tangent * length.min(left), &tangent) {
                 Some(found) => break found,

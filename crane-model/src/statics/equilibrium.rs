@@ -1,4 +1,4 @@
-//! Where a static solution ended.
+//! Result of a static solution.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ pub struct Iteration {
     pub fraction: f64,
 }
 
-/// Where the search ended.
+/// Result of the search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
     /// Whether `q` is an equilibrium, and of what kind.
@@ -37,7 +37,7 @@ impl Equilibrium {
         self.status == Status::Converged
     }
 
-    /// Whether no force is left over at `q`.
+    /// Whether `q` is an equilibrium.
     pub(super) fn at_rest(&self, settings: &Settings) -> bool {
         self.residual() <= settings.tolerance
     }

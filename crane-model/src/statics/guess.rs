@@ -1,4 +1,4 @@
-//! Where the static solution starts.
+//! Start of the static solution.
 
 use nalgebra::SVector;
 
@@ -7,13 +7,13 @@ use crate::{
     dyn_crane::{DynModel, Instance},
 };
 
-/// A guess is the drive's position up to this, m or rad: above rounding, below what a spec would tell apart.
+/// A guess is the drive's position up to this, m or rad: above rounding, below the differences that matter in a spec.
 const ROUNDING: f64 = 1e-9;
 
 /// The description's guess, made with default parameters, for the crane's own parameters.
 ///
-/// A driven coordinate whose guess is the drive's position at t = 0 follows that position as parameters change; what the
-/// spec guesses otherwise stays.
+/// A driven coordinate whose guess is the drive's position at t = 0 follows that position as parameters change; other guesses
+/// of the spec are unchanged.
 pub fn guess<const N: usize, C: CraneModel<N>>(crane: &C) -> SVector<f64, N> {
     SVector::from_vec(guess_dyn(&Instance::<N, _>(crane)))
 }
@@ -26,7 +26,7 @@ pub fn guess_dyn(crane: &(impl DynModel + ?Sized)) -> Vec<f64> {
     crane.drive_motions(0.0, &mut motions);
     for (drive, [position, _]) in description.drives.iter().zip(&motions) {
         let (guess, moved) = (&mut q[drive.coordinate], position - drive.start);
-        // The guess of default parameters stays as it is to the last bit.
+        // The guess of default parameters is unchanged bit for bit.
         if (*guess - drive.start).abs() < ROUNDING && moved.abs() > ROUNDING {
             *guess += moved;
         }

@@ -62,7 +62,7 @@ pub(super) fn iterate(
             (trial < norm).then_some((pose, residual, trial, fraction))
         });
         let Some((pose, next, trial, fraction)) = improved else {
-            // Pushed, and nothing holds it: a free direction says why no step helps.
+            // A free direction explains why no step helps.
             break tangent
                 .free_directions(description)
                 .map_or(Status::NotConverged, |coordinates| Status::Singular { coordinates });
@@ -73,7 +73,7 @@ pub(super) fn iterate(
     Equilibrium { status, q: q.as_slice().to_vec(), history, load_steps }
 }
 
-/// The step, shortened until no coordinate turns by more than [`GREATEST_ROTATION`].
+/// The step, shortened so that no coordinate rotates by more than [`GREATEST_ROTATION`].
 fn limited(step: DVector<f64>, kind: impl Fn(usize) -> CoordinateKind) -> DVector<f64> {
     let rotation =
         (0..step.len()).filter(|&i| kind(i) == CoordinateKind::Rotation).map(|i| step[i].abs()).fold(0.0, f64::max);

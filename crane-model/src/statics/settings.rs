@@ -12,7 +12,7 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// 1e-10 is 1e-5 N on a crane of ten tonnes and 1e4 times the rounding error; sound guesses need 3 to 5 steps. A crane
+    /// 1e-10 is 1e-5 N on a crane of ten tonnes and 1e4 times the rounding error; good guesses need 3 to 5 steps. A crane
     /// that sinks by some radians needs some 100 load steps.
     fn default() -> Self {
         Self { tolerance: 1e-10, iterations: 50, load_steps: 1000 }

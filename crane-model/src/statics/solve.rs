@@ -1,4 +1,4 @@
-//! Static equilibrium: Newton's method, and continuation where that fails.
+//! Static equilibrium: Newton's method, and continuation if it fails.
 
 use nalgebra::{DVector, SVector};
 
@@ -16,34 +16,33 @@ use crate::{
 /// Solves `∂E_p/∂q = 0` at t = 0, Eq. (23) with `q̇ = q̈ = 0`, from [`super::guess()`].
 ///
 /// Newton–Raphson on `r(q) = ∂E_p/∂q` with `K = ∂²E_p/∂q²`: `q ← q − α K⁻¹ r`, α = 1, halved until the residual falls.
-/// The residual is measured as `‖r/scale‖`, the scale of a translation being the greatest force that any translation
-/// balances at the guess, that of a rotation the greatest moment: N and N m become comparable. Any equilibrium is found,
-/// a stable one or not; the tangent stiffness there tells which.
+/// The residual is measured as `‖r/scale‖`, the scale of a translation being the largest force that any translation
+/// balances at the guess, that of a rotation the largest moment: N and N m become comparable. Any equilibrium is found,
+/// stable or not; the tangent stiffness there decides which.
 ///
-/// Where that fails, or leads from a guess that would stand to a pose that would not, the load is applied in steps from
-/// the guess on, and [`Equilibrium::load_steps`] says so. Springs hold the crane at the guess and are taken away as its load
-/// comes on:
+/// If that fails, or leads from a stable guess to an unstable pose, the load is applied in steps, starting at the guess, and
+/// [`Equilibrium::load_steps`] is their number. Springs hold the crane at the guess and are removed as its load is applied:
 ///
 /// ```text
 /// H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0,   λ from 0 to 1
 /// ```
 ///
-/// a path without end where potential energy grows with distance from the guess, so that it reaches an equilibrium for
-/// almost every guess. It is followed by arclength, since λ may fall on the way.
+/// a path without end if the potential energy grows with the distance from the guess, so that it reaches an equilibrium for
+/// almost every guess. It is followed by arclength, since λ may decrease along it.
 /// S. N. Chow, J. Mallet-Paret, J. A. Yorke, Finding zeroes of maps, Math. Comp. 32 (1978) 887; H. B. Keller, Numerical
 /// solution of bifurcation and nonlinear eigenvalue problems, in Applications of Bifurcation Theory, Academic Press 1977.
 pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> Equilibrium {
     solve_dyn(&Instance::<N, _>(crane), settings)
 }
 
-/// As [`solve`], of a crane of any size.
+/// As [`solve`], for a crane of any size.
 pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
     let found = search(crane, &guess_dyn(crane).into(), settings, &mut |q, out| crane.static_residual(q, out));
     prescribed_at(crane, 0.0, found)
 }
 
 /// As [`solve`], with the drives where their motions are at time `t`, s, and from the pose `q`: where the crane would rest
-/// if its motion froze. Poses along a manoeuvre, each from the one before.
+/// if its motion stopped. This gives poses during a manoeuvre, each starting from the previous one.
 pub fn solve_at<const N: usize, C: Statics<N>>(
     crane: &C,
     t: f64,
@@ -53,15 +52,15 @@ pub fn solve_at<const N: usize, C: Statics<N>>(
     solve_at_dyn(&Instance::<N, _>(crane), t, q.as_slice(), settings)
 }
 
-/// As [`solve_at`], of a crane of any size.
+/// As [`solve_at`], for a crane of any size.
 pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settings) -> Equilibrium {
     let Description { drives, coordinates, .. } = crane.description();
-    // Rigid drives take their coordinates along, and leave no residual.
+    // Rigid drives move their coordinates, and leave no residual.
     let springs = |drive: &&DriveInfo| coordinates[drive.coordinate].role != CoordinateRole::Prescribed;
     let mut start = DVector::from_column_slice(q);
     let mut motions = vec![[0.0; 2]; drives.len()];
     let (mut rates, mut forces) = (vec![0.0; q.len()], vec![0.0; q.len()]);
-    // Adds forces of the drives' springs: at the prescribed rates the dampers are at rest.
+    // Adds forces of the drives' springs: at the prescribed rates the dampers are unloaded.
     let mut add_springs = |sign: f64, t: f64, q: &[f64], out: &mut [f64]| {
         crane.drive_motions(t, &mut motions);
         for (drive, [_, rate]) in drives.iter().zip(&motions) {
@@ -81,7 +80,7 @@ pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settin
     prescribed_at(crane, t, found)
 }
 
-/// The pose found, with what rigid drives prescribe to the last bit: the steps leave it as it is but for rounding.
+/// The pose found, with the exact positions of rigid drives: the steps change them only by rounding.
 fn prescribed_at(crane: &dyn DynStatics, t: f64, mut found: Equilibrium) -> Equilibrium {
     let mut rates = vec![0.0; found.q.len()];
     crane.prescribe(t, &mut found.q, &mut rates);
@@ -110,7 +109,7 @@ fn search(
     found.map_or(first, |found| Equilibrium { load_steps: Some(load_steps), ..found })
 }
 
-/// Rotation by which an equilibrium may differ from the guess and still be the one that was meant, rad.
+/// Rotation by which an equilibrium may differ from the guess and still be the intended one, rad.
 const MEANT: f64 = 0.5;
 
 /// Whether there may be a stable equilibrium that Newton's method did not find: no equilibrium was found, or an unstable one
@@ -128,7 +127,7 @@ fn missed(crane: &dyn DynStatics, start: &DVector<f64>, settings: &Settings, fou
     };
     match found.status {
         Status::Converged | Status::Overflow => false,
-        // Also said of poses where no step helps; at an equilibrium it is the truth.
+        // Also reported for poses where no step helps; at an equilibrium it is exact.
         Status::Singular { .. } => !found.at_rest(settings),
         Status::NotConverged => true,
         Status::Unstable { .. } => !meant() || stable(),

@@ -1,28 +1,28 @@
-//! How a static solution ended.
+//! Outcome of a static solution.
 
 use std::fmt;
 
 use crate::Text;
 
-/// How a static solution ended.
+/// Outcome of a static solution.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Status {
     /// A stable equilibrium: residual below the tolerance, tangent stiffness positive definite.
     Converged,
-    /// An equilibrium that the crane leaves at the slightest touch: the tangent stiffness has a negative direction.
+    /// An equilibrium that the crane leaves after any disturbance: the tangent stiffness has a negative direction.
     Unstable {
-        /// Coordinates that lead the motion away from it.
+        /// Coordinates of the motion away from it.
         coordinates: Vec<Text>,
     },
-    /// Nothing holds the crane in some direction: the tangent stiffness is singular, at an equilibrium or where no step
-    /// makes the residual smaller.
+    /// Nothing constrains the crane in some direction: the tangent stiffness is singular, at an equilibrium or where no step
+    /// reduces the residual.
     Singular {
         /// Coordinates that move in that direction.
         coordinates: Vec<Text>,
     },
     /// Forces or stiffnesses at the guess are not finite numbers.
     Overflow,
-    /// No equilibrium found within the allowed iterations, or no step made the residual smaller.
+    /// No equilibrium found within the allowed iterations, or no step reduced the residual.
     NotConverged,
 }
 

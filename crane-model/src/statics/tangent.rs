@@ -5,17 +5,17 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use super::Status;
 use crate::{CoordinateKind, Description, Text, dyn_crane::DynStatics};
 
-/// A diagonal entry below this part of the greatest of its kind (N/m or N m/rad) counts as no stiffness of its own. Real
-/// cranes span about 1e9 (a chassis against a hinge), those with drives made rigid 1e12; rounding leaves about 1e-16.
+/// A diagonal entry below this fraction of the largest of its kind (N/m or N m/rad) counts as zero stiffness. Real
+/// cranes span about 1e9 (a chassis against a hinge), those with nearly rigid drives 1e12; rounding leaves about 1e-16.
 const LEAST_STIFFNESS: f64 = 1e-13;
-/// A direction is free below this part of the greatest scaled stiffness. Scaling brings joints and springs to about 1.
+/// A direction is free below this fraction of the largest scaled stiffness. Scaling brings joints and springs to about 1.
 const FREE: f64 = 1e-7;
-/// A coordinate belongs to a direction from this part of its greatest component.
+/// A coordinate belongs to a direction from this fraction of its largest component.
 const SHARE: f64 = 0.3;
 
 /// `K = S⁻¹ U Λ Uᵀ S⁻¹`, with `S = diag(1/√|K_ii|)`: m and rad become comparable, and relative coordinates nearly decouple.
 ///
-/// One factorisation says all: the Newton step, whether the equilibrium is stable, and which coordinates are to blame.
+/// One factorisation gives the Newton step, the stability of the equilibrium, and the coordinates responsible.
 pub(super) struct Tangent {
     scale: DVector<f64>,
     values: DVector<f64>,
@@ -49,7 +49,7 @@ impl Tangent {
         Some(Self { scale, values, vectors, free })
     }
 
-    /// Newton step `−K⁻¹ r`; nearly free directions are given the least stiffness that is not free.
+    /// Newton step `−K⁻¹ r`; nearly free directions get the smallest stiffness that is not free.
     pub(super) fn step(&self, residual: &DVector<f64>) -> DVector<f64> {
         let mut along = self.vectors.tr_mul(&residual.component_mul(&self.scale));
         for (component, &value) in along.iter_mut().zip(&self.values) {
@@ -58,7 +58,7 @@ impl Tangent {
         -(&self.vectors * along).component_mul(&self.scale)
     }
 
-    /// What kind of equilibrium it is.
+    /// The kind of equilibrium.
     pub(super) fn status(&self, names: &Description) -> Status {
         let unstable = self.negative_direction(names).map(|coordinates| Status::Unstable { coordinates });
         unstable
@@ -66,7 +66,7 @@ impl Tangent {
             .unwrap_or(Status::Converged)
     }
 
-    /// Coordinates of the directions that nothing holds, if there are such.
+    /// Coordinates of unconstrained directions, if there are any.
     pub(super) fn free_directions(&self, names: &Description) -> Option<Vec<Text>> {
         let free = (0..self.values.len()).filter(|&k| self.values[k].abs() < self.free);
         let mut coordinates: Vec<_> = free.flat_map(|k| self.names_of(k, names)).collect();

@@ -1,4 +1,4 @@
-//! One number, or eight of different cranes: what generated code does with either.
+//! Operations of generated code on one number, or on eight numbers of different cranes.
 
 use nalgebra::ComplexField;
 pub use wide::f64x8;
@@ -12,9 +12,9 @@ pub const fn splat(x: f64) -> f64x8 {
     f64x8::splat(x)
 }
 
-/// Numbers with a fused multiply-add where the target has one.
+/// Numbers with a fused multiply-add if the target has one.
 ///
-/// Without the target feature `fma`, `mul_add` is a slow call into a library: then it is a product and a sum.
+/// Without the target feature `fma`, `mul_add` is a slow call into a library: it is then a product and a sum.
 pub trait Fused: Copy {
     /// `a b + c`
     #[must_use]
@@ -24,7 +24,7 @@ pub trait Fused: Copy {
 impl Fused for f64 {
     #[inline]
     fn fma(a: f64, b: f64, c: f64) -> f64 {
-        // Without `std` there is no intrinsic that stable Rust may call.
+        // Without `std` there is no intrinsic available in stable Rust.
         #[cfg(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")))]
         {
             a.mul_add(b, c)
@@ -43,7 +43,7 @@ impl Fused for f64x8 {
     }
 }
 
-/// Functions of one number, or of eight: each number by itself, so that a lane has the bits that it has alone.
+/// Functions of one number, or of eight: each number separately, so that a lane is bit-identical to a single number.
 pub trait Function: Copy {
     /// √x, x ≥ 0
     #[must_use]
@@ -51,7 +51,7 @@ pub trait Function: Copy {
     /// eˣ
     #[must_use]
     fn exp(self) -> Self;
-    /// `positive` where x > 0, else `other`.
+    /// `positive` if x > 0, otherwise `other`.
     #[must_use]
     fn select(self, positive: Self, other: Self) -> Self;
 }
@@ -102,13 +102,13 @@ pub fn exp<T: Function>(x: T) -> T {
     Function::exp(x)
 }
 
-/// `positive` where x > 0, else `other`.
+/// `positive` if x > 0, otherwise `other`.
 #[inline]
 pub fn select<T: Function>(x: T, positive: T, other: T) -> T {
     Function::select(x, positive, other)
 }
 
-/// `a b + c`, rounded once where the target can.
+/// `a b + c`, rounded once if the target supports it.
 #[inline]
 pub fn fma<T: Fused>(a: T, b: T, c: T) -> T {
     T::fma(a, b, c)

@@ -4,22 +4,22 @@ use nalgebra::SMatrix;
 
 use super::lanes::{f64x8, fma};
 
-/// What a mass matrix is made of, coordinate by coordinate, in the world's axes: `a_ij = n_i · L_j` where coordinate i turns
-/// and `n_i · P_j` where it slides, i ≤ j, with L_j taken about the point of i. `E` eights hold `N` columns.
+/// The factors of a mass matrix, coordinate by coordinate, in the world's axes: `a_ij = n_i · L_j` if coordinate i rotates and
+/// `n_i · P_j` if it translates, i ≤ j, with L_j about the point of i. `E` groups of eight hold `N` columns.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct MassColumns<const N: usize, const E: usize> {
-    /// Momenta of the coordinates, eight by eight.
+    /// Momenta of the coordinates, in groups of eight.
     pub eights: [Momenta; E],
     /// Axes n.
     pub axes: [[f64; 3]; N],
-    /// Ways from the coordinate's point to that of the next.
+    /// Offsets from the coordinate's point to that of the next.
     pub ways: [[f64; 3]; N],
-    /// Bias e, if it is computed along with it.
+    /// Bias e, if it is computed together with the matrix.
     pub bias: [f64; N],
 }
 
-/// What eight coordinates move, at unit rate; x, y and z of all eight.
+/// Momenta of everything that eight coordinates move, at unit rate; x, y and z of all eight.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Momenta {
@@ -29,12 +29,12 @@ pub struct Momenta {
     pub angular: [[f64; 8]; 3],
 }
 
-/// Coordinates that follow each other and act at one point: at most three, and all of them turn or all slide.
+/// Consecutive coordinates that act at one point: at most three, and either all rotate or all translate.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
-    /// How many.
+    /// Their number.
     pub coordinates: usize,
-    /// Whether they turn.
+    /// Whether they rotate.
     pub turns: bool,
 }
 
@@ -64,8 +64,8 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
         matrix
     }
 
-    /// The lower triangle, column by column: row i of the upper triangle is column i of the lower one. What stands above the
-    /// diagonal is not a result.
+    /// The lower triangle, column by column: row i of the upper triangle is column i of the lower one. The entries above
+    /// the diagonal are not results.
     #[inline]
     pub fn fill(&mut self, points: &[Point], lower: &mut [[f64; N]; N]) {
         let eights = &mut self.eights;
@@ -109,7 +109,7 @@ impl<const N: usize> Rows<'_, N> {
 /// The lanes of eight columns.
 const LANES: f64x8 = f64x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
-/// Rows from `first` on: `entries` of the momenta of eight columns at a time, those after the rows moved along `way` before.
+/// Rows from `first` on: `entries` of the momenta of eight columns at a time, those after the rows shifted by `way` first.
 #[inline]
 fn fill<const K: usize, const N: usize>(
     first: usize,

@@ -1,4 +1,4 @@
-//! What generated code calls besides nalgebra.
+//! Functions that generated code calls, besides nalgebra.
 
 pub mod lanes;
 mod mass_matrix;
@@ -12,7 +12,7 @@ pub use stumpff::{stumpff, stumpff_lanes};
 
 use nalgebra::{Matrix4, SMatrix, Vector3};
 
-/// A symmetric matrix from its upper triangle: `upper[column][row]` with row ≤ column; what stands below is ignored.
+/// A symmetric matrix from its upper triangle: `upper[column][row]` with row ≤ column; entries below the diagonal are ignored.
 #[inline]
 pub fn symmetric<const N: usize>(mut upper: [[f64; N]; N]) -> SMatrix<f64, N, N> {
     for column in 0..N {
@@ -23,7 +23,7 @@ pub fn symmetric<const N: usize>(mut upper: [[f64; N]; N]) -> SMatrix<f64, N, N>
     SMatrix::from(upper)
 }
 
-/// Copies results into the caller's place for them, as many as it has room for.
+/// Copies results into the caller's slice, as many as fit.
 #[inline]
 pub fn fill<T: Copy>(out: &mut [T], results: &[T]) {
     for (place, result) in out.iter_mut().zip(results) {
@@ -31,15 +31,15 @@ pub fn fill<T: Copy>(out: &mut [T], results: &[T]) {
     }
 }
 
-/// What the second derivatives of transforms are made of, `∂²T/∂q_m∂q_n = Ω_m Ω_n T`: the columns of `Ω_n T` are
-/// directions, so `Ω_m` only turns them about its axis.
+/// The factors of the second derivatives of transforms, `∂²T/∂q_m∂q_n = Ω_m Ω_n T`: the columns of `Ω_n T` are directions, so
+/// `Ω_m` only rotates them about its axis.
 #[derive(Clone, Copy, Debug)]
 pub struct TransformFactors<const N: usize, const D: usize, const V: usize = 0> {
     /// `ω_m`, zero for a translation.
     pub axes: [Vector3<f64>; N],
     /// `∂T/∂q_n`, body by body.
     pub first: [Matrix4<f64>; D],
-    /// First coordinates of rotation vectors, whose three coordinates k have `Σ_k share_k ∂T/∂q_k` more in their pairs.
+    /// First coordinates of rotation vectors, whose three coordinates k have an additional `Σ_k share_k ∂T/∂q_k` in their pairs.
     pub vectors: [usize; V],
     /// The shares of the six pairs of each rotation vector, row by row of a triangle.
     pub shares: [[[f64; 3]; 6]; V],
@@ -56,7 +56,7 @@ impl<const N: usize, const D: usize, const V: usize> TransformFactors<N, D, V> {
         }
     }
 
-    /// `∂²T/∂q_m∂q_n`, body by body, m ≤ n; `degrees`: how many coordinates move each body.
+    /// `∂²T/∂q_m∂q_n`, body by body, m ≤ n; `degrees`: the number of coordinates that move each body.
     pub fn second_derivatives(&self, degrees: &[usize], out: &mut [Matrix4<f64>]) {
         let mut first = self.first.as_slice();
         let mut out = out.iter_mut();

@@ -3,7 +3,7 @@
 //! Reduction to `x = n π/2 + y`, |y| ≤ π/4, by the four parts of π/2 of W. J. Cody and W. Waite, *Software Manual for the
 //! Elementary Functions*, Prentice-Hall 1980, with the rounding error of y carried along; then the polynomials of K. C. Ng
 //! (`fdlibm`, Sun Microsystems 1993). The error is below 0.8 units in the last place for every angle. Angles of 2²⁰ quarter
-//! turns or more, and those that are not numbers, go one by one through the standard library's functions.
+//! turns or more, and NaN, are computed one by one with the standard library's functions.
 
 use wide::{bytemuck::cast, f64x8, i64x8};
 
@@ -12,9 +12,9 @@ use super::lanes::fma;
 /// Parts of π/2: three of 33 bits, whose products with n are exact, and the rest.
 const HALF_PI: [f64; 4] =
     [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_711_166_5e-21, 8.478_427_660_368_9e-32];
-/// Up to here n has 20 bits.
+/// Up to this angle n has 20 bits.
 const LARGEST: f64 = 1_048_576.0 * core::f64::consts::FRAC_PI_2;
-/// Added to a number below 2⁵¹ it rounds it to an integer, which then stands in the lowest bits.
+/// Added to a number below 2⁵¹ it rounds it to an integer, which is then in the lowest bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Coefficients of `sin y = y + y³ (S₁ + S₂ y² + …)`.
@@ -56,7 +56,7 @@ pub fn sin_cos<const K: usize>(angles: [f64; K]) -> ([f64; K], [f64; K]) {
         if let (Some(angles), Some(sines), Some(cosines)) =
             (angles.last_chunk(), sines.last_chunk_mut(), cosines.last_chunk_mut())
         {
-            // The last eight: some of them a second time, which is cheaper than to move fewer.
+            // The last eight, some of them a second time, which is cheaper than handling fewer.
             eight(angles, sines, cosines);
         } else {
             let (mut padded, mut sin, mut cos) = ([0.0; 8], [0.0; 8], [0.0; 8]);
@@ -91,13 +91,13 @@ pub fn sin_cos_lanes<const K: usize>(angles: [f64x8; K]) -> ([f64x8; K], [f64x8;
     (sines, cosines)
 }
 
-/// False too for what is not a number.
+/// Also false for NaN.
 #[inline]
 fn is_small(x: f64x8) -> bool {
     x.abs().simd_lt(f64x8::splat(LARGEST)).all()
 }
 
-/// Large angles, and those that are not numbers, by the standard library: a result does not depend on the angles beside it.
+/// Large angles and NaN by the standard library, so that a result does not depend on neighbouring angles.
 #[cold]
 #[inline(never)]
 fn replace_large(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {

@@ -1,18 +1,18 @@
 //! Stumpff's functions `c_k(x) = Σ (−x)^i/(2i + k)!` of all arguments of a state in one pass, eight at a time.
 //!
-//! What is made of a rotation vector ρ is made of them at x = ρ·ρ: `c_0` is the cosine of its length, `c_1` the sine over the
-//! length. They are entire, so they need no branch near zero. Up to x = 10, where a rotation has gone beyond 180°, c₇ and c₈
+//! Functions of a rotation vector ρ are expressed by them at x = ρ·ρ: `c_0` is the cosine of its length, `c_1` the sine divided
+//! by the length. They are entire functions, so they need no branch near zero. Up to x = 10, where a rotation has gone beyond 180°, c₇ and c₈
 //! are polynomials, interpolated at Chebyshev's nodes to 3e-18 and 2e-16 of their size, and the others follow downward by
-//! `c_k = 1/k! − x c_{k+2}`, each step of which adds half a unit in the last place and shrinks what was there before. The error
-//! is below 3.2 units in the last place for c₂ to c₅, and below 1e-15 for c₀ and c₁, which have zeros. Larger arguments go one by one
-//! through sines and cosines.
+//! `c_k = 1/k! − x c_{k+2}`, each step of which adds half a unit in the last place and reduces earlier errors. The error
+//! is below 3.2 units in the last place for c₂ to c₅, and below 1e-15 for c₀ and c₁, which have zeros. Larger arguments are computed one by
+//! one from sines and cosines.
 
 use nalgebra::ComplexField;
 use wide::f64x8;
 
 use super::lanes::fma;
 
-/// Up to here the polynomials hold.
+/// Up to this argument the polynomials are valid.
 const LARGEST: f64 = 10.0;
 
 /// Coefficients of c₇ by powers of x.
@@ -60,7 +60,7 @@ pub fn stumpff<const K: usize>(arguments: [f64; K]) -> [[f64; K]; 6] {
     }
     if !K.is_multiple_of(8) {
         if let Some(last) = arguments.last_chunk() {
-            // The last eight: some of them a second time, which is cheaper than to move fewer.
+            // The last eight, some of them a second time, which is cheaper than handling fewer.
             for (row, of_eight) in values.iter_mut().zip(eight(last)) {
                 if let Some(place) = row.last_chunk_mut() {
                     *place = of_eight;
@@ -114,14 +114,14 @@ fn with_large<const K: usize>(arguments: &[f64x8; K], mut columns: [[f64x8; 6]; 
     columns
 }
 
-/// False too for what is not a number.
+/// Also false for NaN.
 #[inline]
 fn is_small(x: f64x8) -> bool {
     x.simd_le(f64x8::splat(LARGEST)).all()
 }
 
-/// The functions of large arguments, and of those that are not numbers, by sines and cosines: a result does not depend on the
-/// arguments beside it.
+/// The functions of large arguments and NaN by sines and cosines, so that a result does not depend on neighbouring
+/// arguments.
 #[cold]
 #[inline(never)]
 fn replace_large(arguments: &[f64], rows: [&mut [f64]; 6]) {
@@ -154,7 +154,7 @@ fn of_small(x: f64x8) -> [f64x8; 6] {
     let [a0, a1, a2, a3, a4, a5, a6, a7, a8] = SEVENTH.map(f64x8::splat);
     let [b0, b1, b2, b3, b4, b5, b6, b7] = EIGHTH.map(f64x8::splat);
     let square = x * x;
-    // Even and odd powers side by side: half the chain of dependent operations.
+    // Even and odd powers separately: half the chain of dependent operations.
     let even = |[e0, e1, e2, e3]: [f64x8; 4]| fma(square, fma(square, fma(square, e3, e2), e1), e0);
     let c7 = fma(x, even([a1, a3, a5, a7]), even([a0, a2, a4, fma(square, a8, a6)]));
     let c8 = fma(x, even([b1, b3, b5, b7]), even([b0, b2, b4, b6]));

@@ -144,7 +144,7 @@ crane! {
     exact
 }
 
-/// What a panic does is up to whoever owns the machine. `std` has a handler of its own; two of them do not compile.
+/// The owner of the machine decides what a panic does. `std` has its own handler; two of them do not compile.
 #[cfg(all(feature = "bare", not(feature = "no-panic")))]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {

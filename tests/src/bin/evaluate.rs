@@ -1,6 +1,6 @@
 //! Evaluates generated cranes for checks in other languages.
 //!
-//! `evaluate list` prints the cranes, one a line. `evaluate layout CRANE` describes one as JSON. A YAML file in place of a
+//! `evaluate list` prints the cranes, one per line. `evaluate layout CRANE` describes one as JSON. A YAML file in place of a
 //! crane's name is run by the interpreter, which has T, A, e, forces, accelerations and what
 //! statics need.
 //! `evaluate values CRANE` reads records `t, q[N], v[N], parameters[P]` from standard input until its end, and writes for

@@ -1,9 +1,9 @@
 //! Times one kernel, so that programs that time other libraries can take turns with it.
 //!
 //! ```text
-//! crane-bench coordinates              the numbers of coordinates, one a line
+//! crane-bench coordinates              the numbers of coordinates, one per line
 //! crane-bench spec N                   the YAML text of the crane with N coordinates
-//! crane-bench kernels N                names of its kernels and how many cranes a call serves, one a line
+//! crane-bench kernels N                names of its kernels and the number of cranes per call, one per line
 //! crane-bench step                     the step of the kernel rk4_step, s
 //! crane-bench repeat N KERNEL CALLS    calls a kernel so often, for programs that count instructions
 //! crane-bench states N                 states as records t, q, v, f: 64-bit little-endian numbers

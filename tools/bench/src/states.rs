@@ -34,7 +34,7 @@ pub fn near_guess<const N: usize>(crane: &Description) -> Vec<State<N>> {
         .collect()
 }
 
-/// Eight states, one a lane.
+/// Eight states, one per lane.
 #[derive(Clone, Debug)]
 pub struct EightStates<const N: usize> {
     /// Times, s.

@@ -1,8 +1,8 @@
 //! A function as bytecode: operations on numbered registers, in runs of one kind.
 //!
 //! Nearly all arithmetic is the one operation `a b + c`: a sum is `1 a + b`, a product `a b − 0`, a difference takes a negative,
-//! which is kept beside its positive where both are needed. The numbers are those of the separate operations, but for the sign of
-//! a zero. So the inner loop has nothing to decide, and a processor guesses the few ends of runs.
+//! which is kept in addition to the positive value if both are needed. The numbers are those of the separate operations, except for the sign of
+//! a zero. So the inner loop has no branches to predict except the few ends of runs.
 
 use crane_codegen::program::Argument;
 
@@ -14,58 +14,58 @@ pub type Register = u16;
 pub struct Code {
     /// Numbers that never change, in the first registers.
     pub fixed: Vec<Fixed>,
-    /// Inputs in the registers after them, one after the other.
+    /// Inputs in the next registers, in sequence.
     pub inputs: Vec<Inputs>,
     /// Operations, in order.
     pub instructions: Vec<Instruction>,
-    /// Results and the registers they are found in, in order.
+    /// Results and their registers, in order.
     pub stores: Vec<Store>,
-    /// What is run, one segment after the other.
+    /// The segments, in the order of execution.
     pub segments: Vec<Segment>,
-    /// How many registers it needs, those of fixed numbers and inputs included.
+    /// The number of registers, including those of fixed numbers and inputs.
     pub registers: usize,
-    /// How many numbers it returns.
+    /// The number of results.
     pub results: usize,
 }
 
-/// A number that is there before a call.
+/// A number that is available before a call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fixed {
     /// A number of the program.
     Number(f64),
     /// A live parameter or its negative.
     Parameter {
-        /// Its place.
+        /// Its index.
         index: usize,
         /// Whether its sign is changed.
         negative: bool,
     },
-    /// A constant made of live parameters, or its negative.
+    /// A constant computed from live parameters, or its negative.
     Stored {
-        /// Its place.
+        /// Its index.
         index: usize,
         /// Whether its sign is changed.
         negative: bool,
     },
 }
 
-/// Inputs of a call that follow each other in an argument.
+/// Consecutive inputs of a call in an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Inputs {
     /// The argument that carries them.
     pub argument: Argument,
-    /// The place of the first in that argument.
+    /// The index of the first in that argument.
     pub first: usize,
-    /// How many there are.
+    /// Their number.
     pub count: usize,
 }
 
 /// Operations of one kind, or results to be stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
-    /// What is done.
+    /// The kind of operation.
     pub kind: Kind,
-    /// How often.
+    /// Its repetitions.
     pub length: u32,
 }
 
@@ -84,7 +84,7 @@ pub enum Kind {
     Sqrt,
     /// `out = eᵃ`
     Exp,
-    /// `out = b` where a > 0, else c
+    /// `out = b` if a > 0, otherwise c
     Select,
     /// `out = sin a` and `b = cos a`
     Angle,
@@ -95,14 +95,14 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// How many instructions one operation takes.
+    /// The number of instructions per operation.
     #[must_use]
     pub fn instructions(self) -> u32 {
         if self == Kind::Stumpff { 2 } else { 1 }
     }
 }
 
-/// An operation on registers; what they mean is for the kind to say. Four numbers of 16 bits in one: it is loaded once.
+/// An operation on registers, whose meaning depends on the kind: four 16-bit numbers in one, which are loaded together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction(u64);
 
@@ -144,10 +144,10 @@ impl Instruction {
     }
 }
 
-/// A result and the register it is found in.
+/// A result and its register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Store {
-    /// Its place among the results.
+    /// Its index among the results.
     pub place: u32,
     /// The register.
     pub register: Register,

@@ -7,9 +7,9 @@ use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::support::fma;
 use crane_model::support::lanes::Fused;
 
-/// A full mass matrix from axes, linear and angular momenta and ways to the next point of all coordinates, in the order of
-/// operations of compiled cranes: `a_ij = n_i · L_j` where coordinate i turns, `n_i · P_j` where it slides, L_j about the point
-/// of i. The angular momenta are moved on the way.
+/// A full mass matrix from axes, linear and angular momenta and offsets to the next point of all coordinates, with the order of
+/// operations of compiled cranes: `a_ij = n_i · L_j` if coordinate i rotates, `n_i · P_j` if it translates, L_j about the point
+/// of i. The angular momenta are shifted from point to point.
 pub fn mass_matrix<T: Fused + Neg<Output = T> + Mul<Output = T>>(points: &[Point], columns: &mut [T], out: &mut [T]) {
     let n: usize = points.iter().map(|point| point.coordinates).sum();
     let (axes, rest) = columns.split_at_mut(3 * n);
@@ -45,8 +45,8 @@ fn along<T: Fused + Mul<Output = T>>(n: [T; 3], x: [T; 3]) -> T {
 }
 
 /// `∂²T/∂q_m∂q_n = Ω_m ∂T/∂q_n`, body by body, m ≤ n, from the axes of all coordinates and three rows of every first derivative;
-/// `degrees`: how many coordinates move each body; `vectors`: first coordinates of rotation vectors, whose pairs have
-/// `Σ_k share_k ∂T/∂q_k` more.
+/// `degrees`: the number of coordinates that move each body; `vectors`: first coordinates of rotation vectors, whose pairs have
+/// an additional `Σ_k share_k ∂T/∂q_k`.
 pub fn second_derivatives(
     degrees: &[usize],
     coordinates: usize,

@@ -1,4 +1,4 @@
-//! A crane from a chain, behind the traits that all algorithms use.
+//! A crane from a chain that implements the traits of all algorithms.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -22,7 +22,7 @@ use crate::routine::Routine;
 
 /// A crane of any number of coordinates that is ready without rustc.
 ///
-/// What it computes is derived when it is first asked for. Clones share that, and have parameters of their own.
+/// Functions are derived when they are first called. Clones share them, and have their own parameters.
 pub struct LiveCrane {
     library: Arc<Library>,
     description: Description,
@@ -34,7 +34,7 @@ pub struct LiveCrane {
 /// What a call of a function needs besides its arguments.
 struct Room {
     machine: Machine<f64>,
-    /// For results that go elsewhere than they stand.
+    /// For results that are copied to other positions.
     results: Vec<f64>,
 }
 
@@ -57,13 +57,13 @@ impl LiveCrane {
         Self { library: Arc::new(Library::new(chain)), description, parameters, rooms: no_rooms() }
     }
 
-    /// The chain that it was made of.
+    /// The chain from which it was made.
     #[must_use]
     pub fn chain(&self) -> &Chain {
         self.library.chain()
     }
 
-    /// Calls a function and shows its results; nothing where the scene does not need it.
+    /// Calls a function and passes on its results; nothing if the crane does not need it.
     fn call<R>(
         &self,
         id: FunctionId,
@@ -298,7 +298,7 @@ impl DynStatics for LiveCrane {
 
     fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {
         if self.call(FunctionId::DriveForcesAtRest, &at(q), |_, results| copy(results, out)).is_none() {
-            // At the rates of their motions the dampers rest.
+            // At the rates of the motions the dampers are unloaded.
             let (mut v, mut motions) = (vec![0.0; q.len()], vec![[0.0; 2]; self.description.drives.len()]);
             self.drive_motions(0.0, &mut motions);
             for (drive, [_, rate]) in self.description.drives.iter().zip(motions) {
@@ -428,7 +428,7 @@ impl DynInternalForces for LiveCrane {
 impl DynEnsemble for LiveCrane {
     fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
         let lanes = parameters.iter().map(|values| self.with_first(values)).collect::<Result<Vec<_>, _>>()?;
-        // Lanes that nobody looks at are like this crane.
+        // Unused lanes are copies of this crane.
         let of = |lane: usize| lanes.get(lane).unwrap_or(&self.parameters);
         let eight = |index: usize| f64x8::new(std::array::from_fn(|lane| of(lane)[index]));
         let parameters: Vec<f64x8> = (0..self.parameters.len()).map(eight).collect();
@@ -476,7 +476,7 @@ impl DynCrane for LiveCrane {
 
     fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
         self.parameters = self.with_first(values)?;
-        // Constants made of parameters stand in the rooms.
+        // The workspaces contain constants computed from parameters.
         self.rooms = no_rooms();
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! What a live crane says about itself.
+//! Metadata of a live crane.
 
 use crane_codegen::chain::{self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, SupportKinematics, Value};
 use crane_model::{
@@ -67,7 +67,7 @@ fn bound(bound: &chain::Bound) -> Bound {
     Bound { value: bound.value, allowed: bound.allowed, refusal: refusal(&bound.refusal) }
 }
 
-/// What the compiler says of parameters that break a rule.
+/// The compiler's message about parameters that break a rule.
 pub fn refusal(refusal: &chain::Refusal) -> Refusal {
     let chain::Refusal { code, title, help } = refusal;
     Refusal { code: (*code).into(), title: title.clone().into(), help: help.clone().into() }

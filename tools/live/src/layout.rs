@@ -1,4 +1,4 @@
-//! Where the slots of a shape stand in a result.
+//! Positions of the slots of a shape in a result.
 
 use crane_codegen::program::Shape;
 
@@ -7,12 +7,12 @@ use crane_codegen::program::Shape;
 pub enum Entry {
     /// A slot of the function's shape.
     Slot(usize),
-    /// Always the same.
+    /// A constant.
     Number(f64),
 }
 
 /// The result of a function, number by number: symmetric matrices in full, column by column, one after the other, as are
-/// homogeneous matrices with their fourth row. What is left as factors stays so.
+/// homogeneous matrices with their fourth row. Factors stay factors.
 pub fn layout(shape: &Shape) -> Vec<Entry> {
     let mut entries = Vec::new();
     append(shape, 0, &mut entries);

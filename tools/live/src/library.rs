@@ -40,7 +40,7 @@ impl Group {
         }
     }
 
-    /// What the compiler is asked for.
+    /// The analyses requested from the compiler.
     fn analyses(self) -> Analyses {
         let nothing = Analyses {
             statics: false,
@@ -70,7 +70,7 @@ pub struct Library {
 }
 
 impl Library {
-    /// The functions of a chain, none of them derived.
+    /// The functions of a chain, none of them derived yet.
     pub fn new(chain: Chain) -> Self {
         let routines = std::array::from_fn(|_| OnceLock::new());
         Self { chain, programs: Default::default(), routines }

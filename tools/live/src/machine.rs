@@ -12,7 +12,7 @@ use crate::bytecode::{Code, Fixed, Instruction, Kind};
 pub trait Number:
     Copy + Fused + Function + Div<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
 {
-    /// How many numbers it holds.
+    /// The number of numbers it holds.
     const LANES: usize;
     /// Numbers by their places.
     fn from_lanes(number: impl Fn(usize) -> f64) -> Self;
@@ -32,7 +32,7 @@ pub trait Number:
     fn stumpff(arguments: [Self; ANGLES]) -> [[Self; ANGLES]; 6];
 }
 
-/// Angles, or arguments of Stumpff's functions, that are taken at a time.
+/// Number of angles, or arguments of Stumpff's functions, processed at a time.
 pub const ANGLES: usize = 8;
 
 impl Number for f64 {
@@ -85,7 +85,7 @@ impl Number for f64x8 {
     }
 }
 
-/// Values of a function's arguments; what it does not take may be empty.
+/// Values of a function's arguments; unused ones may be empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Arguments<'a, T> {
     /// Time, s.
@@ -102,7 +102,7 @@ pub struct Arguments<'a, T> {
     pub resistance: &'a [T],
     /// Resistance of the base, 6×6, column by column.
     pub base: &'a [T],
-    /// What an earlier function left.
+    /// Results of an earlier function.
     pub factors: &'a [T],
     /// Live parameters.
     pub parameters: &'a [T],
@@ -134,7 +134,7 @@ impl<T: Number> Arguments<'_, T> {
     }
 }
 
-/// Numbers of registers that a machine may have: a number of a register is masked, not compared.
+/// Possible numbers of registers of a machine: register numbers are masked instead of checked.
 const SIZES: [usize; 3] = [1 << 10, 1 << 13, 1 << 16];
 
 /// Registers of a function.
@@ -162,7 +162,7 @@ impl<T: Number> Machine<T> {
         Self { file }
     }
 
-    /// Sets the fixed numbers of a function; `parameter` and `stored` are live parameters and the constants made of them, by place.
+    /// Sets the fixed numbers of a function; `parameter` and `stored` return live parameters and the constants computed from them, by index.
     pub fn fix(&mut self, code: &Code, parameter: impl Fn(usize) -> T, stored: impl Fn(usize) -> T) {
         // −x as −1 x − 0.
         let negative = |x: T| fma(T::splat(-1.0), x, T::splat(-0.0));
@@ -184,7 +184,7 @@ impl<T: Number> Machine<T> {
         }
     }
 
-    /// Runs a function, the same that the machine was made for. An input that is not given is zero.
+    /// Runs the function for which the machine was made. An input that is not given is zero.
     pub fn run(&mut self, code: &Code, arguments: &Arguments<'_, T>, out: &mut [T]) {
         let mut registers = self.registers().get_mut(code.fixed.len()..).unwrap_or_default();
         for inputs in &code.inputs {
@@ -289,7 +289,7 @@ fn take_stumpff<T: Number, const SIZE: usize>(instructions: &[Instruction], file
     }
 }
 
-/// A register's place: a power of two is a mask, and no comparison is left.
+/// A register's index: with a power of two it is masked, without a comparison.
 #[inline]
 fn at<const SIZE: usize>(register: u16) -> usize {
     usize::from(register) % SIZE

@@ -7,7 +7,7 @@ use crate::assemble::{TooLarge, assemble, assemble_constants};
 use crate::bytecode::Code;
 use crate::machine::{Arguments, Machine, Number};
 
-/// A function as bytecode, with what it needs of its live parameters.
+/// A function as bytecode, with its constants of live parameters.
 #[derive(Clone, Debug)]
 pub struct Routine {
     shape: Shape,
@@ -31,13 +31,13 @@ impl Routine {
         })
     }
 
-    /// What it returns.
+    /// The shape of its result.
     #[must_use]
     pub fn shape(&self) -> &Shape {
         &self.shape
     }
 
-    /// How many numbers it returns, as [`layout`](crate::layout::layout) has them.
+    /// The number of its results, as [`layout`](crate::layout::layout) has them.
     #[must_use]
     pub fn results(&self) -> usize {
         self.code.results
@@ -49,7 +49,7 @@ impl Routine {
         &self.code
     }
 
-    /// Room for runs with these live parameters.
+    /// A machine for runs with these live parameters.
     pub fn machine<T: Number>(&self, parameters: &[T]) -> Machine<T> {
         let mut machine = Machine::new(&self.code);
         self.set_parameters(&mut machine, parameters);
@@ -69,7 +69,7 @@ impl Routine {
         machine.fix(&self.code, |index| at(parameters, index), |index| at(&stored, index));
     }
 
-    /// Runs it; `machine` is room that it made.
+    /// Runs it on a machine that it made.
     pub fn run<T: Number>(&self, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
         machine.run(&self.code, arguments, out);
     }

@@ -1,7 +1,7 @@
 //! Quantities of many states, one state or eight at a time.
 //!
 //! A row is a state with its parameters. Its numbers are those of the functions of [`DynModel`] and its kin at that state, to the
-//! last bit, whatever stands in the other rows.
+//! last bit, whatever the other rows contain.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -17,18 +17,18 @@ use crate::library::Library;
 use crate::machine::{Arguments, Machine, Number};
 use crate::routine::Routine;
 
-/// What is computed of every row. Matrices are written row by row.
+/// The quantity computed for every row. Matrices are written row by row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// A function of the compiler.
     Of(FunctionId),
     /// Derivatives of the points' positions with respect to q: points × 3 × n.
     PointJacobians,
-    /// Generalized forces of supports, springs and drives that a motion takes, `A a − e`.
+    /// Generalized forces that a motion requires, `A a − e`.
     InverseDynamics,
 }
 
-/// States and parameters, row after row. A list of one row holds for all rows; parameters that are not given are the crane's.
+/// States and parameters, row after row. A list of one row applies to all rows; missing parameters are those of the crane.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rows<'a> {
     /// Times, s.
@@ -43,7 +43,7 @@ pub struct Rows<'a> {
     pub parameters: &'a [f64],
 }
 
-/// Room to compute a quantity of many rows, as many at a time as a number of `T` holds.
+/// Workspace to compute a quantity of many rows, as many at a time as a number of `T` holds.
 #[derive(Debug)]
 pub struct Evaluation<T> {
     library: Arc<Library>,
@@ -51,7 +51,7 @@ pub struct Evaluation<T> {
     width: usize,
     /// Numbers of coordinates and of live parameters.
     sizes: [usize; 2],
-    /// The function, and a second one where the quantity is made of two.
+    /// The function, and a second one if the quantity needs two.
     calls: [Option<Call<T>>; 2],
     /// The states that are evaluated.
     lanes: Lanes<T>,
@@ -75,7 +75,7 @@ struct Call<T> {
     id: FunctionId,
     machine: Machine<T>,
     factors: Vec<T>,
-    /// Where each number of the result stands among what the function writes; nowhere: zero.
+    /// The index of each number of the result in the function's output; `None`: zero.
     places: Option<Vec<Option<usize>>>,
 }
 
@@ -100,7 +100,7 @@ impl<T: Number> Evaluation<T> {
         }
     }
 
-    /// How many numbers a row has.
+    /// The number of results per row.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
@@ -135,7 +135,7 @@ impl<T: Number> Evaluation<T> {
         match (self.quantity, calls) {
             (Quantity::Of(_), [Some(call), _]) => call.run(library, lanes, results),
             (Quantity::PointJacobians, [Some(call), _]) => {
-                // Velocities are linear in the rates: column j is what the rate of coordinate j alone makes.
+                // Velocities are linear in the rates: column j is the contribution of the rate of coordinate j.
                 let mut column = vec![T::splat(0.0); results.len() / n.max(1)];
                 for j in 0..n {
                     lanes.v.clear();
@@ -153,7 +153,7 @@ impl<T: Number> Evaluation<T> {
                     *result = row.iter().zip(&lanes.a).fold(-*result, |sum, (entry, a)| fma(*entry, *a, sum));
                 }
             }
-            // A function that the scene does not need is zero.
+            // A function that the crane does not need is zero.
             _ => results.fill(T::splat(0.0)),
         }
     }
@@ -251,7 +251,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::JointImpedances | FunctionId::NonlinearImpedances => 2 * n,
             FunctionId::BaseStiffness | FunctionId::BaseDamping => 36,
             FunctionId::DrivePieces => 2 * description.drives.iter().map(|drive| drive.pieces).sum::<usize>(),
-            // What other functions need, or what is left as factors.
+            // Quantities that other functions need, or that are left as factors.
             FunctionId::InternalForces
             | FunctionId::SupportPositions
             | FunctionId::SectionModuli

@@ -36,7 +36,7 @@ fn state(crane: &dyn DynCrane) -> (f64, Vec<f64>, Vec<f64>) {
     (0.7, q, (0..n).map(wave(0.4, 0.7)).collect())
 }
 
-/// Equal, but for the sign of a zero; where products are fused, to rounding.
+/// Equal, except for the sign of a zero; where products are fused, to rounding.
 fn assert_same(what: &str, live: &[f64], compiled: &[f64]) {
     assert_eq!(live.len(), compiled.len(), "{what}");
     let largest = compiled.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));

@@ -76,7 +76,7 @@ fn a_damped_stop_keeps_what_hunt_and_crossley_say() {
     }
 }
 
-/// A sliding mass comes to rest after `m v²/2F_c` of way, but for what it creeps on: with `F_c tanh(v/v₀)` its way is longer by
+/// A sliding mass comes to rest after `m v²/2F_c` of way, except for its creep: with `F_c tanh(v/v₀)` its way is longer by
 /// `m v₀² π²/12 F_c` (from `∫ v dv/tanh(v/v₀)`), which tends to zero with the square of the width v₀.
 #[test]
 fn a_sliding_mass_stops_where_coulomb_says() {

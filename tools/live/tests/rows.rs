@@ -1,4 +1,4 @@
-//! Rows beside the functions of one crane: the same bits, whatever stands in the other rows.
+//! Rows compared with the functions of one crane: the same bits, whatever the other rows contain.
 
 use crane_codegen::SourceFile;
 use crane_live::rows::{Evaluation, Quantity, Rows};

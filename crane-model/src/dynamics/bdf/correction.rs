@@ -15,17 +15,17 @@ pub(super) struct Correction<'a> {
     c: f64,
     /// ψ/c.
     past: Vec<f64>,
-    /// `y⁰ + d` as far as the iteration is.
+    /// The current iterate `y⁰ + d`.
     pub end: Vec<f64>,
     /// d.
     pub d: Vec<f64>,
-    /// What the last step of the iteration added.
+    /// The last increment of the iteration.
     pub improvement: Vec<f64>,
     rhs: Vec<f64>,
 }
 
 impl<'a> Correction<'a> {
-    /// Room for motions of so many numbers.
+    /// Storage for motions of this many numbers.
     pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
         let zeros = || vec![0.0; len];
         Self {
@@ -40,7 +40,7 @@ impl<'a> Correction<'a> {
         }
     }
 
-    /// Begins with the prediction.
+    /// Starts with the prediction.
     pub fn predict(&mut self, equations: &mut Equations<'_>, history: &History) {
         history.sum(&[1.0; ORDER + 1], &mut self.end);
         history.sum(&GAMMAS.map(|gamma| gamma / history.h), &mut self.past);
@@ -51,12 +51,12 @@ impl<'a> Correction<'a> {
         self.system.factorise(self.t, equations.state(self.t, &self.end), self.c);
     }
 
-    /// One step of the iteration. Integrals wait for its end.
+    /// One step of the iteration. Integrals follow at its end.
     pub fn improve(&mut self, equations: &mut Equations<'_>) -> Result<(), NotFinite> {
         let Self { past, end, d, rhs, improvement, .. } = self;
         let n = equations.n;
         equations.derivative(self.t, end, rhs)?;
-        // f − (ψ + d)/c; nothing for integrals.
+        // f − (ψ + d)/c; zero for integrals.
         add(&mut rhs[..2 * n], -1.0, past);
         add(&mut rhs[..2 * n], -self.c.recip(), d);
         rhs[2 * n..].fill(0.0);
@@ -66,7 +66,7 @@ impl<'a> Correction<'a> {
         Ok(())
     }
 
-    /// Integrals over the step, of what the state found says: at its prediction stiff springs are far from balance.
+    /// Integrals over the step from the state found: at the prediction stiff springs are far from balance.
     pub fn integrate(&mut self, equations: &mut Equations<'_>) {
         equations.powers(self.t, &self.end, &mut self.rhs);
         for i in 2 * equations.n..self.end.len() {

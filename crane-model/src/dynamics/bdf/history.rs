@@ -1,4 +1,4 @@
-//! The last states at equal distances, as backward differences.
+//! The last states at equal time intervals, as backward differences.
 
 use super::ORDER;
 use crate::dynamics::motion::add;
@@ -6,28 +6,28 @@ use crate::dynamics::motion::add;
 /// Weights of the differences up to the highest order.
 pub(super) type Weights = [f64; ORDER + 1];
 
-/// The last states at equal distances, as backward differences.
+/// The last states at equal time intervals, as backward differences.
 pub(super) struct History {
-    /// `∇ᵐy`, m = 0 … k; beyond, what tells the error of the next higher order.
+    /// `∇ᵐy`, m = 0 … k; beyond, the difference for the error of the next higher order.
     pub differences: [Vec<f64>; ORDER + 3],
     /// k.
     pub order: usize,
     /// Time of the last state, s.
     pub t: f64,
-    /// Distance of the states, s.
+    /// Time interval of the states, s.
     pub h: f64,
-    /// Room for the differences before a change of distance.
+    /// Storage for the differences before a change of the interval.
     old: [Vec<f64>; ORDER + 1],
 }
 
 impl History {
-    /// Room for motions of so many numbers.
+    /// Storage for motions of this many numbers.
     pub fn new(len: usize) -> Self {
         let differences = std::array::from_fn(|_| vec![0.0; len]);
         Self { differences, order: 1, t: 0.0, h: 0.0, old: std::array::from_fn(|_| vec![0.0; len]) }
     }
 
-    /// Begins with a state alone, and its slope.
+    /// Starts with a single state and its slope.
     pub fn begin(&mut self, t: f64, start: &[f64], slope: &[f64], h: f64) {
         (self.order, self.t, self.h) = (1, t, h);
         let [value, first, higher @ ..] = &mut self.differences;
@@ -39,7 +39,7 @@ impl History {
         }
     }
 
-    /// As [`begin`](Self::begin), with the last state.
+    /// Like [`begin`](Self::begin), with the last state.
     pub fn begin_again(&mut self, slope: &[f64]) {
         let start = std::mem::take(&mut self.differences[0]);
         let [_, first, higher @ ..] = &mut self.differences;
@@ -52,7 +52,7 @@ impl History {
         self.order = 1;
     }
 
-    /// Begins with some states, the last first.
+    /// Starts with several states, the last first.
     pub fn through(&mut self, past: &[Vec<f64>], t: f64, h: f64) {
         (self.order, self.t, self.h) = (past.len().clamp(1, ORDER), t, h);
         let values = &mut self.differences[..self.order];
@@ -79,7 +79,7 @@ impl History {
         }
     }
 
-    /// Goes on to the next state, which is `d` from its prediction.
+    /// Moves to the next state, which differs from its prediction by `d`.
     pub fn push(&mut self, d: &[f64]) {
         let k = self.order;
         self.t += self.h;
@@ -99,10 +99,10 @@ impl History {
         self.sum(&newton_polynomials((t - self.t) / self.h), out);
     }
 
-    /// Goes over to states at another distance, on the same polynomial.
+    /// Changes to states at another interval, on the same polynomial.
     pub fn rescale(&mut self, factor: f64) {
         let k = self.order;
-        // The polynomial's values at the new distances, by the weights of the old differences, and differences of those.
+        // The polynomial's values at the new times, from the weights of the old differences, and their differences.
         let mut weights: [Weights; ORDER + 1] = std::array::from_fn(|m| newton_polynomials(-factor * m as f64));
         for m in 1..=k {
             for place in (m..=k).rev() {
@@ -125,7 +125,7 @@ impl History {
     }
 }
 
-/// `Πⱼ (part + j)/(j + 1)`, j = 0 … m−1: what multiplies `∇ᵐy` at `t + part h`.
+/// `Πⱼ (part + j)/(j + 1)`, j = 0 … m−1: the factor of `∇ᵐy` at `t + part h`.
 fn newton_polynomials(part: f64) -> Weights {
     let mut weights = [1.0; ORDER + 1];
     for m in 1..=ORDER {

@@ -1,18 +1,17 @@
 //! Backward differentiation formulas of variable order and step, for stiff motions.
 //!
 //! With `∇yₙ = yₙ − yₙ₋₁` and `∇ᵐ = ∇∇ᵐ⁻¹` the formula of order k for `ẏ = f(t, y)` is `Σ ∇ᵐyₙ₊₁/m = h f(tₙ₊₁, yₙ₊₁)`, m = 1 … k.
-//! From the prediction `y⁰ = Σ ∇ᵐyₙ`, m = 0 … k, by the polynomial through the states before, it leaves `d = yₙ₊₁ − y⁰ = ∇ᵏ⁺¹yₙ₊₁`
-//! to find:
+//! From the prediction `y⁰ = Σ ∇ᵐyₙ`, m = 0 … k, by the polynomial through the previous states, the unknown is `d = yₙ₊₁ − y⁰ = ∇ᵏ⁺¹yₙ₊₁`:
 //!
 //! ```text
 //! c f(tₙ₊₁, y⁰ + d) = ψ + d,     c = h/γₖ,     γₖ = Σ 1/j  (j = 1 … k),     γₖ ψ = Σ γₘ ∇ᵐyₙ  (m = 1 … k)
 //! ```
 //!
-//! Newton's iteration takes stiffness and damping of springs and dampers as Jacobian, one structured system of half the size. What
-//! that leaves out is worth `c²` times the square of a load's swinging, so that as a rule the first iterate will do: a step then
-//! costs one evaluation. The error of a step is `d/(k+1)`; those of the neighbouring orders are at hand as well, and the order is
-//! taken that allows the longest step. Orders 1 and 2 are L-stable, order 3 is A(α)-stable with α = 86.0°, order 4 with 73.4°:
-//! modes that are hardly damped and not resolved are left to the lower ones, by the estimate of the error.
+//! Newton's iteration uses stiffness and damping of springs and dampers as Jacobian, one structured system of half the size. The
+//! neglected terms are `c²` times the square of the load's swing frequency, so usually the first iterate suffices and a step costs
+//! one evaluation. The error of a step is `d/(k+1)`; those of the neighbouring orders are available as well, and the order with
+//! the longest step is chosen. Orders 1 and 2 are L-stable, order 3 is A(α)-stable with α = 86.0°, order 4 with 73.4°: for modes
+//! with little damping that are not resolved, the error estimate selects the lower orders.
 //!
 //! E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, sections III.1 and V.1; steps of equal length between
 //! changes, and how differences change with it: L. F. Shampine, M. W. Reichelt, The MATLAB ODE Suite, SIAM J. Sci. Comput. 18 (1997) 1.
@@ -41,21 +40,21 @@ use history::History;
 pub const ORDER: usize = Method::Bdf.order();
 /// γₖ.
 const GAMMAS: [f64; ORDER + 1] = [0.0, 1.0, 1.5, 11.0 / 6.0, 25.0 / 12.0];
-/// Part of the tolerance that a step may be off: errors add up over many steps, which are shorter than those of one-step methods.
+/// Allowed error of a step relative to the tolerance: errors add up over many steps, which are shorter than those of one-step methods.
 const SHARE: f64 = 0.1;
-/// Most of Newton's steps.
+/// Maximum number of Newton steps.
 const NEWTON: usize = 4;
-/// Part of a step's error that Newton's iteration may leave.
+/// Remaining error of Newton's iteration relative to a step's error.
 const LEFT: f64 = 0.05;
-/// Least and greatest ratio of a step to the one before.
+/// Smallest and largest ratio of a step to the previous one.
 const RATIO: (f64, f64) = (0.2, 3.0);
-/// Greatest ratio of a step to one that fell short of what it was chosen for.
+/// Largest ratio of a step to one that failed.
 const AGAIN: f64 = 0.5;
-/// After so many failures in a row the past tells nothing of what comes: a drive that jumped, say.
+/// After this many consecutive failures the history does not predict the motion, for example because a drive jumped.
 const PATIENCE: usize = 3;
 
-/// A step of order `past.len()` from `t` to `t + h`, from the states at `t`, `t − h`, …: the state at `t + h`, by Newton's iteration
-/// to the last bits.
+/// A step of order `past.len()` from `t` to `t + h`, from the states at `t`, `t − h`, …: the state at `t + h`, by Newton's iteration to
+/// rounding.
 ///
 /// Of more states than the highest order only the last count.
 ///
@@ -67,9 +66,9 @@ pub fn step<const N: usize, C: Implicit<N>>(
     h: f64,
     past: &[State<N>],
 ) -> Result<State<N>, NotFinite> {
-    /// Newton's steps: with a Jacobian that has little to do with the crane each still gains a digit.
+    /// Newton steps: even with a poor Jacobian each one gains a digit.
     const MANY: usize = 30;
-    /// What is left of a step, relative to 1 m and rad and to where it leads.
+    /// Remaining increment, relative to 1 m and rad and to the new state.
     const EXACT: f64 = 1e-14;
     let crane = Instance::<N, _>(crane);
     let mut equations = Equations::new(&crane, Guides::of(&crane), false);
@@ -94,28 +93,28 @@ pub fn step<const N: usize, C: Implicit<N>>(
     Err(NotFinite)
 }
 
-/// How fast Newton's iteration converges, as measured when there was a second step.
+/// Convergence rate of Newton's iteration, measured whenever there was a second step.
 #[derive(Clone, Copy, Debug)]
 struct Contraction {
     /// Ratio of two steps.
     ratio: f64,
-    /// Length of the step of time that it holds for, s.
+    /// Length of the time step of the measurement, s.
     h: f64,
-    /// Steps of time since.
+    /// Time steps since then.
     age: usize,
 }
 
 impl Contraction {
-    /// Steps of time for which a measurement holds.
+    /// Number of time steps for which a measurement is valid.
     const LIFETIME: usize = 10;
-    /// What is assumed without one.
+    /// Assumption without a measurement.
     const UNKNOWN: f64 = 0.3;
-    /// A measured ratio is trusted up to this factor.
+    /// A measured ratio may be wrong by this factor.
     const CAUTION: f64 = 3.0;
-    /// No ratio counts as less.
+    /// Lower limit of ratios.
     const LEAST: f64 = 1e-3;
 
-    /// What to expect of a step of time of length `h`: what the Jacobian leaves out counts with its square.
+    /// The expected ratio for a time step of length `h`: the terms neglected in the Jacobian are proportional to its square.
     fn expected(&self, h: f64) -> f64 {
         if self.age < Self::LIFETIME {
             (Self::CAUTION * self.ratio * (h / self.h).powi(2)).max(Self::LEAST)
@@ -141,7 +140,7 @@ pub struct Bdf<'a> {
 
 /// Choice of order and length.
 struct Control {
-    /// The measure of what a step may be off.
+    /// The measure of errors.
     norm: Norm,
     /// Steps since order or length changed.
     alike: usize,
@@ -168,7 +167,7 @@ impl<'a> Bdf<'a> {
         }
     }
 
-    /// No step leads on from the last state.
+    /// No further step is possible from the last state.
     fn stuck(&self) -> Stopped {
         let History { t, h, .. } = &self.history;
         let q = &self.motion[..self.equations.n];
@@ -176,7 +175,7 @@ impl<'a> Bdf<'a> {
         place.failed(Cause::Tolerance, self.crane)
     }
 
-    /// Shortens the distance of the states so that a whole number of steps ends at `stop`, if it is near.
+    /// Shortens the interval of the states so that a whole number of steps ends at `stop`, if it is close.
     fn aim(&mut self, stop: f64) {
         let History { t, h, .. } = self.history;
         let left = (stop - t) / h;
@@ -189,7 +188,7 @@ impl<'a> Bdf<'a> {
         }
     }
 
-    /// Goes over to the state reached.
+    /// Moves to the new state.
     fn accept(&mut self) {
         let n = self.equations.n;
         self.motion.copy_from_slice(&self.history.differences[0]);
@@ -198,7 +197,7 @@ impl<'a> Bdf<'a> {
         self.control.norm.note_rounding(q, v);
     }
 
-    /// Tries a step, and tells whether it meets the tolerance; chooses order and length of the next in any case. `again` is a step
+    /// Tries a step, and returns whether it meets the tolerance; chooses order and length of the next in any case. `again` is a step
     /// that was shortened already.
     fn attempt(&mut self, again: bool) -> bool {
         let Self { equations, history, correction, control, .. } = self;
@@ -319,13 +318,13 @@ impl Control {
         false
     }
 
-    /// Error of a step of some order to `end`, with `∇ᵏ⁺¹` of that order, in units of what a step is allowed.
+    /// Error of a step of some order to `end`, with `∇ᵏ⁺¹` of that order, in units of the allowed error.
     fn error(&self, end: &[f64], next: &[f64], order: usize) -> f64 {
         self.norm.size(end, next) / (order + 1) as f64
     }
 }
 
-/// Ratio of steps that would just meet the tolerance, less a margin.
+/// Ratio of steps that would just meet the tolerance, minus a margin.
 fn ideal(error: f64, order: usize) -> f64 {
     SAFETY * error.powf(-1.0 / (order + 1) as f64)
 }

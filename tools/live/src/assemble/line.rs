@@ -1,5 +1,5 @@
-//! A straight line of operations on values: angles first, then everything in the order in which it was derived, where what does
-//! not depend on each other stands side by side. Results are copied in batches, as soon as a batch of them is known.
+//! Straight-line operations on values: angles first, then everything in the order of its derivation, in which independent
+//! operations are close together. Results are copied in batches, as soon as a batch of them is known.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -10,7 +10,7 @@ use super::select::{NOTHING, Operand, Recipe, Selection, Signed};
 use crate::bytecode::{Fixed, Inputs, Kind};
 use crate::layout::Entry;
 
-/// Results that are copied at a time: a copy ends a run, a result that waits keeps a register.
+/// Number of results copied at a time: a copy ends a run, but a waiting result keeps a register.
 const BATCH: usize = 256;
 
 /// Number of a value.
@@ -19,15 +19,15 @@ pub type Value = usize;
 /// A function as a straight line.
 #[derive(Debug, Default)]
 pub struct Line {
-    /// The first values: there before a call.
+    /// The first values, which are available before a call.
     pub fixed: Vec<Fixed>,
-    /// The values after them, one after the other: read at the begin of a call.
+    /// The next values, in sequence, which are read at the start of a call.
     pub inputs: Vec<Inputs>,
-    /// How many values there are.
+    /// The number of values.
     pub values: usize,
-    /// What is done, in order.
+    /// The operations, in order.
     pub steps: Vec<Step>,
-    /// How many numbers it returns.
+    /// The number of results.
     pub results: usize,
 }
 
@@ -40,7 +40,7 @@ pub enum Step {
         kind: Kind,
         /// Its result.
         out: Value,
-        /// Its operands; those that it does not have are any.
+        /// Its operands; unused ones are arbitrary.
         operands: [Value; 3],
     },
     /// Sine and cosine of an angle.
@@ -82,7 +82,7 @@ impl Step {
         values.into_iter().take(count)
     }
 
-    /// Values it makes.
+    /// Values it computes.
     pub fn makes(&self) -> impl Iterator<Item = Value> {
         let (values, count) = match *self {
             Step::Operation { out, .. } => ([out; Op::STUMPFF_ORDERS], 1),
@@ -94,7 +94,7 @@ impl Step {
     }
 }
 
-/// A line while it is written.
+/// Code under construction.
 struct Writer<'a> {
     graph: &'a Graph<'a>,
     selection: &'a Selection,
@@ -104,7 +104,7 @@ struct Writer<'a> {
     values: Vec<[Option<Value>; 2]>,
 }
 
-/// A number that is there before a call, to be looked up.
+/// A number that is available before a call.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Key {
     Number(u64),
@@ -145,11 +145,11 @@ impl Writer<'_> {
         self.line.values - 1
     }
 
-    /// A value for every number that operations and results read and that is there before a call.
+    /// A value for every number that operations and results read and that is available before a call.
     fn write_fixed(&mut self, copied: &[Operand]) {
         let recipes = self.selection.recipes.iter().flatten();
         let operands: Vec<Operand> = recipes.flat_map(|(recipe, _)| recipe.operands()).collect();
-        // What changes a sign.
+        // The operation that changes a sign.
         let signs = [Operand::Number(-1.0), NOTHING];
         for operand in signs.iter().chain(copied).chain(&operands) {
             if let Some((key, fixed)) = self.fixed(*operand)
@@ -162,7 +162,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The number of an operand that is there before a call, and how it is looked up.
+    /// The number of an operand that is available before a call, and its key.
     fn fixed(&self, operand: Operand) -> Option<(Key, Fixed)> {
         match operand {
             Operand::Number(number) => Some((Key::Number(number.to_bits()), Fixed::Number(number))),
@@ -179,7 +179,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The value of an operand that is there before a call.
+    /// The value of an operand that is available before a call.
     fn fixed_value(&self, operand: Operand) -> Option<Value> {
         self.fixed(operand).and_then(|(key, _)| self.fixed.get(&key).copied())
     }
@@ -215,11 +215,11 @@ impl Writer<'_> {
         }
     }
 
-    /// Sines and cosines of all angles and Stumpff's functions of all arguments, after what these are made of. Where one is made
-    /// of another's sine, that one comes before it.
+    /// Sines and cosines of all angles and Stumpff's functions of all arguments, after their operands. If one depends on the sine
+    /// of another, it comes later.
     fn write_angles(&mut self) {
         let program = self.graph.program;
-        // How many sines stand before a value, one within the other.
+        // The nesting depth of sines before a value.
         let mut depth = vec![0u32; program.operations.len()];
         let mut deepest = 0;
         for id in program.ids().filter(|id| self.selection.recipes[id.index()].is_some()) {
@@ -282,7 +282,7 @@ impl Writer<'_> {
         }
     }
 
-    /// All operations that some operands need and that are not there yet.
+    /// All operations that some operands need and that do not exist yet.
     fn write_all(&mut self, operands: &[Operand]) {
         let mut needed = vec![false; self.graph.program.operations.len()];
         let mark = |operand: &Operand, needed: &mut Vec<bool>| {
@@ -308,7 +308,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The operations of a value and its negative, as far as they are wanted and not there.
+    /// The operations of a value and its negative, if they are needed and do not exist.
     fn write(&mut self, id: ExprId) {
         let Some((recipe, sign)) = self.selection.recipes[id.index()] else { return };
         let own = usize::from(sign);
@@ -344,7 +344,7 @@ impl Writer<'_> {
 
 /// Results that wait for their values, or to be copied.
 struct Copies {
-    /// Places of the results that a node and its negative give.
+    /// Indices of the results that a node and its negative provide.
     waiting: HashMap<ExprId, [Vec<usize>; 2]>,
     /// Results that are known.
     known: Vec<Step>,
@@ -365,7 +365,7 @@ impl Copies {
         copies
     }
 
-    /// The values of a node are there.
+    /// The values of a node are available.
     fn note(&mut self, writer: &mut Writer, id: ExprId) {
         let Some(places) = self.waiting.remove(&id) else { return };
         for (places, value) in places.into_iter().zip(writer.values[id.index()]) {

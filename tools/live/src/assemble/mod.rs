@@ -2,9 +2,9 @@
 //!
 //! | pass | file | after it |
 //! |---|---|---|
-//! | select | `select` | each value is one operation, with the signs that its users ask for |
-//! | order | `line` | a straight line: angles first, then as derived; results as soon as a batch of them is known |
-//! | registers | `registers` | registers are used again after the last use of their values |
+//! | select | `select` | each value is one operation, with the signs that its users need |
+//! | order | `line` | straight-line code: angles first, then in the order of derivation; results as soon as a batch of them is known |
+//! | registers | `registers` | registers are reused after the last use of their values |
 
 mod line;
 mod registers;
@@ -22,7 +22,7 @@ use select::Selection;
 /// A function needs more registers than bytecode can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLarge {
-    /// How many.
+    /// Their number.
     pub registers: usize,
 }
 
@@ -50,11 +50,11 @@ pub fn assemble_constants(program: &Program, constants: &Constants) -> Result<Co
     registers::assign(&Line::of(&graph, &selection, outputs, &entries))
 }
 
-/// A program, and what of it needs no operation of its own.
+/// A program, and its expressions that need no separate operation.
 struct Graph<'p> {
     program: &'p Program,
-    /// What is there before a call.
+    /// Values available before a call.
     constants: Option<&'p Constants>,
-    /// For every sum or difference, the product that is part of it.
+    /// For every sum or difference, the product that is fused into it.
     fused: Vec<Option<ExprId>>,
 }

@@ -1,4 +1,4 @@
-//! Registers by linear scan: a value takes the register that was given back last, which is still in the first cache.
+//! Registers by linear scan: a value takes the register that was released last, which is still in the first-level cache.
 
 use super::TooLarge;
 use super::line::{Line, Step, Value};
@@ -36,7 +36,7 @@ pub fn assign(line: &Line) -> Result<Code, TooLarge> {
                 [read(value); 3]
             }
         };
-        // All results of an angle or an argument are written before the next angle is read, and one may be needed by nobody.
+        // All results of an angle or an argument are written before the next angle is read, and some may be unused.
         registers.free.extend(ending.iter().map(|value| registers.of[*value]));
         for value in step.makes() {
             registers.give(value);
@@ -76,7 +76,7 @@ pub fn assign(line: &Line) -> Result<Code, TooLarge> {
     if code.registers > nameable { Err(TooLarge { registers: code.registers }) } else { Ok(code) }
 }
 
-/// For every value, the step that reads it last.
+/// For every value, the last step that reads it.
 fn last_reads(line: &Line) -> Vec<Option<usize>> {
     let mut last = vec![None; line.values];
     for (place, step) in line.steps.iter().enumerate() {
@@ -87,13 +87,13 @@ fn last_reads(line: &Line) -> Vec<Option<usize>> {
     last
 }
 
-/// Registers while they are given out.
+/// The state of the allocation.
 struct Registers {
     /// The register of every value that has one.
     of: Vec<usize>,
-    /// Registers that are free, the one that was given back last at the end.
+    /// Free registers, the one released last at the end.
     free: Vec<usize>,
-    /// How many there are.
+    /// Their number.
     count: usize,
 }
 

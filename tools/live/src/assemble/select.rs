@@ -1,7 +1,7 @@
-//! Which values are computed, and with which sign.
+//! Selects the values to compute, and their signs.
 //!
-//! With `a b + c` alone, a difference needs a negative. Users are visited before what they use: a value knows who wants it
-//! positive and who negative, computes the sign that is wanted, and where both are, costs one operation more.
+//! With `a b + c` alone, a difference needs a negative operand. Users are visited before their operands, so it is known whether a
+//! value is needed with its own sign, with the opposite sign, or with both, which costs one more operation.
 
 use crane_codegen::symbolic::{ExprId, Op};
 
@@ -19,14 +19,14 @@ pub struct Signed {
 pub enum Operand {
     /// A number of the program.
     Number(f64),
-    /// What is there before a call, a constant or a live parameter; or a value that is computed or given.
+    /// A constant or a live parameter, available before a call; or a value that is computed or given.
     Value(Signed),
 }
 
 /// How a value is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Recipe {
-    /// It is there.
+    /// It is available.
     Given,
     /// `a b + c`
     MulAdd([Operand; 3]),
@@ -40,7 +40,7 @@ pub enum Recipe {
     Sqrt(Operand),
     /// Exponential.
     Exp(Operand),
-    /// The second where the first is above zero, else the third.
+    /// The second if the first is above zero, otherwise the third.
     Select([Operand; 3]),
     /// Sine of an angle.
     Sin(Operand),
@@ -53,17 +53,17 @@ pub enum Recipe {
 /// `x − 0 = x` for every x, −0 too.
 pub const NOTHING: Operand = Operand::Number(-0.0);
 
-/// What is computed.
+/// The selected values.
 #[derive(Debug)]
 pub struct Selection {
-    /// For every node, whether its value (0) and its negative (1) are wanted.
+    /// For every node, whether its value (0) and its negative (1) are needed.
     pub wanted: Vec<[bool; 2]>,
-    /// How the first of the wanted signs is computed, and whether that is the negative; the other is its negative.
+    /// The operation for the first of the needed signs, and whether that is the negative; the other is its negative.
     pub recipes: Vec<Option<(Recipe, bool)>>,
 }
 
 impl Graph<'_> {
-    /// Whether it is there before a call and needs no operation with either sign.
+    /// Whether it is available before a call and needs no operation with either sign.
     pub fn is_fixed(&self, id: ExprId) -> bool {
         match (self.program.op(id), self.constants) {
             (Op::Constant(_), _) => true,
@@ -72,7 +72,7 @@ impl Graph<'_> {
         }
     }
 
-    /// A value by the node that is not a negation.
+    /// A value, as a node that is not a negation.
     pub fn operand(&self, mut id: ExprId, mut negative: bool) -> Operand {
         loop {
             match self.program.op(id) {
@@ -86,7 +86,7 @@ impl Graph<'_> {
 }
 
 impl Selection {
-    /// What `outputs` need.
+    /// The values that `outputs` need.
     pub fn of(graph: &Graph, outputs: &[ExprId]) -> Self {
         let size = graph.program.operations.len();
         let mut selection = Selection { wanted: vec![[false; 2]; size], recipes: vec![None; size] };
@@ -114,7 +114,7 @@ impl Selection {
         }
     }
 
-    /// How a value is computed, negative if `negative` and it can be at no cost; and whether it is.
+    /// The operation for a value, negative if `negative` and if that costs nothing; and whether it is negative.
     fn recipe(&self, graph: &Graph, id: ExprId, negative: bool) -> (Recipe, bool) {
         let of = |id: ExprId, negative: bool| graph.operand(id, negative);
         let product = |a: ExprId, b: ExprId, negative: bool| self.product(graph, a, b, negative);
@@ -133,7 +133,7 @@ impl Selection {
         let sign = |negative: bool| Operand::Number(if negative { -1.0 } else { 1.0 });
         match op {
             Op::Add(a, b) => {
-                // What is known first is multiplied.
+                // The operand that is known first is multiplied.
                 let (first, last) = (a.min(b), a.max(b));
                 sum([of(first, false), sign(negative)], of(last, negative))
             }
@@ -152,12 +152,12 @@ impl Selection {
             Op::Sin(a) => (Recipe::Sin(of(a, false)), false),
             Op::Cos(a) => (Recipe::Cos(of(a, false)), false),
             Op::Stumpff(k, a) => (Recipe::Stumpff(k, of(a, false)), false),
-            // Negations are operands' signs.
+            // Negations become signs of operands.
             Op::Constant(_) | Op::Symbol(_) | Op::Neg(_) => (Recipe::Given, false),
         }
     }
 
-    /// The factors of `a b`, negative if `negative`, with those signs that cost least; the same for a quotient.
+    /// The factors of `a b`, negative if `negative`, with the cheapest signs; the same for a quotient.
     fn product(&self, graph: &Graph, a: ExprId, b: ExprId, negative: bool) -> [Operand; 2] {
         let choices = [[false, negative], [true, !negative]].map(|[m, n]| [graph.operand(a, m), graph.operand(b, n)]);
         let cost = |factors: &[Operand; 2]| factors.iter().map(|factor| self.cost(graph, *factor)).sum::<u32>();
@@ -165,7 +165,7 @@ impl Selection {
         if cost(&second) < cost(&first) { second } else { first }
     }
 
-    /// What it costs to have an operand with its sign, roughly.
+    /// The approximate cost of an operand with its sign.
     fn cost(&self, graph: &Graph, operand: Operand) -> u32 {
         let Operand::Value(Signed { id, negative }) = operand else { return 0 };
         if graph.is_fixed(id) {
