@@ -9,7 +9,8 @@ use std::{env, fmt, fs, io, process};
 use crate::GeneratedCode;
 use crate::chain::Analyses;
 use crate::compile::{self, Compiled};
-use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile};
+use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile, rule};
+use crate::read::base;
 
 /// Compiles `spec` into `$OUT_DIR/<name of the crane>.rs`, to be included into a module:
 ///
@@ -36,9 +37,13 @@ pub fn compile_spec(spec: impl AsRef<Path>) -> GeneratedCode {
 pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> GeneratedCode {
     let spec = spec.as_ref();
     println!("cargo::rerun-if-changed={}", spec.display());
-    let Compiled { code, warnings } = open(spec)
-        .and_then(|source| compile::compile(&source, analyses).map_err(Failure::Mistakes))
-        .unwrap_or_else(|error| error.fail());
+    let compiled = gather(spec, &|_| None).and_then(|(source, bases)| {
+        for base in bases {
+            println!("cargo::rerun-if-changed={}", base.display());
+        }
+        compile::compile(&source, analyses).map_err(Failure::Mistakes)
+    });
+    let Compiled { code, warnings } = compiled.unwrap_or_else(|error| error.fail());
     for warning in warnings.lines().chain(code.report.warning(&code.name)) {
         println!("cargo::warning={warning}");
     }
@@ -47,11 +52,61 @@ pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> G
     code
 }
 
-/// Reads a spec; a file that is too large is not read completely.
+/// Reads a spec, and those that it extends; a file that is too large is not read completely.
 ///
 /// # Errors
-/// Errors of the file system, and a file that is too large or not text.
+/// Errors of the file system, a file that is too large or not text, and a spec to extend that cannot be read.
 pub fn open(spec: &Path) -> Result<SourceFile, Failure> {
+    open_with(spec, &|_| None)
+}
+
+/// Like [`open`]; `shipped` has the texts of cranes that are extended by name.
+///
+/// # Errors
+/// As those of [`open`].
+pub fn open_with(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) -> Result<SourceFile, Failure> {
+    Ok(gather(spec, shipped)?.0)
+}
+
+/// Specs that may extend each other in a row: more are a circle.
+const MOST_BASES: usize = 16;
+
+/// A spec with those that it extends, and the files of these.
+fn gather(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) -> Result<(SourceFile, Vec<PathBuf>), Failure> {
+    let folder = |file: &Path| file.parent().map(Path::to_owned).unwrap_or_default();
+    // The text may not depend on where the file is.
+    let named = spec.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut row = vec![(named, open_alone(spec)?)];
+    let (mut from, mut files) = (folder(spec), Vec::new());
+    while let Some((name, span)) = row.last().and_then(|(_, source)| base(source)) {
+        let refused = |problem: &str| {
+            let source = &row[row.len() - 1].1;
+            Failure::Mistakes(Diagnostics::new(source, vec![rule::no_base(span, &name, problem)]))
+        };
+        if row.len() > MOST_BASES {
+            return Err(refused("specs extend each other in a circle"));
+        }
+        let file = from.join(&name);
+        let source = if file.is_file() {
+            open_alone(&file).map_err(|failure| refused(&failure.to_string()))?
+        } else {
+            SourceFile::new(&name, shipped(&name).ok_or_else(|| refused("there is no such file"))?)
+        };
+        from = folder(&file);
+        files.push(file);
+        row.push((name, source));
+    }
+    let whole = row.into_iter().rev().reduce(|(base_named, base), (named, source)| {
+        let extended = source.extended(&base, &base_named, &named);
+        (named, extended)
+    });
+    whole
+        .map(|(_, source)| (source, files))
+        .ok_or_else(|| Failure::File(format!("{}: nothing to read", spec.display())))
+}
+
+/// Reads one file.
+fn open_alone(spec: &Path) -> Result<SourceFile, Failure> {
     let name = spec.display().to_string();
     let failed = |error: io::Error| Failure::File(format!("{name}: {error}"));
     let mut bytes = Vec::new();

@@ -72,6 +72,12 @@ catalogue! {
     /// A file has at most 131072 values; values that an alias repeats count each time.
     E007 too_many_values(most) "the file has more than {most} values", "the limit is exceeded here",
         "an alias (`*name`) repeats everything its anchor holds: write out only what differs, and give beams `sections` instead of `elements`";
+    /// `extends` names a spec that can be read: a file, relative to this one, or a shipped crane.
+    E008 no_base(base, problem) "`extends: {base}` cannot be read: {problem}", "the spec to start from",
+        "name a YAML file, relative to this one, or a shipped crane such as eight_link_flexible";
+    /// What an extending spec removes is there.
+    E009 nothing_to_remove(name) "there is no `{name}` to remove", "the spec that is extended does not have it",
+        "check its name in the spec that is extended, or leave this out";
 
     // Keys and shapes.
     /// Every key belongs to the language.

@@ -37,7 +37,7 @@ fn draw_one(renderer: &Renderer, source: &SourceFile, mistake: &Mistake, f: &mut
     let shown = harmless(&source.text[first..last]);
     let snippet = Snippet::source(shown.as_str())
         .line_start(number)
-        .path(&source.name)
+        .path(source.part(start).name)
         .annotation(AnnotationKind::Primary.span(start - first..end - first).label(&mistake.label));
     let level = if mistake.is_warning() { Level::WARNING } else { Level::ERROR };
     let report = level

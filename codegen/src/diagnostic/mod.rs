@@ -9,7 +9,7 @@ pub(crate) use catalogue::catalogue;
 pub use catalogue::{CATALOGUE, Rule};
 pub(crate) use catalogue::{printable, rule};
 pub(crate) use nearest::{list, suggest};
-pub use source::{MAX_BYTES, SourceFile, Span};
+pub use source::{MAX_BYTES, Part, SourceFile, Span};
 
 use std::fmt;
 
@@ -46,6 +46,10 @@ pub struct Diagnostics {
 impl Diagnostics {
     /// The mistakes found in a source file.
     pub(crate) fn new(source: &SourceFile, mut mistakes: Vec<Mistake>) -> Self {
+        // What is wrong with a file as a whole is said of it, not of those that it extends.
+        for mistake in mistakes.iter_mut().filter(|mistake| mistake.span == Span::START) {
+            mistake.span = source.start();
+        }
         mistakes.sort_by_key(|m| (m.span.start, m.code));
         Diagnostics { source: source.clone(), mistakes }
     }
@@ -73,7 +77,8 @@ impl Diagnostics {
     pub fn lines(&self) -> impl Iterator<Item = String> {
         self.mistakes.iter().map(|mistake| {
             let (line, column) = self.source.position(mistake.span.start);
-            format!("{}:{line}:{column}: {} [{}]", self.source.name, mistake.title, mistake.code)
+            let file = self.source.part(mistake.span.start).name;
+            format!("{file}:{line}:{column}: {} [{}]", mistake.title, mistake.code)
         })
     }
 

@@ -5,7 +5,12 @@ use super::{Diagnostics, rule};
 /// A spec above this size is refused before it is parsed, bytes: the largest sensible crane is a thousandth of it.
 pub const MAX_BYTES: usize = 4 << 20;
 
+/// What begins a part of a source file that was put together from several files; the name of the part follows.
+const PART: &str = "--- # part: ";
+
 /// A YAML file: its name, for messages, and its text.
+///
+/// A file that extends others holds all of them, see [`SourceFile::extended`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourceFile {
     /// Name shown in messages, usually the path as the user gave it.
@@ -41,6 +46,49 @@ impl SourceFile {
         }
     }
 
+    /// This file as an extension of `base`: both texts, each under a line with the name of its part. The name of this file in
+    /// the text is `named`, which may not depend on the machine.
+    #[must_use]
+    pub fn extended(&self, base: &SourceFile, base_named: &str, named: &str) -> Self {
+        let part = |name: &str, text: &str| format!("{PART}{name}\n{}\n", text.trim_end_matches(['\n', '\r']));
+        let before = if base.text.starts_with(PART) { base.text.clone() } else { part(base_named, &base.text) };
+        SourceFile::new(&self.name, before + &part(named, &self.text))
+    }
+
+    /// Its parts, each of which extends the one before; usually one, the whole.
+    #[must_use]
+    pub fn parts(&self) -> Vec<Part<'_>> {
+        if !self.text.starts_with(PART) {
+            return vec![Part { name: &self.name, start: 0, text: &self.text }];
+        }
+        let begins = self.text.match_indices(PART).map(|(at, _)| at);
+        let begins: Vec<usize> = begins.filter(|&at| at == 0 || self.text[..at].ends_with('\n')).collect();
+        let ends = begins.iter().skip(1).copied().chain([self.text.len()]);
+        let part = |(&begin, end): (&usize, usize)| {
+            let line = self.text[begin..end].find('\n').map_or(end, |length| begin + length);
+            let start = end.min(line + 1);
+            // The last one is this file, under the name that the user gave it.
+            let name = if end == self.text.len() { &self.name } else { self.text[begin + PART.len()..line].trim() };
+            Part { name, start, text: &self.text[start..end] }
+        };
+        begins.iter().zip(ends).map(part).collect()
+    }
+
+    /// The part that holds a byte.
+    pub(crate) fn part(&self, byte: usize) -> Part<'_> {
+        let mut parts = self.parts();
+        while parts.len() > 1 && parts.last().is_some_and(|part| part.start > byte) {
+            parts.pop();
+        }
+        parts.pop().unwrap_or(Part { name: &self.name, start: 0, text: &self.text })
+    }
+
+    /// Where the file itself begins, after those that it extends.
+    pub(crate) fn start(&self) -> Span {
+        let start = self.parts().last().map_or(0, |part| part.start);
+        Span { start, end: start }
+    }
+
     /// FNV-1a hash of the text, 64 bit, hexadecimal; the same whether lines end in LF or CR LF.
     #[must_use]
     pub fn hash(&self) -> String {
@@ -54,11 +102,12 @@ impl SourceFile {
         format!("{hash:016x}")
     }
 
-    /// Line and column of a byte, both from 1; the column counts characters.
+    /// Line and column of a byte in its part, both from 1; the column counts characters.
     #[must_use]
     pub fn position(&self, byte: usize) -> (usize, usize) {
         let line = self.line(byte);
-        let number = self.text[..line.start].matches('\n').count() + 1;
+        let part = self.part(byte).start.min(line.start);
+        let number = self.text[part..line.start].matches('\n').count() + 1;
         (number, self.text[line.start..self.boundary(byte)].chars().count() + 1)
     }
 
@@ -78,6 +127,17 @@ impl SourceFile {
         }
         at
     }
+}
+
+/// A part of a source file: the text of one of the files that it is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part<'a> {
+    /// Name shown in messages.
+    pub name: &'a str,
+    /// Its first byte in the text of the whole.
+    pub start: usize,
+    /// Its text.
+    pub text: &'a str,
 }
 
 /// A range of bytes of a source file.
@@ -105,6 +165,29 @@ mod tests {
             assert_eq!(SourceFile::new("x", text).hash(), hash);
         }
         assert_eq!(SourceFile::new("x", "a\r\nb\r\n").hash(), SourceFile::new("x", "a\nb\n").hash());
+    }
+
+    #[test]
+    fn parts_keep_their_names_and_lines() {
+        let whole = SourceFile::new("dir/mine.yaml", "a: 1\nb: 2\n").extended(
+            &SourceFile::new("dir/base.yaml", "c: 3\nd: 4"),
+            "base.yaml",
+            "mine.yaml",
+        );
+        let again = SourceFile::new("other.yaml", "e: 5").extended(&whole, "mine.yaml", "other.yaml");
+        let parts = again.parts();
+        assert_eq!(parts.iter().map(|part| part.name).collect::<Vec<_>>(), ["base.yaml", "mine.yaml", "other.yaml"]);
+        assert_eq!(parts.iter().map(|part| part.text).collect::<Vec<_>>(), ["c: 3\nd: 4\n", "a: 1\nb: 2\n", "e: 5\n"]);
+        for (word, name, position) in
+            [("d:", "base.yaml", (2, 1)), ("2", "mine.yaml", (2, 4)), ("5", "other.yaml", (1, 4))]
+        {
+            let at = again.text.find(word).expect("the word");
+            assert_eq!((again.part(at).name, again.position(at)), (name, position));
+        }
+        assert_eq!(again.start().start, again.text.find("e:").expect("the last part"));
+        // A usual file, also one that begins as a YAML document may.
+        let usual = SourceFile::new("x", "--- # a crane\na: 1");
+        assert_eq!((usual.parts().len(), usual.start(), usual.position(14)), (1, Span::START, (2, 1)));
     }
 
     #[test]

@@ -5,15 +5,17 @@
 
 mod access;
 mod deserializer;
+mod overlay;
 mod tree;
 
 use std::cell::RefCell;
 
 use serde::Deserialize;
 
-use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile, Span, rule};
+use crate::diagnostic::{Diagnostics, MAX_BYTES, Mistake, SourceFile, Span, rule};
 use crate::spec::{Crane, CraneSpec};
 use deserializer::Reader;
+use tree::Node;
 
 /// Reads a spec as far as possible. Mistakes of keys and forms do not stop it: they are stored with the spec, and
 /// [`validate`](crate::validate()) reports them together with its own.
@@ -26,10 +28,40 @@ pub fn read(source: &SourceFile) -> Result<CraneSpec, Diagnostics> {
         let nothing = SourceFile::new(&source.name, "");
         return Err(Diagnostics::new(&nothing, vec![rule::too_large(Span::START, source.text.len(), MAX_BYTES)]));
     }
-    let root = tree::parse(&source.text).map_err(|mistake| refuse(vec![mistake]))?;
-    let mistakes = RefCell::default();
+    let mut mistakes = Vec::new();
+    let root = parts(source, &mut mistakes).map_err(|mistake| refuse(vec![mistake]))?;
+    let mistakes = RefCell::new(mistakes);
     match Crane::deserialize(Reader::root(&root, &mistakes)) {
         Ok(crane) => Ok(CraneSpec { crane, mistakes: mistakes.into_inner() }),
         Err(_) => Err(refuse(mistakes.into_inner())),
     }
+}
+
+/// The tree of a source file, its parts laid over each other.
+fn parts(source: &SourceFile, mistakes: &mut Vec<Mistake>) -> Result<Node, Mistake> {
+    let mut whole: Option<Node> = None;
+    for part in source.parts() {
+        let shifted = |mut mistake: Mistake| {
+            mistake.span = Span { start: mistake.span.start + part.start, end: mistake.span.end + part.start };
+            mistake
+        };
+        let tree = tree::parse(part.text).map_err(shifted)?.shifted(part.start);
+        whole = Some(match whole {
+            Some(base) => overlay::merge(base, tree.without_base(), mistakes),
+            None => tree,
+        });
+    }
+    let whole = whole.ok_or_else(|| rule::empty(Span::START))?;
+    // Only whoever opened the file could have followed it.
+    if let Some((base, span)) = whole.base() {
+        mistakes.push(rule::no_base(span, base, "this spec is text, not a file, so there is no folder to look in"));
+    }
+    Ok(whole.without_base())
+}
+
+/// The spec that a source file extends and where it says so, if it does.
+#[must_use]
+pub(crate) fn base(source: &SourceFile) -> Option<(String, Span)> {
+    let tree = tree::parse(&source.text).ok()?;
+    tree.base().map(|(name, span)| (name.to_owned(), span))
 }

@@ -45,6 +45,10 @@ pub struct CraneSpec {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of keys to values")]
 pub struct Crane {
+    /// Another spec to start from: a file, relative to this one, or a shipped crane. This file then says only what differs: mappings
+    /// are merged key by key, lists of links, supports, drives and points entry by entry, by `name` or `coordinate`; everything
+    /// else is replaced. A key without a value removes what it names, and so does `remove: true` in an entry of a list.
+    pub extends: Option<Given<String>>,
     /// Version of the spec language: 1.
     pub format: Given<Constant>,
     /// Name of the crane, a `snake_case` identifier; names the generated module.
@@ -100,6 +104,21 @@ pub enum Analysis {
     Derivatives,
     /// Accelerations of eight cranes per call, for simulations of many with different parameters; includes `dynamics`.
     Ensemble,
+}
+
+impl Analysis {
+    /// The word for it in a spec.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Analysis::Statics => "statics",
+            Analysis::Dynamics => "dynamics",
+            Analysis::Modes => "modes",
+            Analysis::InternalForces => "internal_forces",
+            Analysis::Derivatives => "derivatives",
+            Analysis::Ensemble => "ensemble",
+        }
+    }
 }
 
 /// When repeated work is a loop in generated code.

@@ -1,6 +1,6 @@
 //! The JSON Schema of the spec language, from the types that read it.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::Crane;
 
@@ -12,6 +12,11 @@ use super::Crane;
 pub fn json_schema() -> String {
     let mut schema = schemars::schema_for!(Crane).to_value();
     forbid_null(&mut schema);
+    // A spec that extends another says only what differs.
+    if let Some(object) = schema.as_object_mut() {
+        let whole = object.remove("required").unwrap_or_default();
+        object.insert("anyOf".to_owned(), json!([{ "required": whole }, { "required": ["extends"] }]));
+    }
     format!("{schema:#}\n")
 }
 

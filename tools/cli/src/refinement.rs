@@ -1,10 +1,8 @@
 //! The same crane with other numbers of sections, and how much its frequencies change with twice as many.
 
 use crane_codegen::{
-    SourceFile,
-    diagnostic::Span,
-    read,
-    spec::{Analysis, Sections},
+    SourceFile, read,
+    spec::{Analysis, Given, Link, Sections},
 };
 use crane_live::LiveCrane;
 use crane_model::{dyn_crane::DynCrane, modes::undamped};
@@ -66,37 +64,29 @@ pub fn spec(crane: &str, text: &str, sections: usize) -> Option<String> {
     with(&name(crane, sections), text, |_| sections as f64)
 }
 
-/// A spec under another name with other numbers of sections, by exchanging values in its text; `None` for a crane without
-/// sections.
+/// The spec of a crane, extended under another name with other numbers of sections; `None` for a crane without sections.
 ///
-/// What a run of one crane does not need is left out: eight cranes a call take rustc as long as all the rest.
+/// What a run of one crane does not need is left out: eight cranes per call take rustc as long as all the rest.
 fn with(name: &str, text: &str, sections: impl Fn(f64) -> f64) -> Option<String> {
-    let spec = read(&SourceFile::new(name, text)).ok()?;
-    let spec = &spec.crane;
-    let beams = spec.links.value.iter().flatten().filter_map(|link| link.value.as_ref()?.beam.as_ref()?.value.as_ref());
-    let counts = beams.filter_map(|beam| beam.sections.as_ref());
-    let mut values: Vec<_> = counts
-        .filter_map(|given| match &given.value {
-            Some(Sections::Count(count)) => Some((given.span, sections(*count).to_string())),
-            _ => None,
-        })
+    let base = SourceFile::new(name, text);
+    let spec = read(&base).ok()?.crane;
+    let count = |given: &Given<Link>| {
+        let link = given.value.as_ref()?;
+        match link.beam.as_ref()?.value.as_ref()?.sections.as_ref()?.value? {
+            Sections::Count(count) => Some((link.name.value.as_ref()?.clone(), sections(count))),
+            Sections::Rigid => None,
+        }
+    };
+    let links: Vec<String> = (spec.links.value.iter().flatten().filter_map(count))
+        .map(|(link, sections)| format!("  - {{name: {link}, beam: {{sections: {sections}}}}}\n"))
         .collect();
-    if values.is_empty() {
+    if links.is_empty() {
         return None;
     }
-    values.push((spec.name.span, name.to_owned()));
-    let analyses = spec.analyses.as_ref().and_then(|given| given.value.as_deref()).unwrap_or_default();
-    if let Some(index) = analyses.iter().position(|analysis| analysis.value == Some(Analysis::Ensemble)) {
-        // With the comma that sets it apart from its neighbour.
-        let start = index.checked_sub(1).map_or(analyses[index].span.start, |before| analyses[before].span.end);
-        let end = if index > 0 { analyses[index].span.end } else { analyses.get(1)?.span.start };
-        values.push((Span { start, end }, String::new()));
-    }
-    // From the last on: places before it stay.
-    values.sort_unstable_by_key(|(span, _)| std::cmp::Reverse(span.start));
-    let mut text = text.to_owned();
-    for (span, value) in values {
-        text.replace_range(span.start..span.end, &value);
-    }
-    Some(text)
+    let asked = spec.analyses.as_ref().and_then(|given| given.value.as_deref()).unwrap_or_default();
+    let kept = asked.iter().filter_map(|analysis| analysis.value).filter(|analysis| *analysis != Analysis::Ensemble);
+    let kept: Vec<&str> = kept.map(Analysis::name).collect();
+    let analyses = if asked.is_empty() { String::new() } else { format!("analyses: [{}]\n", kept.join(", ")) };
+    let changes = SourceFile::new(name, format!("name: {name}\n{analyses}links:\n{}", links.concat()));
+    Some(changes.extended(&base, "crane.yaml", "sections.yaml").text)
 }

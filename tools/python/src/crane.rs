@@ -51,7 +51,8 @@ fn open(py: Python<'_>, named: &str) -> PyResult<SourceFile> {
             shipped().join(", ")
         )));
     }
-    build::open(&path).map_err(|failure| match failure {
+    let text = |name: &str| SPECS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text);
+    build::open_with(&path, &text).map_err(|failure| match failure {
         build::Failure::File(message) if !path.exists() => PyFileNotFoundError::new_err(message),
         build::Failure::File(message) => PyOSError::new_err(message),
         build::Failure::Mistakes(mistakes) => spec_error(py, &mistakes),

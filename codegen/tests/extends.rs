@@ -1,0 +1,129 @@
+//! Specs that extend others.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crane_codegen::chain::Chain;
+use crane_codegen::{Diagnostics, SourceFile, build, compile};
+
+fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs").join(name).with_extension("yaml")
+}
+
+/// A folder of this test with files in it.
+fn folder(name: &str, files: &[(&str, &str)]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::create_dir_all(&folder).expect("a folder");
+    for (name, text) in files {
+        fs::write(folder.join(name), text).expect("a file");
+    }
+    folder
+}
+
+/// A crane without what says where it comes from.
+fn anonymous(chain: Chain) -> Chain {
+    Chain { name: String::new(), title: String::new(), spec_hash: String::new(), ..chain }
+}
+
+fn opened(file: &Path) -> SourceFile {
+    build::open(file).unwrap_or_else(|failure| panic!("{failure}"))
+}
+
+fn mistakes(file: &Path) -> Diagnostics {
+    match build::open(file) {
+        Ok(source) => compile::load(&source).expect_err("mistakes"),
+        Err(build::Failure::Mistakes(mistakes)) => mistakes,
+        Err(failure) => panic!("{failure}"),
+    }
+}
+
+#[test]
+fn the_rigid_reference_crane_is_the_flexible_one_with_a_rigid_boom() {
+    let base = fs::read_to_string(shipped("eight_link_flexible")).expect("a spec");
+    let rigid = "
+extends: flexible.yaml
+name: eight_link_rigid
+analyses: [statics, dynamics, modes]
+links:
+  - name: boom
+    beam: {sections: rigid, section_joint: ~, damping: ~}
+";
+    let folder = folder("extends_rigid", &[("flexible.yaml", &base), ("rigid.yaml", rigid)]);
+    let source = opened(&folder.join("rigid.yaml"));
+    let extended = compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let written = compile::load(&opened(&shipped("eight_link_rigid"))).expect("a shipped crane");
+    assert_eq!(extended.name, "eight_link_rigid");
+    assert_eq!(anonymous(extended.clone()), anonymous(written));
+    // What was put together is a file of its own: wherever it is written, it is the same crane.
+    let whole = folder.join("whole.yaml");
+    fs::write(&whole, &source.text).expect("a file");
+    assert_eq!(compile::load(&opened(&whole)).expect("the same crane"), extended);
+}
+
+#[test]
+fn kinds_are_replaced_entries_are_merged_and_removed_and_added() {
+    let base = "
+format: 1
+name: base
+links:
+  - {name: arm, joint: {revolute: {axis: y}}, mass: 10, com: [1, 0, 0], inertia: {Ixx: 1, Iyy: 2, Izz: 2}}
+  - {name: hand, joint: {revolute: {axis: z}}, mass: 2, com: [0.1, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+drives:
+  - {coordinate: arm_theta, stiffness: 1e5, damping: 10, motion: {hold: 0}}
+damping: {hand_psi: 5}
+run: {duration: 3, output: 0.1}
+";
+    let middle = "
+extends: base.yaml
+links:
+  - {name: hand, joint: {prismatic: {axis: x}}, mass: 3}
+drives: [{coordinate: arm_theta, motion: {speed: {from: 0, rate: 0.1, ramp: 1}}}]
+damping: ~
+run: {duration: 4}
+";
+    let last = "
+extends: sub/middle.yaml
+name: mine
+links:
+  - {name: hand, remove: true}
+  - {name: tip, joint: {revolute: {axis: x}}, mass: 1, com: [0, 0.1, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+";
+    let whole = folder("extends_chain", &[("last.yaml", last)]);
+    folder("extends_chain/sub", &[("base.yaml", base), ("middle.yaml", middle)]);
+    let load = |file: &str| compile::load(&opened(&whole.join(file))).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let names = |chain: &Chain| chain.coordinates.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
+    let middle = load("sub/middle.yaml");
+    assert_eq!(names(&middle), ["arm_theta", "hand_x"]);
+    assert_eq!((middle.run.duration, middle.run.output), (4.0, 0.1));
+    assert_eq!((middle.drives.len(), middle.hinges.len()), (1, 0));
+    let last = load("last.yaml");
+    assert_eq!((last.name.as_str(), names(&last)), ("mine", vec!["arm_theta".to_owned(), "tip_phi".to_owned()]));
+}
+
+#[test]
+fn mistakes_name_the_file_and_the_line_that_they_are_in() {
+    let base = "format: 1\nname: base\nlinks:\n  - {name: arm, joint: revolute, mass: -1, com: [1, 0, 0]}\n";
+    let files =
+        [("base.yaml", base), ("mine.yaml", "extends: base.yaml\nname: mine\nlinks:\n  - {name: arm, masss: 2}\n")];
+    let folder = folder("extends_mistakes", &files);
+    let lines: Vec<String> = mistakes(&folder.join("mine.yaml")).lines().collect();
+    let mine = folder.join("mine.yaml");
+    assert!(lines.iter().any(|line| line.starts_with("base.yaml:4:") && line.ends_with("[E031]")), "{lines:#?}");
+    let unknown = format!("{}:4:17: unknown key `masss` [E010]", mine.display());
+    assert!(lines.contains(&unknown), "{unknown}\n{lines:#?}");
+}
+
+#[test]
+fn a_base_that_cannot_be_read_and_a_circle_are_mistakes() {
+    let files = [
+        ("lost.yaml", "name: mine\nextends: nowhere.yaml\n"),
+        ("one.yaml", "extends: other.yaml\n"),
+        ("other.yaml", "extends: one.yaml\n"),
+    ];
+    let folder = folder("extends_nothing", &files);
+    for (file, said) in [("lost.yaml", "lost.yaml:2:10: `extends: nowhere.yaml`"), ("one.yaml", "in a circle")] {
+        let found = mistakes(&folder.join(file));
+        assert_eq!(found.mistakes()[0].code, "E008");
+        assert!(found.headline().contains(said), "{}", found.headline());
+    }
+}
