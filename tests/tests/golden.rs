@@ -1,4 +1,4 @@
-//! Generated code that a person can read in a diff, compiled with warnings denied, and operation counts of all specs.
+//! Generated code as files that are readable in a diff, compiled with warnings denied, and operation counts of all specs.
 //!
 //! `cargo xtask bless` writes the files again; commit them with the reason.
 
@@ -44,7 +44,7 @@ fn generated_code_of_two_small_cranes() {
     assert_eq!(compiled::knuckle_boom::DESCRIPTION.name, "knuckle_boom");
 }
 
-/// The table of docs/OPERATIONS.md, as `crane-codegen operations` prints it.
+/// The table of docs/OPERATIONS.md, as `crane operations` prints it.
 #[test]
 fn operations_table_of_the_documentation() {
     let reports: Vec<_> = workspace::specs()
@@ -56,9 +56,9 @@ fn operations_table_of_the_documentation() {
         .collect();
     let text = format!(
         "# Operations of the generated functions\n\n\
-         Floating-point operations of one call, an angle's sine and cosine counted as one; all functions of all shipped \
-         cranes,\nalso those that a spec's `analyses` do not ask for. An empty cell: the scene does not need the \
-         function.\n\nMade by `cargo run --release -- operations specs/*.yaml`.\n\n{}",
+         Floating-point operations of one call, where sine and cosine of an angle count as one; all functions of all \
+         shipped cranes,\nincluding those that a spec's `analyses` do not request. A cell is empty if the crane does not \
+         need the function.\n\n`cargo run --release -- operations specs/*.yaml` prints the table.\n\n{}",
         explain::operations_table(&reports)
     );
     assert_golden(&workspace::root().join("docs/OPERATIONS.md"), &text);

@@ -20,11 +20,11 @@ fn base(angle: f64, exact: bool) -> Case {
     let near = (FRAC_PI_2 - angle).abs() < NEAR_SINGULAR;
     let kinematics = if exact { "exact" } else { "linear" };
     let expected = if near {
-        "said that block_theta is near ±90°".to_owned()
+        "a caution that block_theta is near ±90°".to_owned()
     } else if exact || angle < LARGE_TILT {
         "a pose, none of it NaN, nothing said of ±90°".to_owned()
     } else {
-        "said that linear supports do not hold so far".to_owned()
+        "a caution about linear supports".to_owned()
     };
     let name = format!("block on {kinematics} supports, base at θ = {angle:.6} rad");
     Case::new("angles near ±90°", name, expected, move || {
@@ -95,7 +95,7 @@ run: {{duration: 1}}
 
 /// A free block that tumbles through θ = 90° and on.
 fn passing() -> Case {
-    let expected = "goes through with energy kept to 0.1 %, or ends and says that block_theta is near ±90°";
+    let expected = "passes with energy constant to 0.1 %, or stops and reports that block_theta is near ±90°";
     Case::new("angles near ±90°", "free block, turning through θ = 90°", expected, move || {
         let text = "format: 1
 name: block

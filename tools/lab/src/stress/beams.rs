@@ -35,7 +35,7 @@ fn deflection(spec: Spec, sections: usize) -> Case {
     let load = 20.0 * GRAVITY * LENGTH.powi(3) / (3.0 * RIGIDITY) * (1.0 - 1.0 / (4.0 * square));
     let own = 7850.0 * 0.06 * 0.04 * GRAVITY * LENGTH.powi(4) / (8.0 * RIGIDITY) * (1.0 - 1.0 / (2.0 * square));
     let sunk = load + own;
-    let expected = format!("stable; tip sinks by {:.4} mm, Euler and Bernoulli's beam cut into sections", sunk * 1e3);
+    let expected = format!("stable; tip sinks by {:.4} mm, the Euler–Bernoulli beam divided into sections", sunk * 1e3);
     Case::new("number of sections", format!("cantilever of {sections}, statics"), expected, move || {
         let subject = Subject::new(&spec)?;
         let rest = subject.rest()?;
@@ -93,7 +93,7 @@ fn critical(sections: usize) -> f64 {
 fn buckling(sections: usize, part: f64) -> Case {
     let load = part * critical(sections);
     let stands = part < 1.0;
-    let expected = if stands { "stable, straight" } else { "unstable, falls away in the weak direction" };
+    let expected = if stands { "stable, straight" } else { "unstable in the weak direction" };
     let name = format!("column of {sections} under {part} of its buckling load {:.2} N", critical(sections));
     Case::new("buckling", name, expected, move || {
         let subject = Subject::new(&column(sections, load, 0.0))?;
@@ -121,8 +121,8 @@ fn buckled(sections: usize) -> Case {
         low
     });
     let expected =
-        angle.map_or_else(|| "stable, bent aside".to_owned(), |angle| format!("stable, bent aside by {angle:.4} rad"));
-    let name = format!("column of {sections} under 1.2 of its buckling load, guessed leaning");
+        angle.map_or_else(|| "stable, buckled".to_owned(), |angle| format!("stable, buckled by {angle:.4} rad"));
+    let name = format!("column of {sections} under 1.2 of its buckling load, from an inclined guess");
     Case::new("buckling", name, expected, move || {
         let subject = Subject::new(&column(sections, load, 0.8 / sections as f64))?;
         let rest = subject.rest()?;

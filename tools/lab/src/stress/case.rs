@@ -75,7 +75,7 @@ impl Case {
             Ok(_) => match receive.recv_timeout(LONGEST) {
                 Ok(Ok(finding)) => finding,
                 Ok(Err(panic)) => Err(format!("panicked: {}", words(panic.as_ref()))),
-                Err(_) => Err(format!("came to no end within {} s", LONGEST.as_secs())),
+                Err(_) => Err(format!("did not end within {} s", LONGEST.as_secs())),
             },
         };
         let passed = finding.is_ok();

@@ -96,7 +96,7 @@ pub fn stress(options: &Stress, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
         return Ok(());
     }
     let worst: Vec<&str> = verdicts.iter().filter(|verdict| !verdict.passed).map(|v| v.name.as_str()).collect();
-    Err(Problem::failed(format!("{failed} of {} cases did not go as expected", verdicts.len()), worst.join("; ")))
+    Err(Problem::failed(format!("{failed} of {} cases differ from what is expected", verdicts.len()), worst.join("; ")))
 }
 
 /// All verdicts in the order of the cases, by as many threads as the machine has.

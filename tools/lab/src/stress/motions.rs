@@ -42,7 +42,7 @@ fn step(method: Method, accuracy: f64, duration: f64) -> Case {
     // Steps of 1e-4 s see nothing of it.
     let missed = duration < 1e-6;
     let expected = if missed {
-        format!("x = {exact:.6} m at 0.5 s, the closed form of a step, or said that it was missed")
+        format!("x = {exact:.6} m at 0.5 s, the closed form of a step, or a caution that it was missed")
     } else if sharp {
         format!("x = {exact:.6} m at 0.5 s, the closed form of a step")
     } else {
@@ -76,7 +76,7 @@ drives:
 
 /// A beam so soft that it falls through θ = 90°, in constant steps.
 fn sagging() -> Case {
-    let expected = "said that the beam passed ±90°, or energy balanced to 1e-3";
+    let expected = "a caution that the beam passed ±90°, or energy balanced to 1e-3";
     Case::new("angles near ±90°", "soft beam falling through 90°, rk4 with 5e-4 s", expected, move || {
         let recorded = Subject::new(&soft_beam(2.1e8))?.run(&timing(Method::Rk4, 5e-4, 20.0))?;
         let (said, off) = (cautions(&recorded), imbalance(&recorded));
@@ -123,7 +123,7 @@ fn tumble(spec: Spec, method: Method) -> Case {
         Method::Rosenbrock => (1e-8, 1e-3),
         Method::Bdf => (1e-9, 1e-3),
     };
-    let expected = format!("600 s to the end, energy kept to {kept:e} of what swings");
+    let expected = format!("600 s to the end, energy constant to {kept:e} of the oscillating energy");
     let name = format!("double_pendulum by {method}, {accuracy:e}");
     Case::new("600 s without drift", name, expected, move || {
         let recorded = Subject::new(&spec)?.run(&timing(method, accuracy, 600.0))?;
@@ -138,7 +138,7 @@ fn vibration(method: Method) -> Case {
         Method::DormandPrince | Method::Bdf => (1e-8, 1e-4),
         Method::Rosenbrock => (1e-7, 1e-5),
     };
-    let expected = format!("600 s to the end, energy kept to {kept:e} of what swings");
+    let expected = format!("600 s to the end, energy constant to {kept:e} of the oscillating energy");
     let case = Case::new("600 s without drift", format!("soft beam by {method}, {accuracy:e}"), expected, move || {
         let recorded = Subject::new(&soft_beam(2.1e9))?.run(&timing(method, accuracy, 600.0))?;
         balanced(&recorded, kept)

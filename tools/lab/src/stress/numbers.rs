@@ -60,7 +60,7 @@ const OPTIONS: [(&str, Set); 4] = [
 
 /// An option of a run that means nothing: refused at once, or harmless.
 fn option(spec: Spec, name: &'static str, set: Set, value: f64) -> Case {
-    let expected = "refused by its name or its matter, or a run of sound numbers; in no case endless";
+    let expected = "refused with its name or the reason, or a run with finite results; never endless";
     Case::new("limits of numbers", format!("knuckle_boom with --{name} {value:e}"), expected, move || {
         let mut timing = timing(Method::RECOMMENDED, 1e-4, 0.1);
         set(&mut timing, value);
@@ -84,7 +84,7 @@ run: {{duration: 0.1}}
 }
 
 fn refused(number: &'static str, code: &'static str) -> Case {
-    let expected = format!("refused by rule {code}, the number shown");
+    let expected = format!("refused by rule {code}, which shows the number");
     Case::new("limits of numbers", format!("spec with a mass of {number}"), expected, move || {
         match Subject::new(&rod(number, "-1")) {
             Ok(_) => Err("accepted".to_owned()),
@@ -95,7 +95,7 @@ fn refused(number: &'static str, code: &'static str) -> Case {
 
 /// A centre of mass as far away as the language allows.
 fn accepted(number: &'static str) -> Case {
-    let expected = "a stable pose or a clear word, a run or a clear word; nothing that is not finite";
+    let expected = "a stable pose and a run, or a clear message; all numbers finite";
     Case::new("limits of numbers", format!("spec with a centre of mass at {number} m"), expected, move || {
         let subject = Subject::new(&rod("1", number))?;
         let equilibrium = subject.equilibrium();
@@ -117,7 +117,7 @@ fn heavy(mass: f64) -> Case {
 
 /// A payload as `--set` takes it.
 fn parameter(spec: Spec, load: f64) -> Case {
-    let expected = "a stable pose or a clear word, a run or a clear word; nothing that is not finite";
+    let expected = "a stable pose and a run, or a clear message; all numbers finite";
     Case::new("limits of numbers", format!("knuckle_boom with payload={load:e}"), expected, move || {
         let subject = match Subject::new(&spec)?.set("payload", load) {
             Ok(subject) => subject,

@@ -145,7 +145,7 @@ fn floating(spec: Spec) -> Case {
 
 /// Without stiffness in the boom's drive everything beyond its pin hangs below it.
 fn fallen(spec: Spec) -> Case {
-    let expected = "stable: everything beyond the boom's pin hangs straight below it, its drive carries nothing";
+    let expected = "stable: everything beyond the boom's pin hangs vertically below it, and its drive carries nothing";
     Case::new("nothing holds it", "eight_link_flexible, boom drive of zero stiffness", expected, move || -> Finding {
         let subject = Subject::new(&spec)?;
         let rest = subject.rest()?;

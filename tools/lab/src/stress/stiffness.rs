@@ -73,7 +73,7 @@ fn run(group: &'static str, spec: Spec, factor: f64) -> Case {
 fn drives(spec: Spec, factor: f64) -> Case {
     let stiff = factor >= 1.0;
     let expected = if stiff {
-        format!("stable; boom drive carries {:.1} kN m ± 2 %, the level boom's moment", LEVEL_MOMENT / 1e3)
+        format!("stable; boom drive carries {:.1} kN m ± 2 %, the moment of the horizontal boom", LEVEL_MOMENT / 1e3)
     } else {
         format!("stable; boom sinks and its drive carries up to {:.1} kN m", LEVEL_MOMENT / 1e3)
     };
@@ -108,7 +108,7 @@ fn single_element(spec: Spec, factor: f64) -> Case {
     }
     let (angle, sunk) = (low, LENGTH / 2.0 * low.sin());
     // A symmetric section joint is regular there.
-    let expected = format!("stable; tip sinks by {sunk:.6} m, spring turned by {angle:.6} rad; nothing said of ±90°");
+    let expected = format!("stable; tip sinks by {sunk:.6} m, spring rotated by {angle:.6} rad; no caution about ±90°");
     Case::new("stiffness of elements", format!("cantilever of 1 section × {factor:e}, statics"), expected, move || {
         let subject = Subject::new(&spec.scaled("materials", "E:", factor).scaled("materials", "G:", factor))?;
         let rest = subject.rest()?;
@@ -128,9 +128,9 @@ fn supports(spec: Spec, factor: f64) -> Case {
     let small = tilt < SMALL;
     let sunk = WEIGHT / (factor * GROUND);
     let expected = if small {
-        format!("stable; supports pressed by {sunk:.4e} m on average, weight over stiffness")
+        format!("stable; supports compressed by {sunk:.4e} m on average, weight over stiffness")
     } else {
-        format!("base turns by some {tilt:.2} rad: too much for linear supports, said")
+        format!("a caution that the base rotates too far for linear supports, by about {tilt:.2} rad")
     };
     Case::new("stiffness of supports", format!("eight_link_flexible × {factor:e}, statics"), expected, move || {
         let subject = Subject::new(&spec.scaled("supports", "stiffness:", factor))?;
@@ -152,7 +152,7 @@ fn supports(spec: Spec, factor: f64) -> Case {
 fn damping(spec: Spec, beta: f64) -> Case {
     // Gravity's stiffness is not damped.
     let spec = spec.with("beta: 1e-4", &format!("beta: {beta:e}")).with("[0, 0, -9.81]", "[0, 0, 0]");
-    let expected = "every mode below critical has ζ = β ω/2 to 1e-6, all others creep";
+    let expected = "every underdamped mode has ζ = β ω/2 to 1e-6, all others decay without oscillating";
     Case::new("damping of elements", format!("cantilever β = {beta:e}, modes"), expected, move || {
         let subject = Subject::new(&spec)?;
         let motions = subject.rig.small_motions_at(&subject.rest()?.q);
@@ -165,7 +165,7 @@ fn damping(spec: Spec, beta: f64) -> Case {
             ((mode.eigenvalue.norm() / omega - 1.0).abs()).max((mode.damping_ratio() - beta * omega / 2.0).abs())
         });
         let off = off.fold(0.0, f64::max);
-        let happened = format!("{} of {} modes swing, off by {off:.1e}", swinging.len(), free.len());
+        let happened = format!("{} of {} modes oscillate, error {off:.1e}", swinging.len(), free.len());
         expect(below.len() == swinging.len() && off < 1e-6, happened)
     })
 }
