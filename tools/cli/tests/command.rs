@@ -61,7 +61,7 @@ fn wrong_arguments_are_refused_with_the_nearest_right_one() {
     refused(&["simulate", "--duration", "-1"], &["`--duration -1`", "positive"]);
     refused(&["simulate", "--output", "nan"], &["`--output NaN`", "positive"]);
     refused(&["simulate", "--output", "1e-9"], &["more than a million"]);
-    refused(&["simulate", "--step", "1e-300"], &["more than ten billion", "longer step"]);
+    refused(&["simulate", "--step", "1e-300"], &["more than ten billion", "longer `--step`"]);
     refused(&["eval", "--q", "1,2"], &["`--q` has 2 numbers", "25 coordinates", "truck_x [m]"]);
     refused(&["eval", "--q", "no_such_file"], &["neither a list of numbers nor a file"]);
     refused(&["simulate", "--method", "rk5"], &["there is no method `rk5`", "rk4, dopri5, rosw4, bdf"]);
@@ -360,7 +360,7 @@ fn many_states_are_evaluated_at_once() {
     }
     refused(
         &["eval", "knuckle_boom", "--q", &format!("{first},{second}"), "--v", &[first; 3].join(",")],
-        &["`--q` has 2 states and `--v` 3"],
+        &["`--q` has 2 states, but `--v` has 3"],
     );
 }
 
