@@ -10,7 +10,7 @@ mod mjcf;
 mod rotation;
 mod springs;
 mod urdf;
-mod xml;
+pub mod xml;
 
 pub use import::{CATALOGUE, import};
 pub use mjcf::{Inexpressible, mjcf};

@@ -3,50 +3,52 @@
 use std::fmt::Write;
 
 /// A document under construction.
-pub(super) struct Xml {
+pub struct Xml {
     text: String,
     open: Vec<&'static str>,
 }
 
 /// Attributes of an element, in order.
-pub(super) type Attributes<'a> = &'a [(&'a str, String)];
+pub type Attributes<'a> = &'a [(&'a str, String)];
 
 impl Xml {
     /// A document with a comment before its root.
-    pub(super) fn new(comment: &str) -> Self {
+    #[must_use]
+    pub fn new(comment: &str) -> Self {
         let mut xml = Xml { text: "<?xml version=\"1.0\"?>\n".to_owned(), open: Vec::new() };
         xml.comment(comment);
         xml
     }
 
     /// A comment; two hyphens would end it.
-    pub(super) fn comment(&mut self, text: &str) {
+    pub fn comment(&mut self, text: &str) {
         let text = text.replace("--", "\u{2013}");
         self.line(&format!("<!-- {text} -->"));
     }
 
     /// Begins an element.
-    pub(super) fn open(&mut self, name: &'static str, attributes: Attributes) {
+    pub fn open(&mut self, name: &'static str, attributes: Attributes) {
         let tag = tag(name, attributes);
         self.line(&format!("<{tag}>"));
         self.open.push(name);
     }
 
     /// Ends the innermost open element.
-    pub(super) fn close(&mut self) {
+    pub fn close(&mut self) {
         if let Some(name) = self.open.pop() {
             self.line(&format!("</{name}>"));
         }
     }
 
     /// An element without content.
-    pub(super) fn leaf(&mut self, name: &str, attributes: Attributes) {
+    pub fn leaf(&mut self, name: &str, attributes: Attributes) {
         let tag = tag(name, attributes);
         self.line(&format!("<{tag}/>"));
     }
 
     /// The text, with all elements ended.
-    pub(super) fn finish(mut self) -> String {
+    #[must_use]
+    pub fn finish(mut self) -> String {
         while !self.open.is_empty() {
             self.close();
         }
@@ -69,13 +71,15 @@ fn escaped(text: &str) -> String {
 }
 
 /// Numbers separated by blanks, each the shortest text that reads back as the same number.
-pub(super) fn numbers(numbers: &[f64]) -> String {
+#[must_use]
+pub fn numbers(numbers: &[f64]) -> String {
     let words: Vec<String> = numbers.iter().map(|number| number_text(*number)).collect();
     words.join(" ")
 }
 
 /// A number: integers without a fraction, no negative zero.
-pub(super) fn number_text(number: f64) -> String {
+#[must_use]
+pub fn number_text(number: f64) -> String {
     let text = format!("{:?}", number + 0.0);
     text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)
 }

@@ -7,6 +7,8 @@ pub mod bdf;
 #[cfg(feature = "std")]
 mod constant;
 #[cfg(feature = "std")]
+mod course;
+#[cfg(feature = "std")]
 pub mod dormand_prince;
 #[cfg(feature = "std")]
 pub mod ensemble;
@@ -49,6 +51,8 @@ mod typed;
 
 #[cfg(feature = "std")]
 pub use constant::Rk4;
+#[cfg(feature = "std")]
+pub use course::Course;
 #[cfg(feature = "std")]
 pub use method::{Method, UnknownMethod};
 #[cfg(feature = "std")]

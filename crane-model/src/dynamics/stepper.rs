@@ -33,6 +33,32 @@ pub trait Stepper {
     }
 }
 
+impl<S: Stepper + ?Sized> Stepper for &mut S {
+    fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
+        (**self).start(t, motion)
+    }
+
+    fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
+        (**self).step(ahead)
+    }
+
+    fn motion(&self) -> &[f64] {
+        (**self).motion()
+    }
+
+    fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
+        (**self).interpolate(t, motion);
+    }
+
+    fn statistics(&self) -> Statistics {
+        (**self).statistics()
+    }
+
+    fn efforts(&self) -> Vec<EffortAccuracy> {
+        (**self).efforts()
+    }
+}
+
 /// Times ahead of a step, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ahead {

@@ -10,16 +10,19 @@ impl Stops {
     /// Times closer than this, relative to the run, are merged: no step is that short.
     const NEAR: f64 = 1e-9;
 
-    /// Begins and ends of the smooth intervals of the motions of some cranes, within a run from one time to another, s.
+    /// Begins and ends of the smooth intervals of the motions of some cranes, within a run from one time to another, s; without an
+    /// end, the run is as long as the motions.
     pub fn between<'a>(cranes: impl IntoIterator<Item = &'a dyn DynModel>, begin: f64, end: f64) -> Self {
-        let near = Self::NEAR * (end - begin);
         let mut times = Vec::new();
         for crane in cranes {
             let count = crane.description().drives.iter().map(|drive| drive.pieces).sum();
             let mut pieces = vec![[f64::NAN; 2]; count];
             crane.drive_pieces(&mut pieces);
-            times.extend(pieces.into_iter().flatten().filter(|time| *time > begin + near && *time < end - near));
+            times.extend(pieces.into_iter().flatten());
         }
+        let last = times.iter().copied().fold(begin, f64::max);
+        let near = Self::NEAR * (if end.is_finite() { end } else { last } - begin);
+        times.retain(|time| *time > begin + near && *time < end - near);
         times.sort_by(f64::total_cmp);
         times.dedup_by(|later, earlier| *later - *earlier < near);
         Self(times)

@@ -11,6 +11,6 @@ pub mod verification;
 pub use extremes::Extremes;
 pub use headlines::{Kind, headlines};
 pub use peaks::Peaks;
-pub use recording::{Recording, drive_effort, stop_effort};
+pub use recording::{Recording, drive_effort, quantities, quantities_at, stop_effort};
 pub use table::{Column, Table};
 pub use verification::Verification;

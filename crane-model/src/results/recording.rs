@@ -1,6 +1,11 @@
 //! Everything of a run that is worth a column.
 
-use crate::{CoordinateKind, Description, dyn_crane::DynCrane, dynamics::Sample, results::Table};
+use crate::{
+    CoordinateKind, Description,
+    dyn_crane::{DynCrane, Energies},
+    dynamics::Sample,
+    results::{Column, Table},
+};
 
 /// Records the samples of a run of a crane.
 ///
@@ -19,7 +24,7 @@ impl<'a> Recording<'a> {
     pub fn new(crane: &'a dyn DynCrane) -> Self {
         Self {
             crane,
-            table: Table { columns: columns(crane.description()).columns, rows: Vec::new() },
+            table: Table { columns: [quantities(crane.description()), audited()].concat(), rows: Vec::new() },
             energy_at_start: 0.0,
         }
     }
@@ -27,32 +32,12 @@ impl<'a> Recording<'a> {
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
         let &Sample { t, q, v, work, dissipated } = sample;
-        let crane = self.crane;
-        let energies = crane.energies_at(t, q, v);
-        if self.table.rows.is_empty() {
-            self.energy_at_start = energies.total();
-        }
         let mut row = Vec::with_capacity(self.table.columns.len());
-        row.push(t);
-        row.extend_from_slice(q);
-        row.extend_from_slice(v);
-        for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(crane.drive_efforts_at(t, q, v)) {
-            row.extend([position, effort]);
+        let energy = push_quantities(self.crane, t, q, v, &mut row).total();
+        if self.table.rows.is_empty() {
+            self.energy_at_start = energy;
         }
-        for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {
-            row.extend(position.iter().chain(&velocity));
-        }
-        for reaction in crane.support_reactions_at(q, v) {
-            row.extend(&reaction);
-        }
-        row.extend(crane.element_moments_at(q, v));
-        row.extend(crane.stop_efforts_at(q, v));
-        row.extend(crane.friction_efforts_at(v));
-        row.extend([energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives]);
-        if !crane.description().stops.is_empty() {
-            row.push(energies.stops);
-        }
-        row.extend([work, dissipated, energies.total() - self.energy_at_start - work + dissipated]);
+        row.extend([work, dissipated, energy - self.energy_at_start - work + dissipated]);
         self.table.rows.push(row);
     }
 
@@ -62,7 +47,40 @@ impl<'a> Recording<'a> {
     }
 }
 
-fn columns(description: &Description) -> Table {
+/// What follows from a state: all columns of a [`Recording`] but those of its audit, in the order of [`quantities`].
+pub fn quantities_at(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
+    let mut row = Vec::new();
+    push_quantities(crane, t, q, v, &mut row);
+    row
+}
+
+/// Adds what follows from a state to a row; its energies.
+fn push_quantities(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], row: &mut Vec<f64>) -> Energies {
+    let energies = crane.energies_at(t, q, v);
+    row.push(t);
+    row.extend_from_slice(q);
+    row.extend_from_slice(v);
+    for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(crane.drive_efforts_at(t, q, v)) {
+        row.extend([position, effort]);
+    }
+    for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {
+        row.extend(position.iter().chain(&velocity));
+    }
+    for reaction in crane.support_reactions_at(q, v) {
+        row.extend(&reaction);
+    }
+    row.extend(crane.element_moments_at(q, v));
+    row.extend(crane.stop_efforts_at(q, v));
+    row.extend(crane.friction_efforts_at(v));
+    row.extend([energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives]);
+    if !crane.description().stops.is_empty() {
+        row.push(energies.stops);
+    }
+    energies
+}
+
+/// Names and units of what follows from a state.
+pub fn quantities(description: &Description) -> Vec<Column> {
     let mut table = Table::default();
     table.add("t", "s");
     for coordinate in &description.coordinates {
@@ -104,10 +122,14 @@ fn columns(description: &Description) -> Table {
     if !description.stops.is_empty() {
         table.add("stop_energy", "J");
     }
-    for energy in ["drive_work", "dissipated_energy", "energy_balance"] {
-        table.add(energy, "J");
-    }
-    table
+    table.columns
+}
+
+/// Names and units of what only a run knows.
+fn audited() -> Vec<Column> {
+    ["drive_work", "dissipated_energy", "energy_balance"]
+        .map(|energy| Column { name: energy.to_owned(), unit: "J".to_owned() })
+        .to_vec()
 }
 
 /// Name of the column with the torque or force of a drive.

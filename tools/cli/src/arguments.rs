@@ -414,6 +414,8 @@ pub enum Language {
     Urdf,
     /// With stiffness, damping and spring references of joints; linear supports are tendons.
     Mjcf,
+    /// A functional mock-up unit, FMI 2.0, for co-simulation and model exchange: the whole crane, ready to run elsewhere.
+    Fmu,
 }
 
 /// A crane for other programs.
@@ -424,9 +426,13 @@ pub struct Export {
     /// Language to write
     #[arg(long, value_enum)]
     pub format: Language,
-    /// File to write [default: the crane's name with .urdf or .xml]
+    /// File to write [default: the crane's name with .urdf, .xml or .fmu]
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
+    /// Shared library to put into an FMU, .so, .dll or .dylib; given several times the FMU runs on several systems
+    /// [default: the one beside the command]
+    #[arg(long = "library", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub libraries: Vec<PathBuf>,
 }
 
 /// A spec from another program's file.

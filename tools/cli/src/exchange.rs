@@ -9,21 +9,25 @@ use crane_codegen::{
 
 use crate::{
     arguments::{Export, Import, Language},
-    files, own,
+    files, fmu, own,
     problem::{Outcome, Problem},
     selection::Fleet,
 };
 
-/// Writes a crane as URDF, with its springs beside it, or as MJCF.
+/// Writes a crane as URDF, with its springs beside it, as MJCF, or as a functional mock-up unit.
 pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let (chain, _) = own::load_named(&options.crane.name, options.crane.strict, fleet)?;
+    let (chain, spec) = own::load_named(&options.crane.name, options.crane.strict, fleet)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
     for (index, value) in options.crane.parameters.read(&chain.name, &known)? {
         parameters[index] = value;
     }
     keep_rules(&chain, &parameters)?;
-    let suffix = if options.format == Language::Urdf { "urdf" } else { "xml" };
+    let suffix = match options.format {
+        Language::Urdf => "urdf",
+        Language::Mjcf => "xml",
+        Language::Fmu => "fmu",
+    };
     let file = options.file.clone().unwrap_or_else(|| PathBuf::from(format!("{}.{suffix}", chain.name)));
     let texts = match options.format {
         Language::Urdf => vec![
@@ -34,6 +38,7 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
             let text = exchange::mjcf(&chain, &parameters);
             vec![(file, text.map_err(|failure| Problem::failed(failure.title, failure.help))?)]
         }
+        Language::Fmu => return fmu::write(options, &file, chain, &spec, &parameters, out),
     };
     for (file, text) in &texts {
         files::write_text(file, text)?;

@@ -19,6 +19,7 @@ mod exchange;
 mod extremes;
 mod figures;
 pub mod files;
+mod fmu;
 mod generate;
 mod help;
 mod info;

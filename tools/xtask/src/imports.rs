@@ -19,7 +19,7 @@ const MAY_IMPORT: [(&str, &[&str]); 12] = [
 ];
 
 /// Words that a folder may not contain, and why.
-const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 7] = [
+const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 8] = [
     ("crane-model/src", "rs", &["crane_codegen"], "the runtime does not depend on the compiler"),
     (
         "tests/golden",
@@ -41,6 +41,12 @@ const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 7] = [
         "rs",
         &["unsafe ", "crane_cli", "crane_codegen::emit", "crane_codegen::mechanics", "std::fs", "std::process"],
         "the package computes with live cranes, and leaves what they are made of, files and processes to others",
+    ),
+    (
+        "tools/fmu/src",
+        "rs",
+        &["crane_cli", "crane_codegen::emit", "crane_codegen::mechanics", "std::process", "std::thread", "std::env"],
+        "a unit computes with live cranes inside of another program, and leaves that program alone",
     ),
 ];
 

@@ -4,6 +4,7 @@
 
 mod book;
 mod equations;
+mod fmu;
 mod fused;
 mod imports;
 mod manual;
@@ -158,6 +159,7 @@ fn tests() -> Vec<Step> {
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
         Step::check("the Python package", package::check),
+        Step::check("functional mock-up units", fmu::check),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.
         Step::cargo(
             "a crane without std and heap",

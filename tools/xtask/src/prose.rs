@@ -23,7 +23,7 @@ const STUMBLES: [(&str, &str); 15] = [
 /// Where `is no` is plain English.
 const PLAIN: [&str; 5] = ["here is no ", "here are no ", " is no longer ", " are no longer ", " is no more "];
 /// Folders and files, by extension, of texts that people write.
-const TEXTS: [(&str, &str); 22] = [
+const TEXTS: [(&str, &str); 24] = [
     ("codegen", "rs"),
     ("crane-model", "rs"),
     ("docs", "md"),
@@ -36,6 +36,8 @@ const TEXTS: [(&str, &str); 22] = [
     ("tools/casadi", "py"),
     ("tools/cli", "rs"),
     ("tools/cli", "template"),
+    ("tools/fmu", "py"),
+    ("tools/fmu", "rs"),
     ("tools/lab", "md"),
     ("tools/lab", "rs"),
     ("tools/live", "rs"),

@@ -19,6 +19,7 @@ pub const CHECKS: Environment = Environment {
         "tools/casadi/requirements.txt",
         "tools/peers/requirements.txt",
         "tools/python/requirements-test.txt",
+        "tools/fmu/requirements-test.txt",
     ],
 };
 

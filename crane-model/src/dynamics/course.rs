@@ -1,0 +1,138 @@
+//! A motion that is followed from result to result.
+
+use std::ops::ControlFlow;
+
+use nalgebra::DMatrix;
+
+use super::{
+    Ahead, Cause, InitialState, Method, Run, Sample, Settings, Stepper, Stopped,
+    bdf::Bdf,
+    constant::Rk4,
+    dormand_prince::DormandPrince,
+    rosenbrock::Rosenbrock,
+    stopped::{Place, without_inertia},
+    stops::Stops,
+};
+use crate::dyn_crane::{DynDynamics, DynImplicit, DynModel};
+
+/// A motion on its way. It stops wherever a result is wanted and goes on from there with the steps and the history that it has, so
+/// that the times of results cost nothing.
+pub struct Course<'a> {
+    crane: &'a dyn DynDynamics,
+    stepper: Box<dyn Stepper + 'a>,
+    settings: Settings,
+    stops: Stops,
+    /// Where it begins and ends, s.
+    begin: f64,
+    end: f64,
+    /// How far steps have come, s: as far as `time` or further.
+    reached: f64,
+    /// Time and motion of the last result.
+    time: f64,
+    motion: Vec<f64>,
+}
+
+impl<'a> Course<'a> {
+    /// From a state at a time, s, by the method of the settings. Of these the duration may be infinite; the interval of results means
+    /// nothing here.
+    ///
+    /// # Errors
+    /// [`Stopped`] where the mass matrix is not positive definite or accelerations are not finite.
+    ///
+    /// # Panics
+    /// Where the start has not as many numbers as the crane has coordinates.
+    pub fn new(
+        crane: &'a dyn DynImplicit,
+        begin: f64,
+        start: &InitialState,
+        settings: &Settings,
+    ) -> Result<Self, Stopped> {
+        let stepper: Box<dyn Stepper + 'a> = match settings.method {
+            Method::Rk4 => Box::new(Rk4::new(crane, settings)),
+            Method::DormandPrince => Box::new(DormandPrince::new(crane, settings)),
+            Method::Rosenbrock => Box::new(Rosenbrock::new(crane, settings)),
+            Method::Bdf => Box::new(Bdf::new(crane, settings)),
+        };
+        Self::by(stepper, crane, begin, start, settings)
+    }
+
+    /// The same by a stepper made for this crane and these settings.
+    pub(super) fn by(
+        mut stepper: Box<dyn Stepper + 'a>,
+        crane: &'a dyn DynDynamics,
+        begin: f64,
+        start: &InitialState,
+        settings: &Settings,
+    ) -> Result<Self, Stopped> {
+        let (n, method) = (crane.size(), settings.method);
+        check_inertia(crane, &start.q).map_err(|index| {
+            let place = Place { method, t: begin, h: settings.step, q: &start.q, description: crane.description() };
+            place.stopped(Cause::MassMatrix, index)
+        })?;
+        let mut motion = [start.q.as_slice(), &start.v, if settings.audit { &[0.0; 2] } else { &[] }].concat();
+        let (pose, rates) = motion[..2 * n].split_at_mut(n);
+        crane.prescribe(begin, pose, rates);
+        stepper.start(begin, &motion)?;
+        let end = begin + settings.duration;
+        let stops = Stops::between([crane as &dyn DynModel], begin, end);
+        Ok(Self { crane, stepper, settings: *settings, stops, begin, end, reached: begin, time: begin, motion })
+    }
+
+    /// Goes on to a later time, s. `step` is told the time after every step, and may break off: then the last result stays.
+    ///
+    /// # Errors
+    /// [`Stopped`] where the motion grows without bound, no step meets the tolerance, or steps are more than the settings allow.
+    pub fn advance(
+        &mut self,
+        result: f64,
+        step: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, Stopped> {
+        let (n, description) = (self.crane.size(), self.crane.description());
+        while self.reached < result {
+            let before = self.reached;
+            self.reached = self.stepper.step(&Ahead { result, stop: self.stops.after(before) })?;
+            let steps = self.stepper.statistics().steps;
+            let q = &self.stepper.motion()[..n];
+            let (t, h) = (self.reached, self.reached - before);
+            let place = Place { method: self.settings.method, t, h, q, description };
+            if !description.bounded(q, self.settings.bound) {
+                return Err(place.furthest(Cause::Growth));
+            }
+            if steps >= self.settings.most_steps && self.reached < self.end {
+                return Err(place.furthest(Cause::Steps));
+            }
+            if step(self.reached).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        self.stepper.interpolate(result, &mut self.motion);
+        self.time = result;
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// The last result.
+    pub fn sample(&self) -> Sample<'_> {
+        let (q, rest) = self.motion.split_at(self.crane.size());
+        let (v, integrals) = rest.split_at(q.len());
+        let [work, dissipated] = *integrals.first_chunk().unwrap_or(&[0.0; 2]);
+        Sample { t: self.time, q, v, work, dissipated }
+    }
+
+    /// What it took up to the last result.
+    pub fn run(&self) -> Run {
+        let statistics = self.stepper.statistics();
+        let step = match (self.settings.method.is_adaptive(), statistics.steps) {
+            (true, 1..) => (self.time - self.begin) / statistics.steps as f64,
+            _ => self.settings.step_taken(),
+        };
+        Run { statistics, step, time: self.time, efforts: self.stepper.efforts() }
+    }
+}
+
+/// Checks that the mass matrix at a pose is positive definite: the recursion of O(n) divides by inertias one by one and would go on
+/// with negative ones. Otherwise the coordinate to blame.
+fn check_inertia(crane: &dyn DynDynamics, q: &[f64]) -> Result<(), usize> {
+    let mut mass = DMatrix::zeros(q.len(), q.len());
+    crane.mass_matrix(q, mass.as_mut_slice());
+    without_inertia(&mass).map_or(Ok(()), Err)
+}

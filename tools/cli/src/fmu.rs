@@ -1,0 +1,102 @@
+//! `crane export --format fmu`: the spec, its description and the shared library in one archive.
+
+use std::{
+    env::{consts, current_exe},
+    fs,
+    io::{Cursor, Write},
+    path::{Path, PathBuf},
+};
+
+use crane_codegen::chain::Chain;
+use crane_fmu::{description, resources};
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynCrane;
+use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptions};
+
+use crate::{
+    arguments::Export,
+    files,
+    problem::{Outcome, Problem},
+};
+
+/// A shared library and the system that it is for, by the name of FMI 2.0.
+struct Library {
+    system: &'static str,
+    suffix: &'static str,
+    content: Vec<u8>,
+}
+
+/// Writes a unit of a crane.
+pub fn write(
+    options: &Export,
+    file: &Path,
+    chain: Chain,
+    spec: &str,
+    parameters: &[f64],
+    out: &mut dyn Write,
+) -> Outcome<()> {
+    if options.crane.compile {
+        return Err(Problem::usage("an FMU is not compiled: its library is ready made", "leave `--compile` out"));
+    }
+    let libraries = match options.libraries.as_slice() {
+        [] => vec![read(&beside_the_command()?)?],
+        named => named.iter().map(|path| read(path)).collect::<Outcome<_>>()?,
+    };
+    let mut crane = LiveCrane::new(chain);
+    crane.set_parameters(parameters).map_err(|refused| Problem::usage(refused.to_string(), ""))?;
+    let content = pack(&crane, spec, &libraries)
+        .map_err(|error| Problem::failed(format!("{}: {error}", file.display()), "make its libraries smaller"))?;
+    files::write(file, |file| file.write_all(&content))?;
+    let systems: Vec<&str> = libraries.iter().map(|library| library.system).collect();
+    let (file, size) = (file.display(), content.len() as f64 / 1e6);
+    Ok(writeln!(
+        out,
+        "{file} written: FMI 2.0, co-simulation and model exchange, {}; {size:.1} MB",
+        systems.join(", ")
+    )?)
+}
+
+/// The archive.
+fn pack(crane: &LiveCrane, spec: &str, libraries: &[Library]) -> Result<Vec<u8>, ZipError> {
+    let name = &crane.chain().name;
+    let binary = |library: &Library| format!("binaries/{}/{name}.{}", library.system, library.suffix);
+    let texts = [
+        ("modelDescription.xml".to_owned(), description::write_fmi2(crane)),
+        (format!("resources/{}", resources::SPEC), spec.to_owned()),
+        (format!("resources/{}", resources::PARAMETERS), resources::write_parameters(crane)),
+    ];
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    for (path, text) in &texts {
+        archive.start_file(path.as_str(), stored)?;
+        archive.write_all(text.as_bytes())?;
+    }
+    for library in libraries {
+        archive.start_file(binary(library), stored.unix_permissions(0o755))?;
+        archive.write_all(&library.content)?;
+    }
+    Ok(archive.finish()?.into_inner())
+}
+
+fn read(path: &Path) -> Outcome<Library> {
+    /// Endings of shared libraries, and their systems; cranes are for computers of 64 bits.
+    const SYSTEMS: [(&str, &str); 3] = [("so", "linux64"), ("dll", "win64"), ("dylib", "darwin64")];
+    let ending = path.extension().unwrap_or_default();
+    let (suffix, system) = *SYSTEMS.iter().find(|(suffix, _)| ending == *suffix).ok_or_else(|| {
+        Problem::usage(format!("{} is not a shared library", path.display()), "name a file .so, .dll or .dylib")
+    })?;
+    let content = fs::read(path).map_err(|error| Problem::file(path, &error))?;
+    Ok(Library { system, suffix, content })
+}
+
+/// The library in the folder of the command, or where cargo leaves it when it builds the command.
+fn beside_the_command() -> Outcome<PathBuf> {
+    let name = format!("{}crane_fmu{}", consts::DLL_PREFIX, consts::DLL_SUFFIX);
+    let command = current_exe().map_err(|error| Problem::failed(format!("where the command is: {error}"), ""))?;
+    let folder = command.parent().unwrap_or(Path::new("."));
+    let mut places = [folder.join(&name), folder.join("deps").join(&name)].into_iter();
+    places.find(|place| place.is_file()).ok_or_else(|| {
+        let title = format!("there is no {name} in {}", folder.display());
+        Problem::failed(title, "build it with `cargo build --release -p crane-fmu` and keep it beside the command, or name it by `--library FILE`")
+    })
+}

@@ -1,0 +1,58 @@
+//! The interface for C. Pointers of the importer are looked at here and nowhere else; no panic gets out.
+
+#![allow(unsafe_code, non_snake_case)]
+
+mod fmi2;
+
+use std::any::Any;
+use std::ffi::{CStr, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::slice;
+
+use crate::instance::Fault;
+
+/// What went wrong inside of a call, in words.
+fn guarded<R>(work: impl FnOnce() -> Result<R, Fault>) -> Result<R, Fault> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(Fault::Error(words_of(&*panic))))
+}
+
+fn words_of(panic: &(dyn Any + Send)) -> String {
+    let words = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+    format!("the crane's library has failed, please report it: {}", words.unwrap_or("no reason given"))
+}
+
+/// An array of the importer; empty where there is none.
+///
+/// # Safety
+/// `count` values stand at `first` as long as the slice is used.
+unsafe fn array<'a, T>(first: *const T, count: usize) -> &'a [T] {
+    if first.is_null() || count == 0 {
+        return &[];
+    }
+    // SAFETY: as the caller promises.
+    unsafe { slice::from_raw_parts(first, count) }
+}
+
+/// An array of the importer to be written to; empty where there is none.
+///
+/// # Safety
+/// There is room for `count` values at `first`, which nobody else looks at as long as the slice is used.
+unsafe fn array_mut<'a, T>(first: *mut T, count: usize) -> &'a mut [T] {
+    if first.is_null() || count == 0 {
+        return &mut [];
+    }
+    // SAFETY: as the caller promises.
+    unsafe { slice::from_raw_parts_mut(first, count) }
+}
+
+/// A text of the importer; empty where there is none or it is not UTF-8.
+///
+/// # Safety
+/// `text` ends with a zero and stays as long as it is used.
+unsafe fn words<'a>(text: *const c_char) -> &'a str {
+    if text.is_null() {
+        return "";
+    }
+    // SAFETY: as the caller promises.
+    unsafe { CStr::from_ptr(text) }.to_str().unwrap_or_default()
+}

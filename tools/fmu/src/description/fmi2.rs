@@ -1,0 +1,77 @@
+//! The description in the form of FMI 2.0.
+
+use crane_codegen::exchange::xml::Xml;
+use crane_model::dyn_crane::DynModel;
+
+use super::Subject;
+
+/// `modelDescription.xml` of a crane with the parameters that it has.
+pub fn write(crane: &dyn DynModel) -> String {
+    let subject = Subject::new(crane);
+    let name = crane.description().name.to_string();
+    let mut xml = Xml::new("Units: SI, rad. Value references are places in the list of variables, from 0.");
+    let mut head = vec![("fmiVersion", "2.0".to_owned()), ("guid", subject.token())];
+    head.extend(subject.origin());
+    head.push(("variableNamingConvention", "flat".to_owned()));
+    head.push(("numberOfEventIndicators", "0".to_owned()));
+    xml.open("fmiModelDescription", &head);
+    let yes = |name| (name, "true".to_owned());
+    let common = [
+        ("modelIdentifier", name),
+        yes("canNotUseMemoryManagementFunctions"),
+        yes("canGetAndSetFMUstate"),
+        yes("canSerializeFMUstate"),
+        yes("providesDirectionalDerivative"),
+    ];
+    xml.leaf("ModelExchange", &[&common[..], &[yes("completedIntegratorStepNotNeeded")]].concat());
+    xml.leaf("CoSimulation", &[&common[..], &[yes("canHandleVariableCommunicationStepSize")]].concat());
+    subject.write_units(&mut xml);
+    Subject::write_categories(&mut xml);
+    subject.write_experiment(&mut xml);
+    write_variables(&subject, &mut xml);
+    write_structure(&subject, &mut xml);
+    xml.finish()
+}
+
+fn write_variables(subject: &Subject, xml: &mut Xml) {
+    xml.open("ModelVariables", &[]);
+    for (reference, variable) in subject.variables.iter().enumerate() {
+        let [causality, variability] = Subject::nature(variable);
+        let mut scalar = vec![("name", variable.name.clone()), ("valueReference", reference.to_string())];
+        if !variable.about.is_empty() {
+            scalar.push(("description", variable.about.clone()));
+        }
+        scalar.push(("causality", causality.to_owned()));
+        scalar.push(("variability", variability.to_owned()));
+        let mut real = subject.attributes(variable);
+        if let Some(integral) = Subject::integral(variable.source) {
+            real.push(("derivative", index(subject.reference(integral))));
+        }
+        xml.open("ScalarVariable", &scalar);
+        xml.leaf("Real", &real);
+        xml.close();
+    }
+    xml.close();
+}
+
+fn write_structure(subject: &Subject, xml: &mut Xml) {
+    xml.open("ModelStructure", &[]);
+    let lists = [
+        ("Outputs", subject.outputs()),
+        ("Derivatives", subject.derivatives()),
+        ("InitialUnknowns", subject.initial_unknowns()),
+    ];
+    for (name, references) in lists.into_iter().filter(|(_, references)| !references.is_empty()) {
+        xml.open(name, &[]);
+        for reference in references {
+            xml.leaf("Unknown", &[("index", index(reference))]);
+        }
+        xml.close();
+    }
+    xml.close();
+}
+
+/// The place of a variable in the list, from 1.
+fn index(reference: usize) -> String {
+    (reference + 1).to_string()
+}

@@ -1,0 +1,142 @@
+//! `modelDescription.xml`: what an importer knows of a crane.
+
+mod fmi2;
+mod units;
+
+use std::collections::BTreeSet;
+
+use crane_codegen::exchange::xml::{Xml, number_text};
+use crane_model::dyn_crane::DynModel;
+use crane_model::dynamics::Settings;
+
+use crate::variables::{self, Source, Variable};
+
+pub use fmi2::write as write_fmi2;
+
+/// Categories of messages, and what they hold.
+const CATEGORIES: [(&str, &str); 2] = [
+    ("logStatusWarning", "What is implausible about the crane, and what the model does not hold for"),
+    ("logStatusError", "Why a call failed, and what to do about it"),
+];
+
+/// A crane with the values of its parameters at the start, and its variables.
+struct Subject<'a> {
+    crane: &'a dyn DynModel,
+    variables: Vec<Variable>,
+}
+
+impl<'a> Subject<'a> {
+    fn new(crane: &'a dyn DynModel) -> Self {
+        Self { crane, variables: variables::list(crane.description()) }
+    }
+
+    fn token(&self) -> String {
+        variables::token(self.crane.description(), &self.variables)
+    }
+
+    /// Value reference of a variable.
+    fn reference(&self, source: Source) -> usize {
+        self.variables.iter().position(|variable| variable.source == source).unwrap_or(0)
+    }
+
+    /// What a variable is the derivative of.
+    fn integral(source: Source) -> Option<Source> {
+        match source {
+            Source::Rate(index) => Some(Source::Position(index)),
+            Source::Acceleration(index) => Some(Source::Rate(index)),
+            _ => None,
+        }
+    }
+
+    /// Value references of the derivatives, in the order of the states.
+    fn derivatives(&self) -> Vec<usize> {
+        let n = self.crane.size();
+        let (rates, accelerations) = ((0..n).map(Source::Rate), (0..n).map(Source::Acceleration));
+        rates.chain(accelerations).map(|source| self.reference(source)).collect()
+    }
+
+    /// Value references of the outputs.
+    fn outputs(&self) -> Vec<usize> {
+        (0..self.variables.len()).filter(|&index| self.variables[index].is_output).collect()
+    }
+
+    /// Value references of what is computed before a run begins: outputs, states and derivatives.
+    fn initial_unknowns(&self) -> Vec<usize> {
+        let is_unknown = |variable: &Variable| {
+            let moves = matches!(variable.source, Source::Position(_) | Source::Rate(_) | Source::Acceleration(_));
+            variable.is_output || moves
+        };
+        (0..self.variables.len()).filter(|&index| is_unknown(&self.variables[index])).collect()
+    }
+
+    /// Causality and variability of a variable.
+    fn nature(variable: &Variable) -> [&'static str; 2] {
+        match variable.source {
+            Source::Time => ["independent", "continuous"],
+            Source::Parameter(_) => ["parameter", "tunable"],
+            _ if variable.is_output => ["output", "continuous"],
+            _ => ["local", "continuous"],
+        }
+    }
+
+    /// Attributes of a variable's numbers: unit, start.
+    fn attributes(&self, variable: &Variable) -> Vec<(&'static str, String)> {
+        let mut attributes = Vec::new();
+        if !variable.unit.is_empty() {
+            attributes.push(("unit", variable.unit.clone()));
+        }
+        if let Source::Parameter(index) = variable.source {
+            attributes.push(("start", number_text(self.crane.parameter(index))));
+        }
+        attributes
+    }
+
+    fn write_units(&self, xml: &mut Xml) {
+        let units: BTreeSet<&str> = self.variables.iter().map(|variable| variable.unit.as_str()).collect();
+        xml.open("UnitDefinitions", &[]);
+        for unit in units.into_iter().filter(|unit| !unit.is_empty()) {
+            let name = [("name", unit.to_owned())];
+            let Some(exponents) = units::exponents(unit) else {
+                xml.leaf("Unit", &name);
+                continue;
+            };
+            xml.open("Unit", &name);
+            let counts = units::NAMES.into_iter().zip(exponents).filter(|(_, exponent)| *exponent != 0);
+            let counts: Vec<_> = counts.map(|(name, exponent)| (name, exponent.to_string())).collect();
+            xml.leaf("BaseUnit", &counts);
+            xml.close();
+        }
+        xml.close();
+    }
+
+    fn write_categories(xml: &mut Xml) {
+        xml.open("LogCategories", &[]);
+        for (name, about) in CATEGORIES {
+            xml.leaf("Category", &[("name", name.to_owned()), ("description", about.to_owned())]);
+        }
+        xml.close();
+    }
+
+    fn write_experiment(&self, xml: &mut Xml) {
+        let Settings { duration, output, tolerance, .. } = Settings::of(self.crane.description());
+        xml.leaf(
+            "DefaultExperiment",
+            &[
+                ("startTime", number_text(0.0)),
+                ("stopTime", number_text(duration)),
+                ("tolerance", number_text(tolerance)),
+                ("stepSize", number_text(output)),
+            ],
+        );
+    }
+
+    /// What the unit says of where it comes from.
+    fn origin(&self) -> [(&'static str, String); 3] {
+        let description = self.crane.description();
+        [
+            ("modelName", description.name.to_string()),
+            ("description", description.title.to_string()),
+            ("generationTool", format!("crane {}", env!("CARGO_PKG_VERSION"))),
+        ]
+    }
+}

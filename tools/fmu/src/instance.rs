@@ -1,0 +1,466 @@
+//! A crane at work inside of a simulation of others.
+
+use std::fmt;
+use std::path::Path;
+
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
+use crane_model::dynamics::{InitialState, Settings, Stopped};
+use crane_model::results;
+use crane_model::runs::Start;
+use crane_model::statics;
+
+use crate::motion::Motion;
+use crate::resources::{self, Opened};
+use crate::variables::{self, Source, Variable};
+
+/// Why a call did not do what it should.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// Nothing has changed: a caller who asks for something else may go on.
+    Discard(String),
+    /// The caller is wrong, or the crane cannot go on.
+    Error(String),
+}
+
+impl Fault {
+    fn error(text: impl fmt::Display) -> Self {
+        Self::Error(text.to_string())
+    }
+
+    fn nowhere() -> Self {
+        Self::error("the crane has no state")
+    }
+}
+
+impl From<Stopped> for Fault {
+    fn from(stopped: Stopped) -> Self {
+        Self::Error(format!("{stopped}; {}", stopped.advice()))
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Fault::Discard(text) | Fault::Error(text)) = self;
+        f.write_str(text)
+    }
+}
+
+/// Everything that a crane's further motion follows from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    parameters: Vec<f64>,
+    /// None before the crane has come to rest.
+    moment: Option<Moment>,
+}
+
+/// Time, pose and rates.
+#[derive(Clone, Debug, PartialEq)]
+struct Moment {
+    t: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+}
+
+impl State {
+    /// The state as numbers: parameters, and where there are such time, pose and rates.
+    pub fn numbers(&self) -> Vec<f64> {
+        let moment = self.moment.iter().flat_map(|Moment { t, q, v }| std::iter::once(t).chain(q).chain(v));
+        self.parameters.iter().chain(moment).copied().collect()
+    }
+}
+
+/// Motion by an importer's integrator, or by the crane's own.
+///
+/// A crane begins where its runs begin: in the static equilibrium if the spec asks for statics, otherwise at the guess.
+pub struct Instance {
+    crane: LiveCrane,
+    variables: Vec<Variable>,
+    /// Parameters at the start, and as they were set last.
+    first: Vec<f64>,
+    parameters: Vec<f64>,
+    /// Whether the crane has the parameters that were set last.
+    is_current: bool,
+    settings: Settings,
+    begin: f64,
+    /// Until the initialisation ends a parameter moves the start.
+    has_begun: bool,
+    moment: Option<Moment>,
+    /// Steps of the crane's own, on their way.
+    motion: Option<Motion>,
+    quantities: Option<Vec<f64>>,
+    accelerations: Option<Vec<f64>>,
+    /// What is to be said, and what has been said once.
+    said: Vec<String>,
+    cautions: Vec<&'static str>,
+}
+
+impl Instance {
+    /// The crane of an unpacked unit. `token` is that of its description.
+    ///
+    /// # Errors
+    /// The spec cannot be read, or the description belongs to another version of the library: in words.
+    pub fn new(folder: &Path, token: &str) -> Result<Self, String> {
+        let Opened { crane, parameters, warnings } = resources::open(folder)?;
+        let variables = variables::list(crane.description());
+        let own = variables::token(crane.description(), &variables);
+        if token != own {
+            return Err(format!(
+                "the model description ({token}) is not that of this library and spec ({own}): export the unit again"
+            ));
+        }
+        Ok(Self {
+            settings: Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..Settings::of(crane.description()) },
+            crane,
+            variables,
+            first: parameters.clone(),
+            parameters,
+            is_current: false,
+            begin: 0.0,
+            has_begun: false,
+            moment: None,
+            motion: None,
+            quantities: None,
+            accelerations: None,
+            said: Some(warnings).into_iter().filter(|words| !words.is_empty()).collect(),
+            cautions: Vec::new(),
+        })
+    }
+
+    /// What there is to say since this was asked last: warnings of the spec, and what the model does not hold for.
+    pub fn take_warnings(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.said)
+    }
+
+    /// Sets the tolerance of the crane's own steps and the time of the start, s.
+    ///
+    /// # Errors
+    /// The tolerance is out of range, or the time is not finite.
+    pub fn set_up(&mut self, tolerance: Option<f64>, begin: f64) -> Result<(), Fault> {
+        let (least, greatest) = Settings::TOLERANCES;
+        if let Some(tolerance) = tolerance {
+            if !(least..=greatest).contains(&tolerance) {
+                let title = format!("a tolerance of {tolerance:e}");
+                return Err(Fault::Error(format!("{title}: choose one from {least:e} to {greatest:e}, m and rad")));
+            }
+            self.settings.tolerance = tolerance;
+        }
+        if !begin.is_finite() {
+            return Err(Fault::Error(format!("a start at t = {begin} s: choose a finite time")));
+        }
+        self.begin = begin;
+        Ok(())
+    }
+
+    /// Ends the initialisation: from now on parameters change the crane and leave its state.
+    ///
+    /// # Errors
+    /// As [`Instance::get`].
+    pub fn start(&mut self) -> Result<(), Fault> {
+        self.settle()?;
+        self.has_begun = true;
+        Ok(())
+    }
+
+    /// Goes back to how it was made.
+    pub fn reset(&mut self) {
+        self.parameters.clone_from(&self.first);
+        self.settings.tolerance = Settings::of(self.crane.description()).tolerance;
+        (self.begin, self.has_begun, self.is_current) = (0.0, false, false);
+        (self.moment, self.motion) = (None, None);
+        self.cautions.clear();
+        self.forget();
+    }
+
+    /// Number of continuous states: coordinates and rates.
+    pub fn states(&self) -> usize {
+        2 * self.crane.size()
+    }
+
+    /// The time, s.
+    pub fn time(&self) -> f64 {
+        self.moment.as_ref().map_or(self.begin, |moment| moment.t)
+    }
+
+    fn forget(&mut self) {
+        (self.quantities, self.accelerations) = (None, None);
+    }
+
+    /// Gives the crane the parameters that were set, and lets it come to rest unless it is under way.
+    fn settle(&mut self) -> Result<(), Fault> {
+        if !self.is_current {
+            DynCrane::set_parameters(&mut self.crane, &self.parameters).map_err(Fault::error)?;
+            self.is_current = true;
+            self.motion = None;
+            self.forget();
+        }
+        if self.moment.is_none() {
+            let Start { mut q, mut v, rests, .. } =
+                Start::of(&self.crane).map_err(|failed| Fault::Error(format!("{failed}; {}", failed.advice())))?;
+            if rests && self.begin != 0.0 {
+                let crane: &dyn DynCrane = &self.crane;
+                let equilibrium = crane.equilibrium_at(self.begin, &q, &statics::Settings::default());
+                q = Start::at(crane, &equilibrium).map_err(Fault::error)?.q;
+            }
+            self.crane.prescribe(self.begin, &mut q, &mut v);
+            self.moment = Some(Moment { t: self.begin, q, v });
+            self.forget();
+        }
+        Ok(())
+    }
+
+    /// Time, pose and rates.
+    fn moment(&mut self) -> Result<&Moment, Fault> {
+        self.settle()?;
+        self.moment.as_ref().ok_or_else(Fault::nowhere)
+    }
+
+    /// Changes time, pose or rates, and lets rigid drives have their say.
+    fn change(&mut self, change: impl FnOnce(&mut Moment)) -> Result<(), Fault> {
+        self.settle()?;
+        if let Some(moment) = &mut self.moment {
+            change(moment);
+            self.crane.prescribe(moment.t, &mut moment.q, &mut moment.v);
+        }
+        self.motion = None;
+        self.forget();
+        Ok(())
+    }
+
+    fn variable(&self, reference: u32) -> Result<&Variable, Fault> {
+        let place = usize::try_from(reference).unwrap_or(usize::MAX);
+        self.variables.get(place).ok_or_else(|| Fault::Error(format!("there is no variable {reference}")))
+    }
+
+    /// Values of variables by their references.
+    ///
+    /// # Errors
+    /// There is no such variable; the parameters break a rule of the spec language; there is no equilibrium to start from.
+    pub fn get(&mut self, references: &[u32], out: &mut [f64]) -> Result<(), Fault> {
+        for (&reference, place) in references.iter().zip(out) {
+            *place = match self.variable(reference)?.source {
+                Source::Parameter(index) => self.parameters[index],
+                Source::Time => self.time(),
+                Source::Position(index) => self.moment()?.q[index],
+                Source::Rate(index) => self.moment()?.v[index],
+                Source::Acceleration(index) => self.accelerations()?[index],
+                Source::Quantity(index) => self.quantities()?[index],
+            };
+        }
+        Ok(())
+    }
+
+    fn quantities(&mut self) -> Result<&[f64], Fault> {
+        self.settle()?;
+        let Self { crane, moment: Some(Moment { t, q, v }), quantities, .. } = self else {
+            return Err(Fault::nowhere());
+        };
+        Ok(quantities.get_or_insert_with(|| results::quantities_at(crane, *t, q, v)))
+    }
+
+    fn accelerations(&mut self) -> Result<&[f64], Fault> {
+        self.settle()?;
+        let Self { crane, moment: Some(Moment { t, q, v }), accelerations, .. } = self else {
+            return Err(Fault::nowhere());
+        };
+        Ok(accelerations.get_or_insert_with(|| {
+            let mut out = vec![0.0; q.len()];
+            crane.forward_dynamics(*t, q, v, &mut out);
+            out
+        }))
+    }
+
+    /// Sets variables by their references; parameters alone can be set. What several parameters must obey together is looked at
+    /// when the crane needs them.
+    ///
+    /// # Errors
+    /// A variable is not a parameter, or a value is not allowed; those before it are set.
+    pub fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault> {
+        for (&reference, &value) in references.iter().zip(values) {
+            let Variable { name, source, .. } = self.variable(reference)?;
+            let &Source::Parameter(index) = source else {
+                return Err(Fault::Error(format!("{name} cannot be set: it follows from the motion")));
+            };
+            self.crane.description().parameters[index].check(value).map_err(Fault::error)?;
+            self.parameters[index] = value;
+            self.is_current = false;
+            if !self.has_begun {
+                self.moment = None;
+            }
+        }
+        Ok(())
+    }
+
+    /// The state, to come back to.
+    pub fn state(&self) -> State {
+        State { parameters: self.parameters.clone(), moment: self.moment.clone() }
+    }
+
+    /// Goes back to a state.
+    pub fn set_state(&mut self, state: &State) {
+        self.parameters.clone_from(&state.parameters);
+        self.moment.clone_from(&state.moment);
+        (self.is_current, self.motion) = (false, None);
+        self.forget();
+    }
+
+    /// A state of this crane from its numbers, if they are as many as such a state has.
+    pub fn state_of(&self, numbers: &[f64]) -> Option<State> {
+        let (parameters, rest) = numbers.split_at_checked(self.parameters.len())?;
+        let moment = match rest {
+            [] => None,
+            [t, motion @ ..] if motion.len() == self.states() => {
+                let (q, v) = motion.split_at(self.crane.size());
+                Some(Moment { t: *t, q: q.to_vec(), v: v.to_vec() })
+            }
+            _ => return None,
+        };
+        Some(State { parameters: parameters.to_vec(), moment })
+    }
+
+    /// Sets the time, s.
+    ///
+    /// # Errors
+    /// As [`Instance::get`].
+    pub fn set_time(&mut self, t: f64) -> Result<(), Fault> {
+        self.change(|moment| moment.t = t)
+    }
+
+    /// Sets coordinates and rates.
+    ///
+    /// # Errors
+    /// As [`Instance::get`]; the numbers are not as many as states.
+    pub fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Fault> {
+        self.check_states(states.len())?;
+        let (q, v) = states.split_at(self.crane.size());
+        self.change(|moment| {
+            moment.q.copy_from_slice(q);
+            moment.v.copy_from_slice(v);
+        })
+    }
+
+    fn check_states(&self, count: usize) -> Result<(), Fault> {
+        let states = self.states();
+        if count == states { Ok(()) } else { Err(Fault::Error(format!("{count} numbers for {states} states"))) }
+    }
+
+    /// Coordinates and rates.
+    ///
+    /// # Errors
+    /// As [`Instance::get`]; `out` is not as long as there are states.
+    pub fn continuous_states(&mut self, out: &mut [f64]) -> Result<(), Fault> {
+        self.check_states(out.len())?;
+        let Moment { q, v, .. } = self.moment()?;
+        out.iter_mut().zip(q.iter().chain(v)).for_each(|(place, value)| *place = *value);
+        Ok(())
+    }
+
+    /// Rates and accelerations.
+    ///
+    /// # Errors
+    /// As [`Instance::get`]; `out` is not as long as there are states; an acceleration is not finite.
+    pub fn derivatives(&mut self, out: &mut [f64]) -> Result<(), Fault> {
+        self.check_states(out.len())?;
+        let (rates, accelerations) = out.split_at_mut(self.crane.size());
+        rates.copy_from_slice(&self.moment()?.v);
+        accelerations.copy_from_slice(self.accelerations()?);
+        match accelerations.iter().position(|a| !a.is_finite()) {
+            Some(index) => {
+                let name = &self.crane.description().coordinates[index].name;
+                Err(Fault::Discard(format!("the acceleration of {name} is not finite at t = {} s", self.time())))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The next time at which a drive's motion is not smooth, s.
+    pub fn next_event(&mut self) -> Option<f64> {
+        let pieces = self.crane.description().drives.iter().map(|drive| drive.pieces).sum();
+        let mut times = vec![[f64::NAN; 2]; pieces];
+        self.crane.drive_pieces(&mut times);
+        let t = self.time();
+        times.into_iter().flatten().filter(|time| *time > t && time.is_finite()).min_by(f64::total_cmp)
+    }
+
+    /// How some variables change with coordinates and rates along a direction, by central differences.
+    ///
+    /// # Errors
+    /// As [`Instance::get`]; a variable of the direction is neither a coordinate nor a rate.
+    pub fn directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        direction: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Fault> {
+        /// The cube root of the accuracy of a number balances truncation and rounding of central differences.
+        const RELATIVE: f64 = 6e-6;
+        let greatest = direction.iter().fold(0.0_f64, |greatest, x| greatest.max(x.abs()));
+        if greatest == 0.0 {
+            out.fill(0.0);
+            return Ok(());
+        }
+        let own = self.moment()?.clone();
+        let h = RELATIVE / greatest;
+        let mut aside = |side: f64, out: &mut [f64]| {
+            let Moment { mut q, mut v, .. } = own.clone();
+            for (&reference, along) in knowns.iter().zip(direction) {
+                let Variable { name, source, .. } = self.variable(reference)?;
+                match *source {
+                    Source::Position(index) => q[index] += side * along,
+                    Source::Rate(index) => v[index] += side * along,
+                    _ => return Err(Fault::Error(format!("{name} is neither a coordinate nor a rate"))),
+                }
+            }
+            (self.quantities, self.accelerations) = (None, None);
+            self.moment = Some(Moment { t: own.t, q, v });
+            self.get(unknowns, out)
+        };
+        let mut behind = vec![0.0; out.len()];
+        let found = aside(h, out).and_then(|()| aside(-h, &mut behind));
+        out.iter_mut().zip(&behind).for_each(|(ahead, behind)| *ahead = (*ahead - behind) / (2.0 * h));
+        self.moment = Some(own);
+        self.forget();
+        found
+    }
+
+    /// A step of the crane's own motion, s. From step to step it goes on with the history that it has; a parameter that changes
+    /// begins a new one.
+    ///
+    /// # Errors
+    /// As [`Instance::get`]; the step does not begin where the crane stands, or is not positive; the motion cannot be followed.
+    pub fn step(&mut self, from: f64, length: f64) -> Result<(), Fault> {
+        /// Part of a step by which a sum of steps may be off.
+        const ROUNDING: f64 = 1e-6;
+        let Moment { t, q, v } = self.moment()?.clone();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(Fault::Error(format!("a step of {length} s: choose one above 0")));
+        }
+        if (from - t).abs() > ROUNDING * length {
+            return Err(Fault::Error(format!("a step from t = {from} s, but the crane stands at t = {t} s")));
+        }
+        let mut motion = match self.motion.take() {
+            Some(motion) => motion,
+            None => Motion::new(self.crane.clone(), t, &InitialState { q, v }, &self.settings)?,
+        };
+        motion.advance(from + length)?;
+        let sample = motion.sample();
+        let moment = Moment { t: sample.t, q: sample.q.to_vec(), v: sample.v.to_vec() };
+        self.caution(&moment);
+        (self.moment, self.motion) = (Some(moment), Some(motion));
+        self.forget();
+        Ok(())
+    }
+
+    /// Notes what the model does not hold for, each kind once.
+    fn caution(&mut self, Moment { t, q, .. }: &Moment) {
+        let description = self.crane.description();
+        let found = [("singular", description.near_singular(q)), ("tilt", description.large_tilt(q))];
+        for (kind, words) in found.into_iter().filter_map(|(kind, words)| Some((kind, words?))) {
+            if !self.cautions.contains(&kind) {
+                self.cautions.push(kind);
+                self.said.push(format!("t = {t:.3} s: {words}"));
+            }
+        }
+    }
+}

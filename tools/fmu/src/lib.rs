@@ -1,0 +1,22 @@
+//! Cranes as functional mock-up units: a live crane behind the C interface of FMI 2.0, for co-simulation and model exchange.
+//!
+//! The functional mock-up interface: <https://fmi-standard.org/docs/2.0.5/>. A unit is a ZIP archive of a description, of this crate as a
+//! shared library, and of the crane's spec, which the library reads where the importer unpacked it. One library serves all
+//! cranes, so that a unit is made without a compiler.
+//!
+//! | where | what |
+//! |---|---|
+//! | [`variables`] | the list of a crane's variables, and the token by which library and description know each other |
+//! | [`description`] | `modelDescription.xml` |
+//! | [`resources`] | the spec and the parameters inside of a unit |
+//! | [`instance`] | a crane at work, in Rust: states, values, steps |
+//! | `abi` | the same for C: pointers are looked at there and nowhere else |
+
+mod abi;
+pub mod description;
+pub mod instance;
+mod motion;
+pub mod resources;
+pub mod variables;
+
+pub use instance::Instance;

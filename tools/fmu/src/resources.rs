@@ -1,0 +1,107 @@
+//! What a unit carries in its folder `resources`: the spec, and values of parameters that differ from the spec's.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crane_codegen::{Checked, build, compile};
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynModel;
+
+/// File of the spec.
+pub const SPEC: &str = "crane.yaml";
+/// File of the parameters at the start: a line `name,value` for each.
+pub const PARAMETERS: &str = "parameters.csv";
+
+/// A crane with its parameters at the start, and what is implausible about its spec.
+pub struct Opened {
+    /// The crane, with the parameters of its spec.
+    pub crane: LiveCrane,
+    /// Values of its live parameters at the start, in the order of the description.
+    pub parameters: Vec<f64>,
+    /// Warnings, drawn; empty without any.
+    pub warnings: String,
+}
+
+/// Values of parameters as a file.
+pub fn write_parameters(crane: &dyn DynModel) -> String {
+    let parameters = crane.description().parameters.iter().enumerate();
+    parameters.map(|(index, parameter)| format!("{},{:?}\n", parameter.name, crane.parameter(index))).collect()
+}
+
+/// Reads the crane of an unpacked unit.
+///
+/// # Errors
+/// A file cannot be read, or the spec has mistakes: in words.
+pub fn open(folder: &Path) -> Result<Opened, String> {
+    let source = build::open(&folder.join(SPEC)).map_err(|failure| failure.to_string())?;
+    let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| mistakes.to_string())?;
+    let crane = LiveCrane::new(chain);
+    let mut parameters = crane.parameters().to_vec();
+    let file = folder.join(PARAMETERS);
+    let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+    for line in text.lines() {
+        let (place, value) = read_line(&crane, line).ok_or_else(|| format!("{}: `{line}`", file.display()))?;
+        parameters[place] = value;
+    }
+    Ok(Opened { crane, parameters, warnings: warnings.lines().collect::<Vec<_>>().join("; ") })
+}
+
+/// Place and value of a parameter.
+fn read_line(crane: &LiveCrane, line: &str) -> Option<(usize, f64)> {
+    let (name, value) = line.split_once(',')?;
+    let place = crane.description().parameters.iter().position(|parameter| parameter.name == name)?;
+    Some((place, value.parse().ok()?))
+}
+
+/// The folder that a URI of FMI 2.0 names: `file:///folder`, `file:/folder` or `file://localhost/folder`.
+///
+/// # Errors
+/// It is another kind of URI: in words.
+pub fn folder_of(uri: &str) -> Result<PathBuf, String> {
+    let wrong =
+        || format!("the location of the resources is `{uri}`, not a folder on this machine such as file:///folder");
+    let rest = uri.strip_prefix("file:").ok_or_else(wrong)?;
+    let path = match rest.strip_prefix("//") {
+        Some(rest) => rest.strip_prefix("localhost").unwrap_or(rest),
+        None => rest,
+    };
+    if !path.starts_with('/') {
+        return Err(wrong());
+    }
+    let path = decoded(path).ok_or_else(wrong)?;
+    // A drive of Windows, as in file:///C:/folder.
+    let with_drive = path.get(2..3) == Some(":");
+    Ok(PathBuf::from(if with_drive { &path[1..] } else { &path }))
+}
+
+/// Text with its `%20` and the like as what they stand for.
+fn decoded(text: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.bytes();
+    while let Some(byte) = rest.next() {
+        if byte == b'%' {
+            let digits = [rest.next()?, rest.next()?];
+            bytes.push(u8::from_str_radix(std::str::from_utf8(&digits).ok()?, 16).ok()?);
+        } else {
+            bytes.push(byte);
+        }
+    }
+    String::from_utf8(bytes).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uris_of_folders_are_read() {
+        let folder = |uri| folder_of(uri).ok().map(|path| path.to_string_lossy().into_owned());
+        assert_eq!(folder("file:///tmp/my%20crane/resources").as_deref(), Some("/tmp/my crane/resources"));
+        assert_eq!(folder("file:/tmp/r").as_deref(), Some("/tmp/r"));
+        assert_eq!(folder("file://localhost/tmp/r").as_deref(), Some("/tmp/r"));
+        assert_eq!(folder("file:///C:/r").as_deref(), Some("C:/r"));
+        for wrong in ["", "http://host/r", "file://host/r", "file:///tmp/%zz", "file:///tmp/%2", "resources"] {
+            assert_eq!(folder(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! The variables of a crane.
+
+use crane_codegen::SourceFile;
+use crane_model::{CoordinateRole, Description, results};
+
+/// What a variable is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// Time.
+    Time,
+    /// A coordinate, by its place in `q`.
+    Position(usize),
+    /// The rate of a coordinate.
+    Rate(usize),
+    /// The acceleration of a coordinate.
+    Acceleration(usize),
+    /// What follows from a state, by its place in [`results::quantities`].
+    Quantity(usize),
+    /// A live parameter, by its place in the description.
+    Parameter(usize),
+}
+
+/// A variable. Its value reference is its place in the list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Variable {
+    /// Name, that of the column in results of the command.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// What it is, in words; may be empty.
+    pub about: String,
+    /// What it is.
+    pub source: Source,
+    /// Whether it is offered to what is connected to the crane.
+    pub is_output: bool,
+}
+
+/// The variables of a crane: time, coordinates, rates, what follows from them, accelerations, parameters.
+///
+/// Poses and rates of joints and of the base are outputs, and so are points, drives and reactions. Deformations of flexible links,
+/// their moments, energies and accelerations can be read as well, but are not offered for connections: they are many.
+pub fn list(description: &Description) -> Vec<Variable> {
+    let n = description.coordinates.len();
+    let moments: Vec<String> = description
+        .coordinates
+        .iter()
+        .filter(|coordinate| coordinate.role.is_element())
+        .map(|coordinate| format!("{}_moment", coordinate.name))
+        .collect();
+    let quantities = results::quantities(description).into_iter().enumerate().map(|(index, column)| {
+        let source = match index {
+            0 => Source::Time,
+            _ if index <= n => Source::Position(index - 1),
+            _ if index <= 2 * n => Source::Rate(index - 1 - n),
+            _ => Source::Quantity(index),
+        };
+        let is_output = match source {
+            Source::Position(i) | Source::Rate(i) => !description.coordinates[i].role.is_element(),
+            Source::Quantity(_) => column.unit != "J" && !moments.contains(&column.name),
+            _ => false,
+        };
+        let about = match source {
+            Source::Position(i) if description.coordinates[i].role == CoordinateRole::Prescribed => {
+                "its rigid drive prescribes it".to_owned()
+            }
+            _ => String::new(),
+        };
+        let name = if source == Source::Time { "time".to_owned() } else { column.name };
+        Variable { name, unit: column.unit, about, source, is_output }
+    });
+    let accelerations = description.coordinates.iter().enumerate().map(|(index, coordinate)| Variable {
+        name: format!("{}_acceleration", coordinate.name),
+        unit: format!("{}/s2", coordinate.kind.unit()),
+        about: String::new(),
+        source: Source::Acceleration(index),
+        is_output: false,
+    });
+    let parameters = description.parameters.iter().enumerate().map(|(index, parameter)| Variable {
+        name: parameter.name.to_string(),
+        unit: parameter.unit.to_string(),
+        about: parameter.about.to_string(),
+        source: Source::Parameter(index),
+        is_output: false,
+    });
+    quantities.chain(accelerations).chain(parameters).collect()
+}
+
+/// What a description and a library must agree in: the spec, and every variable with its place.
+pub fn token(description: &Description, variables: &[Variable]) -> String {
+    let lines: String = variables.iter().map(|variable| format!("{} [{}]\n", variable.name, variable.unit)).collect();
+    format!("{}-{}", description.spec_hash, SourceFile::new("variables", lines).hash())
+}

@@ -1,0 +1,225 @@
+"""Units in FMPy: valid, and the same motion as the command's own."""
+
+import numpy as np
+import pytest
+from conftest import Slave
+from fmpy import read_model_description, simulate_fmu
+from fmpy.validation import validate_fmu
+
+FLEXIBLE = "eight_link_flexible"
+CRANES = [
+    "cantilever",
+    "double_pendulum",
+    "eight_link_flexible",
+    "eight_link_identified",
+    "eight_link_rigid",
+    "eight_link_two_flexible",
+    "knuckle_boom",
+]
+# A rod of 1.5 m on a pin, with a load of `bob` kg and 0.05 kg m² at its end.
+PENDULUM = """
+format: 1
+name: pendulum
+analyses: [dynamics]
+parameters: {bob: {value: 2, unit: kg, about: 'what hangs, "m" < M & so on'}}
+links:
+  - {name: rod, joint: {revolute: {axis: y}}, mass: bob, com: [0, 0, -1.5], inertia: {Ixx: 0.001, Iyy: 0.05, Izz: 0.05}}
+points:
+  - {name: bob_end, link: rod, at: [0, 0, -1.5]}
+guess: {rod_theta: 0.5}
+run: {duration: 2, output: 0.1}
+"""
+
+
+@pytest.fixture(scope="session")
+def pendulum(export, tmp_path_factory):
+    file = tmp_path_factory.mktemp("pendulum") / "pendulum.yaml"
+    file.write_text(PENDULUM)
+    return export(str(file), name="pendulum")
+
+
+def acceleration(angle, bob):
+    """Of the pendulum, rad/s²."""
+    return -bob * 9.81 * 1.5 * np.sin(angle) / (0.05 + bob * 1.5**2)
+
+
+@pytest.mark.parametrize("name", CRANES)
+def test_every_shipped_crane_is_a_valid_unit(name, export):
+    assert validate_fmu(export(name)) == []
+
+
+def test_the_description_has_units_parameters_and_texts(pendulum):
+    assert validate_fmu(pendulum) == []
+    description = read_model_description(pendulum)
+    variables = {variable.name: variable for variable in description.modelVariables}
+    bob = variables["bob"]
+    assert (bob.causality, bob.variability, bob.start, bob.unit) == ("parameter", "tunable", "2", "kg")
+    assert bob.description == 'what hangs, "m" < M & so on'
+    units = {unit.name: unit.baseUnit for unit in description.unitDefinitions}
+    assert (units["J"].kg, units["J"].m, units["J"].s) == (1, 2, -2)
+    assert (units["rad/s2"].rad, units["rad/s2"].s) == (1, -2)
+    assert variables["rod_theta_acceleration"].derivative is variables["rod_theta_rate"]
+    assert variables["rod_theta_rate"].derivative is variables["rod_theta"]
+    assert [variables[name].causality for name in ("bob_end_x", "rod_theta", "kinetic_energy")] == [
+        "output",
+        "output",
+        "local",
+    ]
+
+
+def test_co_simulation_is_the_run_of_the_command(export, simulate):
+    own = simulate(FLEXIBLE, "--duration", "3", "--output", "0.01")
+    names = [name for name in own if name not in ("t", "drive_work", "dissipated_energy", "energy_balance")]
+    result = simulate_fmu(export(FLEXIBLE), stop_time=3, step_size=0.01, output_interval=0.01, output=names)
+    assert len(result) == len(own["t"]) == 301
+    for name in names:
+        # The same steps by the same library: what is left is rounding of the times, which FMPy sums up.
+        size = max(1.0, np.abs(own[name]).max())
+        assert np.abs(result[name] - own[name]).max() < 1e-9 * size, name
+
+
+def test_model_exchange_by_another_solver_is_the_same_motion(export, simulate):
+    """SUNDIALS' CVode follows the accelerations and stops where a drive's motion is not smooth."""
+    own = simulate("knuckle_boom", "--tolerance", "1e-9", "--output", "0.1")
+    names = ["load_centre_x", "load_centre_z", "hook_theta", "hook_theta_rate", "main_boom_theta_drive_torque"]
+    result = simulate_fmu(
+        export("knuckle_boom"),
+        fmi_type="ModelExchange",
+        stop_time=10,
+        output_interval=0.1,
+        relative_tolerance=1e-9,
+        output=names,
+    )
+    # At an event there are two rows; the command has the time once.
+    time, rows = np.unique(result["time"].round(9), return_index=True)
+    rows = rows[np.isin(time, own["t"].round(9))]
+    assert len(rows) == len(own["t"]) == 101
+    for name in names:
+        # Both solvers are set to 1e-9 a step; the torque is a stiff spring's, 4e6 N m/rad.
+        size = 4e6 if name.endswith("torque") else 1.0
+        assert np.abs(result[name][rows] - own[name]).max() < 1e-6 * size, name
+
+
+def test_parameters_of_the_importer_and_of_the_export_are_those_of_the_command(export, simulate, slave):
+    own = simulate("knuckle_boom", "--set", "payload=300", "--duration", "0.5", "--output", "0.5")
+    expected = [own[name][-1] for name in ("load_centre_x", "load_centre_z")]
+    for unit in [slave(export("knuckle_boom"), payload=300), slave(export("knuckle_boom", "--set", "payload=300", name="300"))]:
+        assert unit.get("payload") == [300]
+        unit.follow(0, 0.5, 50)
+        assert np.abs(unit.get("load_centre_x", "load_centre_z") - expected).max() < 1e-9
+
+
+def test_a_parameter_can_change_while_the_crane_moves(pendulum, slave):
+    unit = slave(pendulum)
+    assert abs(unit.get("rod_theta_acceleration")[0] - acceleration(0.5, 2)) < 1e-12
+    unit.follow(0, 0.2, 2)
+    angle, before = unit.get("rod_theta", "rod_theta_acceleration")
+    assert abs(before - acceleration(angle, 2)) < 1e-12
+    unit.set(bob=50)
+    assert unit.get("rod_theta") == [angle]
+    assert abs(unit.get("rod_theta_acceleration")[0] - acceleration(angle, 50)) < 1e-12
+    unit.follow(0.2, 0.3, 1)
+    assert abs(unit.get("rod_theta_acceleration")[0] - acceleration(unit.get("rod_theta")[0], 50)) < 1e-12
+
+
+def test_a_state_is_kept_and_brought_back(export, slave):
+    names = ["load_centre_x", "load_centre_z", "hook_theta_rate"]
+    file = export("knuckle_boom")
+    unit = slave(file)
+    unit.follow(0, 1, 20)
+    state = unit.getFMUstate()
+    unit.follow(1, 2, 20)
+    went_on = unit.get(*names)
+    again = []
+    for _ in range(2):
+        unit.setFMUstate(state)
+        unit.follow(1, 2, 20)
+        again.append(unit.get(*names))
+    assert (again[0] == again[1]).all()
+    # A motion that is taken up again has no history: its first steps are others, within the tolerance of 2e-5.
+    assert 0 < np.abs(again[0] - went_on).max() < 1e-4
+    # As bytes, in another instance with another payload.
+    unit.setFMUstate(state)
+    unit.set(payload=500)
+    other = slave(file, payload=100)
+    other.setFMUstate(other.deSerializeFMUstate(unit.serializeFMUstate(state)))
+    assert other.get("payload") == [800]
+    other.follow(1, 2, 20)
+    assert (other.get(*names) == again[0]).all()
+    unit.freeFMUstate(state)
+
+
+def test_two_cranes_in_one_co_simulation_do_not_meddle(export, slave):
+    names = ["load_centre_x", "load_centre_z"]
+    file = export("knuckle_boom")
+    alone = slave(file, payload=300)
+    alone.follow(0, 1, 50)
+    light, heavy, flexible = slave(file, payload=300), slave(file, payload=1200), slave(export(FLEXIBLE))
+    for step in range(50):
+        for unit in (light, heavy, flexible):
+            unit.doStep(step * 0.02, 0.02)
+    assert (light.get(*names) == alone.get(*names)).all()
+    assert np.abs(light.get(*names) - heavy.get(*names)).max() > 1e-4
+    assert flexible.get("time") == [1.0]
+
+
+def test_directional_derivatives_are_those_of_the_pendulum(pendulum, slave):
+    unit = slave(pendulum)
+    angle, rate, acceleration_, height = (
+        unit.references[name] for name in ("rod_theta", "rod_theta_rate", "rod_theta_acceleration", "bob_end_z")
+    )
+    found = unit.getDirectionalDerivative([acceleration_, height, rate], [angle, rate], [2.0, 3.0])
+    expected = [2 * acceleration(np.pi / 2 - 0.5, 2), 2 * 1.5 * np.sin(0.5), 3.0]
+    # Central differences with steps of 6e-6: truncation 1e-11, rounding 1e-10.
+    assert np.abs(np.array(found) - expected).max() < 1e-8
+    assert unit.get("rod_theta") == [0.5]
+    assert unit.getDirectionalDerivative([height], [angle], [0.0]) == [0.0]
+
+
+def test_a_start_at_a_later_time_rests_with_the_drives_as_they_are_then(export, simulate, slave):
+    own = simulate("knuckle_boom", "--duration", "5", "--output", "5")
+    unit = slave(export("knuckle_boom"), start=5.0)
+    prescribed, angle, rate = unit.get("knuckle_theta_prescribed", "knuckle_theta", "knuckle_theta_rate")
+    assert abs(prescribed - own["knuckle_theta_prescribed"][-1]) < 1e-12
+    assert abs(angle - prescribed) < 0.02 and rate == 0
+    unit.follow(5, 5.5, 5)
+    assert unit.get("time") == [5.5]
+
+
+def test_mistakes_of_the_importer_are_refused_with_words(export, slave, tmp_path):
+    file = export("knuckle_boom")
+    unit = slave(file)
+
+    def refused(call, *words):
+        unit.messages.clear()
+        with pytest.raises(Exception):
+            call()
+        said = " ".join(unit.messages)
+        assert all(word in said for word in words), said
+
+    refused(lambda: unit.set(payload=-5), "payload", "-5", "E03")
+    refused(lambda: unit.set(payload=float("nan")), "payload", "finite")
+    refused(lambda: unit.set(hook_theta=0.1), "hook_theta", "cannot be set")
+    refused(lambda: unit.getReal([10_000]), "no variable 10000")
+    refused(lambda: unit.getInteger([0]), "Integer")
+    refused(lambda: unit.doStep(0.5, 0.1), "t = 0.5", "stands at t = 0")
+    refused(lambda: unit.doStep(0.0, -1.0), "-1", "above 0")
+    # None of it has hurt the crane.
+    assert unit.get("payload") == [800]
+    unit.follow(0, 0.1, 1)
+    stranger = Slave(file, tmp_path / "stranger", guid="another")
+    with pytest.raises(Exception):
+        stranger.open()
+    assert "export the unit again" in " ".join(stranger.messages)
+
+
+def test_a_crane_that_cannot_rest_says_why(export, slave, tmp_path):
+    """Statics of a pendulum that stands on its head."""
+    spec = tmp_path / "loose.yaml"
+    spec.write_text(PENDULUM.replace("[dynamics]", "[statics, dynamics]").replace("0.5", "3.1415"))
+    unit = Slave(export(str(spec), name="loose"), tmp_path / "loose")
+    unit.open()
+    with pytest.raises(Exception):
+        unit.begin()
+    assert "stable equilibrium" in " ".join(unit.messages) and "guess" in " ".join(unit.messages)
+    unit.freeInstance()
