@@ -1,5 +1,6 @@
 //! What a unit carries in its folder `resources`: the spec, and values of parameters that differ from the spec's.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -24,8 +25,11 @@ pub struct Opened {
 
 /// Values of parameters as a file.
 pub fn write_parameters(crane: &dyn DynModel) -> String {
-    let parameters = crane.description().parameters.iter().enumerate();
-    parameters.map(|(index, parameter)| format!("{},{:?}\n", parameter.name, crane.parameter(index))).collect()
+    let mut text = String::new();
+    for (index, parameter) in crane.description().parameters.iter().enumerate() {
+        let _ = writeln!(text, "{},{:?}", parameter.name, crane.parameter(index));
+    }
+    text
 }
 
 /// Reads the crane of an unpacked unit.

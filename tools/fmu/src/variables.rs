@@ -87,6 +87,7 @@ pub fn list(description: &Description) -> Vec<Variable> {
 
 /// What a description and a library must agree in: the spec, and every variable with its place.
 pub fn token(description: &Description, variables: &[Variable]) -> String {
-    let lines: String = variables.iter().map(|variable| format!("{} [{}]\n", variable.name, variable.unit)).collect();
-    format!("{}-{}", description.spec_hash, SourceFile::new("variables", lines).hash())
+    let lines: Vec<String> =
+        variables.iter().map(|variable| format!("{} [{}]", variable.name, variable.unit)).collect();
+    format!("{}-{}", description.spec_hash, SourceFile::new("variables", lines.join("\n")).hash())
 }

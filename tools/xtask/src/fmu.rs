@@ -1,4 +1,4 @@
-//! Functional mock-up units, exported by the command and run by FMPy.
+//! Functional mock-up units, exported by the command and run by `FMPy`.
 
 use std::process::Command;
 
