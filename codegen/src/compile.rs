@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use crate::chain::{Analyses, Chain};
+use crate::chain::{Analyses, Chain, Loops};
 use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::emit::{GeneratedCode, emit};
+use crate::emit_c::{CCode, Precision, emit_c};
 use crate::lower::{Blocks, lower};
 use crate::mechanics::{derive, derive_verbatim, left_out};
+use crate::program::{Function, FunctionId, Shape};
 use crate::read::read;
 use crate::report::Report;
 use crate::validate::{self, Checked};
@@ -63,6 +65,49 @@ pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> Generated
     let program = derive(chain, analyses);
     let blocks = lower(&program, chain.loops.least_rounds());
     emit(chain, analyses, &blocks, report_on(&blocks, chain, analyses), spec_file)
+}
+
+/// Compiles functions of a chain to C, by their names; `parameters` are the initial values of the live parameters.
+///
+/// # Errors
+/// A function that the crane does not have.
+pub fn generate_c(
+    chain: &Chain,
+    functions: &[impl AsRef<str>],
+    parameters: &[f64],
+    precision: Precision,
+) -> Result<CCode, NoFunction> {
+    let is_chosen = |id: FunctionId| functions.iter().any(|chosen| chosen.as_ref() == id.name());
+    let analyses = Analyses {
+        statics: true,
+        dynamics: true,
+        modes: is_chosen(FunctionId::Linearise),
+        internal_forces: true,
+        derivatives: is_chosen(FunctionId::TransformDerivatives),
+        ensemble: false,
+    };
+    // Straight lines need no tables of numbers and no loops over columns.
+    let chain = Chain { loops: Loops::Never, ..chain.clone() };
+    let mut program = derive(&chain, analyses);
+    let is_straight = |function: &&Function| !matches!(function.shape, Shape::Columns { .. } | Shape::Turned { .. });
+    let known: Vec<FunctionId> = program.functions.iter().filter(is_straight).map(|function| function.id).collect();
+    let unknown = |name: &&str| !known.iter().any(|id| id.name() == *name);
+    if let Some(name) = functions.iter().map(AsRef::as_ref).find(unknown) {
+        return Err(NoFunction { name: name.to_owned(), known: known.into_iter().map(FunctionId::name).collect() });
+    }
+    // `solve` is of no use without `factorise`.
+    let is_wanted = |id: FunctionId| is_chosen(id) || id == FunctionId::Factorise && is_chosen(FunctionId::Solve);
+    program.functions.retain(|function| is_wanted(function.id));
+    Ok(emit_c(&chain, &lower(&program, None), parameters, precision))
+}
+
+/// A function that a crane does not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoFunction {
+    /// Its name.
+    pub name: String,
+    /// The functions that the crane has.
+    pub known: Vec<&'static str>,
 }
 
 /// The cost of the functions of a chain and what is left out, without writing them.

@@ -15,6 +15,7 @@ pub mod compile;
 pub mod diagnostic;
 pub mod dump;
 pub mod emit;
+pub mod emit_c;
 pub mod exchange;
 mod expand;
 pub mod explain;

@@ -28,8 +28,11 @@ use crate::lower::Blocks;
 use crate::program::Shape;
 use crate::report::Report;
 use arithmetic::integer;
-use labels::Labels;
 use number::Number;
+
+pub(crate) use labels::Labels;
+pub(crate) use names::Names;
+pub(crate) use shape::{field_of, row_of_triangle};
 
 /// The module of a crane.
 #[derive(Clone, Debug)]

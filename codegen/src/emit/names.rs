@@ -55,6 +55,13 @@ impl<'p> Names<'p> {
         Names { program, given: HashMap::new(), taken, next: 0 }
     }
 
+    /// The same, without some more words.
+    #[must_use]
+    pub fn avoiding(mut self, words: &[&str]) -> Self {
+        self.taken.extend(words.iter().map(ToString::to_string));
+        self
+    }
+
     /// The name of a value.
     pub fn of(&mut self, id: ExprId) -> String {
         if let Some(name) = self.given.get(&id) {

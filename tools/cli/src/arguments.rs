@@ -414,8 +414,20 @@ pub enum Language {
     Urdf,
     /// With stiffness, damping and spring references of joints; linear supports are tendons.
     Mjcf,
+    /// C99 for controllers: chosen functions, without a heap.
+    C,
     /// A functional mock-up unit, FMI 2.0, for co-simulation and model exchange: the whole crane, ready to run elsewhere.
     Fmu,
+}
+
+/// Type of numbers in C.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum CNumber {
+    /// 64 bits.
+    #[default]
+    Double,
+    /// 32 bits, for controllers that compute in them.
+    Single,
 }
 
 /// A crane for other programs.
@@ -426,9 +438,15 @@ pub struct Export {
     /// Language to write
     #[arg(long, value_enum)]
     pub format: Language,
-    /// File to write [default: the crane's name with .urdf, .xml or .fmu]
+    /// File to write [default: the crane's name with .urdf, .xml, .c or .fmu]
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
+    /// Functions to write in C, with commas between; a wrong name lists all
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "mass_matrix,bias,forward_dynamics")]
+    pub functions: Vec<String>,
+    /// Type of numbers in C
+    #[arg(long, value_enum, default_value_t)]
+    pub precision: CNumber,
     /// Shared library to put into an FMU, .so, .dll or .dylib; given several times the FMU runs on several systems
     /// [default: the one beside the command]
     #[arg(long = "library", value_name = "FILE", value_hint = ValueHint::FilePath)]

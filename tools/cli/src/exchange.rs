@@ -4,17 +4,20 @@ use std::{io::Write, path::PathBuf};
 
 use crane_codegen::{
     chain::{Bound, Chain, Refusal},
+    compile,
+    compile::NoFunction,
+    emit_c::{CCode, Precision},
     exchange,
 };
 
 use crate::{
-    arguments::{Export, Import, Language},
+    arguments::{CNumber, Export, Import, Language},
     files, fmu, own,
     problem::{Outcome, Problem},
     selection::Fleet,
 };
 
-/// Writes a crane as URDF, with its springs beside it, as MJCF, or as a functional mock-up unit.
+/// Writes a crane as URDF, with its springs beside it, as MJCF, in C, or as a functional mock-up unit.
 pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let (chain, spec) = own::load_named(&options.crane.name, options.crane.strict, fleet)?;
     let mut parameters = chain.parameter_defaults();
@@ -26,6 +29,7 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     let suffix = match options.format {
         Language::Urdf => "urdf",
         Language::Mjcf => "xml",
+        Language::C => "c",
         Language::Fmu => "fmu",
     };
     let file = options.file.clone().unwrap_or_else(|| PathBuf::from(format!("{}.{suffix}", chain.name)));
@@ -38,16 +42,32 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
             let text = exchange::mjcf(&chain, &parameters);
             vec![(file, text.map_err(|failure| Problem::failed(failure.title, failure.help))?)]
         }
+        Language::C => {
+            let code = in_c(options, &chain, &parameters)?;
+            vec![(file.with_file_name(format!("{}.h", code.name)), code.header), (file, code.source)]
+        }
         Language::Fmu => return fmu::write(options, &file, chain, &spec, &parameters, out),
     };
     for (file, text) in &texts {
         files::write_text(file, text)?;
         writeln!(out, "{} written", file.display())?;
     }
-    if let Some(text) = exchange::approximations(&chain) {
+    // C has the whole crane.
+    if let (false, Some(text)) = (options.format == Language::C, exchange::approximations(&chain)) {
         writeln!(out, "{text}")?;
     }
     Ok(())
+}
+
+/// The chosen functions in C.
+fn in_c(options: &Export, chain: &Chain, parameters: &[f64]) -> Outcome<CCode> {
+    let precision = match options.precision {
+        CNumber::Double => Precision::Double,
+        CNumber::Single => Precision::Single,
+    };
+    compile::generate_c(chain, &options.functions, parameters, precision).map_err(|NoFunction { name, known }| {
+        Problem::usage(format!("{} has no function `{name}` in C", chain.name), format!("it has {}", known.join(", ")))
+    })
 }
 
 /// Writes a spec made from URDF, and checks it.

@@ -3,7 +3,7 @@
 use crate::workspace;
 
 /// A folder of the compiler, and the modules of the compiler that it may name besides itself.
-const MAY_IMPORT: [(&str, &[&str]); 12] = [
+const MAY_IMPORT: [(&str, &[&str]); 13] = [
     ("symbolic", &[]),
     ("chain", &[]),
     ("diagnostic", &[]),
@@ -16,6 +16,7 @@ const MAY_IMPORT: [(&str, &[&str]); 12] = [
     ("mechanics", &["chain", "program", "symbolic"]),
     ("lower", &["program", "symbolic"]),
     ("emit", &["chain", "lower", "program", "report", "symbolic"]),
+    ("emit_c", &["chain", "emit", "lower", "program", "symbolic"]),
 ];
 
 /// Words that a folder may not contain, and why.

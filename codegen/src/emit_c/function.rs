@@ -1,0 +1,357 @@
+//! A block as a function in C.
+
+use std::collections::{BTreeSet, HashSet};
+use std::fmt::Write;
+
+use super::Precision;
+use super::arithmetic::Expression;
+use crate::chain::Chain;
+use crate::emit::{Labels, Names, field_of, row_of_triangle};
+use crate::lower::{Block, Blocks, Statement};
+use crate::program::{Argument, Function, Shape};
+use crate::symbolic::{ExprId, Op};
+
+/// Words that a variable of C cannot have, besides those that Rust forbids as well or generated functions use.
+const TAKEN: [&str; 24] = [
+    "auto", "case", "char", "default", "double", "float", "goto", "inline", "int", "long", "register", "short",
+    "signed", "sizeof", "switch", "typedef", "union", "unsigned", "void", "volatile", "smaller", "larger", "choose",
+    "a",
+];
+
+/// Writes functions.
+pub struct Writer<'a> {
+    pub chain: &'a Chain,
+    pub blocks: &'a Blocks<'a>,
+    pub labels: &'a Labels<'a>,
+    /// Values of the live parameters to begin with.
+    pub parameters: &'a [f64],
+    pub precision: Precision,
+}
+
+/// What a piece of a function reads.
+type Used = BTreeSet<Argument>;
+
+impl Writer<'_> {
+    /// The definition of a function, after those of its pieces.
+    pub fn function(&self, block: &Block) -> String {
+        let (signature, numbers) = (self.signature(block.function), numbers(&block.function.shape));
+        let number = self.precision.name();
+        let scalar = block.function.shape == Shape::Scalar;
+        let blank = if scalar {
+            format!("    {number} out[1] = {{0}};\n")
+        } else {
+            format!("    for (int k = 0; k < {numbers}; k++) {{\n        out[k] = 0;\n    }}\n")
+        };
+        let end = if scalar { "    return out[0];\n" } else { "" };
+        let [piece] = block.pieces.as_slice() else { return self.in_pieces(block, &blank, end) };
+        let (body, used) = self.piece(block, piece);
+        let ignored = self.ignored(block.function, &used);
+        format!("{signature}\n{{\n{ignored}{blank}{body}{end}}}\n\n")
+    }
+
+    /// A long function: pieces that hand on values in an array of their caller's.
+    fn in_pieces(&self, block: &Block, blank: &str, end: &str) -> String {
+        let (function, number) = (block.function, self.precision.name());
+        let (name, count, carried) = (self.name(function.id.name()), numbers(&function.shape), block.carried.max(1));
+        let arguments = self.arguments(function);
+        let (mut pieces, mut calls) = (String::new(), String::new());
+        for (index, piece) in block.pieces.iter().enumerate() {
+            let part = format!("{name}_{}", index + 1);
+            let (body, used) = self.piece(block, piece);
+            let ignored = self.ignored(function, &used);
+            let declared: Vec<&str> = arguments.iter().map(|(_, declared)| declared.as_str()).collect();
+            let declared = [declared.join(", "), format!("{number} kept[{carried}], {number} out[{count}]")].join(", ");
+            let unused = "    (void)kept;\n    (void)out;\n";
+            let _ = write!(pieces, "static void {part}({declared})\n{{\n{ignored}{unused}{body}}}\n\n");
+            let names: Vec<&str> = arguments.iter().map(|(name, _)| *name).collect();
+            let _ = writeln!(calls, "    {part}({}, kept, out);", names.join(", "));
+        }
+        let signature = self.signature(function);
+        format!("{pieces}{signature}\n{{\n    {number} kept[{carried}];\n{blank}{calls}{end}}}\n\n")
+    }
+
+    /// A name of the crane's own.
+    pub fn name(&self, of: &str) -> String {
+        format!("{}_{of}", self.chain.name)
+    }
+
+    /// Type, name and arguments of a function.
+    pub fn signature(&self, function: &Function) -> String {
+        let number = self.precision.name();
+        let mut arguments: Vec<String> = self.arguments(function).into_iter().map(|(_, declared)| declared).collect();
+        let returned = match function.shape {
+            Shape::Scalar => number,
+            _ => {
+                arguments.push(format!("{number} out[{}]", numbers(&function.shape)));
+                "void"
+            }
+        };
+        let arguments = if arguments.is_empty() { "void".to_owned() } else { arguments.join(", ") };
+        format!("{returned} {}({arguments})", self.name(function.id.name()))
+    }
+
+    /// Names and declarations of what a function takes.
+    fn arguments(&self, function: &Function) -> Vec<(&'static str, String)> {
+        let (n, number) = (self.chain.coordinates.len(), self.precision.name());
+        let array = |name: &'static str, count: usize| (name, format!("const {number} {name}[{count}]"));
+        let constants = format!("const {} *c", self.name("constants"));
+        let of = |argument: &Argument| match argument {
+            Argument::Time => ("t", format!("{number} t")),
+            Argument::BaseResistance => array("base", 36),
+            Argument::Factors => array("f", self.factors()),
+            vector => array(argument_name(*vector), n),
+        };
+        let live = (!self.chain.parameters.is_empty()).then_some(("c", constants));
+        live.into_iter().chain(function.arguments.iter().map(of)).collect()
+    }
+
+    /// How many factors `solve` takes from `factorise`.
+    fn factors(&self) -> usize {
+        let shapes = self.blocks.program.functions.iter().map(|function| &function.shape);
+        shapes.filter_map(|shape| if let Shape::Factors(count) = shape { Some(*count) } else { None }).sum()
+    }
+
+    /// Says of arguments that nothing reads that this is as it should be.
+    fn ignored(&self, function: &Function, used: &Used) -> String {
+        let reads = |name: &str| used.iter().any(|argument| argument_name(*argument) == name);
+        let unread = self.arguments(function).into_iter().filter(|(name, _)| !reads(name));
+        unread.map(|(name, _)| format!("    (void){name};\n")).collect::<Vec<_>>().concat()
+    }
+
+    /// Statements of a piece, and what they read.
+    fn piece(&self, block: &Block, piece: &[Statement]) -> (String, Used) {
+        let names = Names::new(&self.blocks.program, 0).avoiding(&TAKEN);
+        let mut body = Body { writer: self, block, names, used: Used::new(), text: String::new() };
+        piece.iter().for_each(|statement| body.statement(statement));
+        (body.text, body.used)
+    }
+
+    /// The function that makes constants of live parameters; nothing without such.
+    pub fn constants(&self) -> String {
+        if self.chain.parameters.is_empty() {
+            return String::new();
+        }
+        let (program, stored) = (&self.blocks.program, &self.blocks.constants.stored);
+        let number = self.precision.name();
+        let kept: HashSet<ExprId> = stored.iter().copied().collect();
+        let needed = program.needed(stored.iter().copied());
+        let place = |id: ExprId| {
+            if kept.contains(&id) { format!("c->{}", self.labels.constant(id)) } else { format!("t{:03}", id.index()) }
+        };
+        let mut text = format!(
+            "void {}(const {} *params, {} *c)\n{{\n    c->params = *params;\n",
+            self.name("set_params"),
+            self.name("params"),
+            self.name("constants")
+        );
+        for id in program.ids().filter(|id| needed[id.index()] && !program.op(*id).is_leaf()) {
+            let value = operation(program.op(id), self.precision, &mut |operand| match program.op(operand) {
+                Op::Constant(constant) => Expression::number(constant.value(), self.precision),
+                Op::Symbol(symbol) => Expression::atom(format!("params->{}", program.symbol(symbol).name)),
+                _ => Expression::atom(place(operand)),
+            });
+            let declared = if kept.contains(&id) { String::new() } else { format!("const {number} ") };
+            let _ = writeln!(text, "    {declared}{} = {};", place(id), value.text());
+        }
+        text + "}\n\n"
+    }
+}
+
+/// The body of a piece while it is written.
+struct Body<'a> {
+    writer: &'a Writer<'a>,
+    block: &'a Block<'a>,
+    names: Names<'a>,
+    used: Used,
+    text: String,
+}
+
+impl Body<'_> {
+    fn statement(&mut self, statement: &Statement) {
+        let number = self.writer.precision.name();
+        let f = self.writer.precision.suffix();
+        match statement {
+            &Statement::Input(id) => {
+                let (source, name) = (self.input(id), self.names.of(id));
+                if source != name {
+                    self.local(&name, &source);
+                }
+            }
+            Statement::SinCos(angles) => {
+                for known in angles {
+                    let angle = self.expression(known.angle);
+                    for (id, function) in [(known.sin, "sin"), (known.cos, "cos")] {
+                        if let Some(id) = id {
+                            let name = self.names.of(id);
+                            self.local(&name, &format!("{function}{f}({})", angle.text()));
+                        }
+                    }
+                }
+            }
+            Statement::Stumpff(arguments) => {
+                for (index, known) in arguments.iter().enumerate() {
+                    let argument = self.expression(known.argument);
+                    let (row, orders) = (format!("stumpff_{index}"), Op::STUMPFF_ORDERS);
+                    self.line(&format!("{number} {row}[{orders}];"));
+                    self.line(&format!("stumpff({}, {row});", argument.text()));
+                    for (k, id) in known.values.iter().enumerate() {
+                        if let Some(id) = id {
+                            let name = self.names.of(*id);
+                            self.local(&name, &format!("{row}[{k}]"));
+                        }
+                    }
+                }
+            }
+            Statement::At(place) => {
+                if let Some(place) = place {
+                    let way = if place.outward { "Outward" } else { "Inward" };
+                    self.line(&format!("/* {way}: {} */", place.body));
+                }
+            }
+            &Statement::Let(id) => {
+                let value = self.operation(id);
+                let name = self.names.of(id);
+                self.local(&name, value.text());
+            }
+            &Statement::Output { slot, value } => {
+                let value = self.expression(value);
+                let places = places(&self.block.function.shape, slot);
+                let written = places.iter().map(|place| format!("out[{place}] = ")).collect::<Vec<_>>().concat();
+                self.line(&format!("{written}{};", value.text()));
+            }
+            &Statement::Keep { place, value } => {
+                let name = self.names.of(value);
+                self.line(&format!("kept[{place}] = {name};"));
+            }
+            &Statement::Fetch { place, value } => {
+                let name = self.names.of(value);
+                self.local(&name, &format!("kept[{place}]"));
+            }
+            Statement::Loop { .. } => unreachable!("chains without loops have none"),
+        }
+    }
+
+    fn line(&mut self, line: &str) {
+        let _ = writeln!(self.text, "    {line}");
+    }
+
+    fn local(&mut self, name: &str, value: &str) {
+        let number = self.writer.precision.name();
+        self.line(&format!("const {number} {name} = {value};"));
+    }
+
+    /// An argument of a statement: a variable, a number, a constant, or an operation that stands within.
+    fn expression(&mut self, id: ExprId) -> Expression {
+        let (program, constants) = (&self.writer.blocks.program, &self.writer.blocks.constants);
+        if constants.is_stored(id) {
+            self.used.insert(Argument::Parameters);
+            return Expression::atom(format!("c->{}", self.writer.labels.constant(id)));
+        }
+        match program.op(id) {
+            Op::Constant(constant) => Expression::number(constant.value(), self.writer.precision),
+            Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Parameters => {
+                self.used.insert(Argument::Parameters);
+                Expression::atom(format!("c->params.{}", program.symbol(symbol).name))
+            }
+            _ if self.block.inlined[id.index()] => self.operation(id),
+            _ => Expression::atom(self.names.of(id)),
+        }
+    }
+
+    /// An operation on its arguments. Recursion ends within the bound of one statement.
+    fn operation(&mut self, id: ExprId) -> Expression {
+        let program = &self.writer.blocks.program;
+        match (self.block.fused[id.index()], program.op(id)) {
+            // A product in a sum is a product in a sum: whether it is rounded is for the compiler of C to say.
+            (Some(product), Op::Add(x, y)) if x == product => self.operation(x).plus(self.expression(y)),
+            (Some(product), Op::Add(x, _)) => self.expression(x).plus(self.operation(product)),
+            (Some(product), Op::Sub(x, y)) if x == product => self.operation(x).minus(self.expression(y)),
+            (Some(product), Op::Sub(x, _)) => self.expression(x).minus(self.operation(product)),
+            (_, op) => {
+                let precision = self.writer.precision;
+                operation(op, precision, &mut |operand| self.expression(operand))
+            }
+        }
+    }
+
+    /// Where an input is read.
+    fn input(&mut self, id: ExprId) -> String {
+        let Op::Symbol(symbol) = self.writer.blocks.program.op(id) else { unreachable!("inputs are symbols") };
+        let symbol = self.writer.blocks.program.symbol(symbol);
+        self.used.insert(symbol.argument);
+        let name = argument_name(symbol.argument);
+        if symbol.argument == Argument::Time { name.to_owned() } else { format!("{name}[{}]", symbol.index) }
+    }
+}
+
+/// An operation as C.
+fn operation(op: Op, precision: Precision, of: &mut dyn FnMut(ExprId) -> Expression) -> Expression {
+    let f = precision.suffix();
+    let call = |function: &str, arguments: &[Expression]| Expression::call(function, arguments);
+    match op {
+        Op::Neg(a) => of(a).negative(),
+        Op::Add(a, b) => of(a).plus(of(b)),
+        Op::Sub(a, b) => of(a).minus(of(b)),
+        Op::Mul(a, b) => of(a).times(of(b)),
+        Op::Div(a, b) => of(a).over(of(b)),
+        Op::Min(a, b) => call("smaller", &[of(a), of(b)]),
+        Op::Max(a, b) => call("larger", &[of(a), of(b)]),
+        Op::Select(a, b, c) => call("choose", &[of(a), of(b), of(c)]),
+        Op::Sqrt(a) => call(&format!("sqrt{f}"), &[of(a)]),
+        Op::Exp(a) => call(&format!("exp{f}"), &[of(a)]),
+        Op::Sin(a) => call(&format!("sin{f}"), &[of(a)]),
+        Op::Cos(a) => call(&format!("cos{f}"), &[of(a)]),
+        Op::Constant(constant) => Expression::number(constant.value(), precision),
+        Op::Symbol(_) | Op::Stumpff(..) => unreachable!("inputs are read, Stumpff's functions are evaluated first"),
+    }
+}
+
+/// The name of an argument.
+fn argument_name(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Time => "t",
+        Argument::Position => "q",
+        Argument::Velocity => "v",
+        Argument::Acceleration => "a",
+        Argument::Right => "r",
+        Argument::Resistance => "resistance",
+        Argument::BaseResistance => "base",
+        Argument::Factors => "f",
+        Argument::Parameters => "c",
+        Argument::Round | Argument::Loop => unreachable!("chains without loops have none"),
+    }
+}
+
+/// How many numbers a result has.
+pub fn numbers(shape: &Shape) -> usize {
+    match shape {
+        Shape::Symmetric(n) => n * n,
+        Shape::Base => 36,
+        Shape::MassAndBias(n) => n * n + n,
+        Shape::Record(_, fields) => fields.iter().map(|(_, shape)| numbers(shape)).sum(),
+        _ => shape.len(),
+    }
+}
+
+/// Where a slot stands in the result: once, or twice in a symmetric matrix.
+fn places(shape: &Shape, slot: usize) -> Vec<usize> {
+    match shape {
+        Shape::Symmetric(n) => {
+            let (row, column) = row_of_triangle(*n, slot);
+            let mut places = vec![row * n + column, column * n + row];
+            places.dedup();
+            places
+        }
+        Shape::Base => places(&Shape::Symmetric(6), slot),
+        Shape::MassAndBias(n) => match slot.checked_sub(n * (n + 1) / 2) {
+            Some(row) => vec![n * n + row],
+            None => places(&Shape::Symmetric(*n), slot),
+        },
+        Shape::Record(_, fields) => {
+            let (index, rest) = field_of(fields, slot);
+            let before: usize = fields[..index].iter().map(|(_, shape)| numbers(shape)).sum();
+            places(&fields[index].1, rest).into_iter().map(|place| before + place).collect()
+        }
+        _ => vec![slot],
+    }
+}

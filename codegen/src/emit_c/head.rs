@@ -1,0 +1,182 @@
+//! The header: coordinates and parameters by name, and every function with its shapes and units.
+
+use std::fmt::Write;
+
+use super::Precision;
+use super::function::{Writer, numbers};
+use crate::chain::{Chain, CoordinateKind};
+use crate::program::{Argument, Function, Shape, Struct};
+
+/// The beginning of the source.
+pub fn source(chain: &Chain) -> String {
+    format!("/* {} */\n\n#include \"{}.h\"\n\n#include <math.h>\n\n", origin(chain), chain.name)
+}
+
+/// Where the files come from.
+fn origin(chain: &Chain) -> String {
+    // A title may hold anything; a comment ends at the first `*/`.
+    let title = chain.title.replace("*/", "* /").replace("/*", "/ *").replace(['\n', '\r'], " ");
+    format!("{title}. Made by crane-codegen from the spec with hash {}; do not edit.", chain.spec_hash)
+}
+
+/// The text of the header.
+pub fn header(writer: &Writer) -> String {
+    let Writer { chain, blocks, precision, .. } = writer;
+    let guard = format!("{}_H", chain.name.to_uppercase());
+    let mut text = format!("/* {} */\n\n", origin(chain));
+    text += &format!("{}\n\n", about(*precision));
+    let _ = write!(text, "#ifndef {guard}\n#define {guard}\n\n");
+    text += &coordinates(chain);
+    text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
+    text += &parameters(writer);
+    for block in &blocks.functions {
+        text += &documentation(writer, block.function, block.count.total());
+        let _ = write!(text, "{};\n\n", writer.signature(block.function));
+    }
+    text + &format!("#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n")
+}
+
+fn about(precision: Precision) -> &'static str {
+    match precision {
+        Precision::Double => {
+            "/* C99. No heap, no global data, no recursion; of the library sin and cos, sqrt where sections turn far, exp where\n   \
+             joints have friction. All functions may be called from several threads. SI units, rad. */"
+        }
+        Precision::Single => {
+            "/* C99, single precision: about six digits, fewer where large numbers cancel. No heap, no global data, no recursion; of\n   \
+             the library sinf and cosf, sqrtf where sections turn far, expf where joints have friction. All functions may be\n   \
+             called from several threads. SI units, rad. */"
+        }
+    }
+}
+
+/// Places of the coordinates in `q`.
+fn coordinates(chain: &Chain) -> String {
+    let prefix = chain.name.to_uppercase();
+    let mut text = format!(
+        "/* Number of coordinates, and their places in q, v and all results per coordinate. */\n\
+         #define {prefix}_N {}\n\nenum {{\n",
+        chain.coordinates.len()
+    );
+    for (index, coordinate) in chain.coordinates.iter().enumerate() {
+        let (unit, force) = match coordinate.kind {
+            CoordinateKind::Translation => ("m", "N"),
+            CoordinateKind::Rotation => ("rad", "N m"),
+        };
+        let name = coordinate.name.to_uppercase();
+        let _ = writeln!(text, "    {prefix}_{name} = {index}, /* {unit}, {unit}/s; forces in {force} */");
+    }
+    text + "};\n\n"
+}
+
+/// Live parameters, and what is made of them once; nothing without such.
+fn parameters(writer: &Writer) -> String {
+    let Writer { chain, blocks, precision, .. } = writer;
+    if chain.parameters.is_empty() {
+        return String::new();
+    }
+    let number = precision.name();
+    let [params, constants] = ["params", "constants"].map(|name| writer.name(name));
+    let mut text = "/* Values that stay live. */\ntypedef struct {\n".to_owned();
+    for (parameter, value) in chain.parameters.iter().zip(writer.parameters) {
+        let about = parameter.about.replace("*/", "* /").replace("/*", "/ *").replace(['\n', '\r'], " ");
+        let words = [about.as_str(), &parameter.unit, &format!("{value:?} in {}", macro_name(chain))]
+            .into_iter()
+            .filter(|words| !words.is_empty())
+            .collect::<Vec<_>>()
+            .join(", ");
+        let _ = writeln!(text, "    {number} {}; /* {words} */", parameter.name);
+    }
+    let values: Vec<String> =
+        writer.parameters.iter().map(|value| format!("{value:?}{}", precision.suffix())).collect();
+    let _ = write!(text, "}} {params};\n\n#define {} {{{}}}\n", macro_name(chain), values.join(", "));
+    let _ = write!(
+        text,
+        "\n/* Live parameters, and what depends on them alone; made by {}. */\ntypedef struct {{\n    {params} params;\n",
+        writer.name("set_params")
+    );
+    for id in &blocks.constants.stored {
+        let _ = writeln!(text, "    {number} {};", writer.labels.constant(*id));
+    }
+    let _ = write!(
+        text,
+        "}} {constants};\n\n/* Computes the constants of some parameters, once after they change. The rules of the spec language are not checked\n   \
+         here: masses and stiffnesses must be as the spec allows them. */\nvoid {}(const {params} *params, {constants} *c);\n\n",
+        writer.name("set_params")
+    );
+    text
+}
+
+/// The macro with initial values of the parameters.
+fn macro_name(chain: &Chain) -> String {
+    format!("{}_PARAMS", chain.name.to_uppercase())
+}
+
+/// What a function computes, of what, and in which shape.
+fn documentation(writer: &Writer, function: &Function, operations: usize) -> String {
+    let clean = |text: &str| text.replace("*/", "* /");
+    let mut text = format!("/* {}\n   {}\n", clean(function.doc), clean(function.equation));
+    for argument in function.arguments {
+        let _ = writeln!(text, "   {}", of_argument(*argument));
+    }
+    let _ = write!(text, "   {}; {operations} operations. */\n", result(writer.chain, &function.shape));
+    text
+}
+
+fn of_argument(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Time => "t: time, s",
+        Argument::Position => "q: coordinates, m and rad",
+        Argument::Velocity => "v: their rates, m/s and rad/s",
+        Argument::Acceleration => "a: their accelerations, m/s2 and rad/s2",
+        Argument::Right => "r: generalized forces, N and N m",
+        Argument::Resistance => "resistance: added to the diagonal of the mass matrix, one number per coordinate",
+        Argument::BaseResistance => "base: added to the mass matrix over the base's coordinates, symmetric, 6 x 6",
+        Argument::Factors => "f: what factorise has left",
+        Argument::Parameters | Argument::Round | Argument::Loop => "",
+    }
+}
+
+/// The shape of a result in words.
+fn result(chain: &Chain, shape: &Shape) -> String {
+    let n = chain.coordinates.len();
+    let names = |names: Vec<&str>| names.join(", ");
+    match shape {
+        Shape::Scalar => "Returns the number".to_owned(),
+        Shape::Vector(_) => "out: one number per coordinate".to_owned(),
+        Shape::Symmetric(_) => format!("out: {n} x {n}, symmetric"),
+        Shape::Base => "out: 6 x 6, symmetric, over x, y, z, psi, theta, phi of the base".to_owned(),
+        Shape::MassAndBias(_) => format!("out: {n} x {n}, symmetric, then one number per coordinate"),
+        Shape::Vectors(count) if *count == chain.points.len() => {
+            let points = chain.points.iter().map(|point| point.name.as_str()).collect();
+            format!("out: x, y, z one after the other of {}", names(points))
+        }
+        Shape::Vectors(count) => format!("out: x, y, z of {count} supports, one after the other"),
+        Shape::Pairs(count) => format!("out: {count} pairs"),
+        Shape::Structs(Struct::Wrench, count) => {
+            format!(
+                "out: force x, y, z and moment x, y, z of {count} cuts from the ground to the tip, one after the other"
+            )
+        }
+        Shape::Structs(Struct::SectionModuli, count) => {
+            format!(
+                "out: area, moduli of bending about y and z and of torsion, shear areas along y and z, whether there are corners, \
+                 allowable stress of {count} beams"
+            )
+        }
+        Shape::Transforms { counts, .. } => {
+            let bodies = chain.bodies.iter().map(|body| body.name.as_str()).collect();
+            let matrices: usize = counts.iter().sum();
+            format!(
+                "out: the upper three rows of {matrices} matrices 4 x 4, row by row, of the bodies {}",
+                names(bodies)
+            )
+        }
+        Shape::Factors(count) => format!("out: {count} numbers for solve"),
+        Shape::Record(_, fields) => {
+            let fields = fields.iter().map(|(name, shape)| format!("{name} ({} numbers)", numbers(shape)));
+            format!("out: {}, one after the other", fields.collect::<Vec<_>>().join(", "))
+        }
+        Shape::Columns { .. } | Shape::Turned { .. } => "out: factors".to_owned(),
+    }
+}

@@ -1,0 +1,68 @@
+//! C text from straight lines, for controllers: C99 without a heap, global data or recursion. The only module that knows C.
+//!
+//! What is written is a header and a source of the functions that were asked for. Loops are not written: a crane whose elements count
+//! some tens at most fits a controller as straight lines, and needs no tables.
+
+mod arithmetic;
+mod function;
+mod head;
+mod support;
+
+use crate::chain::Chain;
+use crate::emit::Labels;
+use crate::lower::Blocks;
+use function::Writer;
+
+/// The type of all numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// `double`
+    #[default]
+    Double,
+    /// `float`
+    Single,
+}
+
+impl Precision {
+    /// Its name in C.
+    fn name(self) -> &'static str {
+        match self {
+            Precision::Double => "double",
+            Precision::Single => "float",
+        }
+    }
+
+    /// What names of functions and numbers end in.
+    fn suffix(self) -> &'static str {
+        match self {
+            Precision::Double => "",
+            Precision::Single => "f",
+        }
+    }
+}
+
+/// A crane in C.
+#[derive(Clone, Debug)]
+pub struct CCode {
+    /// Name of the crane: of both files, and before every name in them.
+    pub name: String,
+    /// The header, `<name>.h`.
+    pub header: String,
+    /// The source, `<name>.c`.
+    pub source: String,
+}
+
+/// Writes functions of a crane, all that the blocks have; `parameters` are the initial values of the live parameters.
+///
+/// # Panics
+/// If a function has loops, or a result that is left as factors: chains with [`Loops::Never`](crate::chain::Loops) have neither.
+#[must_use]
+pub fn emit_c(chain: &Chain, blocks: &Blocks, parameters: &[f64], precision: Precision) -> CCode {
+    let labels = Labels::new(chain, blocks);
+    let writer = Writer { chain, blocks, labels: &labels, parameters, precision };
+    let functions: String = blocks.functions.iter().map(|block| writer.function(block)).collect();
+    let constants = writer.constants();
+    let body = format!("{constants}{functions}");
+    let source = format!("{}{}{body}", head::source(chain), support::used(&body, precision));
+    CCode { name: chain.name.clone(), header: head::header(&writer), source }
+}

@@ -1,0 +1,210 @@
+//! Cranes in C: compiled by the system's C compiler without a warning, and the same numbers as the interpreter's.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+use crane_codegen::SourceFile;
+use crane_codegen::chain::{Analyses, Chain, Loops};
+use crane_codegen::compile::{generate_c, load};
+use crane_codegen::emit_c::{CCode, Precision};
+use crane_codegen::mechanics::derive;
+use crane_codegen::program::{Argument, Function, Inputs, Program, Shape};
+
+const EVERYTHING: Analyses =
+    Analyses { statics: true, dynamics: true, modes: true, internal_forces: true, derivatives: false, ensemble: false };
+
+fn shipped(name: &str) -> Chain {
+    let path = format!("{}/../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    load(&SourceFile::new(&path, fs::read_to_string(&path).unwrap())).unwrap()
+}
+
+/// Numbers between −1 and 1, the same on every run.
+fn numbers(count: usize, seed: f64) -> Vec<f64> {
+    (0..count).map(|index| (12.9898 * index as f64 + 78.233 * seed).sin()).collect()
+}
+
+/// Arguments of a function at a state near the guess: names and values in order.
+fn arguments(chain: &Chain, function: &Function) -> Vec<(Argument, Vec<f64>)> {
+    let n = chain.coordinates.len();
+    let near: Vec<f64> = chain.guess.iter().zip(numbers(n, 1.0)).map(|(q, x)| q + 0.1 * x).collect();
+    let symmetric = |scale: f64| -> Vec<f64> {
+        let random = numbers(36, 5.0);
+        (0..36).map(|k| scale * (random[k] + random[6 * (k % 6) + k / 6])).collect()
+    };
+    let of = |argument: &Argument| match argument {
+        Argument::Time => vec![1.7],
+        Argument::Position => near.clone(),
+        Argument::Velocity => numbers(n, 2.0),
+        Argument::Acceleration => numbers(n, 3.0),
+        Argument::Right => numbers(n, 4.0).iter().map(|x| 1e4 * x).collect(),
+        Argument::Resistance => numbers(n, 6.0).iter().map(|x| 100.0 * (x + 1.0)).collect(),
+        Argument::BaseResistance => symmetric(10.0),
+        other => panic!("{other:?} is not given from outside"),
+    };
+    function.arguments.iter().filter(|a| **a != Argument::Factors).map(|a| (*a, of(a))).collect()
+}
+
+/// What the interpreter computes, in the order of the result in C.
+fn expected(program: &Program, function: &Function, chain: &Chain, factors: &[f64]) -> Vec<f64> {
+    let inputs = arguments(chain, function).into_iter().fold(
+        Inputs::state(0.0, vec![], vec![], chain.parameter_defaults()).with(Argument::Factors, factors.to_vec()),
+        |inputs, (argument, values)| inputs.with(argument, values),
+    );
+    let slots = program.evaluate(function, &inputs);
+    in_full(&function.shape, &slots)
+}
+
+/// Symmetric matrices from their upper triangles.
+fn in_full(shape: &Shape, slots: &[f64]) -> Vec<f64> {
+    let square = |n: usize, slots: &[f64]| {
+        let mut matrix = vec![0.0; n * n];
+        let mut slots = slots.iter();
+        for row in 0..n {
+            for column in row..n {
+                let value = *slots.next().unwrap();
+                (matrix[row * n + column], matrix[column * n + row]) = (value, value);
+            }
+        }
+        matrix
+    };
+    match shape {
+        Shape::Symmetric(n) => square(*n, slots),
+        Shape::Base => square(6, slots),
+        Shape::MassAndBias(n) => {
+            let (mass, bias) = slots.split_at(n * (n + 1) / 2);
+            [square(*n, mass), bias.to_vec()].concat()
+        }
+        Shape::Record(_, fields) => {
+            let mut rest = slots;
+            let parts = fields.iter().map(|(_, shape)| {
+                let (own, others) = rest.split_at(shape.len());
+                rest = others;
+                in_full(shape, own)
+            });
+            parts.collect::<Vec<_>>().concat()
+        }
+        _ => slots.to_vec(),
+    }
+}
+
+/// A program that calls all functions and prints their numbers, one a line.
+fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str) -> String {
+    let name = &code.name;
+    let mut text = format!("#include <stdio.h>\n#include \"{name}.h\"\n\nint main(void)\n{{\n");
+    if !chain.parameters.is_empty() {
+        let _ = writeln!(text, "    const {name}_params params = {}_PARAMS;", name.to_uppercase());
+        let _ = writeln!(text, "    static {name}_constants c;\n    {name}_set_params(&params, &c);");
+    }
+    let _ = writeln!(text, "    static {number} f[100000];");
+    for function in functions {
+        let live = (!chain.parameters.is_empty()).then(|| "&c".to_owned());
+        let mut given: Vec<String> = live.into_iter().collect();
+        text += "    {\n";
+        let mut values = arguments(chain, function).into_iter();
+        for argument in function.arguments {
+            if *argument == Argument::Factors {
+                given.push("f".to_owned());
+                continue;
+            }
+            let (_, values) = values.next().unwrap();
+            let list: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
+            let variable = format!("x{}", given.len());
+            let _ = writeln!(text, "        const {number} {variable}[] = {{{}}};", list.join(", "));
+            given.push(if *argument == Argument::Time { format!("{variable}[0]") } else { variable });
+        }
+        let count = in_full(&function.shape, &vec![0.0; function.shape.len()]).len();
+        let call = format!("{name}_{}", function.id.name());
+        if function.shape == Shape::Scalar {
+            let _ = writeln!(text, "        const {number} out[] = {{{call}({})}};", given.join(", "));
+        } else {
+            let _ = writeln!(text, "        static {number} out[{count}];");
+            let given = given.iter().map(|argument| format!("{argument}, ")).collect::<Vec<_>>().concat();
+            let _ = writeln!(text, "        {call}({given}out);");
+        }
+        if matches!(function.shape, Shape::Factors(_)) {
+            let _ = writeln!(text, "        for (int k = 0; k < {count}; k++) f[k] = out[k];");
+        }
+        let _ =
+            writeln!(text, "        for (int k = 0; k < {count}; k++) printf(\"%.17g\\n\", (double)out[k]);\n    }}");
+    }
+    text + "    return 0;\n}\n"
+}
+
+/// Compiles and runs; the numbers that were printed.
+fn run(folder: &Path, code: &CCode, main: &str) -> Vec<f64> {
+    fs::create_dir_all(folder).unwrap();
+    for (file, text) in [(format!("{}.h", code.name), &code.header), (format!("{}.c", code.name), &code.source)] {
+        fs::write(folder.join(file), text).unwrap();
+    }
+    fs::write(folder.join("main.c"), main).unwrap();
+    let program = folder.join("main");
+    let compiler = env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    let strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"];
+    let compile = |arguments: &[&str]| {
+        let done = Command::new(&compiler).args(arguments).current_dir(folder).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    };
+    compile(&[&strict[..], &["-c", &format!("{}.c", code.name), "-o", "crane.o"]].concat());
+    // The caller's numbers are doubles; in single precision it rounds them.
+    compile(&["-std=c99", "-O0", "main.c", "crane.o", "-lm", "-o", "main"]);
+    let printed = Command::new(program).output().unwrap();
+    assert!(printed.status.success());
+    String::from_utf8(printed.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect()
+}
+
+/// Greatest difference of each function from the interpreter, relative to its greatest number.
+fn differences(name: &str, chain: &Chain, precision: Precision) -> Vec<(&'static str, f64)> {
+    let straight = Chain { loops: Loops::Never, ..chain.clone() };
+    let program = derive(&straight, EVERYTHING);
+    let functions: Vec<&Function> = program.functions.iter().collect();
+    let names: Vec<&str> = functions.iter().map(|function| function.id.name()).collect();
+    let code = generate_c(chain, &names, &chain.parameter_defaults(), precision).unwrap();
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("c_{name}_{precision:?}"));
+    let number = if precision == Precision::Double { "double" } else { "float" };
+    let printed = run(&folder, &code, &caller(&code, chain, &functions, number));
+    let mut rest = printed.as_slice();
+    let (mut found, mut factors) = (Vec::new(), Vec::new());
+    for function in functions {
+        let expected = expected(&program, function, chain, &factors);
+        let (own, others) = rest.split_at(expected.len());
+        rest = others;
+        if matches!(function.shape, Shape::Factors(_)) {
+            factors.clone_from(&expected);
+        }
+        let size = expected.iter().fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
+        let off = own.iter().zip(&expected).map(|(own, expected)| (own - expected).abs()).fold(0.0, f64::max);
+        found.push((function.id.name(), off / size));
+    }
+    assert!(rest.is_empty());
+    found
+}
+
+#[test]
+fn every_function_of_every_kind_of_crane_is_the_interpreters() {
+    for name in ["double_pendulum", "knuckle_boom", "eight_link_rigid", "eight_link_flexible"] {
+        for (function, off) in differences(name, &shipped(name), Precision::Double) {
+            // The same operations, rounded alike but for sines; forward dynamics of stiff cranes cancels some digits.
+            assert!(off < 1e-12, "{name}: {function} is off by {off:e}");
+        }
+    }
+}
+
+#[test]
+fn single_precision_has_the_digits_that_the_manual_says() {
+    let off = differences("eight_link_flexible", &shipped("eight_link_flexible"), Precision::Single);
+    let of = |name: &str| off.iter().find(|(function, _)| *function == name).unwrap().1;
+    // Measured: 6e-8, 4e-8, 2e-6.
+    assert!(of("mass_matrix") < 1e-6 && of("bias") < 1e-6 && of("forward_dynamics") < 1e-5, "{off:?}");
+    // Numbers of 24 bits: an error below that would be double precision.
+    assert!(of("forward_dynamics") > 1e-8, "{off:?}");
+}
+
+#[test]
+fn a_function_that_the_crane_does_not_have_is_named_with_those_that_it_has() {
+    let refused =
+        generate_c(&shipped("knuckle_boom"), &["bias", "levitation"], &[800.0], Precision::Double).unwrap_err();
+    assert_eq!(refused.name, "levitation");
+    assert!(refused.known.contains(&"forward_dynamics"));
+}
