@@ -89,7 +89,7 @@ fn in_full(shape: &Shape, slots: &[f64]) -> Vec<f64> {
     }
 }
 
-/// A program that calls all functions and prints their numbers, one a line.
+/// A program that calls all functions and prints their numbers, one per line.
 fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str) -> String {
     let name = &code.name;
     let mut text = format!("#include <stdio.h>\n#include \"{name}.h\"\n\nint main(void)\n{{\n");
@@ -185,7 +185,7 @@ fn differences(name: &str, chain: &Chain, precision: Precision) -> Vec<(&'static
 fn every_function_of_every_kind_of_crane_is_the_interpreters() {
     for name in ["double_pendulum", "knuckle_boom", "eight_link_rigid", "eight_link_flexible"] {
         for (function, off) in differences(name, &shipped(name), Precision::Double) {
-            // The same operations, rounded alike but for sines; forward dynamics of stiff cranes cancels some digits.
+            // The same operations, rounded alike except for sines; forward dynamics of stiff cranes cancels some digits.
             assert!(off < 1e-12, "{name}: {function} is off by {off:e}");
         }
     }

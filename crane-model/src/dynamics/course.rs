@@ -78,7 +78,7 @@ impl<'a> Course<'a> {
         Ok(Self { crane, stepper, settings: *settings, stops, begin, end, reached: begin, time: begin, motion })
     }
 
-    /// Goes on to a later time, s. `step` is told the time after every step, and may break off: then the last result stays.
+    /// Goes on to a later time, s. `step` receives the time after every step and may stop the motion: then the last result stays.
     ///
     /// # Errors
     /// [`Stopped`] where the motion grows without bound, no step meets the tolerance, or steps are more than the settings allow.
