@@ -24,8 +24,7 @@ pub fn header(writer: &Writer) -> String {
     let Writer { chain, blocks, precision, .. } = writer;
     let guard = format!("{}_H", chain.name.to_uppercase());
     let mut text = format!("/* {} */\n\n", origin(chain));
-    text += &format!("{}\n\n", about(*precision));
-    let _ = write!(text, "#ifndef {guard}\n#define {guard}\n\n");
+    let _ = write!(text, "{}\n\n#ifndef {guard}\n#define {guard}\n\n", about(*precision));
     text += &coordinates(chain);
     text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     text += &parameters(writer);
