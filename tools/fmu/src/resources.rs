@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crane_codegen::{Checked, build, compile};
+use crane_codegen::{Checked, SourceFile, compile};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynModel;
 
@@ -37,17 +37,24 @@ pub fn write_parameters(crane: &dyn DynModel) -> String {
 /// # Errors
 /// A file cannot be read, or the spec has mistakes: in words.
 pub fn open(folder: &Path) -> Result<Opened, String> {
-    let source = build::open(&folder.join(SPEC)).map_err(|failure| failure.to_string())?;
+    // Not by the compiler's reader of files: the text has the specs that it extends.
+    let bytes = read(folder, SPEC)?;
+    let source = SourceFile::from_bytes(SPEC, &bytes).map_err(|mistakes| mistakes.to_string())?;
     let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| mistakes.to_string())?;
     let crane = LiveCrane::new(chain);
     let mut parameters = crane.parameters().to_vec();
-    let file = folder.join(PARAMETERS);
-    let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
-    for line in text.lines() {
-        let (place, value) = read_line(&crane, line).ok_or_else(|| format!("{}: `{line}`", file.display()))?;
+    let bytes = read(folder, PARAMETERS)?;
+    for line in String::from_utf8_lossy(&bytes).lines() {
+        let (place, value) = read_line(&crane, line).ok_or_else(|| format!("{PARAMETERS}: `{line}`"))?;
         parameters[place] = value;
     }
     Ok(Opened { crane, parameters, warnings: warnings.lines().collect::<Vec<_>>().join("; ") })
+}
+
+/// A file of the folder.
+fn read(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
+    let file = folder.join(name);
+    fs::read(&file).map_err(|error| format!("{}: {error}", file.display()))
 }
 
 /// Place and value of a parameter.
