@@ -79,12 +79,11 @@ impl Writer<'_> {
     pub fn signature(&self, function: &Function) -> String {
         let number = self.precision.name();
         let mut arguments: Vec<String> = self.arguments(function).into_iter().map(|(_, declared)| declared).collect();
-        let returned = match function.shape {
-            Shape::Scalar => number,
-            _ => {
-                arguments.push(format!("{number} out[{}]", numbers(&function.shape)));
-                "void"
-            }
+        let returned = if function.shape == Shape::Scalar {
+            number
+        } else {
+            arguments.push(format!("{number} out[{}]", numbers(&function.shape)));
+            "void"
         };
         let arguments = if arguments.is_empty() { "void".to_owned() } else { arguments.join(", ") };
         format!("{returned} {}({arguments})", self.name(function.id.name()))
@@ -122,7 +121,9 @@ impl Writer<'_> {
     fn piece(&self, block: &Block, piece: &[Statement]) -> (String, Used) {
         let names = Names::new(&self.blocks.program, 0).avoiding(&TAKEN);
         let mut body = Body { writer: self, block, names, used: Used::new(), text: String::new() };
-        piece.iter().for_each(|statement| body.statement(statement));
+        for statement in piece {
+            body.statement(statement);
+        }
         (body.text, body.used)
     }
 

@@ -118,7 +118,7 @@ fn documentation(writer: &Writer, function: &Function, operations: usize) -> Str
     for argument in function.arguments {
         let _ = writeln!(text, "   {}", of_argument(*argument));
     }
-    let _ = write!(text, "   {}; {operations} operations. */\n", result(writer.chain, &function.shape));
+    let _ = writeln!(text, "   {}; {operations} operations. */", result(writer.chain, &function.shape));
     text
 }
 
