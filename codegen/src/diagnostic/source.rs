@@ -55,7 +55,7 @@ impl SourceFile {
         SourceFile::new(&self.name, before + &part(named, &self.text))
     }
 
-    /// Its parts, each of which extends the one before; usually one, the whole.
+    /// Its parts, each of which extends the previous one; usually one, the whole.
     #[must_use]
     pub fn parts(&self) -> Vec<Part<'_>> {
         if !self.text.starts_with(PART) {

@@ -52,7 +52,7 @@ fn parts(source: &SourceFile, mistakes: &mut Vec<Mistake>) -> Result<Node, Mista
         });
     }
     let whole = whole.ok_or_else(|| rule::empty(Span::START))?;
-    // Only whoever opened the file could have followed it.
+    // Only the reader of the file could have followed it.
     if let Some((base, span)) = whole.base() {
         mistakes.push(rule::no_base(span, base, "this spec is text, not a file, so there is no folder to look in"));
     }
