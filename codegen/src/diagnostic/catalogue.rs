@@ -74,10 +74,10 @@ catalogue! {
         "an alias (`*name`) repeats everything its anchor holds: write out only what differs, and give beams `sections` instead of `elements`";
     /// `extends` names a spec that can be read: a file, relative to this one, or a shipped crane.
     E008 no_base(base, problem) "`extends: {base}` cannot be read: {problem}", "the spec to start from",
-        "name a YAML file, relative to this one, or a shipped crane such as eight_link_flexible";
-    /// What an extending spec removes is there.
-    E009 nothing_to_remove(name) "there is no `{name}` to remove", "the spec that is extended does not have it",
-        "check its name in the spec that is extended, or leave this out";
+        "give a YAML file, relative to this one, or a shipped crane such as eight_link_flexible";
+    /// An extending spec removes only existing entries.
+    E009 nothing_to_remove(name) "there is no `{name}` to remove", "the extended spec does not have it",
+        "check its name in the extended spec, or remove this entry";
 
     // Keys and shapes.
     /// Every key belongs to the language.
