@@ -30,6 +30,11 @@ fn crane(rest: &str) -> Chain {
 
 /// A beam on a hub that turns by `joint`, x of the beam along x of the hub; on its tip a point mass of [`LOAD`].
 fn beam(joint: &str, gravity: &str, section_joint: &str) -> Chain {
+    loaded_beam(joint, gravity, section_joint, "")
+}
+
+/// The same with more keys.
+fn loaded_beam(joint: &str, gravity: &str, section_joint: &str, more: &str) -> Chain {
     crane(&format!(
         "gravity: {gravity}
 links:
@@ -42,16 +47,21 @@ links:
       material: {{E: 2.1e11, G: 8.1e10, density: {DENSITY}}}
       section: {{solid: {{height: 0.2, width: 0.1}}}}
   - {{name: load, mass: {LOAD}, com: [0, 0, 0]}}
-"
+{more}"
     ))
 }
 
 /// What every cut transmits.
 fn wrenches(chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
+    wrenches_at(0.0, chain, q, v, a)
+}
+
+/// What every cut transmits at a time.
+fn wrenches_at(t: f64, chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
     let analyses = Analyses { derivatives: false, ..Analyses::ALL };
     let program = mechanics::derive(chain, analyses);
     let function = program.function(FunctionId::InternalForces).expect("the analyses ask for it");
-    let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), chain.parameter_defaults());
+    let inputs = Inputs::state(t, q.to_vec(), v.to_vec(), chain.parameter_defaults());
     let slots = program.evaluate(function, &inputs.with(Argument::Acceleration, a.to_vec()));
     slots.as_chunks::<3>().0.as_chunks::<2>().0.to_vec()
 }
@@ -97,6 +107,49 @@ fn a_cantilever_bends_by_its_weight_and_its_load() {
         // The ground carries what the clamped end does.
         assert_close("ground", wrenches[0], wrenches[1]);
     }
+}
+
+/// A force and a moment at the tip: the force goes through all sections, and bends with its lever.
+#[test]
+fn a_cantilever_carries_a_force_and_a_moment_at_its_tip() {
+    let (force, moment) = ([30.0, -20.0, 10.0], [1.0, 2.0, 3.0]);
+    let load = "loads: [{name: pull, link: load, at: [0.5, 0, 0], force: [30, -20, 10], moment: [1, 2, 3]}]";
+    let along_the_link = load.replace("}]", ", axes: link, scale: {cubic: {from: 1, to: 3, duration: 2}}}]");
+    // Turned about z, the world's axes are not the beam's; a load that turns with the link does not feel it.
+    for (joint, more, angle, t, scale) in
+        [("fixed", load, None, 0.0, 1.0), ("revolute", &along_the_link, Some(0.7), 1.0, 2.0)]
+    {
+        let chain = loaded_beam(joint, "[0, 0, 0]", "symmetric", more);
+        let mut q = vec![0.0; chain.coordinates.len()];
+        let rest = q.clone();
+        q.iter_mut().take(1).zip(angle).for_each(|(q, angle)| *q = angle);
+        let sections = sections(&chain, &wrenches_at(t, &chain, &q, &rest, &rest));
+        assert_eq!(sections.len(), SECTIONS + 1);
+        for (x, wrench) in sections {
+            let lever = LENGTH + 0.5 - x;
+            let bending = [moment[0], moment[1] - lever * force[2], moment[2] + lever * force[1]];
+            assert_close(&format!("{joint}, x = {x}"), wrench, [force, bending].map(|of| of.map(|x| scale * x)));
+        }
+    }
+}
+
+/// What does not come from a load at the tip is carried where the load acts: nothing of it is beyond.
+#[test]
+fn a_load_is_carried_from_where_it_acts() {
+    let chain = loaded_beam(
+        "fixed",
+        "[0, 0, 0]",
+        "symmetric",
+        "loads: [{name: pull, link: beam, at: [1.2, 0, 0], force: [0, 100, 0]}]",
+    );
+    let rest = vec![0.0; chain.coordinates.len()];
+    let wrenches = wrenches(&chain, &rest, &rest, &rest);
+    for (x, wrench) in sections(&chain, &wrenches) {
+        let inside = x < 1.2;
+        let expected = if inside { [[0.0, 100.0, 0.0], [0.0, 0.0, 100.0 * (1.2 - x)]] } else { [[0.0; 3]; 2] };
+        assert_close(&format!("x = {x}"), wrench, expected);
+    }
+    assert_close("ground", wrenches[0], [[0.0, 100.0, 0.0], [0.0, 0.0, 120.0]]);
 }
 
 /// `N = ∫ ρAω² x dx + m ω² l`; and while it speeds up by α, `Qy = −α (∫ ρA x dx + m l)` and

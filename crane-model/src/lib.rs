@@ -46,8 +46,8 @@ pub mod support;
 pub mod tipping;
 
 pub use description::{
-    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, LARGE_TILT, List, NEAR_SINGULAR,
-    ParameterInfo, SupportInfo, Text,
+    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, InputInfo, LARGE_TILT, List,
+    LoadInfo, NEAR_SINGULAR, ParameterInfo, SupportInfo, Text,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,

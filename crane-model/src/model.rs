@@ -35,6 +35,16 @@ pub trait CraneModel<const N: usize> {
         values.iter().enumerate().try_for_each(|(index, &value)| self.set_parameter(index, value))
     }
 
+    /// What an input is set to, by its place in [`Description::inputs`]; nothing while it is as its spec says.
+    fn input(&self, _index: usize) -> Option<f64> {
+        None
+    }
+
+    /// Sets an input from now on, or gives it back to its spec. An index out of range changes nothing.
+    ///
+    /// A run takes inputs as they are when it begins: [`simulate_from`](crate::dynamics::simulate_from) goes on with other ones.
+    fn set_input(&mut self, _index: usize, _value: Option<f64>) {}
+
     /// Transforms T of all bodies into the world frame, Eq. (3). `out`: one per body.
     fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]);
 
@@ -79,6 +89,15 @@ pub trait CraneModel<const N: usize> {
         SVector::zeros()
     }
 
+    /// Generalized forces of the loads applied from outside.
+    fn load_forces(&self, _t: f64, _q: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
+    /// Begin and end of the pieces in which the scales of loads are smooth, s. `out`: one pair per piece, load by load, as many
+    /// as [`LoadInfo::pieces`](crate::LoadInfo::pieces) says.
+    fn load_pieces(&self, _out: &mut [[f64; 2]]) {}
+
     /// Forces of the supports on the crane, world frame, N. `out`: one per support.
     fn support_reactions(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
@@ -117,6 +136,11 @@ pub trait CraneModel<const N: usize> {
 
     /// Power of the drives' prescribed motions, `Σ t_dr q̇_dr`. W.
     fn drive_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
+        0.0
+    }
+
+    /// Power that the loads applied from outside put in. W.
+    fn load_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
         0.0
     }
 
@@ -268,14 +292,21 @@ pub trait Linearise<const N: usize>: CraneModel<N> {
 
 /// Forces and moments between the parts of a crane.
 pub trait InternalForces<const N: usize>: CraneModel<N> {
-    /// At every cut, the wrench that the part beyond it exerts on the part before it, in the cut's frame about its origin, at pose q,
-    /// rates v and accelerations a. `out`: one per cut, as [`Description::cuts`] lists them.
+    /// At every cut, the wrench that the part beyond it exerts on the part before it, in the cut's frame about its origin, at time t,
+    /// pose q, rates v and accelerations a. `out`: one per cut, as [`Description::cuts`] lists them.
     ///
-    /// It is the inertia and the weight of everything beyond, so it is valid where only joints hold that part: supports act only
-    /// on the base. At the ground it is the load on the foundation or on the supports. In a section of a beam it is
-    /// `N, Qy, Qz` and `Mx, My, Mz`: a positive N is tension; Mx, My and Mz have the signs of the deformations that they cause,
-    /// φ, θ and ψ.
-    fn internal_forces(&self, q: &SVector<f64, N>, v: &SVector<f64, N>, a: &SVector<f64, N>, out: &mut [Wrench]);
+    /// It is the inertia and the weight of everything beyond with the loads applied to it, so it is valid where only joints hold
+    /// that part: supports act only on the base. At the ground it is the load on the foundation or on the supports. In a section of
+    /// a beam it is `N, Qy, Qz` and `Mx, My, Mz`: a positive N is tension; Mx, My and Mz have the signs of the deformations that they
+    /// cause, φ, θ and ψ.
+    fn internal_forces(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        a: &SVector<f64, N>,
+        out: &mut [Wrench],
+    );
 
     /// Positions of the supports' attachment points in the world frame, m. `out`: one per support.
     fn support_positions(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}

@@ -1,8 +1,8 @@
 //! Stability against tipping: moments about the lines between the outermost feet.
 //!
 //! A crane on feet that push and do not pull tips about a tipping line: a side of the convex polygon that the feet make, seen
-//! from above. What a link's weight and inertia do about a line holds the crane down or tips it; where the sum of all tips, the
-//! crane falls. Feet are points, and the ground is rigid: what gives way under the feet shows in the pose alone.
+//! from above. What a link's weight and inertia, and the loads applied to it, do about a line holds the crane down or tips it;
+//! where the sum of all tips, the crane falls. Feet are points, and the ground is rigid: what gives way under the feet shows in the pose alone.
 
 use nalgebra::Vector3;
 
@@ -13,9 +13,9 @@ use crate::{Wrench, dyn_crane::DynCrane};
 pub struct TippingLine {
     /// Places of two supports; from the first to the second the crane is on the left, seen from above.
     pub feet: [usize; 2],
-    /// Moment of the links whose weight and inertia hold the crane down, N m, not negative.
+    /// Moment of the links that hold the crane down, N m, not negative.
     pub stabilising: f64,
-    /// Moment of the links whose weight and inertia tip it over the line, N m, not negative.
+    /// Moment of the links that tip it over the line, N m, not negative.
     pub overturning: f64,
 }
 
@@ -37,12 +37,12 @@ impl TippingLine {
     }
 }
 
-/// The tipping lines of a crane, anticlockwise seen from above, at pose `q`, rates `v` and accelerations `a`; none where the
-/// supports make no polygon, because there are fewer than three or all are in one line.
-pub fn lines(crane: &dyn DynCrane, q: &[f64], v: &[f64], a: &[f64]) -> Vec<TippingLine> {
+/// The tipping lines of a crane, anticlockwise seen from above, at time `t`, pose `q`, rates `v` and accelerations `a`; none where
+/// the supports make no polygon, because there are fewer than three or all are in one line.
+pub fn lines(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<TippingLine> {
     let feet = crane.support_positions_at(q);
     let corners = polygon(&feet);
-    let loads = if corners.is_empty() { Vec::new() } else { loads_of_links(crane, q, v, a) };
+    let loads = if corners.is_empty() { Vec::new() } else { loads_of_links(crane, t, q, v, a) };
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     sides.map(|(&from, &to)| line([from, to], [feet[from], feet[to]], &loads)).collect()
 }
@@ -68,11 +68,11 @@ fn line(feet: [usize; 2], [from, to]: [Vector3<f64>; 2], loads: &[Wrench]) -> Ti
     TippingLine { feet, stabilising, overturning }
 }
 
-/// What the weight and the inertia of every link exert, in the world frame about the world's origin.
-fn loads_of_links(crane: &dyn DynCrane, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
+/// What the weight and the inertia of every link exert with what is applied to it, in the world frame about the world's origin.
+fn loads_of_links(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
     let description = crane.description();
     let transforms = crane.transforms_at(q);
-    let wrenches = crane.internal_forces_at(q, v, a);
+    let wrenches = crane.internal_forces_at(t, q, v, a);
     let beginnings = description.cuts().into_iter().zip(&wrenches).filter_map(|(cut, wrench)| match cut {
         crate::Cut::Body { body, .. } => Some((body, wrench)),
         _ => None,

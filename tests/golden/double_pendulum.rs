@@ -15,6 +15,7 @@
 //   viscous damping of joints: the spec has none
 //   end stops: the spec has none
 //   friction of joints: the spec has none
+//   loads applied from outside: the spec has none
 //   live parameters: the spec has none: all numbers are compiled in
 //   everything out of the crane's plane: all joints rotate about one direction, none translates along it
 //   static residual and tangent stiffness: `analyses` does not include statics
@@ -91,6 +92,8 @@ pub const DESCRIPTION: Description = Description {
     drives: List::Static(&[]),
     stops: List::Static(&[]),
     frictions: List::Static(&[]),
+    loads: List::Static(&[]),
+    inputs: List::Static(&[]),
     points: List::Static(&[Text::Static("end")]),
     statics: false,
     guess: List::Static(&[1.5707963267948966, -1.5707963267948966]),

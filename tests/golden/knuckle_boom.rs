@@ -13,6 +13,7 @@
 //   springs and dampers of rigid elements: no link is flexible
 //   end stops: the spec has none
 //   friction of joints: the spec has none
+//   loads applied from outside: the spec has none
 //   everything out of the crane's plane: all joints rotate about one direction, none translates along it
 //   internal forces: `analyses` does not include internal_forces
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not include derivatives
@@ -147,6 +148,8 @@ pub const DESCRIPTION: Description = Description {
     ),
     stops: List::Static(&[]),
     frictions: List::Static(&[]),
+    loads: List::Static(&[]),
+    inputs: List::Static(&[]),
     points: List::Static(&[Text::Static("boom_tip"), Text::Static("load_centre")]),
     statics: true,
     guess: List::Static(

@@ -50,6 +50,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("hinge_forces", vec![n]),
         ("stop_forces", vec![n]),
         ("friction_forces", vec![n]),
+        ("load_forces", vec![n]),
         ("drive_forces_at_rest", vec![n]),
         ("forward_dynamics", vec![n]),
         ("mass_solution", vec![n]),
@@ -77,6 +78,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("internal_forces", vec![crane.cuts().len(), 6]),
         ("support_positions", vec![supports, 3]),
         ("section_moduli", vec![crane.beams().len(), 8]),
+        ("load_power", vec![1]),
     ];
     rows.into_iter().map(|(name, shape)| Quantity { name, shape }).collect()
 }
@@ -131,6 +133,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         crane.hinge_forces(v),
         crane.stop_forces(q, v),
         crane.friction_forces(v),
+        crane.load_forces(t, q),
         crane.drive_forces_at_rest(q),
         crane.forward_dynamics(t, q, v),
         crane.solve_mass(q, v),
@@ -167,12 +170,13 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     out.extend([crane.drive_power(t, q, v), crane.dissipation(t, q, v)]);
     let mut wrenches = vec![Wrench::ZERO; info.cuts().len()];
     // The rates stand for accelerations, too.
-    crane.internal_forces(q, v, v, &mut wrenches);
+    crane.internal_forces(t, q, v, v, &mut wrenches);
     crane.support_positions(q, &mut reactions);
     let mut moduli = vec![SectionModuli::ZERO; info.beams().len()];
     crane.section_moduli(&mut moduli);
     let mut tangents = vec![[0.0; 2]; info.coordinates.len()];
     crane.nonlinear_impedances(t, q, v, &mut tangents);
+    let load_power = crane.load_power(t, q, v);
     let (mut q, mut v) = (*q, *v);
     crane.prescribe(t, &mut q, &mut v);
     out.extend(q.iter().chain(&v));
@@ -183,6 +187,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         let SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress } = of;
         out.extend([area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress]);
     }
+    out.push(load_power);
     out
 }
 

@@ -69,6 +69,9 @@ impl Writer {
         if self.driven {
             self.drives(seed);
         }
+        if self.driven && seed % 4 == 2 {
+            self.loads();
+        }
         self.line("points:");
         for (name, link) in [("middle", "first"), ("end", "hand")] {
             let at = self.vector(0.5).replace("[-", "[");
@@ -282,7 +285,8 @@ impl Writer {
             let rotor = if k % 2 == 0 { format!("armature: {armature}, ") } else { String::new() };
             let spring =
                 if rigid { "rigid: true".to_owned() } else { format!("stiffness: {stiffness}, damping: {damping}") };
-            self.line(&format!("  - {{coordinate: {coordinate}, {spring}, {rotor}motion: {motion}}}"));
+            let offset = if seed % 4 == 2 && !rigid { ", offset: shift" } else { "" };
+            self.line(&format!("  - {{coordinate: {coordinate}, {spring}, {rotor}motion: {motion}{offset}}}"));
         }
         if !passive.is_empty() {
             self.line("damping:");
@@ -310,6 +314,24 @@ impl Writer {
         self.line("friction:");
         self.line(&format!("  {second}: {{coulomb: 6, breakaway: 9, stribeck: 0.6, width: 0.3, viscous: 1.5}}"));
         self.line(&format!("  {last}: {{coulomb: payload, width: 0.4}}"));
+    }
+
+    /// A force of the world, a wrench that turns with its link and grows with time, and loads that follow inputs.
+    fn loads(&mut self) {
+        self.line("inputs:");
+        self.line("  pull: {motion: {cubic: {from: 1, to: 3, begin: 0.2, duration: 1}}, unit: N}");
+        self.line("  shift: {value: 0.05, unit: rad}");
+        self.line("loads:");
+        self.line("  - {name: wind, link: first, at: [0.7, 0.1, 0], force: [3, -5, 2]}");
+        self.line("  - {name: steered, link: second, force: [0, 1, 2], scale: {input: pull}}");
+        self.line("  - {name: trimmed, link: second, moment: [0, 30, 0], scale: {input: shift}}");
+        self.line("  - name: push");
+        self.line("    link: hand");
+        self.line("    at: [0.1, 0.2, -0.1]");
+        self.line("    force: [4, 1, payload]");
+        self.line("    moment: [0.5, -0.7, 0.9]");
+        self.line("    axes: link");
+        self.line("    scale: {quintic: {from: 0.5, to: 1.5, begin: 0.1, duration: 2}}");
     }
 
     fn line(&mut self, line: &str) {

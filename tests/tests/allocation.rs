@@ -22,10 +22,11 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.point_velocities(q, v, &mut places.vectors);
     crane.support_reactions(q, v, &mut places.vectors);
     crane.support_positions(q, &mut places.vectors);
-    crane.internal_forces(q, v, v, &mut places.wrenches);
+    crane.internal_forces(t, q, v, v, &mut places.wrenches);
     crane.section_moduli(&mut places.moduli);
     crane.drive_motions(t, &mut places.motions);
     crane.drive_pieces(&mut places.pieces);
+    crane.load_pieces(&mut places.pieces);
     crane.joint_impedances(&mut places.impedances);
     let (mut prescribed_q, mut prescribed_v, mut mass) = (*q, *v, SMatrix::zeros());
     crane.prescribe(t, &mut prescribed_q, &mut prescribed_v);
@@ -44,11 +45,12 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
         crane.hinge_forces(v),
         crane.stop_forces(q, v),
         crane.friction_forces(v),
+        crane.load_forces(t, q),
     ));
     black_box((crane.forces(t, q, v), crane.mass_matrix(q), crane.bias(q, v), crane.linearise(q)));
     black_box((crane.static_residual(q), crane.tangent_stiffness(q)));
     black_box((crane.gravity_energy(q), crane.support_energy(q), crane.element_energy(q), crane.drive_energy(t, q)));
-    black_box(crane.stop_energy(q));
+    black_box((crane.stop_energy(q), crane.load_power(t, q, v)));
     crane.nonlinear_impedances(t, q, v, &mut places.motions);
     black_box((crane.potential_energy(t, q), crane.kinetic_energy(q, v)));
     black_box((crane.drive_power(t, q, v), crane.dissipation(t, q, v)));

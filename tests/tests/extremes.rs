@@ -196,7 +196,7 @@ proptest! {
         let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy"];
         let rates = parts.map(|part| crane.interpreted.get(part, &inputs, 1)[0].derivative());
         let scalar = |function: &str| crane.interpreted.scalar(function, &crane.state);
-        let supplied = scalar("drive_power") - scalar("dissipation");
+        let supplied = scalar("drive_power") + scalar("load_power") - scalar("dissipation");
         let off = (rates.iter().sum::<f64>() - supplied).abs();
         // What a coordinate's inertia and its neighbours' forces do to one another cancels in the sum.
         let mass = crane.interpreted.matrix("mass_matrix", &crane.state);

@@ -52,7 +52,7 @@ fn run(crane: &dyn DynCrane, settings: &Settings) -> Vec<Moment> {
             t: sample.t,
             q,
             v,
-            balance: gained - sample.work + sample.dissipated,
+            balance: gained - sample.work - sample.load_work + sample.dissipated,
             work: sample.work,
         });
         ControlFlow::Continue(())

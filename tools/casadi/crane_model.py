@@ -85,6 +85,17 @@ class Friction:
 
 
 @dataclass
+class Load:
+    """A load applied from outside: the place of its body, where it acts, that body's rotation, both along the world's axes."""
+
+    body: int
+    position: ca.SX
+    rotation: ca.SX
+    force: ca.SX
+    moment: ca.SX
+
+
+@dataclass
 class Support:
     """Springs and dampers along the world's axes; `elongation` and its columns for x, y, z."""
 
@@ -122,6 +133,7 @@ class Crane:
     rotors: list = field(default_factory=list)
     stops: list = field(default_factory=list)
     frictions: list = field(default_factory=list)
+    loads: list = field(default_factory=list)
     points: dict = field(default_factory=dict)
     guess: list = field(default_factory=list)
 
@@ -192,6 +204,8 @@ def read_crane(path):
         crane.stops.extend(read_stops(spec, written, crane.coordinate(name)))
     for name, written in spec.get("friction", {}).items():
         crane.frictions.append(read_friction(spec, written, crane.coordinate(name)))
+    for written in spec.get("loads", []):
+        crane.loads.append(read_load(crane, written, spans[written["link"]]))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     crane.guess = read_guess(crane)
@@ -320,6 +334,8 @@ def read_drive(crane, written):
     spec = crane.spec
     coordinate = crane.coordinate(written["coordinate"])
     motion, interval = read_profile(spec, written["motion"], coordinate.is_rotation, crane.time)
+    if "offset" in written:
+        motion += read_profile(spec, {"input": written["offset"]}, coordinate.is_rotation, crane.time)[0]
     stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
     return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False))
 
@@ -344,16 +360,33 @@ def read_friction(spec, written, coordinate):
     return Friction(coordinate, coulomb, breakaway, stribeck, width, viscous)
 
 
+def read_load(crane, written, span):
+    """A load: along the link's axes it turns with the element that carries it."""
+    spec = crane.spec
+    at, force, moment = (spec.vector(written.get(key, [0, 0, 0])) for key in ("at", "force", "moment"))
+    body, local = carrier(spec, at, span)
+    rotation = body.transform[:3, :3]
+    scale = read_profile(spec, written["scale"], False, crane.time)[0] if "scale" in written else 1
+    axes = rotation if written.get("axes", "world") == "link" else ca.SX.eye(3)
+    index = next(i for i, other in enumerate(crane.bodies) if other is body)
+    return Load(index, place(body.transform, local), rotation, scale * (axes @ force), scale * (axes @ moment))
+
+
 def read_point(spec, written, span):
     """Where a point of a link is in the world; on a beam, the element that holds its x carries it.
 
     On a spring, that is the element that begins there, to within rounding of written and added lengths.
     """
-    at = spec.vector(written["at"])
+    body, local = carrier(spec, spec.vector(written["at"]), span)
+    return place(body.transform, local)
+
+
+def carrier(spec, at, span):
+    """The body of a link that carries a point of it, and where."""
     starts = [spec.default(start) for start in span.starts]
     reach = spec.default(at[0]) + SAME_PLACE * starts[-1]
     index = max((i for i, start in enumerate(starts) if start <= reach), default=0)
-    return place(span.bodies[index].transform, at - ca.vertcat(span.starts[index], 0, 0))
+    return span.bodies[index], at - ca.vertcat(span.starts[index], 0, 0)
 
 
 def read_guess(crane):

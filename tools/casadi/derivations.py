@@ -60,7 +60,7 @@ class Derivations:
         }
 
     def internal_forces(self):
-        """What the part beyond each cut exerts on the part before it: minus the rate of its momenta, and its weight.
+        """What the part beyond each cut exerts on the part before it: minus the rate of its momenta, its weight, and the loads on it.
 
         With H the pseudo-inertia, `∫ ẍ dm` is the last column of `T̈ H`, and `∫ x × ẍ dm` the axial vector of `T̈ H Tᵀ`. The
         rates stand for accelerations, too.
@@ -76,6 +76,10 @@ class Derivations:
             moments = (body.transform @ body.pseudo_inertia[:, 3])[:3]
             force = force + linear[:3] - body.pseudo_inertia[3, 3] * gravity
             moment = moment + angular - ca.cross(moments, gravity)
+            for load in self.crane.loads:
+                if load.body == place:
+                    force = force - load.force
+                    moment = moment - load.moment - ca.cross(load.position, load.force)
             sums[place] = force, moment
         wrenches = []
         for cut in self.crane.cuts:
@@ -169,6 +173,18 @@ class Derivations:
             damping[place] += friction.viscous
         return stop_forces, friction_forces, energy, damping
 
+    def load_forces(self):
+        """Generalized forces of the loads: virtual work of force and moment, the rotation's by `δR Rᵀ`."""
+        q = self.crane.q
+        forces = ca.SX.zeros(q.shape)
+        for load in self.crane.loads:
+            forces += ca.jacobian(load.position, q).T @ load.force
+            for place in range(q.numel()):
+                turned = ca.jacobian(ca.vec(load.rotation), q[place])
+                spin = ca.reshape(turned, 3, 3) @ load.rotation.T
+                forces[place] += ca.dot(ca.vertcat(spin[2, 1], spin[0, 2], spin[1, 0]), load.moment)
+        return forces
+
     def forces(self):
         """Generalized forces `-∂E_p/∂q - ∂R/∂q̇` by part and in all; power lost 2R; D = ∂²R/∂q̇²."""
         q, v = self.crane.q, self.crane.v
@@ -179,6 +195,7 @@ class Derivations:
         linear = sum(by_part.values())
         damping = -ca.substitute(ca.jacobian(linear, v), v, ca.DM.zeros(v.shape))
         stops, friction, stop_energy, at_rest = self.joint_forces()
+        loads = self.load_forces()
         # What is neither in the stops' energy nor at rest.
         lost = -ca.dot(stops + friction, v) - ca.jtimes(stop_energy, q, v)
         tangents = ca.horzcat(
@@ -188,11 +205,13 @@ class Derivations:
         return {
             "stop_forces": stops,
             "friction_forces": friction,
+            "load_forces": loads,
+            "load_power": ca.dot(loads, v),
             "stop_energy": stop_energy,
             "nonlinear_impedances": row_major(ca.densify(tangents)),
             LINEAR_DAMPING: row_major(ca.densify(damping)),
             **{f"{part}_forces": force for part, force in by_part.items()},
-            "forces": linear + stops + friction,
+            "forces": linear + stops + friction + loads,
             "gravity_energy": self.gravity_energy(),
             **{f"{part}_energy": energies[part] for part in ("support", "element", "drive")},
             "dissipation": 2 * dissipation_function + lost,
@@ -228,6 +247,9 @@ class Derivations:
         potential = self.gravity_energy() + sum(energy for energy, _ in self.potentials().values())
         potential += self.joint_forces()[2]
         stiffness, gradient = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
+        loads = ca.substitute(self.load_forces(), self.crane.time, 0)
+        slope = ca.jacobian(loads, self.crane.q)
+        stiffness, gradient = stiffness - (slope + slope.T) / 2, gradient - loads
         stiffness = self.unknowns(stiffness, 1)
         residual, holding = ca.densify(gradient), self.springs_at_rest()
         for place in self.crane.rigid_drives:

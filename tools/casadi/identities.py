@@ -41,7 +41,7 @@ def identities(derivations, states, derived):
         Identity("half v A v = kinetic energy", relative(kinetic_energy, derived["kinetic_energy"][:, 0])),
         Identity("forces are the sum of their parts", relative(parts_of(derived), derived["forces"])),
         Identity("Adot - 2C is skew: v.Adot v / 2 = v.h", power_of_inertia(derivations, states, derived)),
-        Identity("d(E_k + E_p)/dt = drive power - dissipation", power_balance(derivations, states, derived)),
+        Identity("d(E_k + E_p)/dt = power put in - dissipation", power_balance(derivations, states, derived)),
         Identity("supports' forces on the base = sum of reactions", sum_of_reactions(derivations, derived)),
     ]
 
@@ -54,7 +54,7 @@ def relative(left, right, size=None):
 
 def parts_of(derived):
     """The sum of the generalized forces by part."""
-    return sum(derived[f"{part}_forces"] for part in ("support", "element", "drive", "hinge", "stop", "friction"))
+    return sum(derived[f"{part}_forces"] for part in ("support", "element", "drive", "hinge", "stop", "friction", "load"))
 
 
 def evaluate(derivations, expression, states):
@@ -86,7 +86,7 @@ def power_balance(derivations, states, derived):
     rate = evaluate(derivations, derivations.rate(kinetic + potential), states)[:, 0]
     momentum = evaluate(derivations, ca.gradient(kinetic, crane.v), states)
     rate = rate + np.einsum("si,si->s", momentum, acceleration)
-    put_in = derived["drive_power"][:, 0] - derived["dissipation"][:, 0]
+    put_in = derived["drive_power"][:, 0] + derived["load_power"][:, 0] - derived["dissipation"][:, 0]
     terms = np.abs(states.v * derived["forces"]).sum(axis=1) + np.abs(states.v * derived["bias"]).sum(axis=1)
     return relative(rate, put_in, terms)
 

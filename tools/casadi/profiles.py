@@ -78,6 +78,10 @@ def spline(time, times, values):
 def read_profile(spec, motion, is_rotation, time):
     """`q_dr(t)` and the interval in which it moves, from a drive's `motion:`."""
     ((kind, written),) = motion.items()
+    if kind == "input":
+        # Not set: a value, or a motion.
+        unless_set = spec.get("inputs", {})[written]
+        return read_profile(spec, unless_set.get("motion", {"hold": unless_set.get("value", 0)}), is_rotation, time)
     if kind == "hold":
         return ca.SX(spec.position(written, is_rotation)), (0.0, 0.0)
     if kind == "table":

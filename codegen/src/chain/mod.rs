@@ -5,6 +5,8 @@
 mod cut;
 mod force;
 mod frame;
+mod input;
+mod load;
 mod loops;
 mod parameter;
 mod profile;
@@ -14,6 +16,8 @@ mod value;
 pub use cut::Cut;
 pub use force::{End, ForceElement, Friction, Law, Stop};
 pub use frame::{Frame, Vector};
+pub use input::{Input, InputId};
+pub use load::{Load, LoadAxes};
 pub use loops::Loops;
 pub use parameter::{Bound, Parameter, Refusal, Relation};
 pub use profile::{Profile, Ramp, Segment};
@@ -60,6 +64,10 @@ pub struct Chain {
     pub hinges: Vec<Hinge>,
     /// End stops and friction of joints.
     pub forces: Vec<ForceElement>,
+    /// Forces and moments applied from outside.
+    pub loads: Vec<Load>,
+    /// Inputs that are set between steps.
+    pub inputs: Vec<Input>,
     /// Rotors that joints drive through gears.
     pub rotors: Vec<Rotor>,
     /// Points of interest.

@@ -1,6 +1,6 @@
 //! Prescribed motions of drives, `q_dr(t)`.
 
-use super::Value;
+use super::{InputId, Value};
 
 /// A prescribed motion: constant before it begins and, unless it is a speed, after it ends; continuously differentiable,
 /// unless it jumps to its speed.
@@ -36,6 +36,10 @@ pub enum Profile {
         /// Time to reach the speed, s: `q̇_dr = rate (3τ² − 2τ³)`. Without it, the speed jumps.
         ramp: Option<Value>,
     },
+    /// An input: constant where it is set, else as it is unless set.
+    Input(InputId, Box<Profile>),
+    /// The sum of two motions.
+    Sum(Box<[Profile; 2]>),
     /// Cubic spline through given positions, at rest at both ends.
     Table {
         /// Position before the first segment, m or rad.
@@ -46,6 +50,16 @@ pub enum Profile {
 }
 
 impl Profile {
+    /// Whether an input is part of it.
+    #[must_use]
+    pub fn has_input(&self) -> bool {
+        match self {
+            Profile::Input(..) => true,
+            Profile::Sum(parts) => parts.iter().any(Profile::has_input),
+            _ => false,
+        }
+    }
+
     /// Begin and end, s, of the intervals in which it is smooth: at their ends some derivative jumps, or it comes to rest.
     #[must_use]
     pub fn pieces(&self) -> Vec<[Value; 2]> {
@@ -62,6 +76,8 @@ impl Profile {
                 let end = ramp.as_ref().map_or_else(|| begin.clone(), |ramp| begin.clone() + ramp.clone());
                 vec![[begin.clone(), end]]
             }
+            Profile::Input(_, unless_set) => unless_set.pieces(),
+            Profile::Sum(parts) => parts.iter().flat_map(Profile::pieces).collect(),
             Profile::Table { segments, .. } => {
                 segments.iter().map(|piece| [piece.begin.into(), (piece.begin + piece.duration).into()]).collect()
             }

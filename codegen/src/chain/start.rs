@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::{Profile, Ramp};
 
 impl Profile {
-    /// `q_dr(0)` with the given parameter values, rad or m.
+    /// `q_dr(0)` with the given parameter values and no input set, rad or m.
     #[must_use]
     pub fn start(&self, parameters: &[f64]) -> f64 {
         let along = |ramp: &Ramp, shape: &dyn Fn(f64) -> f64| {
@@ -28,6 +28,8 @@ impl Profile {
                 });
                 from.at(parameters) + rate.at(parameters) * (passed - lost)
             }
+            Profile::Input(_, unless_set) => unless_set.start(parameters),
+            Profile::Sum(parts) => parts.iter().map(|part| part.start(parameters)).sum(),
             Profile::Table { from, segments } => segments.iter().fold(*from, |position, segment| {
                 let u = (-segment.begin).max(0.0).min(segment.duration);
                 let [c1, c2, c3] = segment.coefficients;

@@ -268,6 +268,27 @@ catalogue! {
     E098 stribeck_alone(coordinate) "the Stribeck friction of `{coordinate}` has no breakaway friction to decline from", "`stribeck` without `breakaway`",
         "add `breakaway:`, at least as large as `coulomb`, or remove `stribeck`";
 
+    // Loads.
+    /// A load has a force or a moment.
+    E099 no_load(load) "load `{load}` has neither force nor moment", "pulls nowhere",
+        "write `force: [x, y, z]` in N or `moment: [x, y, z]` in N m";
+
+    // Inputs.
+    /// An input has a value or follows a motion until it is set.
+    E110 input_twice(input) "input `{input}` has a `value` and a `motion`", "one of the two",
+        "keep what the input is until it is set";
+    /// References name an input.
+    E111 unknown_input(name, help) "unknown input `{name}`", "not under `inputs`", "{help}";
+    /// An input does not follow an input.
+    E112 input_of_input(input) "input `{input}` follows an input", "an input again",
+        "write the `value` or the `motion` that it has until it is set";
+    /// A rigid drive does not follow an input, which may jump.
+    E113 rigid_input(coordinate) "the rigid drive of `{coordinate}` follows an input", "an input may jump, a rigid drive cannot",
+        "give the drive `stiffness` and `damping`, or a motion without inputs";
+    /// Every input is used.
+    E114 unused_input(input) "input `{input}` is not used", "no drive and no load refers to it",
+        "name it in `motion: {{input: …}}` or `offset` of a drive or in `scale: {{input: …}}` of a load, or remove it";
+
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
     W001 modulus(what, place, given, usual, help) "{what} of {place} is {given} Pa", "usual: {usual} Pa", "{help}";

@@ -4,12 +4,12 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{Item, parse_quote};
 
-use super::arithmetic::integer;
+use super::arithmetic::{integer, literal};
 use super::function::argument_name;
 use super::number::Number;
 use super::print::plain;
 use super::shape::{Storage, struct_name};
-use crate::chain::Chain;
+use crate::chain::{Chain, Input};
 use crate::lower::{Block, Blocks};
 use crate::program::{Argument, FunctionId, Seam, Shape};
 
@@ -17,12 +17,26 @@ use crate::program::{Argument, FunctionId, Seam, Shape};
 pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
     let live = !chain.parameters.is_empty();
     let title = format!(" {}: the generated functions behind the traits of the runtime.", plain(&chain.title));
-    let fields = if live { quote!({ constants: Constants }) } else { quote!(;) };
-    let mut items: Vec<Item> = vec![parse_quote! {
+    let has_inputs = !chain.inputs.is_empty();
+    let fields = fields(chain);
+    let inputs = has_inputs.then(|| quote!(, inputs: NOT_SET));
+    let mut items: Vec<Item> = Vec::new();
+    if has_inputs {
+        let slots = integer(Input::SLOTS * chain.inputs.len());
+        let not_set = chain.inputs.iter().flat_map(|_| Input::NOT_SET).map(literal);
+        items.push(parse_quote!(
+            #[doc = " Of every input its value while it is set, else 0; and 0 while it is set, else 1."]
+            pub type Inputs = [f64; #slots];
+        ));
+        items.push(parse_quote!(
+            const NOT_SET: Inputs = [#(#not_set),*];
+        ));
+    }
+    items.push(parse_quote! {
         #[doc = #title]
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Crane #fields
-    }];
+    });
     if live {
         items.push(parse_quote! {
             impl Crane {
@@ -32,7 +46,7 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
                 #[doc = " They break a rule of the spec language."]
                 pub fn new(params: Params) -> Result<Self, ParameterError> {
                     params.check()?;
-                    Ok(Crane { constants: Constants::of(&params) })
+                    Ok(Crane { constants: Constants::of(&params) #inputs })
                 }
 
                 #[doc = " Values of the live parameters."]
@@ -43,7 +57,11 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
             }
         });
     }
-    let default = if live { quote!(Crane { constants: Constants::of(&Params::default()) }) } else { quote!(Crane) };
+    let default = match (live, has_inputs) {
+        (true, _) => quote!(Crane { constants: Constants::of(&Params::default()) #inputs }),
+        (false, true) => quote!(Crane { inputs: NOT_SET }),
+        (false, false) => quote!(Crane),
+    };
     items.push(parse_quote! {
         impl Default for Crane {
             fn default() -> Self {
@@ -81,10 +99,25 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
     items
 }
 
+/// Fields of a crane, or of eight.
+pub(super) fn fields(chain: &Chain) -> TokenStream {
+    match (!chain.parameters.is_empty(), !chain.inputs.is_empty()) {
+        (true, true) => quote!({ constants: Constants, inputs: Inputs }),
+        (true, false) => quote!({ constants: Constants }),
+        (false, true) => quote!({ inputs: Inputs }),
+        (false, false) => quote!(;),
+    }
+}
+
 /// Description and parameters.
 fn common_methods(chain: &Chain) -> TokenStream {
     let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
     let indices: Vec<_> = (0..names.len()).map(integer).collect();
+    let again = if chain.inputs.is_empty() {
+        quote!(Crane::new(params)?)
+    } else {
+        quote!(Crane { inputs: self.inputs, ..Crane::new(params)? })
+    };
     let (get, set) = if names.is_empty() {
         (
             quote!(
@@ -115,7 +148,7 @@ fn common_methods(chain: &Chain) -> TokenStream {
                         #(#indices => params.#names = value,)*
                         _ => {}
                     }
-                    *self = Crane::new(params)?;
+                    *self = #again;
                     Ok(())
                 }
 
@@ -127,19 +160,48 @@ fn common_methods(chain: &Chain) -> TokenStream {
                             _ => {}
                         }
                     }
-                    *self = Crane::new(params)?;
+                    *self = #again;
                     Ok(())
                 }
             ),
         )
     };
+    let inputs = input_methods(chain);
     quote! {
         fn description(&self) -> &Description {
             &DESCRIPTION
         }
         #get
         #set
+        #inputs
     }
+}
+
+/// What reads and sets inputs; nothing where there are none.
+fn input_methods(chain: &Chain) -> Option<TokenStream> {
+    let indices: Vec<_> = (0..chain.inputs.len()).map(integer).collect();
+    let slots = |slot: usize| (0..chain.inputs.len()).map(move |index| integer(Input::SLOTS * index + slot));
+    let (values, free): (Vec<_>, Vec<_>) = slots(0).zip(slots(1)).unzip();
+    let not_set = Input::NOT_SET.map(literal);
+    (!indices.is_empty()).then(|| {
+        quote! {
+            fn input(&self, index: usize) -> Option<f64> {
+                let [value, free] = match index {
+                    #(#indices => [self.inputs[#values], self.inputs[#free]],)*
+                    _ => [#(#not_set),*],
+                };
+                if free > 0.0 { None } else { Some(value) }
+            }
+
+            fn set_input(&mut self, index: usize, value: Option<f64>) {
+                let slots = value.map_or([#(#not_set),*], |value| [value, 0.0]);
+                match index {
+                    #(#indices => [self.inputs[#values], self.inputs[#free]] = slots,)*
+                    _ => {}
+                }
+            }
+        }
+    })
 }
 
 /// The method that sets prescribed coordinates and their rates.
@@ -171,7 +233,8 @@ fn method(block: &Block) -> TokenStream {
     };
     let (names, types): (Vec<_>, Vec<_>) = function.arguments.iter().map(of).unzip();
     let constants = block.reads_parameters.then(|| quote!(&self.constants));
-    let arguments: Vec<_> = names.iter().map(|name| quote!(#name)).chain(constants).collect();
+    let inputs = block.reads_inputs.then(|| quote!(&self.inputs));
+    let arguments: Vec<_> = names.iter().map(|name| quote!(#name)).chain(constants).chain(inputs).collect();
     match &function.shape {
         Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => {
             quote! {

@@ -6,7 +6,7 @@ use syn::{Item, parse_quote};
 
 use super::arithmetic::{integer, literal};
 use super::print::constant;
-use crate::chain::{BodyId, Chain, CoordinateId, CoordinateKind, SupportKinematics, Value};
+use crate::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Profile, SupportKinematics, Value};
 
 /// Sizes and the `DESCRIPTION`.
 pub fn description(chain: &Chain) -> Vec<Item> {
@@ -43,12 +43,22 @@ fn description_constant(chain: &Chain) -> Item {
     });
     let stops = chain.stopped().into_iter().map(|id| integer(id.0));
     let frictions = chain.frictions().map(|(id, _)| integer(id.0));
+    let loads = chain.loads.iter().map(|load| {
+        let (name, pieces) = (text(&load.name), integer(load.pieces()));
+        quote!(LoadInfo { name: #name, pieces: #pieces })
+    });
+    let inputs = chain.inputs.iter().map(|input| {
+        let [name, unit, about] = [&input.name, &input.unit, &input.about].map(|words| text(words));
+        let default = literal(input.unless_set.start(&defaults));
+        let moves = !matches!(input.unless_set, Profile::Hold(_));
+        quote!(InputInfo { name: #name, unit: #unit, about: #about, default: #default, moves: #moves })
+    });
     let points = chain.points.iter().map(|point| text(&point.name));
     let parameters = if chain.parameters.is_empty() { quote!(&[]) } else { quote!(&PARAMETERS) };
     let statics = chain.analyses.statics;
     let guess = chain.guess.iter().map(|&x| literal(x));
     let [coordinates, bodies] = [list(coordinates), list(bodies)];
-    let [stops, frictions] = [list(stops), list(frictions)];
+    let [stops, frictions, loads, inputs] = [list(stops), list(frictions), list(loads), list(inputs)];
     let [supports, drives, points, guess] = [list(supports), list(drives), list(points), list(guess)];
     let [name, title, hash] = [&chain.name, &chain.title, &chain.spec_hash].map(|words| text(words));
     let (duration, step, output) = (literal(chain.run.duration), literal(chain.run.step), literal(chain.run.output));
@@ -65,6 +75,8 @@ fn description_constant(chain: &Chain) -> Item {
             drives: #drives,
             stops: #stops,
             frictions: #frictions,
+            loads: #loads,
+            inputs: #inputs,
             points: #points,
             statics: #statics,
             guess: #guess,

@@ -172,6 +172,9 @@ impl Writer<'_> {
         if self.block.reads_parameters {
             inputs.push(quote!(c: &Constants));
         }
+        if self.block.reads_inputs {
+            inputs.push(quote!(u: &Inputs));
+        }
         inputs
     }
 
@@ -197,6 +200,9 @@ impl Writer<'_> {
         if used.contains(&Argument::Parameters) {
             inputs.push(quote!(c: &Constants));
         }
+        if used.contains(&Argument::Inputs) {
+            inputs.push(quote!(u: &Inputs));
+        }
         inputs
     }
 
@@ -205,6 +211,7 @@ impl Writer<'_> {
         arguments
             .map(|a| argument_name(*a, self.number).0)
             .chain(used.contains(&Argument::Parameters).then_some("c"))
+            .chain(used.contains(&Argument::Inputs).then_some("u"))
             .collect()
     }
 
@@ -479,6 +486,7 @@ pub fn argument_name(argument: Argument, number: Number) -> (&'static str, Token
         Argument::BaseResistance => ("base", quote!(&SMatrix<#number, 6, 6>)),
         Argument::Factors => ("f", quote!(&Factors)),
         Argument::Parameters => ("c", quote!(&Constants)),
+        Argument::Inputs => ("u", quote!(&Inputs)),
         Argument::Round | Argument::Loop => unreachable!("loops take from themselves"),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::chain::{BodyId, Chain, Cut, Drive};
+use crate::chain::{BodyId, Chain, Cut, Drive, Load};
 use crate::lower::Blocks;
 use crate::program::{Function, FunctionId, Shape, Struct};
 use crate::symbolic::ExprId;
@@ -63,6 +63,10 @@ impl<'a> Labels<'a> {
             Shape::Pairs(_) if function.id == FunctionId::DrivePieces => {
                 let of = |drive: &'a Drive| std::iter::repeat_n(drive.coordinate.0, drive.profile.pieces().len());
                 chain.drives.iter().flat_map(of).nth(slot / 2).map(|i| coordinate(i).to_owned())
+            }
+            Shape::Pairs(_) if function.id == FunctionId::LoadPieces => {
+                let of = |load: &'a Load| std::iter::repeat_n(&load.name, load.pieces());
+                chain.loads.iter().flat_map(of).nth(slot / 2).cloned()
             }
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
             Shape::Structs(Struct::SectionModuli, _) => {

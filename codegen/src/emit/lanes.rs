@@ -3,13 +3,14 @@
 use quote::{format_ident, quote};
 use syn::{Item, ItemMod, parse_quote};
 
-use super::arithmetic::variable;
+use super::arithmetic::{integer, variable};
+use super::crane::fields;
 use super::function;
 use super::identifiers;
 use super::labels::Labels;
 use super::number::Number;
 use super::parameters;
-use crate::chain::Chain;
+use crate::chain::{Chain, Input};
 use crate::lower::{Block, Blocks, Statement};
 use crate::program::FunctionId;
 
@@ -36,9 +37,20 @@ pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
         items.extend(function::function(blocks, block, labels, Number::Lanes));
     }
     let live = !chain.parameters.is_empty();
-    let fields = if live { quote!({ constants: Constants }) } else { quote!(;) };
+    let has_inputs = !chain.inputs.is_empty();
+    let fields = fields(chain);
+    let slots = Input::SLOTS * chain.inputs.len();
+    if has_inputs {
+        let slots = integer(slots);
+        items.push(parse_quote!(
+            #[doc = " Inputs of eight cranes."]
+            pub type Inputs = [f64x8; #slots];
+        ));
+    }
     let constants = blocks.functions.iter().any(|b| b.function.id == FunctionId::ForwardDynamics && b.reads_parameters);
     let constants = constants.then(|| quote!(, &self.constants));
+    let reads_inputs = blocks.functions.iter().any(|b| b.function.id == FunctionId::ForwardDynamics && b.reads_inputs);
+    let inputs = reads_inputs.then(|| quote!(, &self.inputs));
     let takes_stumpff =
         |block: &Block| block.pieces.iter().flatten().any(|statement| matches!(statement, Statement::Stumpff(_)));
     let in_lanes = || blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.id));
@@ -63,32 +75,49 @@ pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
     items.push(parse_quote! {
         impl LaneDynamics<N> for Cranes {
             fn forward_dynamics(&self, t: f64x8, q: &SVector<f64x8, N>, v: &SVector<f64x8, N>) -> SVector<f64x8, N> {
-                forward_dynamics(t, q, v #constants)
+                forward_dynamics(t, q, v #constants #inputs)
             }
         }
     });
+    let places = (0..slots).map(integer);
+    let of_eight = quote!([#(cranes.map(|crane| crane.inputs[#places]).into()),*]);
+    let [taken, kept, given] = if has_inputs {
+        [quote!(, inputs: Inputs), quote!(, inputs), quote!(, #of_eight)]
+    } else {
+        [quote!(), quote!(), quote!()]
+    };
     let own = if live {
         let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
         items.push(parse_quote! {
             impl Cranes {
                 #[doc = " Eight cranes with these values of their live parameters, which each crane has checked."]
-                pub(super) fn new(params: &Params) -> Self {
-                    Cranes { constants: Constants::of(params) }
+                pub(super) fn new(params: &Params #taken) -> Self {
+                    Cranes { constants: Constants::of(params) #kept }
                 }
             }
         });
         quote! {
             lanes::Cranes::new(&lanes::Params {
                 #(#names: cranes.map(|crane| crane.constants.params.#names).into()),*
-            })
+            } #given)
         }
+    } else if has_inputs {
+        items.push(parse_quote! {
+            impl Cranes {
+                #[doc = " Eight cranes with these inputs."]
+                pub(super) fn new(inputs: Inputs) -> Self {
+                    Cranes { inputs }
+                }
+            }
+        });
+        quote!(lanes::Cranes::new(#of_eight))
     } else {
         quote!(lanes::Cranes)
     };
     if let Some((_, content)) = &mut module.content {
         content.append(&mut items);
     }
-    let cranes = if live { quote!(cranes) } else { quote!(_cranes) };
+    let cranes = if live || has_inputs { quote!(cranes) } else { quote!(_cranes) };
     vec![
         Item::Mod(module),
         parse_quote! {

@@ -21,6 +21,7 @@ const TAKEN: &[&str] = &[
     "base",
     "resistance",
     "c",
+    "u",
     "out",
     "kept",
     "k",

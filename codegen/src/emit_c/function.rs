@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::Precision;
 use super::arithmetic::Expression;
-use crate::chain::Chain;
+use crate::chain::{Chain, Input};
 use crate::emit::{Labels, Names, field_of, row_of_triangle};
 use crate::lower::{Block, Blocks, Statement};
 use crate::program::{Argument, Function, Shape};
@@ -279,6 +279,11 @@ impl Body<'_> {
     fn input(&mut self, id: ExprId) -> String {
         let Op::Symbol(symbol) = self.writer.blocks.program.op(id) else { unreachable!("inputs are symbols") };
         let symbol = self.writer.blocks.program.symbol(symbol);
+        if symbol.argument == Argument::Inputs {
+            // Not set: 0 and 1 in turn.
+            let not_set = Input::NOT_SET[symbol.index % Input::SLOTS];
+            return format!("{not_set:?}{}", self.writer.precision.suffix());
+        }
         self.used.insert(symbol.argument);
         let name = argument_name(symbol.argument);
         if symbol.argument == Argument::Time { name.to_owned() } else { format!("{name}[{}]", symbol.index) }
@@ -319,6 +324,7 @@ fn argument_name(argument: Argument) -> &'static str {
         Argument::BaseResistance => "base",
         Argument::Factors => "f",
         Argument::Parameters => "c",
+        Argument::Inputs => unreachable!("code in C has inputs as the spec says"),
         Argument::Round | Argument::Loop => unreachable!("chains without loops have none"),
     }
 }

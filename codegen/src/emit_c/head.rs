@@ -132,7 +132,7 @@ fn of_argument(argument: Argument) -> &'static str {
         Argument::Resistance => "resistance: added to the diagonal of the mass matrix, one number per coordinate",
         Argument::BaseResistance => "base: added to the mass matrix over the base's coordinates, symmetric, 6 x 6",
         Argument::Factors => "f: what factorise has left",
-        Argument::Parameters | Argument::Round | Argument::Loop => "",
+        Argument::Parameters | Argument::Inputs | Argument::Round | Argument::Loop => "",
     }
 }
 

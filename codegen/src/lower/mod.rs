@@ -23,7 +23,7 @@ mod split;
 #[cfg(test)]
 mod tests;
 
-use crate::program::{Function, OperationCount, Program};
+use crate::program::{Argument, Function, OperationCount, Program};
 
 use crate::symbolic::{ExprId, Op, Visit};
 
@@ -49,6 +49,8 @@ pub struct Block<'p> {
     pub function: &'p Function,
     /// Whether it reads live parameters or constants computed from them.
     pub reads_parameters: bool,
+    /// Whether it reads inputs.
+    pub reads_inputs: bool,
     /// The pieces: one, unless the function is long.
     pub pieces: Vec<Vec<Statement>>,
     /// The number of values carried from piece to piece.
@@ -192,7 +194,9 @@ fn block<'p>(
     let needed = program.needed(function.outputs.iter().copied());
     count.additions -= program.ids().filter(|id| needed[id.index()]).filter(folded).count();
     let reads_parameters = constants.read_by(program, &function.outputs);
-    Block { function, reads_parameters, pieces, carried, rolled, count, inlined, fused }
+    let is_input = |op: Op| matches!(op, Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Inputs);
+    let reads_inputs = program.ids().filter(|id| needed[id.index()]).any(|id| is_input(program.op(id)));
+    Block { function, reads_parameters, reads_inputs, pieces, carried, rolled, count, inlined, fused }
 }
 
 /// Statements in order, with inlined expressions and fused products.

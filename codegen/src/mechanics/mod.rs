@@ -16,6 +16,7 @@ mod inertia;
 mod joints;
 mod kinematics;
 mod laws;
+mod loads;
 mod model;
 mod newton_euler;
 mod omissions;

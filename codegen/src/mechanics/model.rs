@@ -1,6 +1,6 @@
 //! The chain's numbers and inputs as expressions.
 
-use crate::chain::{Chain, Inertia, ParameterId, Value};
+use crate::chain::{Chain, Inertia, Input, InputId, ParameterId, Value};
 use crate::program::{Argument, Symbol};
 use crate::symbolic::{Expr, Graph, SymbolId};
 
@@ -26,6 +26,7 @@ pub struct Model<'g> {
     /// Resistance of the base, row by row from the diagonal.
     pub base_resistance: Vec<Expr<'g>>,
     parameters: Vec<Expr<'g>>,
+    inputs: Vec<Expr<'g>>,
 }
 
 impl<'g> Model<'g> {
@@ -46,6 +47,7 @@ impl<'g> Model<'g> {
             resistance: of(Argument::Resistance),
             base_resistance: of(Argument::BaseResistance),
             parameters: of(Argument::Parameters),
+            inputs: of(Argument::Inputs),
         }
     }
 
@@ -62,6 +64,7 @@ impl<'g> Model<'g> {
             symbol(format!("base_{}_{}", row + 1, column + 1), Argument::BaseResistance, row + 6 * column)
         });
         let parameters = chain.parameters.iter().enumerate();
+        let inputs = chain.inputs.iter().flat_map(|Input { name, .. }| [name.clone(), format!("{name}_is_free")]);
         [
             vec![symbol("t".into(), Argument::Time, 0)],
             each(Argument::Position, ""),
@@ -71,6 +74,7 @@ impl<'g> Model<'g> {
             each(Argument::Resistance, "_resistance"),
             base.collect(),
             parameters.map(|(i, parameter)| symbol(parameter.name.clone(), Argument::Parameters, i)).collect(),
+            inputs.enumerate().map(|(i, name)| symbol(name, Argument::Inputs, i)).collect(),
         ]
         .concat()
     }
@@ -110,6 +114,11 @@ impl<'g> Model<'g> {
             Value::Sin(a) => self.number(a).sin(),
             Value::Cos(a) => self.number(a).cos(),
         }
+    }
+
+    /// An input: its value while it is set, else 0; and 0 while it is set, else 1.
+    pub fn input(&self, InputId(index): InputId) -> [Expr<'g>; Input::SLOTS] {
+        [0, 1].map(|slot| self.inputs[Input::SLOTS * index + slot])
     }
 
     /// Second moments `∫ r rᵀ dm` of a body about its frame's origin.

@@ -4,6 +4,8 @@
 //! any q̈ the forces and moments of the inward sweep are those that the crane transmits.
 
 use super::factors::Factor;
+use super::kinematics::Kinematics;
+use super::loads;
 use super::model::Model;
 use super::outward::{Velocities, along};
 use super::vector::Vec3;
@@ -13,14 +15,15 @@ use crate::symbolic::Expr;
 /// `e = −(h + g)` [Urbaś 2016, Eqs. (5), (7), (9), by recursion]; gravity is an upward acceleration of the base.
 pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let motions = outward(model, factors, None);
-    inward(model, factors, &motions, |_, _| None).bias
+    inward(model, factors, &motions, &[], |_, _| None).bias
 }
 
 /// Force and moment that the part beyond each cut exerts on the part before it: the inertia and the weight of everything
-/// beyond.
-pub fn internal_forces<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
+/// beyond, and the loads that are applied to it.
+pub fn internal_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let motions = outward(model, factors, Some(&model.a));
-    let cuts = inward(model, factors, &motions, |force, moment| Some([-force, -moment]));
+    let applied = loads::on_bodies(model, kinematics, model.t);
+    let cuts = inward(model, factors, &motions, &applied, |force, moment| Some([-force, -moment]));
     let wrenches = model.chain.cuts().into_iter().filter_map(|cut| match cut {
         Cut::Ground => cuts.ground,
         Cut::Joint(BodyId(body)) => cuts.joints[body].or(cuts.bodies[body]),
@@ -97,11 +100,13 @@ struct Inward<'g> {
     ground: Option<Wrench<'g>>,
 }
 
-/// From tip to base: the force and moment that each frame requires. `note` converts them to the record of every cut.
+/// From tip to base: the force and moment that each frame requires, less what is `applied` to the bodies. `note` converts them to the
+/// record of every cut.
 fn inward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],
     motions: &[Motion<'g>],
+    applied: &[Option<Wrench<'g>>],
     note: impl Fn(Vec3<'g>, Vec3<'g>) -> Option<Wrench<'g>>,
 ) -> Inward<'g> {
     let zero = Vec3::zero(model.graph);
@@ -127,6 +132,9 @@ fn inward<'g>(
                     moment = moment + tensor.apply(*alpha) + omega.cross(tensor.apply(*omega)) + first.cross(*a);
                     force.named(&format!("force_{}", body.name));
                     moment.named(&format!("moment_{}", body.name));
+                }
+                if let Some(Some([load, moment_of_load])) = applied.get(*index) {
+                    (force, moment) = (force - *load, moment - *moment_of_load);
                 }
                 on = *index;
                 bodies[on] = note(force, moment);

@@ -44,6 +44,14 @@ pub fn position<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'
             };
             from + model.number(rate) * way
         }
+        Profile::Input(input, unless_set) => {
+            let [value, free] = model.input(*input);
+            value + free * position(model, unless_set, t)
+        }
+        Profile::Sum(parts) => {
+            let [one, other] = parts.each_ref().map(|part| position(model, part, t));
+            one + other
+        }
         Profile::Table { from, segments } => segments.iter().fold(model.graph.constant(*from), |sum, segment| {
             let u = local_time(model, segment, t);
             let [c1, c2, c3] = segment.coefficients;
@@ -80,6 +88,12 @@ pub fn rate<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
             let (tau, _) = since(model, begin, ramp.as_ref(), t);
             model.number(rate) * if ramp.is_some() { tau * tau * (3.0 - tau * 2.0) } else { tau }
         }
+        // An input that is set is constant between steps.
+        Profile::Input(input, unless_set) => model.input(*input)[1] * rate(model, unless_set, t),
+        Profile::Sum(parts) => {
+            let [one, other] = parts.each_ref().map(|part| rate(model, part, t));
+            one + other
+        }
         // Each piece adds the change of rate over it; the first starts at rest.
         Profile::Table { segments, .. } => segments.iter().fold(model.zero(), |sum, segment| {
             let u = local_time(model, segment, t);
@@ -97,7 +111,12 @@ pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Ex
     };
     match profile {
         // A speed that jumps does so before a run; otherwise its drive would not be rigid.
-        Profile::Hold(_) | Profile::Speed { ramp: None, .. } => model.zero(),
+        // An input that is set is constant between steps, and jumps between them: no rigid drive follows it.
+        Profile::Hold(_) | Profile::Speed { ramp: None, .. } | Profile::Input(..) => model.zero(),
+        Profile::Sum(parts) => {
+            let [one, other] = parts.each_ref().map(|part| acceleration(model, part, t));
+            one + other
+        }
         Profile::Quintic(ramp) => {
             let tau = tau(model, ramp, t);
             scale(ramp, tau * (1.0 - tau) * (1.0 - 2.0 * tau) * 60.0)

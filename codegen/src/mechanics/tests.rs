@@ -54,6 +54,8 @@ fn double_pendulum() -> Chain {
         drives: vec![],
         hinges: vec![],
         forces: vec![],
+        loads: vec![],
+        inputs: vec![],
         rotors: vec![],
         points: vec![Point { name: "tip".into(), body: BodyId(1), position: [c(LENGTH[1]), Value::ZERO, Value::ZERO] }],
         guess: vec![0.0; 2],

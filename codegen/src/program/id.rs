@@ -71,6 +71,8 @@ functions! {
         HingeForces = "hinge_forces",
         StopForces = "stop_forces",
         FrictionForces = "friction_forces",
+        LoadForces = "load_forces",
+        LoadPieces = "load_pieces",
         SupportReactions = "support_reactions",
         DriveMotions = "drive_motions",
         PrescribedMotions = "prescribed_motions",
@@ -81,6 +83,7 @@ functions! {
         DriveEnergy = "drive_energy",
         StopEnergy = "stop_energy",
         DrivePower = "drive_power",
+        LoadPower = "load_power",
         Dissipation = "dissipation",
     }
     Dynamics {

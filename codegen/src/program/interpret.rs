@@ -31,7 +31,7 @@ impl<S: Scalar> Inputs<S> {
 }
 
 impl Program {
-    /// Evaluates a function; the result is in the order of its [`Shape`](super::Shape), closed.
+    /// Evaluates a function, with inputs as the spec says unless they are given; the result is in the order of its [`Shape`](super::Shape), closed.
     ///
     /// # Panics
     /// If an input that the function uses is missing.
@@ -44,7 +44,12 @@ impl Program {
                 Op::Constant(c) => S::from_f64(Constant::value(c)),
                 Op::Symbol(id) => {
                     let symbol = self.symbol(id);
-                    inputs.0[&symbol.argument][symbol.index].clone()
+                    match inputs.0.get(&symbol.argument) {
+                        // Nothing is set: 0 and 1 in turn.
+                        None if symbol.argument == Argument::Inputs => S::from_f64((symbol.index % 2) as f64),
+                        None => panic!("`{}` needs {:?}", function.id.name(), symbol.argument),
+                        Some(values) => values[symbol.index].clone(),
+                    }
                 }
                 Op::Neg(a) => -of(a),
                 Op::Add(a, b) => of(a) + of(b),

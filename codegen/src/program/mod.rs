@@ -66,6 +66,8 @@ pub enum Argument {
     Loop,
     /// Live parameters.
     Parameters,
+    /// Inputs that are set between steps, two numbers each: the value while it is set, else 0; and 0 while it is set, else 1.
+    Inputs,
 }
 
 /// A function: its documentation, arguments and result.
@@ -77,7 +79,7 @@ pub struct Function {
     pub doc: &'static str,
     /// Equations it implements, and their source.
     pub equation: &'static str,
-    /// Arguments besides the live parameters, in order.
+    /// Arguments besides the live parameters and the inputs, in order.
     pub arguments: &'static [Argument],
     /// Shape of the result.
     pub shape: Shape,

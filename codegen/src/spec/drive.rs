@@ -24,6 +24,8 @@ pub struct Drive {
     pub armature: Option<Given<Number>>,
     /// Motion of the spring's far end, or of the joint of a rigid drive; exactly one.
     pub motion: Given<Motion>,
+    /// The input that is added to the motion, rad or m. Default: none.
+    pub offset: Option<Given<String>>,
 }
 
 /// Motion of a drive; before it begins and, unless it is a speed, after it ends, the drive holds its position.
@@ -44,6 +46,8 @@ pub enum Motion {
     Speed(Speed),
     /// Cubic spline through given positions, at rest at both ends.
     Table(Table),
+    /// An input, by its name.
+    Input(Given<String>),
 }
 
 /// Start, end and time of a motion.

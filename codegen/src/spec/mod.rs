@@ -6,8 +6,10 @@ mod beam;
 mod drive;
 mod given;
 mod inertia;
+mod input;
 mod joint;
 mod link;
+mod load;
 mod placement;
 mod scalar;
 mod schema;
@@ -18,8 +20,10 @@ pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub(crate) use given::{EITHER, GIVEN, MANY};
 pub use given::{Either, Entries, Given, Many};
 pub use inertia::{About, Inertia};
+pub use input::Input;
 pub use joint::{Friction, Stops};
 pub use link::{BaseCoordinate, Body, Joint, JointAxis, Link};
+pub use load::{Axes, Load};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector};
 pub use schema::json_schema;
@@ -63,6 +67,8 @@ pub struct Crane {
     pub loops: Option<Given<Loops>>,
     /// Values that stay live at run time, by name.
     pub parameters: Option<Given<Entries<Parameter>>>,
+    /// Numbers that are set between steps, by name.
+    pub inputs: Option<Given<Entries<Input>>>,
     /// Materials of beams, by name.
     pub materials: Option<Given<Entries<Material>>>,
     /// The links in order from the base to the tip; each is attached to the previous one.
@@ -79,6 +85,8 @@ pub struct Crane {
     pub stops: Option<Given<Entries<Stops>>>,
     /// Friction of joints by coordinate.
     pub friction: Option<Given<Entries<Friction>>>,
+    /// Forces and moments applied from outside.
+    pub loads: Option<Given<Vec<Given<Load>>>>,
     /// Points of interest, whose motion is reported.
     pub points: Option<Given<Vec<Given<Point>>>>,
     /// Start of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at

@@ -37,13 +37,22 @@ impl<'a> Check<'a> {
             let place = format!("the armature of drive `{name}`");
             let armature = self.number_or(armature, 0.0, &place, units(kind).armature, Limit::NotNegative);
             let profile = drive.motion.value.as_ref().and_then(|motion| self.motion(motion, kind, drive.motion.span));
+            let offset = drive.offset.as_ref().map(|offset| self.input(offset));
             let Some(id) = coordinate else { continue };
             if let Some(owner) = self.not_a_joint(id) {
                 self.report(rule::cannot_drive(drive.coordinate.span, name, owner));
             } else if drives.iter().any(|before| before.coordinate == id) {
                 self.report(rule::driven_twice(drive.coordinate.span, name));
             }
-            let profile = profile.unwrap_or(Profile::Hold(f64::NAN.into()));
+            let unknown = || Profile::Hold(f64::NAN.into());
+            let motion = profile.unwrap_or_else(unknown);
+            let profile = match offset {
+                Some(offset) => Profile::Sum(Box::new([motion, offset.unwrap_or_else(unknown)])),
+                None => motion,
+            };
+            if transmission == Transmission::Rigid && profile.has_input() {
+                self.report(rule::rigid_input(drive.motion.span, name));
+            }
             if transmission == Transmission::Rigid
                 && let Some(begin) = jump(&profile)
             {
@@ -145,7 +154,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn motion(&mut self, motion: &Motion, kind: Option<CoordinateKind>, span: Span) -> Option<Profile> {
+    pub(super) fn motion(&mut self, motion: &Motion, kind: Option<CoordinateKind>, span: Span) -> Option<Profile> {
         Some(match motion {
             Motion::Hold(position) => Profile::Hold(self.position(position, kind, "`hold`")),
             Motion::Quintic(r) => Profile::Quintic(self.ramp(kind, &r.from, &r.to, r.begin.as_ref(), &r.duration)),
@@ -173,6 +182,7 @@ impl<'a> Check<'a> {
                 }
             }
             Motion::Table(table) => self.table(table, kind, span)?,
+            Motion::Input(name) => self.input(name)?,
         })
     }
 

@@ -7,9 +7,11 @@ mod base;
 mod beam;
 mod drives;
 mod elements;
+mod inputs;
 mod joints;
 mod limits;
 mod links;
+mod loads;
 mod mass;
 mod names;
 mod numbers;
@@ -21,7 +23,7 @@ mod section;
 use std::collections::BTreeMap;
 
 use crate::chain::{
-    self, Analyses, Body, Bound, Chain, Coordinate, CoordinateId, ElementSpring, Loops, Parameter, ParameterId,
+    self, Analyses, Body, Bound, Chain, Coordinate, CoordinateId, ElementSpring, Input, Loops, Parameter, ParameterId,
     Relation, Value,
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
@@ -114,6 +116,11 @@ struct Check<'a> {
     live_masses: Vec<(ParameterId, Bound)>,
     /// Rules about several numbers of which some are live.
     relations: Vec<Relation>,
+    inputs: Vec<Input>,
+    /// Which of them some motion refers to.
+    used_inputs: Vec<bool>,
+    /// Whether some could not be read.
+    unknown_inputs: bool,
     materials: BTreeMap<&'a str, Elastic>,
     coordinates: Vec<Coordinate>,
     /// The owner of each coordinate.
@@ -147,6 +154,7 @@ impl<'a> Check<'a> {
         let name = self.crane_name(&crane.name).unwrap_or_default();
         let title = self.text(crane.title.as_ref(), "`title`").unwrap_or_else(|| name.to_owned());
         self.take_parameters(crane);
+        self.take_inputs(crane);
         self.take_materials(crane);
         let gravity = match &crane.gravity {
             Some(gravity) => self.vector(gravity, "`gravity`", "m/s²", Limit::Any),
@@ -157,6 +165,7 @@ impl<'a> Check<'a> {
         let (drives, mut rotors) = self.drives(crane);
         let hinges = self.hinges(crane, &drives);
         let forces = self.joint_forces(crane);
+        let loads = self.loads(crane);
         rotors.extend(self.rotors(crane, &drives));
         let points = self.points(crane, &supports);
         let guess = self.guess(crane, &drives);
@@ -164,6 +173,7 @@ impl<'a> Check<'a> {
         let analyses = self.analyses(crane.analyses.as_ref());
         self.something_moves(crane);
         self.every_parameter_used(crane);
+        self.every_input_used(crane);
         Chain {
             title,
             name: name.to_owned(),
@@ -180,6 +190,8 @@ impl<'a> Check<'a> {
             drives,
             hinges,
             forces,
+            loads,
+            inputs: std::mem::take(&mut self.inputs),
             rotors,
             points,
             guess,

@@ -40,7 +40,7 @@ impl<'a> Check<'a> {
     }
 
     /// The body of a link that carries a point, and the position on it: for a beam, the element that contains the point's x.
-    fn attach(&mut self, link: &Given<String>, at: [Value; 3]) -> Option<(BodyId, [Value; 3])> {
+    pub(super) fn attach(&mut self, link: &Given<String>, at: [Value; 3]) -> Option<(BodyId, [Value; 3])> {
         let name = link.value.as_deref()?;
         let Some(place) = self.links.get(name) else {
             if !self.unknown.links {

@@ -29,6 +29,10 @@ pub struct Description {
     pub stops: List<usize>,
     /// Coordinates with friction, by their indices in `q`.
     pub frictions: List<usize>,
+    /// Loads applied from outside.
+    pub loads: List<LoadInfo>,
+    /// Inputs that are set between steps.
+    pub inputs: List<InputInfo>,
     /// Names of the points of interest.
     pub points: List<Text>,
     /// Whether the spec requests statics: a run then starts from the static equilibrium, otherwise from the guess.
@@ -220,4 +224,28 @@ pub struct DriveInfo {
     pub start: f64,
     /// The number of intervals in which its motion is smooth.
     pub pieces: usize,
+}
+
+/// A load applied from outside.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoadInfo {
+    /// Name.
+    pub name: Text,
+    /// In how many pieces its scale is smooth.
+    pub pieces: usize,
+}
+
+/// An input: a number that is set between steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InputInfo {
+    /// Name.
+    pub name: Text,
+    /// Unit.
+    pub unit: Text,
+    /// What it is.
+    pub about: Text,
+    /// What it is at t = 0 with default parameters unless set.
+    pub default: f64,
+    /// Whether it follows a motion unless set.
+    pub moves: bool,
 }

@@ -49,6 +49,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H
         self.0.parameter(index)
     }
 
+    fn input(&self, index: usize) -> Option<f64> {
+        self.0.input(index)
+    }
+
     fn transforms(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
         self.0.transforms(&vector(q), out);
     }
@@ -79,6 +83,14 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H
 
     fn friction_forces(&self, v: &[f64], out: &mut [f64]) {
         out.copy_from_slice(self.0.friction_forces(&vector(v)).as_slice());
+    }
+
+    fn load_forces(&self, t: f64, q: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.load_forces(t, &vector(q)).as_slice());
+    }
+
+    fn load_pieces(&self, out: &mut [[f64; 2]]) {
+        self.0.load_pieces(out);
     }
 
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
@@ -122,6 +134,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H
 
     fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         self.0.drive_power(t, &vector(q), &vector(v))
+    }
+
+    fn load_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        self.0.load_power(t, &vector(q), &vector(v))
     }
 
     fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
@@ -236,8 +252,8 @@ impl<const N: usize, L: LaneDynamics<N>> DynBlock for Block<N, L> {
 }
 
 impl<const N: usize, H: Deref<Target: InternalForces<N>>> DynInternalForces for Instance<N, H> {
-    fn internal_forces(&self, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
-        self.0.internal_forces(&vector(q), &vector(v), &vector(a), out);
+    fn internal_forces(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
+        self.0.internal_forces(t, &vector(q), &vector(v), &vector(a), out);
     }
 
     fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]) {
@@ -269,6 +285,10 @@ where
 
     fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
         self.0.set_parameters(values)
+    }
+
+    fn set_input(&mut self, index: usize, value: Option<f64>) {
+        self.0.set_input(index, value);
     }
 
     fn boxed_clone(&self) -> Box<dyn DynCrane> {

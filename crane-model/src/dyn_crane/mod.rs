@@ -41,6 +41,9 @@ pub trait DynModel {
     /// Value of a live parameter, by its index in the description.
     fn parameter(&self, index: usize) -> f64;
 
+    /// What an input is set to, by its place in the description; nothing while it is as its spec says.
+    fn input(&self, index: usize) -> Option<f64>;
+
     /// Transforms T of all bodies into the world frame.
     fn transforms(&self, q: &[f64], out: &mut [Matrix4<f64>]);
 
@@ -64,6 +67,12 @@ pub trait DynModel {
 
     /// Generalized forces of joint friction.
     fn friction_forces(&self, v: &[f64], out: &mut [f64]);
+
+    /// Generalized forces of the loads applied from outside.
+    fn load_forces(&self, t: f64, q: &[f64], out: &mut [f64]);
+
+    /// Begin and end of the pieces in which the scales of loads are smooth, s; one pair per piece, load by load.
+    fn load_pieces(&self, out: &mut [[f64; 2]]);
 
     /// Forces of the supports on the crane, world frame, N.
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
@@ -94,6 +103,9 @@ pub trait DynModel {
 
     /// Power of the drives' motions, W.
     fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
+
+    /// Power that the loads applied from outside put in, W.
+    fn load_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
     /// Power that all dampers dissipate, W.
     fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
@@ -168,7 +180,7 @@ pub trait DynLinearise: DynModel {
 /// Forces and moments between the parts of a crane: [`InternalForces`](crate::InternalForces) on slices.
 pub trait DynInternalForces: DynModel {
     /// The wrench that the part beyond each cut exerts on the part before it. `out`: one per cut, as [`Description::cuts`] lists them.
-    fn internal_forces(&self, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]);
+    fn internal_forces(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]);
 
     /// Positions of the supports' attachment points, m.
     fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]);
@@ -225,6 +237,10 @@ pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynInternalForces 
     /// A value breaks a rule of the spec language; the crane stays unchanged.
     fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError>;
 
-    /// A separate crane with the same parameters.
+    /// Sets an input from now on, or gives it back to its spec: [`CraneModel::set_input`](crate::CraneModel::set_input). No
+    /// constant is computed again.
+    fn set_input(&mut self, index: usize, value: Option<f64>);
+
+    /// A separate crane with the same parameters and inputs.
     fn boxed_clone(&self) -> Box<dyn DynCrane>;
 }

@@ -141,9 +141,9 @@ impl dyn DynCrane + '_ {
     }
 
     /// The wrench that the part beyond each cut exerts on the part before it, cut by cut: N and N m.
-    pub fn internal_forces_at(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
+    pub fn internal_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
         let mut out = vec![Wrench::ZERO; self.description().cuts().len()];
-        self.internal_forces(q, v, a, &mut out);
+        self.internal_forces(t, q, v, a, &mut out);
         out
     }
 
@@ -162,26 +162,33 @@ impl dyn DynCrane + '_ {
     }
 
     /// Weight of the crane with its load, world frame, N; unknown along an axis that the base cannot move along.
-    ///
-    /// A translation of the base moves everything equally: its generalized force of gravity, the bias at rest, is the component
-    /// of the weight along it.
     pub fn weight_at(&self, q: &[f64]) -> [Option<f64>; 3] {
+        self.force_on_the_whole(q, self.bias_at(q, &vec![0.0; q.len()]).as_slice())
+    }
+
+    /// Sum of the forces applied from outside at time `t`, world frame, N; unknown along an axis that the base cannot move along.
+    pub fn applied_force_at(&self, t: f64, q: &[f64]) -> [Option<f64>; 3] {
+        self.force_on_the_whole(q, &numbers(self, |out| self.load_forces(t, q, out)))
+    }
+
+    /// The force whose generalized forces are given: a translation of the base moves everything equally, so its generalized force is
+    /// the component of the force along it. Unknown along an axis that the base cannot move along.
+    fn force_on_the_whole(&self, q: &[f64], forces: &[f64]) -> [Option<f64>; 3] {
         /// A base moves along an axis if its directions contain the axis, up to rounding.
         const ROUNDING: f64 = 1e-9;
-        let bias = self.bias_at(q, &vec![0.0; q.len()]);
         let place = |q: &[f64]| self.transforms_at(q).first().map(|frame| frame.fixed_view::<3, 1>(0, 3).into_owned());
         let Some(here) = place(q) else { return [None; 3] };
-        let (mut weight, mut held) = (Vector3::zeros(), Vector3::zeros());
-        for (index, (coordinate, force)) in self.description().coordinates.iter().zip(&bias).enumerate() {
+        let (mut total, mut held) = (Vector3::zeros(), Vector3::zeros());
+        for (index, (coordinate, force)) in self.description().coordinates.iter().zip(forces).enumerate() {
             if (coordinate.role, coordinate.kind) == (CoordinateRole::Base, CoordinateKind::Translation) {
                 let mut moved = q.to_vec();
                 moved[index] += 1.0;
                 let direction = place(&moved).unwrap_or(here) - here;
-                weight += direction * *force;
+                total += direction * *force;
                 held += direction.component_mul(&direction);
             }
         }
-        [0, 1, 2].map(|axis| (held[axis] > 1.0 - ROUNDING).then_some(weight[axis]))
+        [0, 1, 2].map(|axis| (held[axis] > 1.0 - ROUNDING).then_some(total[axis]))
     }
 
     /// Energies by part.

@@ -1,6 +1,6 @@
 //! The classical Runge–Kutta method with constant steps that end at every result.
 
-use nalgebra::Vector2;
+use nalgebra::Vector3;
 
 use super::{
     Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped, equations::Equations, guides::Guides, rk4,
@@ -99,7 +99,7 @@ impl Stepper for Rk4<'_> {
         let (t, h) = steps.next();
         let n = equations.n;
         before.copy_from_slice(&motion[n..2 * n]);
-        let mut powers = [Vector2::zeros(); rk4::STAGES];
+        let mut powers = [Vector3::zeros(); rk4::STAGES];
         let (pose, rest) = motion.split_at_mut(n);
         let (rates, integrals) = rest.split_at_mut(n);
         let audit = !integrals.is_empty();

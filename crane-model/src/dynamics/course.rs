@@ -9,6 +9,7 @@ use super::{
     bdf::Bdf,
     constant::Rk4,
     dormand_prince::DormandPrince,
+    equations::INTEGRALS,
     rosenbrock::Rosenbrock,
     stopped::{Place, without_inertia},
     stops::Stops,
@@ -69,7 +70,7 @@ impl<'a> Course<'a> {
             let place = Place { method, t: begin, h: settings.step, q: &start.q, description: crane.description() };
             place.stopped(Cause::MassMatrix, index)
         })?;
-        let mut motion = [start.q.as_slice(), &start.v, if settings.audit { &[0.0; 2] } else { &[] }].concat();
+        let mut motion = [start.q.as_slice(), &start.v, if settings.audit { &[0.0; INTEGRALS] } else { &[] }].concat();
         let (pose, rates) = motion[..2 * n].split_at_mut(n);
         crane.prescribe(begin, pose, rates);
         stepper.start(begin, &motion)?;
@@ -114,8 +115,8 @@ impl<'a> Course<'a> {
     pub fn sample(&self) -> Sample<'_> {
         let (q, rest) = self.motion.split_at(self.crane.size());
         let (v, integrals) = rest.split_at(q.len());
-        let [work, dissipated] = *integrals.first_chunk().unwrap_or(&[0.0; 2]);
-        Sample { t: self.time, q, v, work, dissipated }
+        let [work, dissipated, load_work] = *integrals.first_chunk().unwrap_or(&[0.0; INTEGRALS]);
+        Sample { t: self.time, q, v, work, dissipated, load_work }
     }
 
     /// What it took up to the last result.

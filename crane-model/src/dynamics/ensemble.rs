@@ -227,7 +227,7 @@ impl<'a> Batch<'a> {
             for (lane, _) in results.iter().enumerate().filter(|(_, result)| result.is_ok()) {
                 self.lane(lane, &self.q, &mut q);
                 self.lane(lane, &self.v, &mut v);
-                observe(lane, &Sample { t: begin, q: &q, v: &v, work: 0.0, dissipated: 0.0 });
+                observe(lane, &Sample { t: begin, q: &q, v: &v, work: 0.0, dissipated: 0.0, load_work: 0.0 });
             }
             if interval == intervals || results.iter().all(Result::is_err) {
                 break;

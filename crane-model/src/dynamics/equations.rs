@@ -6,8 +6,8 @@ use super::{
 };
 use crate::dyn_crane::DynDynamics;
 
-/// Integrals along an audited motion: work of the drives, energy that the dampers dissipated.
-const INTEGRALS: usize = 2;
+/// Integrals along an audited motion: work of the drives, energy that the dampers dissipated, work of the loads.
+pub(super) const INTEGRALS: usize = 3;
 
 /// A crane, the references of its motions, and the number of evaluations of its accelerations.
 pub(super) struct Equations<'a> {
@@ -59,9 +59,9 @@ impl<'a> Equations<'a> {
         finite(out)
     }
 
-    /// Powers at a pose and its rates: of the drives, and of the dampers.
+    /// Powers at a pose and its rates: of the drives, of the dampers, and of the loads.
     pub fn powers_at(&self, t: f64, q: &[f64], v: &[f64]) -> [f64; INTEGRALS] {
-        [self.crane.drive_power(t, q, v), self.crane.dissipation(t, q, v)]
+        [self.crane.drive_power(t, q, v), self.crane.dissipation(t, q, v), self.crane.load_power(t, q, v)]
     }
 
     /// Slope of a motion given relative to the guides: rates, accelerations and powers.

@@ -15,6 +15,8 @@ pub struct Sample<'a> {
     pub work: f64,
     /// Energy that the dampers dissipated since t = 0, J; 0 without audit.
     pub dissipated: f64,
+    /// Work that loads applied from outside put in since t = 0, J; 0 without audit.
+    pub load_work: f64,
 }
 
 /// Summary of a run.

@@ -12,7 +12,7 @@ use crate::{
 /// `observe` may stop the run.
 ///
 /// With `audit`, work W of the drives and dissipated energy D are integrated along with the motion, so that
-/// `E(t) − E(0) − W + D`, zero for the exact motion, measures the error of the run.
+/// `E(t) − E(0) − W + D`, W with the work of loads, zero for the exact motion, measures the error of the run.
 ///
 /// # Errors
 /// [`Stopped`] if the motion grows from step to step or beyond the bound, if no step meets the tolerance, if there are too many

@@ -1,6 +1,6 @@
-//! Times at which steps end: between them the drives' motions are smooth.
+//! Times at which steps end: between them the drives' motions and the scales of loads are smooth.
 
-use crate::dyn_crane::DynModel;
+use crate::{Description, dyn_crane::DynModel};
 
 /// Times within a run, in order.
 #[derive(Clone, Debug, Default)]
@@ -10,14 +10,17 @@ impl Stops {
     /// Times closer than this, relative to the run, are merged: no step is that short.
     const NEAR: f64 = 1e-9;
 
-    /// Begins and ends of the smooth intervals of the motions of some cranes, within a run from one time to another, s; without an
-    /// end, the run is as long as the motions.
+    /// Begins and ends of the smooth intervals of the motions and loads of some cranes, within a run from one time to another, s;
+    /// without an end, the run is as long as the motions.
     pub fn between<'a>(cranes: impl IntoIterator<Item = &'a dyn DynModel>, begin: f64, end: f64) -> Self {
         let mut times = Vec::new();
         for crane in cranes {
-            let count = crane.description().drives.iter().map(|drive| drive.pieces).sum();
-            let mut pieces = vec![[f64::NAN; 2]; count];
-            crane.drive_pieces(&mut pieces);
+            let Description { drives, loads, .. } = crane.description();
+            let of_drives = drives.iter().map(|drive| drive.pieces).sum();
+            let mut pieces = vec![[f64::NAN; 2]; of_drives + loads.iter().map(|load| load.pieces).sum::<usize>()];
+            let (motions, scales) = pieces.split_at_mut(of_drives);
+            crane.drive_pieces(motions);
+            crane.load_pieces(scales);
             times.extend(pieces.into_iter().flatten());
         }
         let last = times.iter().copied().fold(begin, f64::max);

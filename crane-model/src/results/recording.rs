@@ -11,7 +11,7 @@ use crate::{
 ///
 /// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; of a drive `<coordinate>_prescribed` and
 /// `<coordinate>_drive_torque` or `_drive_force`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
-/// `<support>_reaction_x`, `_y`, `_z`; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; energies. `energy_balance` is `E(t) − E(0) − drive_work + dissipated_energy`, the
+/// `<support>_reaction_x`, `_y`, `_z`; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
 /// error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
@@ -24,20 +24,27 @@ impl<'a> Recording<'a> {
     pub fn new(crane: &'a dyn DynCrane) -> Self {
         Self {
             crane,
-            table: Table { columns: [quantities(crane.description()), audited()].concat(), rows: Vec::new() },
+            table: Table {
+                columns: [quantities(crane.description()), audited(crane.description())].concat(),
+                rows: Vec::new(),
+            },
             energy_at_start: 0.0,
         }
     }
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
-        let &Sample { t, q, v, work, dissipated } = sample;
+        let &Sample { t, q, v, work, dissipated, load_work } = sample;
         let mut row = Vec::with_capacity(self.table.columns.len());
         let energy = push_quantities(self.crane, t, q, v, &mut row).total();
         if self.table.rows.is_empty() {
             self.energy_at_start = energy;
         }
-        row.extend([work, dissipated, energy - self.energy_at_start - work + dissipated]);
+        row.extend([work, dissipated]);
+        if !self.crane.description().loads.is_empty() {
+            row.push(load_work);
+        }
+        row.push(energy - self.energy_at_start - work - load_work + dissipated);
         self.table.rows.push(row);
     }
 
@@ -126,10 +133,10 @@ pub fn quantities(description: &Description) -> Vec<Column> {
 }
 
 /// Names and units of what only a run knows.
-fn audited() -> Vec<Column> {
-    ["drive_work", "dissipated_energy", "energy_balance"]
-        .map(|energy| Column { name: energy.to_owned(), unit: "J".to_owned() })
-        .to_vec()
+fn audited(description: &Description) -> Vec<Column> {
+    let load_work = (!description.loads.is_empty()).then_some("load_work");
+    let names = ["drive_work", "dissipated_energy"].into_iter().chain(load_work).chain(["energy_balance"]);
+    names.map(|energy| Column { name: energy.to_owned(), unit: "J".to_owned() }).collect()
 }
 
 /// Name of the column with the torque or force of a drive.

@@ -54,14 +54,15 @@ pub fn solve_at<const N: usize, C: Statics<N>>(
 
 /// As [`solve_at`], for a crane of any size.
 pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settings) -> Equilibrium {
-    let Description { drives, coordinates, .. } = crane.description();
+    let Description { drives, coordinates, loads, .. } = crane.description();
+    let loaded = !loads.is_empty();
     // Rigid drives move their coordinates, and leave no residual.
     let springs = |drive: &&DriveInfo| coordinates[drive.coordinate].role != CoordinateRole::Prescribed;
     let mut start = DVector::from_column_slice(q);
     let mut motions = vec![[0.0; 2]; drives.len()];
     let (mut rates, mut forces) = (vec![0.0; q.len()], vec![0.0; q.len()]);
-    // Adds forces of the drives' springs: at the prescribed rates the dampers are unloaded.
-    let mut add_springs = |sign: f64, t: f64, q: &[f64], out: &mut [f64]| {
+    // Adds forces of the loads, and of the drives' springs: at the prescribed rates the dampers are unloaded.
+    let mut add_forces = |sign: f64, t: f64, q: &[f64], out: &mut [f64]| {
         crane.drive_motions(t, &mut motions);
         for (drive, [_, rate]) in drives.iter().zip(&motions) {
             rates[drive.coordinate] = *rate;
@@ -70,12 +71,18 @@ pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settin
         for drive in drives.iter().filter(springs) {
             out[drive.coordinate] += sign * forces[drive.coordinate];
         }
+        if loaded {
+            crane.load_forces(t, q, &mut forces);
+            for ((out, force), coordinate) in out.iter_mut().zip(&forces).zip(coordinates) {
+                *out += if coordinate.role == CoordinateRole::Prescribed { 0.0 } else { sign * force };
+            }
+        }
     };
     crane.prescribe(t, start.as_mut_slice(), &mut vec![0.0; q.len()]);
     let found = search(crane, &start, settings, &mut |q, out| {
         crane.static_residual(q, out);
-        add_springs(1.0, 0.0, q, out);
-        add_springs(-1.0, t, q, out);
+        add_forces(1.0, 0.0, q, out);
+        add_forces(-1.0, t, q, out);
     });
     prescribed_at(crane, t, found)
 }

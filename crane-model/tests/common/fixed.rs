@@ -64,5 +64,6 @@ impl Linearise<0> for Fixed {
 }
 
 impl InternalForces<0> for Fixed {
-    fn internal_forces(&self, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &mut [Wrench]) {}
+    fn internal_forces(&self, _: f64, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &mut [Wrench]) {
+    }
 }

@@ -34,6 +34,8 @@ pub const fn description(
         drives: List::Static(&[]),
         stops: List::Static(&[]),
         frictions: List::Static(&[]),
+        loads: List::Static(&[]),
+        inputs: List::Static(&[]),
         points: List::Static(&[]),
         statics: true,
         guess: List::Static(guess),

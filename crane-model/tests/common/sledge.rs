@@ -123,5 +123,5 @@ impl Linearise<2> for Sledge {
 }
 
 impl InternalForces<2> for Sledge {
-    fn internal_forces(&self, _: &Vector2<f64>, _: &Vector2<f64>, _: &Vector2<f64>, _: &mut [Wrench]) {}
+    fn internal_forces(&self, _: f64, _: &Vector2<f64>, _: &Vector2<f64>, _: &Vector2<f64>, _: &mut [Wrench]) {}
 }

@@ -60,6 +60,8 @@ macro_rules! crane {
                 hinge_forces(v: &Vector) -> Vector;
                 stop_forces(q: &Vector, v: &Vector) -> Vector;
                 friction_forces(v: &Vector) -> Vector;
+                load_forces(t: f64, q: &Vector) -> Vector;
+                load_pieces(out: &mut [[f64; 2]]);
                 support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
                 drive_motions(t: f64, out: &mut [[f64; 2]]);
                 drive_pieces(out: &mut [[f64; 2]]);
@@ -71,6 +73,7 @@ macro_rules! crane {
                 stop_energy(q: &Vector) -> f64;
                 potential_energy(t: f64, q: &Vector) -> f64;
                 drive_power(t: f64, q: &Vector, v: &Vector) -> f64;
+                load_power(t: f64, q: &Vector, v: &Vector) -> f64;
                 dissipation(t: f64, q: &Vector, v: &Vector) -> f64;
                 mass_matrix(q: &Vector) -> Matrix;
                 mass_matrix_and_bias(q: &Vector, v: &Vector, mass: &mut Matrix) -> Vector;
@@ -88,7 +91,7 @@ macro_rules! crane {
                 tangent_stiffness(q: &Vector) -> Matrix;
                 drive_forces_at_rest(q: &Vector) -> Vector;
                 linearise(q: &Vector) -> Linearisation<N>;
-                internal_forces(q: &Vector, v: &Vector, a: &Vector, out: &mut [Wrench]);
+                internal_forces(t: f64, q: &Vector, v: &Vector, a: &Vector, out: &mut [Wrench]);
                 support_positions(q: &Vector, out: &mut [Vector3<f64>]);
                 section_moduli(out: &mut [SectionModuli]);
                 transform_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);

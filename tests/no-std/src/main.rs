@@ -36,6 +36,8 @@ macro_rules! call_all {
         black_box(of::hinge_forces(&crane, &v));
         black_box(of::stop_forces(&crane, &q, &v));
         black_box(of::friction_forces(&crane, &v));
+        black_box(of::load_forces(&crane, t, &q));
+        of::load_pieces(&crane, &mut pieces);
         of::support_reactions(&crane, &q, &v, &mut vectors);
         of::drive_motions(&crane, t, &mut motions);
         of::drive_pieces(&crane, &mut pieces);
@@ -47,6 +49,7 @@ macro_rules! call_all {
         black_box(of::stop_energy(&crane, &q));
         black_box(of::potential_energy(&crane, t, &q));
         black_box(of::drive_power(&crane, t, &q, &v));
+        black_box(of::load_power(&crane, t, &q, &v));
         black_box(of::dissipation(&crane, t, &q, &v));
         black_box(of::mass_matrix(&crane, &q));
         black_box(of::mass_matrix_and_bias(&crane, &q, &v, &mut mass));
@@ -64,7 +67,7 @@ macro_rules! call_all {
         black_box(of::tangent_stiffness(&crane, &q));
         black_box(of::drive_forces_at_rest(&crane, &q));
         black_box(of::linearise(&crane, &q));
-        of::internal_forces(&crane, &q, &v, &v, &mut wrenches);
+        of::internal_forces(&crane, t, &q, &v, &v, &mut wrenches);
         of::support_positions(&crane, &q, &mut vectors);
         of::section_moduli(&crane, &mut moduli);
         of::transform_derivatives(&crane, &q, &mut matrices);

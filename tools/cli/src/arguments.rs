@@ -169,6 +169,9 @@ pub struct Choice {
     /// Values of its live parameters.
     #[command(flatten)]
     pub parameters: Parameters,
+    /// Value of an input in place of what the spec says, in the unit that `crane info` shows; may be given several times
+    #[arg(long = "input", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub inputs: Vec<String>,
     /// Limits of what the model holds for.
     #[command(flatten)]
     pub limits: Limits,

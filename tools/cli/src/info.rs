@@ -55,6 +55,17 @@ pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     }
     report.grid(parameters);
 
+    if !description.inputs.is_empty() {
+        let headers = ["name", "set to", "otherwise", "unit", "about"];
+        let mut inputs = Grid::new("inputs", "Inputs (`--input name=value`)", &headers);
+        for (index, input) in description.inputs.iter().enumerate() {
+            let otherwise = if input.moves { "a motion".into() } else { Cell::from(input.default) };
+            let (unit, about) = (input.unit.as_str().into(), input.about.as_str().into());
+            inputs.row([input.name.as_str().into(), rig.input(index).into(), otherwise, unit, about]);
+        }
+        report.grid(inputs);
+    }
+
     let mut coordinates = Grid::new("q", "Coordinates", &["index", "name", "unit", "role", "guess"]);
     let guess = rig.guess();
     for (index, coordinate) in description.coordinates.iter().enumerate() {

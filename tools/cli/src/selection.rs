@@ -109,7 +109,8 @@ impl Fleet {
             let (title, help) = told(&refused);
             Problem::usage(title, help)
         })?;
-        Ok(live)
+        let inputs: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| crane.input(index)).collect();
+        Ok(live.with_inputs(&inputs))
     }
 
     /// A crane by its name.
@@ -133,13 +134,47 @@ impl Fleet {
 }
 
 impl Choice {
-    /// The crane with its parameters.
+    /// The crane with its parameters and inputs.
     ///
     /// # Errors
-    /// There is no such crane, or its parameters cannot have these values.
+    /// There is no such crane or input, or its parameters cannot have these values.
     pub fn open(&self, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
-        self.parameters.crane(&self.name, self.strict, fleet)
+        let mut rig = self.parameters.crane(&self.name, self.strict, fleet)?;
+        for setting in &self.inputs {
+            let (index, value) = input(setting, rig.description())?;
+            rig.set_input(index, Some(value));
+        }
+        Ok(rig)
     }
+}
+
+/// Place of an input and its value, as in `name=value`.
+fn input(setting: &str, description: &Description) -> Outcome<(usize, f64)> {
+    let (name, value) = setting.split_once('=').ok_or_else(|| {
+        Problem::usage(
+            format!("`--input {setting}` has no value"),
+            "write `--input name=value`, such as `--input pull=300`",
+        )
+    })?;
+    let known = || description.inputs.iter().map(|input| input.name.as_str());
+    let index = known().position(|known| known == name).ok_or_else(|| {
+        let help = if description.inputs.is_empty() {
+            "it has none; name them under `inputs:` in its spec".to_owned()
+        } else {
+            meant(name, &known().collect::<Vec<_>>(), "inputs")
+        };
+        Problem::usage(format!("{} has no input `{name}`", description.name), help)
+    })?;
+    let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+        let unit = description.inputs[index].unit.as_str();
+        let help = if unit.is_empty() {
+            "write a finite number".to_owned()
+        } else {
+            format!("write a finite number, in {unit}")
+        };
+        Problem::usage(format!("`{value}` is not a value for {name}"), help)
+    })?;
+    Ok((index, number))
 }
 
 impl Parameters {

@@ -171,6 +171,10 @@ fn reactions(cases: &[Case<'_>]) -> Grid {
         let sums = reactions.iter().map(|of| <[f64; 3]>::from(of.iter().sum::<Vector3<f64>>()));
         grid.row(vector_row("Σ supports", sums, "N"));
         grid.row(vector_row("weight", cases.iter().map(|case| case.rig.weight_at(&case.equilibrium.q)), "N"));
+        if cases.iter().any(|case| !case.rig.description().loads.is_empty()) {
+            let loads = cases.iter().map(|case| case.rig.applied_force_at(0.0, &case.equilibrium.q));
+            grid.row(vector_row("applied loads", loads, "N"));
+        }
     }
     grid
 }

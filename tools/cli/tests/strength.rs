@@ -146,3 +146,21 @@ fn an_unknown_load_is_refused() {
     let message = String::from_utf8_lossy(&said.stderr);
     assert!(message.contains("there is no live parameter `pay_load`") && message.contains("`payload`"), "{message}");
 }
+
+/// A pull at the side of the truck, 2 m above the ground, takes its moment from what holds the crane down.
+#[test]
+fn an_applied_load_tips() {
+    let pull = "loads: [{name: pull, link: truck, at: [0, 0, 2], force: [0, 5000, 0]}]\n";
+    let said = strength("pulled_truck", &format!("{TRUCK}{pull}"), &[]);
+    let line = said["tipping"].as_array().expect("a table").iter().find(|line| line["from"] == "front_left");
+    let line = line.expect("the line");
+    assert_close("stabilising", &line["stabilising"], 4000.0 * 9.81 - 2.0 * 5000.0, COMPLIANCE);
+    assert_close("overturning", &line["overturning"], 400.0 * 9.81, COMPLIANCE);
+    // (4000 − 10000/9.81) kg · 1 m = m · 4 m
+    let tips = (4000.0 - 10000.0 / 9.81) / 4.0;
+    assert_close("tips", &said["payload_that_tips_the_crane"], tips, COMPLIANCE);
+    let ground = &said["loads"][0];
+    assert_close("pull", &ground["Fy_[N]"], 5000.0, 1e-12);
+    assert_close("weight", &ground["Fz_[N]"], -4100.0 * 9.81, 1e-12);
+    assert_close("moment", &ground["Mx_[N_m]"], -500.0 * 9.81 - 2.0 * 5000.0, COMPLIANCE);
+}

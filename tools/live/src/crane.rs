@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crane_codegen::chain::Chain;
+use crane_codegen::chain::{Chain, Input};
 use crane_codegen::program::{FunctionId, Shape};
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::{
@@ -27,8 +27,10 @@ pub struct LiveCrane {
     library: Arc<Library>,
     description: Description,
     parameters: Vec<f64>,
-    /// Room for a call of every function, kept from the last.
-    rooms: [Mutex<Option<Room>>; FunctionId::ALL.len()],
+    /// Of every input its value while it is set, else 0; and 0 while it is set, else 1.
+    inputs: Vec<f64>,
+    /// Room for a call of every function, kept from the last; cranes that differ in their inputs alone share it.
+    rooms: Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]>,
 }
 
 /// What a call of a function needs besides its arguments.
@@ -54,7 +56,8 @@ impl LiveCrane {
     #[must_use]
     pub fn new(chain: Chain) -> Self {
         let (description, parameters) = (describe(&chain), chain.parameter_defaults());
-        Self { library: Arc::new(Library::new(chain)), description, parameters, rooms: no_rooms() }
+        let inputs = not_set(&chain);
+        Self { library: Arc::new(Library::new(chain)), description, parameters, inputs, rooms: no_rooms() }
     }
 
     /// The chain from which it was made.
@@ -74,7 +77,7 @@ impl LiveCrane {
         let place = &self.rooms[id as usize];
         let kept = place.lock().unwrap_or_else(PoisonError::into_inner).take();
         let mut room = kept.unwrap_or_else(|| self.room(routine));
-        routine.run(&mut room.machine, arguments, &mut room.results);
+        routine.run(&mut room.machine, &Arguments { inputs: &self.inputs, ..*arguments }, &mut room.results);
         let shown = show(routine, &mut room.results);
         *place.lock().unwrap_or_else(PoisonError::into_inner) = Some(room);
         Some(shown)
@@ -84,6 +87,29 @@ impl LiveCrane {
     #[must_use]
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
+    }
+
+    /// The inputs: of each its value while it is set, else 0; and 0 while it is set, else 1.
+    pub(crate) fn inputs(&self) -> &[f64] {
+        &self.inputs
+    }
+
+    /// The same crane with other inputs, in the order of the description: what is not set is as the spec says. Nothing is computed
+    /// again, and the rooms are shared.
+    #[must_use]
+    pub fn with_inputs(&self, values: &[Option<f64>]) -> Self {
+        let mut inputs = not_set(self.chain());
+        for (slots, value) in inputs.chunks_mut(Input::SLOTS).zip(values) {
+            set(slots, *value);
+        }
+        let Self { library, description, parameters, rooms, .. } = self;
+        Self {
+            library: Arc::clone(library),
+            description: description.clone(),
+            parameters: parameters.clone(),
+            inputs,
+            rooms: Arc::clone(rooms),
+        }
     }
 
     /// Its functions, which all its clones share.
@@ -157,8 +183,18 @@ impl LiveCrane {
     }
 }
 
-fn no_rooms() -> [Mutex<Option<Room>>; FunctionId::ALL.len()] {
-    std::array::from_fn(|_| Mutex::new(None))
+fn no_rooms() -> Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]> {
+    Arc::new(std::array::from_fn(|_| Mutex::new(None)))
+}
+
+/// Inputs of which none is set.
+fn not_set(chain: &Chain) -> Vec<f64> {
+    chain.inputs.iter().flat_map(|_| Input::NOT_SET).collect()
+}
+
+/// Sets the numbers of an input, or gives it back to its spec.
+fn set(slots: &mut [f64], value: Option<f64>) {
+    slots.copy_from_slice(&value.map_or(Input::NOT_SET, |value| [value, 0.0]));
 }
 
 fn copy(results: &[f64], out: &mut [f64]) {
@@ -185,6 +221,7 @@ impl Clone for LiveCrane {
             library: Arc::clone(&self.library),
             description: self.description.clone(),
             parameters: self.parameters.clone(),
+            inputs: self.inputs.clone(),
             rooms: no_rooms(),
         }
     }
@@ -204,6 +241,11 @@ impl DynModel for LiveCrane {
 
     fn parameter(&self, index: usize) -> f64 {
         self.parameters.get(index).copied().unwrap_or(f64::NAN)
+    }
+
+    fn input(&self, index: usize) -> Option<f64> {
+        let slots = self.inputs.get(Input::SLOTS * index..)?;
+        slots.first_chunk().and_then(|[value, free]| (*free == 0.0).then_some(*value))
     }
 
     fn transforms(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
@@ -236,6 +278,14 @@ impl DynModel for LiveCrane {
 
     fn friction_forces(&self, v: &[f64], out: &mut [f64]) {
         self.numbers(FunctionId::FrictionForces, &state(0.0, &[], v), out);
+    }
+
+    fn load_forces(&self, t: f64, q: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::LoadForces, &state(t, q, &[]), out);
+    }
+
+    fn load_pieces(&self, out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::LoadPieces, &Arguments::none(), out);
     }
 
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
@@ -280,6 +330,10 @@ impl DynModel for LiveCrane {
 
     fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         self.scalar(FunctionId::DrivePower, &state(t, q, v))
+    }
+
+    fn load_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        self.scalar(FunctionId::LoadPower, &state(t, q, v))
     }
 
     fn dissipation(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
@@ -400,8 +454,8 @@ impl DynLinearise for LiveCrane {
 }
 
 impl DynInternalForces for LiveCrane {
-    fn internal_forces(&self, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
-        self.call(FunctionId::InternalForces, &Arguments { a, ..state(0.0, q, v) }, |_, results| {
+    fn internal_forces(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
+        self.call(FunctionId::InternalForces, &Arguments { a, ..state(t, q, v) }, |_, results| {
             let wrench = |[fx, fy, fz, mx, my, mz]: &[f64; 6]| Wrench {
                 force: Vector3::new(*fx, *fy, *fz),
                 moment: Vector3::new(*mx, *my, *mz),
@@ -433,19 +487,24 @@ impl DynEnsemble for LiveCrane {
         let eight = |index: usize| f64x8::new(std::array::from_fn(|lane| of(lane)[index]));
         let parameters: Vec<f64x8> = (0..self.parameters.len()).map(eight).collect();
         let routine = self.library.routine(FunctionId::ForwardDynamics);
-        Ok(Box::new(Block { ready: routine.map(|routine| (routine, routine.machine(&parameters))) }))
+        Ok(Box::new(Block {
+            ready: routine.map(|routine| (routine, routine.machine(&parameters))),
+            inputs: self.inputs.iter().map(|slot| f64x8::splat(*slot)).collect(),
+        }))
     }
 }
 
 /// Eight cranes.
 struct Block<'a> {
     ready: Ready<'a, f64x8>,
+    inputs: Vec<f64x8>,
 }
 
 impl DynBlock for Block<'_> {
     fn forward_dynamics(&mut self, t: f64, q: &[f64x8], v: &[f64x8], out: &mut [f64x8]) {
         if let Some((routine, machine)) = &mut self.ready {
-            routine.run(machine, &Arguments { t: f64x8::splat(t), q, v, ..Arguments::none() }, out);
+            let arguments = Arguments { t: f64x8::splat(t), q, v, inputs: &self.inputs, ..Arguments::none() };
+            routine.run(machine, &arguments, out);
         }
     }
 }
@@ -479,6 +538,12 @@ impl DynCrane for LiveCrane {
         // The workspaces contain constants computed from parameters.
         self.rooms = no_rooms();
         Ok(())
+    }
+
+    fn set_input(&mut self, index: usize, value: Option<f64>) {
+        if let Some(slots) = self.inputs.chunks_mut(Input::SLOTS).nth(index) {
+            set(slots, value);
+        }
     }
 
     fn boxed_clone(&self) -> Box<dyn DynCrane> {

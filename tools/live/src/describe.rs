@@ -1,9 +1,11 @@
 //! Metadata of a live crane.
 
-use crane_codegen::chain::{self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, SupportKinematics, Value};
+use crane_codegen::chain::{
+    self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics, Value,
+};
 use crane_model::{
-    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterInfo, Refusal,
-    SupportInfo,
+    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, InputInfo, LoadInfo,
+    ParameterInfo, Refusal, SupportInfo,
 };
 
 /// The description of a chain, as the compiler writes it.
@@ -43,6 +45,14 @@ pub fn describe(chain: &Chain) -> Description {
         start: drive.profile.start(&defaults),
         pieces: drive.profile.pieces().len(),
     });
+    let loads = chain.loads.iter().map(|load| LoadInfo { name: load.name.clone().into(), pieces: load.pieces() });
+    let inputs = chain.inputs.iter().map(|input| InputInfo {
+        name: input.name.clone().into(),
+        unit: input.unit.clone().into(),
+        about: input.about.clone().into(),
+        default: input.unless_set.start(&defaults),
+        moves: !matches!(input.unless_set, Profile::Hold(_)),
+    });
     Description {
         name: chain.name.clone().into(),
         title: chain.title.clone().into(),
@@ -54,6 +64,8 @@ pub fn describe(chain: &Chain) -> Description {
         drives: drives.collect(),
         stops: chain.stopped().into_iter().map(|id| id.0).collect(),
         frictions: chain.frictions().map(|(id, _)| id.0).collect(),
+        loads: loads.collect(),
+        inputs: inputs.collect(),
         points: chain.points.iter().map(|point| point.name.clone().into()).collect(),
         statics: chain.analyses.statics,
         guess: chain.guess.iter().copied().collect(),

@@ -106,6 +106,8 @@ pub struct Arguments<'a, T> {
     pub factors: &'a [T],
     /// Live parameters.
     pub parameters: &'a [T],
+    /// Inputs.
+    pub inputs: &'a [T],
 }
 
 impl<T: Number> Arguments<'_, T> {
@@ -113,7 +115,18 @@ impl<T: Number> Arguments<'_, T> {
     #[must_use]
     pub fn none() -> Self {
         let t = T::splat(0.0);
-        Self { t, q: &[], v: &[], a: &[], right: &[], resistance: &[], base: &[], factors: &[], parameters: &[] }
+        Self {
+            t,
+            q: &[],
+            v: &[],
+            a: &[],
+            right: &[],
+            resistance: &[],
+            base: &[],
+            factors: &[],
+            parameters: &[],
+            inputs: &[],
+        }
     }
 
     /// The numbers of an argument.
@@ -128,6 +141,7 @@ impl<T: Number> Arguments<'_, T> {
             Argument::BaseResistance => self.base,
             Argument::Factors => self.factors,
             Argument::Parameters => self.parameters,
+            Argument::Inputs => self.inputs,
             // Only loops of compiled code have these.
             Argument::Round | Argument::Loop => &[],
         }

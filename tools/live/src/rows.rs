@@ -55,6 +55,8 @@ pub struct Evaluation<T> {
     calls: [Option<Call<T>>; 2],
     /// The states that are evaluated.
     lanes: Lanes<T>,
+    /// The crane's inputs.
+    inputs: Vec<T>,
     /// Their results.
     results: Vec<T>,
 }
@@ -96,6 +98,7 @@ impl<T: Number> Evaluation<T> {
             sizes: [crane.size(), crane.parameters().len()],
             calls: ids.map(|id| Call::new(crane, id?)),
             lanes: Lanes { t: vec![], q: vec![], v: vec![], a: vec![], parameters: vec![] },
+            inputs: crane.inputs().iter().copied().map(T::splat).collect(),
             results: vec![T::splat(0.0); width],
         }
     }
@@ -130,10 +133,10 @@ impl<T: Number> Evaluation<T> {
 
     /// Computes the results of the states taken.
     fn evaluate(&mut self) {
-        let Self { calls, lanes, results, library, .. } = self;
+        let Self { calls, lanes, inputs, results, library, .. } = self;
         let n = lanes.q.len();
         match (self.quantity, calls) {
-            (Quantity::Of(_), [Some(call), _]) => call.run(library, lanes, results),
+            (Quantity::Of(_), [Some(call), _]) => call.run(library, lanes, inputs, results),
             (Quantity::PointJacobians, [Some(call), _]) => {
                 // Velocities are linear in the rates: column j is the contribution of the rate of coordinate j.
                 let mut column = vec![T::splat(0.0); results.len() / n.max(1)];
@@ -141,14 +144,14 @@ impl<T: Number> Evaluation<T> {
                     lanes.v.clear();
                     lanes.v.resize(n, T::splat(0.0));
                     lanes.v[j] = T::splat(1.0);
-                    call.run(library, lanes, &mut column);
+                    call.run(library, lanes, inputs, &mut column);
                     results.iter_mut().skip(j).step_by(n).zip(&column).for_each(|(result, of_j)| *result = *of_j);
                 }
             }
             (Quantity::InverseDynamics, [Some(mass), Some(bias)]) => {
-                bias.run(library, lanes, results);
+                bias.run(library, lanes, inputs, results);
                 let mut matrix = vec![T::splat(0.0); n * n];
-                mass.run(library, lanes, &mut matrix);
+                mass.run(library, lanes, inputs, &mut matrix);
                 for (result, row) in results.iter_mut().zip(matrix.chunks(n.max(1))) {
                     *result = row.iter().zip(&lanes.a).fold(-*result, |sum, (entry, a)| fma(*entry, *a, sum));
                 }
@@ -192,10 +195,10 @@ impl<T: Number> Call<T> {
         }
     }
 
-    fn run(&mut self, library: &Library, lanes: &Lanes<T>, out: &mut [T]) {
+    fn run(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T], out: &mut [T]) {
         let Some(routine) = library.routine(self.id) else { return };
         let t = lanes.t.first().copied().unwrap_or(T::splat(0.0));
-        let arguments = Arguments { t, q: &lanes.q, v: &lanes.v, ..Arguments::none() };
+        let arguments = Arguments { t, q: &lanes.q, v: &lanes.v, inputs, ..Arguments::none() };
         match (routine.shape(), &self.places) {
             (Shape::Columns { points, .. }, _) => {
                 routine.run(&mut self.machine, &arguments, &mut self.factors);
@@ -234,6 +237,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::StopEnergy
             | FunctionId::KineticEnergy
             | FunctionId::DrivePower
+            | FunctionId::LoadPower
             | FunctionId::Dissipation => 1,
             FunctionId::MassMatrix | FunctionId::TangentStiffness => n * n,
             FunctionId::Linearise => 3 * n * n,
@@ -244,6 +248,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::DriveForces
             | FunctionId::StopForces
             | FunctionId::FrictionForces
+            | FunctionId::LoadForces
             | FunctionId::StaticResidual
             | FunctionId::DriveForcesAtRest
             | FunctionId::Bias
@@ -251,6 +256,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::JointImpedances | FunctionId::NonlinearImpedances => 2 * n,
             FunctionId::BaseStiffness | FunctionId::BaseDamping => 36,
             FunctionId::DrivePieces => 2 * description.drives.iter().map(|drive| drive.pieces).sum::<usize>(),
+            FunctionId::LoadPieces => 2 * description.loads.iter().map(|load| load.pieces).sum::<usize>(),
             // Quantities that other functions need, or that are left as factors.
             FunctionId::InternalForces
             | FunctionId::SupportPositions

@@ -76,6 +76,7 @@ impl State {
             base: &self.base,
             factors: &self.factors,
             parameters: &[],
+            inputs: &[],
         }
     }
 }
@@ -136,6 +137,7 @@ fn a_lane_computes_what_one_state_does() {
             base: &base,
             factors: &factors,
             parameters: &[],
+            inputs: &[],
         };
         for function in &program.functions {
             let routine = Routine::new(&program, function).unwrap();

@@ -71,8 +71,8 @@ fn pairs(count: usize, write: impl FnOnce(&mut [[f64; 2]])) -> Vec<f64> {
     out.into_flattened()
 }
 
-fn wrenches(crane: &dyn DynCrane, q: &[f64], v: &[f64], a: &[f64]) -> Vec<f64> {
-    let wrenches = crane.internal_forces_at(q, v, a);
+fn wrenches(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
+    let wrenches = crane.internal_forces_at(t, q, v, a);
     wrenches.iter().flat_map(|wrench| wrench.force.iter().chain(&wrench.moment).copied().collect::<Vec<_>>()).collect()
 }
 
@@ -92,6 +92,7 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
     let n = crane.size();
     let degrees: Vec<usize> = description.bodies.iter().map(|body| body.degrees_of_freedom).collect();
     let pieces = description.drives.iter().map(|drive| drive.pieces).sum();
+    let of_loads = description.loads.iter().map(|load| load.pieces).sum();
     let (mut mass, mut stiffness, mut damping) = (vec![f64::NAN; n * n], vec![f64::NAN; n * n], vec![f64::NAN; n * n]);
     crane.linearise(q, &mut mass, &mut stiffness, &mut damping);
     let mut system = crane.system();
@@ -106,11 +107,14 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
         ("drive_forces", numbers(n, |out| crane.drive_forces(t, q, v, out))),
         ("stop_forces", numbers(n, |out| crane.stop_forces(q, v, out))),
         ("friction_forces", numbers(n, |out| crane.friction_forces(v, out))),
+        ("load_forces", numbers(n, |out| crane.load_forces(t, q, out))),
+        ("load_power", vec![crane.load_power(t, q, v)]),
         ("stop_energy", vec![crane.stop_energy(q)]),
         ("support_reactions", vectors(description.supports.len(), |out| crane.support_reactions(q, v, out))),
         ("drive_motions", pairs(description.drives.len(), |out| crane.drive_motions(t, out))),
         ("drive_forces_at_rest", numbers(n, |out| crane.drive_forces_at_rest(q, out))),
         ("drive_pieces", pairs(pieces, |out| crane.drive_pieces(out))),
+        ("load_pieces", pairs(of_loads, |out| crane.load_pieces(out))),
         ("energies", vec![crane.gravity_energy(q), crane.support_energy(q), crane.element_energy(q)]),
         ("drive_energy", vec![crane.drive_energy(t, q)]),
         ("powers", vec![crane.drive_power(t, q, v), crane.dissipation(t, q, v)]),
@@ -129,7 +133,7 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
         ("linearised mass", mass),
         ("linearised stiffness", stiffness),
         ("linearised damping", damping),
-        ("internal_forces", wrenches(crane, q, v, &r)),
+        ("internal_forces", wrenches(crane, t, [q, v, &r])),
         ("section_moduli", moduli(crane)),
         ("support_positions", vectors(description.supports.len(), |out| crane.support_positions(q, out))),
     ]

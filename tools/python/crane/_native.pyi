@@ -92,9 +92,9 @@ class Crane:
     ) -> dict[str, Any]:
         """Runs over parameters: `Crane.simulate_ensemble` makes an `Ensemble` of them."""
     def advance(
-        self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike
-    ) -> tuple[float, Array, Array, float, float, int]:
-        """Time, pose, rates, work, dissipated energy and steps after a while: `Simulation.step` keeps them."""
+        self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike, inputs: list[float | None]
+    ) -> tuple[float, Array, Array, tuple[float, float, float], int]:
+        """Time, pose, rates, energies and steps after a while: work of the drives, what dampers took out, work of the loads, J."""
     def transforms(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., bodies, 4, 4): transforms of the bodies into the world frame, m."""
     def transform_derivatives(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
@@ -121,6 +121,8 @@ class Crane:
         """(..., n): generalized forces of the end stops, N and N m."""
     def friction_forces(self, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): generalized forces of friction in joints, N and N m."""
+    def load_forces(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): generalized forces of the loads applied from outside, N and N m. t: s, 0 unless given."""
     def drive_forces_at_rest(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m."""
     def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 class State:
     """A moment of a simulation, to come back to.
 
-    t: s. q, v: (n), m and rad, m/s and rad/s. work, dissipated: J since the start. parameters: live parameters.
+    t: s. q, v: (n), m and rad, m/s and rad/s. work, dissipated, load_work: J since the start. parameters: live parameters.
+    inputs: those that are set.
     """
 
     t: float
@@ -25,6 +26,8 @@ class State:
     work: float = 0.0
     dissipated: float = 0.0
     parameters: dict[str, float] = field(default_factory=dict)
+    load_work: float = 0.0
+    inputs: dict[str, float] = field(default_factory=dict)
 
 
 class Simulation:
@@ -35,6 +38,8 @@ class Simulation:
     >>> before = simulation.save()
     >>> simulation.step(0.01, payload=900.0)
     >>> simulation.restore(before)
+
+    Inputs of the spec are set by name, `simulation.step(0.01, inputs={"pull": 300.0})`.
 
     Each step is a run of its own from the present state: the same state and the same step give the same numbers, to the last
     bit, whatever came before. So a saved state can be restored, copied or sent to another process.
@@ -85,19 +90,45 @@ class Simulation:
         """Energy that the dampers dissipated since the start, J."""
         return self._state.dissipated
 
-    def step(self, dt: float, **parameters: float) -> State:
-        """Moves the crane on by dt, s, with new values of live parameters from now on. Returns the state reached.
+    @property
+    def load_work(self) -> float:
+        """Work that loads applied from outside put in since the start, J."""
+        return self._state.load_work
+
+    def step(self, dt: float, inputs: dict[str, float | None] | None = None, **parameters: float) -> State:
+        """Moves the crane on by dt, s, with new values of inputs and live parameters from now on. Returns the state reached.
+
+        inputs: by name, in the units that `Crane.info` shows; None gives an input back to its spec.
 
         Where it fails or is interrupted, the simulation stays where it was.
         """
         crane = self.crane.replace(**parameters) if parameters else self.crane
         now = self._state
+        known = [info["name"] for info in crane.info["inputs"]]
+        set_now = self._inputs(known, inputs or {})
         timing = {**self._timing, "duration": dt, "output": dt}
-        t, q, v, work, dissipated, steps = crane.advance(timing, now.t, now.q, now.v)
-        self._state = State(t, q, v, now.work + work, now.dissipated + dissipated, crane.parameters)
+        t, q, v, integrals, steps = crane.advance(timing, now.t, now.q, now.v, [set_now.get(name) for name in known])
+        work, dissipated, load_work = integrals
+        energies = {
+            "work": now.work + work,
+            "dissipated": now.dissipated + dissipated,
+            "load_work": now.load_work + load_work,
+        }
+        self._state = State(t, q, v, parameters=crane.parameters, inputs=set_now, **energies)
         self.crane = crane
         self.steps += steps
         return self._state
+
+    def _inputs(self, known: list[str], given: dict[str, float | None]) -> dict[str, float]:
+        """The inputs that are set from now on."""
+        for name, value in given.items():
+            if name not in known:
+                has = f"inputs: {', '.join(known)}" if known else "it has none; name them under `inputs:` in its spec"
+                raise ValueError(f"{self.crane.name} has no input `{name}`; {has}")
+            if value is not None and not np.isfinite(value):
+                raise ValueError(f"inputs[{name!r}] is {value}, not a finite number")
+        merged = {**self._state.inputs, **given}
+        return {name: float(value) for name, value in merged.items() if value is not None}
 
     def save(self) -> State:
         """The current state."""

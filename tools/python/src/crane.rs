@@ -179,7 +179,17 @@ impl Crane {
             row.set_item("default", info.default)?;
             rows.push(row);
         }
-        all.set_item("parameters", list(rows)?)?;
+        all.set_item("parameters", list(std::mem::take(&mut rows))?)?;
+        for info in &description.inputs {
+            let row = PyDict::new(py);
+            row.set_item("name", &*info.name)?;
+            row.set_item("unit", &*info.unit)?;
+            row.set_item("about", &*info.about)?;
+            row.set_item("default", info.default)?;
+            row.set_item("moves", info.moves)?;
+            rows.push(row);
+        }
+        all.set_item("inputs", list(rows)?)?;
         all.set_item("points", description.points.iter().map(|point| &**point).collect::<Vec<&str>>())?;
         all.set_item("run", (description.duration, description.step, description.output))?;
         Ok(all)

@@ -204,6 +204,14 @@ impl Crane {
         )
     }
 
+    /// (..., n): generalized forces of the loads applied from outside, N and N m. t: s, 0 unless given.
+    #[pyo3(signature = (q, t=None, *, invalid="raise"))]
+    fn load_forces<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, t: Given<'_, 'py>, invalid: &str) -> Array<'py> {
+        let own = [self.live.size()];
+        let state = State { t, q: Some(q), ..State::default() };
+        self.compute(py, Quantity::Of(FunctionId::LoadForces), state, &own, invalid)
+    }
+
     /// (..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m.
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn drive_forces_at_rest<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {

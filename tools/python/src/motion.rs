@@ -291,7 +291,8 @@ impl Crane {
         Ok(all)
     }
 
-    /// Time, pose, rates, work of the drives and dissipated energy after a while, from a time, a pose and rates.
+    /// Time, pose and rates after a while, from a time, a pose and rates, with inputs in the order of the description; work of the drives, dissipated energy
+    /// and work of the loads.
     fn advance<'py>(
         &self,
         py: Python<'py>,
@@ -299,8 +300,9 @@ impl Crane {
         t: f64,
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
+        inputs: Vec<Option<f64>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
-        let crane = &self.live;
+        let crane = &self.live.with_inputs(&inputs);
         let description = crane.description();
         if !self.is_single() {
             return Err(PyValueError::new_err("the parameters are arrays: a simulation needs one value of each"));
@@ -311,28 +313,28 @@ impl Crane {
         let settings = timing.settings(description)?;
         let start = InitialState { q: given("q", q, description)?, v: given("v", v, description)? };
         let watch = Watch::new();
-        let mut last = Last { end: (t, start.clone(), [0.0; 2]), watch: &watch };
+        let mut last = Last { end: (t, start.clone(), [0.0; 3]), watch: &watch };
         let run = py.detach(|| dynamics::simulate_from(crane, t, &start, &settings, &mut last));
-        let (end, InitialState { q, v }, [work, dissipated]) = last.end;
+        let (end, InitialState { q, v }, [work, dissipated, load_work]) = last.end;
         watch.finish(py)?;
         let run = run.map_err(|stopped| {
             raised(&Reason::Stopped { stopped, near_singular: None, limit: None }.of(&description.name))
         })?;
         let [q, v] = [q, v].map(|state| numpy::PyArray1::from_vec(py, state));
-        (end, q, v, work, dissipated, run.statistics.steps).into_pyobject(py)
+        (end, q, v, (work, dissipated, load_work), run.statistics.steps).into_pyobject(py)
     }
 }
 
 /// Keeps the last sample.
 struct Last<'a> {
-    end: (f64, InitialState, [f64; 2]),
+    end: (f64, InitialState, [f64; 3]),
     watch: &'a Watch,
 }
 
 impl dynamics::Watch for Last<'_> {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         let (q, v) = (sample.q.to_vec(), sample.v.to_vec());
-        self.end = (sample.t, InitialState { q, v }, [sample.work, sample.dissipated]);
+        self.end = (sample.t, InitialState { q, v }, [sample.work, sample.dissipated, sample.load_work]);
         ControlFlow::Continue(())
     }
 

@@ -30,6 +30,7 @@ def on_paper(c, t, q, v):
         "drive_forces": c.drive_forces(q, v, t),
         "stop_forces": c.stop_forces(q, v),
         "friction_forces": c.friction_forces(v),
+        "load_forces": c.load_forces(q, t),
         "drive_forces_at_rest": c.drive_forces_at_rest(q),
         "support_reactions": c.support_reactions(q, v),
         "drive_motions": c.drive_motions(t),

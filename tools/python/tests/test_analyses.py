@@ -172,6 +172,29 @@ def test_parameters_change_between_steps(knuckle):
         simulation.restore(crane.State(0.0, np.zeros(2), np.zeros(2)))
 
 
+def test_inputs_are_set_between_steps():
+    """A mass on a spring whose far end jumps: it swings about where the spring rests."""
+    text = (
+        "format: 1\nname: slide\ngravity: [0, 0, 0]\ninputs: {lever: {unit: m}}\n"
+        "links: [{name: slide, joint: {prismatic: {axis: x}}, mass: 4, com: [0, 0, 0]}]\n"
+        "drives: [{coordinate: slide_x, stiffness: 100, motion: {input: lever}}]\n"
+    )
+    simulation = crane.load("slide.yaml", text=text).simulation(tolerance=1e-9)
+    assert simulation.crane.info["inputs"] == [{"name": "lever", "unit": "m", "about": "", "default": 0.0, "moves": False}]
+    x = v = 0.0
+    sine, cosine = np.sin(1.5), np.cos(1.5)
+    for lever in [0.5, -0.2, 0.0]:
+        state = simulation.step(0.3, inputs={"lever": lever})
+        x, v = lever + (x - lever) * cosine + v / 5 * sine, v * cosine - (x - lever) * 5 * sine
+        np.testing.assert_allclose([simulation.q[0], simulation.v[0]], [x, v], atol=2e-6)
+    assert state.inputs == {"lever": 0.0}
+    assert simulation.step(0.3, inputs={"lever": None}).inputs == {}
+    with pytest.raises(ValueError, match="no input `levr`; inputs: lever"):
+        simulation.step(0.1, inputs={"levr": 1.0})
+    with pytest.raises(ValueError, match="not a finite number"):
+        simulation.step(0.1, inputs={"lever": np.nan})
+
+
 def test_a_pendulum_swings_in_time(pendulum):
     """A step for a controller costs no more than the motion needs: a second of a pendulum in far less than a second."""
     simulation = pendulum.simulation(q=[0.1])

@@ -18,6 +18,7 @@ FUNCTIONS = [
     ("drive_forces", "qvt", lambda c: (c.n,)),
     ("stop_forces", "qv", lambda c: (c.n,)),
     ("friction_forces", "v", lambda c: (c.n,)),
+    ("load_forces", "qt", lambda c: (c.n,)),
     ("drive_forces_at_rest", "q", lambda c: (c.n,)),
     ("support_reactions", "qv", lambda c: (len(c.info["supports"]), 3)),
     ("drive_motions", "t", lambda c: (len(c.info["drives"]), 2)),

@@ -1,7 +1,7 @@
 //! Forces and energies by part, and the functions of drives.
 
 use super::{Derivation, function, sum};
-use crate::mechanics::{drives, gravity, joints, springs, supports};
+use crate::mechanics::{drives, gravity, joints, loads, springs, supports};
 use crate::program::Argument::{Position, Time, Velocity};
 use crate::program::{Argument, Function, FunctionId, Shape};
 use crate::symbolic::{Expr, Tape};
@@ -67,6 +67,29 @@ impl<'g> Derivation<'g> {
         for (id, doc, equation, arguments, forces) in self.joint_forces() {
             parts.push(forces.clone());
             functions.push(function(id, doc, equation, arguments, vector(), forces));
+        }
+        if !chain.loads.is_empty() {
+            let forces = loads::forces(model, &self.kinematics, model.t);
+            parts.push(forces.clone());
+            functions.push(function(
+                FunctionId::LoadForces,
+                "Generalized forces of the loads applied from outside, N and N m.",
+                "F · Ω_j x + M · ω_j",
+                &[Time, Position],
+                vector(),
+                forces,
+            ));
+            let pieces = loads::pieces(model);
+            if !pieces.is_empty() {
+                functions.push(function(
+                    FunctionId::LoadPieces,
+                    "Begin and end of the pieces in which the scales of loads are smooth, load by load, s.",
+                    "t_begin, t_end",
+                    &[],
+                    Shape::Pairs(pieces.len() / 2),
+                    pieces,
+                ));
+            }
         }
         if parts.len() > 1 {
             functions.push(
@@ -198,6 +221,9 @@ impl<'g> Derivation<'g> {
         if !model.chain.forces.is_empty() {
             parts.extend([joints::stop_forces(model, v), joints::friction_forces(model, v)]);
         }
+        if !model.chain.loads.is_empty() {
+            parts.push(loads::forces(model, &self.kinematics, t));
+        }
         sum(&parts)
     }
 
@@ -254,6 +280,15 @@ impl<'g> Derivation<'g> {
                 )
                 .by(tape),
             );
+        }
+        if !chain.loads.is_empty() {
+            functions.push(scalar(
+                FunctionId::LoadPower,
+                "Power that the loads applied from outside put in, W.",
+                "Σ F · ẋ + M · ω",
+                &[Time, Position, Velocity],
+                loads::power(model, &self.kinematics, &self.twists),
+            ));
         }
         if chain.stops().next().is_some() {
             functions.push(scalar(

@@ -4,20 +4,21 @@ use super::{Derivation, function};
 use crate::chain::{Beam, Moduli};
 use crate::mechanics::model::Model;
 use crate::mechanics::{newton_euler, supports};
-use crate::program::Argument::{Acceleration, Position, Velocity};
+use crate::program::Argument::{Acceleration, Position, Time, Velocity};
 use crate::program::{Function, FunctionId, Shape, Struct};
 use crate::symbolic::Expr;
 
 impl Derivation<'_> {
     pub(super) fn internal_forces(&self) -> Vec<Function> {
         let model = &self.model;
-        let (wrenches, tape) = model.graph.recorded(|| newton_euler::internal_forces(model, &self.factors));
+        let (wrenches, tape) =
+            model.graph.recorded(|| newton_euler::internal_forces(model, &self.kinematics, &self.factors));
         let mut functions = vec![
             function(
                 FunctionId::InternalForces,
                 "Force (N) and moment (N m) that what is beyond a cut exerts on what is before it, cut by cut.",
-                "−Σ ∫ (ẍ − γ) dm, −Σ ∫ r × (ẍ − γ) dm over everything beyond, by Newton and Euler",
-                &[Position, Velocity, Acceleration],
+                "Σ F − Σ ∫ (ẍ − γ) dm, Σ (M + r × F) − Σ ∫ r × (ẍ − γ) dm over everything beyond, by Newton and Euler",
+                &[Time, Position, Velocity, Acceleration],
                 Shape::Structs(Struct::Wrench, model.chain.cuts().len()),
                 wrenches,
             )

@@ -3,7 +3,7 @@
 use super::{Derivation, function, sum};
 use crate::mechanics::columns::columns;
 use crate::mechanics::vector::SymmetricMatrix;
-use crate::mechanics::{drives, gravity, joints, springs, supports};
+use crate::mechanics::{drives, gravity, joints, loads, springs, supports};
 use crate::program::Argument::Position;
 use crate::program::{Function, FunctionId, Shape};
 use crate::symbolic::Expr;
@@ -81,6 +81,9 @@ impl<'g> Derivation<'g> {
         if !model.chain.forces.is_empty() {
             forces.push(joints::stop_forces(model, &rest));
         }
+        if !model.chain.loads.is_empty() {
+            forces.push(loads::forces(model, &self.kinematics, model.zero()));
+        }
         let forces = sum(&forces);
         gravity.into_iter().zip(forces).map(|(g, f)| g - f).collect()
     }
@@ -89,6 +92,7 @@ impl<'g> Derivation<'g> {
         let model = &self.model;
         let mut matrix = self.impedances().0;
         joints::stiffness(model, &mut matrix);
+        loads::stiffness(model, &self.kinematics, &mut matrix);
         gravity::stiffness(model, &self.kinematics, &self.inertias, &mut matrix);
         matrix
     }

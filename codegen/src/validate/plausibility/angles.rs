@@ -6,7 +6,7 @@ use super::lengths::is_far;
 use super::{Look, items, rounded};
 use crate::chain::{Coordinate, CoordinateKind};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Angle, Given, Link, Motion, Placement, Scalar, Turn};
+use crate::spec::{Angle, Given, Input, Link, Motion, Placement, Scalar, Turn};
 
 /// Bare angles beyond a full turn look like degrees; with four ulp of tolerance, because `6.283185307179586` is 2π.
 const FULL_TURN: f64 = TAU * (1.0 + 4.0 * f64::EPSILON);
@@ -61,6 +61,7 @@ impl Look<'_> {
                 let values = table.values.value.iter().flatten();
                 values.map(|value| (value.value.as_ref().map(|value| &value.0), value.span)).collect()
             }
+            Motion::Input(name) => return self.input(name, coordinate),
         };
         // The first implausible number is reported for the motion.
         let before = self.warnings.len();
@@ -72,6 +73,24 @@ impl Look<'_> {
             if self.warnings.len() > before {
                 return;
             }
+        }
+    }
+
+    /// An input that is the motion of a coordinate.
+    fn input(&mut self, name: &Given<String>, coordinate: &str) {
+        let entries = self.crane.inputs.as_ref().and_then(|inputs| inputs.value.as_ref());
+        let named = |(known, _): &&(Given<String>, Given<Input>)| known.value == name.value;
+        let Some(input) =
+            entries.and_then(|entries| entries.0.iter().find(named)).and_then(|(_, input)| input.value.as_ref())
+        else {
+            return;
+        };
+        if let Some(value) = &input.value {
+            let what = format!("input `{}`", name.value.as_deref().unwrap_or_default());
+            self.position(value.value.as_ref().map(|value| &value.0), value.span, coordinate, &what);
+        }
+        if let Some(motion) = input.motion.as_ref().and_then(|motion| motion.value.as_ref()) {
+            self.motion(motion, coordinate);
         }
     }
 

@@ -18,6 +18,10 @@ impl Look<'_> {
             let name = support.name.value.as_deref().unwrap_or_default();
             self.place(Some(&support.at), &format!("support `{name}`"));
         }
+        for load in items(crane.loads.as_ref()) {
+            let name = load.name.value.as_deref().unwrap_or_default();
+            self.place(load.at.as_ref(), &format!("load `{name}`"));
+        }
         for point in items(crane.points.as_ref()) {
             let name = point.name.value.as_deref().unwrap_or_default();
             self.place(Some(&point.at), &format!("point `{name}`"));

@@ -28,13 +28,13 @@ impl Instant {
     /// At rest.
     pub fn at_rest(rig: &dyn DynCrane, q: &[f64]) -> Self {
         let rest = vec![0.0; q.len()];
-        Self { t: 0.0, lines: lines(rig, q, &rest, &rest), wrenches: rig.internal_forces_at(q, &rest, &rest) }
+        Self { t: 0.0, lines: lines(rig, 0.0, q, &rest, &rest), wrenches: rig.internal_forces_at(0.0, q, &rest, &rest) }
     }
 
     /// In motion.
     fn moving(rig: &dyn DynCrane, t: f64, q: &[f64], v: &[f64]) -> Self {
         let a = rig.accelerations_at(t, q, v);
-        Self { t, lines: lines(rig, q, v, a.as_slice()), wrenches: rig.internal_forces_at(q, v, a.as_slice()) }
+        Self { t, lines: lines(rig, t, q, v, a.as_slice()), wrenches: rig.internal_forces_at(t, q, v, a.as_slice()) }
     }
 }
 

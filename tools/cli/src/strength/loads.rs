@@ -75,7 +75,7 @@ fn least_reaction(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
 /// What is left to hold the crane down about the line that tips first, N m.
 fn least_balance(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
     let rest = vec![0.0; q.len()];
-    let lines = lines(rig, q, &rest, &rest);
+    let lines = lines(rig, 0.0, q, &rest, &rest);
     let line = lines.iter().min_by(|a, b| a.balance().total_cmp(&b.balance()))?;
     Some((line.balance(), feet(rig.description(), line)))
 }

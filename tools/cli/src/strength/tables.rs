@@ -12,7 +12,7 @@ use super::history::{OF_JOINTS, OF_SECTIONS, UNITS, numbers, prefix};
 
 /// Moments about the tipping lines.
 pub fn tipping(description: &Description, lines: &[TippingLine]) -> Grid {
-    let title = "Moments of weight about the tipping lines at rest, anticlockwise seen from above";
+    let title = "Moments of weight and loads about the tipping lines at rest, anticlockwise seen from above";
     let mut grid = Grid::new("tipping", title, &["from", "to", "stabilising", "overturning", "unit", "margin"]);
     for line in lines {
         let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());

@@ -1,0 +1,27 @@
+//! Inputs: numbers that a controller or a user sets between steps.
+
+use super::Profile;
+
+/// Place of an input in the list of all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct InputId(pub usize);
+
+/// An input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// Name, a valid Rust identifier.
+    pub name: String,
+    /// Unit as written by the user, for tables.
+    pub unit: String,
+    /// What it is.
+    pub about: String,
+    /// What it is unless set: a number, or a motion.
+    pub unless_set: Profile,
+}
+
+impl Input {
+    /// Numbers that stand for an input: its value while it is set, else 0; and 0 while it is set, else 1.
+    pub const SLOTS: usize = 2;
+    /// These numbers while it is not set.
+    pub const NOT_SET: [f64; Self::SLOTS] = [0.0, 1.0];
+}

@@ -1,0 +1,109 @@
+//! Loads applied from outside: a force and a moment at a point of a body.
+//!
+//! `f_j = F · Ω_j x + M · ω_j` for the coordinates j that move the body, x the point in the world: the power `F · ẋ + M · ω` at unit
+//! rate of j.
+
+use super::kinematics::Kinematics;
+use super::model::Model;
+use super::profile;
+use super::twist::Twist;
+use super::vector::{SymmetricMatrix, Vec3};
+use crate::chain::{BodyId, Load, LoadAxes, Profile, Value};
+use crate::symbolic::Expr;
+
+/// A load in the world.
+struct Applied<'g> {
+    at: Vec3<'g>,
+    force: Vec3<'g>,
+    moment: Vec3<'g>,
+}
+
+/// What a load is multiplied by at time t; nothing where it is constant.
+fn scale<'g>(model: &Model<'g>, load: &Load, t: Expr<'g>) -> Option<Expr<'g>> {
+    load.scale.as_ref().map(|scale| profile::position(model, scale, t))
+}
+
+fn applied<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, load: &Load, t: Expr<'g>) -> Applied<'g> {
+    let pose = &kinematics.poses[load.body.0];
+    let scale = scale(model, load, t);
+    let in_world = |vector: Vec3<'g>| {
+        let vector = match load.axes {
+            LoadAxes::World => vector,
+            LoadAxes::Link => pose.rotation.apply(vector),
+        };
+        scale.map_or(vector, |scale| scale * vector)
+    };
+    Applied {
+        at: pose.origin + pose.rotation.apply(model.vector(&load.position)),
+        force: in_world(model.vector(&load.force)),
+        moment: in_world(model.vector(&load.moment)),
+    }
+}
+
+/// Generalized forces of the loads at time t.
+pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -> Vec<Expr<'g>> {
+    let mut forces = model.zeros();
+    for load in &model.chain.loads {
+        let Applied { at, force, moment } = applied(model, kinematics, load, t);
+        let moving = kinematics.generators.iter().take(model.chain.degrees_of_freedom(load.body));
+        for (sum, generator) in forces.iter_mut().zip(moving) {
+            *sum = *sum + (force.dot(generator.velocity(at)) + moment.dot(generator.omega));
+        }
+    }
+    forces
+}
+
+/// What acts on each body at time t, force and moment about its origin along its own axes.
+pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -> Vec<Option<[Vec3<'g>; 2]>> {
+    let mut wrenches: Vec<Option<[Vec3<'g>; 2]>> = vec![None; model.chain.bodies.len()];
+    for load in &model.chain.loads {
+        let BodyId(body) = load.body;
+        let scale = scale(model, load, t);
+        let along_own_axes = |vector: &[Value; 3]| {
+            let vector = model.vector(vector);
+            let turned = match load.axes {
+                LoadAxes::World => kinematics.poses[body].rotation.apply_transposed(vector),
+                LoadAxes::Link => vector,
+            };
+            scale.map_or(turned, |scale| scale * turned)
+        };
+        let force = along_own_axes(&load.force);
+        let moment = along_own_axes(&load.moment) + model.vector(&load.position).cross(force);
+        wrenches[body] = Some(match wrenches[body] {
+            Some([others, moments]) => [others + force, moments + moment],
+            None => [force, moment],
+        });
+    }
+    wrenches
+}
+
+/// Begin and end of the pieces of every load's scale.
+pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let pieces = model.chain.loads.iter().filter_map(|load| load.scale.as_ref()).flat_map(Profile::pieces);
+    pieces.flatten().map(|time| model.number(&time)).collect()
+}
+
+/// Power that the loads put in, `Σ F · ẋ + M · ω`.
+pub fn power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist<'g>]) -> Expr<'g> {
+    model.chain.loads.iter().fold(model.zero(), |sum, load| {
+        let Applied { at, force, moment } = applied(model, kinematics, load, model.t);
+        let twist = &twists[load.body.0];
+        sum + (force.dot(twist.omega.cross(at) + twist.upsilon) + moment.dot(twist.omega))
+    })
+}
+
+/// `−∂f/∂q` of the loads at t = 0, its symmetric part: that of a force along fixed axes is symmetric, those of a moment and of a force
+/// that turns with its link are not, and have no potential.
+pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    if model.chain.loads.is_empty() {
+        return;
+    }
+    let forces = forces(model, kinematics, model.zero());
+    let columns: Vec<Vec<Expr<'g>>> = model.q.iter().map(|q| model.graph.derivatives(&forces, *q)).collect();
+    for j in 0..columns.len() {
+        matrix.add(j, j, -columns[j][j]);
+        for i in 0..j {
+            matrix.add(i, j, -0.5 * (columns[j][i] + columns[i][j]));
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Loads applied from outside.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Given, Motion, Vector};
+
+/// A force and a moment at a point of a link.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `link`, `at`, `force`, `moment`, `axes` and `scale`")]
+pub struct Load {
+    /// Name, a `snake_case` identifier.
+    pub name: Given<String>,
+    /// The link it acts on.
+    pub link: Given<String>,
+    /// Where, in the frame of the link (of a beam: undeformed), m. Default `[0, 0, 0]`.
+    pub at: Option<Given<Vector>>,
+    /// Force along x, y, z, N. Default `[0, 0, 0]`.
+    pub force: Option<Given<Vector>>,
+    /// Moment about x, y, z, N m. Default `[0, 0, 0]`.
+    pub moment: Option<Given<Vector>>,
+    /// Whether x, y, z are the axes of the world or those of the link, with which the load turns. Default `world`.
+    pub axes: Option<Given<Axes>>,
+    /// What force and moment are multiplied by over time, as a motion of a drive. Default 1.
+    pub scale: Option<Given<Motion>>,
+}
+
+/// Axes along which a load is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axes {
+    /// Those of the world.
+    World,
+    /// Those of the link.
+    Link,
+}

@@ -1,0 +1,109 @@
+//! Loads applied from outside against exact laws.
+
+use std::ops::ControlFlow;
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynCrane;
+use crane_model::dynamics::{InitialState, Method, Sample, Settings};
+use crane_model::statics;
+
+fn crane(text: &str) -> LiveCrane {
+    LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+/// A flexible boom on a column with a spring, and more keys; its load hangs from the tip.
+fn boom(load: f64, more: &str) -> LiveCrane {
+    crane(&format!(
+        "format: 1\nname: boom\nlinks:\n\
+         - {{name: column, joint: revolute, mass: 100, com: [0, 0, 1], inertia: {{gyration: [0.3, 0.3, 0.2]}}}}\n\
+         - name: boom\n  placement: {{transform: {{translation: [0, 0, 2], rotation: {{x: 80 deg}}}}}}\n  joint: revolute\n\
+         \x20 beam: {{length: 4, sections: 2, material: {{E: 2.1e11, G: 8.1e10, density: 7850}}, section: {{tube: {{diameter: 0.1, thickness: 0.01}}}}}}\n\
+         - {{name: tip, joint: fixed, mass: {load}, com: [0.2, -0.3, 0.1]}}\n\
+         drives:\n- {{coordinate: column_psi, stiffness: 2e4, motion: {{hold: 0.3}}}}\n\
+         - {{coordinate: boom_psi, stiffness: 3e5, motion: {{hold: 0.4}}}}\n{more}"
+    ))
+}
+
+/// A weight that hangs from a point is a force of the world: the same pose and the same stiffness, to rounding.
+#[test]
+fn a_hanging_weight_is_a_force() {
+    let (own, weight) = (20.0, 150.0);
+    let heavy = boom(own + weight, "");
+    let force = -9.81 * weight;
+    let loaded =
+        boom(own, &format!("loads: [{{name: pull, link: tip, at: [0.2, -0.3, 0.1], force: [0, 0, {force}]}}]\n"));
+    let [heavy, loaded]: [&dyn DynCrane; 2] = [&heavy, &loaded];
+    let [one, other] = [heavy, loaded].map(|crane| crane.equilibrium(&statics::Settings::default()));
+    assert!(one.is_stable() && other.is_stable(), "{one}; {other}");
+    // Stiffnesses from 2e4 to 1e7: Newton's method ends at 1e-10 of the forces.
+    assert!(one.q.iter().zip(&other.q).all(|(a, b)| (a - b).abs() < 1e-9), "{:?} {:?}", one.q, other.q);
+    let [one, other] = [heavy, loaded].map(|crane| crane.small_motions_at(&one.q).stiffness);
+    assert!((&one - &other).amax() < 1e-12 * one.amax(), "{}", (one - other).amax());
+}
+
+/// What holds an arm against a wrench that turns with it: the moment about its joint, wherever it points.
+#[test]
+fn a_drive_holds_a_load_that_turns_with_its_link() {
+    let arm = crane(
+        "format: 1\nname: arm\ngravity: [0, 0, 0]\nlinks: [{name: arm, joint: revolute, mass: 10, com: [1, 0, 0], inertia: {gyration: [0.1, 0.5, 0.5]}}]\n\
+         drives: [{coordinate: arm_psi, stiffness: 1e3, motion: {hold: 0.5}}]\n\
+         loads: [{name: push, link: arm, at: [2, 0.5, 0], force: [30, 40, 7], moment: [1, 2, 9], axes: link,\n\
+         \x20 scale: {cubic: {from: 0.25, to: 1, duration: 2}}}]\n",
+    );
+    let arm: &dyn DynCrane = &arm;
+    let settings = statics::Settings::default();
+    let rest = arm.equilibrium(&settings);
+    // x F_y − y F_x + M_z
+    let moment = 2.0 * 40.0 - 0.5 * 30.0 + 9.0;
+    assert!((arm.drive_efforts_at_rest(&rest.q)[0] + 0.25 * moment).abs() < 1e-9);
+    assert!((rest.q[0] - 0.5 - 0.25 * moment / 1e3).abs() < 1e-12);
+    let later = arm.equilibrium_at(5.0, &rest.q, &settings);
+    assert!((later.q[0] - 0.5 - moment / 1e3).abs() < 1e-12, "{later}");
+}
+
+/// A constant force moves a slide by `F t²/2m`, and its work is the kinetic energy.
+#[test]
+fn the_work_of_a_load_is_kinetic_energy() {
+    let slide = crane(
+        "format: 1\nname: slide\ngravity: [0, 0, 0]\nlinks: [{name: slide, joint: {prismatic: {axis: x}}, mass: 4, com: [0, 0, 0]}]\n\
+         loads: [{name: pull, link: slide, at: [0, 1, 2], force: [6, 5, 4], moment: [1, 2, 3]}]\n",
+    );
+    let slide: &dyn DynCrane = &slide;
+    let settings = Settings { audit: true, duration: 2.0, ..Settings::of(slide.description()) };
+    let start = InitialState { q: vec![0.0], v: vec![0.0] };
+    let mut last = [0.0; 3];
+    let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
+        last = [sample.q[0], sample.v[0], sample.load_work];
+        ControlFlow::Continue(())
+    });
+    run.expect("it runs");
+    // A quadratic motion, which the formulas of order 2 follow except for their start, at a tolerance of 2e-5.
+    for (found, expected) in last.into_iter().zip([3.0, 3.0, 18.0]) {
+        assert!((found - expected).abs() < 1e-3, "{found} for {expected}");
+    }
+}
+
+/// A short push on a body at rest, long after the beginning: no step passes over it. A spline through 0, 1, 0 at rest at both ends
+/// is two cubic flanks, of which each has half its duration as integral.
+#[test]
+fn no_step_misses_a_short_push() {
+    let slide = crane(
+        "format: 1\nname: slide\ngravity: [0, 0, 0]\nlinks: [{name: slide, joint: {prismatic: {axis: x}}, mass: 4, com: [0, 0, 0]}]\n\
+         loads: [{name: push, link: slide, force: [100, 0, 0], scale: {table: {times: [7, 7.01, 7.02], values: [0, 1, 0]}}}]\n",
+    );
+    let slide: &dyn DynCrane = &slide;
+    for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
+        let of_spec = Settings::of(slide.description());
+        let settings = Settings { method, tolerance: 1e-8, duration: 10.0, output: 10.0, ..of_spec };
+        let mut speed = 0.0;
+        let start = InitialState { q: vec![0.0], v: vec![0.0] };
+        let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
+            speed = sample.v[0];
+            ControlFlow::Continue(())
+        });
+        run.expect("it runs");
+        let expected = 100.0 * 0.01 / 4.0;
+        assert!((speed - expected).abs() < 1e-5, "{method}: {speed} m/s instead of {expected}");
+    }
+}
