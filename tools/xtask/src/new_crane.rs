@@ -8,6 +8,21 @@ use crate::{step, workspace};
 /// Where the new crate is made, under cargo's target folder.
 const FOLDER: &str = "new-crane";
 
+/// The profile of the workspace, so that what it has built serves again; a user's crate has a simpler one.
+const PROFILE: [&str; 11] = [
+    "debug=\"line-tables-only\"",
+    "build-override.opt-level=3",
+    "build-override.codegen-units=16",
+    "build-override.debug=\"line-tables-only\"",
+    "package.\"*\".opt-level=1",
+    "package.nalgebra.opt-level=3",
+    "package.simba.opt-level=3",
+    "package.wide.opt-level=3",
+    "package.serde-saphyr.opt-level=3",
+    "package.crane-codegen.opt-level=3",
+    "package.crane-model.opt-level=2",
+];
+
 /// Makes a crate, runs its tests and its program.
 pub fn check() -> Result<(), String> {
     let folder = workspace::target().join(FOLDER);
@@ -19,9 +34,8 @@ pub fn check() -> Result<(), String> {
     step::finish(Command::new(crane).arg("new").arg(&folder).args(["--from", "knuckle-boom"]))?;
     for task in ["test", "run"] {
         let mut cargo = Command::new(step::cargo());
-        // What the workspace has built serves again: the same folder, and the same profile.
-        cargo.env("CARGO_TARGET_DIR", workspace::target()).env("CARGO_PROFILE_RELEASE_DEBUG", "line-tables-only");
-        cargo.args([task, "--release"]).current_dir(&folder);
+        cargo.args([task, "--release"]).env("CARGO_TARGET_DIR", workspace::target()).current_dir(&folder);
+        cargo.args(PROFILE.iter().flat_map(|setting| ["--config".to_owned(), format!("profile.release.{setting}")]));
         step::finish(&mut cargo)?;
     }
     Ok(())
