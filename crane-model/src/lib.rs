@@ -13,6 +13,8 @@
 //! | frequencies, damping | `modes` | `std` |
 //! | largest stable step | `stability` | `std` |
 //! | moments about tipping lines | `tipping` | `std` |
+//! | stresses at the sections of beams | `sections` | `std` |
+//! | the largest load within limits over ranges of poses | `envelope` | `std` |
 //! | cranes of any size through one pointer | `dyn_crane` | `std` |
 //!
 //! With `default-features = false` the crate is `no_std` and needs no heap.
@@ -32,11 +34,15 @@ mod wrench;
 pub mod dyn_crane;
 pub mod dynamics;
 #[cfg(feature = "std")]
+pub mod envelope;
+#[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]
 pub mod results;
 #[cfg(feature = "std")]
 pub mod runs;
+#[cfg(feature = "std")]
+pub mod sections;
 #[cfg(feature = "std")]
 pub mod stability;
 #[cfg(feature = "std")]

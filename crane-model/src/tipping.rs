@@ -40,9 +40,14 @@ impl TippingLine {
 /// The tipping lines of a crane, anticlockwise seen from above, at time `t`, pose `q`, rates `v` and accelerations `a`; none where
 /// the supports make no polygon, because there are fewer than three or all are in one line.
 pub fn lines(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<TippingLine> {
+    lines_of(crane, q, &crane.internal_forces_at(t, q, v, a))
+}
+
+/// As [`lines`], where every cut transmits a known wrench.
+pub fn lines_of(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<TippingLine> {
     let feet = crane.support_positions_at(q);
     let corners = polygon(&feet);
-    let loads = if corners.is_empty() { Vec::new() } else { loads_of_links(crane, t, q, v, a) };
+    let loads = if corners.is_empty() { Vec::new() } else { loads_of_links(crane, q, wrenches) };
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     sides.map(|(&from, &to)| line([from, to], [feet[from], feet[to]], &loads)).collect()
 }
@@ -69,11 +74,10 @@ fn line(feet: [usize; 2], [from, to]: [Vector3<f64>; 2], loads: &[Wrench]) -> Ti
 }
 
 /// What the weight and the inertia of every link exert with what is applied to it, in the world frame about the world's origin.
-fn loads_of_links(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
+fn loads_of_links(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<Wrench> {
     let description = crane.description();
     let transforms = crane.transforms_at(q);
-    let wrenches = crane.internal_forces_at(t, q, v, a);
-    let beginnings = description.cuts().into_iter().zip(&wrenches).filter_map(|(cut, wrench)| match cut {
+    let beginnings = description.cuts().into_iter().zip(wrenches).filter_map(|(cut, wrench)| match cut {
         crate::Cut::Body { body, .. } => Some((body, wrench)),
         _ => None,
     });

@@ -25,7 +25,7 @@ pub use joint::{Friction, Stops};
 pub use link::{BaseCoordinate, Body, Joint, JointAxis, Link};
 pub use load::{Axes, Load};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
-pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector};
+pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector, parse_angle};
 pub use schema::json_schema;
 pub use support::{Kinematics, Point, Support};
 

@@ -37,7 +37,7 @@ impl Scalar {
 
 /// Reads `[−][a[/b]] pi` or `a[/b] deg`, in rad. Rational multiples of π are evaluated as `(a π)/b`, so that
 /// `1/2 pi` is the double nearest to π/2.
-pub(crate) fn parse_angle(word: &str) -> Option<f64> {
+pub fn parse_angle(word: &str) -> Option<f64> {
     let word = word.trim();
     // The number of units in half a turn, and whether a factor of one may be omitted.
     let (ratio, half_turn, bare) = match word.strip_suffix("pi") {

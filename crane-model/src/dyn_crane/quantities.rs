@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynModel};
 use crate::{
-    CoordinateKind, CoordinateRole, ParameterError, SectionModuli, Wrench, dynamics,
+    CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Wrench, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
     modes::SmallMotions,
     statics,
@@ -104,6 +104,28 @@ impl dyn DynCrane + '_ {
     pub fn drive_efforts_at_rest(&self, q: &[f64]) -> Vec<f64> {
         let forces = numbers(self, |out| self.drive_forces_at_rest(q, out));
         self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
+    }
+
+    /// Torques and forces of the drives that hold the crane at rest with the drives at given positions: N m and N.
+    pub fn drive_efforts_holding(&self, positions: &[f64], q: &[f64]) -> Vec<f64> {
+        let Description { drives, coordinates, .. } = self.description();
+        let motions = self.drive_motions_at(0.0);
+        // A drive feels how far its coordinate is from its position alone; a rigid one holds what the pose asks for.
+        let (mut moved, mut rates) = (q.to_vec(), vec![0.0; q.len()]);
+        for (drive, (position, [start, rate])) in drives.iter().zip(positions.iter().zip(motions)) {
+            moved[drive.coordinate] -= position - start;
+            rates[drive.coordinate] = rate;
+        }
+        let springs = numbers(self, |out| self.drive_forces(0.0, &moved, &rates, out));
+        let is_rigid = |drive: &DriveInfo| coordinates[drive.coordinate].role == CoordinateRole::Prescribed;
+        let held = if drives.iter().any(is_rigid) {
+            numbers(self, |out| self.drive_forces_at_rest(q, out))
+        } else {
+            Vec::new()
+        };
+        let effort =
+            |drive: &DriveInfo| if is_rigid(drive) { held[drive.coordinate] } else { springs[drive.coordinate] };
+        drives.iter().map(effort).collect()
     }
 
     /// Prescribed positions and rates of the drives.
@@ -216,6 +238,11 @@ impl dyn DynCrane + '_ {
     /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`].
     pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
         statics::solve_at_dyn(self, t, q, settings)
+    }
+
+    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`].
+    pub fn equilibrium_holding(&self, positions: &[f64], q: &[f64], settings: &statics::Settings) -> Equilibrium {
+        statics::solve_holding_dyn(self, positions, q, settings)
     }
 
     /// Coefficients of small motions about a pose at rest.

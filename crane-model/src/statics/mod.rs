@@ -13,5 +13,5 @@ mod tangent;
 pub use equilibrium::{Equilibrium, Iteration};
 pub use guess::{guess, guess_dyn};
 pub use settings::Settings;
-pub use solve::{solve, solve_at, solve_at_dyn, solve_dyn};
+pub use solve::{solve, solve_at, solve_at_dyn, solve_dyn, solve_holding_dyn};
 pub use status::Status;

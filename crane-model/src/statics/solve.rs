@@ -9,7 +9,7 @@ use super::{
     tangent::{Tangent, stiffness_at},
 };
 use crate::{
-    CoordinateKind, CoordinateRole, Description, DriveInfo, Statics,
+    CoordinateKind, CoordinateRole, Description, Statics,
     dyn_crane::{DynStatics, Instance},
 };
 
@@ -38,7 +38,7 @@ pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> E
 /// As [`solve`], for a crane of any size.
 pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
     let found = search(crane, &guess_dyn(crane).into(), settings, &mut |q, out| crane.static_residual(q, out));
-    prescribed_at(crane, 0.0, found)
+    prescribed(crane, found)
 }
 
 /// As [`solve`], with the drives where their motions are at time `t`, s, and from the pose `q`: where the crane would rest
@@ -54,43 +54,65 @@ pub fn solve_at<const N: usize, C: Statics<N>>(
 
 /// As [`solve_at`], for a crane of any size.
 pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settings) -> Equilibrium {
+    let mut motions = vec![[0.0; 2]; crane.description().drives.len()];
+    crane.drive_motions(t, &mut motions);
+    let positions: Vec<f64> = motions.iter().map(|[position, _]| *position).collect();
+    solve_held(crane, t, &positions, q, settings)
+}
+
+/// As [`solve_at_dyn`] at t = 0, with the drives at given positions, one per drive, instead of where their motions are.
+pub fn solve_holding_dyn(crane: &dyn DynStatics, positions: &[f64], q: &[f64], settings: &Settings) -> Equilibrium {
+    solve_held(crane, 0.0, positions, q, settings)
+}
+
+/// The equilibrium with the drives at given positions and the loads as at time `t`.
+fn solve_held(crane: &dyn DynStatics, t: f64, positions: &[f64], q: &[f64], settings: &Settings) -> Equilibrium {
     let Description { drives, coordinates, loads, .. } = crane.description();
-    let loaded = !loads.is_empty();
+    let loads_change = !loads.is_empty() && t != 0.0;
     // Rigid drives move their coordinates, and leave no residual.
-    let springs = |drive: &&DriveInfo| coordinates[drive.coordinate].role != CoordinateRole::Prescribed;
-    let mut start = DVector::from_column_slice(q);
-    let mut motions = vec![[0.0; 2]; drives.len()];
-    let (mut rates, mut forces) = (vec![0.0; q.len()], vec![0.0; q.len()]);
-    // Adds forces of the loads, and of the drives' springs: at the prescribed rates the dampers are unloaded.
-    let mut add_forces = |sign: f64, t: f64, q: &[f64], out: &mut [f64]| {
-        crane.drive_motions(t, &mut motions);
-        for (drive, [_, rate]) in drives.iter().zip(&motions) {
-            rates[drive.coordinate] = *rate;
-        }
-        crane.drive_forces(t, q, &rates, &mut forces);
-        for drive in drives.iter().filter(springs) {
-            out[drive.coordinate] += sign * forces[drive.coordinate];
-        }
-        if loaded {
-            crane.load_forces(t, q, &mut forces);
-            for ((out, force), coordinate) in out.iter_mut().zip(&forces).zip(coordinates) {
-                *out += if coordinate.role == CoordinateRole::Prescribed { 0.0 } else { sign * force };
-            }
+    let is_rigid = |coordinate: usize| coordinates[coordinate].role == CoordinateRole::Prescribed;
+    let prescribe = |q: &mut [f64]| {
+        for (drive, position) in drives.iter().zip(positions).filter(|(drive, _)| is_rigid(drive.coordinate)) {
+            q[drive.coordinate] = *position;
         }
     };
-    crane.prescribe(t, start.as_mut_slice(), &mut vec![0.0; q.len()]);
-    let found = search(crane, &start, settings, &mut |q, out| {
+    let mut motions = vec![[0.0; 2]; drives.len()];
+    crane.drive_motions(0.0, &mut motions);
+    let (mut rates, mut forces) = (vec![0.0; q.len()], vec![0.0; q.len()]);
+    for (drive, [_, rate]) in drives.iter().zip(&motions) {
+        rates[drive.coordinate] = *rate;
+    }
+    let mut start = DVector::from_column_slice(q);
+    prescribe(start.as_mut_slice());
+    let mut moved = vec![0.0; q.len()];
+    let mut found = search(crane, &start, settings, &mut |q, out| {
         crane.static_residual(q, out);
-        add_forces(1.0, 0.0, q, out);
-        add_forces(-1.0, t, q, out);
+        // A drive feels how far its coordinate is from its position alone; at the prescribed rates the dampers are unloaded.
+        moved.copy_from_slice(q);
+        for (drive, (position, [at_start, _])) in drives.iter().zip(positions.iter().zip(&motions)) {
+            moved[drive.coordinate] -= position - at_start;
+        }
+        for (sign, q) in [(1.0, q), (-1.0, moved.as_slice())] {
+            crane.drive_forces(0.0, q, &rates, &mut forces);
+            for drive in drives.iter().filter(|drive| !is_rigid(drive.coordinate)) {
+                out[drive.coordinate] += sign * forces[drive.coordinate];
+            }
+        }
+        for (sign, t) in [(1.0, 0.0), (-1.0, t)].into_iter().filter(|_| loads_change) {
+            crane.load_forces(t, q, &mut forces);
+            for (index, force) in forces.iter().enumerate().filter(|(index, _)| !is_rigid(*index)) {
+                out[index] += sign * force;
+            }
+        }
     });
-    prescribed_at(crane, t, found)
+    prescribe(&mut found.q);
+    found
 }
 
 /// The pose found, with the exact positions of rigid drives: the steps change them only by rounding.
-fn prescribed_at(crane: &dyn DynStatics, t: f64, mut found: Equilibrium) -> Equilibrium {
+fn prescribed(crane: &dyn DynStatics, mut found: Equilibrium) -> Equilibrium {
     let mut rates = vec![0.0; found.q.len()];
-    crane.prescribe(t, &mut found.q, &mut rates);
+    crane.prescribe(0.0, &mut found.q, &mut rates);
     found
 }
 

@@ -1,0 +1,99 @@
+//! What an envelope varies.
+
+use crate::dyn_crane::DynCrane;
+
+/// What is varied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Varied {
+    /// Position of a drive, by its place in the description, m or rad.
+    Drive(usize),
+    /// A live parameter, by its place in the description.
+    Parameter(usize),
+}
+
+/// The values of one of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// What is varied.
+    pub varied: Varied,
+    /// Its values, at least one.
+    pub values: Vec<f64>,
+}
+
+/// All combinations of the values of some axes; the last axis runs fastest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axes(pub Vec<Axis>);
+
+impl Axes {
+    /// Number of combinations.
+    pub fn poses(&self) -> usize {
+        self.0.iter().map(|axis| axis.values.len()).product()
+    }
+
+    /// Number of values of the last axis.
+    pub(super) fn row(&self) -> usize {
+        self.0.last().map_or(1, |axis| axis.values.len())
+    }
+
+    /// Places of a combination's values on their axes.
+    pub fn places(&self, pose: usize) -> Vec<usize> {
+        let mut rest = pose;
+        let mut places: Vec<usize> = self
+            .0
+            .iter()
+            .rev()
+            .map(|axis| {
+                let place = rest % axis.values.len();
+                rest /= axis.values.len();
+                place
+            })
+            .collect();
+        places.reverse();
+        places
+    }
+
+    /// Values of a combination, one per axis.
+    pub fn values(&self, pose: usize) -> Vec<f64> {
+        self.0.iter().zip(self.places(pose)).map(|(axis, place)| axis.values[place]).collect()
+    }
+
+    /// Parameters of a crane in a combination, in the order of the description.
+    pub(super) fn parameters(&self, crane: &dyn DynCrane, pose: usize) -> Vec<f64> {
+        let mut parameters: Vec<f64> =
+            (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
+        for (axis, value) in self.0.iter().zip(self.values(pose)) {
+            if let Varied::Parameter(index) = axis.varied {
+                parameters[index] = value;
+            }
+        }
+        parameters
+    }
+
+    /// Positions of a crane's drives in a combination: what is not varied stands as at the beginning of its motion.
+    pub(super) fn positions(&self, crane: &dyn DynCrane, pose: usize) -> Vec<f64> {
+        let mut positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+        for (axis, value) in self.0.iter().zip(self.values(pose)) {
+            if let Varied::Drive(index) = axis.varied {
+                positions[index] = value;
+            }
+        }
+        positions
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_axis_runs_fastest() {
+        let axis = |values: &[f64]| Axis { varied: Varied::Drive(0), values: values.to_vec() };
+        let axes = Axes(vec![axis(&[1.0, 2.0]), axis(&[10.0, 20.0, 30.0])]);
+        assert_eq!(axes.poses(), 6);
+        assert_eq!(axes.values(0), [1.0, 10.0]);
+        assert_eq!(axes.values(2), [1.0, 30.0]);
+        assert_eq!(axes.values(3), [2.0, 10.0]);
+        assert_eq!(axes.places(5), [1, 2]);
+        assert_eq!(Axes::default().poses(), 1);
+    }
+}

@@ -1,0 +1,82 @@
+//! What limits the load.
+
+use crate::Description;
+
+/// Limits that a load must not exceed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// Least tipping margin, `1 − overturning / stabilising` about each tipping line.
+    pub tipping: Option<f64>,
+    /// Greatest utilisation of the sections of beams that have a yield stress.
+    pub utilisation: Option<f64>,
+    /// Greatest torque or force of each drive, in either direction, N m or N; infinite where it is not limited.
+    pub efforts: Vec<f64>,
+    /// How far the load may move each point of interest, m, from where it is with the least load; infinite where it is not limited.
+    pub deflections: Vec<f64>,
+}
+
+impl Limits {
+    /// None, for a crane of this description.
+    pub fn none(description: &Description) -> Self {
+        Self {
+            tipping: None,
+            utilisation: None,
+            efforts: vec![f64::INFINITY; description.drives.len()],
+            deflections: vec![f64::INFINITY; description.points.len()],
+        }
+    }
+}
+
+/// A limit that governs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// Beyond the load there is no stable equilibrium, or none was found.
+    Equilibrium,
+    /// The margin about the tipping line through two supports.
+    Tipping {
+        /// Places of the supports.
+        feet: [usize; 2],
+    },
+    /// The utilisation of a section of a beam.
+    Utilisation {
+        /// Place of the body that begins at the section.
+        body: usize,
+    },
+    /// The effort of a drive.
+    Effort {
+        /// Place of the drive.
+        drive: usize,
+    },
+    /// The deflection of a point of interest.
+    Deflection {
+        /// Place of the point.
+        point: usize,
+    },
+}
+
+impl Limit {
+    /// Its kind in a word, for programs and for the colours of a chart.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Limit::Equilibrium => "equilibrium",
+            Limit::Tipping { .. } => "tipping",
+            Limit::Utilisation { .. } => "utilisation",
+            Limit::Effort { .. } => "effort",
+            Limit::Deflection { .. } => "deflection",
+        }
+    }
+
+    /// What it is a limit of.
+    pub fn place(self, description: &Description) -> String {
+        match self {
+            Limit::Equilibrium => String::new(),
+            Limit::Tipping { feet } => {
+                let [from, to] = feet.map(|foot| description.supports[foot].name.as_str());
+                format!("{from} – {to}")
+            }
+            Limit::Utilisation { body } => description.bodies[body].name.to_string(),
+            Limit::Effort { drive } => description.coordinates[description.drives[drive].coordinate].name.to_string(),
+            Limit::Deflection { point } => description.points[point].to_string(),
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The rating of one pose.
+
+use super::{
+    Condition, Limit, Limits,
+    search::{Range, Trial, largest},
+};
+use crate::{dyn_crane::DynCrane, statics::Settings};
+
+/// The largest load of a pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rating {
+    /// The largest load within all limits, in the unit of the load's parameter; `None` where the least is not.
+    pub load: Option<f64>,
+    /// The limit that governs; `None` where none does up to the greatest load looked at.
+    pub governing: Option<Limit>,
+    /// The crane with that load, or with the least one; `None` where it does not rest.
+    pub loaded: Option<Condition>,
+    /// The crane with its own load; `None` where it does not rest.
+    pub own: Option<Condition>,
+    /// How far its own load moves the points of interest, m; empty where it does not rest.
+    pub deflections: Vec<f64>,
+}
+
+/// A crane with its drives at given positions.
+pub(super) struct Posed<'a> {
+    /// The crane; its load is changed.
+    pub crane: &'a mut dyn DynCrane,
+    /// Place of the load among its parameters.
+    pub load: usize,
+    /// Where the drives stand.
+    pub positions: &'a [f64],
+}
+
+/// What is wanted of a pose.
+pub(super) struct Wanted<'a> {
+    /// What limits the load.
+    pub limits: &'a Limits,
+    /// The least and the greatest load.
+    pub loads: [f64; 2],
+    /// The load for which the condition is wanted too.
+    pub own: f64,
+}
+
+/// Newton's method alone: from the pose of a load a little smaller, where it fails, there is no pose nearby.
+const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 30, load_steps: 0 };
+
+impl Posed<'_> {
+    /// The crane at rest with a load, from a pose nearby.
+    fn rest(&mut self, load: f64, q: &[f64], settings: &Settings) -> Option<Condition> {
+        self.crane.set_parameter(self.load, load).ok()?;
+        let found = self.crane.equilibrium_holding(self.positions, q, settings);
+        found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))
+    }
+
+    /// Its rating from a pose nearby, where the search may begin with `guess`, and the pose with the least load.
+    pub fn rate(&mut self, wanted: &Wanted<'_>, guess: Option<f64>, q: Vec<f64>) -> (Rating, Vec<f64>) {
+        let Wanted { limits, loads: [least, greatest], own } = *wanted;
+        let Some(empty) = self.rest(least, &q, &Settings::default()) else {
+            let governing = Some(Limit::Equilibrium);
+            return (Rating { load: None, governing, loaded: None, own: None, deflections: Vec::new() }, q);
+        };
+        let with_own = if own == least { Some(empty.clone()) } else { self.rest(own, &empty.q, &NEWTON) };
+        let deflections = with_own.as_ref().map_or_else(Vec::new, |own| own.deflections(&empty));
+        let mass: f64 = self.crane.description().bodies.iter().map(|body| body.mass).sum();
+        let range = Range { greatest, guess: guess.unwrap_or(own), scale: mass.max(f64::MIN_POSITIVE) };
+        let first = Trial { load: least, slacks: empty.slacks(limits, &empty.points), at: empty.clone() };
+        let mut trial = |load: f64, near: &Condition| {
+            let at = self.rest(load, &near.q, &NEWTON)?;
+            Some(Trial { load, slacks: at.slacks(limits, &empty.points), at })
+        };
+        let (best, governing) = largest(first, &range, &mut trial);
+        let q = empty.q.clone();
+        let (load, loaded) = best.map_or((None, empty), |best| (Some(best.load), best.at));
+        (Rating { load, governing, loaded: Some(loaded), own: with_own, deflections }, q)
+    }
+}

@@ -1,0 +1,193 @@
+//! The largest load within limits, by secants: moments, stresses and efforts are nearly linear in the load.
+
+use super::{Condition, Limit};
+
+/// A load that was tried and rests.
+#[derive(Clone, Debug)]
+pub(super) struct Trial {
+    /// The load.
+    pub load: f64,
+    /// What is left up to every limit.
+    pub slacks: Vec<(Limit, f64)>,
+    /// The crane with it.
+    pub at: Condition,
+}
+
+impl Trial {
+    /// The limit that has least left, and how much.
+    fn least(&self) -> Option<(Limit, f64)> {
+        self.slacks.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn is_within(&self) -> bool {
+        self.slacks.iter().all(|(_, slack)| *slack >= 0.0)
+    }
+}
+
+/// Where loads are looked for.
+pub(super) struct Range {
+    /// The greatest load looked at.
+    pub greatest: f64,
+    /// A load that may be near the largest.
+    pub guess: f64,
+    /// The size that loads have, above zero.
+    pub scale: f64,
+}
+
+/// Part of a load to which the largest is found: charts round to three digits.
+const ACCURACY: f64 = 1e-6;
+/// Part of the scale below which loads do not differ.
+const LEAST: f64 = 1e-9;
+/// Loads tried: secants take some five, halving an interval to the accuracy some thirty.
+const MOST_TRIALS: usize = 60;
+/// The first step up where there is no guess, as a part of the scale.
+const FIRST_STEP: f64 = 0.1;
+/// How much further than from the least load to the last a step up may go.
+const GROWTH: f64 = 4.0;
+
+/// The largest load from `first` on, and the limit that governs; `None` where the first is beyond a limit itself.
+pub(super) fn largest(
+    first: Trial,
+    range: &Range,
+    trial: &mut dyn FnMut(f64, &Condition) -> Option<Trial>,
+) -> (Option<Trial>, Option<Limit>) {
+    if !first.is_within() {
+        let governing = first.least().map(|(limit, _)| limit);
+        return (None, governing);
+    }
+    let least = first.load;
+    let mut within = first;
+    // The one tried before the last, for the secant, and the least load beyond a limit, where it rests.
+    let mut before: Option<Trial> = None;
+    let mut beyond: Option<(f64, Option<Trial>)> = None;
+    for turn in 0..MOST_TRIALS {
+        let secant = before.as_ref().and_then(|before| crossing(before, &within));
+        let high = beyond.as_ref().map_or(range.greatest, |(load, _)| *load);
+        if high - within.load <= accuracy(high, range) {
+            break;
+        }
+        if let (Some((at, limit)), true) = (secant, before.is_some()) {
+            if at - within.load <= accuracy(at, range) && at <= high {
+                return (Some(within), Some(limit));
+            }
+        }
+        let next = match &beyond {
+            None => {
+                let step = (GROWTH * (within.load - least)).max(FIRST_STEP * range.scale);
+                let next = secant.map_or(within.load + step, |(at, _)| aim(at, within.load, range));
+                let next = if turn == 0 && range.guess > within.load { range.guess } else { next };
+                next.clamp(within.load, within.load + step.max(range.guess - within.load)).min(range.greatest)
+            }
+            Some((high, None)) => 0.5 * (within.load + high),
+            Some((high, Some(trial))) => {
+                let chord = crossing(&within, trial).map(|(at, _)| at);
+                let inside = |at: &f64| *at > within.load && *at < *high;
+                let found = secant.map(|(at, _)| at).filter(inside).or(chord).filter(inside);
+                let middle = 0.5 * (within.load + high);
+                // Every third is a bisection: no kink of a limit holds the interval for long.
+                if turn % 3 == 2 { middle } else { found.map_or(middle, |at| aim(at, within.load, range)) }
+            }
+        };
+        match trial(next, &within.at) {
+            Some(found) if found.is_within() => {
+                if found.load >= range.greatest {
+                    return (Some(found), None);
+                }
+                before = Some(std::mem::replace(&mut within, found));
+            }
+            other => beyond = Some((next, other)),
+        }
+    }
+    let governing = match &beyond {
+        Some((_, Some(trial))) => trial.least().map(|(limit, _)| limit),
+        Some((_, None)) => Some(Limit::Equilibrium),
+        None => None,
+    };
+    (Some(within), governing)
+}
+
+/// How near loads are equal.
+fn accuracy(load: f64, range: &Range) -> f64 {
+    (ACCURACY * load.abs()).max(LEAST * range.scale)
+}
+
+/// A little below a crossing, so that it is within the limit.
+fn aim(at: f64, from: f64, range: &Range) -> f64 {
+    (at - 0.5 * accuracy(at, range)).max(0.5 * (at + from))
+}
+
+/// Where the line through two trials meets the first limit, and which.
+fn crossing(one: &Trial, two: &Trial) -> Option<(f64, Limit)> {
+    let meets = |(limit, slack): &(Limit, f64)| {
+        let (_, before) = one.slacks.iter().find(|(other, _)| other == limit)?;
+        let at = two.load + slack * (two.load - one.load) / (before - slack);
+        (at.is_finite() && (before - slack) * (two.load - one.load) > 0.0).then_some((at, *limit))
+    };
+    two.slacks.iter().filter_map(meets).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trial(load: f64, slacks: &[f64]) -> Trial {
+        let end = nalgebra::Vector3::zeros();
+        let at = Condition { q: vec![], lines: vec![], sections: vec![], efforts: vec![], points: vec![], end };
+        let slacks = slacks.iter().enumerate().map(|(drive, slack)| (Limit::Effort { drive }, *slack));
+        Trial { load, slacks: slacks.collect(), at }
+    }
+
+    const RANGE: Range = Range { greatest: 1e6, guess: 0.0, scale: 1000.0 };
+
+    /// Finds the largest load of slacks as functions of it, from zero on, and counts trials.
+    fn find(slacks: &dyn Fn(f64) -> Option<Vec<f64>>, range: &Range) -> (Option<f64>, Option<Limit>, usize) {
+        let mut trials = 0;
+        let (best, governing) = largest(trial(0.0, &slacks(0.0).unwrap()), range, &mut |load, _| {
+            trials += 1;
+            slacks(load).map(|slacks| trial(load, &slacks))
+        });
+        (best.map(|best| best.load), governing, trials)
+    }
+
+    #[test]
+    fn linear_limits_take_three_trials() {
+        let (load, governing, trials) = find(&|load| Some(vec![1.0 - load / 800.0, 1.0 - load / 700.0]), &RANGE);
+        let load = load.unwrap();
+        assert!(load <= 700.0 && load > 700.0 * (1.0 - ACCURACY), "{load}");
+        assert_eq!(governing, Some(Limit::Effort { drive: 1 }));
+        assert!(trials <= 3, "{trials}");
+    }
+
+    /// `1 − (x/50)²` and the same of an absolute value that turns: kinks and curves.
+    #[test]
+    fn curved_limits_are_met_from_below() {
+        let curved = |load: f64| Some(vec![1.0 - (load / 50.0).powi(2), 1.0 - (load / 30.0 - 0.8).abs()]);
+        let (load, governing, trials) = find(&curved, &RANGE);
+        let load = load.unwrap();
+        assert!(load <= 50.0 && load > 50.0 * (1.0 - ACCURACY), "{load}");
+        assert_eq!(governing, Some(Limit::Effort { drive: 0 }));
+        assert!(trials < 20, "{trials}");
+    }
+
+    #[test]
+    fn where_no_rest_is_left_the_interval_is_halved() {
+        let (load, governing, trials) = find(&|load| (load < 123.0).then(|| vec![1.0]), &RANGE);
+        let load = load.unwrap();
+        assert!(load < 123.0 && load > 123.0 * (1.0 - ACCURACY), "{load}");
+        assert_eq!(governing, Some(Limit::Equilibrium));
+        assert!(trials < 50, "{trials}");
+    }
+
+    #[test]
+    fn the_greatest_load_needs_no_limit() {
+        let range = Range { greatest: 5000.0, ..RANGE };
+        let (load, governing, _) = find(&|load| Some(vec![1.0 + load]), &range);
+        assert_eq!((load, governing), (Some(5000.0), None));
+    }
+
+    #[test]
+    fn a_crane_beyond_its_limits_without_load_has_none() {
+        let (load, governing, trials) = find(&|load| Some(vec![load - 1.0, -2.0 + load]), &RANGE);
+        assert_eq!((load, governing, trials), (None, Some(Limit::Effort { drive: 1 }), 0));
+    }
+}

@@ -1,0 +1,137 @@
+//! All poses of an envelope, in pieces on several threads.
+
+use std::{
+    ops::Range,
+    sync::{Mutex, PoisonError},
+    thread,
+};
+
+use super::{
+    Axes, Limits, Rating,
+    rating::{Posed, Wanted},
+};
+use crate::{ParameterError, dyn_crane::DynCrane, statics::Settings};
+
+/// Poses of a piece at most.
+pub const PIECE: usize = 25;
+/// How far a drive goes at once from a pose that rests to the next, m or rad.
+const STRIDE: f64 = 0.2;
+
+/// What is asked of a crane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Envelope {
+    /// What is varied.
+    pub axes: Axes,
+    /// Place of the live parameter that is the load.
+    pub load: usize,
+    /// The least and the greatest load looked at.
+    pub loads: [f64; 2],
+    /// What limits it.
+    pub limits: Limits,
+}
+
+/// How an envelope is computed.
+pub struct Conduct<'a> {
+    /// Threads.
+    pub threads: usize,
+    /// Called with the ratings of every piece that is done, in the order in which they are, from any thread.
+    pub done: &'a (dyn Fn(usize, &[Rating]) + Sync),
+    /// Whether to give up what is not done; asked before every piece.
+    pub called_off: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl Envelope {
+    /// Number of pieces.
+    pub fn pieces(&self) -> usize {
+        let row = self.axes.row();
+        self.axes.poses() / row.max(1) * row.div_ceil(PIECE)
+    }
+
+    /// Poses of a piece: neighbours on the last axis.
+    pub fn poses_of(&self, piece: usize) -> Range<usize> {
+        let row = self.axes.row();
+        let pieces = row.div_ceil(PIECE).max(1);
+        let (begin, part) = (piece / pieces * row, piece % pieces);
+        begin + part * PIECE..begin + row.min((part + 1) * PIECE)
+    }
+
+    /// Rates some pieces.
+    ///
+    /// # Errors
+    /// Values of parameters on an axis, or the least load, break a rule of the spec language.
+    pub fn run(&self, crane: &dyn DynCrane, pieces: &[usize], conduct: &Conduct<'_>) -> Result<(), ParameterError> {
+        let waiting = Mutex::new(pieces.iter());
+        let refused = Mutex::new(None);
+        let work = || {
+            let mut own = crane.boxed_clone();
+            loop {
+                let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
+                let (Some(&piece), false) = (next, (conduct.called_off)()) else { break };
+                match self.rate(crane, own.as_mut(), piece) {
+                    Ok(ratings) => (conduct.done)(piece, &ratings),
+                    Err(error) => {
+                        *refused.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                        break;
+                    }
+                }
+            }
+        };
+        thread::scope(|scope| {
+            for _ in 1..conduct.threads.min(pieces.len()) {
+                scope.spawn(work);
+            }
+            work();
+        });
+        refused.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+
+    /// Rates the poses of a piece with a copy of the crane.
+    fn rate(&self, crane: &dyn DynCrane, own: &mut dyn DynCrane, piece: usize) -> Result<Vec<Rating>, ParameterError> {
+        let poses = self.poses_of(piece);
+        let mut ratings: Vec<Rating> = Vec::with_capacity(poses.len());
+        let mut near: Option<(Vec<f64>, Vec<f64>)> = None;
+        for pose in poses {
+            let mut parameters = self.axes.parameters(crane, pose);
+            let load = parameters[self.load];
+            parameters[self.load] = self.loads[0];
+            own.set_parameters(&parameters)?;
+            let positions = self.axes.positions(own, pose);
+            let q = walk(own, near.take().unwrap_or_else(|| begin(own)), &positions);
+            let wanted = Wanted { limits: &self.limits, loads: self.loads, own: load };
+            let guess = ratings.last().and_then(|rating| rating.load);
+            let (rating, q) = Posed { crane: own, load: self.load, positions: &positions }.rate(&wanted, guess, q);
+            near = Some((positions, q));
+            ratings.push(rating);
+        }
+        Ok(ratings)
+    }
+}
+
+/// Where the drives stand at the beginning of their motions, and the crane with them.
+fn begin(crane: &dyn DynCrane) -> (Vec<f64>, Vec<f64>) {
+    let positions = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
+    (positions, crane.equilibrium(&Settings::default()).q)
+}
+
+/// A pose near the one at which drives hold `positions`: from another one, in strides.
+fn walk(crane: &dyn DynCrane, (from, mut q): (Vec<f64>, Vec<f64>), positions: &[f64]) -> Vec<f64> {
+    let furthest = from.iter().zip(positions).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
+    let strides = (furthest / STRIDE).ceil().max(1.0);
+    let mut stride = 0.0;
+    loop {
+        stride += 1.0;
+        for (drive, (from, to)) in crane.description().drives.iter().zip(from.iter().zip(positions)) {
+            q[drive.coordinate] += (to - from) / strides;
+        }
+        if stride >= strides {
+            // The last stride is for the caller.
+            return q;
+        }
+        let part = stride / strides;
+        let between: Vec<f64> = from.iter().zip(positions).map(|(from, to)| from + part * (to - from)).collect();
+        let found = crane.equilibrium_holding(&between, &q, &Settings::default());
+        if found.is_stable() {
+            q = found.q;
+        }
+    }
+}
