@@ -26,6 +26,9 @@ Examples:
                                        one run per row of a table of parameters
   crane report -o report.html          the crane in 3-D, plots and tables on one page
   crane strength --run                 tipping margin, stresses and joint loads, at rest and during the manoeuvre
+  crane envelope --range column_psi=0:360deg:25 --range boom_psi=0:70deg:15
+                                       load chart and slew diagram: the largest load within limits, pose by pose
+  crane compare my.yaml                your own crane, with beams that bend and with rigid ones
   crane modes                          frequencies and damping about the static pose
   crane stability                      largest stable steps and what limits them, with a figure
   crane check my.yaml; crane run my.yaml
@@ -64,10 +67,14 @@ pub struct Arguments {
 pub enum Action {
     /// Compute statics, motion, figures and the report, written to a folder
     Run(Simulate),
+    /// Compare two cranes, or a crane with itself with rigid beams: statics, motion, figures and the report
+    Compare(ComparePair),
     /// Find the static equilibrium: pose, drive torques, support reactions
     Statics(Analysis),
     /// Compute tipping margin, stresses, loads on joints and ground, and the tipping load
     Strength(Strength),
+    /// Find the largest load within limits over ranges of poses: load chart, diagrams, data
+    Envelope(Envelope),
     /// Simulate the motion from the static pose; write results and figures to a folder
     Simulate(Simulate),
     /// Compute frequencies, damping and dominant coordinates about the static pose
@@ -130,10 +137,12 @@ impl Action {
             Action::Run(options) | Action::Simulate(options) => Some(&mut options.analysis.crane),
             Action::Statics(options) | Action::Modes(options) | Action::Info(options) => Some(&mut options.crane),
             Action::Strength(options) => Some(&mut options.analysis.crane),
+            Action::Envelope(options) => Some(&mut options.analysis.crane),
             Action::Stability(options) => Some(&mut options.analysis.crane),
             Action::Report(options) => Some(&mut options.crane),
             Action::Eval(options) => Some(&mut options.crane),
-            Action::New(_)
+            Action::Compare(_)
+            | Action::New(_)
             | Action::Check { .. }
             | Action::Explain { .. }
             | Action::Generate(_)
@@ -175,6 +184,9 @@ pub struct Choice {
     /// Limits of what the model holds for.
     #[command(flatten)]
     pub limits: Limits,
+    /// Replace beams that bend by rigid ones
+    #[arg(long, conflicts_with = "compile")]
+    pub rigid: bool,
     /// Compile the crane to machine code first (needs cargo) and keep it: about five times faster, for long studies
     #[arg(long)]
     pub compile: bool,
@@ -183,9 +195,14 @@ pub struct Choice {
 impl Choice {
     /// The YAML file, if one is given instead of a shipped crane.
     pub fn file(&self) -> Option<&Path> {
-        let path = Path::new(&self.name);
-        path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml").then_some(path)
+        spec_file(&self.name)
     }
+}
+
+/// The YAML file that stands in place of a crane's name.
+pub fn spec_file(name: &str) -> Option<&Path> {
+    let path = Path::new(name);
+    path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml").then_some(path)
 }
 
 /// Values of live parameters.
@@ -213,6 +230,9 @@ pub struct Analysis {
     /// Output format
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
+    /// Print all tables whole: the pose, all modes, all sections
+    #[arg(long)]
+    pub all: bool,
 }
 
 /// A length of time.
@@ -226,6 +246,22 @@ pub fn seconds(text: &str) -> Result<f64, String> {
 /// An error that is allowed.
 fn tolerance(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "write a number, such as 1e-4".to_owned())
+}
+
+/// A tipping margin.
+fn margin(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok();
+    number
+        .filter(|margin| (0.0..1.0).contains(margin))
+        .ok_or_else(|| "write a number from 0 to below 1, such as 0.25".to_owned())
+}
+
+/// A number above zero.
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok();
+    number
+        .filter(|number| *number > 0.0 && number.is_finite())
+        .ok_or_else(|| "write a number above 0, such as 0.8".to_owned())
 }
 
 /// A number of things, at least one.
@@ -305,10 +341,29 @@ pub struct Compare {
     /// Output format
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
+    /// Print all tables whole: the poses, too
+    #[arg(long)]
+    pub all: bool,
     #[command(flatten)]
     pub timing: Timing,
     #[command(flatten)]
     pub folder: Folder,
+}
+
+/// A comparison of two cranes.
+#[derive(Debug, Args)]
+pub struct ComparePair {
+    /// Crane, or its YAML file; `crane list` shows all cranes
+    #[arg(value_name = "CRANE")]
+    pub first: String,
+    /// Another crane, or its YAML file [default: the first is compared with itself with beams that do not bend]
+    #[arg(value_name = "OTHER")]
+    pub second: Option<String>,
+    /// Fail where a YAML file has warnings
+    #[arg(long)]
+    pub strict: bool,
+    #[command(flatten)]
+    pub compare: Compare,
 }
 
 /// A run of one crane.
@@ -348,6 +403,9 @@ pub struct Page {
     /// File to write
     #[arg(short = 'o', long, value_name = "FILE", default_value = "report.html", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
+    /// Show the load charts of an envelope, too: the file `…_envelope.csv` that `crane envelope` wrote
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    pub envelope: Option<PathBuf>,
 }
 
 /// A crate for your own crane.
@@ -395,6 +453,46 @@ pub struct Strength {
     /// CSV file for the moments about the tipping lines and all loads during the run
     #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath, requires = "run")]
     pub results: Option<PathBuf>,
+}
+
+/// The largest load within limits over ranges of poses.
+#[derive(Debug, Args)]
+pub struct Envelope {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Positions of a drive, or values of a live parameter: from, to and how many, or one value, as in `boom_psi=0:60deg:13` and
+    /// `telescope_z=1.5`; may be given several times
+    #[arg(long = "range", value_name = "NAME=FROM:TO:COUNT", required = true, allow_hyphen_values = true)]
+    pub ranges: Vec<String>,
+    /// Live parameter that is the load [default: the only parameter in kg]
+    #[arg(long, value_name = "PARAMETER")]
+    pub load: Option<String>,
+    /// The greatest load looked at, in the unit of its parameter [default: a hundred times the crane's mass]
+    #[arg(long, value_name = "NUMBER")]
+    pub greatest_load: Option<f64>,
+    /// Least tipping margin, 1 − overturning / stabilising moment about each tipping line
+    #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = margin)]
+    pub tipping: f64,
+    /// Greatest utilisation of beams with a yield stress
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = above_zero)]
+    pub utilisation: f64,
+    /// Greatest torque or force of a drive, in either direction, N m or N, as in `boom_psi=80000`; may be given several times
+    #[arg(long = "effort", value_name = "DRIVE=NUMBER")]
+    pub efforts: Vec<String>,
+    /// How far the load may move a point of interest, m, as in `hook=0.1`; may be given several times
+    #[arg(long = "deflection", value_name = "POINT=METRES")]
+    pub deflections: Vec<String>,
+    /// Point whose radius and height are shown [default: the only point of interest, otherwise the origin of the last link]
+    #[arg(long, value_name = "POINT")]
+    pub point: Option<String>,
+    /// Threads [default: all of the machine]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
+    pub threads: Option<NonZeroUsize>,
+    /// Begin again, instead of going on where the same command was interrupted
+    #[arg(long)]
+    pub restart: bool,
+    #[command(flatten)]
+    pub folder: Folder,
 }
 
 /// Stability of time steps.

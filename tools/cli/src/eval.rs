@@ -100,9 +100,9 @@ fn parse(text: &str) -> Option<Vec<f64>> {
 fn arrays(options: &Eval, crane: &LiveCrane, states: &States) -> Vec<Array> {
     let size = crane.description().coordinates.len();
     let count = states.q.len();
-    let over = |name, shape: Vec<usize>, data: Vec<f64>| {
+    let over = |name: &'static str, shape: Vec<usize>, data: Vec<f64>| {
         let shape = if count == 1 { shape } else { [vec![count], shape].concat() };
-        Array { name, shape, data }
+        Array { name: name.into(), shape, data }
     };
     let mut arrays = vec![over("q", vec![size], states.q.concat()), over("v", vec![size], states.v.concat())];
     for (place, quantity) in options.quantities.iter().enumerate() {
@@ -211,7 +211,7 @@ fn index(quantity: Quantity, description: &Description) -> Option<Array> {
         _ => return None,
     };
     let shape = vec![rows.len(), width];
-    Some(Array { name, shape, data: rows.into_iter().flatten().map(|index| index as f64).collect() })
+    Some(Array { name: name.into(), shape, data: rows.into_iter().flatten().map(|index| index as f64).collect() })
 }
 
 fn json(description: &Description, arrays: &[Array]) -> Value {
@@ -220,6 +220,6 @@ fn json(description: &Description, arrays: &[Array]) -> Value {
     object.insert("spec_hash".to_owned(), description.spec_hash.as_str().into());
     object.insert("coordinates".to_owned(), description.coordinates.iter().map(|c| c.name.as_str()).collect());
     object.insert("bodies".to_owned(), description.bodies.iter().map(|body| body.name.as_str()).collect());
-    object.extend(arrays.iter().map(|array| (array.name.to_owned(), array.json())));
+    object.extend(arrays.iter().map(|array| (array.name.to_string(), array.json())));
     object.into()
 }

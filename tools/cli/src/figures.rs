@@ -18,11 +18,26 @@ pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
 pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
 /// See [`BLUE`].
 pub const SKY: RGBColor = RGBColor(86, 180, 233);
+/// What stands behind others.
+pub const GREY: RGBColor = RGBColor(150, 150, 150);
 /// Colours for curves in order.
 pub const PALETTE: [RGBColor; 6] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY];
 
+/// A colour between dark blue, at 0, and yellow, at 1: viridis, in which lightness grows evenly.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "parts of 256")]
+pub fn shade(part: f64) -> RGBColor {
+    const STOPS: [[f64; 3]; 5] =
+        [[68.0, 1.0, 84.0], [59.0, 82.0, 139.0], [33.0, 145.0, 140.0], [94.0, 201.0, 98.0], [253.0, 231.0, 37.0]];
+    let place = part.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+    let below = (place as usize).min(STOPS.len() - 2);
+    let between = place - below as f64;
+    let [red, green, blue] =
+        [0, 1, 2].map(|of| (STOPS[below][of] + between * (STOPS[below + 1][of] - STOPS[below][of])).round() as u8);
+    RGBColor(red, green, blue)
+}
+
 /// Points stand on whole units of the drawing: this many to a pixel keep curves smooth.
-const PIXEL: u32 = 10;
+pub const PIXEL: u32 = 10;
 /// Width of a panel.
 const WIDTH: u32 = 440 * PIXEL;
 /// Height of a panel.
@@ -30,13 +45,13 @@ const HEIGHT: u32 = 270 * PIXEL;
 /// Height of a row of the legend.
 const LEGEND: u32 = 26 * PIXEL;
 /// Font size.
-const FONT: f64 = 15.0 * PIXEL as f64;
+pub const FONT: f64 = 15.0 * PIXEL as f64;
 /// Width of a curve.
 const STROKE: u32 = 2 * PIXEL;
 /// Radius of a dot.
 const DOT: u32 = 3 * PIXEL;
 /// Free space around a panel.
-const SPACE: u32 = 12 * PIXEL;
+pub const SPACE: u32 = 12 * PIXEL;
 /// Width of a letter, of the font size: an estimate that leaves room.
 const LETTER: f64 = 0.56;
 /// Part of the range that is left free around the curves.
@@ -92,7 +107,14 @@ pub fn svg(panels: &[Panel], columns: usize) -> Result<String, String> {
     let scale = if panels.iter().any(|panel| panel.equal) { 2 } else { 1 };
     let count = |n: usize| u32::try_from(n).unwrap_or(1);
     let width = WIDTH * scale * count(columns);
-    let legend: &[Curve] = panels.first().map_or(&[], |panel| &panel.curves);
+    // What consists of several curves is named once.
+    let mut legend: Vec<Curve> = Vec::new();
+    for curve in panels.first().map_or(&[][..], |panel| &panel.curves) {
+        if legend.iter().all(|known| known.label != curve.label) {
+            legend.push(curve.clone());
+        }
+    }
+    let legend = legend.as_slice();
     let legend_height = LEGEND * count(legend.len().div_ceil(entries_a_row(legend, width))) + SPACE / 2;
     let height = HEIGHT * scale * count(rows) + legend_height;
 
@@ -118,7 +140,8 @@ pub fn svg(panels: &[Panel], columns: usize) -> Result<String, String> {
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn<'a> = Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>>;
 
-fn font(size: f64) -> TextStyle<'static> {
+/// Black text of a size.
+pub fn font(size: f64) -> TextStyle<'static> {
     ("sans-serif", size).into_font().color(&BLACK)
 }
 
@@ -216,7 +239,7 @@ fn power(exponent: f64) -> String {
 }
 
 /// Text at a tick: without the digits that rounding leaves.
-fn tick(value: f64) -> String {
+pub fn tick(value: f64) -> String {
     let text = format!("{value:.6}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }

@@ -14,6 +14,7 @@
 mod arguments;
 mod compare;
 mod ensemble;
+mod envelope;
 mod eval;
 mod exchange;
 mod extremes;
@@ -40,6 +41,7 @@ mod stability;
 mod start;
 mod statics;
 mod strength;
+mod variants;
 
 use std::{env, io, io::Write, process::ExitCode};
 
@@ -98,11 +100,18 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
             fleet.add(&chain.name, spec);
             choice.name = chain.name;
         }
+        if choice.rigid {
+            choice.name = fleet.add_rigid(&choice.name)?;
+        }
+    }
+    if let Some(Action::Compare(options)) = &mut arguments.action {
+        compare::load(options, &mut fleet)?;
     }
     let fleet = &fleet;
     match &arguments.action {
         None if fleet.has(compare::CRANES) => compare::compare(&arguments.compare, fleet, out),
         None => Ok(help::grouped(Arguments::command()).print_help()?),
+        Some(Action::Compare(options)) => compare::compare_pair(options, fleet, out),
         Some(Action::Run(options)) => overall::run(options, fleet, out),
         Some(Action::Statics(options)) => statics::statics(options, fleet, out),
         Some(Action::Simulate(options)) => match &options.ensemble.table {
@@ -112,6 +121,7 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
         Some(Action::Modes(options)) => modes::modes(options, fleet, out),
         Some(Action::Stability(options)) => stability::stability(options, fleet, out),
         Some(Action::Strength(options)) => strength::strength(options, fleet, out),
+        Some(Action::Envelope(options)) => envelope::envelope(options, fleet, out),
         Some(Action::Report(options)) => page::report(options, fleet, out),
         Some(Action::Info(options)) => info::info(options, fleet, out),
         Some(Action::Eval(options)) => eval::eval(options, fleet, out),

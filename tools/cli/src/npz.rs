@@ -1,6 +1,9 @@
 //! Arrays, as archives for `numpy.load` and as JSON.
 
-use std::io::{Cursor, Write};
+use std::{
+    borrow::Cow,
+    io::{Cursor, Write},
+};
 
 use serde_json::Value;
 use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptions};
@@ -9,7 +12,7 @@ use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptio
 #[derive(Clone, Debug)]
 pub struct Array {
     /// Name.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Lengths of its axes.
     pub shape: Vec<usize>,
     /// Elements, the last axis running fastest.

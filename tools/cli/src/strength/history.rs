@@ -38,12 +38,11 @@ impl Instant {
     }
 }
 
-/// At every result of a run.
-pub fn of(rig: &dyn DynCrane, results: &Table) -> Vec<Instant> {
+/// At results of a run.
+pub fn of<'a>(rig: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64>>) -> Vec<Instant> {
     let n = rig.size();
     // Time, coordinates and rates come first.
-    let instant = |row: &Vec<f64>| Instant::moving(rig, row[0], &row[1..=n], &row[n + 1..=2 * n]);
-    results.rows.iter().map(instant).collect()
+    rows.map(|row| Instant::moving(rig, row[0], &row[1..=n], &row[n + 1..=2 * n])).collect()
 }
 
 /// The moment nearest to tipping, or the first.

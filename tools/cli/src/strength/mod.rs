@@ -19,7 +19,9 @@ use crate::{
     statics::Case,
 };
 
-use history::{Instant, least_margin};
+use history::least_margin;
+pub use history::{Instant, of as history};
+pub use loads::parameter as load_parameter;
 
 /// Prints loads and stability at rest, and along the manoeuvre if asked for.
 pub fn strength(options: &Strength, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
@@ -57,7 +59,8 @@ pub fn strength(options: &Strength, fleet: &Fleet, out: &mut dyn Write) -> Outco
         }
     }
     report.grid(tables::joints(rig.description(), &rest.wrenches));
-    report.grid(tables::sections(rig.description(), &rest.wrenches));
+    report.excerpt(tables::sections(rig.description(), &rest.wrenches), 0);
+    report.show_all(options.analysis.all);
     report.print(options.analysis.format, out)
 }
 
@@ -72,7 +75,7 @@ fn along(options: &Strength, rig: &dyn DynCrane, report: &mut Report) -> Outcome
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));
     }
-    let history = history::of(rig, &recorded.table);
+    let history = history::of(rig, recorded.table.rows.iter());
     let worst = least_margin(&history).ok_or_else(|| Problem::failed("the run has no results", ""))?;
     verdict(report, rig, worst, " of the run");
     stresses::verdict(report, rig.description(), &rig.section_moduli_at(), &history, " of the run");

@@ -1,0 +1,211 @@
+//! Figures of an envelope: load chart, slew diagram, maps.
+
+use std::path::Path;
+
+use crane_model::envelope::Envelope;
+
+use crate::{
+    figures::{Curve, Mark, PALETTE, Panel, shade},
+    files,
+    problem::{Outcome, Problem},
+};
+
+use super::{
+    map::{Map, svg},
+    ranges::shown,
+    rows::{Layout, Row},
+    surface::{Knot, Sheet, Surface, evenly, levels, short},
+};
+
+/// Curves of a diagram at most.
+const MOST_CURVES: usize = 6;
+/// Curves of equal load at most.
+const MOST_LEVELS: usize = 8;
+
+/// Writes the figures that there are; their names.
+pub fn write(
+    folder: &Path,
+    name: &str,
+    asked: &Envelope,
+    layout: &Layout,
+    rows: &[Row],
+    surface: Option<&Surface>,
+) -> Outcome<Vec<String>> {
+    let mut written = Vec::new();
+    let mut save = |what: &str, picture: Result<String, String>| -> Outcome<()> {
+        let file = format!("{name}_{what}.svg");
+        let picture = picture.map_err(|error| Problem::failed(format!("cannot draw {file}: {error}"), ""))?;
+        files::write_text(&folder.join(&file), &picture)?;
+        written.push(file);
+        Ok(())
+    };
+    if let Some(surface) = surface {
+        let panels = load_chart(surface);
+        save("load_chart", crate::figures::svg(&panels, panels.len().min(2)))?;
+    }
+    if let Some(slewing) = layout.slewing(asked) {
+        save("slew_diagram", crate::figures::svg(&[slew_diagram(asked, layout, rows, slewing)], 1))?;
+    }
+    let varying: Vec<usize> = (0..asked.axes.0.len()).filter(|place| asked.axes.0[*place].values.len() > 1).collect();
+    if let [.., y, x] = varying[..] {
+        let load = &layout.columns[layout.load()];
+        let title = format!("Largest load [{}], the least over all else that varies", load.unit);
+        save("largest_load_map", svg(&map(asked, layout, rows, [x, y], &title, |row| layout.load_of(row), f64::min)))?;
+        let used = |row: &Row| row.numbers[layout.utilisation()];
+        if rows.iter().any(|row| used(row).is_finite()) {
+            let title = "Utilisation with the crane's own load, the greatest over all else that varies";
+            save("utilisation_map", svg(&map(asked, layout, rows, [x, y], title, used, f64::max)))?;
+        }
+    }
+    Ok(written)
+}
+
+/// Curves of equal load over radius and height; over the radius alone where one drive moves.
+fn load_chart(surface: &Surface) -> Vec<Panel> {
+    let unit = &surface.unit;
+    let of = |sheet: &Sheet| if sheet.label.is_empty() { String::new() } else { format!(", {}", sheet.label) };
+    if surface.sheets.iter().all(|sheet| sheet.knots.len().min(sheet.knots[0].len()) == 1) {
+        let curves = surface.sheets.iter().zip(PALETTE).map(|(sheet, colour)| Curve {
+            label: if sheet.label.is_empty() { format!("largest load [{unit}]") } else { sheet.label.clone() },
+            colour,
+            mark: Mark::Solid,
+            points: sheet.knots.iter().flatten().map(|knot| (knot.radius, knot.load)).collect(),
+        });
+        let (x, y) = ("radius [m]".to_owned(), format!("largest load [{unit}]"));
+        return vec![Panel { x, y, equal: false, logarithmic: false, curves: curves.collect() }];
+    }
+    let loads = || surface.knots().map(|knot| knot.load).filter(|load| *load > 0.0);
+    let (least, greatest) = (loads().fold(f64::INFINITY, f64::min), loads().fold(0.0, f64::max));
+    let levels = levels(least, greatest, MOST_LEVELS);
+    let panel = |sheet: &Sheet| {
+        let edge = outline(sheet).into_iter().map(|points| Curve {
+            label: "outermost poses".to_owned(),
+            colour: crate::figures::GREY,
+            mark: Mark::Solid,
+            points,
+        });
+        let curves = levels.iter().enumerate().flat_map(|(place, level)| {
+            let part = place as f64 / (levels.len().max(2) - 1) as f64;
+            contour(sheet, *level).into_iter().map(move |points| Curve {
+                label: format!("{} {unit}", short(*level)),
+                colour: shade(part),
+                mark: Mark::Solid,
+                points,
+            })
+        });
+        Panel {
+            x: format!("radius [m]{}", of(sheet)),
+            y: "height [m]".to_owned(),
+            equal: true,
+            logarithmic: false,
+            curves: edge.chain(curves).collect(),
+        }
+    };
+    surface.sheets.iter().map(panel).collect()
+}
+
+/// The four sides of a sheet.
+fn outline(sheet: &Sheet) -> Vec<Vec<(f64, f64)>> {
+    let place = |knot: &Knot| (knot.radius, knot.height);
+    let last = sheet.knots.len() - 1;
+    let sides = [
+        sheet.knots[0].iter().map(place).collect(),
+        sheet.knots[last].iter().map(place).collect(),
+        sheet.knots.iter().filter_map(|row| row.first()).map(place).collect(),
+        sheet.knots.iter().filter_map(|row| row.last()).map(place).collect(),
+    ];
+    sides.to_vec()
+}
+
+/// Pieces of the curve on which the largest load is `level`: through both triangles of each cell. Between poses `1/load` is taken as
+/// linear: it is where the load times its distance from a tipping line is constant, and below the truth where the boom's own weight
+/// counts.
+fn contour(sheet: &Sheet, level: f64) -> Vec<Vec<(f64, f64)>> {
+    let crossing = |a: &Knot, b: &Knot| {
+        // A pose without load counts as one with a thousandth of the level.
+        let inverse = |knot: &Knot| 1.0 / knot.load.max(1e-3 * level);
+        let part = (1.0 / level - inverse(a)) / (inverse(b) - inverse(a));
+        let inside = (0.0..1.0).contains(&part);
+        inside.then(|| (a.radius + part * (b.radius - a.radius), a.height + part * (b.height - a.height)))
+    };
+    let mut pieces = Vec::new();
+    for rows in sheet.knots.windows(2) {
+        for column in 1..rows[0].len() {
+            let [a, b, c, d] = [rows[0][column - 1], rows[0][column], rows[1][column], rows[1][column - 1]];
+            for corners in [[a, b, c], [a, c, d]] {
+                let sides = [[0, 1], [1, 2], [2, 0]];
+                let met: Vec<_> =
+                    sides.iter().filter_map(|[from, to]| crossing(&corners[*from], &corners[*to])).collect();
+                if let [from, to] = met[..] {
+                    pieces.push(vec![from, to]);
+                }
+            }
+        }
+    }
+    pieces
+}
+
+/// The largest load over the slewing angle, with everything else at some of its values.
+fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[Row], slewing: usize) -> Panel {
+    let axes = &asked.axes.0;
+    let (name, unit, factor) = shown(&axes[slewing], &layout.description);
+    let mut groups: Vec<(Vec<usize>, Vec<(f64, f64)>)> = Vec::new();
+    for (pose, row) in rows.iter().enumerate() {
+        let mut places = asked.axes.places(pose);
+        let angle = axes[slewing].values[places[slewing]] * factor;
+        places[slewing] = 0;
+        let point = (angle, layout.load_of(row));
+        match groups.iter_mut().find(|(others, _)| *others == places) {
+            Some((_, points)) => points.push(point),
+            None => groups.push((places, vec![point])),
+        }
+    }
+    let chosen = evenly(groups.len(), MOST_CURVES);
+    let label = |places: &[usize]| {
+        let others =
+            axes.iter().zip(places).enumerate().filter(|(place, (axis, _))| *place != slewing && axis.values.len() > 1);
+        let words = others.map(|(_, (axis, place))| {
+            let (name, unit, factor) = shown(axis, &layout.description);
+            format!("{name} {}{}{unit}", short(axis.values[*place] * factor), if unit == "°" { "" } else { " " })
+        });
+        let words: Vec<String> = words.collect();
+        if words.is_empty() { "largest load".to_owned() } else { words.join(", ") }
+    };
+    let curves = chosen.iter().zip(PALETTE).map(|(group, colour)| {
+        let (places, points) = &groups[*group];
+        Curve { label: label(places), colour, mark: Mark::Solid, points: points.clone() }
+    });
+    Panel {
+        x: format!("{name} [{unit}]"),
+        y: format!("largest load [{}]", layout.columns[layout.load()].unit),
+        equal: false,
+        logarithmic: false,
+        curves: curves.collect(),
+    }
+}
+
+/// A quantity over two axes; over the others `worst` of two.
+fn map(
+    asked: &Envelope,
+    layout: &Layout,
+    rows: &[Row],
+    [x, y]: [usize; 2],
+    title: &str,
+    quantity: impl Fn(&Row) -> f64,
+    worst: fn(f64, f64) -> f64,
+) -> Map {
+    let axes = &asked.axes.0;
+    let side = |place: usize| {
+        let (name, unit, factor) = shown(&axes[place], &layout.description);
+        let values: Vec<f64> = axes[place].values.iter().map(|value| value * factor).collect();
+        (format!("{name} [{unit}]"), values)
+    };
+    let mut cells = vec![vec![f64::NAN; axes[x].values.len()]; axes[y].values.len()];
+    for (pose, row) in rows.iter().enumerate() {
+        let places = asked.axes.places(pose);
+        let cell = &mut cells[places[y]][places[x]];
+        let value = quantity(row);
+        *cell = if cell.is_nan() { value } else { worst(*cell, value) };
+    }
+    Map { title: title.to_owned(), x: side(x), y: side(y), cells }
+}

@@ -1,0 +1,185 @@
+//! `crane envelope`: the largest load within limits over ranges of poses and parameters, as a load chart, diagrams and data.
+
+mod chart;
+mod figures;
+mod journal;
+mod map;
+mod ranges;
+mod rows;
+mod summary;
+mod surface;
+
+use std::{
+    io::Write,
+    num::NonZeroUsize,
+    sync::{Mutex, PoisonError},
+    thread,
+    time::Instant,
+};
+
+use crane_model::{
+    Description,
+    dyn_crane::DynCrane,
+    envelope::{Conduct, Limits, Rating},
+};
+
+use crate::{
+    Fleet,
+    arguments::{Envelope, Format},
+    files,
+    problem::{Outcome, Problem},
+    report::Report,
+    run::styled,
+    selection::told,
+    strength::load_parameter,
+};
+
+use journal::Journal;
+use rows::{Layout, Row};
+
+/// Poses at most: some hours.
+const MOST_POSES: usize = 10_000_000;
+/// Load that stands for the least where zero is not allowed, kg: a gram.
+const LEAST_LOAD: f64 = 1e-3;
+/// The greatest load looked at, in masses of the crane.
+const GREATEST_LOAD: f64 = 100.0;
+
+/// Rates all poses and writes what follows from them.
+pub fn envelope(options: &Envelope, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let begin = Instant::now();
+    let rig = options.analysis.crane.open(fleet)?;
+    let (asked, layout) = ask(options, rig.as_ref())?;
+    let description = rig.description();
+    files::folder(&options.folder.out)?;
+    let name = format!("{}_envelope", description.name);
+    let journal = options.folder.out.join(format!("{name}.part.csv"));
+    let request = request(&asked, &layout, rig.as_ref());
+    let (journal, kept) = Journal::open(&journal, &request, &asked, &layout, options.restart)?;
+    let rows = rate(&asked, &layout, rig.as_ref(), options.threads, &journal, kept)?;
+    let seconds = begin.elapsed().as_secs_f64();
+
+    let mut report = Report::default();
+    summary::facts(&mut report, &asked, &layout, description, &rows);
+    report.fact("wall time", seconds, "s");
+    let surface = surface::Surface::of(&asked, &layout, &rows);
+    let chart = surface.as_ref().map(chart::table);
+    if let Some(chart) = &chart {
+        report.grid(chart.clone());
+    }
+    report.grid(summary::governing(&asked, &layout, &rows));
+    let mut written = rows::write(&options.folder.out, &name, &asked, &layout, &rows)?;
+    if let Some(chart) = &chart {
+        let file = format!("{name}_load_chart.csv");
+        let (header, rows) = chart.fields();
+        files::write_fields(&options.folder.out.join(&file), header, rows)?;
+        written.push(file);
+    }
+    written.extend(figures::write(&options.folder.out, &name, &asked, &layout, &rows, surface.as_ref())?);
+    journal.remove()?;
+    report.grid(crate::simulate::file_list(&options.folder.out, &written));
+    report.print(options.analysis.format, out)?;
+    if options.analysis.format == Format::Table {
+        writeln!(out, "\n{}", chart::NOTE)?;
+    }
+    Ok(())
+}
+
+/// What the arguments ask for.
+fn ask(options: &Envelope, rig: &dyn DynCrane) -> Outcome<(crane_model::envelope::Envelope, Layout)> {
+    let description = rig.description();
+    let axes = ranges::read(&options.ranges, description)?;
+    if axes.poses() > MOST_POSES {
+        return Err(Problem::usage(
+            format!("{} poses are more than {MOST_POSES}", axes.poses()),
+            "write smaller counts in `--range NAME=FROM:TO:COUNT`",
+        ));
+    }
+    let load = load_parameter(rig, options.load.as_deref())?.ok_or_else(|| {
+        Problem::usage(
+            format!("{} has not exactly one live parameter in kg to vary as the load", description.name),
+            "name the live parameter that is the load, as in `--load payload`; `crane info` lists them",
+        )
+    })?;
+    let info = &description.parameters[load];
+    if ranges::varies(&axes, load) {
+        return Err(Problem::usage(
+            format!("{} is the load, which is found for each pose", info.name),
+            "leave its `--range` out, or name another load with `--load`",
+        ));
+    }
+    let allowed = |value: &f64| info.check(*value).is_ok();
+    let least = [0.0, LEAST_LOAD, info.least.value].into_iter().find(allowed).unwrap_or(info.default);
+    let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
+    let greatest = options.greatest_load.unwrap_or(GREATEST_LOAD * mass.max(1.0)).min(info.greatest.value);
+    if greatest.is_nan() || greatest <= least {
+        return Err(Problem::usage(
+            format!("`--greatest-load {greatest}` is not above the least load, {least}"),
+            format!("write a number above {least}, in {}", info.unit),
+        ));
+    }
+    let limits = Limits {
+        tipping: Some(options.tipping),
+        utilisation: Some(options.utilisation),
+        efforts: ranges::limits(&options.efforts, "effort", "drive", &drives(description))?,
+        deflections: ranges::limits(&options.deflections, "deflection", "point", &points(description))?,
+    };
+    let point = ranges::point(options.point.as_deref(), description)?;
+    let asked = crane_model::envelope::Envelope { axes, load, loads: [least, greatest], limits };
+    let layout = Layout::new(&asked, rig, point);
+    Ok((asked, layout))
+}
+
+fn drives(description: &Description) -> Vec<&str> {
+    description.drives.iter().map(|drive| description.coordinates[drive.coordinate].name.as_str()).collect()
+}
+
+fn points(description: &Description) -> Vec<&str> {
+    description.points.iter().map(crane_model::Text::as_str).collect()
+}
+
+/// All that ratings depend on: an interrupted envelope goes on only where it is the same.
+fn request(asked: &crane_model::envelope::Envelope, layout: &Layout, rig: &dyn DynCrane) -> String {
+    let parameters: Vec<f64> = (0..rig.description().parameters.len()).map(|index| rig.parameter(index)).collect();
+    let spec = &rig.description().spec_hash;
+    format!("{} {spec} {parameters:?} {asked:?} {:?}", env!("CARGO_PKG_VERSION"), layout.point)
+}
+
+/// Rates what the journal does not have yet; all rows, in order.
+fn rate(
+    asked: &crane_model::envelope::Envelope,
+    layout: &Layout,
+    rig: &dyn DynCrane,
+    threads: Option<NonZeroUsize>,
+    journal: &Journal,
+    kept: Vec<Option<Row>>,
+) -> Outcome<Vec<Row>> {
+    let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
+    let pieces: Vec<usize> =
+        (0..asked.pieces()).filter(|piece| asked.poses_of(*piece).any(|pose| kept[pose].is_none())).collect();
+    let bar = styled(indicatif::ProgressBar::new(asked.axes.poses() as u64));
+    bar.set_message("poses");
+    bar.inc(kept.iter().flatten().count() as u64);
+    let state = Mutex::new((kept, Ok(())));
+    let done = |piece: usize, ratings: &[Rating]| {
+        let poses = asked.poses_of(piece);
+        let rows: Vec<Row> = poses.clone().zip(ratings).map(|(pose, rating)| layout.row(asked, pose, rating)).collect();
+        let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
+        if state.1.is_ok() {
+            state.1 = journal.add(poses.start, &rows);
+        }
+        for (pose, row) in poses.zip(rows) {
+            state.0[pose] = Some(row);
+        }
+        bar.inc(ratings.len() as u64);
+    };
+    let failed = || state.lock().unwrap_or_else(PoisonError::into_inner).1.is_err();
+    let run = asked.run(rig, &pieces, &Conduct { threads, done: &done, called_off: &failed });
+    bar.finish_and_clear();
+    run.map_err(|refused| {
+        let (title, help) = told(&refused);
+        Problem::usage(title, help)
+    })?;
+    let (rows, written) = state.into_inner().unwrap_or_else(PoisonError::into_inner);
+    written?;
+    rows.into_iter().map(|row| row.ok_or_else(|| Problem::failed("a pose is missing", "please report it"))).collect()
+}

@@ -1,0 +1,169 @@
+//! Ranges and limits, as arguments name them.
+
+use std::f64::consts::PI;
+
+use crane_codegen::spec::parse_angle;
+use crane_model::{
+    CoordinateKind, Description,
+    envelope::{Axes, Axis, Varied},
+};
+
+use crate::problem::{Outcome, Problem, nearest};
+
+/// Values of a range at most.
+const MOST: usize = 100_000;
+
+/// What `--range NAME=FROM:TO:COUNT` and `--range NAME=VALUE` ask for.
+pub fn read(ranges: &[String], description: &Description) -> Outcome<Axes> {
+    let mut axes: Vec<Axis> = Vec::new();
+    for range in ranges {
+        let (name, values) = range.split_once('=').ok_or_else(|| {
+            Problem::usage(
+                format!("`--range {range}` has no values"),
+                "write `--range boom_psi=0:60deg:13`, from, to and how many, or one value, `--range telescope_z=1.5`",
+            )
+        })?;
+        let varied = varied(name.trim(), description)?;
+        if axes.iter().any(|axis| axis.varied == varied) {
+            return Err(Problem::usage(format!("`{name}` has two ranges"), "give each drive and parameter one range"));
+        }
+        axes.push(Axis { varied, values: values_of(name, values)? });
+    }
+    Ok(Axes(axes))
+}
+
+/// Whether a live parameter is on an axis.
+pub fn varies(axes: &Axes, parameter: usize) -> bool {
+    axes.0.iter().any(|axis| axis.varied == Varied::Parameter(parameter))
+}
+
+/// Place of a drive by its coordinate or by its link, if that has one drive alone, or of a live parameter.
+fn varied(name: &str, description: &Description) -> Outcome<Varied> {
+    let driven = super::drives(description);
+    let of_link = |coordinate: &&&str| coordinate.rsplit_once('_').is_some_and(|(link, _)| link == name);
+    let mut on_link = driven.iter().filter(of_link);
+    let drive = match (on_link.next(), on_link.next()) {
+        (Some(only), None) => *only,
+        _ => name,
+    };
+    if let Some(place) = driven.iter().position(|coordinate| *coordinate == drive) {
+        return Ok(Varied::Drive(place));
+    }
+    let parameters = description.parameters.iter().map(|parameter| parameter.name.as_str());
+    if let Some(place) = parameters.clone().position(|parameter| parameter == name) {
+        return Ok(Varied::Parameter(place));
+    }
+    if description.coordinates.iter().any(|coordinate| coordinate.name == name) {
+        return Err(Problem::usage(
+            format!("{name} has no drive: its position follows from equilibrium"),
+            format!("driven are {}", driven.join(", ")),
+        ));
+    }
+    let known: Vec<&str> = driven.iter().copied().chain(parameters).collect();
+    let guess = nearest(name, known.iter().copied());
+    let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
+    let title = format!("{} has no drive and no live parameter `{name}`", description.name);
+    Err(Problem::usage(title, format!("{guess}drives and parameters: {}", known.join(", "))))
+}
+
+/// The values of `FROM:TO:COUNT` or of `VALUE`.
+fn values_of(name: &str, text: &str) -> Outcome<Vec<f64>> {
+    let wrong = |what: &str| {
+        Problem::usage(
+            format!("`--range {name}={text}`: {what}"),
+            "write numbers in SI units or angles such as `60deg`: `FROM:TO:COUNT` or one value",
+        )
+    };
+    let parts: Vec<&str> = text.split(':').map(str::trim).collect();
+    match parts[..] {
+        [value] => Ok(vec![number(value).ok_or_else(|| wrong(&format!("`{value}` is not a number")))?]),
+        [from, to, count] => {
+            // A unit behind the second number holds for both.
+            let unit = if to.ends_with("deg") { "deg" } else { "" };
+            let from_with_unit = if from.parse::<f64>().is_ok() { format!("{from}{unit}") } else { from.to_owned() };
+            let from = number(&from_with_unit).ok_or_else(|| wrong(&format!("`{from}` is not a number")))?;
+            let to = number(to).ok_or_else(|| wrong(&format!("`{to}` is not a number")))?;
+            let count: usize = count.parse().map_err(|_| wrong(&format!("`{count}` is not a count")))?;
+            if !(2..=MOST).contains(&count) {
+                return Err(wrong(&format!("a count must be from 2 to {MOST}")));
+            }
+            let steps = (count - 1) as f64;
+            Ok((0..count).map(|place| from + (to - from) * (place as f64 / steps)).collect())
+        }
+        _ => Err(wrong("it has not one or three parts")),
+    }
+}
+
+/// A finite number or an angle.
+fn number(text: &str) -> Option<f64> {
+    text.parse().ok().or_else(|| parse_angle(text)).filter(|number: &f64| number.is_finite())
+}
+
+/// Limits `NAME=VALUE` of drives or points, infinite where none is given.
+pub fn limits(given: &[String], option: &str, what: &str, names: &[&str]) -> Outcome<Vec<f64>> {
+    let mut limits = vec![f64::INFINITY; names.len()];
+    for limit in given {
+        let read = limit.split_once('=').and_then(|(name, value)| Some((name.trim(), value.parse::<f64>().ok()?)));
+        let (name, value) = read.filter(|(_, value)| value.is_finite() && *value > 0.0).ok_or_else(|| {
+            Problem::usage(
+                format!("`--{option} {limit}` is not a limit"),
+                format!("write `--{option} NAME=VALUE` with the name of a {what} and a number above zero, in SI units"),
+            )
+        })?;
+        let place = names.iter().position(|known| *known == name).ok_or_else(|| {
+            let guess = nearest(name, names.iter().copied());
+            let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
+            Problem::usage(format!("there is no {what} `{name}`"), format!("{guess}{what}s: {}", names.join(", ")))
+        })?;
+        limits[place] = value;
+    }
+    Ok(limits)
+}
+
+/// The point whose radius and height are shown: the one of this name, or the only one; otherwise the origin of the last link.
+pub fn point(name: Option<&str>, description: &Description) -> Outcome<Option<usize>> {
+    let names = super::points(description);
+    let Some(name) = name else {
+        return Ok((names.len() == 1).then_some(0));
+    };
+    names.iter().position(|point| *point == name).map(Some).ok_or_else(|| {
+        let guess = nearest(name, names.iter().copied());
+        let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
+        Problem::usage(format!("there is no point `{name}`"), format!("{guess}points: {}", names.join(", ")))
+    })
+}
+
+/// Name and unit of what an axis varies, for people: angles in degrees; and what its values are multiplied by.
+pub fn shown(axis: &Axis, description: &Description) -> (String, String, f64) {
+    match axis.varied {
+        Varied::Drive(drive) => {
+            let coordinate = &description.coordinates[description.drives[drive].coordinate];
+            match coordinate.kind {
+                CoordinateKind::Rotation => (coordinate.name.to_string(), "°".to_owned(), 180.0 / PI),
+                CoordinateKind::Translation => (coordinate.name.to_string(), "m".to_owned(), 1.0),
+            }
+        }
+        Varied::Parameter(index) => {
+            let parameter = &description.parameters[index];
+            (parameter.name.to_string(), parameter.unit.to_string(), 1.0)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_has_its_ends_and_its_unit() {
+        let values = values_of("boom", "-30:60deg:4").unwrap();
+        let degrees: Vec<f64> = values.iter().map(|value| value.to_degrees().round()).collect();
+        assert_eq!(degrees, [-30.0, 0.0, 30.0, 60.0]);
+        assert_eq!(values_of("telescope", "0.5:2:4").unwrap(), [0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(values_of("boom", "1/2 pi").unwrap(), [PI / 2.0]);
+        assert_eq!(values_of("boom", "0:1/2 pi:2").unwrap(), [0.0, PI / 2.0]);
+        for wrong in ["", "1:2", "a", "0:1:1", "0:1:2.5", "0:nan:3", "0:1:999999999"] {
+            assert!(values_of("boom", wrong).is_err(), "{wrong}");
+        }
+    }
+}

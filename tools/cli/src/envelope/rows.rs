@@ -1,0 +1,170 @@
+//! The rating of every pose as a row of numbers.
+
+use std::path::Path;
+
+use crane_model::{
+    Description,
+    dyn_crane::DynCrane,
+    envelope::{Envelope, Limit, Rating, SlewAxis, Varied},
+    nalgebra::Vector3,
+    results::{Column, drive_effort},
+};
+
+use crate::{
+    files,
+    npz::{Array, npz},
+    problem::{Outcome, Problem},
+};
+
+/// The rating of a pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// One per column of the layout; NaN where there is none.
+    pub numbers: Vec<f64>,
+    /// Kind of the limit that governs, and of what it is one; empty where none does.
+    pub governing: [String; 2],
+}
+
+/// What stands in which column, and what rows are made with.
+pub struct Layout {
+    /// Names and units of the numbers.
+    pub columns: Vec<Column>,
+    /// The point whose radius and height are shown; the last link's origin without.
+    pub point: Option<usize>,
+    /// From where the radius is measured.
+    pub slew: SlewAxis,
+    /// The crane.
+    pub description: Description,
+    axes: usize,
+}
+
+impl Layout {
+    /// The columns: axes, load, place, condition with the crane's own load.
+    pub fn new(asked: &Envelope, rig: &dyn DynCrane, point: Option<usize>) -> Self {
+        let description = rig.description().clone();
+        let mut columns = Vec::new();
+        let mut column = |name: String, unit: &str| columns.push(Column { name, unit: unit.to_owned() });
+        for axis in &asked.axes.0 {
+            match axis.varied {
+                Varied::Drive(drive) => {
+                    let coordinate = &description.coordinates[description.drives[drive].coordinate];
+                    column(coordinate.name.to_string(), coordinate.kind.unit());
+                }
+                Varied::Parameter(index) => {
+                    let parameter = &description.parameters[index];
+                    column(parameter.name.to_string(), &parameter.unit);
+                }
+            }
+        }
+        column("largest_load".to_owned(), &description.parameters[asked.load].unit);
+        column("radius".to_owned(), "m");
+        column("height".to_owned(), "m");
+        column("tipping_margin".to_owned(), "1");
+        column("utilisation".to_owned(), "1");
+        for drive in description.drives.iter() {
+            let coordinate = &description.coordinates[drive.coordinate];
+            column(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
+        }
+        for point in description.points.iter() {
+            column(format!("{point}_deflection"), "m");
+        }
+        Self { columns, point, slew: SlewAxis::of(rig), axes: asked.axes.0.len(), description }
+    }
+
+    /// Column of the largest load; radius, height, tipping margin and utilisation follow.
+    pub fn load(&self) -> usize {
+        self.axes
+    }
+
+    /// Column of the radius.
+    pub fn radius(&self) -> usize {
+        self.axes + 1
+    }
+
+    /// Column of the height.
+    pub fn height(&self) -> usize {
+        self.axes + 2
+    }
+
+    /// Column of the tipping margin with the crane's own load.
+    pub fn margin(&self) -> usize {
+        self.axes + 3
+    }
+
+    /// Column of the utilisation with the crane's own load.
+    pub fn utilisation(&self) -> usize {
+        self.axes + 4
+    }
+
+    /// Largest load of a row; 0 where not even the least is within the limits.
+    pub fn load_of(&self, row: &Row) -> f64 {
+        let load = row.numbers[self.load()];
+        if load.is_nan() { 0.0 } else { load }
+    }
+
+    /// The row of a pose.
+    pub fn row(&self, asked: &Envelope, pose: usize, rating: &Rating) -> Row {
+        let place: Option<Vector3<f64>> = rating.loaded.as_ref().map(|at| match self.point {
+            Some(point) => at.points[point],
+            None => at.end,
+        });
+        let or_nan = |number: Option<f64>| number.unwrap_or(f64::NAN);
+        let own = rating.own.as_ref();
+        let mut numbers = asked.axes.values(pose);
+        numbers.push(or_nan(rating.load));
+        numbers.push(or_nan(place.map(|place| self.slew.radius(&place))));
+        numbers.push(or_nan(place.map(|place| place.z)));
+        numbers.push(or_nan(own.and_then(|own| own.margin())));
+        numbers.push(or_nan(own.and_then(|own| own.utilisation())));
+        let efforts = self.description.drives.len();
+        numbers.extend((0..efforts).map(|drive| or_nan(own.map(|own| own.efforts[drive]))));
+        let points = self.description.points.len();
+        numbers.extend((0..points).map(|point| or_nan(rating.deflections.get(point).copied())));
+        let governing = rating
+            .governing
+            .map_or_else(Default::default, |limit: Limit| [limit.kind().to_owned(), limit.place(&self.description)]);
+        Row { numbers, governing }
+    }
+
+    /// The axis that slews the crane, if it is one of those that vary.
+    pub fn slewing(&self, asked: &Envelope) -> Option<usize> {
+        let drive = self.slew.drive?;
+        let varies = |axis: &crane_model::envelope::Axis| axis.varied == Varied::Drive(drive) && axis.values.len() > 1;
+        asked.axes.0.iter().position(varies)
+    }
+}
+
+/// A field of a file: empty for what there is none of.
+pub fn field(number: f64) -> String {
+    if number.is_finite() { files::number(number) } else { String::new() }
+}
+
+/// Writes all rows as CSV and as arrays; names of the files.
+pub fn write(folder: &Path, name: &str, asked: &Envelope, layout: &Layout, rows: &[Row]) -> Outcome<Vec<String>> {
+    let csv = format!("{name}.csv");
+    let header = layout.columns.iter().map(ToString::to_string);
+    let header = header.chain(["governing", "of"].map(str::to_owned));
+    let fields = rows.iter().map(|row| {
+        let numbers = row.numbers.iter().copied().map(field);
+        numbers.chain(row.governing.iter().cloned()).collect()
+    });
+    files::write_fields(&folder.join(&csv), header, fields)?;
+
+    let archive = format!("{name}.npz");
+    let axes = asked.axes.0.iter().zip(&layout.columns).map(|(axis, column)| Array {
+        name: format!("axis_{}", column.name).into(),
+        shape: vec![axis.values.len()],
+        data: axis.values.clone(),
+    });
+    let shape: Vec<usize> = asked.axes.0.iter().map(|axis| axis.values.len()).collect();
+    let columns = layout.columns.iter().enumerate().skip(layout.load());
+    let columns = columns.map(|(index, column)| Array {
+        name: column.name.clone().into(),
+        shape: shape.clone(),
+        data: rows.iter().map(|row| row.numbers[index]).collect(),
+    });
+    let bytes = npz(&axes.chain(columns).collect::<Vec<_>>())
+        .map_err(|error| Problem::failed(format!("cannot make {archive}: {error}"), ""))?;
+    files::write(&folder.join(&archive), |file| file.write_all(&bytes))?;
+    Ok(vec![csv, archive])
+}

@@ -1,0 +1,186 @@
+//! `crane envelope` against the equilibrium of moments, and interrupted.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use serde_json::Value;
+
+/// A truck of 4 t, its centre amid four feet 3 m and 2 m apart, and a load on an arm without mass that slews and telescopes.
+const TRUCK: &str = "format: 1
+name: truck
+parameters: {payload: {value: 100, unit: kg}}
+links:
+  - {name: truck, joint: free, mass: 4000, com: [0, 0, 0.5], inertia: {Ixx: 3000, Iyy: 3000, Izz: 3000}}
+  - {name: column, placement: {transform: {translation: [0, 0, 1]}}, joint: revolute, mass: 1, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+  - {name: arm, joint: {prismatic: {axis: x}}, mass: payload, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+supports:
+  - {name: front_left, at: [1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: front_right, at: [1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: rear_left, at: [-1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: rear_right, at: [-1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
+drives:
+  - {coordinate: column_psi, rigid: true, motion: {hold: 0}}
+  - {coordinate: arm_x, rigid: true, motion: {hold: 3}}
+points: [{name: hook, link: arm, at: [0, 0, 0]}]
+";
+
+/// An empty folder of a test, with the spec in it.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("envelope_{name}"));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    fs::write(folder.join("truck.yaml"), TRUCK).expect("a file");
+    folder
+}
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+    command.current_dir(folder).args(["envelope", "truck.yaml", "--out", "."]).args(arguments);
+    command
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    command(folder, arguments).output().expect("it starts")
+}
+
+/// Columns of the table of all poses by their heading, as texts.
+fn table(folder: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut csv = csv::Reader::from_path(folder.join("truck_envelope.csv")).expect("a table");
+    let header = csv.headers().expect("a header").iter().map(str::to_owned).collect();
+    let rows = csv.records().map(|row| row.expect("a row").iter().map(str::to_owned).collect()).collect();
+    (header, rows)
+}
+
+#[test]
+fn a_load_chart_is_the_equilibrium_of_moments() {
+    let folder = folder("chart");
+    let ranges = ["--range", "column=0:360deg:25", "--range", "arm_x=2:6:9", "--tipping", "0.2", "--format", "json"];
+    let said = run(&folder, &ranges);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let (header, rows) = table(&folder);
+    assert_eq!(rows.len(), 25 * 9);
+    let column =
+        |name: &str| header.iter().position(|known| known == name).unwrap_or_else(|| panic!("{name} of {header:?}"));
+    let number = |row: &[String], name: &str| row[column(name)].parse::<f64>().expect("a number");
+    for row in &rows {
+        let (angle, reach) = (number(row, "column_psi [rad]"), number(row, "arm_x [m]"));
+        let (x, y) = (reach * angle.cos(), reach * angle.sin());
+        // About each line: m · (distance beyond) = 0.8 · 4001 kg · (distance within).
+        let lines = [(x - 1.5, 1.5), (-x - 1.5, 1.5), (y - 1.0, 1.0), (-y - 1.0, 1.0)];
+        let loads =
+            lines.iter().filter(|(beyond, _)| *beyond > 1e-9).map(|(beyond, within)| 0.8 * 4001.0 * within / beyond);
+        let expected = loads.fold(f64::INFINITY, f64::min);
+        let load = number(row, "largest_load [kg]");
+        if expected < 1e5 {
+            assert!((load / expected - 1.0).abs() < 1e-4, "{angle} {reach}: {load} instead of {expected}");
+            assert_eq!(row[column("governing")], "tipping");
+        }
+        assert!((number(row, "radius [m]") - reach).abs() < 1e-3);
+    }
+    // The chart: all round, over the sides, where the lines are 1 m from the slewing axis; to the next lower radius of a pose and
+    // rounded down.
+    let said: Value = serde_json::from_slice(&said.stdout).expect("JSON");
+    let chart = said["load_chart"].as_array().expect("a chart");
+    assert!(chart.len() >= 5, "{chart:?}");
+    for row in chart {
+        let radius = row["radius_m"].as_f64().unwrap();
+        let load = row["largest_load_kg"].as_f64().unwrap();
+        let (exact, further) = (0.8 * 4001.0 / (radius - 1.0), 0.8 * 4001.0 / (radius + 0.5 - 1.0));
+        assert!(load <= exact && load >= 0.99 * further, "{radius} m: {load}, between {further} and {exact}");
+    }
+    for file in ["npz", "load_chart.csv"] {
+        let name = format!("truck_envelope{}{file}", if file == "npz" { "." } else { "_" });
+        assert!(folder.join(&name).is_file(), "{name}");
+    }
+    for picture in ["load_chart", "slew_diagram", "largest_load_map"] {
+        let picture = fs::read_to_string(folder.join(format!("truck_envelope_{picture}.svg"))).expect("a picture");
+        assert!(picture.starts_with("<svg") && picture.contains("[kg]") | picture.contains(" kg"));
+    }
+    assert!(!folder.join("truck_envelope.part.csv").exists());
+}
+
+/// Killed while it writes, with half a line behind what was written: the second command goes on, and the result has the bytes of
+/// one that was never interrupted.
+#[test]
+fn what_is_interrupted_goes_on() {
+    let ranges = ["--range", "column=0:350deg:200", "--range", "arm=2:6:200", "--threads", "2"];
+    let whole = folder("whole");
+    assert!(run(&whole, &ranges).status.success());
+    let broken = folder("broken");
+    let part = broken.join("truck_envelope.part.csv");
+    let mut killed = command(&broken, &ranges).stdout(Stdio::null()).spawn().expect("it starts");
+    let begin = Instant::now();
+    while fs::metadata(&part).map_or(0, |file| file.len()) < 20_000 {
+        assert!(begin.elapsed() < Duration::from_secs(120), "it writes as it goes");
+        thread::sleep(Duration::from_millis(1));
+    }
+    killed.kill().expect("it runs");
+    killed.wait().expect("it ends");
+    let written = fs::read_to_string(&part).expect("what was done");
+    assert!(!broken.join("truck_envelope.csv").exists(), "it was interrupted");
+    fs::write(&part, format!("{written}39999,tipping,\"a")).expect("half a line");
+
+    // Other limits would mix what does not belong together.
+    let other = run(&broken, &[&ranges[..], &["--tipping", "0.1"]].concat());
+    assert_eq!(other.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&other.stderr).contains("--restart"));
+
+    assert!(run(&broken, &ranges).status.success());
+    let [one, two] = [&whole, &broken].map(|folder| fs::read(folder.join("truck_envelope.csv")).expect("a table"));
+    assert!(one == two, "the same bytes");
+    assert!(!part.exists());
+}
+
+/// What was kept is not computed again: a number that was changed in it stays.
+#[test]
+fn what_is_kept_is_not_computed_again() {
+    let folder = folder("kept");
+    let ranges = ["--range", "column=0:350deg:100", "--range", "arm=2:6:200", "--threads", "1"];
+    let part = folder.join("truck_envelope.part.csv");
+    let mut killed = command(&folder, &ranges).stdout(Stdio::null()).spawn().expect("it starts");
+    while fs::metadata(&part).map_or(0, |file| file.len()) < 20_000 {
+        thread::sleep(Duration::from_millis(1));
+    }
+    killed.kill().expect("it runs");
+    killed.wait().expect("it ends");
+    let written = fs::read_to_string(&part).expect("what was done");
+    // The first pose: its number, the limit and of what, two positions, the load.
+    let mut lines: Vec<String> = written.lines().map(str::to_owned).collect();
+    let first = lines.iter().position(|line| line.starts_with("0,")).expect("the first pose");
+    let mut fields: Vec<&str> = lines[first].split(',').collect();
+    fields[5] = "12345.678";
+    lines[first] = fields.join(",");
+    fs::write(&part, lines.join("\n") + "\n").expect("the file");
+    assert!(run(&folder, &ranges).status.success());
+    let (_, rows) = table(&folder);
+    assert_eq!(rows[0][2], "12345.678");
+    assert_eq!(rows.len(), 20_000);
+}
+
+#[test]
+fn mistakes_are_told() {
+    let folder = folder("mistakes");
+    for (arguments, told) in [
+        (&["--range", "truck_x=0:1:3"][..], "truck_x has no drive"),
+        (&["--range", "colum_psi=0:1:3"], "did you mean `column_psi`"),
+        (&["--range", "arm=0:1"], "has not one or three parts"),
+        (&["--range", "arm=0:1:3", "--range", "arm_x=0:1:3"], "has two ranges"),
+        (&["--range", "payload=0:1:3"], "payload is the load"),
+        (&["--range", "arm=0:1:3", "--effort", "arm_y=3"], "there is no drive `arm_y`"),
+        (&["--range", "arm=0:1:3", "--deflection", "hook=-1"], "is not a limit"),
+        (&["--range", "arm=0:1:3", "--load", "pay"], "there is no live parameter `pay`"),
+        (&["--range", "arm=0:1:3", "--tipping", "1"], "from 0 to below 1"),
+        (&["--range", "arm=0:1:90000", "--range", "column=0:1:90000"], "are more than"),
+        (&["--range", "arm=0:1:3", "--point", "hok"], "did you mean `hook`"),
+    ] {
+        let said = run(&folder, arguments);
+        assert_eq!(said.status.code(), Some(2), "{arguments:?}");
+        let message = String::from_utf8_lossy(&said.stderr);
+        assert!(message.contains(told), "{arguments:?}: {message}");
+    }
+}
