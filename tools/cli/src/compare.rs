@@ -1,9 +1,11 @@
-//! `crane` alone: compares the eight-link crane with a rigid and with a flexible boom, as [Urbaś 2016, section 3] does.
+//! `crane` alone: compares the eight-link crane with a rigid and with a flexible boom, as [Urbaś 2016, section 3] does; `crane compare`:
+//! any two cranes.
 
 use std::{io::Write, mem, thread, time::Instant};
 
 use crane_model::{
     Description,
+    dyn_crane::DynCrane,
     dynamics::{Method, Settings},
     results::Table,
     runs::Recorded,
@@ -11,43 +13,106 @@ use crane_model::{
 
 use crate::{
     Fleet,
-    arguments::{Compare, Format, Limits, Timing},
+    arguments::{Compare, ComparePair, Format, Limits, Parameters, Timing, spec_file},
     extremes::extremes,
     figures::{Curve, Mark, PALETTE, Panel},
-    files, page,
+    files, own, page,
     problem::{Outcome, Problem},
     run::{progress, record_checked},
     simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
-    statics::{Case, caution_of_runs, deflection, tables},
+    statics::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, tables},
+    variants::renamed,
 };
 
 /// The rigid and the flexible crane.
 pub const CRANES: [&str; 2] = ["eight_link_rigid", "eight_link_flexible"];
 
-/// Statics and motion of both cranes, figures and data.
+/// The eight-link cranes: statics and motion, figures and data.
 pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let begin = Instant::now();
-    let (rigid, flexible) =
-        (options.parameters.crane(CRANES[0], false, fleet)?, options.parameters.crane(CRANES[1], false, fleet)?);
-    let folder = &options.folder.out;
+    let [rigid, flexible] = CRANES.map(|name| options.parameters.crane(name, false, fleet));
+    side_by_side(options, [(RIGID, rigid?), (FLEXIBLE, flexible?)], Method::Rk4, fleet, out)
+}
 
-    let cases = [Case::new("rigid", rigid.as_ref()), Case::new("flexible", flexible.as_ref())];
+/// Takes the cranes of YAML files, or the rigid one, into the fleet; their names stand in place of the files then.
+pub fn load(options: &mut ComparePair, fleet: &mut Fleet) -> Outcome<()> {
+    let ComparePair { first, second, strict, .. } = options;
+    if let Some(file) = spec_file(first) {
+        let (chain, text) = own::load(file, *strict)?;
+        fleet.add(&chain.name, text);
+        *first = chain.name;
+    }
+    match second {
+        Some(name) => {
+            if let Some(file) = spec_file(name) {
+                let (chain, mut text) = own::load(file, *strict)?;
+                *name = chain.name;
+                if name == first {
+                    // Two versions of a crane have one name.
+                    name.push_str("_other");
+                    text = renamed(name, &text).unwrap_or(text);
+                }
+                fleet.add(name, text);
+            }
+        }
+        None => {
+            // The first stands for the rigid crane, as in the comparison of the eight-link cranes.
+            let rigid = fleet.add_rigid(first)?;
+            *second = Some(std::mem::replace(first, rigid));
+        }
+    }
+    Ok(())
+}
+
+/// Statics and motion of two cranes, figures and data.
+pub fn compare_pair(options: &ComparePair, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let ComparePair { first, second, strict, compare } = options;
+    let Some(second) = second else { return Err(Problem::failed("the second crane is missing", "please report this as a bug")) };
+    let known = |name: &str| Ok::<_, Problem>(compare.parameters.known_to(fleet.crane(name)?.description()));
+    let [mut one, other] = [known(first)?, known(second)?];
+    if compare
+        .parameters
+        .settings
+        .iter()
+        .any(|setting| !one.settings.contains(setting) && !other.settings.contains(setting))
+    {
+        // What neither has is a mistake, which the first one tells.
+        one = Parameters { settings: compare.parameters.settings.clone() };
+    }
+    let cranes = [one.crane(first, *strict, fleet)?, other.crane(second, *strict, fleet)?];
+    let twins = *first == format!("{second}_rigid");
+    let labels = if twins { [RIGID, FLEXIBLE] } else { [first.as_str(), second.as_str()] };
+    let [one, other] = cranes;
+    side_by_side(compare, [(labels[0], one), (labels[1], other)], Method::RECOMMENDED, fleet, out)
+}
+
+/// Statics and motion of two labelled cranes, figures and data; `default`: the method unless one is asked for.
+fn side_by_side(
+    options: &Compare,
+    [(first, one), (second, other)]: [(&str, Box<dyn DynCrane>); 2],
+    default: Method,
+    fleet: &Fleet,
+    out: &mut dyn Write,
+) -> Outcome<()> {
+    let begin = Instant::now();
+    let folder = &options.folder.out;
+    let cases = [Case::new(first, one.as_ref()), Case::new(second, other.as_ref())];
     let format = options.format;
     let mut report = tables(&cases, options.limits);
-    let [rigid_case, flexible_case] = &cases;
-    report.grid(deflection(rigid_case, flexible_case));
+    report.grid(deflection(&cases[0], &cases[1]));
+    report.show_all(options.all);
     if format == Format::Table {
         // Something to read while the cranes move.
-        let [rigid, flexible] = [&rigid, &flexible].map(|crane| crane.description());
-        writeln!(out, "Comparing {} and {}.", rigid.name, flexible.name)?;
+        let [from, to] = [&one, &other].map(|crane| crane.description());
+        writeln!(out, "Comparing {} and {}.", from.name, to.name)?;
         writeln!(out, "Figures (SVG), results (CSV) and report.html go to the folder {}.\n", folder.display())?;
-        writeln!(out, "Statics of {}\n", flexible.title)?;
+        writeln!(out, "Statics of {}\n", to.title)?;
         mem::take(&mut report).print(format, out)?;
+        report.show_all(options.all);
     }
 
     files::folder(folder)?;
-    let (settings, runs) = runs(&cases, &options.timing, options.limits, Method::Rk4)?;
-    let [rigid_run, flexible_run] = runs.as_slice() else {
+    let (settings, runs) = runs(&cases, &options.timing, options.limits, default)?;
+    let [one_run, other_run] = runs.as_slice() else {
         return Err(Problem::failed("a simulation is missing", "please report this as a bug"));
     };
 
@@ -55,28 +120,31 @@ pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome
     for ((case, settings), run) in cases.iter().zip(&settings).zip(&runs) {
         written.extend(write_run(folder, case.rig, settings, run)?);
     }
-    let description = flexible.description();
+    let description = other.description();
     let traces = [
-        Trace { label: flexible_case.label, table: &flexible_run.table, dashed: false },
-        Trace { label: rigid_case.label, table: &rigid_run.table, dashed: true },
+        Trace { label: second, table: &other_run.table, dashed: false },
+        Trace { label: first, table: &one_run.table, dashed: true },
     ];
     written.extend(write_figures(folder, "comparison_", description, &traces)?);
-    let deviation_file = "comparison_deviation.svg".to_owned();
-    write_figure(&folder.join(&deviation_file), &deviation(description, &rigid_run.table, &flexible_run.table), 1)?;
-    written.push(deviation_file);
+    let panels = deviation(description, (first, &one_run.table), (second, &other_run.table));
+    if panels.iter().any(|panel| !panel.curves.is_empty()) {
+        let deviation_file = "comparison_deviation.svg".to_owned();
+        write_figure(&folder.join(&deviation_file), &panels, 1)?;
+        written.push(deviation_file);
+    }
 
     let page = "report.html";
     page::write(&folder.join(page), fleet, (&cases, options.limits), &settings, &runs)?;
     written.push(page.to_owned());
 
-    let labelled = [("rigid", rigid_run), ("flexible", flexible_run)];
+    let labelled = [(first, one_run), (second, other_run)];
     caution_of_runs(&mut report, labelled.into_iter());
     report.grid(extremes(description, &labelled));
     report.grid(summary(&labelled));
     report.grid(file_list(folder, &written));
     if format == Format::Table {
-        let (duration, method, step) = (settings[1].duration, settings[1].method.title(), flexible_run.run.step);
-        writeln!(out, "\nMotion over {duration} s from the {}, {method}, step {step} s\n", flexible_run.start)?;
+        let (duration, method, step) = (settings[1].duration, settings[1].method.title(), other_run.run.step);
+        writeln!(out, "\nMotion over {duration} s from the {}, {method}, step {step} s\n", other_run.start)?;
     }
     report.print(format, out)?;
     if format == Format::Table {
@@ -119,18 +187,19 @@ pub fn runs(
     Ok((settings, results.into_iter().collect::<Outcome<_>>()?))
 }
 
-/// How far the flexible crane's points are from the rigid one's over time, along each axis.
-fn deviation(description: &Description, rigid: &Table, flexible: &Table) -> Vec<Panel> {
+/// How far the second crane's points are from the first one's of the same name over time, along each axis.
+fn deviation(description: &Description, first: (&str, &Table), second: (&str, &Table)) -> Vec<Panel> {
     let panel = |axis: &str| {
-        let curves = description.points.iter().zip(PALETTE.iter().cycle()).map(|(point, &colour)| {
+        let curves = description.points.iter().zip(PALETTE.iter().cycle()).filter_map(|(point, &colour)| {
             let column = format!("{point}_{axis}");
-            let [from, to] = [rigid, flexible].map(|table| points(table, "t", &column, 1e3));
-            let difference = from.iter().zip(&to).map(|(from, to)| (to.0, to.1 - from.1)).collect();
-            Curve { label: spoken(point), colour, mark: Mark::Solid, points: difference }
+            let [from, to] = [first.1, second.1].map(|table| points(table, "t", &column, 1e3));
+            let difference: Vec<_> = from.iter().zip(&to).map(|(from, to)| (to.0, to.1 - from.1)).collect();
+            let curve = Curve { label: spoken(point), colour, mark: Mark::Solid, points: difference };
+            (!curve.points.is_empty()).then_some(curve)
         });
         Panel {
             x: "t [s]".to_owned(),
-            y: format!("Δ{axis}, flexible − rigid [mm]"),
+            y: format!("Δ{axis}, {} − {} [mm]", second.0, first.0),
             equal: false,
             logarithmic: false,
             curves: curves.collect(),

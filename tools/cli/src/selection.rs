@@ -13,6 +13,7 @@ use crate::{
     arguments::{Choice, Parameters},
     own,
     problem::{Outcome, Problem, nearest},
+    variants,
 };
 
 /// Cranes that the command can choose from: shipped ones, compiled or live, and one of a YAML file.
@@ -72,6 +73,22 @@ impl Fleet {
     /// Names of the shipped cranes.
     pub(super) fn shipped(&self) -> &[&'static str] {
         &self.shipped
+    }
+
+    /// Adds a crane whose beams do not bend, and nothing else is different; its name.
+    pub(super) fn add_rigid(&mut self, name: &str) -> Outcome<String> {
+        self.crane(name)?;
+        let found = self.spec(name).map_or(Ok(None), |text| variants::rigid(name, text)).map_err(|link| {
+            Problem::usage(
+                format!("the beam of {link} is given element by element: what it is as a rigid body is not said"),
+                "give it `sections`, `material` and `section`, or write the rigid crane yourself",
+            )
+        })?;
+        let (rigid, text) = found.ok_or_else(|| {
+            Problem::usage(format!("{name} has no beams that bend: it is rigid already"), "leave `--rigid` out")
+        })?;
+        self.add(&rigid, text);
+        Ok(rigid)
     }
 
     /// Names of all cranes.
@@ -199,6 +216,15 @@ impl Parameters {
             }
         }
         Ok(rig)
+    }
+
+    /// The settings of parameters that a crane has.
+    pub fn known_to(&self, description: &Description) -> Self {
+        let is_known = |setting: &&String| {
+            let name = setting.split('=').next().unwrap_or_default();
+            description.parameters.iter().any(|parameter| parameter.name == name)
+        };
+        Self { settings: self.settings.iter().filter(is_known).cloned().collect() }
     }
 
     /// Places of the parameters that are set, and their values; `known`: names and units of those that the crane has.
