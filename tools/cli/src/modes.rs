@@ -18,6 +18,9 @@ use crate::{
     statics::Case,
 };
 
+/// Modes from the lowest on that people see first.
+const LOWEST: usize = 10;
+
 /// Prints undamped and damped modes and the largest stable step.
 pub fn modes(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.crane.open(fleet)?;
@@ -31,8 +34,9 @@ pub fn modes(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<
     report.fact("largest stable step", Cell::from(step), "s");
     let changes = refinement::changes(&case, fleet)?;
     report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
-    report.grid(undamped_modes(&case, changes.as_deref())?);
-    report.grid(damped_modes(description, &modes));
+    report.excerpt(undamped_modes(&case, changes.as_deref())?, LOWEST);
+    report.excerpt(damped_modes(description, &modes), 0);
+    report.show_all(options.all);
     report.print(options.format, out)
 }
 
@@ -65,7 +69,8 @@ pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
     for (index, mode) in modes.iter().enumerate() {
         grid.row([
             (index + 1).into(),
-            mode.frequency().into(),
+            // What creeps back has no frequency.
+            (mode.eigenvalue.im != 0.0).then(|| mode.frequency()).into(),
             mode.damping_ratio().into(),
             mode.eigenvalue.re.into(),
             mode.eigenvalue.im.into(),

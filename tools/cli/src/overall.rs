@@ -49,8 +49,9 @@ pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()
     written.push(page);
 
     let labelled: Vec<_> = labels.zip(&runs).collect();
-    report.grid(extremes(description, &labelled));
+    report.grid_first(extremes(description, &labelled));
     report.grid(summary(&labelled));
     report.grid(file_list(folder, &written));
+    report.show_all(options.analysis.all);
     report.print(options.analysis.format, out)
 }

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use crane_model::{
-    CoordinateInfo,
+    CoordinateInfo, CoordinateKind,
     dyn_crane::DynCrane,
     results::cautions,
     runs::{Reason, Recorded},
@@ -18,6 +18,11 @@ use crate::{
     problem::Outcome,
     report::{Cell, Grid, Report},
 };
+
+/// What a crane is called beside itself with rigid beams.
+pub const FLEXIBLE: &str = "flexible";
+/// What a crane with rigid beams is called beside itself with beams that bend.
+pub const RIGID: &str = "rigid";
 
 /// A crane in equilibrium.
 pub struct Case<'a> {
@@ -67,6 +72,7 @@ pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcom
     if options.format == Format::Json {
         report.grid(history(&case.equilibrium));
     }
+    report.show_all(options.all);
     report.print(options.format, out)?;
     case.stable()
 }
@@ -91,10 +97,10 @@ pub fn tables(cases: &[Case<'_>], limits: Limits) -> Report {
             report.caution(Some(label + &caution));
         }
     }
-    report.grid(pose(cases));
     report.grid(drives(cases));
     report.grid(reactions(cases));
     report.grid(points(cases));
+    report.excerpt(pose(cases), 0);
     report
 }
 
@@ -108,12 +114,21 @@ pub fn caution_of_runs<'a>(report: &mut Report, runs: impl ExactSizeIterator<Ite
     }
 }
 
-/// How far the points of the second crane are from those of the first.
-pub fn deflection(rigid: &Case<'_>, flexible: &Case<'_>) -> Grid {
-    let title = format!("Deflection of the load points due to flexibility ({} − {})", flexible.label, rigid.label);
+/// How far the points of the second crane are from those of the first of the same name; of a crane and itself with rigid beams, that
+/// is what flexibility does.
+pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
+    let title = if second.label == FLEXIBLE {
+        format!("Deflection of the load points due to flexibility ({} − {})", second.label, first.label)
+    } else {
+        format!("How far the points of interest are apart ({} − {})", second.label, first.label)
+    };
     let mut grid = Grid::new("deflection", title, &["point", "x", "y", "z", "distance", "unit"]);
-    let [from, to] = [rigid, flexible].map(|case| case.rig.points_at(&case.equilibrium.q));
-    for (name, (from, to)) in flexible.rig.description().points.iter().zip(from.iter().zip(&to)) {
+    let [from, to] = [first, second].map(|case| case.rig.points_at(&case.equilibrium.q));
+    let names = &first.rig.description().points;
+    for (name, to) in second.rig.description().points.iter().zip(&to) {
+        let Some(from) = names.iter().zip(&from).find_map(|(other, from)| (other == name).then_some(from)) else {
+            continue;
+        };
         let way = (to - from) * 1e3;
         grid.row([name.as_str().into(), way.x.into(), way.y.into(), way.z.into(), way.norm().into(), "mm".into()]);
     }
@@ -133,12 +148,13 @@ fn widest<'c, 'a>(cases: &'c [Case<'a>]) -> Option<&'c Case<'a>> {
 fn pose(cases: &[Case<'_>]) -> Grid {
     let mut grid = Grid::new("pose", "Pose", &headers(&["coordinate"], cases));
     for coordinate in widest(cases).map_or(&[][..], Case::coordinates) {
-        let values = cases.iter().map(|case| Cell::from(case.value(&coordinate.name, &case.equilibrium.q)));
-        let row: Vec<Cell> = [coordinate.name.as_str().into()]
-            .into_iter()
-            .chain(values)
-            .chain([coordinate.kind.unit().into()])
-            .collect();
+        let (cell, unit): (fn(f64) -> Cell, Cell) = match coordinate.kind {
+            CoordinateKind::Translation => (Cell::Number, coordinate.kind.unit().into()),
+            CoordinateKind::Rotation => (Cell::Angle, Cell::AngleUnit),
+        };
+        let values =
+            cases.iter().map(|case| case.value(&coordinate.name, &case.equilibrium.q).map_or(Cell::Empty, cell));
+        let row: Vec<Cell> = [coordinate.name.as_str().into()].into_iter().chain(values).chain([unit]).collect();
         grid.row(row);
     }
     grid

@@ -14,12 +14,12 @@ const LONG = 14;
 const WIDE = 6;
 
 /** A table of the command as it prints it. */
-function grid({ key, title, headers, numeric, rows }) {
-  const cell = (tag) => (text, column) => element(tag, { textContent: text, className: numeric[column] ? "number" : "" });
+function grid({ key, title, headers, numeric, rows, exact }) {
+  const cell = (tag, all) => (text, column) => element(tag, { textContent: text, className: numeric[column] ? "number" : "", title: all?.[column] ?? "" });
   const table = element(
     "table", {},
     element("thead", {}, element("tr", {}, ...headers.map(cell("th")))),
-    element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map(cell("td"))))),
+    element("tbody", {}, ...rows.map((row, index) => element("tr", {}, ...row.map(cell("td", exact?.[index]))))),
   );
   const scroll = element("div", { className: "scroll", tabIndex: 0 }, table);
   scroll.setAttribute("role", "region");
