@@ -38,6 +38,20 @@ export class BeamGeometry extends BufferGeometry {
     this.setIndex(index);
   }
 
+  /** Colours it along its length: `colour(x)` as `[r, g, b]` from 0 to 1. */
+  paint(colour) {
+    const vertices = 2 * this.faces.length;
+    if (!this.attributes.color) this.setAttribute("color", new BufferAttribute(new Float32Array(this.attributes.position.count * 3), 3));
+    const colours = this.attributes.color;
+    const total = this.lengths.reduce((sum, length) => sum + length, 0);
+    const rings = colours.count / vertices;
+    for (let ring = 0; ring < rings; ring += 1) {
+      const [r, g, b] = colour((total * ring) / (rings - 1));
+      for (let vertex = 0; vertex < vertices; vertex += 1) colours.setXYZ(ring * vertices + vertex, r, g, b);
+    }
+    colours.needsUpdate = true;
+  }
+
   /** Follows the frames of the elements: x along the element, y the height, z the width. */
   follow(frames) {
     const position = this.attributes.position;

@@ -26,5 +26,18 @@ export function scale(share) {
   return VIRIDIS[Math.min(Math.round(share * (VIRIDIS.length - 1)), VIRIDIS.length - 1)];
 }
 
+/** What is used beyond what is allowed. */
+export const BEYOND = "#d62728";
+
+/** Colour of a share from 0 to 1 without steps, as `[r, g, b]` from 0 to 1 in linear light; above 1 it is red. */
+export function smooth(share) {
+  const parts = (colour) => [1, 3, 5].map((at) => (parseInt(colour.slice(at, at + 2), 16) / 255) ** 2.2);
+  if (!(share <= 1)) return parts(BEYOND);
+  const place = Math.max(share, 0) * (VIRIDIS.length - 1);
+  const below = Math.min(Math.floor(place), VIRIDIS.length - 2);
+  const [from, to] = [parts(VIRIDIS[below]), parts(VIRIDIS[below + 1])];
+  return from.map((value, i) => value + (place - below) * (to[i] - value));
+}
+
 /** The scale as a CSS gradient. */
 export const gradient = `linear-gradient(90deg, ${VIRIDIS.join(", ")})`;

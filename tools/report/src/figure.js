@@ -80,7 +80,10 @@ export class Figure {
     const { bodies, frames } = this.kinematics;
     for (const link of links(this.kinematics)) this.beam(link);
     bodies.forEach((body, p) => {
-      if (!body.flexible && p + 1 < bodies.length) this.link(p, frames);
+      const next = bodies[p + 1];
+      if (!next || body.link === next.link && body.flexible) return;
+      if (body.flexible) this.inner(p, frames);
+      else this.link(p, frames);
     });
     this.pins();
     this.end();
@@ -99,7 +102,7 @@ export class Figure {
     const geometry = new BeamGeometry(lengths, height, width, outline?.round);
     const mesh = this.mesh(geometry, COLOURS.flexible);
     mesh.frustumCulled = false;
-    this.beams.push({ name, geometry, elements });
+    this.beams.push({ name, geometry, elements, mesh, plain: mesh.material });
     // Rings between the elements show where it bends.
     elements.slice(1).forEach((p) => {
       const ring = this.mesh(outline?.round ? new CylinderGeometry(0.56 * side, 0.56 * side, 0.12 * side, 32) : new BoxGeometry(0.12 * side, height + 0.12 * side, width + 0.12 * side), COLOURS.pin);
@@ -139,6 +142,22 @@ export class Figure {
     const back = axis.transformDirection(frames[p]).transformDirection(frames[p + 1].clone().invert()).negate();
     const reach = Math.min(Math.abs(travel[1]) + 0.5 * side, inside.length() + Math.abs(travel[1] - reference[j]));
     this.box(p + 1, origin.clone(), back.multiplyScalar(reach), 0.78 * side, COLOURS.slide);
+  }
+
+  /** What slides out of a flexible beam: the beam is its sleeve. */
+  inner(p, frames) {
+    const { bodies, coordinates, screws, reference } = this.kinematics;
+    const [body, next] = [bodies[p], bodies[p + 1]];
+    const slides = [];
+    for (let j = body.moved_by; j < next.moved_by; j += 1) if (coordinates[j].unit === "m") slides.push(j);
+    if (slides.length !== 1) return;
+    const [j] = slides;
+    const back = new Vector3(...screws[j].slice(3)).transformDirection(frames[p + 1].clone().invert()).negate();
+    const [least, most] = this.travel(j);
+    const side = 0.7 * (this.usual ?? this.thickness(next.mass, 1));
+    // From its frame back into the beam, far enough to stay in it at the far end of its travel; on to the next link it draws itself.
+    const reach = Math.max(Math.abs(most), Math.abs(least), Math.abs(reference[j])) + 0.5 * side;
+    this.box(p + 1, new Vector3(), back.multiplyScalar(reach), side, COLOURS.slide);
   }
 
   /** Least and greatest value of a coordinate over the run. */

@@ -1,15 +1,19 @@
 // The report page: puts viewer, plots and tables together.
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
+import { chart } from "./chart.js";
 import { gradient } from "./colours.js";
 import { at, place, read, readable, scaled, spoken } from "./data.js";
 import { save, table } from "./download.js";
 import { follow, panels } from "./panels.js";
 import { Player } from "./player.js";
+import { sign } from "./sign.js";
 import { modeText, tables } from "./tables.js";
 import { tiles } from "./tiles.js";
 import { Viewer } from "./viewer.js";
 
+/** Width of a plot on paper: that of A4 without its margins, CSS pixels. */
+const PAPER = 660;
 /** Way of the arrow keys in time, s. */
 const STEP = 0.1;
 
@@ -24,11 +28,13 @@ $("#name").textContent = crane.name;
 thinned();
 tables(data);
 tiles(data);
+sign(data);
+chart(data);
 document.documentElement.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 const shown = [];
 const { plots, along } = panels(data, player);
 // What this crane does not have.
-for (const section of document.querySelectorAll("section:has(.panels:empty)")) {
+for (const section of document.querySelectorAll("section:has(> .panels:empty)")) {
   document.querySelector(`nav [href="#${section.id}"]`).remove();
   section.remove();
 }
@@ -36,6 +42,7 @@ const viewer = threeD();
 controls();
 now();
 keys();
+printing();
 
 let waiting = false;
 player.follow((t) => {
@@ -124,12 +131,20 @@ function controls() {
   check("#ghost", "ghost", rigid);
   check("#trace", "trace", crane.scene.points.length);
   check("#arrows", "arrows", crane.scene.supports.length);
+  check("#used", "use", viewer.used.beams.length);
+  $("#used")?.addEventListener("change", ({ target }) => ($("#use_scale").hidden = !target.checked));
+  $("#use_scale i").style.background = gradient;
+  const use = viewer.used.unit === "1" ? ["utilisation; beyond 1 red", "1"] : ["equivalent stress", `${readable(viewer.full)} MPa`];
+  [$("#use_scale span").textContent, $("#use_scale b").textContent] = use;
   document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => viewer.look(button.dataset.view)));
   const mode = $("#mode");
   crane.modes.forEach((one, index) => mode.append(new Option(modeText(one, index), index)));
   mode.addEventListener("change", () => {
     viewer.vibrate(mode.value === "" ? null : crane.modes[Number(mode.value)]);
     $("#mode_note").hidden = mode.value === "";
+    if (mode.value !== "") $("#mode_note").textContent = `mode ${modeText(crane.modes[Number(mode.value)], Number(mode.value))}: about the static pose, not to scale, slowed down`;
+    // Values and time are those of the motion.
+    $("#now").classList.toggle("idle", mode.value !== "");
     if (mode.value !== "") player.play(true);
   });
   if (!crane.modes.length) mode.closest("label").remove();
@@ -180,6 +195,21 @@ function keys() {
     if (own || !acts[event.key]) return;
     event.preventDefault();
     acts[event.key]();
+  });
+}
+
+/** Paper has another width, and nothing on it unfolds. */
+function printing() {
+  let unfolded = [];
+  addEventListener("beforeprint", () => {
+    unfolded = [...document.querySelectorAll("details.table:not([open])")];
+    for (const details of unfolded) details.open = true;
+    for (const plot of plots) plot.resize(PAPER);
+    viewer?.paint();
+  });
+  addEventListener("afterprint", () => {
+    for (const details of unfolded) details.open = false;
+    for (const plot of plots) plot.resize();
   });
 }
 

@@ -3,6 +3,7 @@ import { Matrix4, Vector3 } from "three";
 import { range, scaled, spoken } from "./data.js";
 import { Kinematics, links } from "./kinematics.js";
 import { Plot } from "./plot.js";
+import { envelope, margins, used } from "./strength.js";
 
 /** A point hardly moves along an axis below this part of its way along z. */
 const HARDLY = 0.01;
@@ -51,6 +52,8 @@ export function panels(data, player) {
     if (curves.length) overTime("supports", `reaction_${axis}`, `Support reactions along ${axis}`, `F${axis}`, "N", curves, axis === "z" ? 300 : 230);
   }
   const along = moments(add, overTime, crane, time);
+  along.push(...strength(add, overTime, crane));
+  stability(overTime, crane);
   energy(overTime, crane, both);
   explorer(add, crane, rigid, plots);
   return { plots, along };
@@ -141,6 +144,34 @@ function moments(add, overTime, crane, time) {
     if (root.length) overTime("boom", `root_${link.name}`, `${spoken(link.name)}: moments at its first spring`, "moment", "N m", root);
   }
   return along;
+}
+
+/** How far the sections of beams are used: along each beam now and at most, and over time. */
+function strength(add, overTime, crane) {
+  const { beams, unit } = used(crane);
+  const label = unit === "1" ? "utilisation" : "equivalent stress";
+  const along = beams.map(({ name, sections }) => {
+    const plot = add("strength", {
+      id: `use_${name}`, kind: "along", title: `${spoken(name)}: ${label} along the beam`,
+      x: { label: "along the beam", unit: "m", values: sections.map(({ x }) => x) }, y: { label, unit },
+      curves: [
+        { label: "now", colour: 0, values: sections.map(({ values }) => values[0]) },
+        { label: "maximum of the run", colour: 1, dashed: true, values: sections.map(({ values }) => range(values)[1]) },
+      ],
+    });
+    return { plot, joints: sections };
+  });
+  const curves = beams.map(({ name, sections }, colour) => ({
+    label: spoken(name), colour, values: envelope(sections.map(({ values }) => values)),
+  }));
+  if (curves.length) overTime("strength", "use", `Greatest ${label} of each beam`, label, unit, curves);
+  return along;
+}
+
+/** Margins against tipping over. */
+function stability(overTime, crane) {
+  const curves = margins(crane).map(({ name, values }, colour) => ({ label: name, colour, values, dashed: colour >= 4 }));
+  if (curves.length) overTime("stability", "margins", "Tipping margin about each line: 1 − overturning / stabilising moment", "margin", "1", curves, 300);
 }
 
 function energy(overTime, crane, both) {

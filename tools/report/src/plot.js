@@ -47,7 +47,7 @@ export class Plot {
     host.append(this.frame);
     this.make();
     this.frame.addEventListener("keydown", (event) => this.key(event));
-    new ResizeObserver(() => this.resize()).observe(this.body);
+    new ResizeObserver(() => matchMedia("print").matches || this.resize()).observe(this.body);
   }
 
   get file() {
@@ -111,8 +111,8 @@ export class Plot {
     if (path) this.reset();
   }
 
-  resize() {
-    const width = this.body.clientWidth;
+  /** Takes the width that there is, or another. */
+  resize(width = this.body.clientWidth) {
     if (!width || width === this.plot.width) return;
     this.plot.setSize({ width, height: this.height });
     if (this.kind === "path") this.fit(this.window);

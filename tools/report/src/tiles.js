@@ -1,5 +1,6 @@
 // The figures to look at first.
 import { range, readable, scaled, spoken } from "./data.js";
+import { margins, used } from "./strength.js";
 
 /** Greatest size among columns, where it is, and in which column. */
 function greatest(columns, t) {
@@ -55,6 +56,19 @@ export function tiles({ crane, rigid }) {
     const { unit, factor } = scaled("N", [high.value, low.value]);
     const [from, to] = [low, high].map(({ value }) => Number((value * factor).toPrecision(4)));
     add("vertical reactions", `${from} … ${to} ${unit}`, low.value < 0 ? `${low.name} pulls on the ground: a real foot would lift` : `smallest ${low.name}, largest ${high.name}: no foot lifts`);
+  }
+  const { beams, unit: of } = used(crane);
+  if (beams.length) {
+    const most = greatest(beams.flatMap(({ name, sections }) => sections.map(({ x, values }) => ({ name, x, values }))), t);
+    const what = of === "1" ? "greatest utilisation" : "greatest equivalent stress";
+    const value = of === "1" ? `${Number((100 * most.value).toPrecision(3))} %` : `${Number(most.value.toPrecision(4))} MPa`;
+    add(what, value, `${spoken(most.name)}, ${Number(most.x.toFixed(2))} m from its beginning, ${when(most.t)}`);
+  }
+  const lines = margins(crane);
+  if (lines.length) {
+    const least = greatest(lines.map(({ name, values }) => ({ name, values: values.map((margin) => 2e3 - margin) })), t);
+    const margin = 2e3 - least.value;
+    add("least tipping margin", `${Number(margin.toFixed(3))}`, `${margin <= 0 ? "it tips over" : "about"} ${spoken(least.name)}, ${when(least.t)}`);
   }
   if (modes.length && modes[0].frequency !== null) {
     add("lowest frequency", `${readable(Number(modes[0].frequency.toPrecision(4)))} Hz`, modes[0].moves.slice(0, 2).map(spoken).join(", "));

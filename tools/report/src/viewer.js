@@ -7,9 +7,10 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
-import { curve, isDark, scale, style } from "./colours.js";
+import { curve, isDark, scale, smooth, style } from "./colours.js";
 import { at, place, range } from "./data.js";
 import { Figure, extent } from "./figure.js";
+import { used } from "./strength.js";
 
 /** Largest motion of a mode as drawn, of the crane's size. */
 const SWING = 0.012;
@@ -23,8 +24,8 @@ const ARROW = 0.22;
 
 export const VIEWS = {
   corner: [-1, -1.25, 0.62],
-  side: [-1, 0, 0.06],
-  front: [0, -1, 0.06],
+  x: [-1, 0, 0.06],
+  y: [0, -1, 0.06],
   top: [0, -0.02, 1],
 };
 
@@ -55,6 +56,9 @@ export class Viewer {
       this.scene.add(this.ghost.group);
     }
     this.rigid = rigid;
+    this.used = used(crane);
+    /** What the end of the colour scale stands for. */
+    this.full = this.used.unit === "1" ? 1 : Math.max(...this.used.beams.flatMap(({ sections }) => sections.map(({ values }) => range(values)[1])), 1e-9);
     this.runs = new Map([crane, rigid].filter(Boolean).map((one) => [one, one.coordinates.map((c) => one.run.column(c.name).values)]));
     this.lights();
     this.ground();
@@ -204,11 +208,12 @@ export class Viewer {
     this.show();
   }
 
-  set({ ghost, trace, arrows, factor }) {
+  set({ ghost, trace, arrows, factor, use }) {
     if (ghost !== undefined && this.ghost) this.ghost.group.visible = ghost;
     if (trace !== undefined) this.traced = trace;
     if (arrows !== undefined) this.arrows = arrows;
     if (factor !== undefined) this.factor = factor;
+    if (use !== undefined) this.use = use;
     for (const { whole, come } of this.paths) whole.visible = come.visible = this.traced !== false && !this.mode;
     this.show();
   }
@@ -233,7 +238,21 @@ export class Viewer {
       come.geometry.instanceCount = Math.max(1, here.low);
     }
     this.react(here);
+    this.figure.colour(this.use && !this.mode ? (name) => this.useAlong(name, here) : null);
     this.draw();
+  }
+
+  /** Colour of a beam at a distance from its beginning, by its utilisation now; nothing at its tip is used. */
+  useAlong(name, here) {
+    const sections = this.used.beams.find((beam) => beam.name === name)?.sections;
+    if (!sections) return null;
+    const shares = sections.map(({ values }) => at(values, here) / this.full);
+    return (x) => {
+      const next = sections.findIndex((section) => section.x > x);
+      if (next < 1) return smooth(shares.at(next === 0 ? 0 : -1));
+      const [from, to] = [sections[next - 1].x, sections[next].x];
+      return smooth(shares[next - 1] + ((x - from) / (to - from)) * (shares[next] - shares[next - 1]));
+    };
   }
 
   react(here) {
@@ -258,7 +277,12 @@ export class Viewer {
     this.asked = true;
     requestAnimationFrame(() => {
       this.asked = false;
-      this.renderer.render(this.scene, this.camera);
+      this.paint();
     });
+  }
+
+  /** Draws at once. */
+  paint() {
+    this.renderer.render(this.scene, this.camera);
   }
 }

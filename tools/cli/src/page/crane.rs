@@ -2,11 +2,15 @@
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use crane_codegen::chain::{Beam, Outline};
+use crane_codegen::chain::{Beam, Outline};
 use crane_live::LiveCrane;
 use crane_model::{CoordinateRole, modes::undamped, results::Table, runs::Recorded};
 use serde_json::{Value, json};
 
-use super::scene::scene;
+use super::{
+    scene::scene,
+    strength::{self, packed},
+};
 use crate::{problem::Outcome, statics::Case};
 
 /// Most rows of a run that a page holds; a longer one is thinned, so that the page stays small enough to mail.
@@ -31,6 +35,7 @@ pub fn data(case: &Case<'_>, live: &LiveCrane, run: &Recorded) -> Outcome<Value>
             })
         })
         .collect();
+    let every = run.table.rows.len().div_ceil(MOST_ROWS).max(1);
     Ok(json!({
         "name": description.name.as_str(),
         "title": description.title.as_str(),
@@ -40,7 +45,8 @@ pub fn data(case: &Case<'_>, live: &LiveCrane, run: &Recorded) -> Outcome<Value>
         "scene": scene(live, &case.equilibrium.q),
         "outlines": outlines(live),
         "modes": modes(case)?,
-        "run": columns(&run.table),
+        "run": columns(&run.table, every),
+        "strength": strength::data(rig, run, every),
     }))
 }
 
@@ -68,15 +74,11 @@ fn modes(case: &Case<'_>) -> Outcome<Vec<Value>> {
     Ok(modes.iter().map(mode).collect())
 }
 
-/// Names, units and values, column by column: little-endian numbers of 32 bits in base 64, that is 7 digits.
-fn columns(table: &Table) -> Value {
-    let every = table.rows.len().div_ceil(MOST_ROWS).max(1);
+/// Names, units and values of every `every`-th row, column by column.
+fn columns(table: &Table, every: usize) -> Value {
     let rows: Vec<&Vec<f64>> = table.rows.iter().step_by(every).collect();
-    #[expect(clippy::cast_possible_truncation, reason = "more digits than anybody can see")]
-    let bytes: Vec<u8> = (0..table.columns.len())
-        .flat_map(|column| rows.iter().flat_map(move |row| (row[column] as f32).to_le_bytes()))
-        .collect();
+    let numbers = (0..table.columns.len()).flat_map(|column| rows.iter().map(move |row| row[column]));
     let columns: Vec<Value> =
         table.columns.iter().map(|column| json!({"name": column.name, "unit": column.unit})).collect();
-    json!({"columns": columns, "rows": rows.len(), "every": every, "data": BASE64_STANDARD.encode(bytes)})
+    json!({"columns": columns, "rows": rows.len(), "every": every, "data": packed(numbers)})
 }

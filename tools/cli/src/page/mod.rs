@@ -2,8 +2,10 @@
 //!
 //! The page itself is built from `tools/report` and committed; here its data are put in.
 
+mod chart;
 mod crane;
 mod scene;
+mod strength;
 pub mod twin;
 
 use std::{io::Write, path::Path};
@@ -26,7 +28,7 @@ use crate::{
     report::Report,
     simulate::summary,
     stability,
-    statics::{Case, caution_of_runs, deflection, tables},
+    statics::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, tables},
 };
 
 /// The page without data: script, style and licences in one file.
@@ -42,7 +44,8 @@ pub fn report(options: &Page, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
     let twin = twin::rigid(rig.as_ref(), fleet);
     let cases = cases(rig.as_ref(), twin.as_deref());
     let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, Method::RECOMMENDED)?;
-    write(&options.file, fleet, (&cases, options.crane.limits), &settings, &runs)?;
+    let chart = options.envelope.as_deref().map(chart::figures).transpose()?;
+    write_with(&options.file, fleet, (&cases, options.crane.limits), &settings, &runs, chart)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())
 }
@@ -50,7 +53,7 @@ pub fn report(options: &Page, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
 /// A crane and its rigid twin in equilibrium, the twin first.
 pub fn cases<'a>(rig: &'a dyn DynCrane, twin: Option<&'a dyn DynCrane>) -> Vec<Case<'a>> {
     match twin {
-        Some(twin) => vec![Case::new("rigid", twin), Case::new("flexible", rig)],
+        Some(twin) => vec![Case::new(RIGID, twin), Case::new(FLEXIBLE, rig)],
         None => vec![Case::new(&rig.description().name, rig)],
     }
 }
@@ -63,7 +66,21 @@ pub fn write(
     settings: &[Settings],
     runs: &[Recorded],
 ) -> Outcome<()> {
-    let data = data(fleet, cases, settings, runs)?.to_string();
+    write_with(file, fleet, cases, settings, runs, None)
+}
+
+/// As [`write`], with load charts.
+fn write_with(
+    file: &Path,
+    fleet: &Fleet,
+    cases: (&[Case<'_>], Limits),
+    settings: &[Settings],
+    runs: &[Recorded],
+    chart: Option<Value>,
+) -> Outcome<()> {
+    let mut data = data(fleet, cases, settings, runs)?;
+    data["chart"] = chart.unwrap_or(Value::Null);
+    let data = data.to_string();
     // No text of a spec ends the script element that holds the data.
     if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         files::folder(folder)?;

@@ -1,0 +1,38 @@
+// Utilisation of the beams and margins against tipping over, as the command computed them along the run.
+
+/** Numbers of 32 bits in base 64. */
+export function unpacked(data) {
+  return new Float32Array(Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0)).buffer);
+}
+
+/** Columns of a table that stands row by row. */
+function columns(data, count) {
+  const numbers = unpacked(data);
+  const rows = numbers.length / count;
+  return Array.from({ length: count }, (_, column) => Float32Array.from({ length: rows }, (_, row) => numbers[row * count + column]));
+}
+
+/** Beams with their sections, `{name, sections: [{x, values}]}`; none where nothing is known of their stresses. */
+export function used(crane) {
+  const sections = crane.strength?.sections;
+  if (!sections) return { beams: [], unit: "1" };
+  const values = columns(sections.data, sections.places.length);
+  const beams = [];
+  sections.places.forEach(({ beam, x }, index) => {
+    if (beams.at(-1)?.name !== beam) beams.push({ name: beam, sections: [] });
+    beams.at(-1).sections.push({ x, values: values[index] });
+  });
+  // A beam without yield stress beside one that has one.
+  return { beams: beams.filter(({ sections: of }) => of.every((section) => Number.isFinite(section.values[0]))), unit: sections.unit };
+}
+
+/** Margins about the tipping lines, `{name, values}`. */
+export function margins(crane) {
+  const stability = crane.strength?.stability;
+  if (!stability) return [];
+  const values = columns(stability.data, stability.lines.length);
+  return stability.lines.map((name, index) => ({ name, values: values[index] }));
+}
+
+/** Greatest of some columns, row by row. */
+export const envelope = (columns, pick = Math.max) => columns[0].map((_, row) => pick(...columns.map((values) => values[row])));
