@@ -102,7 +102,7 @@ fn loads_of_links(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<W
 /// Part of the polygon's size below which a foot is on the line between two others.
 const ON_A_LINE: f64 = 1e-9;
 
-/// Corners of the convex polygon of some places, seen from above, anticlockwise; none where they are in one line.
+/// Corners of the convex polygon of some places, seen from above, anticlockwise from the first one on; none where they are in one line.
 fn polygon(places: &[Vector3<f64>]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.sort_by(|&i, &j| {
@@ -132,7 +132,13 @@ fn polygon(places: &[Vector3<f64>]) -> Vec<usize> {
     };
     let mut corners = side(&mut order.iter().copied());
     corners.extend(side(&mut order.iter().rev().copied()));
-    if corners.len() < 3 { Vec::new() } else { corners }
+    if corners.len() < 3 {
+        return Vec::new();
+    }
+    // From the first foot on: which corner is leftmost changes as the crane moves.
+    let first = corners.iter().enumerate().min_by_key(|(_, foot)| **foot).map_or(0, |(place, _)| place);
+    corners.rotate_left(first);
+    corners
 }
 
 #[cfg(test)]
@@ -146,7 +152,9 @@ mod tests {
     #[test]
     fn a_polygon_has_its_outermost_feet() {
         let feet = [[1.0, 1.0], [-1.0, -1.0], [0.0, 0.2], [1.0, -1.0], [-1.0, 1.0], [0.0, -1.0]];
-        assert_eq!(polygon(&places(&feet)), [1, 3, 0, 4]);
+        assert_eq!(polygon(&places(&feet)), [0, 4, 1, 3]);
+        let turned: Vec<_> = feet.iter().map(|[x, y]| [-x, -y]).collect();
+        assert_eq!(polygon(&places(&turned)), [0, 4, 1, 3]);
     }
 
     #[test]
