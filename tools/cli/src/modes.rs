@@ -11,7 +11,8 @@ use crane_model::{
 
 use crate::{
     Fleet,
-    arguments::Analysis,
+    arguments::Modes,
+    linearisation,
     problem::Outcome,
     refinement,
     report::{Cell, Grid, Report},
@@ -22,12 +23,17 @@ use crate::{
 const LOWEST: usize = 10;
 
 /// Prints undamped and damped modes and the largest stable step.
-pub fn modes(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn modes(options: &Modes, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let Modes { analysis: options, matrices } = options;
     let rig = options.crane.open(fleet)?;
     let description = rig.description();
     let case = Case::new(&description.name, rig.as_ref());
     case.stable()?;
-    let modes = damped(&rig.small_motions_at(&case.equilibrium.q))?;
+    let motions = rig.small_motions_at(&case.equilibrium.q);
+    let modes = damped(&motions)?;
+    if let Some(file) = matrices {
+        linearisation::write(file, description, &case.equilibrium.q, &motions)?;
+    }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
     let step = limit(&modes, &Method::Rk4.stability()).map(|limit| limit.step);

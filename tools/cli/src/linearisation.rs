@@ -1,0 +1,75 @@
+//! Small motions about a pose as matrices in a file: `A δq̈ + D δq̇ + K δq = 0`.
+
+use std::path::Path;
+
+use crane_model::{
+    Description,
+    modes::{SmallMotions, undamped},
+    nalgebra::DMatrix,
+};
+use serde_json::{Map, Value};
+
+use crate::{
+    files,
+    npz::{Array, npz},
+    problem::{Outcome, Problem},
+};
+
+/// Writes pose, A, K and D, squares of the undamped angular frequencies and the shapes, `xᵀ A x = 1`, as JSON or as an archive for
+/// `numpy.load`. Rows and columns are the coordinates that can move: not those that rigid drives prescribe.
+pub fn write(file: &Path, description: &Description, q: &[f64], motions: &SmallMotions) -> Outcome<()> {
+    let arrays = arrays(q, motions)?;
+    match file.extension().and_then(|end| end.to_str()) {
+        Some("npz") => {
+            let bytes = npz(&arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
+            files::write(file, |out| out.write_all(&bytes))
+        }
+        Some("json") => files::write_text(file, &format!("{:#}\n", json(description, motions, &arrays))),
+        _ => Err(Problem::usage(
+            format!("`--matrices {}` has neither the ending .json nor .npz", file.display()),
+            "give the file one of these endings",
+        )),
+    }
+}
+
+fn arrays(q: &[f64], motions: &SmallMotions) -> Outcome<Vec<Array>> {
+    let n = motions.unknowns.len();
+    let square = |name: &'static str, matrix: &DMatrix<f64>| Array {
+        name: name.into(),
+        shape: vec![n, n],
+        // Row by row.
+        data: matrix.transpose().as_slice().to_vec(),
+    };
+    let modes = undamped(motions)?;
+    let of_unknowns = |shape: &crane_model::nalgebra::DVector<f64>| -> Vec<f64> {
+        motions.unknowns.iter().map(|place| shape[*place]).collect()
+    };
+    Ok(vec![
+        Array { name: "pose".into(), shape: vec![q.len()], data: q.to_vec() },
+        square("mass", &motions.mass),
+        square("stiffness", &motions.stiffness),
+        square("damping", &motions.damping),
+        Array {
+            name: "omega_squared".into(),
+            shape: vec![n],
+            data: modes.iter().map(|mode| mode.omega_squared).collect(),
+        },
+        Array {
+            name: "shapes".into(),
+            shape: vec![n, n],
+            data: modes.iter().flat_map(|mode| of_unknowns(&mode.shape)).collect(),
+        },
+    ])
+}
+
+fn json(description: &Description, motions: &SmallMotions, arrays: &[Array]) -> Value {
+    let name = |place: &usize| description.coordinates[*place].name.as_str();
+    let unit = |place: &usize| description.coordinates[*place].kind.unit();
+    let mut object = Map::new();
+    object.insert("crane".to_owned(), description.name.as_str().into());
+    object.insert("spec_hash".to_owned(), description.spec_hash.as_str().into());
+    object.insert("coordinates".to_owned(), motions.unknowns.iter().map(name).collect());
+    object.insert("units".to_owned(), motions.unknowns.iter().map(unit).collect());
+    object.extend(arrays.iter().map(|array| (array.name.to_string(), array.json())));
+    object.into()
+}
