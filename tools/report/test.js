@@ -203,6 +203,39 @@ async function plots(page) {
   assert(csv.has("t [s]") && csv.size >= 2);
 }
 
+/** Utilisation is drawn on the beams and over time, margins are there where the crane has feet, and what is to be signed has its hash. */
+async function strength(page) {
+  const { beams, lines, hash } = await page.evaluate(() => {
+    const { crane } = globalThis.report.data;
+    const { sections, stability } = crane.strength ?? {};
+    return { beams: new Set(sections?.places.map(({ beam }) => beam)).size, lines: stability?.lines.length ?? 0, hash: crane.record.spec_hash };
+  });
+  assert.equal(await page.locator("#strength figure.along").count(), beams, "a plot along every beam");
+  assert.equal(await page.locator("#margins").count(), Number(lines > 0), "margins over time");
+  assert((await page.locator("#sign").textContent()).includes(hash));
+  const painted = () => page.evaluate(() => globalThis.report.viewer.figure.beams.filter(({ mesh }) => mesh.material.vertexColors).length);
+  assert.equal(await painted(), 0);
+  if (!beams) return;
+  await page.click("#used");
+  assert.equal(await painted(), beams, "beams are coloured");
+  await page.click("#used");
+  assert.equal(await painted(), 0);
+}
+
+/** Paper is narrower than the screen: plots fit it, and nothing on it is folded. */
+async function paper(page) {
+  const sizes = () => page.evaluate(() => ({
+    widths: globalThis.report.plots.map(({ plot }) => plot.width), folded: document.querySelectorAll("details.table:not([open])").length,
+  }));
+  const screen = await sizes();
+  await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+  const { widths, folded } = await sizes();
+  assert(widths.every((width) => width <= 680), `${widths}`);
+  assert.equal(folded, 0);
+  await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+  assert.deepEqual(await sizes(), screen, "as it was");
+}
+
 const begin = Date.now();
 assert((await stat(file)).size < MOST_BYTES);
 const text = await readFile(file, "utf8");
@@ -227,6 +260,8 @@ const said = await open(browser, { viewport: { width: 1440, height: 900 }, color
   for (const { drawn, spec } of outlines) assert.deepEqual(drawn, spec.map((side) => side / 2), "beams have the size of the spec");
   await moves(page);
   await plots(page);
+  await strength(page);
+  await paper(page);
   assert((await page.$$eval("#tables table", (tables) => tables.filter((table) => table.rows.length > 1).length)) >= 3);
   assert((await page.locator("#repeat").textContent()).includes("spec hash"));
   await page.click("#theme");

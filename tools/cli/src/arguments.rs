@@ -78,7 +78,7 @@ pub enum Action {
     /// Simulate the motion from the static pose; write results and figures to a folder
     Simulate(Simulate),
     /// Compute frequencies, damping and dominant coordinates about the static pose
-    Modes(Analysis),
+    Modes(Modes),
     /// Write statics, motion and modes as one HTML page with the crane in 3-D
     Report(Page),
     /// Compute the largest stable step of every method and what limits it
@@ -135,7 +135,8 @@ impl Action {
     pub fn choice(&mut self) -> Option<&mut Choice> {
         match self {
             Action::Run(options) | Action::Simulate(options) => Some(&mut options.analysis.crane),
-            Action::Statics(options) | Action::Modes(options) | Action::Info(options) => Some(&mut options.crane),
+            Action::Statics(options) | Action::Info(options) => Some(&mut options.crane),
+            Action::Modes(options) => Some(&mut options.analysis.crane),
             Action::Strength(options) => Some(&mut options.analysis.crane),
             Action::Envelope(options) => Some(&mut options.analysis.crane),
             Action::Stability(options) => Some(&mut options.analysis.crane),
@@ -493,6 +494,16 @@ pub struct Envelope {
     pub restart: bool,
     #[command(flatten)]
     pub folder: Folder,
+}
+
+/// Small vibrations.
+#[derive(Debug, Args)]
+pub struct Modes {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Write pose, mass, stiffness and damping matrices, eigenvalues and mode shapes to a file, `.json` or `.npz`
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub matrices: Option<PathBuf>,
 }
 
 /// Stability of time steps.

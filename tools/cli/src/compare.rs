@@ -66,7 +66,9 @@ pub fn load(options: &mut ComparePair, fleet: &mut Fleet) -> Outcome<()> {
 /// Statics and motion of two cranes, figures and data.
 pub fn compare_pair(options: &ComparePair, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let ComparePair { first, second, strict, compare } = options;
-    let Some(second) = second else { return Err(Problem::failed("the second crane is missing", "please report this as a bug")) };
+    let Some(second) = second else {
+        return Err(Problem::failed("the second crane is missing", "please report this as a bug"));
+    };
     let known = |name: &str| Ok::<_, Problem>(compare.parameters.known_to(fleet.crane(name)?.description()));
     let [mut one, other] = [known(first)?, known(second)?];
     if compare

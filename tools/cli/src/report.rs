@@ -319,7 +319,9 @@ impl Report {
                     grid.print(seen(*rows), out)?;
                 }
                 let hidden = self.grids.iter().filter(|(_, rows)| seen(*rows) == 0);
-                let hidden: Vec<&str> = hidden.map(|(grid, _)| grid.title.as_str()).collect();
+                // What it is, without how to read it.
+                let hidden: Vec<&str> =
+                    hidden.map(|(grid, _)| grid.title.split([',', ':']).next().unwrap_or_default()).collect();
                 if !hidden.is_empty() {
                     writeln!(out, "\nWith `--all` also: {}", hidden.join("; "))?;
                 }

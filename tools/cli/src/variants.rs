@@ -52,29 +52,42 @@ pub fn rigid(crane: &str, text: &str) -> Result<Option<(String, String)>, String
         return Ok(None);
     }
     values.push((spec.name.span, name.clone()));
-    if let Some(guess) = &spec.guess {
-        // What the elements' coordinates are guessed to be has nothing to be said of any more.
-        let flexible: Vec<String> = beams(&spec).map(|(link, _)| link.to_owned()).collect();
-        let of_element = |coordinate: &str| {
-            flexible.iter().any(|link| {
-                let rest = coordinate.strip_prefix(link.as_str()).and_then(|rest| rest.strip_prefix('_'));
-                rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
-            })
-        };
-        let entries = guess.value.iter().flat_map(|entries| &entries.0);
-        let kept: Vec<String> = entries
-            .clone()
-            .filter(|(coordinate, _)| !coordinate.value.as_deref().is_some_and(of_element))
-            .map(|(coordinate, value)| {
-                let [coordinate, value] = [coordinate.span, value.span].map(|span| &text[span.start..span.end]);
-                format!("{coordinate}: {value}")
-            })
-            .collect();
-        if kept.len() < entries.count() {
-            values.push((guess.span, format!("{{{}}}", kept.join(", "))));
-        }
-    }
+    values.extend(guesses_of_elements(&spec, text));
     Ok(Some((name, exchanged(text, values))))
+}
+
+/// Places of what the elements' coordinates are guessed to be, with nothing in place of them.
+fn guesses_of_elements(spec: &Crane, text: &str) -> Vec<(Span, String)> {
+    let links: Vec<&str> = beams(spec).map(|(link, _)| link).collect();
+    let of_element = |coordinate: &str| {
+        links.iter().any(|link| {
+            let rest = coordinate.strip_prefix(link).and_then(|rest| rest.strip_prefix('_'));
+            rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+        })
+    };
+    let entries = spec.guess.iter().filter_map(|guess| guess.value.as_ref()).flat_map(|entries| &entries.0);
+    let entries: Vec<(Span, bool)> = entries
+        .map(|(key, value)| {
+            let span = Span { start: key.span.start, end: value.span.end };
+            (span, key.value.as_deref().is_some_and(of_element))
+        })
+        .collect();
+    let nothing = |span: Span| (span, String::new());
+    if let (Some((first, _)), Some((last, _)), true) = (entries.first(), entries.last(), entries.iter().all(|(_, of)| *of)) {
+        // Nothing is left to guess, so the key goes, too.
+        let start = text[..first.start].rfind("guess").unwrap_or(first.start);
+        let flow = text[start..first.start].contains('{');
+        let end = if flow { text[last.end..].find('}').map_or(last.end, |brace| last.end + brace + 1) } else { last.end };
+        return vec![nothing(Span { start, end })];
+    }
+    let without_comma = |Span { start, end }: Span| {
+        let behind = text[end..].trim_start_matches([' ', '\n']);
+        match behind.strip_prefix(',') {
+            Some(rest) => Span { start, end: text.len() - rest.trim_start_matches([' ', '\n']).len() },
+            None => Span { start: start - usize::from(text[..start].trim_end().ends_with(',')) * (start - text[..start].trim_end().len() + 1), end },
+        }
+    };
+    entries.into_iter().filter(|(_, of)| *of).map(|(span, _)| nothing(without_comma(span))).collect()
 }
 
 /// Beams and the names of their links.
@@ -130,10 +143,24 @@ guess:
     fn a_rigid_beam_has_no_elements_and_no_guess_of_them() {
         let (name, text) = rigid("boom", BOOM).unwrap().unwrap();
         assert_eq!(name, "boom_rigid");
-        assert!(text.contains("sections: rigid") && text.contains("guess:\n  {load_psi: 90 deg}"), "{text}");
-        let chain = compile::load(&SourceFile::new("boom_rigid.yaml", text.as_str())).unwrap_or_else(|m| panic!("{m}"));
-        let names: Vec<_> = chain.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect();
-        assert_eq!(names, ["boom_psi", "load_psi"]);
+        assert!(text.contains("sections: rigid"), "{text}");
+        let block = BOOM.split("guess:").next().unwrap();
+        for guess in [
+            "guess:\n  boom_1_psi: 0.01\n  load_psi: 90 deg\n  boom_2_theta: 0.02   # a little\n",
+            "guess: {boom_1_psi: 0.01, load_psi: 90 deg, boom_2_theta: 0.02}\n",
+            "guess: {load_psi: 90 deg, boom_1_psi: 0.01}\n",
+            "guess: {boom_1_psi: 0.01, boom_2_theta: 0.02}\n",
+            "guess:\n  boom_1_psi: 0.01\n",
+            "",
+        ] {
+            let (_, text) = rigid("boom", &format!("{block}{guess}")).unwrap().unwrap();
+            let source = SourceFile::new("boom_rigid.yaml", text.as_str());
+            let chain = compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+            let names: Vec<_> = chain.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect();
+            assert_eq!(names, ["boom_psi", "load_psi"], "{text}");
+            let expected = if guess.contains("load_psi") { std::f64::consts::FRAC_PI_2 } else { 0.0 };
+            assert!((chain.guess[1] - expected).abs() < 1e-15, "{text}");
+        }
         assert_eq!(rigid("boom_rigid", &text), Ok(None));
     }
 

@@ -92,6 +92,7 @@ function threeD() {
     return new Viewer($("#view canvas"), data, player);
   } catch (error) {
     const text = `3-D is not available in this browser (${error.message}). Plots and tables are complete.`;
+    for (const overlay of document.querySelectorAll("#view .overlay")) overlay.hidden = true;
     $("#view canvas").replaceWith(Object.assign(document.createElement("p"), { textContent: text, className: "sorry" }));
     return null;
   }
@@ -134,7 +135,7 @@ function controls() {
   check("#used", "use", viewer.used.beams.length);
   $("#used")?.addEventListener("change", ({ target }) => ($("#use_scale").hidden = !target.checked));
   $("#use_scale i").style.background = gradient;
-  const use = viewer.used.unit === "1" ? ["utilisation; beyond 1 red", "1"] : ["equivalent stress", `${readable(viewer.full)} MPa`];
+  const use = viewer.used.unit === "1" ? ["utilisation", "1, beyond red"] : ["equivalent stress", `${readable(viewer.full)} MPa`];
   [$("#use_scale span").textContent, $("#use_scale b").textContent] = use;
   document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => viewer.look(button.dataset.view)));
   const mode = $("#mode");

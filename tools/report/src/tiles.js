@@ -62,7 +62,7 @@ export function tiles({ crane, rigid }) {
     const most = greatest(beams.flatMap(({ name, sections }) => sections.map(({ x, values }) => ({ name, x, values }))), t);
     const what = of === "1" ? "greatest utilisation" : "greatest equivalent stress";
     const value = of === "1" ? `${Number((100 * most.value).toPrecision(3))} %` : `${Number(most.value.toPrecision(4))} MPa`;
-    add(what, value, `${spoken(most.name)}, ${Number(most.x.toFixed(2))} m from its beginning, ${when(most.t)}`);
+    add(what, value, `${spoken(most.name)}, ${Number(most.x.toFixed(2))} m from its start, ${when(most.t)}`);
   }
   const lines = margins(crane);
   if (lines.length) {

@@ -73,7 +73,7 @@ fn draw(map: &Map, text: &mut String) -> Result<(), Box<dyn std::error::Error>> 
     let mut scale = ChartBuilder::on(&right)
         .margin(SPACE)
         .margin_bottom(SPACE + 46 * PIXEL)
-                .set_label_area_size(LabelAreaPosition::Left, 55 * PIXEL)
+        .set_label_area_size(LabelAreaPosition::Left, 55 * PIXEL)
         .build_cartesian_2d(0.0..1.0, least..greatest)?;
     scale
         .configure_mesh()

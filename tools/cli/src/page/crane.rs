@@ -1,7 +1,5 @@
 //! One crane of the page: what it is, how it is drawn, its run and its modes.
 
-use base64::{Engine, prelude::BASE64_STANDARD};
-use crane_codegen::chain::{Beam, Outline};
 use crane_codegen::chain::{Beam, Outline};
 use crane_live::LiveCrane;
 use crane_model::{CoordinateRole, modes::undamped, results::Table, runs::Recorded};

@@ -1,0 +1,149 @@
+//! A crane beside itself with rigid beams, and beside another one; its small motions as matrices.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+use serde_json::Value;
+
+/// A boom of two sections with a load on its tip, which hangs on a spring that is its drive.
+const BOOM: &str = "format: 1
+name: boom
+parameters: {payload: {value: 300, unit: kg}}
+materials: {steel: {E: 2.1e11, G: 8.1e10, density: 7850}}
+links:
+  - name: boom
+    placement: {transform: {rotation: {x: 90 deg}}}
+    joint: revolute
+    beam: {length: 4, sections: 2, material: steel, section: {box: {height: 0.2, width: 0.15, thickness: 0.006}}}
+  - {name: load, mass: payload, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+drives: [{coordinate: boom_psi, stiffness: 4e6, damping: 2e4, motion: {hold: 0}}]
+points: [{name: tip, link: load, at: [0, 0, 0]}]
+guess: {boom_1_psi: 0.001}
+run: {duration: 0.1, output: 0.05}
+";
+
+/// An empty folder of a test, with the spec in it.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("comparison_{name}"));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    fs::write(folder.join("boom.yaml"), BOOM).expect("a file");
+    folder
+}
+
+fn crane(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_crane")).current_dir(folder).args(arguments).output().expect("it starts")
+}
+
+fn json(folder: &Path, arguments: &[&str]) -> Value {
+    let output = crane(folder, arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// Height of the tip at rest.
+fn height(said: &Value) -> f64 {
+    said["points"][0]["z"].as_f64().expect("a number")
+}
+
+/// The drive's spring gives way by `m g L / k`, and nothing else does: `δ = L · (m_total g L_eff)/k`.
+#[test]
+fn a_rigid_twin_bends_nowhere() {
+    let folder = folder("twin");
+    let rigid = json(&folder, &["statics", "boom.yaml", "--rigid", "--format", "json"]);
+    let area = 0.2 * 0.15 - 0.188 * 0.138;
+    let moment = 9.81 * (300.0 * 4.0 + 7850.0 * area * 4.0 * 2.0);
+    let expected = -4.0 * moment / 4e6;
+    // Angles of 0.005: their sine and the lever's cosine are off by 1e-5 of them.
+    assert!((height(&rigid) / expected - 1.0).abs() < 3e-5, "{} instead of {expected}", height(&rigid));
+    assert_eq!(rigid["pose"].as_array().map(Vec::len), Some(1), "no elements");
+
+    // As the spec with another word in it.
+    let written = BOOM.replace("sections: 2", "sections: rigid").replace("guess: {boom_1_psi: 0.001}\n", "");
+    fs::write(folder.join("written.yaml"), written).expect("a file");
+    assert_eq!(height(&json(&folder, &["statics", "written.yaml", "--format", "json"])), height(&rigid));
+
+    let again = crane(&folder, &["statics", "written.yaml", "--rigid"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("rigid already"));
+}
+
+#[test]
+fn a_crane_is_compared_with_itself_and_with_another() {
+    let folder = folder("pair");
+    let said = json(&folder, &["compare", "boom.yaml", "--format", "json", "--out", "twins"]);
+    let [rigid, flexible] = [&["--rigid"][..], &[]].map(|more| {
+        height(&json(&folder, &[&["statics", "boom.yaml", "--format", "json"], more].concat()))
+    });
+    let apart = said["deflection"][0]["z"].as_f64().expect("a number");
+    assert!((apart - 1e3 * (flexible - rigid)).abs() < 1e-9, "{apart} mm, {flexible} m, {rigid} m");
+    assert!(apart < -1.0, "a boom of steel sinks by some millimetres: {apart}");
+    for file in ["report.html", "comparison_deviation.svg", "boom.csv", "boom_rigid.csv"] {
+        assert!(folder.join("twins").join(file).is_file(), "{file}");
+    }
+
+    // Two versions of a file, which share the name of the crane.
+    fs::write(folder.join("longer.yaml"), BOOM.replace("length: 4", "length: 5")).expect("a file");
+    let arguments = ["compare", "boom.yaml", "longer.yaml", "--set", "payload=100", "--format", "json", "--out", "pair"];
+    let said = json(&folder, &arguments);
+    let longer = json(&folder, &["statics", "longer.yaml", "--set", "payload=100", "--format", "json"]);
+    let shorter = json(&folder, &["statics", "boom.yaml", "--set", "payload=100", "--format", "json"]);
+    let apart = said["deflection"][0]["z"].as_f64().expect("a number");
+    assert!((apart - 1e3 * (height(&longer) - height(&shorter))).abs() < 1e-9, "{apart}");
+    assert!(folder.join("pair/boom_other.csv").is_file());
+
+    let unknown = crane(&folder, &["compare", "boom.yaml", "--set", "pay=1"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&unknown.stderr).contains("has no live parameter `pay`"));
+}
+
+/// `K x = ω² A x` and `xᵀ A x = 1`, from the numbers of the file.
+#[test]
+fn matrices_have_the_modes_of_the_table() {
+    let folder = folder("matrices");
+    let said = json(&folder, &["modes", "boom.yaml", "--matrices", "boom.json", "--format", "json"]);
+    let text = fs::read_to_string(folder.join("boom.json")).expect("a file");
+    let written: Value = serde_json::from_str(&text).expect("JSON");
+    let numbers = |value: &Value| -> Vec<f64> {
+        value.as_array().expect("an array").iter().map(|x| x.as_f64().expect("a number")).collect()
+    };
+    let matrix = |name: &str| -> Vec<Vec<f64>> {
+        written[name].as_array().expect("a matrix").iter().map(numbers).collect()
+    };
+    let times = |matrix: &[Vec<f64>], x: &[f64]| -> Vec<f64> {
+        matrix.iter().map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum()).collect()
+    };
+    let (mass, stiffness) = (matrix("mass"), matrix("stiffness"));
+    let squares = numbers(&written["omega_squared"]);
+    assert_eq!(written["coordinates"].as_array().map(Vec::len), Some(squares.len()));
+    for (shape, square) in matrix("shapes").iter().zip(&squares) {
+        let (momentum, force) = (times(&mass, shape), times(&stiffness, shape));
+        let norm: f64 = momentum.iter().zip(shape).map(|(p, x)| p * x).sum();
+        assert!((norm - 1.0).abs() < 1e-9, "{norm}");
+        let size = force.iter().map(|f| f.abs()).fold(0.0, f64::max);
+        for (force, momentum) in force.iter().zip(&momentum) {
+            assert!((force - square * momentum).abs() < 1e-8 * size.max(square.abs()), "{force}, {square} {momentum}");
+        }
+    }
+    let frequency = said["undamped"][0]["frequency_Hz"].as_f64().expect("a number");
+    assert!((squares[0].sqrt() / std::f64::consts::TAU / frequency - 1.0).abs() < 1e-12);
+
+    assert!(crane(&folder, &["modes", "boom.yaml", "--matrices", "boom.npz"]).status.success());
+    assert!(fs::read(folder.join("boom.npz")).expect("a file").starts_with(b"PK\x03\x04"));
+    let other = crane(&folder, &["modes", "boom.yaml", "--matrices", "boom.txt"]);
+    assert_eq!(other.status.code(), Some(2));
+}
+
+/// Poses are for those who ask; what matters comes first.
+#[test]
+fn poses_are_printed_on_request() {
+    let folder = folder("text");
+    let text = |arguments: &[&str]| String::from_utf8(crane(&folder, arguments).stdout).expect("text");
+    let short = text(&["statics", "boom.yaml"]);
+    assert!(!short.contains("boom_1_psi") && short.contains("With `--all` also: Pose"), "{short}");
+    let whole = text(&["statics", "boom.yaml", "--all"]);
+    assert!(whole.contains("boom_1_psi") && whole.contains(" °"), "{whole}");
+}
