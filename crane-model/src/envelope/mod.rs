@@ -6,7 +6,7 @@
 //! Where moments, stresses and efforts grow with the load, that is the largest load of all. A crane that needs a load to be within
 //! its limits, such as one whose counterweight tips it, has no rating.
 //!
-//! Poses are rated in pieces: a row of neighbours, each from the equilibrium of the one before. A piece is the same whatever else
+//! Poses are rated in pieces: a row of neighbours, each from the equilibrium of its predecessor. A piece is the same whatever else
 //! is rated, on however many threads.
 
 mod axes;

@@ -9,7 +9,7 @@ pub const NOTE: &str = "The load chart holds for the model and the limits above:
      angle looked at. No dynamic factor, no factor of a design code.";
 
 /// Rows of a chart at most.
-const ROWS: f64 = 12.0;
+const ROWS: f64 = 12.5;
 
 /// Loads over the radius: of all poses that bring the load there, the largest and the least.
 pub fn table(surface: &Surface) -> Grid {
