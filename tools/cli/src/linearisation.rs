@@ -21,7 +21,8 @@ pub fn write(file: &Path, description: &Description, q: &[f64], motions: &SmallM
     let arrays = arrays(q, motions)?;
     match file.extension().and_then(|end| end.to_str()) {
         Some("npz") => {
-            let bytes = npz(&arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
+            let bytes =
+                npz(&arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
             files::write(file, |out| out.write_all(&bytes))
         }
         Some("json") => files::write_text(file, &format!("{:#}\n", json(description, motions, &arrays))),

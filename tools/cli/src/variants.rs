@@ -73,18 +73,26 @@ fn guesses_of_elements(spec: &Crane, text: &str) -> Vec<(Span, String)> {
         })
         .collect();
     let nothing = |span: Span| (span, String::new());
-    if let (Some((first, _)), Some((last, _)), true) = (entries.first(), entries.last(), entries.iter().all(|(_, of)| *of)) {
+    if let (Some((first, _)), Some((last, _)), true) =
+        (entries.first(), entries.last(), entries.iter().all(|(_, of)| *of))
+    {
         // Nothing is left to guess, so the key goes, too.
         let start = text[..first.start].rfind("guess").unwrap_or(first.start);
         let flow = text[start..first.start].contains('{');
-        let end = if flow { text[last.end..].find('}').map_or(last.end, |brace| last.end + brace + 1) } else { last.end };
+        let end =
+            if flow { text[last.end..].find('}').map_or(last.end, |brace| last.end + brace + 1) } else { last.end };
         return vec![nothing(Span { start, end })];
     }
     let without_comma = |Span { start, end }: Span| {
         let behind = text[end..].trim_start_matches([' ', '\n']);
         match behind.strip_prefix(',') {
             Some(rest) => Span { start, end: text.len() - rest.trim_start_matches([' ', '\n']).len() },
-            None => Span { start: start - usize::from(text[..start].trim_end().ends_with(',')) * (start - text[..start].trim_end().len() + 1), end },
+            None => Span {
+                start: start
+                    - usize::from(text[..start].trim_end().ends_with(','))
+                        * (start - text[..start].trim_end().len() + 1),
+                end,
+            },
         }
     };
     entries.into_iter().filter(|(_, of)| *of).map(|(span, _)| nothing(without_comma(span))).collect()

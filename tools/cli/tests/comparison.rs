@@ -75,9 +75,8 @@ fn a_rigid_twin_bends_nowhere() {
 fn a_crane_is_compared_with_itself_and_with_another() {
     let folder = folder("pair");
     let said = json(&folder, &["compare", "boom.yaml", "--format", "json", "--out", "twins"]);
-    let [rigid, flexible] = [&["--rigid"][..], &[]].map(|more| {
-        height(&json(&folder, &[&["statics", "boom.yaml", "--format", "json"], more].concat()))
-    });
+    let [rigid, flexible] = [&["--rigid"][..], &[]]
+        .map(|more| height(&json(&folder, &[&["statics", "boom.yaml", "--format", "json"], more].concat())));
     let apart = said["deflection"][0]["z"].as_f64().expect("a number");
     assert!((apart - 1e3 * (flexible - rigid)).abs() < 1e-9, "{apart} mm, {flexible} m, {rigid} m");
     assert!(apart < -1.0, "a boom of steel sinks by some millimetres: {apart}");
@@ -87,7 +86,8 @@ fn a_crane_is_compared_with_itself_and_with_another() {
 
     // Two versions of a file, which share the name of the crane.
     fs::write(folder.join("longer.yaml"), BOOM.replace("length: 4", "length: 5")).expect("a file");
-    let arguments = ["compare", "boom.yaml", "longer.yaml", "--set", "payload=100", "--format", "json", "--out", "pair"];
+    let arguments =
+        ["compare", "boom.yaml", "longer.yaml", "--set", "payload=100", "--format", "json", "--out", "pair"];
     let said = json(&folder, &arguments);
     let longer = json(&folder, &["statics", "longer.yaml", "--set", "payload=100", "--format", "json"]);
     let shorter = json(&folder, &["statics", "boom.yaml", "--set", "payload=100", "--format", "json"]);
@@ -110,9 +110,8 @@ fn matrices_have_the_modes_of_the_table() {
     let numbers = |value: &Value| -> Vec<f64> {
         value.as_array().expect("an array").iter().map(|x| x.as_f64().expect("a number")).collect()
     };
-    let matrix = |name: &str| -> Vec<Vec<f64>> {
-        written[name].as_array().expect("a matrix").iter().map(numbers).collect()
-    };
+    let matrix =
+        |name: &str| -> Vec<Vec<f64>> { written[name].as_array().expect("a matrix").iter().map(numbers).collect() };
     let times = |matrix: &[Vec<f64>], x: &[f64]| -> Vec<f64> {
         matrix.iter().map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum()).collect()
     };

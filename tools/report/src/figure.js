@@ -279,6 +279,20 @@ export class Figure {
     for (const { geometry, elements } of this.beams) geometry.follow(elements.map((p) => frames[p]));
   }
 
+  /** Colours the beams along their lengths: `colours(name)` is a function of the place, m, or nothing; `null`: as they were. */
+  colour(colours) {
+    for (const { name, geometry, mesh, plain } of this.beams) {
+      const colour = colours?.(name);
+      if (!colour) {
+        mesh.material = plain;
+        continue;
+      }
+      geometry.paint(colour);
+      this.painted ??= new MeshStandardMaterial({ vertexColors: true, roughness: 0.62, metalness: 0.15 });
+      mesh.material = this.painted;
+    }
+  }
+
   /** Colours the legs: `colours`, one per support. */
   paint(colours) {
     this.legs.forEach((paint, index) => paint.color.set(colours[index]));
