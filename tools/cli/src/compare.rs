@@ -49,7 +49,7 @@ pub fn load(options: &mut ComparePair, fleet: &mut Fleet) -> Outcome<()> {
                 if name == first {
                     // Two versions of a crane have one name.
                     name.push_str("_other");
-                    text = renamed(name, &text).unwrap_or(text);
+                    text = renamed(name, &text);
                 }
                 fleet.add(name, text);
             }
