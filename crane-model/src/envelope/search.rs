@@ -66,10 +66,8 @@ pub(super) fn largest(
         if high - within.load <= accuracy(high, range) {
             break;
         }
-        if let (Some((at, limit)), true) = (secant, before.is_some()) {
-            if at - within.load <= accuracy(at, range) && at <= high {
-                return (Some(within), Some(limit));
-            }
+        if let Some((_, limit)) = secant.filter(|(at, _)| at - within.load <= accuracy(*at, range) && *at <= high) {
+            return (Some(within), Some(limit));
         }
         let next = match &beyond {
             None => {
