@@ -41,24 +41,21 @@ pub fn load(options: &mut ComparePair, fleet: &mut Fleet) -> Outcome<()> {
         fleet.add(&chain.name, text);
         *first = chain.name;
     }
-    match second {
-        Some(name) => {
-            if let Some(file) = spec_file(name) {
-                let (chain, mut text) = own::load(file, *strict)?;
-                *name = chain.name;
-                if name == first {
-                    // Two versions of a crane have one name.
-                    name.push_str("_other");
-                    text = renamed(name, &text);
-                }
-                fleet.add(name, text);
-            }
+    let Some(name) = second else {
+        // The first stands for the rigid crane, as in the comparison of the eight-link cranes.
+        let rigid = fleet.add_rigid(first)?;
+        *second = Some(mem::replace(first, rigid));
+        return Ok(());
+    };
+    if let Some(file) = spec_file(name) {
+        let (chain, mut text) = own::load(file, *strict)?;
+        *name = chain.name;
+        if name == first {
+            // Two versions of a crane have one name.
+            name.push_str("_other");
+            text = renamed(name, &text);
         }
-        None => {
-            // The first stands for the rigid crane, as in the comparison of the eight-link cranes.
-            let rigid = fleet.add_rigid(first)?;
-            *second = Some(std::mem::replace(first, rigid));
-        }
+        fleet.add(name, text);
     }
     Ok(())
 }

@@ -219,6 +219,7 @@ impl Parameters {
     }
 
     /// The settings of parameters that a crane has.
+    #[must_use]
     pub fn known_to(&self, description: &Description) -> Self {
         let is_known = |setting: &&String| {
             let name = setting.split('=').next().unwrap_or_default();

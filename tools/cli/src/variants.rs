@@ -30,13 +30,13 @@ pub fn rigid(crane: &str, text: &str) -> Result<Option<(String, String)>, String
     if flexible.is_empty() {
         return Ok(None);
     }
-    let links: String =
+    let links: Vec<String> =
         flexible.iter().map(|link| format!("  - {{name: {link}, beam: {{sections: rigid}}}}\n")).collect();
     let guesses: Vec<String> =
         guesses_of_elements(&spec, &flexible).map(|coordinate| format!("{coordinate}: ~")).collect();
     let guess = if guesses.is_empty() { String::new() } else { format!("guess: {{{}}}\n", guesses.join(", ")) };
     let name = format!("{crane}{RIGID}");
-    let text = extended(&name, text, &format!("name: {name}\nlinks:\n{links}{guess}"));
+    let text = extended(&name, text, &format!("name: {name}\nlinks:\n{}{guess}", links.concat()));
     Ok(Some((name, text)))
 }
 

@@ -126,7 +126,7 @@ fn contour(sheet: &Sheet, level: f64) -> Vec<Vec<(f64, f64)>> {
         let inverse = |knot: &Knot| 1.0 / knot.load.max(1e-3 * level);
         let part = (1.0 / level - inverse(a)) / (inverse(b) - inverse(a));
         let inside = (0.0..1.0).contains(&part);
-        inside.then(|| (a.radius + part * (b.radius - a.radius), a.height + part * (b.height - a.height)))
+        inside.then_some((a.radius + part * (b.radius - a.radius), a.height + part * (b.height - a.height)))
     };
     let mut pieces = Vec::new();
     for rows in sheet.knots.windows(2) {
@@ -145,11 +145,14 @@ fn contour(sheet: &Sheet, level: f64) -> Vec<Vec<(f64, f64)>> {
     pieces
 }
 
+/// Places of everything else on its axis, and loads over the slewing angle.
+type Group = (Vec<usize>, Vec<(f64, f64)>);
+
 /// The largest load over the slewing angle, with everything else at some of its values.
 fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[Row], slewing: usize) -> Panel {
     let axes = &asked.axes.0;
     let (name, unit, factor) = shown(&axes[slewing], &layout.description);
-    let mut groups: Vec<(Vec<usize>, Vec<(f64, f64)>)> = Vec::new();
+    let mut groups: Vec<Group> = Vec::new();
     for (pose, row) in rows.iter().enumerate() {
         let mut places = asked.axes.places(pose);
         let angle = axes[slewing].values[places[slewing]] * factor;

@@ -5,7 +5,7 @@ use std::path::Path;
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
-    envelope::{Envelope, Limit, Rating, SlewAxis, Varied},
+    envelope::{Condition, Envelope, Limit, Rating, SlewAxis, Varied},
     nalgebra::Vector3,
     results::{Column, drive_effort},
 };
@@ -61,11 +61,11 @@ impl Layout {
         column("height".to_owned(), "m");
         column("tipping_margin".to_owned(), "1");
         column("utilisation".to_owned(), "1");
-        for drive in description.drives.iter() {
+        for drive in &description.drives {
             let coordinate = &description.coordinates[drive.coordinate];
             column(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
         }
-        for point in description.points.iter() {
+        for point in &description.points {
             column(format!("{point}_deflection"), "m");
         }
         Self { columns, point, slew: SlewAxis::of(rig), axes: asked.axes.0.len(), description }
@@ -114,8 +114,8 @@ impl Layout {
         numbers.push(or_nan(rating.load));
         numbers.push(or_nan(place.map(|place| self.slew.radius(&place))));
         numbers.push(or_nan(place.map(|place| place.z)));
-        numbers.push(or_nan(own.and_then(|own| own.margin())));
-        numbers.push(or_nan(own.and_then(|own| own.utilisation())));
+        numbers.push(or_nan(own.and_then(Condition::margin)));
+        numbers.push(or_nan(own.and_then(Condition::utilisation)));
         let efforts = self.description.drives.len();
         numbers.extend((0..efforts).map(|drive| or_nan(own.map(|own| own.efforts[drive]))));
         let points = self.description.points.len();
