@@ -19,6 +19,12 @@ use crate::{
 
 /// Writes a crane as URDF, with its springs beside it, as MJCF, in C, or as a functional mock-up unit.
 pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    if options.crane.rigid {
+        return Err(Problem::usage(
+            "`--rigid` is not available with `export`",
+            "write a spec that `extends` the crane with `sections: rigid`, and export that",
+        ));
+    }
     let (chain, spec) = own::load_named(&options.crane.name, options.crane.strict, fleet)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
