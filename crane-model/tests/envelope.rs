@@ -184,9 +184,9 @@ fn every_pose_is_as_a_crane_alone() {
             let found = crane.equilibrium_at(0.0, near, &Settings::default());
             assert!(found.is_stable());
             let (rest, q) = (vec![0.0; found.q.len()], &found.q);
-            let lines = crane_model::tipping::lines(crane, q, &rest, &rest);
+            let lines = crane_model::tipping::lines(crane, 0.0, q, &rest, &rest);
             let margin = crane_model::tipping::governing(&lines).unwrap().margin();
-            let wrenches = crane.internal_forces_at(q, &rest, &rest);
+            let wrenches = crane.internal_forces_at(0.0, q, &rest, &rest);
             let description = crane.description();
             let sections = crane_model::sections::stressed_sections(description, &crane.section_moduli_at(), &wrenches);
             let utilisation = sections.iter().filter_map(|section| section.utilisation).fold(0.0, f64::max);

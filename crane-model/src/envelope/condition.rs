@@ -30,7 +30,7 @@ impl Condition {
     /// At pose `q`, where drives that hold these positions keep the crane at rest.
     pub fn at(crane: &dyn DynCrane, q: Vec<f64>, positions: &[f64]) -> Self {
         let rest = vec![0.0; q.len()];
-        let wrenches = crane.internal_forces_at(&q, &rest, &rest);
+        let wrenches = crane.internal_forces_at(0.0, &q, &rest, &rest);
         Self {
             lines: tipping::lines_of(crane, &q, &wrenches),
             sections: stressed_sections(crane.description(), &crane.section_moduli_at(), &wrenches),
