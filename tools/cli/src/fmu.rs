@@ -89,14 +89,14 @@ fn read(path: &Path) -> Outcome<Library> {
     Ok(Library { system, suffix, content })
 }
 
-/// The library where cargo leaves it when it builds the command, or else in the folder of the command, where an older one may be.
+/// The library in the folder of the command.
 fn beside_the_command() -> Outcome<PathBuf> {
-    let name = format!("{}crane_fmu{}", consts::DLL_PREFIX, consts::DLL_SUFFIX);
+    let name = format!("{}crane_fmu_library{}", consts::DLL_PREFIX, consts::DLL_SUFFIX);
     let command = current_exe().map_err(|error| Problem::failed(format!("where the command is: {error}"), ""))?;
     let folder = command.parent().unwrap_or(Path::new("."));
-    let mut places = [folder.join("deps").join(&name), folder.join(&name)].into_iter();
-    places.find(|place| place.is_file()).ok_or_else(|| {
+    let place = folder.join(&name);
+    place.is_file().then_some(place).ok_or_else(|| {
         let title = format!("there is no {name} in {}", folder.display());
-        Problem::failed(title, "build it with `cargo build --release -p crane-fmu` and keep it beside the command, or name it by `--library FILE`")
+        Problem::failed(title, "build it with `cargo build --release -p crane-fmu-library` and keep it beside the command, or name it by `--library FILE`")
     })
 }

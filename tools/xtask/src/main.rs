@@ -159,6 +159,10 @@ fn tests() -> Vec<Step> {
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
         Step::check("the Python package", package::check),
+        Step::cargo(
+            "the library of functional mock-up units",
+            &["build", "--release", "--package", "crane-fmu-library"],
+        ),
         Step::check("functional mock-up units", fmu::check),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.
         Step::cargo(
