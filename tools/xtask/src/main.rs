@@ -150,7 +150,7 @@ fn programs() -> Step {
 fn tests() -> Vec<Step> {
     vec![
         programs(),
-        Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench"]),
+        Step::cargo("tests", &["test", "--release", "--workspace", "--exclude", "crane-bench", "--no-fail-fast"]),
         Step::check("tests with fused multiply-adds", fused::check),
         Step::program("the default run", "crane"),
         Step::check("the report page is current", report::is_current),
