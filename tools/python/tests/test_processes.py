@@ -72,6 +72,9 @@ def test_processes_compute_alike(flexible, method):
 
 
 INTERRUPTED = """
+import signal
+# Where the tests run in the background, processes inherit that Ctrl-C is ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 import crane, numpy as np
 c = crane.load("eight_link_flexible")
 print("ready", flush=True)
