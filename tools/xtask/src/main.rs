@@ -142,9 +142,10 @@ fn lint() -> Vec<Step> {
 /// Which cranes the benchmarks compile: to look at them the smallest will do.
 const SECTIONS: &str = "CRANE_BENCH_SECTIONS";
 
-/// All packages together, as the tests build them: alone, a package would choose other features of what it builds on.
+/// All packages together, as the tests build them: alone, a package would choose other features of what it builds on. With
+/// them the library of functional mock-up units.
 fn programs() -> Step {
-    Step::cargo("all programs", &["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins"])
+    Step::cargo("all programs", &["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins", "--lib"])
 }
 
 fn tests() -> Vec<Step> {
@@ -159,10 +160,6 @@ fn tests() -> Vec<Step> {
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
         Step::check("the Python package", package::check),
-        Step::cargo(
-            "the library of functional mock-up units",
-            &["build", "--release", "--package", "crane-fmu-library"],
-        ),
         Step::check("functional mock-up units", fmu::check),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.
         Step::cargo(
