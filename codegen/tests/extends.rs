@@ -127,3 +127,18 @@ fn a_base_that_cannot_be_read_and_a_circle_are_mistakes() {
         assert!(found.headline().contains(said), "{}", found.headline());
     }
 }
+
+#[test]
+fn what_is_given_twice_in_an_extending_spec_is_a_mistake() {
+    let base = "format: 1\nname: base\nlinks:\n  - {name: arm, joint: revolute, mass: 1, com: [1, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}\n";
+    let twice = [
+        ("extends: base.yaml\nname: mine\nrun: {duration: 4, duration: 5}\n", "[E011]"),
+        ("extends: base.yaml\nname: mine\nname: yours\n", "[E011]"),
+        ("extends: base.yaml\nname: mine\nlinks: [{name: arm, mass: 2}, {name: arm, mass: 3}]\n", "`arm`"),
+    ];
+    for (index, (text, said)) in twice.iter().enumerate() {
+        let folder = folder(&format!("extends_twice_{index}"), &[("base.yaml", base), ("mine.yaml", text)]);
+        let lines: Vec<String> = mistakes(&folder.join("mine.yaml")).lines().collect();
+        assert!(lines.iter().any(|line| line.contains(said)), "{lines:#?}");
+    }
+}

@@ -1,5 +1,7 @@
 //! Specs that extend others: trees merged, the later over the earlier.
 
+use std::collections::BTreeSet;
+
 use super::tree::{Content, Node};
 use crate::diagnostic::{Mistake, Span, rule};
 
@@ -92,7 +94,13 @@ fn merge_entries(
     over: Vec<(Node, Node)>,
     mistakes: &mut Vec<Mistake>,
 ) -> Vec<(Node, Node)> {
+    let mut seen = BTreeSet::new();
     for (key, value) in over {
+        if !seen.insert(key.key_text()) {
+            // A key twice in one mapping is a mistake, which reading reports.
+            base.push((key, value));
+            continue;
+        }
         let place = base.iter().position(|(known, _)| known.key_text() == key.key_text());
         match (place, &value.content) {
             (Some(place), Content::Null) => {
@@ -112,7 +120,13 @@ fn merge_entries(
 }
 
 fn merge_items(mut base: Vec<Node>, over: Vec<Node>, mistakes: &mut Vec<Mistake>) -> Vec<Node> {
+    let mut seen = BTreeSet::new();
     for item in over {
+        if !seen.insert(item.identity()) {
+            // So is a name twice in one list, which validation reports.
+            base.push(item);
+            continue;
+        }
         let place = base.iter().position(|known| known.identity() == item.identity());
         match place {
             Some(place) if item.is_removal() => {
