@@ -6,3 +6,9 @@
 mod manual;
 
 include!(concat!(env!("OUT_DIR"), "/cranes.rs"));
+
+/// The spec of a shipped crane (YAML), by its name.
+#[must_use]
+pub fn spec(name: &str) -> Option<&'static str> {
+    SPECS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}

@@ -4,7 +4,10 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector, Schur, linalg::balancing};
 
-use super::{NoModes, SmallMotions, eigenvectors::Block};
+use super::{
+    NoModes, SmallMotions,
+    eigenvectors::{Block, rounding},
+};
 
 /// Iterations of the QR algorithm for each eigenvalue: 2 to 4 are usual.
 const ITERATIONS: usize = 100;
@@ -47,11 +50,11 @@ pub fn damped(motions: &SmallMotions) -> Result<Vec<DampedMode>, NoModes> {
     let scales = balancing::balance_parlett_reinsch(&mut state);
     let iterations = ITERATIONS * state.nrows();
     let (vectors, t) = Schur::try_new(state, PRECISION, iterations).ok_or(NoModes::Eigenvalues)?.unpack();
-    let blocks = Block::all(&t);
+    let (blocks, least) = (Block::all(&t), rounding(&t));
     let mut modes: Vec<DampedMode> = blocks
         .iter()
         .map(|block| {
-            let shape = shape(&vectors, &scales, &block.eigenvector(&t, &blocks));
+            let shape = shape(&vectors, &scales, &block.eigenvector(&t, &blocks, least));
             DampedMode { eigenvalue: block.eigenvalue(&t), dominating: motions.dominating(&shape) }
         })
         .collect();

@@ -5,6 +5,11 @@ use nalgebra::{Complex, DMatrix, DVector};
 /// Entries of a vector that grows beyond this are scaled down, so that none overflows.
 const LARGE: f64 = 1e100;
 
+/// Differences of entries of T below this are rounding.
+pub fn rounding(t: &DMatrix<f64>) -> f64 {
+    f64::EPSILON * t.amax()
+}
+
 /// A block on the diagonal of a quasi-triangular matrix: one real eigenvalue, or a conjugate pair.
 #[derive(Clone, Copy)]
 pub enum Block {
@@ -39,11 +44,10 @@ impl Block {
         }
     }
 
-    /// Its eigenvector in the basis of the Schur form: `(T − λ) y = 0`, up to the end of the block, beyond which y is 0.
-    pub fn eigenvector(self, t: &DMatrix<f64>, blocks: &[Block]) -> DVector<Complex<f64>> {
+    /// Its eigenvector in the basis of the Schur form: `(T − λ) y = 0`, up to the end of the block, beyond which y is 0. Where
+    /// eigenvalues coincide, their difference is `least`, what [`rounding`] leaves.
+    pub fn eigenvector(self, t: &DMatrix<f64>, blocks: &[Block], least: f64) -> DVector<Complex<f64>> {
         let lambda = self.eigenvalue(t);
-        // Where eigenvalues coincide, their difference is what rounding leaves.
-        let least = f64::EPSILON * t.amax();
         let apart = |difference: Complex<f64>| if difference.norm() < least { least.into() } else { difference };
         let (place, size) = match self {
             Block::Real(i) => (i, 1),
@@ -117,7 +121,7 @@ mod tests {
             assert!(n < 8 || blocks.iter().any(|block| matches!(block, Block::Real(_))), "some are real");
             for block in &blocks {
                 let lambda = block.eigenvalue(&t);
-                let y = block.eigenvector(&t, &blocks);
+                let y = block.eigenvector(&t, &blocks, rounding(&t));
                 let complex = |matrix: &DMatrix<f64>| matrix.map(Complex::from);
                 let x = complex(&vectors).columns(0, y.len()) * &y;
                 let off = complex(&matrix) * &x - &x * lambda;
@@ -132,7 +136,7 @@ mod tests {
         let t = DMatrix::from_row_slice(3, 3, &[2.0, 1.0, 5.0, 0.0, 2.0, 3.0, 0.0, 0.0, 2.0]);
         let blocks = Block::all(&t);
         for block in &blocks {
-            let y = block.eigenvector(&t, &blocks);
+            let y = block.eigenvector(&t, &blocks, rounding(&t));
             // The only direction that there is: the first.
             assert!(y.iter().all(|y| y.re.is_finite()) && y[0].norm() >= y.camax() * (1.0 - 1e-12), "{y}");
         }

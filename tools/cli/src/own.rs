@@ -148,8 +148,7 @@ pub(super) fn warn_of(source: &SourceFile, set: &[(String, f64)]) -> Option<Prob
 
 /// A file of text; `help`: what kind of file to name.
 pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
-    let shipped = |name: &str| crane_specs::SPECS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text);
-    build::open_with(file, &shipped).map_err(|failure| match failure {
+    build::open_with(file, &crane_specs::spec).map_err(|failure| match failure {
         build::Failure::File(message) => Problem::failed(message, help),
         build::Failure::Mistakes(mistakes) => drawn(&mistakes),
     })

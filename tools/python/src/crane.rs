@@ -40,8 +40,8 @@ pub fn shipped() -> Vec<&'static str> {
 
 /// The spec of a file or of a shipped crane.
 fn open(py: Python<'_>, named: &str) -> PyResult<SourceFile> {
-    if let Some((name, text)) = SPECS.iter().find(|(name, _)| *name == named) {
-        return Ok(SourceFile::new(format!("{name}.yaml"), *text));
+    if let Some(text) = crane_specs::spec(named) {
+        return Ok(SourceFile::new(format!("{named}.yaml"), text));
     }
     let path = PathBuf::from(named);
     let yaml = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
@@ -51,8 +51,7 @@ fn open(py: Python<'_>, named: &str) -> PyResult<SourceFile> {
             shipped().join(", ")
         )));
     }
-    let text = |name: &str| SPECS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text);
-    build::open_with(&path, &text).map_err(|failure| match failure {
+    build::open_with(&path, &crane_specs::spec).map_err(|failure| match failure {
         build::Failure::File(message) if !path.exists() => PyFileNotFoundError::new_err(message),
         build::Failure::File(message) => PyOSError::new_err(message),
         build::Failure::Mistakes(mistakes) => spec_error(py, &mistakes),

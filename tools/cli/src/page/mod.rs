@@ -133,11 +133,8 @@ fn all_tables(fleet: &Fleet, cases: &[Case<'_>], limits: Limits, runs: &[Recorde
 /// Number of poses along the manoeuvre whose modes take no longer than all of them for a crane of [`AFFORDABLE`] coordinates: the
 /// time of the eigenvalue iteration grows with n³.
 fn affordable_poses(coordinates: usize) -> u16 {
-    let most = (1..=POSES).rev().find(|&count| {
-        let cubes = [coordinates, AFFORDABLE].map(|n| n.saturating_pow(3));
-        usize::from(count).saturating_mul(cubes[0]) <= usize::from(POSES).saturating_mul(cubes[1])
-    });
-    most.unwrap_or(0)
+    let most = usize::from(POSES) * AFFORDABLE.pow(3) / coordinates.saturating_pow(3).max(1);
+    u16::try_from(most).map_or(POSES, |most| most.min(POSES))
 }
 
 #[cfg(test)]
