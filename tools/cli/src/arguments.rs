@@ -392,6 +392,9 @@ pub struct Ensemble {
     /// Number of threads that run the cranes of the table [default: all cores]
     #[arg(long, value_name = "COUNT", requires = "table", value_parser = count)]
     pub threads: Option<NonZeroUsize>,
+    /// Start again instead of continuing where the same command was interrupted
+    #[arg(long, requires = "table")]
+    pub restart: bool,
 }
 
 /// A report as one page.
@@ -489,7 +492,7 @@ pub struct Envelope {
     /// Threads [default: all of the machine]
     #[arg(long, value_name = "COUNT", value_parser = count)]
     pub threads: Option<NonZeroUsize>,
-    /// Begin again, instead of going on where the same command was interrupted
+    /// Start again instead of continuing where the same command was interrupted
     #[arg(long)]
     pub restart: bool,
     #[command(flatten)]

@@ -1,8 +1,17 @@
 //! `crane simulate --ensemble`: a run of every row of a table of parameters.
 
-use std::{io::Write, num::NonZeroUsize, path::Path, thread, time::Instant};
+use std::{
+    io::Write,
+    num::NonZeroUsize,
+    path::Path,
+    sync::{Mutex, PoisonError},
+    thread,
+    time::Instant,
+};
 
+use crane_codegen::SourceFile;
 use crane_model::{
+    Description,
     dyn_crane::DynCrane,
     dynamics::{self, Method},
     results::{Column, Peaks},
@@ -16,6 +25,7 @@ use crate::{
     Fleet,
     arguments::{Ensemble, Simulate, Step, Timing},
     files,
+    journal::{self, Journal, Request},
     parameter_table::ParameterTable,
     problem::{Outcome, Problem},
     report::Report,
@@ -32,25 +42,49 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
     let description = rig.description();
     let table = ParameterTable::read(table, description)?;
     let (settings, step) = settings(&options.timing, rig, &table)?;
-    let Ensemble { threads, results, .. } = &options.ensemble;
+    let Ensemble { threads, results, restart, .. } = &options.ensemble;
     let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
     let path = results.clone().unwrap_or_else(|| options.folder.out.join(format!("{}_ensemble.csv", description.name)));
     files::folder(path.parent().unwrap_or(&path))?;
 
     let begin = Instant::now();
-    let bar = batches(table.rows.len());
-    let conduct = Conduct { threads, done: &|_, _| bar.inc(1), called_off: &|_| false };
-    let rows = ensemble::run(rig, &table.parameters(rig), &settings, &conduct);
+    let (journal, records) =
+        Journal::open(&path.with_extension("part.csv"), &request(rig, &settings, &table), *restart)?;
+    let header = header(description, &table);
+    let kept = kept(&records, table.rows.len(), header.len());
+    let fresh: Vec<usize> = (0..kept.len()).filter(|row| kept[*row].is_none()).collect();
+    let bar = batches(kept.len());
+    bar.inc((kept.len() - fresh.len()) as u64);
+    let state = Mutex::new((kept, Ok(())));
+    let parameters = table.parameters(rig);
+    let parameters: Vec<Vec<f64>> = fresh.iter().map(|row| parameters[*row].clone()).collect();
+    let done = |place: usize, outcome: &Row| {
+        let row = fresh[place];
+        let fields = fields(description, &table.rows[row], outcome);
+        let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
+        if state.1.is_ok() {
+            state.1 = journal.add([[vec![row.to_string()], fields.clone()].concat()]);
+        }
+        state.0[row] = Some(fields);
+        bar.inc(1);
+    };
+    let failed = |_| state.lock().unwrap_or_else(PoisonError::into_inner).1.is_err();
+    let conduct = Conduct { threads, done: &done, called_off: &failed };
+    let simulated: f64 = ensemble::run(rig, &parameters, &settings, &conduct).iter().map(Row::time).sum();
     bar.finish_and_clear();
     let wall = begin.elapsed().as_secs_f64();
-    write(&path, rig, &table, &rows)?;
+    let (rows, written) = state.into_inner().unwrap_or_else(PoisonError::into_inner);
+    written?;
+    let rows: Vec<Vec<String>> = rows.into_iter().flatten().collect();
+    let reached = rows.iter().filter(|row| row.last().is_some_and(|status| status == DONE)).count();
+    files::write_fields(&path, header.into_iter(), rows.iter().cloned())?;
+    journal.remove()?;
 
-    let done = rows.iter().filter(|row| row.run.is_ok()).count();
-    let simulated: f64 = rows.iter().map(Row::time).sum();
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
     report.fact("cranes", rows.len(), "");
-    report.fact("reached the end", done, "");
+    report.fact("kept from before", rows.len() - fresh.len(), "");
+    report.fact("reached the end", reached, "");
     report.fact("method", settings.method.title(), "");
     if settings.method.is_adaptive() {
         report.fact("tolerance", settings.tolerance, "m, rad");
@@ -60,17 +94,41 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
     }
     report.fact("threads", threads, "");
     report.fact("wall time", wall, "s");
-    report.fact("cranes per second", rows.len() as f64 / wall, "");
+    report.fact("cranes per second", fresh.len() as f64 / wall, "");
     report.fact("real-time factor", simulated / wall, "");
     report.fact("written to", path.display().to_string(), "");
     report.print(options.analysis.format, out)?;
-    if done == rows.len() {
+    if reached == rows.len() {
         return Ok(());
     }
     Err(Problem::failed(
-        format!("{} of {} cranes did not reach the end", rows.len() - done, rows.len()),
+        format!("{} of {} cranes did not reach the end", rows.len() - reached, rows.len()),
         format!("see the column `status` of {}", path.display()),
     ))
+}
+
+/// What the rows depend on: the crane, the settings of the runs, and the table.
+fn request(rig: &dyn DynCrane, settings: &dynamics::Settings, table: &ParameterTable) -> Request<'static> {
+    let cases = SourceFile::new("table", format!("{settings:?} {:?} {:?}", table.columns, table.rows)).hash();
+    Request {
+        line: format!("{} {cases}", journal::identity(rig)),
+        of: "an ensemble",
+        elsewhere: "choose another file with `--file`",
+    }
+}
+
+/// Fields of the rows that an interrupted command completed; `width`: how many a row has.
+fn kept(records: &[Vec<String>], rows: usize, width: usize) -> Vec<Option<Vec<String>>> {
+    let mut kept = vec![None; rows];
+    for record in records {
+        if let [row, fields @ ..] = record.as_slice()
+            && let Some(place) = row.parse().ok().and_then(|row: usize| kept.get_mut(row))
+            && fields.len() == width
+        {
+            *place = Some(fields.to_vec());
+        }
+    }
+    kept
 }
 
 /// Settings of all runs, and whose step it is by a method with constant steps: stable for the first and the last row that rest, the
@@ -109,24 +167,23 @@ fn settings(
     Ok((dynamics::Settings { step, audit: false, ..settings }, from))
 }
 
-/// Writes parameters, peaks, time reached, cautions and status of every crane.
-fn write(path: &Path, rig: &dyn DynCrane, table: &ParameterTable, rows: &[Row]) -> Outcome<()> {
-    let description = rig.description();
+/// Headings: parameters, peaks and time reached with their units, cautions and status.
+fn header(description: &Description, table: &ParameterTable) -> Vec<String> {
     let parameters = table.columns.iter().map(|&index| &description.parameters[index]);
     let parameters = parameters.map(|info| Column { name: info.name.to_string(), unit: info.unit.to_string() });
-    let peaks = Peaks::columns(description);
     let time = Column { name: "time".to_owned(), unit: "s".to_owned() };
-    let header: Vec<String> = parameters.chain(peaks.clone()).chain([time]).map(|column| column.to_string()).collect();
-    let header = header.into_iter().chain(["cautions".to_owned(), "status".to_owned()]);
-    let rows = rows.iter().zip(&table.rows).map(|(row, parameters)| {
-        let values: Vec<Option<f64>> = match &row.peaks {
-            Some(peaks) => peaks.values().map(Some).collect(),
-            None => vec![None; peaks.len()],
-        };
-        let numbers = parameters.iter().copied().map(Some).chain(values).chain([Some(row.time())]);
-        let numbers = numbers.map(|number| number.map_or_else(String::new, files::number));
-        let status = row.run.as_ref().map_or_else(ToString::to_string, |_| DONE.to_owned());
-        numbers.chain([row.cautions.join("; "), status]).collect()
-    });
-    files::write_fields(path, header, rows)
+    let columns = parameters.chain(Peaks::columns(description)).chain([time]).map(|column| column.to_string());
+    columns.chain(["cautions".to_owned(), "status".to_owned()]).collect()
+}
+
+/// Parameters, peaks, time reached, cautions and status of a crane, without line ends.
+fn fields(description: &Description, parameters: &[f64], row: &Row) -> Vec<String> {
+    let values: Vec<Option<f64>> = match &row.peaks {
+        Some(peaks) => peaks.values().map(Some).collect(),
+        None => vec![None; Peaks::columns(description).len()],
+    };
+    let numbers = parameters.iter().copied().map(Some).chain(values).chain([Some(row.time())]);
+    let numbers = numbers.map(|number| number.map_or_else(String::new, files::number));
+    let status = row.run.as_ref().map_or_else(ToString::to_string, |_| DONE.to_owned());
+    numbers.chain([row.cautions.join("; "), status].map(|words| words.replace(['\n', '\r'], " "))).collect()
 }

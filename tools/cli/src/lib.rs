@@ -24,6 +24,7 @@ mod fmu;
 mod generate;
 mod help;
 mod info;
+mod journal;
 mod linearisation;
 mod modes;
 mod new;

@@ -2,7 +2,6 @@
 
 mod chart;
 mod figures;
-mod journal;
 mod map;
 mod ranges;
 mod rows;
@@ -27,6 +26,7 @@ use crate::{
     Fleet,
     arguments::{Envelope, Format},
     files,
+    journal::{self, Journal, Request},
     problem::{Outcome, Problem},
     report::Report,
     run::styled,
@@ -34,7 +34,6 @@ use crate::{
     strength::load_parameter,
 };
 
-use journal::Journal;
 use rows::{Layout, Row};
 
 /// Poses at most: some hours.
@@ -53,8 +52,13 @@ pub fn envelope(options: &Envelope, fleet: &Fleet, out: &mut dyn Write) -> Outco
     files::folder(&options.folder.out)?;
     let name = format!("{}_envelope", description.name);
     let journal = options.folder.out.join(format!("{name}.part.csv"));
-    let request = request(&asked, &layout, rig.as_ref());
-    let (journal, kept) = Journal::open(&journal, &request, &asked, &layout, options.restart)?;
+    let request = Request {
+        line: format!("{} {asked:?} {:?}", journal::identity(rig.as_ref()), layout.point),
+        of: "an envelope",
+        elsewhere: "choose another folder with `--out`",
+    };
+    let (journal, records) = Journal::open(&journal, &request, options.restart)?;
+    let kept = kept(&records, &asked, &layout);
     let rows = rate(&asked, &layout, rig.as_ref(), options.threads, &journal, kept)?;
     let seconds = begin.elapsed().as_secs_f64();
 
@@ -137,11 +141,20 @@ fn points(description: &Description) -> Vec<&str> {
     description.points.iter().map(crane_model::Text::as_str).collect()
 }
 
-/// All that ratings depend on: an interrupted envelope goes on only where it is the same.
-fn request(asked: &crane_model::envelope::Envelope, layout: &Layout, rig: &dyn DynCrane) -> String {
-    let parameters: Vec<f64> = (0..rig.description().parameters.len()).map(|index| rig.parameter(index)).collect();
-    let spec = &rig.description().spec_hash;
-    format!("{} {spec} {parameters:?} {asked:?} {:?}", env!("CARGO_PKG_VERSION"), layout.point)
+/// Rows of the poses that an interrupted command completed. A piece counts only as a whole.
+fn kept(records: &[Vec<String>], asked: &crane_model::envelope::Envelope, layout: &Layout) -> Vec<Option<Row>> {
+    let mut kept = vec![None; asked.axes.poses()];
+    for (pose, row) in records.iter().filter_map(|record| layout.read(record)) {
+        if let Some(place) = kept.get_mut(pose) {
+            *place = Some(row);
+        }
+    }
+    for piece in 0..asked.pieces() {
+        if asked.poses_of(piece).any(|pose| kept[pose].is_none()) {
+            asked.poses_of(piece).for_each(|pose| kept[pose] = None);
+        }
+    }
+    kept
 }
 
 /// Rates what the journal does not have yet; all rows, in order.
@@ -165,7 +178,7 @@ fn rate(
         let rows: Vec<Row> = poses.clone().zip(ratings).map(|(pose, rating)| layout.row(asked, pose, rating)).collect();
         let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
         if state.1.is_ok() {
-            state.1 = journal.add(poses.start, &rows);
+            state.1 = journal.add(poses.clone().zip(&rows).map(|(pose, row)| row.record(pose)));
         }
         for (pose, row) in poses.zip(rows) {
             state.0[pose] = Some(row);

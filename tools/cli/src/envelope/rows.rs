@@ -25,6 +25,15 @@ pub struct Row {
     pub governing: [String; 2],
 }
 
+impl Row {
+    /// The row of a pose as fields of a journal: its number, the limit that governs, all numbers.
+    pub fn record(&self, pose: usize) -> Vec<String> {
+        let [kind, of] = self.governing.clone();
+        let numbers = self.numbers.iter().copied().map(files::number);
+        [pose.to_string(), kind, of].into_iter().chain(numbers).collect()
+    }
+}
+
 /// What stands in which column, and what rows are made with.
 pub struct Layout {
     /// Names and units of the numbers.
@@ -124,6 +133,15 @@ impl Layout {
             .governing
             .map_or_else(Default::default, |limit: Limit| [limit.kind().to_owned(), limit.place(&self.description)]);
         Row { numbers, governing }
+    }
+
+    /// A pose and its row from the fields of a journal.
+    pub fn read(&self, record: &[String]) -> Option<(usize, Row)> {
+        let [pose, kind, of, numbers @ ..] = record else { return None };
+        let numbers = numbers.iter().map(|number| number.parse().ok()).collect::<Option<Vec<f64>>>()?;
+        let governing = [kind.clone(), of.clone()];
+        let complete = numbers.len() == self.columns.len();
+        Some((pose.parse().ok()?, Row { numbers, governing })).filter(|_| complete)
     }
 
     /// The axis that slews the crane, if it is one of those that vary.
