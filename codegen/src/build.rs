@@ -68,16 +68,43 @@ pub fn open_with(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) ->
     Ok(gather(spec, shipped)?.0)
 }
 
+/// Reads a spec from a stream, such as the standard input, called `name` in messages; specs that it extends are found from the
+/// working folder or among those that are `shipped`.
+///
+/// # Errors
+/// As those of [`open`].
+pub fn read_with(
+    name: &str,
+    stream: impl Read,
+    shipped: &dyn Fn(&str) -> Option<&'static str>,
+) -> Result<SourceFile, Failure> {
+    Ok(gather_from(name.to_owned(), read_alone(name, stream)?, PathBuf::new(), shipped)?.0)
+}
+
 /// Specs that may extend each other in a row: more are a circle.
 const MOST_BASES: usize = 16;
 
 /// A spec with those that it extends, and the files of these.
 fn gather(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) -> Result<(SourceFile, Vec<PathBuf>), Failure> {
-    let folder = |file: &Path| file.parent().map(Path::to_owned).unwrap_or_default();
     // The text may not depend on where the file is.
     let named = spec.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let mut row = vec![(named, open_alone(spec)?)];
-    let (mut from, mut files) = (folder(spec), Vec::new());
+    gather_from(named, open_alone(spec)?, folder(spec), shipped)
+}
+
+fn folder(file: &Path) -> PathBuf {
+    file.parent().map(Path::to_owned).unwrap_or_default()
+}
+
+/// As [`gather`], for a spec that is read already; what it extends is found `from` a folder.
+fn gather_from(
+    named: String,
+    spec: SourceFile,
+    mut from: PathBuf,
+    shipped: &dyn Fn(&str) -> Option<&'static str>,
+) -> Result<(SourceFile, Vec<PathBuf>), Failure> {
+    let nothing = format!("{}: nothing to read", spec.name);
+    let mut row = vec![(named, spec)];
+    let mut files = Vec::new();
     while let Some((name, span)) = row.last().and_then(|(_, source)| base(source)) {
         let refused = |problem: &str| {
             let source = &row[row.len() - 1].1;
@@ -100,19 +127,23 @@ fn gather(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) -> Result
         let extended = source.extended(&base, &base_named, &named);
         (named, extended)
     });
-    whole
-        .map(|(_, source)| (source, files))
-        .ok_or_else(|| Failure::File(format!("{}: nothing to read", spec.display())))
+    whole.map(|(_, source)| (source, files)).ok_or(Failure::File(nothing))
 }
 
 /// Reads one file.
 fn open_alone(spec: &Path) -> Result<SourceFile, Failure> {
     let name = spec.display().to_string();
-    let failed = |error: io::Error| Failure::File(format!("{name}: {error}"));
+    let file = fs::File::open(spec).map_err(|error| Failure::File(format!("{name}: {error}")))?;
+    read_alone(&name, file)
+}
+
+/// Reads one file to its end, unless it is too large.
+fn read_alone(name: &str, stream: impl Read) -> Result<SourceFile, Failure> {
     let mut bytes = Vec::new();
     let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX).saturating_add(1);
-    fs::File::open(spec).map_err(failed)?.take(limit).read_to_end(&mut bytes).map_err(failed)?;
-    SourceFile::from_bytes(name.clone(), &bytes).map_err(Failure::Mistakes)
+    let read = stream.take(limit).read_to_end(&mut bytes);
+    read.map_err(|error| Failure::File(format!("{name}: {error}")))?;
+    SourceFile::from_bytes(name, &bytes).map_err(Failure::Mistakes)
 }
 
 /// Why a spec could not be opened or compiled.

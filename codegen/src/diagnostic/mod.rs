@@ -36,6 +36,19 @@ impl Mistake {
     }
 }
 
+/// A mistake or a warning with its place.
+#[derive(Clone, Copy, Debug)]
+pub struct Located<'a> {
+    /// What is wrong.
+    pub mistake: &'a Mistake,
+    /// The file.
+    pub file: &'a str,
+    /// Line and column of the first character, from 1.
+    pub start: (usize, usize),
+    /// Line and column one past the last character.
+    pub end: (usize, usize),
+}
+
 /// All mistakes of one file, or all warnings about a file without mistakes, in the order of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostics {
@@ -73,11 +86,19 @@ impl Diagnostics {
         self
     }
 
+    /// Each with its place.
+    pub fn located(&self) -> impl Iterator<Item = Located<'_>> {
+        self.mistakes.iter().map(|mistake| Located {
+            mistake,
+            file: self.source.part(mistake.span.start).name,
+            start: self.source.position(mistake.span.start),
+            end: self.source.position(mistake.span.end.max(mistake.span.start)),
+        })
+    }
+
     /// Each in one line, for short displays: `crane.yaml:3:5: unknown key `masss` [E010]`.
     pub fn lines(&self) -> impl Iterator<Item = String> {
-        self.mistakes.iter().map(|mistake| {
-            let (line, column) = self.source.position(mistake.span.start);
-            let file = self.source.part(mistake.span.start).name;
+        self.located().map(|Located { mistake, file, start: (line, column), .. }| {
             format!("{file}:{line}:{column}: {} [{}]", mistake.title, mistake.code)
         })
     }

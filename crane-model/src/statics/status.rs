@@ -26,6 +26,19 @@ pub enum Status {
     NotConverged,
 }
 
+impl Status {
+    /// A word for it: `stable`, `unstable`, `singular`, `overflow` or `not converged`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Status::Converged => "stable",
+            Status::Unstable { .. } => "unstable",
+            Status::Singular { .. } => "singular",
+            Status::Overflow => "overflow",
+            Status::NotConverged => "not converged",
+        }
+    }
+}
+
 impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -90,14 +90,7 @@ pub enum Action {
     /// Create a Rust crate for your own crane
     New(New),
     /// Check a spec: report every mistake and everything implausible
-    Check {
-        /// Shipped crane or YAML file
-        #[arg(value_name = "CRANE", value_hint = ValueHint::FilePath)]
-        spec: String,
-        /// Treat warnings as mistakes
-        #[arg(long)]
-        strict: bool,
-    },
+    Check(Check),
     /// Explain a spec: bodies, coordinates, omissions and operation counts; draw a picture
     Explain {
         /// Shipped crane or YAML file
@@ -115,8 +108,12 @@ pub enum Action {
         #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
         specs: Vec<PathBuf>,
     },
-    /// Print the JSON Schema of the spec language, for editors
-    Schema,
+    /// Print the JSON Schema of the spec language, for editors, or of what a command prints as JSON
+    Schema {
+        /// The command whose output is described
+        #[arg(value_name = "COMMAND", value_enum)]
+        of: Option<Output>,
+    },
     /// Export a crane as URDF or MJCF, for Pinocchio, MuJoCo, ROS and others
     Export(Export),
     /// Convert a URDF robot to a spec
@@ -144,11 +141,11 @@ impl Action {
             Action::Eval(options) => Some(&mut options.crane),
             Action::Compare(_)
             | Action::New(_)
-            | Action::Check { .. }
+            | Action::Check(_)
             | Action::Explain { .. }
             | Action::Generate(_)
             | Action::Operations { .. }
-            | Action::Schema
+            | Action::Schema { .. }
             | Action::Export(_)
             | Action::Import(_)
             | Action::List(_)
@@ -167,10 +164,47 @@ pub enum Format {
     Json,
 }
 
+/// What a command prints as JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Output {
+    /// Mistakes and warnings.
+    Check,
+    /// An equilibrium.
+    Statics,
+    /// Small motions.
+    Modes,
+    /// Largest stable steps.
+    Stability,
+    /// A run.
+    Simulate,
+    /// `simulate --ensemble`: many runs.
+    Ensemble,
+    /// Tipping margins, stresses and loads.
+    Strength,
+    /// Largest loads.
+    Envelope,
+    /// Two cranes.
+    Compare,
+}
+
+/// A spec to check.
+#[derive(Debug, Args)]
+pub struct Check {
+    /// Shipped crane, YAML file, or `-` for the standard input
+    #[arg(value_name = "CRANE", value_hint = ValueHint::FilePath)]
+    pub spec: String,
+    /// Treat warnings as mistakes
+    #[arg(long)]
+    pub strict: bool,
+    /// Output format
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
 /// A crane with its live parameters.
 #[derive(Debug, Args)]
 pub struct Choice {
-    /// Shipped crane or YAML file; `crane list` shows the shipped cranes
+    /// Shipped crane, YAML file, or `-` for the standard input; `crane list` shows the shipped cranes
     #[arg(default_value = "eight_link_flexible", value_name = "CRANE")]
     pub name: String,
     /// Treat warnings about the YAML file as mistakes
@@ -200,10 +234,14 @@ impl Choice {
     }
 }
 
-/// The YAML file that stands in place of a crane's name.
+/// What stands for the standard input in place of a file.
+pub const STANDARD_INPUT: &str = "-";
+
+/// The YAML file, or the standard input, that stands in place of a crane's name.
 pub fn spec_file(name: &str) -> Option<&Path> {
     let path = Path::new(name);
-    path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml").then_some(path)
+    let yaml = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
+    (yaml || name == STANDARD_INPUT).then_some(path)
 }
 
 /// Values of live parameters.

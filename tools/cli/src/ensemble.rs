@@ -20,6 +20,7 @@ use crane_model::{
         ensemble::{self, Conduct, Outcome as Row},
     },
 };
+use serde_json::Value;
 
 use crate::{
     Fleet,
@@ -30,6 +31,7 @@ use crate::{
     problem::{Outcome, Problem},
     report::Report,
     run::batches,
+    simulate::method,
 };
 
 /// Status of a run that reached its end.
@@ -85,9 +87,10 @@ pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn W
     report.fact("cranes", rows.len(), "");
     report.fact("kept from before", rows.len() - fresh.len(), "");
     report.fact("reached the end", reached, "");
-    report.fact("method", settings.method.title(), "");
+    method(&mut report, &settings);
     if settings.method.is_adaptive() {
-        report.fact("tolerance", settings.tolerance, "m, rad");
+        report.value("step", Value::Null);
+        report.value("step_from", Value::Null);
     } else {
         report.fact("step", settings.step_taken(), "s");
         report.fact("step from", step, "");

@@ -79,7 +79,7 @@ fn in_c(options: &Export, chain: &Chain, parameters: &[f64]) -> Outcome<CCode> {
 /// Writes a spec made from URDF, and checks it.
 pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     let source = own::open(&options.urdf, "give a URDF file")?;
-    let text = exchange::import(&source, &options.fixed).map_err(|mistakes| own::drawn(&mistakes))?;
+    let text = exchange::import(&source, &options.fixed).map_err(Problem::mistakes)?;
     let Some(file) = &options.spec else { return Ok(out.write_all(text.as_bytes())?) };
     files::write_text(file, &text)?;
     writeln!(out, "{} written", file.display())?;

@@ -10,10 +10,10 @@ use crane_codegen::{
 
 use crate::{
     Fleet,
-    arguments::Generate,
+    arguments::{Generate, Output},
     files,
-    own::{self, drawn, load},
-    problem::Outcome,
+    own::{self, load},
+    problem::{Outcome, Problem},
 };
 
 /// Writes the Rust module of a crane.
@@ -22,11 +22,11 @@ pub fn generate(options: &Generate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     let analyses = options.all.then_some(Analyses::ALL);
     if let Some(folder) = &options.dump {
         files::folder(folder)?;
-        for (name, text) in dump::stages(&source, analyses).map_err(|mistakes| drawn(&mistakes))? {
+        for (name, text) in dump::stages(&source, analyses).map_err(Problem::mistakes)? {
             files::write_text(&folder.join(name), &text)?;
         }
     }
-    let Compiled { code, warnings } = compile::compile(&source, analyses).map_err(|mistakes| drawn(&mistakes))?;
+    let Compiled { code, warnings } = compile::compile(&source, analyses).map_err(Problem::mistakes)?;
     if !warnings.is_empty() {
         // A reader of standard error that has gone misses them.
         let _ = writeln!(std::io::stderr(), "{}", warnings.to_string().trim_end());
@@ -52,7 +52,26 @@ pub fn operations(specs: &[PathBuf], out: &mut dyn Write) -> Outcome<()> {
     Ok(out.write_all(explain::operations_table(&reports).as_bytes())?)
 }
 
-/// Prints the JSON Schema of the spec language, for editors.
-pub fn schema(out: &mut dyn Write) -> Outcome<()> {
-    Ok(out.write_all(json_schema().as_bytes())?)
+/// Prints the JSON Schema of the spec language, for editors, or of what a command prints, for programs.
+pub fn schema(of: Option<Output>, out: &mut dyn Write) -> Outcome<()> {
+    match of {
+        Some(output) => Ok(out.write_all(output.schema().as_bytes())?),
+        None => Ok(out.write_all(json_schema().as_bytes())?),
+    }
+}
+
+impl Output {
+    fn schema(self) -> &'static str {
+        match self {
+            Output::Check => include_str!("../schemas/check.json"),
+            Output::Statics => include_str!("../schemas/statics.json"),
+            Output::Modes => include_str!("../schemas/modes.json"),
+            Output::Stability => include_str!("../schemas/stability.json"),
+            Output::Simulate => include_str!("../schemas/simulate.json"),
+            Output::Ensemble => include_str!("../schemas/ensemble.json"),
+            Output::Strength => include_str!("../schemas/strength.json"),
+            Output::Envelope => include_str!("../schemas/envelope.json"),
+            Output::Compare => include_str!("../schemas/compare.json"),
+        }
+    }
 }

@@ -82,7 +82,7 @@ pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     let mut bodies = Grid::new(
         "bodies",
         "Bodies (mass with default parameters)",
-        &["name", "link", "mass kg", "length m", "moved by"],
+        &["name", "link", "mass [kg]", "length [m]", "moved by"],
     );
     for body in &description.bodies {
         let length = (body.length > 0.0).then_some(body.length);
@@ -97,7 +97,7 @@ pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     }
     report.grid(bodies);
 
-    let mut supports = Grid::new("supports", "Supports", &["name", "x m", "y m", "z m"]);
+    let mut supports = Grid::new("supports", "Supports", &["name", "x [m]", "y [m]", "z [m]"]);
     for support in &description.supports {
         let [x, y, z] = support.position.map(Cell::from);
         supports.row([support.name.as_str().into(), x, y, z]);

@@ -12,6 +12,7 @@
 //! ```
 
 mod arguments;
+mod check;
 mod compare;
 mod ensemble;
 mod envelope;
@@ -128,11 +129,11 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
         Some(Action::Info(options)) => info::info(options, fleet, out),
         Some(Action::Eval(options)) => eval::eval(options, fleet, out),
         Some(Action::New(options)) => new::new(options, fleet, out),
-        Some(Action::Check { spec, strict }) => own::check(spec, *strict, fleet, out),
+        Some(Action::Check(options)) => check::check(options, fleet, out),
         Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), fleet, out),
         Some(Action::Generate(options)) => generate::generate(options, fleet, out),
         Some(Action::Operations { specs }) => generate::operations(specs, out),
-        Some(Action::Schema) => generate::schema(out),
+        Some(Action::Schema { of }) => generate::schema(*of, out),
         Some(Action::Export(options)) => exchange::export(options, fleet, out),
         Some(Action::Import(options)) => exchange::import(options, out),
         Some(Action::List(options)) => info::list(options.format, fleet, out),

@@ -37,6 +37,7 @@ pub fn modes(options: &Modes, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
     let step = limit(&modes, &Method::Rk4.stability()).map(|limit| limit.step);
+    report.value("stable", true);
     report.fact("largest stable step", Cell::from(step), "s");
     let changes = refinement::changes(&case, fleet)?;
     report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
@@ -48,9 +49,9 @@ pub fn modes(options: &Modes, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
 
 /// Undamped modes about an equilibrium as a table; `changes`: of the lowest ones with twice the sections.
 pub fn undamped_modes(case: &Case<'_>, changes: Option<&[f64]>) -> Outcome<Grid> {
-    let mut headers = vec!["mode", "frequency Hz", "omega rad/s", "dominated by"];
+    let mut headers = vec!["mode", "frequency [Hz]", "omega [rad/s]", "dominated by"];
     if changes.is_some() {
-        headers.insert(2, "with twice the sections %");
+        headers.insert(2, "with twice the sections [%]");
     }
     let mut grid = Grid::new("undamped", "Undamped modes", &headers);
     for (index, mode) in undamped(&case.rig.small_motions_at(&case.equilibrium.q))?.iter().enumerate() {
@@ -58,7 +59,7 @@ pub fn undamped_modes(case: &Case<'_>, changes: Option<&[f64]>) -> Outcome<Grid>
         let names = names(case.rig.description(), &mode.dominating);
         let mut row = vec![(index + 1).into(), mode.frequency().into(), omega.into(), names];
         if let Some(changes) = changes {
-            row.insert(2, changes.get(index).map_or(Cell::Empty, |change| format!("{:+.2}", 100.0 * change).into()));
+            row.insert(2, changes.get(index).map_or(Cell::Empty, |change| Cell::Change(100.0 * change)));
         }
         grid.row(row);
     }
@@ -70,7 +71,7 @@ pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
     let mut grid = Grid::new(
         "damped",
         "Damped modes (frequency |λ|/2π; ratio 1: returns without oscillating)",
-        &["mode", "frequency Hz", "damping ratio", "re 1/s", "im 1/s", "stable step s", "dominated by"],
+        &["mode", "frequency [Hz]", "damping ratio", "re [1/s]", "im [1/s]", "stable step [s]", "dominated by"],
     );
     for (index, mode) in modes.iter().enumerate() {
         grid.row([
@@ -88,6 +89,5 @@ pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
 }
 
 fn names(description: &Description, coordinates: &[usize]) -> Cell {
-    let names: Vec<&str> = coordinates.iter().map(|&index| description.coordinates[index].name.as_str()).collect();
-    names.join(", ").into()
+    Cell::Names(coordinates.iter().map(|&index| description.coordinates[index].name.to_string()).collect())
 }

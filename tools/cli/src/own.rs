@@ -5,7 +5,7 @@ mod program;
 use std::{
     env,
     ffi::{OsStr, OsString},
-    io::Write,
+    io::{self, Write},
     path::Path,
 };
 
@@ -13,7 +13,7 @@ use crane_codegen::{Checked, Diagnostics, SourceFile, build, chain::Chain, compi
 
 use crate::{
     Fleet,
-    arguments::Choice,
+    arguments::{Choice, STANDARD_INPUT},
     files,
     problem::{FAILED, Outcome, Problem},
 };
@@ -50,6 +50,7 @@ pub(super) fn source(given: &str, fleet: &Fleet) -> Outcome<SourceFile> {
     let file = Path::new(given);
     match fleet.spec(given) {
         Some(text) => Ok(SourceFile::new(format!("{given}.yaml"), text)),
+        None if given == STANDARD_INPUT => open(file, SPEC),
         None if file.extension().is_some() || file.exists() => open(file, SPEC),
         // Neither: the message names the most similar crane.
         None => {
@@ -61,13 +62,6 @@ pub(super) fn source(given: &str, fleet: &Fleet) -> Outcome<SourceFile> {
 /// The chain of a shipped crane or of a YAML file, and its text; warnings are shown, and are mistakes if `strict`.
 pub(super) fn load_named(given: &str, strict: bool, fleet: &Fleet) -> Outcome<(Chain, String)> {
     parse(source(given, fleet)?, strict)
-}
-
-/// Checks a spec and confirms that it is valid.
-pub fn check(spec: &str, strict: bool, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let Chain { name, bodies, coordinates, spec_hash, .. } = load_named(spec, strict, fleet)?.0;
-    let (bodies, coordinates) = (bodies.len(), coordinates.len());
-    Ok(writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?)
 }
 
 /// Prints the chain of a spec, and draws it on request.
@@ -121,14 +115,14 @@ pub fn typed() -> String {
 /// A sound chain and its text, or every mistake. Warnings are drawn; `strict`: they are mistakes.
 ///
 /// # Errors
-/// The file cannot be read, or the spec has mistakes, which are drawn on standard error.
+/// The file cannot be read, or the spec has mistakes.
 pub fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
     parse(open(spec, SPEC)?, strict)
 }
 
 /// A valid chain and its text, or every mistake; warnings are drawn, and are mistakes if `strict`.
 fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
-    let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| drawn(&mistakes))?;
+    let Checked { chain, warnings } = compile::check(&source).map_err(Problem::mistakes)?;
     if !warnings.is_empty() {
         let problem = drawn(&warnings);
         if strict {
@@ -146,17 +140,22 @@ pub(super) fn warn_of(source: &SourceFile, set: &[(String, f64)]) -> Option<Prob
     (!added.is_empty()).then(|| drawn(&added))
 }
 
-/// A file of text; `help`: what kind of file to name.
+/// A file of text, or the standard input; `help`: what kind of file to name.
 pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
-    build::open_with(file, &crane_specs::spec).map_err(|failure| match failure {
+    let read = if file == Path::new(STANDARD_INPUT) {
+        build::read_with("standard input", io::stdin(), &crane_specs::spec)
+    } else {
+        build::open_with(file, &crane_specs::spec)
+    };
+    read.map_err(|failure| match failure {
         build::Failure::File(message) => Problem::failed(message, help),
-        build::Failure::Mistakes(mistakes) => drawn(&mistakes),
+        build::Failure::Mistakes(mistakes) => Problem::mistakes(mistakes),
     })
 }
 
-/// Draws mistakes or warnings on standard error.
-pub(super) fn drawn(mistakes: &Diagnostics) -> Problem {
-    // Drawn already; a reader of standard error that has gone misses it.
-    let _ = writeln!(std::io::stderr(), "{}", mistakes.to_string().trim_end());
+/// Draws warnings on standard error.
+fn drawn(warnings: &Diagnostics) -> Problem {
+    // A reader of standard error that has gone misses them.
+    let _ = writeln!(io::stderr(), "{}", warnings.to_string().trim_end());
     Problem::Elsewhere(FAILED)
 }

@@ -1,7 +1,13 @@
 //! What can go wrong, as a person reads it.
 
-use std::{fmt::Write as _, io, path::Path, process::ExitCode};
+use std::{
+    fmt::Write as _,
+    io::{self, Write as _},
+    path::Path,
+    process::ExitCode,
+};
 
+use crane_codegen::Diagnostics;
 use crane_model::{
     dynamics::{Method, Stopped},
     modes::NoModes,
@@ -21,7 +27,9 @@ pub type Outcome<T> = Result<T, Problem>;
 pub enum Problem {
     /// The reader of our output has gone; nothing to say.
     NobodyListens,
-    /// Another program has reported it, and ended with this code.
+    /// The spec has mistakes.
+    Mistakes(Box<Diagnostics>),
+    /// It has been reported already, or another program has reported it; the exit code.
     Elsewhere(u8),
     /// Something for the user to read.
     Told {
@@ -43,6 +51,11 @@ impl Problem {
     /// The computation failed.
     pub fn failed(title: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Told { title: title.into(), help: help.into(), code: FAILED }
+    }
+
+    /// The spec has mistakes.
+    pub fn mistakes(mistakes: Diagnostics) -> Self {
+        Self::Mistakes(Box::new(mistakes))
     }
 
     /// A file or folder could not be used.
@@ -72,6 +85,7 @@ impl Problem {
     pub fn message(&self) -> String {
         match self {
             Problem::Told { title, help, .. } if !help.is_empty() => format!("{title}; {help}"),
+            Problem::Mistakes(mistakes) => mistakes.headline(),
             _ => self.title().to_owned(),
         }
     }
@@ -81,6 +95,11 @@ impl Problem {
         match self {
             Problem::NobodyListens => ExitCode::SUCCESS,
             Problem::Elsewhere(code) => ExitCode::from(*code),
+            Problem::Mistakes(mistakes) => {
+                // A reader of standard error that has gone misses them.
+                let _ = writeln!(io::stderr(), "{}", mistakes.to_string().trim_end());
+                ExitCode::from(FAILED)
+            }
             Problem::Told { title, help, code } => {
                 let mut text = format!("error: {title}\n");
                 if !help.is_empty() {

@@ -43,7 +43,7 @@ impl Entry {
 
     fn live(&self) -> Outcome<LiveCrane> {
         let source = SourceFile::new(format!("{}.yaml", self.name), self.spec.clone());
-        let crane = LiveCrane::from_spec(&source).map_err(|mistakes| own::drawn(&mistakes))?;
+        let crane = LiveCrane::from_spec(&source).map_err(Problem::mistakes)?;
         let (count, most) = (crane.description().coordinates.len(), LiveCrane::MOST_COORDINATES);
         if count > most {
             let title = format!("{} has {count} coordinates; the command supports at most {most}", self.name);

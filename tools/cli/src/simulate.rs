@@ -10,6 +10,7 @@ use crane_model::{
     results::{Table, drive_effort},
     runs::Recorded,
 };
+use serde_json::Value;
 
 use crate::{
     Fleet,
@@ -18,7 +19,7 @@ use crate::{
     figures::{Curve, Mark, PALETTE, Panel, svg},
     files,
     problem::{Outcome, Problem},
-    report::{Grid, Report},
+    report::{Grid, Heading, Report, VALUE},
     run::{progress, record_checked},
 };
 
@@ -52,13 +53,10 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
     let mut report = Report::default();
     report.fact("crane", name.as_str(), "");
     report.fact("start", recorded.start.as_str(), "");
-    report.fact("method", settings.method.title(), "");
-    if settings.method.is_adaptive() {
-        report.fact("tolerance", settings.tolerance, "m, rad");
-    }
+    method(&mut report, &settings);
     let statistics = recorded.run.statistics;
     report.fact("steps", statistics.steps, "");
-    report.fact(if settings.method.is_adaptive() { "mean step" } else { "step" }, recorded.run.step, "s");
+    report.fact_as("step", if settings.method.is_adaptive() { "mean step" } else { "step" }, recorded.run.step, "s");
     report.fact("rejected steps", statistics.rejections, "");
     report.fact("evaluations", statistics.evaluations, "");
     report.fact("factorisations", statistics.factorisations, "");
@@ -66,9 +64,20 @@ pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outco
         report.caution(Some(caution.as_str()));
     }
     report.grid(extremes(rig.description(), &[(name, &recorded)]));
-    report.grid(summary(&[(name, &recorded)]));
+    report.grid(summary(&[(VALUE, &recorded)]));
     report.grid(file_list(&options.folder.out, &written));
     report.print(options.analysis.format, out)
+}
+
+/// Adds the method, and its tolerance if it has one.
+pub fn method(report: &mut Report, settings: &dynamics::Settings) {
+    report.line("method", settings.method.title(), "");
+    report.value("method", settings.method.name());
+    if settings.method.is_adaptive() {
+        report.fact("tolerance", settings.tolerance, "m, rad");
+    } else {
+        report.value("tolerance", Value::Null);
+    }
 }
 
 /// The files written, as a table.
@@ -198,9 +207,9 @@ fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
 
 /// Work, energy balance and time of runs, a column each.
 pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
-    let labels = runs.iter().map(|(label, _)| *label);
-    let headers: Vec<&str> = ["quantity"].into_iter().chain(labels).chain(["unit"]).collect();
-    let mut grid = Grid::new("summary", "Run", &headers);
+    let values = runs.iter().map(|(label, _)| Heading::of(label, VALUE));
+    let headings = [Heading::from("quantity")].into_iter().chain(values).chain(["unit".into()]).collect();
+    let mut grid = Grid::with_headings("summary", "Run", headings);
     let mut row = |name: String, unit: &str, value: &dyn Fn(&Recorded) -> Option<f64>| {
         let values = runs.iter().map(|(_, run)| value(run).into());
         grid.row([name.into()].into_iter().chain(values).chain([unit.into()]).collect::<Vec<_>>());

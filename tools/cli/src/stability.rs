@@ -48,7 +48,7 @@ pub fn stability(options: &Stability, fleet: &Fleet, out: &mut dyn Write) -> Out
 
 /// The largest stable step of every method over some poses, and what limits it.
 pub fn limits(description: &Description, poses: &[Pose]) -> Grid {
-    let headers = ["method", "order", "step s", "safe step s", "at t s", "limited by"];
+    let headers = ["method", "order", "step [s]", "safe step [s]", "at t [s]", "limited by"];
     let title = match poses.len() {
         0 | 1 => "Largest stable steps at the static pose".to_owned(),
         count => format!("Largest stable steps, the least at {count} poses during the manoeuvre"),
@@ -73,7 +73,7 @@ pub fn limits(description: &Description, poses: &[Pose]) -> Grid {
 /// Limits at every pose, one method after the other.
 fn along(description: &Description, poses: &[Pose]) -> Grid {
     let title = "During the manoeuvre, with the drives stopped at each time";
-    let mut grid = Grid::new("along", title, &["method", "t s", "step s", "limited by"]);
+    let mut grid = Grid::new("along", title, &["method", "t [s]", "step [s]", "limited by"]);
     for method in Method::ALL {
         for pose in poses {
             if let Some(limit) = limit(&pose.modes, &method.stability()) {

@@ -11,12 +11,13 @@ use crane_model::{
 };
 
 use nalgebra::Vector3;
+use serde_json::json;
 
 use crate::{
     Fleet,
     arguments::{Analysis, Format, Limits},
     problem::Outcome,
-    report::{Cell, Grid, Report},
+    report::{Cell, Grid, Heading, Report, VALUE},
 };
 
 /// What a crane is called beside itself with rigid beams.
@@ -67,7 +68,7 @@ impl<'a> Case<'a> {
 /// Prints the equilibrium of a crane.
 pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.crane.open(fleet)?;
-    let case = Case::new("value", rig.as_ref());
+    let case = Case::new(VALUE, rig.as_ref());
     let mut report = tables(std::slice::from_ref(&case), options.crane.limits);
     if options.format == Format::Json {
         report.grid(history(&case.equilibrium));
@@ -77,17 +78,33 @@ pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcom
     case.stable()
 }
 
+/// Says how statics of each crane ended: to programs whether all equilibria are stable, too.
+pub fn verdicts(report: &mut Report, cases: &[Case<'_>]) {
+    let mut cranes = Vec::new();
+    for Case { label, rig, equilibrium } in cases {
+        let (name, residual) = (rig.description().name.as_str(), equilibrium.residual());
+        report.line(name, format!("{equilibrium}, relative residual {residual:.1e}"), "");
+        cranes.push(json!({
+            "label": label,
+            "crane": name,
+            "stable": equilibrium.is_stable(),
+            "status": equilibrium.status.name(),
+            "message": equilibrium.to_string(),
+            "newton_steps": equilibrium.steps(),
+            "load_steps": equilibrium.load_steps,
+            "relative_residual": residual,
+        }));
+    }
+    report.value("stable", cases.iter().all(|case| case.equilibrium.is_stable()));
+    report.value("cranes", cranes);
+}
+
 /// Tables of cranes in equilibrium, a column each.
 pub fn tables(cases: &[Case<'_>], limits: Limits) -> Report {
     let mut report = Report::default();
+    verdicts(&mut report, cases);
     for case in cases {
         let Case { equilibrium, .. } = case;
-        let residual = equilibrium.residual();
-        report.fact(
-            case.rig.description().name.as_str(),
-            format!("{equilibrium}, relative residual {residual:.1e}"),
-            "",
-        );
         let description = case.rig.description();
         for caution in [description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q)] {
             report.caution(caution);
@@ -135,9 +152,10 @@ pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
     grid
 }
 
-/// Headings: `first`, the labels, `unit`.
-fn headers<'a>(first: &[&'a str], cases: &[Case<'a>]) -> Vec<&'a str> {
-    first.iter().copied().chain(cases.iter().map(|case| case.label)).chain(["unit"]).collect()
+/// Headings: `first`, a value per case, `unit`.
+fn headings(first: &str, cases: &[Case<'_>]) -> Vec<Heading> {
+    let values = cases.iter().map(|case| Heading::of(case.label, VALUE));
+    [first.into()].into_iter().chain(values).chain(["unit".into()]).collect()
 }
 
 /// The case with most coordinates: it has all names.
@@ -146,7 +164,7 @@ fn widest<'c, 'a>(cases: &'c [Case<'a>]) -> Option<&'c Case<'a>> {
 }
 
 fn pose(cases: &[Case<'_>]) -> Grid {
-    let mut grid = Grid::new("pose", "Pose", &headers(&["coordinate"], cases));
+    let mut grid = Grid::with_headings("pose", "Pose", headings("coordinate", cases));
     for coordinate in widest(cases).map_or(&[][..], Case::coordinates) {
         let (cell, unit): (fn(f64) -> Cell, Cell) = match coordinate.kind {
             CoordinateKind::Translation => (Cell::Number, coordinate.kind.unit().into()),
@@ -161,7 +179,7 @@ fn pose(cases: &[Case<'_>]) -> Grid {
 }
 
 fn drives(cases: &[Case<'_>]) -> Grid {
-    let mut grid = Grid::new("drives", "Torques and forces of the drives", &headers(&["drive"], cases));
+    let mut grid = Grid::with_headings("drives", "Torques and forces of the drives", headings("drive", cases));
     let efforts: Vec<Vec<f64>> = cases.iter().map(|case| case.rig.drive_efforts_at_rest(&case.equilibrium.q)).collect();
     let Some(first) = cases.first() else { return grid };
     for (index, drive) in first.rig.description().drives.iter().enumerate() {
@@ -209,12 +227,8 @@ fn points(cases: &[Case<'_>]) -> Grid {
 
 /// A table of vectors, three columns a case.
 fn vectors(key: &'static str, title: &str, first: &str, cases: &[Case<'_>]) -> Grid {
-    let axes = cases.iter().flat_map(|case| {
-        let prefix = if cases.len() > 1 { format!("{} ", case.label) } else { String::new() };
-        ["x", "y", "z"].map(|axis| format!("{prefix}{axis}"))
-    });
-    let headers: Vec<String> = [first.to_owned()].into_iter().chain(axes).chain(["unit".to_owned()]).collect();
-    Grid::new(key, title, &headers.iter().map(String::as_str).collect::<Vec<_>>())
+    let axes = cases.iter().flat_map(|case| ["x", "y", "z"].map(|axis| Heading::of(case.label, axis)));
+    Grid::with_headings(key, title, [first.into()].into_iter().chain(axes).chain(["unit".into()]).collect())
 }
 
 fn vector_row<T: Into<Cell>>(name: &str, vectors: impl Iterator<Item = [T; 3]>, unit: &str) -> Vec<Cell> {

@@ -177,7 +177,7 @@ fn a_crane_without_statics_swings_from_its_guess() {
     // Without springs, dampers and drives the energy is constant up to h⁴: 3.5e-8 J at 1e-3 s, a 16th of it at half the step.
     let rows = report["summary"].as_array().expect("a table");
     let balance = rows.iter().find(|row| row["quantity"] == "energy balance, largest error").expect("a row");
-    assert!(balance["double_pendulum"].as_f64().is_some_and(|error| error < 1e-7), "{balance}");
+    assert!(balance["value"].as_f64().is_some_and(|error| error < 1e-7), "{balance}");
 }
 
 #[test]
@@ -213,7 +213,7 @@ fn a_run_estimates_its_error_and_names_feet_that_pull() {
     let estimate = error(&verified, "boom_psi_drive_torque").expect("an estimate");
     assert!(difference <= estimate && estimate > 0.0, "{difference} > {estimate}");
     let converged = run(&["--method", "rk4"]);
-    assert!(converged["cautions"].is_null(), "{}", converged["cautions"]);
+    assert_eq!(converged["cautions"], serde_json::json!([]));
 
     let overloaded = run(&["--set", "load_mass=6000"]);
     let cautions = overloaded["cautions"].to_string();
@@ -479,7 +479,7 @@ fn stability_names_what_limits_the_step_and_draws_it() {
     let report = json(&["stability", "--out", path, "--format", "json"]);
     let limits = report["limits"].as_array().expect("a table");
     let rk4 = limits.iter().find(|row| row["method"] == "rk4").expect("a row");
-    let step = rk4["step_s"].as_f64().expect("a number");
+    let step = rk4["step"].as_f64().expect("a number");
     // 2.785/22,921 rad/s.
     assert!((step - 1.2152e-4).abs() < 1e-8, "{step}");
     assert!(rk4["limited_by"].as_str().is_some_and(|words| words.starts_with("torsion of boom elements 3, 2; 22,9")));
@@ -590,7 +590,7 @@ fn an_ensemble_by_the_default_method_is_its_single_runs() {
     let loads_file = table("two_loads.csv", "payload [kg]\n200\n800\n");
     let arguments = ["simulate", "knuckle_boom", "--ensemble", &loads_file, "--duration", "1", "--format", "json"];
     let report = json(&[&arguments[..], &["-o", file.to_str().expect("a path")]].concat());
-    assert!(report["method"].as_str().expect("a method").starts_with("backward"), "{report}");
+    assert_eq!(report["method"], "bdf");
     let mut csv = csv::Reader::from_path(&file).expect("a CSV file");
     let header = csv.headers().expect("a header").clone();
     let place =

@@ -127,7 +127,7 @@ fn matrices_have_the_modes_of_the_table() {
             assert!((force - square * momentum).abs() < 1e-8 * size.max(square.abs()), "{force}, {square} {momentum}");
         }
     }
-    let frequency = said["undamped"][0]["frequency_Hz"].as_f64().expect("a number");
+    let frequency = said["undamped"][0]["frequency"].as_f64().expect("a number");
     assert!((squares[0].sqrt() / std::f64::consts::TAU / frequency - 1.0).abs() < 1e-12);
 
     assert!(crane(&folder, &["modes", "boom.yaml", "--matrices", "boom.npz"]).status.success());

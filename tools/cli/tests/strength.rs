@@ -46,16 +46,16 @@ fn a_truck_on_four_feet_tips_where_moments_say() {
     assert_close("stabilising", &line["stabilising"], 4000.0 * 9.81, COMPLIANCE);
     assert_close("overturning", &line["overturning"], 400.0 * 9.81, COMPLIANCE);
     // (4000 + m)/4 − 5 m/4 − 3 · 1.5 m/9 = 0 at the foot across, on springs of one stiffness.
-    assert_eq!(said["first_foot_to_lift"], "rear_right");
-    assert_close("lift", &said["payload_that_lifts_the_first_foot"], 1000.0 / 1.5, COMPLIANCE);
+    assert_eq!(said["critical_loads"]["first_foot"]["at"], "rear_right");
+    assert_close("lift", &said["critical_loads"]["first_foot"]["load"], 1000.0 / 1.5, COMPLIANCE);
     // 4000 kg · 1 m = m · 4 m
-    assert_eq!(said["line_that_it_tips_over"], "front_left – rear_left");
-    assert_close("tips", &said["payload_that_tips_the_crane"], 1000.0, COMPLIANCE);
+    assert_eq!(said["critical_loads"]["tipping"]["at"], "front_left – rear_left");
+    assert_close("tips", &said["critical_loads"]["tipping"]["load"], 1000.0, COMPLIANCE);
     // What the ground carries.
     let ground = &said["loads"][0];
     assert_eq!(ground["joint"], "ground");
-    assert_close("weight", &ground["Fz_[N]"], -4100.0 * 9.81, 1e-12);
-    assert_close("moment", &ground["Mx_[N_m]"], -500.0 * 9.81, COMPLIANCE);
+    assert_close("weight", &ground["Fz"], -4100.0 * 9.81, 1e-12);
+    assert_close("moment", &ground["Mx"], -500.0 * 9.81, COMPLIANCE);
 }
 
 /// With more load than tips it, the crane is said to tip, and the loads are found below.
@@ -65,7 +65,7 @@ fn a_crane_that_tips_is_told_so() {
     assert_close("margin", &said["tipping_margin"], 1.0 - 1500.0 * 4.0 / 4000.0, 10.0 * COMPLIANCE);
     let cautions = said["cautions"].to_string();
     assert!(cautions.contains("tips over the line front_left – rear_left"), "{cautions}");
-    assert_close("tips", &said["payload_that_tips_the_crane"], 1000.0, COMPLIANCE);
+    assert_close("tips", &said["critical_loads"]["tipping"]["load"], 1000.0, COMPLIANCE);
 }
 
 /// A quintic of 1 m in 2 s speeds up by at most `10/√3 · 1 m/(2 s)²`, after `(3 − √3)/6` of its time.
@@ -120,11 +120,11 @@ fn a_cantilever_is_stressed_by_bending_shear_and_torsion() {
     let root = &said["stresses"][0];
     // The tip sinks by 0.3 mm, which turns the load by 2e-4 rad into a normal force.
     for (what, stress) in [("normal", normal), ("shear", shear), ("torsion", torsion), ("equivalent", equivalent)] {
-        assert_close(what, &root[format!("{what}_[MPa]")], stress / 1e6, 1e-4);
+        assert_close(what, &root[what], stress / 1e6, 1e-4);
     }
     assert_close("utilisation", &said["greatest_utilisation"], 1.25 * equivalent / 355e6, 1e-4);
     assert_eq!(said["place_of_the_greatest_stress"], "boom, 0.000 m from its start");
-    assert_eq!(said["tipping_margin"], "not computed: the crane has no supports");
+    assert!(said["tipping_margin"].is_null(), "the crane has no supports");
 }
 
 /// Three tons more than the boom holds.
@@ -158,9 +158,9 @@ fn an_applied_load_tips() {
     assert_close("overturning", &line["overturning"], 400.0 * 9.81, COMPLIANCE);
     // (4000 − 10000/9.81) kg · 1 m = m · 4 m
     let tips = (4000.0 - 10000.0 / 9.81) / 4.0;
-    assert_close("tips", &said["payload_that_tips_the_crane"], tips, COMPLIANCE);
+    assert_close("tips", &said["critical_loads"]["tipping"]["load"], tips, COMPLIANCE);
     let ground = &said["loads"][0];
-    assert_close("pull", &ground["Fy_[N]"], 5000.0, 1e-12);
-    assert_close("weight", &ground["Fz_[N]"], -4100.0 * 9.81, 1e-12);
-    assert_close("moment", &ground["Mx_[N_m]"], -500.0 * 9.81 - 2.0 * 5000.0, COMPLIANCE);
+    assert_close("pull", &ground["Fy"], 5000.0, 1e-12);
+    assert_close("weight", &ground["Fz"], -4100.0 * 9.81, 1e-12);
+    assert_close("moment", &ground["Mx"], -500.0 * 9.81 - 2.0 * 5000.0, COMPLIANCE);
 }

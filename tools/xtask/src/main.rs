@@ -4,13 +4,13 @@
 
 mod book;
 mod equations;
-mod fmu;
 mod fused;
 mod imports;
 mod manual;
 mod new_crane;
 mod no_panic;
 mod oracles;
+mod outside;
 mod package;
 mod prose;
 mod python;
@@ -160,7 +160,8 @@ fn tests() -> Vec<Step> {
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
         Step::check("the Python package", package::check),
-        Step::check("functional mock-up units", fmu::check),
+        Step::check("functional mock-up units", outside::units),
+        Step::check("what the command prints as JSON", outside::output),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.
         Step::cargo(
             "a crane without std and heap",

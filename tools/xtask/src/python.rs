@@ -20,6 +20,7 @@ pub const CHECKS: Environment = Environment {
         "tools/peers/requirements.txt",
         "tools/python/requirements-test.txt",
         "tools/fmu/requirements-test.txt",
+        "tools/cli/tests/output/requirements-test.txt",
     ],
 };
 

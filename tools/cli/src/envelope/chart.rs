@@ -1,6 +1,6 @@
 //! The load chart as a table: loads over the radius.
 
-use crate::report::{Cell, Grid};
+use crate::report::{Cell, Grid, Heading};
 
 use super::surface::{Knot, Sheet, Surface};
 
@@ -11,26 +11,28 @@ pub const NOTE: &str = "The load chart holds for the model and the limits above:
 /// Rows of a chart at most.
 const ROWS: f64 = 12.5;
 
+const KEY: &str = "load_chart";
+const TITLE: &str =
+    "Load chart: the largest load within the limits in the best and in the worst pose that reaches a radius";
+
+/// The chart of poses among which no drive moves the load in or out.
+pub fn empty() -> Grid {
+    Grid::new(KEY, TITLE, &[])
+}
+
 /// Loads over the radius: of all poses that bring the load there, the largest and the least.
 pub fn table(surface: &Surface) -> Grid {
     let greatest = surface.knots().map(|knot| knot.radius).fold(0.0, f64::max);
     let step = step(greatest / ROWS);
     let unit = &surface.unit;
-    let headers: Vec<String> = ["radius m".to_owned()]
-        .into_iter()
-        .chain(surface.sheets.iter().flat_map(|sheet| {
-            let label = if sheet.label.is_empty() { String::new() } else { format!(", {}", sheet.label) };
-            [
-                format!("largest load {unit}{label}"),
-                "at height m".to_owned(),
-                format!("least load {unit}{label}"),
-                "at height m".to_owned(),
-            ]
-        }))
-        .collect();
-    let title =
-        "Load chart: the largest load within the limits in the best and in the worst pose that reaches a radius";
-    let mut grid = Grid::new("load_chart", title, &headers.iter().map(String::as_str).collect::<Vec<_>>());
+    let of_sheets = surface.sheets.iter().flat_map(|sheet| {
+        ["largest load", "least load"].into_iter().flat_map(|load| {
+            let headings = [format!("{load} [{unit}]"), format!("height of {load} [m]")];
+            headings.map(|heading| Heading::of(&sheet.label, &heading))
+        })
+    });
+    let headings = [Heading::from("radius [m]")].into_iter().chain(of_sheets).collect();
+    let mut grid = Grid::with_headings(KEY, TITLE, headings);
     let mut radius = step;
     while radius <= greatest {
         let found: Vec<Option<[Knot; 2]>> = surface.sheets.iter().map(|sheet| best_and_worst(sheet, radius)).collect();

@@ -67,9 +67,7 @@ pub fn envelope(options: &Envelope, fleet: &Fleet, out: &mut dyn Write) -> Outco
     report.fact("wall time", seconds, "s");
     let surface = surface::Surface::of(&asked, &layout, &rows);
     let chart = surface.as_ref().map(chart::table);
-    if let Some(chart) = &chart {
-        report.grid(chart.clone());
-    }
+    report.grid(chart.clone().unwrap_or_else(chart::empty));
     report.grid(summary::governing(&asked, &layout, &rows));
     let mut written = rows::write(&options.folder.out, &name, &asked, &layout, &rows)?;
     if let Some(chart) = &chart {

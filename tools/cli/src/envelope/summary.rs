@@ -1,6 +1,10 @@
 //! What an envelope shows, in a few lines.
 
-use crane_model::{Description, envelope::Envelope};
+use crane_model::{
+    Description, DriveInfo,
+    envelope::{Envelope, Limits},
+};
+use serde_json::{Value, json};
 
 use crate::report::{Cell, Grid, Report};
 
@@ -25,13 +29,18 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description
     for (point, way) in description.points.iter().zip(&limits.deflections).filter(|(_, way)| way.is_finite()) {
         said.push(format!("the load moves {point} by at most {way} m"));
     }
-    report.fact("limits", said.join("; "), "");
+    report.line("limits", said.join("; "), "");
+    report.value("limits", limits_of(limits, description));
     report.fact("poses", rows.len(), "");
     let by_load = |a: &&Row, b: &&Row| layout.load_of(a).total_cmp(&layout.load_of(b));
     let rated = || rows.iter().filter(|row| row.numbers[layout.load()].is_finite());
     if let (Some(least), Some(greatest)) = (rated().min_by(by_load), rated().max_by(by_load)) {
-        report.fact("least of the largest loads", told(least, asked, layout), "");
-        report.fact("greatest of the largest loads", told(greatest, asked, layout), "");
+        for (key, name, row) in
+            [("least", "least of the largest loads", least), ("greatest", "greatest of the largest loads", greatest)]
+        {
+            report.line(name, told(row, asked, layout), "");
+            report.value(key, rating_of(row, asked, layout));
+        }
     }
     let none = rows.len() - rated().count();
     if none > 0 {
@@ -49,6 +58,39 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description
     if limits.utilisation.is_some() && rows.iter().all(|row| row.numbers[layout.utilisation()].is_nan()) {
         report.caution(Some("utilisation limits nothing: no beam has a section of known moduli and a `yield_stress`"));
     }
+}
+
+/// Limits, for programs.
+fn limits_of(limits: &Limits, description: &Description) -> Value {
+    let drive = |info: &DriveInfo| &description.coordinates[info.coordinate];
+    let efforts = description.drives.iter().zip(&limits.efforts).filter(|(_, effort)| effort.is_finite());
+    let efforts = efforts.map(|(info, effort)| {
+        json!({"drive": drive(info).name.as_str(), "value": effort, "unit": drive(info).kind.force_unit()})
+    });
+    let deflections = description.points.iter().zip(&limits.deflections).filter(|(_, way)| way.is_finite());
+    let deflections = deflections.map(|(point, way)| json!({"point": point.as_str(), "value": way, "unit": "m"}));
+    json!({
+        "tipping_margin": limits.tipping,
+        "utilisation": limits.utilisation,
+        "efforts": efforts.collect::<Vec<_>>(),
+        "deflections": deflections.collect::<Vec<_>>(),
+    })
+}
+
+/// Load, place, pose and governing limit of a row, for programs.
+fn rating_of(row: &Row, asked: &Envelope, layout: &Layout) -> Value {
+    let pose = layout.columns[..asked.axes.0.len()].iter().zip(&row.numbers);
+    let pose = pose.map(|(column, value)| json!({"name": column.name, "value": value, "unit": column.unit}));
+    let [kind, of] = row.governing.each_ref().map(|words| (!words.is_empty()).then_some(words));
+    json!({
+        "load": layout.load_of(row),
+        "unit": layout.columns[layout.load()].unit,
+        "radius": row.numbers[layout.radius()],
+        "height": row.numbers[layout.height()],
+        "pose": pose.collect::<Vec<_>>(),
+        "limit": kind,
+        "of": of,
+    })
 }
 
 /// Load, place, pose and governing limit of a row.
@@ -81,8 +123,8 @@ pub fn governing(asked: &Envelope, layout: &Layout, rows: &[Row]) -> Grid {
         "limit".to_owned(),
         "of".to_owned(),
         "poses".to_owned(),
-        format!("least load {unit}"),
-        format!("greatest load {unit}"),
+        format!("least load [{unit}]"),
+        format!("greatest load [{unit}]"),
     ];
     let mut grid = Grid::new("governing", title, &headers.each_ref().map(String::as_str));
     let mut limits: Vec<&[String; 2]> = rows.iter().map(|row| &row.governing).collect();

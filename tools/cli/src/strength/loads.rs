@@ -7,6 +7,8 @@ use crane_model::{
     tipping::{TippingLine, lines},
 };
 
+use serde_json::{Map, Value, json};
+
 use crate::{
     problem::{Outcome, Problem, nearest},
     report::Report,
@@ -46,21 +48,22 @@ type Distance = fn(&dyn DynCrane, &[f64]) -> Option<(f64, String)>;
 pub fn critical(report: &mut Report, rig: &mut dyn DynCrane, index: usize) -> Outcome<()> {
     let before = rig.parameter(index);
     let parameter = &rig.description().parameters[index];
-    let (name, unit) = match parameter.unit.as_str() {
-        "kg" => (parameter.name.to_string(), "kg"),
-        other => (format!("{} [{other}]", parameter.name), ""),
-    };
-    for (what, place, distance) in [
-        ("lifts the first foot", "first foot to lift", least_reaction as Distance),
-        ("tips the crane", "line that it tips over", least_balance),
+    let (name, unit) = (parameter.name.to_string(), parameter.unit.to_string());
+    let mut critical = Map::new();
+    for (key, what, place, distance) in [
+        ("first_foot", "lifts the first foot", "first foot to lift", least_reaction as Distance),
+        ("tipping", "tips the crane", "line that it tips over", least_balance),
     ] {
         let found = root(rig, index, before, distance);
         rig.set_parameter(index, before).map_err(|refused| Problem::failed(refused.to_string(), ""))?;
-        if let Some((load, at)) = found {
-            report.fact(format!("{name} that {what}"), load, unit);
-            report.fact(place, at, "");
+        if let Some((load, at)) = &found {
+            report.line(format!("{name} that {what}"), *load, &unit);
+            report.line(place, at.as_str(), "");
         }
+        critical.insert(key.to_owned(), found.map_or(Value::Null, |(load, at)| json!({"load": load, "at": at})));
     }
+    critical.extend([("parameter".to_owned(), name.into()), ("unit".to_owned(), unit.into())]);
+    report.value("critical_loads", critical);
     Ok(())
 }
 

@@ -7,6 +7,8 @@ mod tables;
 
 use std::io::Write;
 
+use serde_json::Value;
+
 use crane_model::{dyn_crane::DynCrane, dynamics::Method, results::cautions, tipping::governing};
 
 use crate::{
@@ -14,9 +16,9 @@ use crate::{
     arguments::Strength,
     files,
     problem::{Outcome, Problem},
-    report::Report,
+    report::{Report, VALUE},
     run::{progress, record_checked},
-    statics::Case,
+    statics::{Case, verdicts},
 };
 
 use history::least_margin;
@@ -27,11 +29,10 @@ pub use loads::parameter as load_parameter;
 pub fn strength(options: &Strength, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let mut rig = options.analysis.crane.open(fleet)?;
     let load = loads::parameter(rig.as_ref(), options.load.as_deref())?;
-    let case = Case::new("value", rig.as_ref());
+    let case = Case::new(VALUE, rig.as_ref());
     let q = case.equilibrium.q.clone();
     let mut report = Report::default();
-    let status = format!("{}", case.equilibrium);
-    report.fact(rig.description().name.as_str(), status, "");
+    verdicts(&mut report, std::slice::from_ref(&case));
     if !case.equilibrium.is_stable() {
         report.print(options.analysis.format, out)?;
         return case.stable();
@@ -94,7 +95,8 @@ fn verdict(report: &mut Report, rig: &dyn DynCrane, instant: &Instant, of: &str)
         } else {
             "not computed: the supports do not form a polygon"
         };
-        report.fact(format!("tipping margin{of}"), why, "");
+        report.line(format!("tipping margin{of}"), why, "");
+        report.value(&format!("tipping_margin{}", of.replace(' ', "_")), Value::Null);
         return;
     };
     let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());

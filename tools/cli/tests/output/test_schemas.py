@@ -1,0 +1,147 @@
+"""What commands print as JSON, against the schemas in tools/cli/schemas; jsonschema is the judge."""
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+ROOT = Path(__file__).resolve().parents[4]
+
+CRANES = ["eight_link_flexible", "cantilever", "knuckle_boom", "double_pendulum"]
+SHORT = ["--duration", "0.2"]
+
+# A mass that stands on its head: statics finds no stable pose.
+UPSIDE_DOWN = """
+format: 1
+name: upside_down
+links:
+  - {name: rod, joint: {revolute: {axis: y}}, mass: 2, com: [0, 0, 1.5], inertia: {Ixx: 0.001, Iyy: 0.05, Izz: 0.05}}
+points: [{name: top, link: rod, at: [0, 0, 1.5]}]
+"""
+
+MISTAKEN = """format: 1
+name: mistaken
+links:
+  - {name: rod, joint: {revolute: {axis: y}}, masss: 2, com: [0, 0, -1.5], inertia: {Ixx: 0.001, Iyy: 0.05, Izz: 0.05}}
+"""
+
+
+@pytest.mark.parametrize("crane_name", CRANES)
+def test_statics(output, crane_name):
+    found = output("statics", "statics", crane_name)
+    assert found["stable"] is True and [of["crane"] for of in found["cranes"]] == [crane_name]
+
+
+def test_statics_without_a_stable_pose(output):
+    found = output("statics", "statics", "-", code=1, text=UPSIDE_DOWN)
+    assert found["stable"] is False and found["cranes"][0]["status"] == "unstable"
+    assert output("strength", "strength", "-", code=1, text=UPSIDE_DOWN)["stable"] is False
+
+
+@pytest.mark.parametrize("crane_name", CRANES)
+def test_modes(output, crane_name):
+    found = output("modes", "modes", crane_name)
+    assert found["stable"] is True and found["units"]["undamped"]["frequency"] == "Hz"
+    assert all(isinstance(name, str) for mode in found["undamped"] for name in mode["dominated_by"])
+
+
+@pytest.mark.parametrize("along", [0, 3])
+def test_stability(output, tmp_path, along):
+    found = output("stability", "stability", "knuckle_boom", "--along", along, "--out", tmp_path)
+    assert {row["method"] for row in found["limits"]} == {"rk4", "dopri5", "rosw4", "bdf"}
+
+
+@pytest.mark.parametrize("options", [[], ["--method", "rk4"], ["--no-verify"]])
+def test_simulate(output, tmp_path, options):
+    found = output("simulate", "simulate", "knuckle_boom", *SHORT, *options, "--out", tmp_path)
+    assert (found["tolerance"] is None) == ("rk4" in options)
+    assert all((row["error"] is None) == ("--no-verify" in options) for row in found["extremes"])
+
+
+@pytest.mark.parametrize("method", ["bdf", "rk4"])
+def test_ensemble(output, tmp_path, method):
+    table = tmp_path / "loads.csv"
+    table.write_text("payload [kg]\n200\n800\n")
+    found = output("ensemble", "simulate", "knuckle_boom", "--ensemble", table, "--method", method, *SHORT, "--out", tmp_path)
+    assert found["cranes"] == found["reached_the_end"] == 2
+
+
+@pytest.mark.parametrize("options", [[], ["--run", *SHORT]])
+@pytest.mark.parametrize("crane_name", CRANES)
+def test_strength(output, crane_name, options):
+    found = output("strength", "strength", crane_name, *options)
+    assert ("extremes_of_loads" in found) == bool(options)
+    assert (found["tipping_margin"] is None) == (crane_name != "eight_link_flexible")
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        [],
+        ["--range", "extension_x=0.1:0.5:2", "--range", "knuckle_theta=20deg:60deg:2"],
+        ["--effort", "main_boom_theta=1e5", "--deflection", "boom_tip=0.1"],
+    ],
+    ids=["one range", "several ranges", "limits"],
+)
+def test_envelope(output, tmp_path, more):
+    ranges = ["--range", "main_boom_theta=0:60deg:3"]
+    found = output("envelope", "envelope", "knuckle_boom", *ranges, *more, "--greatest-load", 5000, "--out", tmp_path)
+    assert found["load"] == "payload" and found["poses"] >= 3 and found["units"]["load_chart"]["radius"] == "m"
+
+
+@pytest.mark.parametrize("pair", [["eight_link_flexible"], ["double_pendulum", "knuckle_boom"]])
+def test_compare(output, tmp_path, pair):
+    found = output("compare", "compare", *pair, *SHORT, "--out", tmp_path)
+    labels = {of["label"] for of in found["cranes"]}
+    assert len(labels) == 2 and all(set(row["value"]) == labels for row in found["summary"])
+
+
+def test_check(output):
+    found = output("check", "check", "cantilever")
+    assert found["valid"] is True and found["diagnostics"] == [] and found["crane"] == "cantilever"
+
+
+def test_check_of_a_mistake(output, crane, tmp_path):
+    spec = tmp_path / "mistaken.yaml"
+    spec.write_text(MISTAKEN)
+    found = output("check", "check", spec, code=1)
+    assert found["valid"] is False and found["crane"] is None
+    mistake = found["diagnostics"][0]
+    line = MISTAKEN.splitlines()[3]
+    assert mistake["severity"] == "error" and mistake["file"] == str(spec)
+    assert (mistake["line"], mistake["column"]) == (4, line.index("masss") + 1)
+    assert (mistake["end_line"], mistake["end_column"]) == (4, line.index("masss") + 6)
+    assert "masss" in mistake["message"] and "mass" in mistake["help"]
+    # The same, for people: everything is on standard error.
+    code, out, err = crane("check", spec)
+    assert code == 1 and out == "" and mistake["code"] in err and mistake["message"] in err
+
+
+def test_check_of_a_warning(output):
+    text = (ROOT / "codegen/tests/implausible/W005_length_in_mm.yaml").read_text()
+    found = output("check", "check", "-", text=text)
+    assert found["valid"] is True and {warning["severity"] for warning in found["diagnostics"]} == {"warning"}
+    assert {warning["file"] for warning in found["diagnostics"]} == {"standard input"}
+    assert "W005" in {warning["code"] for warning in found["diagnostics"]}
+    assert output("check", "check", "-", "--strict", code=1, text=text)["valid"] is False
+
+
+def test_a_schema_notices_another_key(output, crane):
+    schema = json.loads(crane("schema", "statics")[1])
+    found = output("statics", "statics", "knuckle_boom")
+    for wrong in ({**found, "colour": "red"}, {key: value for key, value in found.items() if key != "stable"}, {**found, "stable": "yes"}):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate(wrong, schema, cls=jsonschema.Draft202012Validator)
+
+
+def test_standard_input_for_every_analysis(crane, tmp_path):
+    text = (
+        "format: 1\nname: pendulum\nlinks:\n"
+        "  - {name: rod, joint: {revolute: {axis: y}}, mass: 2, com: [0, 0, -1.5], inertia: {Ixx: 0.001, Iyy: 0.05, Izz: 0.05}}\n"
+    )
+    for arguments in (["check", "-"], ["statics", "-"], ["modes", "-"], ["explain", "-"], ["generate", "-"], ["simulate", "-", "--out", tmp_path]):
+        code, out, err = crane(*arguments, text=text)
+        assert code == 0 and "rod" in out or "pendulum" in out, err
+    code, _, err = crane("statics", "-", text="")
+    assert code != 0 and "standard input" in err

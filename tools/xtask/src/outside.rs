@@ -1,0 +1,28 @@
+//! Checks of the command from outside, in Python: functional mock-up units run by `FMPy`, and JSON against its schemas.
+
+use std::process::Command;
+
+use crate::python::CHECKS;
+use crate::{step, workspace};
+
+/// Runs the tests of functional mock-up units.
+pub fn units() -> Result<(), String> {
+    run("tools/fmu/tests")
+}
+
+/// Runs the tests of what the command prints as JSON.
+pub fn output() -> Result<(), String> {
+    run("tools/cli/tests/output")
+}
+
+/// Runs tests of a folder with the command that is built.
+fn run(tests: &str) -> Result<(), String> {
+    let mut command = Command::new(CHECKS.python());
+    command
+        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", tests, "--durations", "5", tests])
+        .arg("--command")
+        .arg(workspace::target().join("release/crane"))
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .current_dir(workspace::root());
+    step::finish(&mut command)
+}
