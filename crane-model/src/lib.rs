@@ -53,7 +53,7 @@ pub mod tipping;
 
 pub use description::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, InputInfo, LARGE_TILT, List,
-    LoadInfo, NEAR_SINGULAR, ParameterInfo, SupportInfo, Text,
+    LoadInfo, NEAR_SINGULAR, ParameterInfo, SupportInfo, TIPPED, Text,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,

@@ -101,6 +101,12 @@ pub trait CraneModel<const N: usize> {
     /// Forces of the supports on the crane, world frame, N. `out`: one per support.
     fn support_reactions(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
+    /// How far each one-sided support is above the ground, m, negative where it is pressed in, and the rate of that, m/s; 0 for all
+    /// others. `out`: one pair per support.
+    fn support_gaps(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, out: &mut [[f64; 2]]) {
+        out.fill([0.0; 2]);
+    }
+
     /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair per drive.
     fn drive_motions(&self, _t: f64, _out: &mut [[f64; 2]]) {}
 
@@ -248,13 +254,13 @@ pub trait Implicit<const N: usize>: Dynamics<N> {
         out.fill([0.0; 2]);
     }
 
-    /// Stiffness over the base's coordinates: supports and drives. N/m, N and N m.
-    fn base_stiffness(&self, _q: &SVector<f64, N>) -> SMatrix<f64, 6, 6> {
+    /// Stiffness over the base's coordinates: supports, the one-sided ones at this state, and drives. N/m, N and N m.
+    fn base_stiffness(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SMatrix<f64, 6, 6> {
         SMatrix::zeros()
     }
 
-    /// Damping over the base's coordinates: supports, drives, joints. N s/m, N s and N m s.
-    fn base_damping(&self, _q: &SVector<f64, N>) -> SMatrix<f64, 6, 6> {
+    /// Damping over the base's coordinates: supports, the one-sided ones at this state, drives, joints. N s/m, N s and N m s.
+    fn base_damping(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SMatrix<f64, 6, 6> {
         SMatrix::zeros()
     }
 }

@@ -70,6 +70,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("points", vec![points, 3]),
         ("point_velocities", vec![points, 3]),
         ("support_reactions", vec![supports, 3]),
+        ("support_gaps", vec![supports, 2]),
         ("drive_motions", vec![drives, 2]),
         ("drive_power", vec![1]),
         ("dissipation", vec![1]),
@@ -164,6 +165,9 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     let mut reactions = vec![Vector3::zeros(); info.supports.len()];
     crane.support_reactions(q, v, &mut reactions);
     out.extend(reactions.iter().flatten());
+    let mut gaps = vec![[0.0; 2]; info.supports.len()];
+    crane.support_gaps(q, v, &mut gaps);
+    out.extend(gaps.iter().flatten());
     let mut motions = vec![[0.0; 2]; info.drives.len()];
     crane.drive_motions(t, &mut motions);
     out.extend(motions.iter().flatten());
@@ -204,7 +208,7 @@ fn implicit_solution<const N: usize, C: Crane<N>>(
     let mut joints = [[0.0; 2]; N];
     crane.joint_impedances(&mut joints);
     let resistance = SVector::from_fn(|i, _| h * joints[i][1] + h * h * joints[i][0]);
-    let base = crane.base_damping(q) * h + crane.base_stiffness(q) * (h * h);
+    let base = crane.base_damping(q, v) * h + crane.base_stiffness(q, v) * (h * h);
     crane.solve(&crane.factorise(q, &resistance, &base), v)
 }
 

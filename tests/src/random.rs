@@ -65,7 +65,7 @@ impl Writer {
         self.beam("second", seed % 2 == 1);
         self.massless("fork");
         self.tip("hand");
-        self.supports(base);
+        self.supports(base, seed);
         if self.driven {
             self.drives(seed);
         }
@@ -242,17 +242,22 @@ impl Writer {
         )
     }
 
-    fn supports(&mut self, base: Base) {
+    fn supports(&mut self, base: Base, seed: u64) {
         if base == Base::Fixed {
             return;
         }
         self.line("supports:");
         let damping = if self.driven { "damping: [40, 50, 90], " } else { "" };
-        for (name, kinematics) in [("left", "linear"), ("right", "exact"), ("rear", "linear")] {
+        // Of every other driven crane two press only; one of them holds in full only where it is pressed in far.
+        let one_sided =
+            |hold: &str| if self.driven && seed % 2 == 1 { format!(", one_sided: true{hold}") } else { String::new() };
+        let one_sided = [String::new(), one_sided(", full_hold: 4000"), one_sided("")];
+        let kinds = [("left", "linear"), ("right", "exact"), ("rear", "linear")];
+        for ((name, kinematics), one_sided) in kinds.into_iter().zip(one_sided) {
             let (at, play) = (self.vector(1.5), self.vector(0.02));
             self.line(&format!(
                 "  - {{name: {name}, at: {at}, stiffness: [ground, 5.0e3, 9.0e3], {damping}free_play: {play}, \
-                 kinematics: {kinematics}}}"
+                 kinematics: {kinematics}{one_sided}}}"
             ));
         }
     }

@@ -24,6 +24,7 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.support_positions(q, &mut places.vectors);
     crane.internal_forces(t, q, v, v, &mut places.wrenches);
     crane.section_moduli(&mut places.moduli);
+    crane.support_gaps(q, v, &mut places.motions);
     crane.drive_motions(t, &mut places.motions);
     crane.drive_pieces(&mut places.pieces);
     crane.load_pieces(&mut places.pieces);
@@ -33,7 +34,7 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     black_box(crane.mass_matrix_and_bias(q, v, &mut mass));
     let factors = crane.factorise(q, v, &Matrix6::identity());
     black_box((crane.solve(&factors, v), crane.solve_mass(q, v), crane.forward_dynamics(t, q, v)));
-    black_box((crane.base_stiffness(q), crane.base_damping(q), crane.drive_forces_at_rest(q)));
+    black_box((crane.base_stiffness(q, v), crane.base_damping(q, v), crane.drive_forces_at_rest(q)));
     let alike: &_ = crane;
     let lanes = Ensemble::lanes([alike; 8]);
     black_box(lanes.forward_dynamics(splat(t), &q.map(splat), &v.map(splat)));

@@ -97,13 +97,14 @@ class Load:
 
 @dataclass
 class Support:
-    """Springs and dampers along the world's axes; `elongation` and its columns for x, y, z."""
+    """Springs and dampers along the world's axes; `elongation` and its columns for x, y, z. `full_hold` is None if it pulls, too."""
 
     name: str
     position: ca.SX
     elongation: ca.SX
     stiffness: ca.SX
     damping: ca.SX
+    full_hold: object = None
 
 
 @dataclass
@@ -326,7 +327,8 @@ def read_support(crane, written, base):
     stiffness, damping, free_play = (
         spec.vector(written.get(key, [0, 0, 0])) for key in ("stiffness", "damping", "free_play")
     )
-    return Support(written["name"], position, displacement - free_play, stiffness, damping)
+    full_hold = spec.number(written.get("full_hold", 1000)) if written.get("one_sided", False) else None
+    return Support(written["name"], position, displacement - free_play, stiffness, damping, full_hold)
 
 
 def read_drive(crane, written):

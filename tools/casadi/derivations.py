@@ -7,6 +7,8 @@ No formula of the equations of motion is written down here: A, e, forces, K and 
 import casadi as ca
 import numpy as np
 
+from contacts import contact
+
 
 def row_major(matrix):
     """Entries row by row, as a column."""
@@ -19,6 +21,7 @@ class Derivations:
     def __init__(self, crane):
         self.crane = crane
         self.arguments = [crane.time, crane.q, crane.v, crane.parameters]
+        self.contacts = {s.name: contact(s, crane.q, crane.v) for s in crane.supports if s.full_hold is not None}
         self.quantities = {
             **self.transforms(),
             **self.dynamics(),
@@ -126,7 +129,7 @@ class Derivations:
         }
 
     def potentials(self):
-        """Potential energy and Rayleigh's function by part [Urbaś 2016, Eqs. (14), (16), (17), (19)]."""
+        """Potential energy and Rayleigh's function by part, one-sided supports apart [Urbaś 2016, Eqs. (14), (16), (17), (19)]."""
         crane = self.crane
 
         def sum_of(terms):
@@ -138,10 +141,11 @@ class Derivations:
         def lost(springs):
             return sum_of(s.damping * (self.rate(ca.SX(s.motion)) - s.coordinate.v) ** 2 / 2 for s in springs)
 
+        anchored = [s for s in crane.supports if s.full_hold is None]
         return {
             "support": (
-                sum_of(ca.dot(s.stiffness, s.elongation**2) / 2 for s in crane.supports),
-                sum_of(ca.dot(s.damping, self.rate(s.elongation) ** 2) / 2 for s in crane.supports),
+                sum_of(ca.dot(s.stiffness, s.elongation**2) / 2 for s in anchored),
+                sum_of(ca.dot(s.damping, self.rate(s.elongation) ** 2) / 2 for s in anchored),
             ),
             "element": (stored(crane.elements), lost(crane.elements)),
             "drive": (stored(crane.drives), lost(crane.drives)),
@@ -196,8 +200,13 @@ class Derivations:
         damping = -ca.substitute(ca.jacobian(linear, v), v, ca.DM.zeros(v.shape))
         stops, friction, stop_energy, at_rest = self.joint_forces()
         loads = self.load_forces()
+        contacts, contact_energy, contact_damping = self.contact_forces()
+        by_part["support"] += contacts
+        energies["support"] += contact_energy
         # What is neither in the stops' energy nor at rest.
         lost = -ca.dot(stops + friction, v) - ca.jtimes(stop_energy, q, v)
+        lost += sum((c.lost for c in self.contacts.values()), ca.SX(0))
+        step_damping = sum((c.step_damping for c in self.contacts.values()), damping)
         tangents = ca.horzcat(
             -ca.diag(ca.jacobian(stops, q)),
             -ca.diag(ca.jacobian(stops, v)) + ca.fmax(0, -ca.diag(ca.jacobian(friction, v))),
@@ -209,14 +218,21 @@ class Derivations:
             "load_power": ca.dot(loads, v),
             "stop_energy": stop_energy,
             "nonlinear_impedances": row_major(ca.densify(tangents)),
-            LINEAR_DAMPING: row_major(ca.densify(damping)),
+            LINEAR_DAMPING: row_major(ca.densify(step_damping)),
             **{f"{part}_forces": force for part, force in by_part.items()},
-            "forces": linear + stops + friction + loads,
+            "forces": linear + contacts + stops + friction + loads,
             "gravity_energy": self.gravity_energy(),
             **{f"{part}_energy": energies[part] for part in ("support", "element", "drive")},
             "dissipation": 2 * dissipation_function + lost,
-            "linearised_damping": self.unknowns(damping + ca.diag(at_rest), 0),
+            "linearised_damping": self.unknowns(damping + contact_damping + ca.diag(at_rest), 0),
         }
+
+    def contact_forces(self):
+        """One-sided supports: their generalized forces, energy, damping at rest."""
+        size = self.crane.q.numel()
+        contacts = self.contacts.values()
+        forces = sum((c.jacobian.T @ c.force for c in contacts), ca.SX(size, 1))
+        return forces, sum((c.energy for c in contacts), ca.SX(0)), sum((c.at_rest for c in contacts), ca.SX(size, size))
 
     def unknowns(self, matrix, diagonal):
         """A matrix of small motions, row by row: where a coordinate is prescribed, nothing but a number on the diagonal."""
@@ -245,7 +261,7 @@ class Derivations:
     def statics(self):
         """Gradient and Hessian of the whole potential energy at t = 0."""
         potential = self.gravity_energy() + sum(energy for energy, _ in self.potentials().values())
-        potential += self.joint_forces()[2]
+        potential += self.joint_forces()[2] + self.contact_forces()[1]
         stiffness, gradient = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
         loads = ca.substitute(self.load_forces(), self.crane.time, 0)
         slope = ca.jacobian(loads, self.crane.q)
@@ -255,6 +271,7 @@ class Derivations:
         for place in self.crane.rigid_drives:
             holding[place], residual[place] = gradient[place], 0
         springs = ca.hessian(sum(energy for energy, _ in self.potentials().values()), self.crane.q)[0]
+        springs = sum((c.step_stiffness for c in self.contacts.values()), springs)
         return {
             "static_residual": residual,
             "drive_forces_at_rest": holding,
@@ -277,12 +294,23 @@ class Derivations:
         return {
             "points": points,
             "point_velocities": self.rate(points),
-            "support_reactions": ca.vertcat(
-                *[-s.stiffness * s.elongation - s.damping * self.rate(s.elongation) for s in crane.supports]
-            ),
+            "support_reactions": ca.vertcat(*[self.reaction(s) for s in crane.supports]),
+            "support_gaps": ca.vertcat(*[self.gap(s) for s in crane.supports]),
             "drive_motions": row_major(ca.horzcat(prescribed, rates)),
             "drive_power": ca.dot(self.driving_forces(), rates),
         }
+
+    def reaction(self, support):
+        """Force of a support on the crane, world frame."""
+        if support.full_hold is not None:
+            return self.contacts[support.name].force
+        return -support.stiffness * support.elongation - support.damping * self.rate(support.elongation)
+
+    def gap(self, support):
+        """How far a one-sided support is above the ground, and the rate of that; zeros of others."""
+        if support.full_hold is None:
+            return ca.SX.zeros(2)
+        return ca.vertcat(support.elongation[2], self.rate(support.elongation[2]))
 
     def sizes(self):
         """How many numbers each quantity has."""
@@ -303,11 +331,11 @@ class Derivations:
 IMPLICIT_STEP = 0.01
 # Found from the other quantities at each state.
 SOLUTIONS = ["forward_dynamics", "lane_forward_dynamics", "mass_solution", "implicit_solution"]
-# The stiffness of all springs, for these alone: nothing generated has it by itself.
+# The stiffness of all springs that implicit steps take, for these alone: nothing generated has it by itself.
 SPRINGS = "impedance_stiffness"
 # The accelerations of coordinates that rigid drives prescribe, likewise.
 PRESCRIBED = "prescribed_acceleration"
-# The damping of linear dampers, likewise.
+# The damping that implicit steps take, likewise.
 LINEAR_DAMPING = "impedance_damping"
 INTERNAL = [SPRINGS, PRESCRIBED, LINEAR_DAMPING]
 

@@ -208,6 +208,9 @@ pub struct Support {
     pub damping: [Value; 3],
     /// Free play δ along x, y, z, m.
     pub free_play: [Value; 3],
+    /// Of a one-sided support, which presses and never pulls: the pressing force from which it holds sideways and damps in
+    /// full, N. `None` where it pulls as well.
+    pub full_hold: Option<Value>,
     /// How its elongation depends on the base's coordinates.
     pub kinematics: SupportKinematics,
 }
@@ -415,6 +418,12 @@ impl Chain {
         let mut stopped: Vec<CoordinateId> = self.stops().map(|(coordinate, _)| coordinate).collect();
         stopped.dedup();
         stopped
+    }
+
+    /// Whether some support presses and never pulls.
+    #[must_use]
+    pub fn has_one_sided_supports(&self) -> bool {
+        self.supports.iter().any(|support| support.full_hold.is_some())
     }
 
     /// Rigid drives: their coordinates are prescribed, not unknown.

@@ -210,6 +210,12 @@ catalogue! {
     /// Supports carry a base that is rigid.
     E072 supports_on_beam(base) "the crane has supports, but its base `{base}` is a flexible beam",
         "they would hold only its first element", "put a rigid link with `joint: free` under the beam";
+    /// A one-sided support presses with its vertical spring.
+    E073 nothing_to_press(support) "one-sided support `{support}` has nothing to press with", "its vertical stiffness is 0 N/m",
+        "give `stiffness` a third number above zero, in N/m, or remove `one_sided`";
+    /// What depends on the pressing force needs a support that only presses.
+    E074 hold_of_two_sided(support) "`full_hold` of support `{support}` has no effect", "the support pulls as well as it presses",
+        "add `one_sided: true`, or remove `full_hold`";
 
     // Drives, damping, profiles.
     /// A coordinate has at most one drive and one passive damping.
@@ -317,4 +323,7 @@ catalogue! {
     /// Principal moments satisfy the triangle inequality; measured ones may exceed it by up to 25 % (beyond: E051).
     W011 slight_triangle(place, largest, others) "{place} slightly violates the triangle inequality", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
         "no principal moment about the centre of mass exceeds the sum of the other two; rounded or identified data may violate this slightly";
+    /// A one-sided support carries more than the pressing force from which it holds in full.
+    W020 hold_beyond_weight(support, force, share) "`full_hold` of support `{support}` is {force} N",
+        "its share of the crane's weight is {share} N", "write a pressing force that it has at rest, in N: below it the support holds sideways and damps in part only";
 }

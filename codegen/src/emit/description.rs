@@ -34,7 +34,8 @@ fn description_constant(chain: &Chain) -> Item {
         let name = text(&support.name);
         let position = support.position.iter().map(at_defaults);
         let linear = support.kinematics == SupportKinematics::Linear;
-        quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear })
+        let one_sided = support.full_hold.is_some();
+        quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear, one_sided: #one_sided })
     });
     let drives = chain.drives.iter().map(|drive| {
         let (coordinate, start) = (integer(drive.coordinate.0), literal(drive.profile.start(&defaults)));

@@ -57,6 +57,7 @@ impl<'a> Labels<'a> {
             Shape::Pairs(_) if matches!(function.id, FunctionId::JointImpedances | FunctionId::NonlinearImpedances) => {
                 Some(coordinate(slot / 2).to_owned())
             }
+            Shape::Pairs(_) if function.id == FunctionId::SupportGaps => Some(chain.supports[slot / 2].name.clone()),
             Shape::Pairs(_) if function.id == FunctionId::PrescribedMotions => {
                 chain.rigid_drives().nth(slot / 2).map(|drive| coordinate(drive.coordinate.0).to_owned())
             }

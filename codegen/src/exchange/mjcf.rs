@@ -38,7 +38,7 @@ impl std::error::Error for Inexpressible {}
 /// key frame `start`.
 ///
 /// # Errors
-/// A support with exact kinematics, or a body with the name of the ground.
+/// A support with exact kinematics or one that lifts off, or a body with the name of the ground.
 ///
 /// # Panics
 /// If `parameters` is shorter than the chain's list of parameters.
@@ -47,6 +47,13 @@ pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> 
         return Err(Inexpressible {
             title: format!("MJCF has no springs along the world's axes, as support `{}` has them", support.name),
             help: "write `kinematics: linear` for small rotations of the base, or export URDF with its file of springs"
+                .into(),
+        });
+    }
+    if let Some(support) = chain.supports.iter().find(|support| support.full_hold.is_some()) {
+        return Err(Inexpressible {
+            title: format!("MJCF has no support that lifts off, as `{}` does", support.name),
+            help: "remove `one_sided` for a crane whose feet are anchored, or export URDF with its file of springs"
                 .into(),
         });
     }

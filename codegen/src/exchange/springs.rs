@@ -85,11 +85,18 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
              # exact: elongation = way of the point from where it is at q = 0, less free_play.\nsupports:\n",
             base.name
         );
+        if chain.has_one_sided_supports() {
+            text += "  # one_sided: presses along z and never pulls; holds sideways and damps in full from the pressing force full_hold on, N,\n\
+                     # and below it in the share x^2 (3 - 2 x), x = pressing force / full_hold.\n";
+        }
         for support in &chain.supports {
             let kinematics = if support.kinematics == SupportKinematics::Linear { "linear" } else { "exact" };
+            let one_sided = support.full_hold.as_ref().map_or_else(String::new, |force| {
+                format!(", one_sided: true, full_hold: {}", number_text(force.at(parameters)))
+            });
             let _ = writeln!(
                 text,
-                "  - {{name: {}, kinematics: {kinematics}, at: {}, stiffness: {}, damping: {}, free_play: {}}}",
+                "  - {{name: {}, kinematics: {kinematics}, at: {}, stiffness: {}, damping: {}, free_play: {}{one_sided}}}",
                 support.name,
                 list(&support.position),
                 list(&support.stiffness),

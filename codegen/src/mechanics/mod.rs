@@ -6,6 +6,7 @@
 
 mod articulated;
 mod columns;
+mod contact;
 mod drives;
 mod energy;
 mod factors;

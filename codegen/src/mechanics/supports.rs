@@ -5,14 +5,16 @@
 //!   Linear kinematics: `e = U q̃ − δ`, J = U constant. Exact: `e = T r_E − r_E0 − δ`, column j of J is `Ω_j T r_E`.
 //!
 //! Everything is written once in J and e: `f = −Jᵀ (s e + d ė)`, `E = ½ eᵀ s e`. Linear supports are summed into one
-//! 6×6 stiffness and damping of the base before they meet the state, because their J is constant.
+//! 6×6 stiffness and damping of the base before they meet the state, because their J is constant. One-sided supports follow
+//! the law of [`contact`](super::contact) in place of `s e + d ė`.
 
 use crate::chain::{CoordinateId, Step, Support, SupportKinematics};
 use crate::symbolic::Expr;
 
+use super::contact::Contact;
 use super::kinematics::Kinematics;
 use super::model::Model;
-use super::vector::{Rotation, SymmetricMatrix, Vec3};
+use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};
 
 /// The base's coordinates that the crane has: place in `x y z ψ θ φ`, and place in q.
 fn base_coordinates<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
@@ -54,6 +56,10 @@ struct Stretched<'g> {
     jacobian: Vec<(usize, Vec3<'g>)>,
     stiffness: Vec3<'g>,
     damping: Vec3<'g>,
+    /// Of a one-sided support.
+    full_hold: Option<Expr<'g>>,
+    /// Whether J follows the pose.
+    exact: bool,
 }
 
 impl<'g> Stretched<'g> {
@@ -82,13 +88,46 @@ impl<'g> Stretched<'g> {
             jacobian,
             stiffness: model.vector(&support.stiffness),
             damping: model.vector(&support.damping),
+            full_hold: support.full_hold.as_ref().map(|force| model.number(force)),
+            exact: support.kinematics == SupportKinematics::Exact,
         }
+    }
+
+    /// Its law if it is one-sided.
+    fn contact(&self) -> Option<Contact<'g>> {
+        let &Self { stretch: elongation, rate, stiffness, damping, full_hold, .. } = self;
+        full_hold.map(|full_hold| Contact { elongation, rate, stiffness, damping, full_hold })
     }
 
     /// Force on the crane, `−s e − d ė`, N.
     fn reaction(&self) -> Vec3<'g> {
-        Vec3([0, 1, 2].map(|a| -(self.stiffness[a] * self.stretch[a] + self.damping[a] * self.rate[a])))
+        self.contact().map_or_else(
+            || Vec3([0, 1, 2].map(|a| -(self.stiffness[a] * self.stretch[a] + self.damping[a] * self.rate[a]))),
+            |contact| contact.reaction(),
+        )
     }
+
+    /// `∂E/∂e`, N.
+    fn gradient(&self) -> Vec3<'g> {
+        let spring = || Vec3([0, 1, 2].map(|a| self.stiffness[a] * self.stretch[a]));
+        self.contact().map_or_else(spring, |contact| contact.gradient())
+    }
+
+    /// `∂²E/∂e∂e`, N/m.
+    fn tangent(&self) -> Symmetric3<'g> {
+        self.contact().map_or_else(|| diagonal(self.stiffness), |contact| contact.tangent())
+    }
+
+    /// Stiffness and damping for an implicit step, N/m and N s/m.
+    fn impedances(&self) -> [Vec3<'g>; 2] {
+        self.contact().map_or([self.stiffness, self.damping], |contact| contact.impedances())
+    }
+}
+
+/// `diag(c)`
+fn diagonal(c: Vec3<'_>) -> Symmetric3<'_> {
+    let zero = c[0].graph().constant(0.0);
+    Symmetric3([c[0], c[1], c[2], zero, zero, zero])
 }
 
 /// Where a point of the first body is at q̃ = 0: its constant placement alone.
@@ -103,12 +142,18 @@ fn at_rest<'g>(model: &Model<'g>, r: Vec3<'g>) -> Vec3<'g> {
     })
 }
 
-fn exact<'a>(model: &'a Model<'_>) -> impl Iterator<Item = &'a Support> {
-    model.chain.supports.iter().filter(|s| s.kinematics == SupportKinematics::Exact)
+/// Whether force and elongation are linear in the base's coordinates.
+fn is_linear(support: &Support) -> bool {
+    support.kinematics == SupportKinematics::Linear && support.full_hold.is_none()
+}
+
+/// Supports with J or a law that follows the state, one by one.
+fn nonlinear<'a>(model: &'a Model<'_>) -> impl Iterator<Item = &'a Support> {
+    model.chain.supports.iter().filter(|support| !is_linear(support))
 }
 
 fn linear<'a>(model: &'a Model<'_>) -> impl Iterator<Item = &'a Support> {
-    model.chain.supports.iter().filter(|s| s.kinematics == SupportKinematics::Linear)
+    model.chain.supports.iter().filter(|support| is_linear(support))
 }
 
 /// `Σ Uᵀ diag(c) U` over the linear supports, c their stiffness or damping [Urbaś 2016, Eq. (18), row by row].
@@ -159,7 +204,7 @@ pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, v: &[Expr<'g>]
             sum - (stiffness * model.q[j] + damping * v[j])
         });
     }
-    for support in exact(model) {
+    for support in nonlinear(model) {
         let stretched = Stretched::new(model, kinematics, support, v);
         let reaction = stretched.reaction();
         for (j, column) in &stretched.jacobian {
@@ -185,49 +230,97 @@ pub fn reactions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr
     model.chain.supports.iter().flat_map(reaction).collect()
 }
 
+/// Gap of each support, how far it is above the ground, and the rate of the gap, m and m/s: `e_z` and `ė_z` of one-sided supports,
+/// negative where they are pressed in; 0 of all others.
+pub fn gaps<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let gap = |support: &Support| {
+        let stretched = Stretched::new(model, kinematics, support, &model.v);
+        let one_sided = |number: Expr<'g>| if support.full_hold.is_some() { number } else { model.zero() };
+        [one_sided(stretched.stretch[2]), one_sided(stretched.rate[2])]
+    };
+    model.chain.supports.iter().flat_map(gap).collect()
+}
+
 /// `E_s = ½ Σ s e²` [Urbaś 2016, Eqs. (16)–(17)].
 pub fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
-    0.5 * quadratic(model, kinematics, |s| (s.stretch, s.stiffness))
+    0.5 * sum(model, kinematics, |s| (s.stretch, s.stiffness), Contact::twice_energy)
 }
 
 /// Power that the supports' dampers take out, `Σ d ė²` (2R of [Urbaś 2016, Eq. (17)]).
 pub fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
-    quadratic(model, kinematics, |s| (s.rate, s.damping))
+    sum(model, kinematics, |s| (s.rate, s.damping), Contact::dissipation)
 }
 
-/// `Σ c x²` over supports and axes.
-fn quadratic<'g>(
+/// `Σ c x²` over supports and axes; of one-sided supports what their law says.
+fn sum<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
     of: impl Fn(&Stretched<'g>) -> (Vec3<'g>, Vec3<'g>),
+    of_contact: impl Fn(&Contact<'g>) -> Expr<'g>,
 ) -> Expr<'g> {
     model.chain.supports.iter().fold(model.zero(), |sum, support| {
-        let (x, c) = of(&Stretched::new(model, kinematics, support, &model.v));
+        let stretched = Stretched::new(model, kinematics, support, &model.v);
+        if let Some(contact) = stretched.contact() {
+            return sum + of_contact(&contact);
+        }
+        let (x, c) = of(&stretched);
         (0..3).fold(sum, |sum, axis| sum + c[axis] * x[axis].squared())
     })
 }
 
-/// `∂²E_s/∂q_i∂q_j = J_iᵀ s J_j + (s e) · Ω_i Ω_j T r_E`; linear supports have no second term.
+/// `∂²E_s/∂q_i∂q_j = J_iᵀ (∂²E/∂e∂e) J_j + ∂E/∂e · Ω_i Ω_j T r_E`; linear kinematics have no second term.
 pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    add_stiffness(model, kinematics, &model.zeros(), Stretched::tangent, matrix);
+}
+
+/// The same for an implicit step at the present state: the law's stiffness along the axes, nowhere negative.
+pub fn step_stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    add_stiffness(model, kinematics, &model.v, |stretched| diagonal(stretched.impedances()[0]), matrix);
+}
+
+fn add_stiffness<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    v: &[Expr<'g>],
+    tangent: impl Fn(&Stretched<'g>) -> Symmetric3<'g>,
+    matrix: &mut SymmetricMatrix<'g>,
+) {
     linear_matrix(model, |s| model.vector(&s.stiffness), matrix);
-    for support in exact(model) {
-        let stretched = Stretched::new(model, kinematics, support, &model.zeros());
-        let s = stretched.stiffness;
-        let pull = Vec3([0, 1, 2].map(|a| s[a] * stretched.stretch[a]));
+    for support in nonlinear(model) {
+        let stretched = Stretched::new(model, kinematics, support, v);
+        let (tangent, pull) = (tangent(&stretched), stretched.gradient());
         for (&(i, u), &(j, w)) in pairs(stretched.jacobian.iter()) {
-            let first_order = Vec3([0, 1, 2].map(|a| s[a] * u[a])).dot(w);
+            let first_order = tangent.apply(u).dot(w);
             // J_j is Ω_j T r_E, a direction that Ω_i turns.
-            matrix.add(i, j, first_order + pull.dot(kinematics.generators[i].turn(w)));
+            let second_order = if stretched.exact { pull.dot(kinematics.generators[i].turn(w)) } else { model.zero() };
+            matrix.add(i, j, first_order + second_order);
         }
     }
 }
 
-/// `Jᵀ d J`.
+/// `Jᵀ d J`, of one-sided supports at rest.
 pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    let at_rest =
+        |stretched: &Stretched<'g>| stretched.contact().map_or(stretched.damping, |contact| contact.damping_at_rest());
+    add_damping(model, kinematics, &model.zeros(), at_rest, matrix);
+}
+
+/// The same for an implicit step at the present state.
+pub fn step_damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    add_damping(model, kinematics, &model.v, |stretched| stretched.impedances()[1], matrix);
+}
+
+fn add_damping<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    v: &[Expr<'g>],
+    damping: impl Fn(&Stretched<'g>) -> Vec3<'g>,
+    matrix: &mut SymmetricMatrix<'g>,
+) {
     linear_matrix(model, |s| model.vector(&s.damping), matrix);
-    for support in exact(model) {
-        let stretched = Stretched::new(model, kinematics, support, &model.zeros());
-        let d = stretched.damping;
+    for support in nonlinear(model) {
+        let stretched = Stretched::new(model, kinematics, support, v);
+        let d = damping(&stretched);
         for (&(i, u), &(j, w)) in pairs(stretched.jacobian.iter()) {
             matrix.add(i, j, Vec3([0, 1, 2].map(|a| d[a] * u[a])).dot(w));
         }

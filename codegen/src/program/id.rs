@@ -74,6 +74,7 @@ functions! {
         LoadForces = "load_forces",
         LoadPieces = "load_pieces",
         SupportReactions = "support_reactions",
+        SupportGaps = "support_gaps",
         DriveMotions = "drive_motions",
         PrescribedMotions = "prescribed_motions",
         DrivePieces = "drive_pieces",

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Given, Vector};
+use super::{Given, Number, Vector};
 
 /// A support of a free base: three springs and dampers along the axes of the world.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -21,6 +21,10 @@ pub struct Support {
     pub free_play: Option<Given<Vector>>,
     /// How the elongation depends on the base's coordinates. Default `linear`.
     pub kinematics: Option<Given<Kinematics>>,
+    /// Whether it presses only, along z, and lifts off instead of pulling. Free play along z is then a gap. Default `false`.
+    pub one_sided: Option<Given<bool>>,
+    /// Pressing force from which a one-sided support holds sideways and damps in full, N. Default 1000.
+    pub full_hold: Option<Given<Number>>,
 }
 
 /// How the elongation of a support depends on the base's coordinates.

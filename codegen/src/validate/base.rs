@@ -2,9 +2,13 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{Step, Support, SupportKinematics};
+use crate::chain::{Step, Support, SupportKinematics, Value};
 use crate::diagnostic::rule;
-use crate::spec::{Crane, Kinematics};
+use crate::spec::{self, Crane, Kinematics};
+
+/// Pressing force from which a one-sided support holds in full unless the spec says so, N: a hundredth of what a foot of a
+/// timber crane carries.
+const FULL_HOLD: f64 = 1e3;
 
 impl<'a> Check<'a> {
     pub(super) fn supports(&mut self, crane: &'a Crane) -> Vec<Support> {
@@ -39,15 +43,37 @@ impl<'a> Check<'a> {
                 self.report(rule::linear_placed(span, &name, how));
             }
             let place = |what: &str| format!("the {what} of support `{name}`");
+            let stiffness = self.vector(&support.stiffness, &place("stiffness"), "N/m", Limit::NotNegative);
+            let full_hold = self.full_hold(support, &name, &stiffness[2]);
             sound.push(Support {
                 position: self.vector(&support.at, &place("position"), "m", Limit::Any),
-                stiffness: self.vector(&support.stiffness, &place("stiffness"), "N/m", Limit::NotNegative),
+                stiffness,
                 damping: self.vector_or_zero(support.damping.as_ref(), &place("damping"), "N s/m", Limit::NotNegative),
                 free_play: self.vector_or_zero(support.free_play.as_ref(), &place("free play"), "m", Limit::Any),
+                full_hold,
                 kinematics,
                 name,
             });
         }
         sound
+    }
+
+    /// The pressing force from which a one-sided support holds in full.
+    fn full_hold(&mut self, support: &spec::Support, name: &str, stiffness: &Value) -> Option<Value> {
+        let place = format!("the full hold of support `{name}`");
+        let full_hold = self.number_or(support.full_hold.as_ref(), FULL_HOLD, &place, "N", Limit::Positive);
+        let one_sided = support.one_sided.as_ref().filter(|given| given.value != Some(false));
+        let Some(given) = one_sided else {
+            if let Some(full_hold) = &support.full_hold {
+                self.report(rule::hold_of_two_sided(full_hold.span, name));
+            }
+            return None;
+        };
+        let broken = rule::nothing_to_press(given.span, name);
+        if self.now(stiffness) == 0.0 {
+            self.report(broken.clone());
+        }
+        self.keep_positive(stiffness.clone(), &broken);
+        (given.value == Some(true)).then_some(full_hold)
     }
 }

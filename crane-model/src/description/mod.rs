@@ -52,6 +52,8 @@ pub struct Description {
 pub const NEAR_SINGULAR: f64 = 0.03;
 /// Rotation of a base beyond which linear supports are no longer accurate, rad: their error is half a percent of it.
 pub const LARGE_TILT: f64 = 0.1;
+/// Rotation of a base beyond which a crane on feet that lift has tipped over, rad: soft feet give way by some hundredths.
+pub const TIPPED: f64 = 0.5;
 
 #[cfg(feature = "std")]
 impl Description {
@@ -82,6 +84,16 @@ impl Description {
                 let degrees = angle.to_degrees();
                 format!("{name} is {degrees:.2}°: near ±90° {body}_psi and {body}_phi turn about the same axis and accuracy is lost")
             })
+        })
+    }
+
+    /// Whether the base has tipped over between two poses: rotated about a horizontal axis by more than [`TIPPED`].
+    pub fn has_tipped(&self, from: &[f64], to: &[f64]) -> bool {
+        let tilts = |name: &str| name.ends_with("_theta") || name.ends_with("_phi");
+        self.coordinates.iter().zip(from.iter().zip(to)).any(|(CoordinateInfo { name, role, kind }, (from, to))| {
+            (*role, *kind) == (CoordinateRole::Base, CoordinateKind::Rotation)
+                && tilts(name)
+                && (to - from).abs() > TIPPED
         })
     }
 
@@ -213,6 +225,8 @@ pub struct SupportInfo {
     pub position: [f64; 3],
     /// Whether its elongation is linear in the base's coordinates, `kinematics: linear`.
     pub linear: bool,
+    /// Whether it presses only, and lifts off instead of pulling.
+    pub one_sided: bool,
 }
 
 /// A drive.

@@ -97,6 +97,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H
         self.0.support_reactions(&vector(q), &vector(v), out);
     }
 
+    fn support_gaps(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.0.support_gaps(&vector(q), &vector(v), out);
+    }
+
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
         self.0.drive_motions(t, out);
     }
@@ -194,12 +198,12 @@ impl<const N: usize, H: Deref<Target: Implicit<N> + Sized>> DynImplicit for Inst
         self.0.nonlinear_impedances(t, &vector(q), &vector(v), out);
     }
 
-    fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64> {
-        self.0.base_stiffness(&vector(q))
+    fn base_stiffness(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
+        self.0.base_stiffness(&vector(q), &vector(v))
     }
 
-    fn base_damping(&self, q: &[f64]) -> Matrix6<f64> {
-        self.0.base_damping(&vector(q))
+    fn base_damping(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
+        self.0.base_damping(&vector(q), &vector(v))
     }
 }
 

@@ -77,6 +77,9 @@ pub trait DynModel {
     /// Forces of the supports on the crane, world frame, N.
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
 
+    /// How far each one-sided support is above the ground, m, and the rate of that, m/s; 0 of all others.
+    fn support_gaps(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
+
     /// Prescribed position and rate of every drive.
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]);
 
@@ -155,11 +158,11 @@ pub trait DynImplicit: DynDynamics {
     /// Stiffness and damping of end stops and friction on single coordinates at a state. `out`: one pair per coordinate.
     fn nonlinear_impedances(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
 
-    /// Stiffness over the base's coordinates.
-    fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64>;
+    /// Stiffness over the base's coordinates at a state.
+    fn base_stiffness(&self, q: &[f64], v: &[f64]) -> Matrix6<f64>;
 
-    /// Damping over the base's coordinates.
-    fn base_damping(&self, q: &[f64]) -> Matrix6<f64>;
+    /// Damping over the base's coordinates at a state.
+    fn base_damping(&self, q: &[f64], v: &[f64]) -> Matrix6<f64>;
 }
 
 /// Systems `(A(q) + D̂) x = r` of a crane, one after the other.

@@ -162,6 +162,13 @@ impl dyn DynCrane + '_ {
         out
     }
 
+    /// How far each one-sided support is above the ground, negative where it is pressed in, and 0 for all others, m.
+    pub fn support_gaps_at(&self, q: &[f64]) -> Vec<f64> {
+        let mut out = vec![[0.0; 2]; self.description().supports.len()];
+        self.support_gaps(q, &vec![0.0; q.len()], &mut out);
+        out.into_iter().map(|[gap, _]| gap).collect()
+    }
+
     /// The wrench that the part beyond each cut exerts on the part before it, cut by cut: N and N m.
     pub fn internal_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
         let mut out = vec![Wrench::ZERO; self.description().cuts().len()];
@@ -230,14 +237,15 @@ impl dyn DynCrane + '_ {
         statics::guess_dyn(self)
     }
 
-    /// Static equilibrium from the guess: [`statics::solve`].
+    /// Static equilibrium from the guess: [`statics::solve`]. Where feet lift and no pose stands, it says what the crane tips over.
     pub fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {
-        statics::solve_dyn(self, settings)
+        statics::named(self, 0.0, &self.guess(), statics::solve_dyn(self, settings))
     }
 
-    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`].
+    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`], and what the crane
+    /// tips over.
     pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        statics::solve_at_dyn(self, t, q, settings)
+        statics::named(self, t, q, statics::solve_at_dyn(self, t, q, settings))
     }
 
     /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`].

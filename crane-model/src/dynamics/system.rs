@@ -62,7 +62,7 @@ impl<'a> System<'a> {
         for ((joint, linear), nonlinear) in self.joints.iter_mut().zip(&self.linear).zip(&self.nonlinear) {
             *joint = [linear[0] + nonlinear[0], linear[1] + nonlinear[1]];
         }
-        self.base = [self.crane.base_stiffness(q), self.crane.base_damping(q)];
+        self.base = [self.crane.base_stiffness(q, v), self.crane.base_damping(q, v)];
         for (resistance, [stiffness, damping]) in self.resistance.iter_mut().zip(&self.joints) {
             *resistance = damping * c + stiffness * (c * c);
         }

@@ -1,24 +1,16 @@
 //! Cautions about poses and runs for which the model is not valid.
 
-use nalgebra::Vector3;
-
-use super::{Extremes, Table, stop_effort};
+pub use super::feet::of_reactions;
+use super::{Extremes, Table, feet, stop_effort};
 use crate::{Description, dyn_crane::DynCrane};
 
 /// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
 /// have an error of about 1 %.
 pub const BEND: f64 = 20.0;
-/// Fraction of the largest reaction below which a pull is rounding.
-const ROUNDING: f64 = 1e-9;
 
-/// Feet that pull the crane down, joints on their stops, and elements bent beyond `bend` degrees, at a pose at rest.
+/// Feet that pull the crane down or have lifted, joints on their stops, and elements bent beyond `bend` degrees, at a pose at rest.
 pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let description = rig.description();
-    let reactions = rig.support_reactions_at(q, &vec![0.0; q.len()]);
-    let greatest = reactions.iter().map(Vector3::amax).fold(0.0, f64::max);
-    let forces =
-        description.supports.iter().zip(&reactions).map(|(support, force)| (support.name.as_str(), force.z, None));
-    let pulls: Vec<_> = forces.filter(|(_, force, _)| *force < -ROUNDING * greatest).collect();
     let angles = description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role.is_element());
     let bent = angles.map(|(coordinate, angle)| (coordinate.name.as_str(), *angle));
     let stopped = description.stops.iter().zip(rig.stop_efforts_at(q, &vec![0.0; q.len()]));
@@ -26,19 +18,18 @@ pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
         let coordinate = &description.coordinates[coordinate];
         format!("{} rests on its stop with {:.1} {}", coordinate.name, effort.abs(), coordinate.kind.force_unit())
     });
-    pulled(&pulls).into_iter().chain(stopped).chain(bent_beyond(bent, bend)).collect()
+    feet::of_pose(rig, q).chain(stopped).chain(bent_beyond(bent, bend)).collect()
 }
 
 /// The same over a run.
 pub fn of_run(description: &Description, table: &Table, bend: f64) -> Vec<String> {
-    let pulls = of_reactions(description, &|name| Some(Extremes::of(table, name)));
     let elements = description.coordinates.iter().filter(|coordinate| coordinate.role.is_element());
     let bent = elements.map(|coordinate| {
         let Extremes { minimum, maximum, .. } = Extremes::of(table, &coordinate.name);
         (coordinate.name.as_str(), if -minimum > maximum { minimum } else { maximum })
     });
     let stopped = description.stops.iter().filter_map(|&coordinate| on_stop(description, table, coordinate));
-    pulls.into_iter().chain(stopped).chain(bent_beyond(bent, bend)).collect()
+    feet::of_run(description, table).chain(stopped).chain(bent_beyond(bent, bend)).collect()
 }
 
 /// Reports how long a joint is on its stops during a run, and the largest effort of these.
@@ -53,33 +44,6 @@ fn on_stop(description: &Description, table: &Table, coordinate: usize) -> Optio
     (effort > 0.0).then(|| {
         let (name, unit) = (&coordinate.name, coordinate.kind.force_unit());
         format!("{name} is on its stop for {met:.2} s; the stop takes up to {effort:.1} {unit}, at {time:.2} s")
-    })
-}
-
-/// Feet that pull the crane down over a run, by the extremes of its columns.
-pub fn of_reactions(description: &Description, extremes: &dyn Fn(&str) -> Option<Extremes>) -> Option<String> {
-    let reaction = |name: &str| extremes(&format!("{name}_reaction_z")).unwrap_or_default();
-    let greatest = description.supports.iter().map(|support| reaction(&support.name).size()).fold(0.0, f64::max);
-    let pulls = description.supports.iter().filter_map(|support| {
-        let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
-        (minimum < -ROUNDING * greatest).then_some((support.name.as_str(), minimum, Some(time_of_minimum)))
-    });
-    pulled(&pulls.collect::<Vec<_>>())
-}
-
-/// Reports which feet pull, with which force, and when.
-fn pulled(pulls: &[(&str, f64, Option<f64>)]) -> Option<String> {
-    let each = pulls.iter().map(|(name, force, time)| {
-        let when = time.map_or_else(String::new, |t| format!(" at {t:.2} s"));
-        format!("{name} ({:.2} kN{when})", force / 1e3)
-    });
-    let feet = each.collect::<Vec<_>>().join(", ");
-    let (pull, would) = if pulls.len() == 1 { ("pulls", "a real foot") } else { ("pull", "real feet") };
-    (!pulls.is_empty()).then(|| {
-        format!(
-            "{feet} {pull} on the ground: {would} would lift off and the crane might tip; forces and poses are valid only for \
-             anchored feet"
-        )
     })
 }
 

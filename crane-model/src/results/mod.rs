@@ -2,6 +2,7 @@
 
 pub mod cautions;
 mod extremes;
+mod feet;
 mod headlines;
 mod peaks;
 mod recording;
@@ -11,6 +12,6 @@ pub mod verification;
 pub use extremes::Extremes;
 pub use headlines::{Kind, headlines};
 pub use peaks::Peaks;
-pub use recording::{Recording, drive_effort, quantities, quantities_at, stop_effort};
+pub use recording::{Recording, drive_effort, quantities, quantities_at, stop_effort, support_gap};
 pub use table::{Column, Table};
 pub use verification::Verification;

@@ -11,7 +11,7 @@ use crate::{
 ///
 /// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; of a drive `<coordinate>_prescribed` and
 /// `<coordinate>_drive_torque` or `_drive_force`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
-/// `<support>_reaction_x`, `_y`, `_z`; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
+/// `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap` as well; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
 /// error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
@@ -76,6 +76,8 @@ fn push_quantities(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], row: &mut
     for reaction in crane.support_reactions_at(q, v) {
         row.extend(&reaction);
     }
+    let gaps = crane.support_gaps_at(q).into_iter().zip(&*crane.description().supports);
+    row.extend(gaps.filter(|(_, support)| support.one_sided).map(|(gap, _)| gap));
     row.extend(crane.element_moments_at(q, v));
     row.extend(crane.stop_efforts_at(q, v));
     row.extend(crane.friction_efforts_at(v));
@@ -114,6 +116,9 @@ pub fn quantities(description: &Description) -> Vec<Column> {
             table.add(format!("{}_reaction_{axis}", support.name), "N");
         }
     }
+    for support in description.supports.iter().filter(|support| support.one_sided) {
+        table.add(support_gap(&support.name), "m");
+    }
     for coordinate in description.coordinates.iter().filter(|coordinate| coordinate.role.is_element()) {
         table.add(format!("{}_moment", coordinate.name), coordinate.kind.force_unit());
     }
@@ -137,6 +142,11 @@ fn audited(description: &Description) -> Vec<Column> {
     let load_work = (!description.loads.is_empty()).then_some("load_work");
     let names = ["drive_work", "dissipated_energy"].into_iter().chain(load_work).chain(["energy_balance"]);
     names.map(|energy| Column { name: energy.to_owned(), unit: "J".to_owned() }).collect()
+}
+
+/// Name of the column with the gap under a one-sided support.
+pub fn support_gap(support: &str) -> String {
+    format!("{support}_gap")
 }
 
 /// Name of the column with the torque or force of a drive.

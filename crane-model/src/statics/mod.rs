@@ -9,9 +9,11 @@ mod settings;
 mod solve;
 mod status;
 mod tangent;
+mod tipped;
 
 pub use equilibrium::{Equilibrium, Iteration};
 pub use guess::{guess, guess_dyn};
 pub use settings::Settings;
 pub use solve::{solve, solve_at, solve_at_dyn, solve_dyn, solve_holding_dyn};
 pub use status::Status;
+pub(crate) use tipped::named;

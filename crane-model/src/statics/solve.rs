@@ -155,7 +155,7 @@ fn missed(crane: &dyn DynStatics, start: &DVector<f64>, settings: &Settings, fou
             .is_some_and(|tangent| tangent.status(description) == Status::Converged)
     };
     match found.status {
-        Status::Converged | Status::Overflow => false,
+        Status::Converged | Status::TipsOver { .. } | Status::Overflow => false,
         // Also reported for poses where no step helps; at an equilibrium it is exact.
         Status::Singular { .. } => !found.at_rest(settings),
         Status::NotConverged => true,

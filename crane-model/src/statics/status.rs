@@ -20,6 +20,11 @@ pub enum Status {
         /// Coordinates that move in that direction.
         coordinates: Vec<Text>,
     },
+    /// A crane on feet that lift has no stable pose with its base upright.
+    TipsOver {
+        /// Feet at the ends of the line that it tips over, or those that press last; may be empty.
+        feet: Vec<Text>,
+    },
     /// Forces or stiffnesses at the guess are not finite numbers.
     Overflow,
     /// No equilibrium found within the allowed iterations, or no step reduced the residual.
@@ -49,6 +54,8 @@ impl fmt::Display for Status {
             Status::Singular { coordinates } => {
                 write!(f, "singular: nothing constrains {}", coordinates.join(", "))
             }
+            Status::TipsOver { feet } if feet.is_empty() => f.write_str("tips over: no stable pose is left"),
+            Status::TipsOver { feet } => write!(f, "tips over about {}: no stable pose is left", feet.join(" – ")),
             Status::Overflow => f.write_str("forces overflow: a mass, a stiffness or a position is out of range"),
             Status::NotConverged => f.write_str("not converged: no equilibrium found from this guess"),
         }

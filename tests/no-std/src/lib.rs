@@ -63,6 +63,7 @@ macro_rules! crane {
                 load_forces(t: f64, q: &Vector) -> Vector;
                 load_pieces(out: &mut [[f64; 2]]);
                 support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
+                support_gaps(q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 drive_motions(t: f64, out: &mut [[f64; 2]]);
                 drive_pieces(out: &mut [[f64; 2]]);
                 prescribe(t: f64, q: &mut Vector, v: &mut Vector);
@@ -85,8 +86,8 @@ macro_rules! crane {
                 solve(factors: &Factors, r: &Vector) -> Vector;
                 joint_impedances(out: &mut [[f64; 2]]);
                 nonlinear_impedances(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
-                base_stiffness(q: &Vector) -> BaseMatrix;
-                base_damping(q: &Vector) -> BaseMatrix;
+                base_stiffness(q: &Vector, v: &Vector) -> BaseMatrix;
+                base_damping(q: &Vector, v: &Vector) -> BaseMatrix;
                 static_residual(q: &Vector) -> Vector;
                 tangent_stiffness(q: &Vector) -> Matrix;
                 drive_forces_at_rest(q: &Vector) -> Vector;

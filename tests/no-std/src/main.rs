@@ -23,6 +23,7 @@ macro_rules! call_all {
         let pieces = DESCRIPTION.drives.iter().map(|drive| drive.pieces).sum();
         let mut pieces = vec![[0.0; 2]; black_box(pieces)];
         let mut impedances = vec![[0.0; 2]; black_box(q.len())];
+        let mut gaps = vec![[0.0; 2]; black_box(DESCRIPTION.supports.len())];
         let mut mass = Matrix::zeros();
         let _ = black_box(of::set_parameter(&mut crane, black_box(0), black_box(400.0)));
         let _ = black_box(of::set_parameters(&mut crane, black_box(&[400.0])));
@@ -39,6 +40,7 @@ macro_rules! call_all {
         black_box(of::load_forces(&crane, t, &q));
         of::load_pieces(&crane, &mut pieces);
         of::support_reactions(&crane, &q, &v, &mut vectors);
+        of::support_gaps(&crane, &q, &v, &mut gaps);
         of::drive_motions(&crane, t, &mut motions);
         of::drive_pieces(&crane, &mut pieces);
         of::prescribe(&crane, t, &mut q, &mut v);
@@ -61,8 +63,8 @@ macro_rules! call_all {
         black_box(of::solve(&crane, &factors, &v));
         of::joint_impedances(&crane, &mut impedances);
         of::nonlinear_impedances(&crane, t, &q, &v, &mut impedances);
-        black_box(of::base_stiffness(&crane, &q));
-        black_box(of::base_damping(&crane, &q));
+        black_box(of::base_stiffness(&crane, &q, &v));
+        black_box(of::base_damping(&crane, &q, &v));
         black_box(of::static_residual(&crane, &q));
         black_box(of::tangent_stiffness(&crane, &q));
         black_box(of::drive_forces_at_rest(&crane, &q));
@@ -77,7 +79,7 @@ macro_rules! call_all {
         black_box(of::lane_forward_dynamics(&lanes, splat(t), &lane_q, &lane_v));
         let mut state = State { q, v };
         black_box(of::step(&crane, t, black_box(1e-4), &mut state));
-        black_box((state, matrices, vectors, motions, pieces, impedances, mass, wrenches, moduli));
+        black_box((state, matrices, vectors, motions, pieces, impedances, gaps, mass, wrenches, moduli));
     }};
 }
 

@@ -178,8 +178,8 @@ impl LiveCrane {
         }
     }
 
-    fn over_the_base(&self, id: FunctionId, q: &[f64]) -> Matrix6<f64> {
-        self.call(id, &at(q), |_, results| Matrix6::from_column_slice(results)).unwrap_or_default()
+    fn over_the_base(&self, id: FunctionId, q: &[f64], v: &[f64]) -> Matrix6<f64> {
+        self.call(id, &state(0.0, q, v), |_, results| Matrix6::from_column_slice(results)).unwrap_or_default()
     }
 }
 
@@ -290,6 +290,10 @@ impl DynModel for LiveCrane {
 
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
         self.vectors(FunctionId::SupportReactions, &state(0.0, q, v), out);
+    }
+
+    fn support_gaps(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::SupportGaps, &state(0.0, q, v), out);
     }
 
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
@@ -406,12 +410,12 @@ impl DynImplicit for LiveCrane {
         self.pairs(FunctionId::NonlinearImpedances, &state(t, q, v), out);
     }
 
-    fn base_stiffness(&self, q: &[f64]) -> Matrix6<f64> {
-        self.over_the_base(FunctionId::BaseStiffness, q)
+    fn base_stiffness(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
+        self.over_the_base(FunctionId::BaseStiffness, q, v)
     }
 
-    fn base_damping(&self, q: &[f64]) -> Matrix6<f64> {
-        self.over_the_base(FunctionId::BaseDamping, q)
+    fn base_damping(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
+        self.over_the_base(FunctionId::BaseDamping, q, v)
     }
 }
 

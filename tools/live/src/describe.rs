@@ -39,6 +39,7 @@ pub fn describe(chain: &Chain) -> Description {
         name: support.name.clone().into(),
         position: support.position.each_ref().map(at_defaults),
         linear: support.kinematics == SupportKinematics::Linear,
+        one_sided: support.full_hold.is_some(),
     });
     let drives = chain.drives.iter().map(|drive| DriveInfo {
         coordinate: drive.coordinate.0,

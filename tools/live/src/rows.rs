@@ -229,6 +229,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::TransformDerivatives => 16 * bodies * n,
             FunctionId::Points | FunctionId::PointVelocities => 3 * points,
             FunctionId::SupportReactions => 3 * supports,
+            FunctionId::SupportGaps => 2 * supports,
             FunctionId::DriveMotions => 2 * drives,
             FunctionId::GravityEnergy
             | FunctionId::SupportEnergy

@@ -127,6 +127,8 @@ class Crane:
         """(..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m."""
     def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., supports, 3): forces of the supports on the crane, world frame, N."""
+    def support_gaps(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., supports, 2): how far one-sided supports are above the ground, m, negative where pressed in, and its rate, m/s; 0 of others."""
     def drive_motions(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., drives, 2): prescribed positions and rates of the drives at times t, m and rad, m/s and rad/s."""
     def forward_dynamics(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:

@@ -167,6 +167,7 @@ impl Crane {
             let row = PyDict::new(py);
             row.set_item("name", &*info.name)?;
             row.set_item("position", info.position.to_vec())?;
+            row.set_item("one_sided", info.one_sided)?;
             rows.push(row);
         }
         all.set_item("supports", list(std::mem::take(&mut rows))?)?;

@@ -51,6 +51,7 @@ impl Found {
             Status::Converged => "stable",
             Status::Unstable { .. } => "unstable",
             Status::Singular { .. } => "singular",
+            Status::TipsOver { .. } => "tips over",
             Status::Overflow => "overflow",
             Status::NotConverged => "not converged",
         }

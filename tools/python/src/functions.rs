@@ -240,6 +240,20 @@ impl Crane {
         )
     }
 
+    /// (..., supports, 2): how far one-sided supports are above the ground, m, negative where pressed in, and its rate, m/s; 0 of others.
+    #[pyo3(signature = (q, v, *, invalid="raise"))]
+    fn support_gaps<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let own = [self.live.description().supports.len(), 2];
+        let state = State { q: Some(q), v: Some(v), ..State::default() };
+        self.compute(py, Quantity::Of(FunctionId::SupportGaps), state, &own, invalid)
+    }
+
     /// (..., drives, 2): prescribed positions and rates of the drives at times t, m and rad, m/s and rad/s.
     #[pyo3(signature = (t, *, invalid="raise"))]
     fn drive_motions<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {

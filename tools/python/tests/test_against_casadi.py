@@ -33,6 +33,7 @@ def on_paper(c, t, q, v):
         "load_forces": c.load_forces(q, t),
         "drive_forces_at_rest": c.drive_forces_at_rest(q),
         "support_reactions": c.support_reactions(q, v),
+        "support_gaps": c.support_gaps(q, v),
         "drive_motions": c.drive_motions(t),
         "points": c.points(q),
         "point_velocities": c.point_velocities(q, v),

@@ -21,6 +21,7 @@ FUNCTIONS = [
     ("load_forces", "qt", lambda c: (c.n,)),
     ("drive_forces_at_rest", "q", lambda c: (c.n,)),
     ("support_reactions", "qv", lambda c: (len(c.info["supports"]), 3)),
+    ("support_gaps", "qv", lambda c: (len(c.info["supports"]), 2)),
     ("drive_motions", "t", lambda c: (len(c.info["drives"]), 2)),
     ("forward_dynamics", "qvt", lambda c: (c.n,)),
     ("static_residual", "q", lambda c: (c.n,)),

@@ -10,6 +10,21 @@ use crate::symbolic::{Expr, Tape};
 type Part<'g> = (FunctionId, &'static str, &'static str, &'static [Argument], Vec<Expr<'g>>);
 
 impl<'g> Derivation<'g> {
+    /// How far one-sided supports are above the ground, if there are any.
+    fn support_gaps(&self) -> Option<Function> {
+        let (model, chain) = (&self.model, self.model.chain);
+        chain.has_one_sided_supports().then(|| {
+            function(
+                FunctionId::SupportGaps,
+                "How far one-sided supports are above the ground, m, negative where they are pressed in, and its rate, m/s; 0 of others.",
+                "e_z, ė_z [Urbaś 2016, Eq. (16)]",
+                &[Position, Velocity],
+                Shape::Pairs(chain.supports.len()),
+                supports::gaps(model, &self.kinematics),
+            )
+        })
+    }
+
     pub(super) fn forces(&self) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
         let vector = || Shape::Vector(model.size());
@@ -35,6 +50,7 @@ impl<'g> Derivation<'g> {
                 supports::reactions(model, &self.kinematics),
             ));
         }
+        functions.extend(self.support_gaps());
         if !chain.elements.is_empty() {
             let forces = springs::element_forces(model, &model.q, &model.v);
             parts.push(forces.clone());

@@ -244,7 +244,7 @@ impl<'g> Derivation<'g> {
             )
             .by(late_tape),
         ];
-        let (stiffness, damping) = self.impedances();
+        let (stiffness, damping) = self.step_impedances();
         let base: Vec<usize> = model.chain.base.iter().flatten().map(|id| id.0).collect();
         let diagonal =
             |j: usize| [&stiffness, &damping].map(|m| if base.contains(&j) { model.zero() } else { m.at(j, j) });
@@ -290,7 +290,7 @@ impl<'g> Derivation<'g> {
                     id,
                     doc,
                     "Σ Jᵀ diag(s, d) J [Urbaś 2016, Eq. (18)]",
-                    &[Position],
+                    &[Position, Velocity],
                     Shape::Base,
                     block(matrix),
                 ));
@@ -307,6 +307,21 @@ impl<'g> Derivation<'g> {
         supports::stiffness(model, &self.kinematics, &mut stiffness);
         springs::stiffness(model, &mut stiffness);
         supports::damping(model, &self.kinematics, &mut damping);
+        springs::damping(model, &mut damping);
+        (stiffness, damping)
+    }
+
+    /// The same for implicit steps: of one-sided supports at the present state, nowhere negative.
+    fn step_impedances(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
+        let model = &self.model;
+        if !model.chain.has_one_sided_supports() {
+            return self.impedances();
+        }
+        let zero = || SymmetricMatrix::zero(model.graph, model.size());
+        let (mut stiffness, mut damping) = (zero(), zero());
+        supports::step_stiffness(model, &self.kinematics, &mut stiffness);
+        springs::stiffness(model, &mut stiffness);
+        supports::step_damping(model, &self.kinematics, &mut damping);
         springs::damping(model, &mut damping);
         (stiffness, damping)
     }

@@ -5,6 +5,7 @@
 
 mod angles;
 mod beams;
+mod feet;
 mod lengths;
 mod masses;
 
@@ -21,6 +22,7 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     if look.warnings.is_empty() {
         look.damping();
         look.masses();
+        look.feet();
     }
     look.angles();
     look.warnings

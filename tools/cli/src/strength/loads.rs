@@ -3,7 +3,7 @@
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
-    statics::Settings,
+    statics::{Settings, Status},
     tipping::{TippingLine, lines},
 };
 
@@ -41,7 +41,7 @@ pub fn parameter(rig: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usize
     })
 }
 
-/// How far the crane is from something at rest with a load, negative beyond, and where.
+/// How far the crane is from something at rest with a load, negative beyond, and where; −∞ where no pose stands.
 type Distance = fn(&dyn DynCrane, &[f64]) -> Option<(f64, String)>;
 
 /// Adds the loads at which the first foot carries nothing, and at which the crane tips.
@@ -67,12 +67,14 @@ pub fn critical(report: &mut Report, rig: &mut dyn DynCrane, index: usize) -> Ou
     Ok(())
 }
 
-/// Vertical force of the foot that presses least, N.
+/// Vertical force of the foot that presses least, N; of feet that have lifted, which carry nothing, the gap that is widest takes its
+/// place, m, with the opposite sign.
 fn least_reaction(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
     let reactions = rig.support_reactions_at(q, &vec![0.0; q.len()]);
-    let feet = rig.description().supports.iter().zip(&reactions);
-    let (foot, force) = feet.min_by(|(_, a), (_, b)| a.z.total_cmp(&b.z))?;
-    Some((force.z, foot.name.as_str().to_owned()))
+    let feet = rig.description().supports.iter().zip(&reactions).zip(rig.support_gaps_at(q));
+    let distances = feet.map(|((foot, force), gap)| (if gap > 0.0 { -gap } else { force.z }, foot));
+    let (distance, foot) = distances.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    Some((distance, foot.name.as_str().to_owned()))
 }
 
 /// What is left to hold the crane down about the line that tips first, N m.
@@ -96,7 +98,12 @@ fn root(rig: &mut dyn DynCrane, index: usize, from: f64, distance: Distance) -> 
     let mut at = |load: f64| {
         rig.set_parameter(index, load).ok()?;
         let equilibrium = rig.equilibrium(&Settings::default());
-        if equilibrium.is_stable() { distance(rig, &equilibrium.q) } else { None }
+        match &equilibrium.status {
+            Status::Converged => distance(rig, &equilibrium.q),
+            // Beyond whatever is looked for; the line is named as it is known from poses that stand.
+            Status::TipsOver { feet } => Some((f64::NEG_INFINITY, feet.join(" – "))),
+            _ => None,
+        }
     };
     let here = (from, at(from)?.0);
     let (low, high) = if here.1 > 0.0 {
@@ -119,14 +126,18 @@ fn root(rig: &mut dyn DynCrane, index: usize, from: f64, distance: Distance) -> 
 }
 
 /// Where a function is zero between a place where it is positive and one where it is not: by the Illinois form of regula falsi,
-/// as distances are nearly linear in the load.
+/// as distances are nearly linear in the load, and by halving as long as nothing stands at the upper end.
 fn between(
     at: &mut impl FnMut(f64) -> Option<(f64, String)>,
     mut low: (f64, f64),
     mut high: (f64, f64),
 ) -> Option<(f64, String)> {
     for _ in 0..MOST_STEPS {
-        let load = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        let load = if high.1.is_finite() {
+            (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1)
+        } else {
+            0.5 * (low.0 + high.0)
+        };
         let (value, place) = at(load)?;
         let moved = if value > 0.0 { load - low.0 } else { high.0 - load };
         if value > 0.0 {
@@ -144,6 +155,14 @@ fn between(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Feet stand up to the load that is looked for, and nothing stands beyond.
+    #[test]
+    fn a_root_at_the_end_of_what_stands_is_found() {
+        let mut at = |x: f64| Some((if x < 2.0 { 2.0 - x } else { f64::NEG_INFINITY }, String::new()));
+        let (root, _) = between(&mut at, (0.0, 2.0), (7.0, f64::NEG_INFINITY)).unwrap();
+        assert!((root - 2.0).abs() < 1e-9, "{root}");
+    }
 
     #[test]
     fn a_root_is_found_to_ten_digits() {

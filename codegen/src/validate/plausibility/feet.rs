@@ -1,0 +1,22 @@
+//! One-sided supports beside the weight that they carry.
+
+use super::{Look, items, rounded};
+use crate::diagnostic::rule;
+
+impl Look<'_> {
+    /// A support that never presses as much as its full hold holds the crane in part only.
+    pub(super) fn feet(&mut self) {
+        let (crane, chain) = (self.crane, self.chain);
+        let mass: f64 = chain.bodies.iter().filter_map(|body| Some(body.inertia.as_ref()?.mass.at(&self.values))).sum();
+        let gravity = chain.gravity[2].at(&self.values).abs();
+        let share = mass * gravity / chain.supports.len().max(1) as f64;
+        for support in items(crane.supports.as_ref()) {
+            let Some(full_hold) = &support.full_hold else { continue };
+            let (force, at) = self.number(full_hold);
+            if force > share {
+                let name = support.name.value.as_deref().unwrap_or_default();
+                self.warn(rule::hold_beyond_weight(at, name, rounded(force), rounded(share)));
+            }
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Cranes on feet that lift: where no pose stands, the line that they tip over.
+
+use super::{Equilibrium, Status};
+use crate::{
+    Text,
+    dyn_crane::DynCrane,
+    tipping::{governing, lines},
+};
+
+/// Tipping margin below which a crane without a stable pose is reported to tip over: its drives and feet give way by less than that.
+const LITTLE: f64 = 0.1;
+
+/// The equilibrium at time `t`, s, found from a pose, with the status that the crane tips over if it has feet that lift and the pose found is not stable
+/// or its base is not upright.
+pub(crate) fn named(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibrium) -> Equilibrium {
+    let description = crane.description();
+    let feet = || description.supports.iter().filter(|support| support.one_sided);
+    let fell = description.has_tipped(from, &found.q);
+    if feet().next().is_none() || found.is_stable() && !fell {
+        return found;
+    }
+    let rest = vec![0.0; from.len()];
+    let lines = lines(crane, t, from, &rest, &rest);
+    let names: Vec<Text> = match governing(&lines) {
+        Some(line) if fell || line.margin() < LITTLE => {
+            line.feet.iter().map(|&foot| description.supports[foot].name.clone()).collect()
+        }
+        // In a plane there are no lines: the feet that still press.
+        None if fell => {
+            let reactions = crane.support_reactions_at(&found.q, &rest);
+            let pressing = description.supports.iter().zip(&reactions).filter(|(_, force)| force.z > 0.0);
+            pressing.map(|(support, _)| support.name.clone()).collect()
+        }
+        _ => return found,
+    };
+    Equilibrium { status: Status::TipsOver { feet: names }, ..found }
+}
