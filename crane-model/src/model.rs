@@ -110,6 +110,12 @@ pub trait CraneModel<const N: usize> {
     /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair per drive.
     fn drive_motions(&self, _t: f64, _out: &mut [[f64; 2]]) {}
 
+    /// Greatest effort of each drive, N m or N, 0 if it has no limit, and its stiffness `−∂t_dr/∂q` at the state, N m/rad or N/m.
+    /// `out`: one pair per drive. A crane without limits writes zeros.
+    fn drive_limits(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>, out: &mut [[f64; 2]]) {
+        out.fill([0.0; 2]);
+    }
+
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t. A crane without rigid drives has none.
     fn prescribe(&self, _t: f64, _q: &mut SVector<f64, N>, _v: &mut SVector<f64, N>) {}
 

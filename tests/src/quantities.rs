@@ -71,6 +71,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("point_velocities", vec![points, 3]),
         ("support_reactions", vec![supports, 3]),
         ("support_gaps", vec![supports, 2]),
+        ("drive_limits", vec![drives, 2]),
         ("drive_motions", vec![drives, 2]),
         ("drive_power", vec![1]),
         ("dissipation", vec![1]),
@@ -169,6 +170,8 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     crane.support_gaps(q, v, &mut gaps);
     out.extend(gaps.iter().flatten());
     let mut motions = vec![[0.0; 2]; info.drives.len()];
+    crane.drive_limits(t, q, v, &mut motions);
+    out.extend(motions.iter().flatten());
     crane.drive_motions(t, &mut motions);
     out.extend(motions.iter().flatten());
     out.extend([crane.drive_power(t, q, v), crane.dissipation(t, q, v)]);

@@ -288,8 +288,13 @@ impl Writer {
             // Every other one has a rotor.
             let armature = self.positive(4.0);
             let rotor = if k % 2 == 0 { format!("armature: {armature}, ") } else { String::new() };
-            let spring =
-                if rigid { "rigid: true".to_owned() } else { format!("stiffness: {stiffness}, damping: {damping}") };
+            // The second drive of every other crane has a limit that far states exceed.
+            let limit = if seed % 2 == 0 && k == 1 { ", max_effort: 300" } else { "" };
+            let spring = if rigid {
+                "rigid: true".to_owned()
+            } else {
+                format!("stiffness: {stiffness}, damping: {damping}{limit}")
+            };
             let offset = if seed % 4 == 2 && !rigid { ", offset: shift" } else { "" };
             self.line(&format!("  - {{coordinate: {coordinate}, {spring}, {rotor}motion: {motion}{offset}}}"));
         }

@@ -59,6 +59,7 @@ class Spring:
     motion: object = 0
     moves_within: tuple = (0.0, 0.0)
     is_rigid: bool = False
+    max_effort: object = None
 
 
 @dataclass
@@ -339,7 +340,8 @@ def read_drive(crane, written):
     if "offset" in written:
         motion += read_profile(spec, {"input": written["offset"]}, coordinate.is_rotation, crane.time)[0]
     stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
-    return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False))
+    limit = spec.number(written["max_effort"]) if "max_effort" in written else None
+    return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False), limit)
 
 
 def read_stops(spec, written, coordinate):

@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 
 from contacts import contact
+from limits import limited_drive, slope_at_rest
 
 
 def row_major(matrix):
@@ -129,7 +130,7 @@ class Derivations:
         }
 
     def potentials(self):
-        """Potential energy and Rayleigh's function by part, one-sided supports apart [Urbaś 2016, Eqs. (14), (16), (17), (19)]."""
+        """Potential energy and Rayleigh's function by part, one-sided supports and drives with a limit apart [Urbaś 2016, Eqs. (14), (16), (17), (19)]."""
         crane = self.crane
 
         def sum_of(terms):
@@ -142,13 +143,14 @@ class Derivations:
             return sum_of(s.damping * (self.rate(ca.SX(s.motion)) - s.coordinate.v) ** 2 / 2 for s in springs)
 
         anchored = [s for s in crane.supports if s.full_hold is None]
+        unlimited = [drive for drive in crane.drives if drive.max_effort is None]
         return {
             "support": (
                 sum_of(ca.dot(s.stiffness, s.elongation**2) / 2 for s in anchored),
                 sum_of(ca.dot(s.damping, self.rate(s.elongation) ** 2) / 2 for s in anchored),
             ),
             "element": (stored(crane.elements), lost(crane.elements)),
-            "drive": (stored(crane.drives), lost(crane.drives)),
+            "drive": (stored(unlimited), lost(unlimited)),
             "hinge": (ca.SX(0), lost(crane.hinges)),
         }
 
@@ -206,10 +208,13 @@ class Derivations:
         # What is neither in the stops' energy nor at rest.
         lost = -ca.dot(stops + friction, v) - ca.jtimes(stop_energy, q, v)
         lost += sum((c.lost for c in self.contacts.values()), ca.SX(0))
+        drives, drive_energy, drive_lost, drive_damping = self.limited_drives()
+        by_part["drive"] += drives
+        energies["drive"] += drive_energy
         step_damping = sum((c.step_damping for c in self.contacts.values()), damping)
         tangents = ca.horzcat(
-            -ca.diag(ca.jacobian(stops, q)),
-            -ca.diag(ca.jacobian(stops, v)) + ca.fmax(0, -ca.diag(ca.jacobian(friction, v))),
+            -ca.diag(ca.jacobian(stops + drives, q)),
+            -ca.diag(ca.jacobian(stops + drives, v)) + ca.fmax(0, -ca.diag(ca.jacobian(friction, v))),
         )
         return {
             "stop_forces": stops,
@@ -220,12 +225,27 @@ class Derivations:
             "nonlinear_impedances": row_major(ca.densify(tangents)),
             LINEAR_DAMPING: row_major(ca.densify(step_damping)),
             **{f"{part}_forces": force for part, force in by_part.items()},
-            "forces": linear + contacts + stops + friction + loads,
+            "forces": linear + contacts + drives + stops + friction + loads,
             "gravity_energy": self.gravity_energy(),
             **{f"{part}_energy": energies[part] for part in ("support", "element", "drive")},
-            "dissipation": 2 * dissipation_function + lost,
-            "linearised_damping": self.unknowns(damping + contact_damping + ca.diag(at_rest), 0),
+            "dissipation": 2 * dissipation_function + drive_lost + lost,
+            "linearised_damping": self.unknowns(damping + contact_damping + ca.diag(at_rest + drive_damping), 0),
         }
+
+    def limited_drives(self):
+        """Drives with a limit: their generalized forces, energy, lost power, damping at rest and t = 0."""
+        places = {coordinate.name: place for place, coordinate in enumerate(self.crane.coordinates)}
+        forces, damping = (ca.SX.zeros(self.crane.q.shape) for _ in range(2))
+        energy, lost = ca.SX(0), ca.SX(0)
+        for drive in self.crane.drives:
+            if drive.max_effort is None:
+                continue
+            effort, stored, own = limited_drive(drive, self.rate)
+            place = places[drive.coordinate.name]
+            forces[place] += effort
+            damping[place] += ca.substitute(drive.damping * slope_at_rest(drive), self.crane.time, 0)
+            energy, lost = energy + stored, lost + own
+        return forces, energy, lost, damping
 
     def contact_forces(self):
         """One-sided supports: their generalized forces, energy, damping at rest."""
@@ -255,13 +275,17 @@ class Derivations:
     def driving_forces(self):
         """`t_dr` of each drive with a spring: the generalized force of all drives on its own coordinate."""
         energy, lost = self.potentials()["drive"]
+        forces = self.limited_drives()[0]
+        places = {coordinate.name: place for place, coordinate in enumerate(self.crane.coordinates)}
         coordinates = [drive.coordinate for drive in self.crane.drives]
-        return ca.vertcat(*[-ca.gradient(energy, c.q) - ca.gradient(lost, c.v) for c in coordinates])
+        return ca.vertcat(
+            *[forces[places[c.name]] - ca.gradient(energy, c.q) - ca.gradient(lost, c.v) for c in coordinates]
+        )
 
     def statics(self):
         """Gradient and Hessian of the whole potential energy at t = 0."""
         potential = self.gravity_energy() + sum(energy for energy, _ in self.potentials().values())
-        potential += self.joint_forces()[2] + self.contact_forces()[1]
+        potential += self.joint_forces()[2] + self.contact_forces()[1] + self.limited_drives()[1]
         stiffness, gradient = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
         loads = ca.substitute(self.load_forces(), self.crane.time, 0)
         slope = ca.jacobian(loads, self.crane.q)
@@ -282,7 +306,7 @@ class Derivations:
 
     def springs_at_rest(self):
         """Generalized forces of the drives' springs at t = 0."""
-        energy, _ = self.potentials()["drive"]
+        energy = self.potentials()["drive"][0] + self.limited_drives()[1]
         return ca.densify(ca.substitute(-ca.gradient(energy, self.crane.q), self.crane.time, 0))
 
     def motions(self):
@@ -296,9 +320,20 @@ class Derivations:
             "point_velocities": self.rate(points),
             "support_reactions": ca.vertcat(*[self.reaction(s) for s in crane.supports]),
             "support_gaps": ca.vertcat(*[self.gap(s) for s in crane.supports]),
+            "drive_limits": self.drive_limits(),
             "drive_motions": row_major(ca.horzcat(prescribed, rates)),
             "drive_power": ca.dot(self.driving_forces(), rates),
         }
+
+    def drive_limits(self):
+        """Greatest effort of each drive and its stiffness; zeros for a crane without limits."""
+        drives = self.crane.drives
+        if all(drive.max_effort is None for drive in drives):
+            return ca.SX.zeros(2 * len(drives))
+        efforts = self.driving_forces()
+        stiffness = [-ca.jacobian(efforts[k], drive.coordinate.q) for k, drive in enumerate(drives)]
+        limits = [drive.max_effort or 0 for drive in drives]
+        return ca.vertcat(*[ca.vertcat(*pair) for pair in zip(limits, stiffness, strict=True)])
 
     def reaction(self, support):
         """Force of a support on the crane, world frame."""

@@ -292,6 +292,8 @@ pub enum Transmission {
         stiffness: Value,
         /// Damping, N m s/rad or N s/m.
         damping: Value,
+        /// The greatest effort of both together, N m or N.
+        max_effort: Option<Value>,
     },
     /// A rigid connection: the coordinate is prescribed.
     Rigid,
@@ -302,7 +304,16 @@ impl Drive {
     #[must_use]
     pub fn spring(&self) -> Option<(&Value, &Value)> {
         match &self.transmission {
-            Transmission::Flexible { stiffness, damping } => Some((stiffness, damping)),
+            Transmission::Flexible { stiffness, damping, .. } => Some((stiffness, damping)),
+            Transmission::Rigid => None,
+        }
+    }
+
+    /// The greatest effort, if it is limited.
+    #[must_use]
+    pub fn max_effort(&self) -> Option<&Value> {
+        match &self.transmission {
+            Transmission::Flexible { max_effort, .. } => max_effort.as_ref(),
             Transmission::Rigid => None,
         }
     }
@@ -424,6 +435,12 @@ impl Chain {
     #[must_use]
     pub fn has_one_sided_supports(&self) -> bool {
         self.supports.iter().any(|support| support.full_hold.is_some())
+    }
+
+    /// Whether some drive has a greatest effort.
+    #[must_use]
+    pub fn has_limited_drives(&self) -> bool {
+        self.drives.iter().any(|drive| drive.max_effort().is_some())
     }
 
     /// Rigid drives: their coordinates are prescribed, not unknown.

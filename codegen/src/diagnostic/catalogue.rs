@@ -256,6 +256,9 @@ catalogue! {
     /// The guess of a coordinate is not prescribed by a rigid drive.
     E092 prescribed_guess(coordinate) "the guess of `{coordinate}` has no effect", "its rigid drive prescribes its position",
         "remove it";
+    /// A drive with a greatest effort has a stiffness.
+    E093 limited_without_spring(coordinate) "the drive of `{coordinate}` has a greatest effort but no spring", "its stiffness is 0",
+        "give it a stiffness above zero, or remove `max_effort`";
 
     // Stops and friction of joints.
     /// Stops and friction belong to joints, not to a free base or the inside of a beam.

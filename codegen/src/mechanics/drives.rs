@@ -2,6 +2,8 @@
 
 use super::model::Model;
 use super::profile;
+use super::saturation::Saturation;
+use super::vector::SymmetricMatrix;
 use crate::chain::{Drive, Value};
 use crate::symbolic::Expr;
 
@@ -10,8 +12,8 @@ fn flexible<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Va
     model.chain.drives.iter().filter_map(|drive| drive.spring().map(|(s, d)| (drive, s, d)))
 }
 
-/// `t_dr = s (q_dr − q) + d (q̇_dr − q̇)` [Urbaś 2016, Eqs. (20)–(21)].
-fn effort<'g>(
+/// `s (q_dr − q) + d (q̇_dr − q̇)`
+fn unlimited<'g>(
     model: &Model<'g>,
     (drive, stiffness, damping): (&Drive, &Value, &Value),
     t: Expr<'g>,
@@ -19,7 +21,28 @@ fn effort<'g>(
 ) -> Expr<'g> {
     let stretch = stretch(model, drive, t);
     let rate = profile::rate(model, &drive.profile, t) - v[drive.coordinate.0];
-    named(model, drive, model.number(stiffness) * stretch + model.number(damping) * rate)
+    model.number(stiffness) * stretch + model.number(damping) * rate
+}
+
+/// `t_dr = s (q_dr − q) + d (q̇_dr − q̇)` [Urbaś 2016, Eqs. (20)–(21)], up to the limit of the drive.
+fn effort<'g>(model: &Model<'g>, flexible: (&Drive, &Value, &Value), t: Expr<'g>, v: &[Expr<'g>]) -> Expr<'g> {
+    named(model, flexible.0, limited(model, flexible.0, unlimited(model, flexible, t, v)))
+}
+
+/// An effort up to the limit of its drive.
+fn limited<'g>(model: &Model<'g>, drive: &Drive, effort: Expr<'g>) -> Expr<'g> {
+    drive.max_effort().map_or(effort, |limit| Saturation::new(effort, model.number(limit)).effort())
+}
+
+/// Drives with a limit, and the saturation of what their springs deliver at a time.
+fn saturations<'a, 'g>(
+    model: &'a Model<'g>,
+    t: Expr<'g>,
+) -> impl Iterator<Item = ((&'a Drive, &'a Value, &'a Value), Saturation<'g>)> {
+    flexible(model).filter_map(move |drive| {
+        let limit = model.number(drive.0.max_effort()?);
+        Some((drive, Saturation::new(model.number(drive.1) * stretch(model, drive.0, t), limit)))
+    })
 }
 
 /// `q_dr − q`
@@ -47,7 +70,7 @@ pub fn forces_at_rest<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let mut forces = model.zeros();
     for (drive, stiffness, _) in flexible(model) {
         let stretch = stretch(model, drive, model.zero());
-        forces[drive.coordinate.0] = named(model, drive, model.number(stiffness) * stretch);
+        forces[drive.coordinate.0] = named(model, drive, limited(model, drive, model.number(stiffness) * stretch));
     }
     forces
 }
@@ -70,13 +93,55 @@ fn prescribed<'g>(model: &Model<'g>, of: impl Fn(&Drive) -> Expr<'g>) -> Vec<Opt
     prescribed
 }
 
-/// `E_dr = ½ Σ s (q_dr − q)²` [Urbaś 2016, Eq. (19)].
+/// `E_dr = ½ Σ s (q_dr − q)²` [Urbaś 2016, Eq. (19)]; with a limit `∫ sat(s e) de`.
 pub fn energy<'g>(model: &Model<'g>) -> Expr<'g> {
-    let twice = flexible(model).fold(model.zero(), |sum, (drive, stiffness, _)| {
+    let linear = flexible(model).filter(|(drive, ..)| drive.max_effort().is_none());
+    let twice = linear.fold(model.zero(), |sum, (drive, stiffness, _)| {
         let stretch = profile::position(model, &drive.profile, model.t) - model.q[drive.coordinate.0];
         sum + model.number(stiffness) * stretch.squared()
     });
-    0.5 * twice
+    let limited = saturations(model, model.t).map(|((_, s, _), spring)| spring.integral() / model.number(s));
+    limited.fold(0.5 * twice, |sum, energy| sum + energy)
+}
+
+/// `−∂t_dr/∂q` and `−∂t_dr/∂q̇` of drives with a limit, coordinate by coordinate.
+pub fn impedances<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
+    let mut impedances = vec![[model.zero(); 2]; model.size()];
+    for drive in flexible(model) {
+        let Some(limit) = drive.0.max_effort() else { continue };
+        let slope = Saturation::new(unlimited(model, drive, model.t, &model.v), model.number(limit)).slope();
+        impedances[drive.0.coordinate.0] = [drive.1, drive.2].map(|of| slope * model.number(of));
+    }
+    impedances
+}
+
+/// Stiffness of drives with a limit at rest and t = 0, on the diagonal.
+pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    for ((drive, s, _), spring) in saturations(model, model.zero()) {
+        matrix.add(drive.coordinate.0, drive.coordinate.0, spring.slope() * model.number(s));
+    }
+}
+
+/// Damping of drives with a limit at rest and t = 0, on the diagonal.
+pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    for ((drive, _, d), spring) in saturations(model, model.zero()) {
+        matrix.add(drive.coordinate.0, drive.coordinate.0, spring.slope() * model.number(d));
+    }
+}
+
+/// Greatest effort of every drive, 0 if it has no limit, and its stiffness at the state, `−∂t_dr/∂q`.
+pub fn limits<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let zero = model.zero();
+    let limit = |drive: &Drive| {
+        let Some((stiffness, damping)) = drive.spring() else { return [zero; 2] };
+        let linear = model.number(stiffness);
+        drive.max_effort().map_or([zero, linear], |limit| {
+            let limit = model.number(limit);
+            let effort = unlimited(model, (drive, stiffness, damping), model.t, &model.v);
+            [limit, Saturation::new(effort, limit).slope() * linear]
+        })
+    };
+    model.chain.drives.iter().flat_map(limit).collect()
 }
 
 /// `q_dr, q̇_dr` of drives.
@@ -101,10 +166,15 @@ pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
     model.chain.rigid_drives().map(|drive| drive.coordinate.0).fold(flexible, |sum, j| sum + efforts[j] * model.v[j])
 }
 
-/// Power that the drives' dampers dissipate, `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]).
+/// Power that the drives' dampers dissipate, `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]); with a limit
+/// `(sat(u) − sat(s e)) ė ≥ 0`.
 pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
-    flexible(model).fold(model.zero(), |sum, (drive, _, damping)| {
-        let rate = profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
-        sum + model.number(damping) * rate.squared()
+    let rate = |drive: &Drive| profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
+    let linear = flexible(model).filter(|(drive, ..)| drive.max_effort().is_none());
+    let linear =
+        linear.fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());
+    saturations(model, model.t).fold(linear, |sum, (drive, spring)| {
+        let damper = limited(model, drive.0, unlimited(model, drive, model.t, &model.v)) - spring.effort();
+        sum + damper * rate(drive.0)
     })
 }

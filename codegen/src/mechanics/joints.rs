@@ -1,5 +1,6 @@
 //! End stops and friction of joints: laws on single coordinates, `f_j = −F(q_j, q̇_j)`.
 
+use super::drives;
 use super::laws;
 use super::model::Model;
 use super::vector::SymmetricMatrix;
@@ -49,13 +50,15 @@ pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
 /// with the rate 0, since a step needs no exact derivative but a positive resistance.
 pub fn impedances<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
     let (stops, frictions) = (stop_forces(model, &model.v), friction_forces(model, &model.v));
+    let drives = drives::impedances(model);
     let of = |force: Expr<'g>, by: Expr<'g>| -model.graph.derivatives(&[force], by)[0];
     (0..model.size())
         .map(|j| {
             let (q, v) = (model.q[j], model.v[j]);
             let declining = of(frictions[j], v);
             let friction = if declining.is_zero() { declining } else { declining.max(model.zero()) };
-            [of(stops[j], q), of(stops[j], v) + friction]
+            let [stiffness, damping] = drives[j];
+            [of(stops[j], q) + stiffness, of(stops[j], v) + friction + damping]
         })
         .collect()
 }

@@ -27,6 +27,7 @@ mod profile;
 mod resisted;
 mod rotation_vector;
 mod rotors;
+mod saturation;
 mod springs;
 mod supports;
 #[cfg(test)]

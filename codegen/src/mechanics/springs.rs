@@ -2,6 +2,7 @@
 
 use super::model::Model;
 use super::vector::SymmetricMatrix;
+use crate::chain::Drive;
 use crate::symbolic::Expr;
 
 /// `f = −S q̃ − D q̃̇` of the elements [Urbaś 2016, Eq. (15); one spring for each of the elements 1 … n].
@@ -33,19 +34,24 @@ pub fn hinge_forces<'g>(model: &Model<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     forces
 }
 
-/// Stiffness of elements and drives, on the diagonal.
+/// Drives whose efforts have no limit.
+fn linear_drives<'a>(model: &'a Model<'_>) -> impl Iterator<Item = &'a Drive> {
+    model.chain.drives.iter().filter(|drive| drive.max_effort().is_none())
+}
+
+/// Stiffness of elements and drives without a limit, on the diagonal.
 pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     let elements = model.chain.elements.iter().map(|s| (s.coordinate.0, &s.stiffness));
-    let drives = model.chain.drives.iter().filter_map(|d| Some((d.coordinate.0, d.spring()?.0)));
+    let drives = linear_drives(model).filter_map(|d| Some((d.coordinate.0, d.spring()?.0)));
     for (j, stiffness) in elements.chain(drives) {
         matrix.add(j, j, model.number(stiffness));
     }
 }
 
-/// Damping of elements, drives and joints, on the diagonal.
+/// Damping of elements, drives without a limit and joints, on the diagonal.
 pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     let elements = model.chain.elements.iter().map(|s| (s.coordinate.0, &s.damping));
-    let drives = model.chain.drives.iter().filter_map(|d| Some((d.coordinate.0, d.spring()?.1)));
+    let drives = linear_drives(model).filter_map(|d| Some((d.coordinate.0, d.spring()?.1)));
     let hinges = model.chain.hinges.iter().map(|h| (h.coordinate.0, &h.damping));
     for (j, damping) in elements.chain(drives).chain(hinges) {
         matrix.add(j, j, model.number(damping));

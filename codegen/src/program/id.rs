@@ -76,6 +76,7 @@ functions! {
         SupportReactions = "support_reactions",
         SupportGaps = "support_gaps",
         DriveMotions = "drive_motions",
+        DriveLimits = "drive_limits",
         PrescribedMotions = "prescribed_motions",
         DrivePieces = "drive_pieces",
         GravityEnergy = "gravity_energy",

@@ -20,6 +20,8 @@ pub struct Drive {
     pub damping: Option<Given<Number>>,
     /// Whether the coordinate follows the motion exactly. Default false.
     pub rigid: Option<Given<bool>>,
+    /// Greatest torque or force that spring and damper deliver together, N m or N. Default: none.
+    pub max_effort: Option<Given<Number>>,
     /// Inertia of the drive's rotor, reflected to the joint by the square of the gear ratio, kg m² or kg. Default 0.
     pub armature: Option<Given<Number>>,
     /// Motion of the spring's far end, or of the joint of a rigid drive; exactly one.

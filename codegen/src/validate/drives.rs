@@ -84,6 +84,7 @@ impl<'a> Check<'a> {
             for (key, span) in [
                 ("stiffness", drive.stiffness.as_ref().map(|given| given.span)),
                 ("damping", drive.damping.as_ref().map(|given| given.span)),
+                ("max_effort", drive.max_effort.as_ref().map(|given| given.span)),
             ] {
                 if let Some(span) = span {
                     self.report(rule::rigid_spring(span, name, key));
@@ -95,10 +96,21 @@ impl<'a> Check<'a> {
         if stiffness.is_none() && drive.rigid.as_ref().is_none_or(|rigid| rigid.value.is_some()) {
             self.report(rule::no_transmission(span, name));
         }
-        Transmission::Flexible {
-            stiffness: stiffness.unwrap_or(f64::NAN.into()),
-            damping: damping.unwrap_or(Value::ZERO),
+        let max_effort = drive.max_effort.as_ref().map(|given| {
+            let place = format!("the greatest effort of drive `{name}`");
+            let unit = if kind == Some(CoordinateKind::Translation) { "N" } else { "N m" };
+            self.number(given, &place, unit, Limit::Positive)
+        });
+        let stiffness = stiffness.unwrap_or(f64::NAN.into());
+        // The energy of a spring with a limit is an integral over its force.
+        if let (Some(given), Some(_)) = (&drive.stiffness, &max_effort) {
+            let broken = rule::limited_without_spring(given.span, name);
+            if self.now(&stiffness) == 0.0 {
+                self.report(broken.clone());
+            }
+            self.keep_positive(stiffness.clone(), &broken);
         }
+        Transmission::Flexible { stiffness, damping: damping.unwrap_or(Value::ZERO), max_effort }
     }
 
     pub(super) fn hinges(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Hinge> {

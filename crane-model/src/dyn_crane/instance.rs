@@ -105,6 +105,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H
         self.0.drive_motions(t, out);
     }
 
+    fn drive_limits(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.0.drive_limits(t, &vector(q), &vector(v), out);
+    }
+
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
         let (mut pose, mut rates) = (vector(q), vector(v));
         self.0.prescribe(t, &mut pose, &mut rates);

@@ -83,6 +83,9 @@ pub trait DynModel {
     /// Prescribed position and rate of every drive.
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]);
 
+    /// Greatest effort of every drive, 0 if it has no limit, and its stiffness at the state.
+    fn drive_limits(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
+
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t.
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]);
 

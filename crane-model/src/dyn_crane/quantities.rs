@@ -128,6 +128,14 @@ impl dyn DynCrane + '_ {
         drives.iter().map(effort).collect()
     }
 
+    /// Greatest efforts of the drives, N m and N; `None` where there is no limit.
+    pub fn drive_limits_at(&self) -> Vec<Option<f64>> {
+        let mut out = vec![[0.0; 2]; self.description().drives.len()];
+        let state = vec![0.0; self.size()];
+        self.drive_limits(0.0, &state, &state, &mut out);
+        out.into_iter().map(|[limit, _]| (limit > 0.0).then_some(limit)).collect()
+    }
+
     /// Prescribed positions and rates of the drives.
     pub fn drive_motions_at(&self, t: f64) -> Vec<[f64; 2]> {
         let mut out = vec![[0.0; 2]; self.description().drives.len()];

@@ -62,6 +62,10 @@ impl Norm {
         let n = crane.size();
         let mut impedances = vec![[0.0; 2]; n];
         crane.joint_impedances(&mut impedances);
+        // Drives with a limit are among the laws that are not linear; at the guess they are far from it.
+        let mut nonlinear = impedances.clone();
+        crane.nonlinear_impedances(0.0, &crane.description().guess, &vec![0.0; crane.size()], &mut nonlinear);
+        impedances.iter_mut().zip(&nonlinear).for_each(|(linear, nonlinear)| linear[0] += nonlinear[0]);
         let effort = |coordinate: usize| {
             let [stiffness, damping] = impedances[coordinate];
             Effort { coordinate, stiffness, damping, scale: 0.0, peak: 0.0, error: 0.0, rounding: 0.0 }

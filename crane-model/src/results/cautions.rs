@@ -1,7 +1,7 @@
 //! Cautions about poses and runs for which the model is not valid.
 
 pub use super::feet::of_reactions;
-use super::{Extremes, Table, feet, stop_effort};
+use super::{Extremes, Table, feet, limits, stop_effort};
 use crate::{Description, dyn_crane::DynCrane};
 
 /// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
@@ -18,18 +18,23 @@ pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
         let coordinate = &description.coordinates[coordinate];
         format!("{} rests on its stop with {:.1} {}", coordinate.name, effort.abs(), coordinate.kind.force_unit())
     });
-    feet::of_pose(rig, q).chain(stopped).chain(bent_beyond(bent, bend)).collect()
+    feet::of_pose(rig, q).chain(limits::of_pose(rig, q)).chain(stopped).chain(bent_beyond(bent, bend)).collect()
 }
 
 /// The same over a run.
-pub fn of_run(description: &Description, table: &Table, bend: f64) -> Vec<String> {
+pub fn of_run(rig: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
+    let description = rig.description();
     let elements = description.coordinates.iter().filter(|coordinate| coordinate.role.is_element());
     let bent = elements.map(|coordinate| {
         let Extremes { minimum, maximum, .. } = Extremes::of(table, &coordinate.name);
         (coordinate.name.as_str(), if -minimum > maximum { minimum } else { maximum })
     });
     let stopped = description.stops.iter().filter_map(|&coordinate| on_stop(description, table, coordinate));
-    feet::of_run(description, table).chain(stopped).chain(bent_beyond(bent, bend)).collect()
+    feet::of_run(description, table)
+        .chain(limits::of_run(rig, table))
+        .chain(stopped)
+        .chain(bent_beyond(bent, bend))
+        .collect()
 }
 
 /// Reports how long a joint is on its stops during a run, and the largest effort of these.

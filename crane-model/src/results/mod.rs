@@ -4,6 +4,7 @@ pub mod cautions;
 mod extremes;
 mod feet;
 mod headlines;
+mod limits;
 mod peaks;
 mod recording;
 mod table;

@@ -130,7 +130,7 @@ pub fn record_checked(
 ) -> Result<Recorded, Failed> {
     let mut recorded = record(crane, start, settings, proceed)?;
     let description = crane.description();
-    recorded.cautions.extend(cautions::of_run(description, &recorded.table, bend));
+    recorded.cautions.extend(cautions::of_run(crane, &recorded.table, bend));
     if !settings.method.is_adaptive() {
         let limit = step_limit(crane, start).map_or(f64::INFINITY, |bound| bound.limit.step);
         recorded.cautions.extend(cautions::of_step(settings.step_taken(), limit));

@@ -2,12 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{
-    balance::Balance,
-    newton::{Residual, residual_of},
-    tangent::stiffness_at,
-};
-use crate::dyn_crane::DynStatics;
+use super::{balance::Balance, equations::Equations};
 
 /// Greatest change of a coordinate in a step, m or rad, and of λ.
 const LONGEST: f64 = 0.3;
@@ -20,22 +15,21 @@ const EASY: usize = 3;
 /// Scaled residual of a point of the path: only the end has to be exact.
 const ON_PATH: f64 = 1e-6;
 
-/// Called at the full load with the pose, the number of steps and the residual.
-pub(super) type Arrive<'a, T> = dyn FnMut(DVector<f64>, usize, &mut Residual<'_>) -> Option<T> + 'a;
+/// Called at the full load with the pose and the number of steps.
+pub(super) type Arrive<'a, T> = dyn FnMut(DVector<f64>, usize) -> Option<T> + 'a;
 
-/// Follows `H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0` from `(q₀, 0)` on. At λ = 1 `arrive` gets the pose, the number of
-/// steps and the residual, and may end the search.
+/// Follows `H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0` from `(q₀, 0)` on. At λ = 1 `arrive` gets the pose and the number of
+/// steps, and may end the search.
 pub(super) fn follow<T>(
-    crane: &dyn DynStatics,
+    equations: &dyn Equations,
     start: &DVector<f64>,
     steps: usize,
     balance: &Balance,
-    residual_at: &mut Residual<'_>,
     arrive: &mut Arrive<'_, T>,
 ) -> Option<T> {
     let n = start.len();
-    let springs = balance.springs(&stiffness_at(crane, start));
-    let mut path = Path { crane, start, springs, balance, residual_at };
+    let springs = balance.springs(&equations.stiffness(start));
+    let path = Path { equations, start, springs, balance };
     // A point is q and λ in one vector; the path sets out towards greater λ.
     let mut point = start.clone().push(0.0);
     let ahead = DVector::zeros(n).push(1.0);
@@ -55,7 +49,7 @@ pub(super) fn follow<T>(
             }
         };
         if next[n] >= 1.0 - ON_PATH {
-            return arrive(next.remove_row(n), step, path.residual_at);
+            return arrive(next.remove_row(n), step);
         }
         tangent = path.tangent(&next, &tangent)?;
         point = next;
@@ -68,21 +62,20 @@ pub(super) fn follow<T>(
 }
 
 /// The equations of the path.
-struct Path<'a, 'b> {
-    crane: &'a dyn DynStatics,
+struct Path<'a> {
+    equations: &'a dyn Equations,
     start: &'a DVector<f64>,
     /// S, N/m and N m/rad.
     springs: DVector<f64>,
     balance: &'a Balance,
-    residual_at: &'a mut Residual<'b>,
 }
 
-impl Path<'_, '_> {
+impl Path<'_> {
     /// Scaled H at a point, and its derivatives by q and λ above the row `last`.
-    fn system(&mut self, point: &DVector<f64>, last: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+    fn system(&self, point: &DVector<f64>, last: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let n = self.start.len();
         let (q, load) = (point.rows(0, n).into_owned(), point[n]);
-        let (residual, stiffness) = (residual_of(self.residual_at, &q), stiffness_at(self.crane, &q));
+        let (residual, stiffness) = (self.equations.residual(&q), self.equations.stiffness(&q));
         let held = (q - self.start).component_mul(&self.springs);
         let value = self.balance.scaled(&(&residual * load + &held * (1.0 - load)));
         let by_load = self.balance.scaled(&(residual - held));
@@ -96,7 +89,7 @@ impl Path<'_, '_> {
     }
 
     /// Direction of the path at a point of it, of length 1, onward from the direction before.
-    fn tangent(&mut self, point: &DVector<f64>, before: &DVector<f64>) -> Option<DVector<f64>> {
+    fn tangent(&self, point: &DVector<f64>, before: &DVector<f64>) -> Option<DVector<f64>> {
         let (_, matrix) = self.system(point, before);
         let along = DVector::zeros(self.start.len()).push(1.0);
         let direction = matrix.lu().solve(&along)?;
@@ -105,7 +98,7 @@ impl Path<'_, '_> {
     }
 
     /// The point of the path across its tangent from `point`, and how many corrections it took.
-    fn corrected(&mut self, mut point: DVector<f64>, tangent: &DVector<f64>) -> Option<(DVector<f64>, usize)> {
+    fn corrected(&self, mut point: DVector<f64>, tangent: &DVector<f64>) -> Option<(DVector<f64>, usize)> {
         for correction in 0..=CORRECTIONS {
             let (value, matrix) = self.system(&point, tangent);
             if value.norm() <= ON_PATH {

@@ -2,6 +2,7 @@
 
 mod balance;
 mod continuation;
+mod equations;
 mod equilibrium;
 mod guess;
 mod newton;

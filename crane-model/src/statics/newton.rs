@@ -2,35 +2,20 @@
 
 use nalgebra::DVector;
 
-use super::{
-    Equilibrium, Iteration, Settings, Status,
-    balance::Balance,
-    tangent::{Tangent, stiffness_at},
-};
-use crate::{CoordinateKind, dyn_crane::DynStatics};
+use super::{Equilibrium, Iteration, Settings, Status, balance::Balance, equations::Equations, tangent::Tangent};
+use crate::CoordinateKind;
 
 /// Halvings of a step before it is given up: 1e-6 of a Newton step no longer makes progress.
 const HALVINGS: u32 = 20;
 /// Greatest rotation in a step, rad: far from equilibrium the tangent says nothing about poses further away.
 const GREATEST_ROTATION: f64 = 1.0;
 
-/// Writes the residual at a pose.
-pub(super) type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) + 'a;
-
-/// The residual at a pose.
-pub(super) fn residual_of(residual_at: &mut Residual<'_>, q: &DVector<f64>) -> DVector<f64> {
-    let mut residual = DVector::zeros(q.len());
-    residual_at(q.as_slice(), residual.as_mut_slice());
-    residual
-}
-
-/// The iteration on any residual with the crane's tangent stiffness, from the pose `q`.
+/// The iteration from the pose `q`.
 pub(super) fn iterate(
-    crane: &dyn DynStatics,
+    equations: &dyn Equations,
     mut q: DVector<f64>,
     settings: &Settings,
     balance: &Balance,
-    residual_at: &mut Residual<'_>,
 ) -> Equilibrium {
     let load_steps = None;
     if q.is_empty() {
@@ -38,13 +23,13 @@ pub(super) fn iterate(
         let history = vec![Iteration { residual: 0.0, fraction: 0.0 }];
         return Equilibrium { status: Status::Converged, q: Vec::new(), history, load_steps };
     }
-    let description = crane.description();
-    let mut residual = residual_of(residual_at, &q);
+    let description = equations.crane().description();
+    let mut residual = equations.residual(&q);
     let mut norm = balance.norm(&residual);
     let mut history = vec![Iteration { residual: norm, fraction: 0.0 }];
 
     let status = loop {
-        let stiffness = stiffness_at(crane, &q);
+        let stiffness = equations.stiffness(&q);
         let Some(tangent) = Tangent::new(&stiffness, description).filter(|_| norm.is_finite()) else {
             break Status::Overflow;
         };
@@ -57,7 +42,7 @@ pub(super) fn iterate(
         let step = limited(tangent.step(&residual), |i| description.coordinates[i].kind);
         let improved = (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
             let pose = &q + &step * fraction;
-            let residual = residual_of(residual_at, &pose);
+            let residual = equations.residual(&pose);
             let trial = balance.norm(&residual);
             (trial < norm).then_some((pose, residual, trial, fraction))
         });

@@ -5,11 +5,13 @@ use nalgebra::{DVector, SVector};
 use super::{
     Equilibrium, Settings, Status,
     balance::Balance,
-    continuation, guess_dyn, newton,
-    tangent::{Tangent, stiffness_at},
+    continuation,
+    equations::{AtStart, Equations, Held},
+    guess_dyn, newton,
+    tangent::Tangent,
 };
 use crate::{
-    CoordinateKind, CoordinateRole, Description, Statics,
+    CoordinateKind, Statics,
     dyn_crane::{DynStatics, Instance},
 };
 
@@ -37,7 +39,7 @@ pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> E
 
 /// As [`solve`], for a crane of any size.
 pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
-    let found = search(crane, &guess_dyn(crane).into(), settings, &mut |q, out| crane.static_residual(q, out));
+    let found = search(&AtStart(crane), &guess_dyn(crane).into(), settings);
     prescribed(crane, found)
 }
 
@@ -67,45 +69,11 @@ pub fn solve_holding_dyn(crane: &dyn DynStatics, positions: &[f64], q: &[f64], s
 
 /// The equilibrium with the drives at given positions and the loads as at time `t`.
 fn solve_held(crane: &dyn DynStatics, t: f64, positions: &[f64], q: &[f64], settings: &Settings) -> Equilibrium {
-    let Description { drives, coordinates, loads, .. } = crane.description();
-    let loads_change = !loads.is_empty() && t != 0.0;
-    // Rigid drives move their coordinates, and leave no residual.
-    let is_rigid = |coordinate: usize| coordinates[coordinate].role == CoordinateRole::Prescribed;
-    let prescribe = |q: &mut [f64]| {
-        for (drive, position) in drives.iter().zip(positions).filter(|(drive, _)| is_rigid(drive.coordinate)) {
-            q[drive.coordinate] = *position;
-        }
-    };
-    let mut motions = vec![[0.0; 2]; drives.len()];
-    crane.drive_motions(0.0, &mut motions);
-    let (mut rates, mut forces) = (vec![0.0; q.len()], vec![0.0; q.len()]);
-    for (drive, [_, rate]) in drives.iter().zip(&motions) {
-        rates[drive.coordinate] = *rate;
-    }
+    let held = Held::new(crane, t, positions);
     let mut start = DVector::from_column_slice(q);
-    prescribe(start.as_mut_slice());
-    let mut moved = vec![0.0; q.len()];
-    let mut found = search(crane, &start, settings, &mut |q, out| {
-        crane.static_residual(q, out);
-        // A drive feels how far its coordinate is from its position alone; at the prescribed rates the dampers are unloaded.
-        moved.copy_from_slice(q);
-        for (drive, (position, [at_start, _])) in drives.iter().zip(positions.iter().zip(&motions)) {
-            moved[drive.coordinate] -= position - at_start;
-        }
-        for (sign, q) in [(1.0, q), (-1.0, moved.as_slice())] {
-            crane.drive_forces(0.0, q, &rates, &mut forces);
-            for drive in drives.iter().filter(|drive| !is_rigid(drive.coordinate)) {
-                out[drive.coordinate] += sign * forces[drive.coordinate];
-            }
-        }
-        for (sign, t) in [(1.0, 0.0), (-1.0, t)].into_iter().filter(|_| loads_change) {
-            crane.load_forces(t, q, &mut forces);
-            for (index, force) in forces.iter().enumerate().filter(|(index, _)| !is_rigid(*index)) {
-                out[index] += sign * force;
-            }
-        }
-    });
-    prescribe(&mut found.q);
+    held.prescribe(start.as_mut_slice());
+    let mut found = search(&held, &start, settings);
+    held.prescribe(&mut found.q);
     found
 }
 
@@ -116,25 +84,20 @@ fn prescribed(crane: &dyn DynStatics, mut found: Equilibrium) -> Equilibrium {
     found
 }
 
-/// Newton's method, then continuation, on any residual with the crane's tangent stiffness.
-fn search(
-    crane: &dyn DynStatics,
-    start: &DVector<f64>,
-    settings: &Settings,
-    residual_at: &mut newton::Residual<'_>,
-) -> Equilibrium {
-    let balance = Balance::at(crane, start);
-    let first = newton::iterate(crane, start.clone(), settings, &balance, residual_at);
-    if settings.load_steps == 0 || !missed(crane, start, settings, &first) {
+/// Newton's method, then continuation.
+fn search(equations: &dyn Equations, start: &DVector<f64>, settings: &Settings) -> Equilibrium {
+    let balance = Balance::at(equations.crane(), start);
+    let first = newton::iterate(equations, start.clone(), settings, &balance);
+    if settings.load_steps == 0 || !missed(equations, start, settings, &first) {
         return first;
     }
     let mut load_steps = 0;
-    let mut arrive = |q: DVector<f64>, steps: usize, residual_at: &mut newton::Residual<'_>| {
+    let mut arrive = |q: DVector<f64>, steps: usize| {
         load_steps = steps;
-        let found = newton::iterate(crane, q, settings, &balance, residual_at);
+        let found = newton::iterate(equations, q, settings, &balance);
         found.is_stable().then_some(found)
     };
-    let found = continuation::follow(crane, start, settings.load_steps, &balance, residual_at, &mut arrive);
+    let found = continuation::follow(equations, start, settings.load_steps, &balance, &mut arrive);
     found.map_or(first, |found| Equilibrium { load_steps: Some(load_steps), ..found })
 }
 
@@ -143,15 +106,15 @@ const MEANT: f64 = 0.5;
 
 /// Whether there may be a stable equilibrium that Newton's method did not find: no equilibrium was found, or an unstable one
 /// far from the guess or from a guess that is stable itself.
-fn missed(crane: &dyn DynStatics, start: &DVector<f64>, settings: &Settings, found: &Equilibrium) -> bool {
-    let description = crane.description();
+fn missed(equations: &dyn Equations, start: &DVector<f64>, settings: &Settings, found: &Equilibrium) -> bool {
+    let description = equations.crane().description();
     let meant = || {
         let kinds = description.coordinates.iter().map(|coordinate| coordinate.kind);
         let turned = kinds.zip(start.iter().zip(&found.q)).filter(|(kind, _)| *kind == CoordinateKind::Rotation);
         turned.map(|(_, (from, to))| (to - from).abs()).fold(0.0, f64::max) < MEANT
     };
     let stable = || {
-        Tangent::new(&stiffness_at(crane, start), description)
+        Tangent::new(&equations.stiffness(start), description)
             .is_some_and(|tangent| tangent.status(description) == Status::Converged)
     };
     match found.status {

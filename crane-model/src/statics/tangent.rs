@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::Status;
-use crate::{CoordinateKind, Description, Text, dyn_crane::DynStatics};
+use crate::{CoordinateKind, Description, Text};
 
 /// A diagonal entry below this fraction of the largest of its kind (N/m or N m/rad) counts as zero stiffness. Real
 /// cranes span about 1e9 (a chassis against a hinge), those with nearly rigid drives 1e12; rounding leaves about 1e-16.
@@ -88,11 +88,4 @@ impl Tangent {
         share.sort_by(|&i, &j| direction[j].abs().total_cmp(&direction[i].abs()));
         share.into_iter().map(|i| names.coordinates[i].name.clone()).collect()
     }
-}
-
-/// The tangent stiffness at a pose.
-pub(super) fn stiffness_at(crane: &dyn DynStatics, q: &DVector<f64>) -> DMatrix<f64> {
-    let mut stiffness = DMatrix::zeros(q.len(), q.len());
-    crane.tangent_stiffness(q.as_slice(), stiffness.as_mut_slice());
-    stiffness
 }

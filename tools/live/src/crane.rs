@@ -300,6 +300,10 @@ impl DynModel for LiveCrane {
         self.pairs(FunctionId::DriveMotions, &Arguments { t, ..Arguments::none() }, out);
     }
 
+    fn drive_limits(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::DriveLimits, &state(t, q, v), out);
+    }
+
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
         self.call(FunctionId::PrescribedMotions, &Arguments { t, ..Arguments::none() }, |_, results| {
             for (drive, [position, rate]) in self.chain().rigid_drives().zip(results.as_chunks().0) {

@@ -175,6 +175,16 @@ impl<'g> Derivation<'g> {
                 drives::motions(model, chain.drives.iter()),
             ),
         ];
+        if chain.has_limited_drives() {
+            functions.push(function(
+                FunctionId::DriveLimits,
+                "Greatest effort of every drive, N m or N, 0 without a limit, and its stiffness at the state, N m/rad or N/m.",
+                "M, −∂t_dr/∂q",
+                &[Time, Position, Velocity],
+                Shape::Pairs(chain.drives.len()),
+                drives::limits(model),
+            ));
+        }
         let pieces = drives::pieces(model);
         if !pieces.is_empty() {
             functions.push(function(

@@ -256,7 +256,7 @@ impl<'g> Derivation<'g> {
             Shape::Pairs(model.size()),
             (0..model.size()).flat_map(diagonal).collect(),
         ));
-        if !model.chain.forces.is_empty() {
+        if !model.chain.forces.is_empty() || model.chain.has_limited_drives() {
             functions.push(function(
                 FunctionId::NonlinearImpedances,
                 "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates.",

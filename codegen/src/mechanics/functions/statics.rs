@@ -93,6 +93,7 @@ impl<'g> Derivation<'g> {
         let mut matrix = self.impedances().0;
         joints::stiffness(model, &mut matrix);
         loads::stiffness(model, &self.kinematics, &mut matrix);
+        drives::stiffness(model, &mut matrix);
         gravity::stiffness(model, &self.kinematics, &self.inertias, &mut matrix);
         matrix
     }
@@ -101,6 +102,7 @@ impl<'g> Derivation<'g> {
         let model = &self.model;
         let mut damping = self.impedances().1;
         joints::damping(model, &mut damping);
+        drives::damping(model, &mut damping);
         let columns = columns(model, &self.factors);
         let mut outputs = self.unknowns(columns.mass_matrix(model), 1.0).into_upper();
         outputs.extend(self.unknowns(self.stiffness(), 1.0).into_upper());

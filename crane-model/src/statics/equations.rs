@@ -1,0 +1,122 @@
+//! The equations of an equilibrium, `r(q) = 0`, and their derivative.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::{CoordinateRole, Description, dyn_crane::DynStatics};
+
+/// The equations that a pose at rest satisfies.
+pub(super) trait Equations {
+    /// The crane that rests.
+    fn crane(&self) -> &dyn DynStatics;
+
+    /// `r(q)`: N for translations, N m for rotations.
+    fn residual(&self, q: &DVector<f64>) -> DVector<f64> {
+        let mut residual = DVector::zeros(q.len());
+        self.crane().static_residual(q.as_slice(), residual.as_mut_slice());
+        residual
+    }
+
+    /// `∂r/∂q`
+    fn stiffness(&self, q: &DVector<f64>) -> DMatrix<f64> {
+        let mut stiffness = DMatrix::zeros(q.len(), q.len());
+        self.crane().tangent_stiffness(q.as_slice(), stiffness.as_mut_slice());
+        stiffness
+    }
+}
+
+/// `∂E_p/∂q = 0` at t = 0.
+pub(super) struct AtStart<'a>(pub &'a dyn DynStatics);
+
+impl Equations for AtStart<'_> {
+    fn crane(&self) -> &dyn DynStatics {
+        self.0
+    }
+}
+
+/// The equilibrium with the drives at given positions and the loads as at another time.
+pub(super) struct Held<'a> {
+    crane: &'a dyn DynStatics,
+    positions: &'a [f64],
+    /// Prescribed positions and rates of the drives at t = 0.
+    motions: Vec<[f64; 2]>,
+    /// The prescribed rates, at which dampers of drives are unloaded, at the places of their coordinates.
+    rates: Vec<f64>,
+    /// Time of the loads, s.
+    t: f64,
+}
+
+impl<'a> Held<'a> {
+    /// With the drives at `positions`, one per drive, and the loads as at time `t`, s.
+    pub(super) fn new(crane: &'a dyn DynStatics, t: f64, positions: &'a [f64]) -> Self {
+        let Description { drives, coordinates, .. } = crane.description();
+        let (mut motions, mut rates) = (vec![[0.0; 2]; drives.len()], vec![0.0; coordinates.len()]);
+        crane.drive_motions(0.0, &mut motions);
+        for (drive, [_, rate]) in drives.iter().zip(&motions) {
+            rates[drive.coordinate] = *rate;
+        }
+        Self { crane, positions, motions, rates, t }
+    }
+
+    /// Moves the coordinates of rigid drives to where these hold them.
+    pub(super) fn prescribe(&self, q: &mut [f64]) {
+        let drives = self.crane.description().drives.iter().zip(self.positions);
+        for (drive, position) in drives.filter(|(drive, _)| self.is_rigid(drive.coordinate)) {
+            q[drive.coordinate] = *position;
+        }
+    }
+
+    /// Rigid drives move their coordinates, and leave no residual.
+    fn is_rigid(&self, coordinate: usize) -> bool {
+        self.crane.description().coordinates[coordinate].role == CoordinateRole::Prescribed
+    }
+
+    /// The pose at which drives at their positions of t = 0 have the stretch that they have here: a drive reacts only to the
+    /// distance of its coordinate from its position.
+    fn moved(&self, q: &DVector<f64>) -> DVector<f64> {
+        let mut moved = q.clone();
+        let drives = self.crane.description().drives.iter().zip(self.positions.iter().zip(&self.motions));
+        for (drive, (position, [start, _])) in drives {
+            moved[drive.coordinate] -= position - start;
+        }
+        moved
+    }
+}
+
+impl Equations for Held<'_> {
+    fn crane(&self) -> &dyn DynStatics {
+        self.crane
+    }
+
+    fn residual(&self, q: &DVector<f64>) -> DVector<f64> {
+        let (crane, description) = (self.crane, self.crane.description());
+        let (mut residual, mut forces) = (AtStart(crane).residual(q), vec![0.0; q.len()]);
+        for (sign, q) in [(1.0, q), (-1.0, &self.moved(q))] {
+            crane.drive_forces(0.0, q.as_slice(), &self.rates, &mut forces);
+            for drive in description.drives.iter().filter(|drive| !self.is_rigid(drive.coordinate)) {
+                residual[drive.coordinate] += sign * forces[drive.coordinate];
+            }
+        }
+        let loads_change = !description.loads.is_empty() && self.t != 0.0;
+        for (sign, t) in [(1.0, 0.0), (-1.0, self.t)].into_iter().filter(|_| loads_change) {
+            crane.load_forces(t, q.as_slice(), &mut forces);
+            for (index, force) in forces.iter().enumerate().filter(|(index, _)| !self.is_rigid(*index)) {
+                residual[index] += sign * force;
+            }
+        }
+        residual
+    }
+
+    /// With the stiffness of drives whose effort is limited as it is at their stretch; that of loads is taken as at t = 0.
+    fn stiffness(&self, q: &DVector<f64>) -> DMatrix<f64> {
+        let mut stiffness = AtStart(self.crane).stiffness(q);
+        let drives = &self.crane.description().drives;
+        let mut limits = vec![[0.0; 2]; drives.len()];
+        for (sign, q) in [(-1.0, q), (1.0, &self.moved(q))] {
+            self.crane.drive_limits(0.0, q.as_slice(), &self.rates, &mut limits);
+            for (drive, [_, own]) in drives.iter().zip(&limits).filter(|(drive, _)| !self.is_rigid(drive.coordinate)) {
+                stiffness[(drive.coordinate, drive.coordinate)] += sign * own;
+            }
+        }
+        stiffness
+    }
+}

@@ -1,0 +1,43 @@
+"""Drives whose effort has a limit: spring and damper up to 95 % of it, the limit from 105 % on, and a parabola between."""
+
+import casadi as ca
+
+# Where the parabola begins below the limit and ends above it, as a share of the limit.
+CORNER = 0.05
+
+
+def saturated(effort, limit):
+    """The effort that a drive delivers, piece by piece."""
+    size = ca.fabs(effort)
+    low, high = (1 - CORNER) * limit, (1 + CORNER) * limit
+    parabola = limit - (high - size) ** 2 / (4 * CORNER * limit)
+    return ca.sign(effort) * ca.if_else(size < low, size, ca.if_else(size < high, parabola, limit))
+
+
+def stored(stiffness, stretch, limit):
+    """Energy of the spring with a limit, the integral of its force over the stretch, piece by piece."""
+    size = ca.fabs(stiffness * stretch)
+    low, high, width = (1 - CORNER) * limit, (1 + CORNER) * limit, 4 * CORNER * limit
+
+    def of_parabola(upto):
+        return limit * (upto - low) + ((high - upto) ** 3 - (high - low) ** 3) / (3 * width)
+
+    within = low**2 / 2 + of_parabola(size)
+    beyond = low**2 / 2 + of_parabola(high) + limit * (size - high)
+    return ca.if_else(size < low, size**2 / 2, ca.if_else(size < high, within, beyond)) / stiffness
+
+
+def limited_drive(drive, rate):
+    """Effort, energy and lost power of a drive with a limit; `rate` takes the time derivative of its motion."""
+    coordinate = drive.coordinate
+    stretch, speed = drive.motion - coordinate.q, rate(ca.SX(drive.motion)) - coordinate.v
+    spring = saturated(drive.stiffness * stretch, drive.max_effort)
+    effort = saturated(drive.stiffness * stretch + drive.damping * speed, drive.max_effort)
+    return effort, stored(drive.stiffness, stretch, drive.max_effort), (effort - spring) * speed
+
+
+def slope_at_rest(drive):
+    """How much of a growing effort a drive at rest still delivers, from 1 down to 0."""
+    effort = ca.SX.sym("effort")
+    slope = ca.jacobian(saturated(effort, drive.max_effort), effort)
+    return ca.substitute(slope, effort, drive.stiffness * (drive.motion - drive.coordinate.q))

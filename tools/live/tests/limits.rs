@@ -1,0 +1,113 @@
+//! Drives with a limit of effort against exact laws.
+
+use std::ops::ControlFlow;
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynCrane;
+use crane_model::dynamics::{InitialState, Method, Sample, Settings};
+use crane_model::results::cautions;
+use crane_model::statics;
+
+fn crane(text: &str) -> LiveCrane {
+    LiveCrane::from_spec(&SourceFile::new("limits.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+/// A drive that is asked for more than it has pushes with its limit: `x = ½ (M/m) t²`. The energy balances.
+#[test]
+fn a_drive_at_its_limit_accelerates_evenly() {
+    let (mass, limit) = (20.0, 50.0);
+    let slide = crane(&format!(
+        "format: 1\nname: slide\ngravity: [0, 0, 0]\nlinks: [{{name: slide, joint: {{prismatic: {{axis: x}}}}, mass: {mass}, com: [0, 0, 0]}}]\n\
+         drives: [{{coordinate: slide_x, stiffness: 1e4, damping: 10, max_effort: {limit}, motion: {{hold: 8}}}}]\n"
+    ));
+    let slide: &dyn DynCrane = &slide;
+    let start = InitialState { q: vec![0.0], v: vec![0.0] };
+    let begin = slide.energies_at(0.0, &start.q, &start.v).total();
+    for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
+        let own = Settings::of(slide.description());
+        let settings =
+            Settings { method, tolerance: 1e-9, duration: 2.0, output: 0.01, step: 1e-4, audit: true, ..own };
+        let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
+            let expected = 0.5 * limit / mass * sample.t * sample.t;
+            assert!((sample.q[0] - expected).abs() < 1e-7, "{method:?} at {}: {}", sample.t, sample.q[0]);
+            let energy = slide.energies_at(sample.t, sample.q, sample.v).total();
+            // Of some 400 J that the spring has at the start.
+            let balance = energy + sample.dissipated - sample.work - begin;
+            assert!(balance.abs() < 1e-5, "{method:?} at {}: {balance} J", sample.t);
+            ControlFlow::Continue(())
+        });
+        run.unwrap_or_else(|stopped| panic!("{method:?}: {stopped}"));
+    }
+}
+
+/// An arm whose weight asks for more than the drive has sinks to where `m g l cos θ` is its limit, and statics say so.
+#[test]
+fn statics_say_that_a_drive_cannot_hold() {
+    let arm = |limit: f64| {
+        crane(&format!(
+            "format: 1\nname: arm\nlinks: [{{name: arm, joint: {{revolute: {{axis: y}}}}, mass: 10, com: [1, 0, 0]}}]\n\
+             drives: [{{coordinate: arm_theta, stiffness: 1e5, max_effort: {limit}, motion: {{hold: 0}}}}]\n"
+        ))
+    };
+    for limit in [30.0, 60.0, 90.0] {
+        let arm = arm(limit);
+        let arm: &dyn DynCrane = &arm;
+        let found = arm.equilibrium(&statics::Settings::default());
+        assert!(found.is_stable(), "{limit}: {found}");
+        let expected = (limit / 98.1_f64).acos();
+        assert!((found.q[0] - expected).abs() < 1e-10, "{limit}: {} for {expected}", found.q[0]);
+        let said = cautions::of_pose(arm, &found.q, 20.0);
+        assert!(said.len() == 1 && said[0].contains("cannot hold"), "{said:?}");
+    }
+    // Within 95 % of the limit the drive is the one without.
+    let (arm, weight) = (arm(110.0), 98.1);
+    let arm: &dyn DynCrane = &arm;
+    let found = arm.equilibrium(&statics::Settings::default());
+    assert!((found.q[0] - weight * found.q[0].cos() / 1e5).abs() < 1e-14, "{}", found.q[0]);
+    assert_eq!(cautions::of_pose(arm, &found.q, 20.0), [] as [String; 0]);
+}
+
+/// Poses at which a drive holds another position than at the start, where its spring seen from there would be at its limit.
+#[test]
+fn drives_hold_other_positions_within_their_limit() {
+    let (stiffness, limit) = (1e5, 110.0);
+    let arm = crane(&format!(
+        "format: 1\nname: arm\nlinks: [{{name: arm, joint: {{revolute: {{axis: y}}}}, mass: 10, com: [1, 0, 0]}}]\n\
+         drives: [{{coordinate: arm_theta, stiffness: {stiffness}, max_effort: {limit}, motion: {{hold: 0}}}}]\n"
+    ));
+    for position in [-0.9, 0.6, 1.2] {
+        let found = statics::solve_holding_dyn(&arm, &[position], &[position], &statics::Settings::default());
+        assert!(found.is_stable(), "{position}: {found}");
+        let expected = position + 98.1 * found.q[0].cos() / stiffness;
+        assert!((found.q[0] - expected).abs() < 1e-14, "{position}: {} for {expected}", found.q[0]);
+        // Newton's method with the exact tangent: from 1e-3 rad away by squares.
+        assert!(found.history.len() <= 5, "{found}");
+    }
+}
+
+/// The effort as a function of the stretch: exactly the spring's below, the limit above, no corner between, and its integral the
+/// energy.
+#[test]
+fn efforts_are_rounded_off_at_the_limit() {
+    let (stiffness, limit) = (1e3, 100.0);
+    let slide = crane(&format!(
+        "format: 1\nname: slide\nlinks: [{{name: slide, joint: {{prismatic: {{axis: x}}}}, mass: 1, com: [0, 0, 0]}}]\n\
+         drives: [{{coordinate: slide_x, stiffness: {stiffness}, max_effort: {limit}, motion: {{hold: 0}}}}]\n"
+    ));
+    let slide: &dyn DynCrane = &slide;
+    let effort = |stretch: f64| slide.drive_efforts_at(0.0, &[-stretch], &[0.0])[0];
+    assert_eq!(effort(0.095), 95.0);
+    for stretch in [0.105, 0.2, 3.0] {
+        assert!((effort(stretch) - limit).abs() < 1e-9 && (effort(-stretch) + limit).abs() < 1e-9);
+    }
+    // Simpson's rule is exact for the parabola and the straight pieces.
+    let (mut energy, step) = (0.0, 0.0025);
+    for k in 0..80 {
+        let from = f64::from(k) * step;
+        energy += step / 6.0 * (effort(from) + 4.0 * effort(from + 0.5 * step) + effort(from + step));
+        let own = slide.energies_at(0.0, &[-from - step], &[0.0]).drives;
+        assert!((own - energy).abs() < 1e-12 * limit, "{}: {own} for {energy}", from + step);
+    }
+    assert_eq!(slide.drive_limits_at(), [Some(limit)]);
+}
