@@ -3,6 +3,8 @@
 mod angles;
 mod beams;
 mod case;
+mod feet;
+mod joints;
 mod loads;
 mod motions;
 mod numbers;
@@ -65,6 +67,8 @@ pub fn stress(options: &Stress, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     cases.extend(beams::cases(&specs));
     cases.extend(loads::cases(&specs));
     cases.extend(supports::cases());
+    cases.extend(feet::cases());
+    cases.extend(joints::cases());
     cases.extend(angles::cases());
     cases.extend(poses::cases(&specs));
     cases.extend(motions::cases(&specs));

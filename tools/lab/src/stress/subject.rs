@@ -11,7 +11,7 @@ use super::{
 use crane_model::{
     dyn_crane::DynCrane,
     dynamics::Method,
-    runs::{self, Recorded, Start},
+    runs::{self, Recorded},
     statics::{Equilibrium, Settings},
 };
 
@@ -68,7 +68,7 @@ impl Subject {
     pub fn run(&self, timing: &Timing) -> Result<Recorded, String> {
         let rig = self.rig.as_ref();
         let told = |problem: Problem| problem.message();
-        let start = Start::of(rig).map_err(|failed| told(failed.into()))?;
+        let start = timing.start(rig, false).map_err(told)?;
         let settings = timing.settings(rig, &start, Method::RECOMMENDED).map_err(told)?;
         let recorded = record(rig, &start, &settings, &ProgressBar::hidden()).map_err(told)?;
         let table = &recorded.table;
