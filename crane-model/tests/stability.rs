@@ -87,7 +87,8 @@ fn predicted_limits_of_all_shipped_cranes_are_observed() {
         eight_link_identified,
         eight_link_rigid,
         eight_link_two_flexible,
-        knuckle_boom
+        knuckle_boom,
+        loader_tipping
     );
     assert_eq!(seen, cranes::all().len(), "a crane is missing above");
 }

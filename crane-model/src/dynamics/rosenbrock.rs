@@ -165,7 +165,18 @@ impl Formula for Stages<'_> {
         add_all(&mut step.end, 1.0, &WEIGHTS, self.u.iter());
         step.error.fill(0.0);
         add_all(&mut step.error, 1.0, &ERROR, self.u.iter());
-        equations.slope(step.reached(), &step.end, &mut step.slopes[1])
+        equations.slope(step.reached(), &step.end, &mut step.slopes[1])?;
+        // Where a stiff law begins or ends to act, J is that of one side alone: what it damps away the embedded formula damps away as
+        // well, and their difference says nothing. The rates then have to be those of the trapezoidal rule.
+        if self.system.switched(step.reached(), equations.state(step.reached(), &step.end)) {
+            let (n, [before, after]) = (equations.n, &step.slopes);
+            for i in n..2 * n {
+                let change = step.end[i] - step.start[i];
+                let error = change - 0.5 * h * (before[i] + after[i]);
+                step.error[i] = step.error[i].abs().max(error.abs());
+            }
+        }
+        Ok(())
     }
 
     fn factorisations(&self) -> usize {

@@ -11,7 +11,10 @@
 
 use nalgebra::Matrix6;
 
-use crate::dyn_crane::{DynImplicit, DynSystem};
+use crate::{
+    Description,
+    dyn_crane::{DynImplicit, DynSystem},
+};
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.
 pub(super) struct System<'a> {
@@ -20,10 +23,12 @@ pub(super) struct System<'a> {
     /// Stiffness and damping on single coordinates: of linear springs and dampers, and with those of other laws added.
     linear: Vec<[f64; 2]>,
     joints: Vec<[f64; 2]>,
-    /// Those of other laws.
-    nonlinear: Vec<[f64; 2]>,
+    /// Those of other laws, where it was factorised and at a state compared with that.
+    nonlinear: [Vec<[f64; 2]>; 2],
     /// Stiffness and damping over the base's coordinates.
     base: [Matrix6<f64>; 2],
+    /// Whether some law acts in one part of the poses and not in another.
+    switches: bool,
     /// c, s.
     c: f64,
     resistance: Vec<f64>,
@@ -40,12 +45,15 @@ impl<'a> System<'a> {
         let mut linear = vec![[0.0; 2]; n];
         crane.joint_impedances(&mut linear);
         let zeros = || vec![0.0; n];
+        let Description { stops, frictions, supports, .. } = crane.description();
+        let one_sided = supports.iter().any(|support| support.one_sided);
         Self {
             crane,
+            switches: one_sided || !stops.is_empty() || !frictions.is_empty(),
             factors: crane.system(),
             joints: linear.clone(),
             linear,
-            nonlinear: vec![[0.0; 2]; n],
+            nonlinear: [vec![[0.0; 2]; n], vec![[0.0; 2]; n]],
             base: [Matrix6::zeros(); 2],
             c: f64::NAN,
             resistance: zeros(),
@@ -58,8 +66,9 @@ impl<'a> System<'a> {
     /// Factorises at a state.
     pub fn factorise(&mut self, t: f64, (q, v): (&[f64], &[f64]), c: f64) {
         self.c = c;
-        self.crane.nonlinear_impedances(t, q, v, &mut self.nonlinear);
-        for ((joint, linear), nonlinear) in self.joints.iter_mut().zip(&self.linear).zip(&self.nonlinear) {
+        let [nonlinear, _] = &mut self.nonlinear;
+        self.crane.nonlinear_impedances(t, q, v, nonlinear);
+        for ((joint, linear), nonlinear) in self.joints.iter_mut().zip(&self.linear).zip(nonlinear) {
             *joint = [linear[0] + nonlinear[0], linear[1] + nonlinear[1]];
         }
         self.base = [self.crane.base_stiffness(q, v), self.crane.base_damping(q, v)];
@@ -69,6 +78,23 @@ impl<'a> System<'a> {
         let [stiffness, damping] = &self.base;
         self.factors.factorise(q, &self.resistance, &(damping * c + stiffness * (c * c)));
         self.factorisations += 1;
+    }
+
+    /// Whether at a state some law acts that did not act where the system was factorised, or the other way about: a stiffness or a
+    /// damping is less than half, or more than twice, of what it was.
+    pub fn switched(&mut self, t: f64, (q, v): (&[f64], &[f64])) -> bool {
+        if !self.switches {
+            return false;
+        }
+        let differs = |before: f64, now: f64| (now - before).abs() > 0.5 * before.abs().max(now.abs());
+        let [before, now] = &mut self.nonlinear;
+        self.crane.nonlinear_impedances(t, q, v, now);
+        let mut of_joints = before.as_flattened().iter().zip(now.as_flattened());
+        let base = [self.crane.base_stiffness(q, v), self.crane.base_damping(q, v)];
+        let diagonal = |matrix: &Matrix6<f64>| matrix.diagonal();
+        let mut of_base = self.base.iter().zip(&base).map(|(before, now)| (diagonal(before), diagonal(now)));
+        of_joints.any(|(before, now)| differs(*before, *now))
+            || of_base.any(|(before, now)| before.iter().zip(&now).any(|(before, now)| differs(*before, *now)))
     }
 
     /// u for a right-hand side `(P, G, ·)`.

@@ -18,7 +18,7 @@ pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = Str
     let pulls: Vec<_> = forces.filter(|(_, force, _)| *force < -ROUNDING * greatest).collect();
     let gaps = description.supports.iter().zip(rig.support_gaps_at(q));
     let lifted = gaps.filter(|(support, gap)| support.one_sided && *gap > 0.0);
-    let lifted: Vec<_> = lifted.map(|(support, gap)| format!("{} by {:.3} mm", support.name, 1e3 * gap)).collect();
+    let lifted: Vec<_> = lifted.map(|(support, gap)| format!("{} by {} mm", support.name, millimetres(gap))).collect();
     let lifted = (!lifted.is_empty()).then(|| format!("feet off the ground: {}", lifted.join(", ")));
     pulled(&pulls).into_iter().chain(lifted)
 }
@@ -41,13 +41,18 @@ pub fn of_reactions(description: &Description, extremes: &dyn Fn(&str) -> Option
     let lifted = description.supports.iter().filter(|support| support.one_sided).filter_map(|support| {
         let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
         let gap = extremes(&support_gap(&support.name)).map_or_else(String::new, |gap| {
-            format!(", by up to {:.3} mm at {:.2} s", 1e3 * gap.maximum, gap.time_of_maximum)
+            format!(", by up to {} mm at {:.2} s", millimetres(gap.maximum), gap.time_of_maximum)
         });
         (minimum <= 0.0).then(|| format!("{} first at {time_of_minimum:.2} s{gap}", support.name))
     });
     let lifted: Vec<String> = lifted.collect();
     let lifted = (!lifted.is_empty()).then(|| format!("feet that lift off the ground: {}", lifted.join("; ")));
     pulled(&pulls.collect::<Vec<_>>()).into_iter().chain(lifted).collect()
+}
+
+/// A gap, m, in words that do not round it to nothing.
+fn millimetres(gap: f64) -> String {
+    if gap < 1e-5 { format!("{:.1e}", 1e3 * gap) } else { format!("{:.3}", 1e3 * gap) }
 }
 
 /// Says that the base of a crane on feet that lift tips over in a run, and which feet carried it last.

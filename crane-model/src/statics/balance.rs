@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::{CoordinateKind, dyn_crane::DynStatics};
+use crate::{CoordinateKind, CoordinateRole, dyn_crane::DynStatics};
 
 /// Least scale of the forces against that of the moments, 1/m, and the other way about, m: where all moments cancel, forces
 /// at levers of some metres leave their rounding.
@@ -15,6 +15,8 @@ const LEAST: f64 = 1e-5;
 /// the greatest force that any translation balances at the guess, that of a rotation the greatest moment of any rotation.
 pub(super) struct Balance {
     scale: DVector<f64>,
+    /// Size of the numbers whose difference is the elongation of springs, coordinate by coordinate, besides the coordinate itself, m.
+    reach: DVector<f64>,
 }
 
 impl Balance {
@@ -40,7 +42,14 @@ impl Balance {
             CoordinateKind::Translation => force,
             CoordinateKind::Rotation => moment,
         });
-        Self { scale }
+        // Exact kinematics subtract the place of a support from where it is.
+        let supports = crane.description().supports.iter().filter(|support| !support.linear);
+        let farthest = supports.flat_map(|support| support.position).fold(0.0, |far: f64, x| far.max(x.abs()));
+        let reach = DVector::from_fn(n, |i, _| match (coordinates[i].role, coordinates[i].kind) {
+            (CoordinateRole::Base, CoordinateKind::Translation) => farthest,
+            _ => 0.0,
+        });
+        Self { scale, reach }
     }
 
     /// `‖r/scale‖`, dimensionless: 0 in equilibrium, about 1 where springs do not carry the weight yet.
@@ -63,7 +72,7 @@ impl Balance {
     pub(super) fn rounding(&self, stiffness: &DMatrix<f64>, q: &DVector<f64>) -> f64 {
         /// Roundings of a coordinate and of the sums that it goes through.
         const ROUNDINGS: f64 = 4.0;
-        ROUNDINGS * f64::EPSILON * self.norm(&(stiffness.abs() * q.abs()))
+        ROUNDINGS * f64::EPSILON * self.norm(&(stiffness.abs() * (q.abs() + &self.reach)))
     }
 
     /// Springs that hold the crane against all forces here within about 1 rad and 1 m, and each coordinate by at least its own

@@ -10,13 +10,17 @@ use crate::{
 /// Tipping margin below which a crane without a stable pose is reported to tip over: its drives and feet give way by less than that.
 const LITTLE: f64 = 0.1;
 
+/// Scaled residual below which a pose is at rest but for rounding, whatever Newton's method made of it.
+const AT_REST: f64 = 1e-6;
+
 /// The equilibrium at time `t`, s, found from a pose, with the status that the crane tips over if it has feet that lift and the pose found is not stable
 /// or its base is not upright.
 pub(crate) fn named(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibrium) -> Equilibrium {
     let description = crane.description();
     let feet = || description.supports.iter().filter(|support| support.one_sided);
     let fell = description.has_tipped(from, &found.q);
-    if feet().next().is_none() || found.is_stable() && !fell {
+    let stands = found.is_stable() || found.status == Status::NotConverged && found.residual() < AT_REST;
+    if feet().next().is_none() || stands && !fell {
         return found;
     }
     let rest = vec![0.0; from.len()];
