@@ -52,8 +52,8 @@ pub mod support;
 pub mod tipping;
 
 pub use description::{
-    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, InputInfo, LARGE_TILT, List,
-    LoadInfo, NEAR_SINGULAR, ParameterInfo, SupportInfo, TIPPED, Text,
+    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo, Description, DriveInfo, InputInfo,
+    LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, SupportInfo, TIPPED, Text,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,

@@ -107,6 +107,10 @@ pub trait CraneModel<const N: usize> {
         out.fill([0.0; 2]);
     }
 
+    /// Length of each cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m. `out`: one vector per
+    /// cylinder; numbers that are not numbers where its linkage cannot be assembled.
+    fn cylinder_states(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
+
     /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair per drive.
     fn drive_motions(&self, _t: f64, _out: &mut [[f64; 2]]) {}
 

@@ -94,6 +94,8 @@ pub const DESCRIPTION: Description = Description {
     frictions: List::Static(&[]),
     loads: List::Static(&[]),
     inputs: List::Static(&[]),
+    cylinders: List::Static(&[]),
+    pump_flow: None,
     points: List::Static(&[Text::Static("end")]),
     statics: false,
     guess: List::Static(&[1.5707963267948966, -1.5707963267948966]),

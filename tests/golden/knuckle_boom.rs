@@ -150,6 +150,8 @@ pub const DESCRIPTION: Description = Description {
     frictions: List::Static(&[]),
     loads: List::Static(&[]),
     inputs: List::Static(&[]),
+    cylinders: List::Static(&[]),
+    pump_flow: None,
     points: List::Static(&[Text::Static("boom_tip"), Text::Static("load_centre")]),
     statics: true,
     guess: List::Static(

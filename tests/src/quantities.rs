@@ -71,6 +71,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("point_velocities", vec![points, 3]),
         ("support_reactions", vec![supports, 3]),
         ("support_gaps", vec![supports, 2]),
+        ("cylinder_states", vec![crane.cylinders.len(), 3]),
         ("drive_limits", vec![drives, 2]),
         ("drive_motions", vec![drives, 2]),
         ("drive_power", vec![1]),
@@ -169,6 +170,9 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     let mut gaps = vec![[0.0; 2]; info.supports.len()];
     crane.support_gaps(q, v, &mut gaps);
     out.extend(gaps.iter().flatten());
+    let mut cylinders = vec![Vector3::zeros(); info.cylinders.len()];
+    crane.cylinder_states(q, v, &mut cylinders);
+    out.extend(cylinders.iter().flatten());
     let mut motions = vec![[0.0; 2]; info.drives.len()];
     crane.drive_limits(t, q, v, &mut motions);
     out.extend(motions.iter().flatten());

@@ -72,6 +72,9 @@ impl Writer {
         if self.driven && seed % 4 == 2 {
             self.loads();
         }
+        if self.driven && seed % 4 == 3 {
+            self.cylinders();
+        }
         self.line("points:");
         for (name, link) in [("middle", "first"), ("end", "hand")] {
             let at = self.vector(0.5).replace("[-", "[");
@@ -342,6 +345,20 @@ impl Writer {
         self.line("    moment: [0.5, -0.7, 0.9]");
         self.line("    axes: link");
         self.line("    scale: {quintic: {from: 0.5, to: 1.5, begin: 0.1, duration: 2}}");
+    }
+
+    /// Cylinders of a joint that turns and of one that slides; the second has its foot on the link that moves.
+    fn cylinders(&mut self) {
+        let [turns, slides] = [0, 2].map(|index: usize| self.coordinates[index].0.clone());
+        let pins = [("foot", "arm"), ("slide", "plate")];
+        self.line("cylinders:");
+        for ((name, coordinate), (foot, head)) in [("turning", turns), ("sliding", slides)].into_iter().zip(pins) {
+            let (at, to) = (self.vector(1.0), self.vector(1.0));
+            self.line(&format!(
+                "  - {{name: {name}, coordinate: {coordinate}, bore: 0.1, rod: 0.05, retracted: 1, stroke: 1,"
+            ));
+            self.line(&format!("     foot: {{link: {foot}, at: {at}}}, head: {{link: {head}, at: {to}}}}}"));
+        }
     }
 
     fn line(&mut self, line: &str) {

@@ -25,6 +25,7 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.internal_forces(t, q, v, v, &mut places.wrenches);
     crane.section_moduli(&mut places.moduli);
     crane.support_gaps(q, v, &mut places.motions);
+    crane.cylinder_states(q, v, &mut places.vectors);
     crane.drive_limits(t, q, v, &mut places.motions);
     crane.drive_motions(t, &mut places.motions);
     crane.drive_pieces(&mut places.pieces);

@@ -6,6 +6,7 @@ import casadi as ca
 
 from beams import DIRECTIONS, read_beam
 from crane_spec import CraneSpec
+from cylinders import Cylinder, pin_of_rocker, turning_axis
 from inertias import read_pseudo_inertia
 from profiles import read_profile
 from transforms import classic_dh, modified_dh, place, rotate, rotate_by_vector, translate, translate_along
@@ -136,6 +137,7 @@ class Crane:
     stops: list = field(default_factory=list)
     frictions: list = field(default_factory=list)
     loads: list = field(default_factory=list)
+    cylinders: list = field(default_factory=list)
     points: dict = field(default_factory=dict)
     guess: list = field(default_factory=list)
 
@@ -208,6 +210,8 @@ def read_crane(path):
         crane.frictions.append(read_friction(spec, written, crane.coordinate(name)))
     for written in spec.get("loads", []):
         crane.loads.append(read_load(crane, written, spans[written["link"]]))
+    for written in spec.get("cylinders", []):
+        crane.cylinders.append(read_cylinder(crane, written, spans))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     crane.guess = read_guess(crane)
@@ -374,6 +378,23 @@ def read_load(crane, written, span):
     axes = rotation if written.get("axes", "world") == "link" else ca.SX.eye(3)
     index = next(i for i, other in enumerate(crane.bodies) if other is body)
     return Load(index, place(body.transform, local), rotation, scale * (axes @ force), scale * (axes @ moment))
+
+
+def read_cylinder(crane, written, spans):
+    """A cylinder, with its length over the coordinates."""
+    spec = crane.spec
+    coordinate = crane.coordinate(written["coordinate"])
+    foot, head = (carrier(spec, spec.vector(written[key]["at"]), spans[written[key]["link"]]) for key in ("foot", "head"))
+    start, end = place(foot[0].transform, foot[1]), place(head[0].transform, head[1])
+    linkage = written.get("linkage")
+    if linkage is not None:
+        # The pivot moves with the body that carries the foot, which begins at the foot's place along a beam.
+        local = spec.vector(linkage["pivot"]) - (spec.vector(written["foot"]["at"]) - foot[1])
+        pivot = place(foot[0].transform, local)
+        axis = turning_axis(head[0].transform[:3, :3], coordinate.q)
+        lengths = [spec.number(linkage[key]) for key in ("rocker", "link")]
+        end = pin_of_rocker(pivot, end, axis, lengths, linkage["side"])
+    return Cylinder(coordinate, ca.norm_2(end - start))
 
 
 def read_point(spec, written, span):

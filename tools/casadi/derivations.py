@@ -7,6 +7,7 @@ No formula of the equations of motion is written down here: A, e, forces, K and 
 import casadi as ca
 import numpy as np
 
+import cylinders
 from contacts import contact
 from limits import limited_drive, slope_at_rest
 
@@ -320,6 +321,7 @@ class Derivations:
             "point_velocities": self.rate(points),
             "support_reactions": ca.vertcat(*[self.reaction(s) for s in crane.supports]),
             "support_gaps": ca.vertcat(*[self.gap(s) for s in crane.supports]),
+            "cylinder_states": ca.vertcat(*[cylinders.state(cylinder, self.rate) for cylinder in crane.cylinders]),
             "drive_limits": self.drive_limits(),
             "drive_motions": row_major(ca.horzcat(prescribed, rates)),
             "drive_power": ca.dot(self.driving_forces(), rates),

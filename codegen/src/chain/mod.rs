@@ -3,6 +3,7 @@
 //! // AFTER THIS POINT: no stage knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
 mod cut;
+mod cylinder;
 mod force;
 mod frame;
 mod input;
@@ -14,6 +15,7 @@ mod start;
 mod value;
 
 pub use cut::Cut;
+pub use cylinder::{Cylinder, Linkage, Pin};
 pub use force::{End, ForceElement, Friction, Law, Stop};
 pub use frame::{Frame, Vector};
 pub use input::{Input, InputId};
@@ -66,6 +68,10 @@ pub struct Chain {
     pub forces: Vec<ForceElement>,
     /// Forces and moments applied from outside.
     pub loads: Vec<Load>,
+    /// Hydraulic cylinders of driven joints.
+    pub cylinders: Vec<Cylinder>,
+    /// Greatest flow to all cylinders together, m³/s.
+    pub pump_flow: Option<f64>,
     /// Inputs that are set between steps.
     pub inputs: Vec<Input>,
     /// Rotors that joints drive through gears.

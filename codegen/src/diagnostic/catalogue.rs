@@ -298,6 +298,28 @@ catalogue! {
     E114 unused_input(input) "input `{input}` is not used", "no drive and no load refers to it",
         "name it in `motion: {{input: …}}` or `offset` of a drive or in `scale: {{input: …}}` of a load, or remove it";
 
+    // Cylinders.
+    /// The rod of a cylinder is thinner than its piston.
+    E115 thick_rod(cylinder, rod, bore) "the rod of cylinder `{cylinder}` is not thinner than its piston", "rod {rod} m, bore {bore} m",
+        "both are diameters: make `rod` less than `bore`";
+    /// A cylinder has its joint between its pins.
+    E116 spans_not(cylinder, coordinate) "cylinder `{cylinder}` does not move `{coordinate}`", "both pins are on the same side of this joint",
+        "put `foot` on a link before the joint and `head` on the link that it moves, or name another coordinate";
+    /// A cylinder moves a single joint.
+    E117 spans_more(cylinder, coordinate, other) "cylinder `{cylinder}` spans `{other}` besides `{coordinate}`", "two joints between its pins",
+        "put its pins on links that only `{coordinate}` moves against each other";
+    /// The joint of a cylinder has a drive, whose effort is the cylinder's.
+    E118 undriven(cylinder, coordinate) "cylinder `{cylinder}` has no drive", "`{coordinate}` is not driven",
+        "add a drive of `{coordinate}` with the motion that the cylinder shall make";
+    /// A joint has one cylinder; two side by side are one with twice the area.
+    E119 second_cylinder(coordinate, other) "`{coordinate}` has two cylinders", "moved by cylinder `{other}` already",
+        "give one cylinder: two equal ones side by side have √2 times the `bore` and `rod` of each";
+    /// A linkage moves a joint that rotates.
+    E125 straight_linkage(cylinder, coordinate) "cylinder `{cylinder}` has a linkage, but `{coordinate}` slides", "rocker and link need a joint that rotates",
+        "remove `linkage`, or name the coordinate of a revolute joint";
+    /// A pump supplies cylinders.
+    E126 pump_alone() "the pump supplies nothing", "the spec has no cylinders", "add `cylinders:`, or remove `pump`";
+
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
     W001 modulus(what, place, given, usual, help) "{what} of {place} is {given} Pa", "usual: {usual} Pa", "{help}";

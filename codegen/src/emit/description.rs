@@ -54,6 +54,25 @@ fn description_constant(chain: &Chain) -> Item {
         let moves = !matches!(input.unless_set, Profile::Hold(_));
         quote!(InputInfo { name: #name, unit: #unit, about: #about, default: #default, moves: #moves })
     });
+    let cylinders = chain.cylinders.iter().map(|cylinder| {
+        let [piston, annulus] = cylinder.areas().map(literal);
+        let [retracted, stroke, back_pressure] =
+            [cylinder.retracted, cylinder.stroke, cylinder.back_pressure].map(literal);
+        let [of_piston, of_rod] = cylinder.hose_volumes.map(literal);
+        let (name, drive) = (text(&cylinder.name), integer(chain.drive_of(cylinder)));
+        let [max_pressure, bulk_modulus] = [cylinder.max_pressure, cylinder.bulk_modulus].map(optional);
+        quote!(CylinderInfo {
+            name: #name,
+            drive: #drive,
+            areas: [#piston, #annulus],
+            retracted: #retracted,
+            stroke: #stroke,
+            max_pressure: #max_pressure,
+            back_pressure: #back_pressure,
+            bulk_modulus: #bulk_modulus,
+            hose_volumes: [#of_piston, #of_rod]
+        })
+    });
     let points = chain.points.iter().map(|point| text(&point.name));
     let parameters = if chain.parameters.is_empty() { quote!(&[]) } else { quote!(&PARAMETERS) };
     let statics = chain.analyses.statics;
@@ -61,6 +80,7 @@ fn description_constant(chain: &Chain) -> Item {
     let [coordinates, bodies] = [list(coordinates), list(bodies)];
     let [stops, frictions, loads, inputs] = [list(stops), list(frictions), list(loads), list(inputs)];
     let [supports, drives, points, guess] = [list(supports), list(drives), list(points), list(guess)];
+    let (cylinders, pump_flow) = (list(cylinders), optional(chain.pump_flow));
     let [name, title, hash] = [&chain.name, &chain.title, &chain.spec_hash].map(|words| text(words));
     let (duration, step, output) = (literal(chain.run.duration), literal(chain.run.step), literal(chain.run.output));
     parse_quote! {
@@ -78,6 +98,8 @@ fn description_constant(chain: &Chain) -> Item {
             frictions: #frictions,
             loads: #loads,
             inputs: #inputs,
+            cylinders: #cylinders,
+            pump_flow: #pump_flow,
             points: #points,
             statics: #statics,
             guess: #guess,
@@ -91,6 +113,11 @@ fn description_constant(chain: &Chain) -> Item {
 /// Text of a description.
 pub fn text(text: &str) -> TokenStream {
     quote!(Text::Static(#text))
+}
+
+/// A number that may be missing.
+fn optional(number: Option<f64>) -> TokenStream {
+    number.map(literal).map_or(quote!(None), |number| quote!(Some(#number)))
 }
 
 /// A list of a description.

@@ -53,6 +53,9 @@ impl<'a> Labels<'a> {
             Shape::Vectors(_) if matches!(function.id, FunctionId::SupportReactions | FunctionId::SupportPositions) => {
                 Some(chain.supports[slot / 3].name.clone())
             }
+            Shape::Vectors(_) if function.id == FunctionId::CylinderStates => {
+                Some(chain.cylinders[slot / 3].name.clone())
+            }
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
             Shape::Pairs(_) if matches!(function.id, FunctionId::JointImpedances | FunctionId::NonlinearImpedances) => {
                 Some(coordinate(slot / 2).to_owned())

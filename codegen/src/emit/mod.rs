@@ -111,6 +111,7 @@ fn imports(items: &[syn::Item]) -> String {
                 "CoordinateKind",
                 "CoordinateRole",
                 "CraneModel",
+                "CylinderInfo",
                 "Description",
                 "DriveInfo",
                 "Dynamics",

@@ -7,6 +7,7 @@
 mod articulated;
 mod columns;
 mod contact;
+mod cylinders;
 mod drives;
 mod energy;
 mod factors;

@@ -55,6 +55,8 @@ fn double_pendulum() -> Chain {
         hinges: vec![],
         forces: vec![],
         loads: vec![],
+        cylinders: Vec::new(),
+        pump_flow: None,
         inputs: vec![],
         rotors: vec![],
         points: vec![Point { name: "tip".into(), body: BodyId(1), position: [c(LENGTH[1]), Value::ZERO, Value::ZERO] }],

@@ -75,6 +75,7 @@ functions! {
         LoadPieces = "load_pieces",
         SupportReactions = "support_reactions",
         SupportGaps = "support_gaps",
+        CylinderStates = "cylinder_states",
         DriveMotions = "drive_motions",
         DriveLimits = "drive_limits",
         PrescribedMotions = "prescribed_motions",

@@ -3,6 +3,7 @@
 //! The type of a key defines its allowed values; [`Given`] holds its location. An optional key is an `Option`.
 
 mod beam;
+mod cylinder;
 mod drive;
 mod given;
 mod inertia;
@@ -16,6 +17,7 @@ mod schema;
 mod support;
 
 pub use beam::{Beam, BeamDamping, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring};
+pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side};
 pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub(crate) use given::{EITHER, GIVEN, MANY};
 pub use given::{Either, Entries, Given, Many};
@@ -87,6 +89,10 @@ pub struct Crane {
     pub friction: Option<Given<Entries<Friction>>>,
     /// Forces and moments applied from outside.
     pub loads: Option<Given<Vec<Given<Load>>>>,
+    /// Hydraulic cylinders of driven joints, by their pins.
+    pub cylinders: Option<Given<Vec<Given<Cylinder>>>>,
+    /// What supplies the cylinders.
+    pub pump: Option<Given<Pump>>,
     /// Points of interest, whose motion is reported.
     pub points: Option<Given<Vec<Given<Point>>>>,
     /// Start of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at

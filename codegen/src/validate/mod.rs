@@ -5,6 +5,7 @@
 
 mod base;
 mod beam;
+mod cylinders;
 mod drives;
 mod elements;
 mod inputs;
@@ -166,6 +167,8 @@ impl<'a> Check<'a> {
         let hinges = self.hinges(crane, &drives);
         let forces = self.joint_forces(crane);
         let loads = self.loads(crane);
+        let cylinders = self.cylinders(crane, &drives);
+        let pump_flow = self.pump(crane);
         rotors.extend(self.rotors(crane, &drives));
         let points = self.points(crane, &supports);
         let guess = self.guess(crane, &drives);
@@ -191,6 +194,8 @@ impl<'a> Check<'a> {
             hinges,
             forces,
             loads,
+            cylinders,
+            pump_flow,
             inputs: std::mem::take(&mut self.inputs),
             rotors,
             points,

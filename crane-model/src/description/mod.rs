@@ -33,6 +33,10 @@ pub struct Description {
     pub loads: List<LoadInfo>,
     /// Inputs that are set between steps.
     pub inputs: List<InputInfo>,
+    /// Hydraulic cylinders of driven joints.
+    pub cylinders: List<CylinderInfo>,
+    /// Greatest flow to all cylinders together, m³/s, if it is limited.
+    pub pump_flow: Option<f64>,
     /// Names of the points of interest.
     pub points: List<Text>,
     /// Whether the spec requests statics: a run then starts from the static equilibrium, otherwise from the guess.
@@ -238,6 +242,29 @@ pub struct DriveInfo {
     pub start: f64,
     /// The number of intervals in which its motion is smooth.
     pub pieces: usize,
+}
+
+/// The hydraulic cylinder of a driven joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CylinderInfo {
+    /// Name.
+    pub name: Text,
+    /// Index of the drive whose effort is that of the cylinder.
+    pub drive: usize,
+    /// Areas on which the oil presses: of the piston, and of the ring around the rod, m².
+    pub areas: [f64; 2],
+    /// Distance of the pins when it is retracted, m.
+    pub retracted: f64,
+    /// Stroke, m.
+    pub stroke: f64,
+    /// Greatest pressure, Pa.
+    pub max_pressure: Option<f64>,
+    /// Pressure on the side that does not carry, Pa.
+    pub back_pressure: f64,
+    /// Bulk modulus of the oil, Pa.
+    pub bulk_modulus: Option<f64>,
+    /// Oil in hoses and valves on the piston's side and on the rod's, m³.
+    pub hose_volumes: [f64; 2],
 }
 
 /// A load applied from outside.

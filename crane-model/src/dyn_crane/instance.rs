@@ -101,6 +101,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H
         self.0.support_gaps(&vector(q), &vector(v), out);
     }
 
+    fn cylinder_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
+        self.0.cylinder_states(&vector(q), &vector(v), out);
+    }
+
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
         self.0.drive_motions(t, out);
     }

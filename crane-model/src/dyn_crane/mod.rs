@@ -80,6 +80,9 @@ pub trait DynModel {
     /// How far each one-sided support is above the ground, m, and the rate of that, m/s; 0 of all others.
     fn support_gaps(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
 
+    /// Length of every cylinder, its rate, and its derivative by the joint's coordinate.
+    fn cylinder_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
+
     /// Prescribed position and rate of every drive.
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]);
 

@@ -1,7 +1,7 @@
 //! Cautions about poses and runs for which the model is not valid.
 
 pub use super::feet::of_reactions;
-use super::{Extremes, Table, feet, limits, stop_effort};
+use super::{Extremes, Table, cylinders, feet, limits, stop_effort};
 use crate::{Description, dyn_crane::DynCrane};
 
 /// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
@@ -18,7 +18,12 @@ pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
         let coordinate = &description.coordinates[coordinate];
         format!("{} rests on its stop with {:.1} {}", coordinate.name, effort.abs(), coordinate.kind.force_unit())
     });
-    feet::of_pose(rig, q).chain(limits::of_pose(rig, q)).chain(stopped).chain(bent_beyond(bent, bend)).collect()
+    feet::of_pose(rig, q)
+        .chain(limits::of_pose(rig, q))
+        .chain(cylinders::of_pose(rig, q))
+        .chain(stopped)
+        .chain(bent_beyond(bent, bend))
+        .collect()
 }
 
 /// The same over a run.
@@ -32,6 +37,7 @@ pub fn of_run(rig: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
     let stopped = description.stops.iter().filter_map(|&coordinate| on_stop(description, table, coordinate));
     feet::of_run(description, table)
         .chain(limits::of_run(rig, table))
+        .chain(cylinders::of_run(description, table))
         .chain(stopped)
         .chain(bent_beyond(bent, bend))
         .collect()

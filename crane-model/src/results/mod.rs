@@ -1,6 +1,7 @@
 //! Results as columns with names and units, their extremes, their errors, and cautions about them.
 
 pub mod cautions;
+mod cylinders;
 mod extremes;
 mod feet;
 mod headlines;
@@ -10,6 +11,8 @@ mod recording;
 mod table;
 pub mod verification;
 
+pub(crate) use cylinders::unassembled;
+pub use cylinders::{CylinderState, cylinders_at, pump};
 pub use extremes::Extremes;
 pub use headlines::{Kind, headlines};
 pub use peaks::Peaks;

@@ -4,13 +4,14 @@ use crate::{
     CoordinateKind, Description,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
-    results::{Column, Table},
+    results::{Column, Table, cylinders},
 };
 
 /// Records the samples of a run of a crane.
 ///
 /// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; of a drive `<coordinate>_prescribed` and
-/// `<coordinate>_drive_torque` or `_drive_force`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
+/// `<coordinate>_drive_torque` or `_drive_force`; of a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`,
+/// `_rod_pressure` and `_flow`, of all `pump_flow` and `pump_power`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
 /// `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap` as well; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
 /// error of the run if it is audited.
 pub struct Recording<'a> {
@@ -67,8 +68,14 @@ fn push_quantities(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], row: &mut
     row.push(t);
     row.extend_from_slice(q);
     row.extend_from_slice(v);
-    for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(crane.drive_efforts_at(t, q, v)) {
-        row.extend([position, effort]);
+    let efforts = crane.drive_efforts_at(t, q, v);
+    for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(&efforts) {
+        row.extend([position, *effort]);
+    }
+    let cylinders = cylinders::cylinders_at(crane, q, v, &efforts);
+    row.extend(cylinders.iter().flat_map(cylinders::values));
+    if !cylinders.is_empty() {
+        row.extend(cylinders::pump(&cylinders));
     }
     for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {
         row.extend(position.iter().chain(&velocity));
@@ -102,6 +109,13 @@ pub fn quantities(description: &Description) -> Vec<Column> {
         let coordinate = &description.coordinates[drive.coordinate];
         table.add(format!("{}_prescribed", coordinate.name), coordinate.kind.unit());
         table.add(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
+    }
+    for (name, unit) in description.cylinders.iter().flat_map(|cylinder| cylinders::columns(&cylinder.name)) {
+        table.add(name, unit);
+    }
+    if !description.cylinders.is_empty() {
+        table.add("pump_flow", "m³/s");
+        table.add("pump_power", "W");
     }
     for point in &description.points {
         for axis in ["x", "y", "z"] {

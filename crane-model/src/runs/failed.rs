@@ -27,6 +27,13 @@ pub enum Reason {
     MassMatrix,
     /// There are no modes, which are needed to compute a stable step.
     Modes(NoModes),
+    /// The linkage of a cylinder does not reach in a pose of the run.
+    Unassembled {
+        /// The cylinder.
+        cylinder: Text,
+        /// When, s.
+        time: f64,
+    },
     /// The run ended early.
     Stopped {
         /// Where, and why.
@@ -61,6 +68,9 @@ impl Reason {
                 "give every link a mass in kg and an inertia in kg m² that are not negligible beside those of the others".to_owned()
             }
             Reason::Modes(_) => "check masses and inertias in the spec".to_owned(),
+            Reason::Unassembled { .. } => {
+                "lengthen its `rocker` or `link`, check the places of its pins, or keep the joint where they reach".to_owned()
+            }
             Reason::Stopped { stopped, limit, .. } => {
                 let light = match stopped.cause {
                     Cause::Tolerance => {
@@ -94,6 +104,12 @@ impl fmt::Display for Reason {
                 f.write_str("the mass matrix is not positive definite, so accelerations are not defined")
             }
             Reason::Modes(no_modes) => write!(f, "{no_modes}"),
+            Reason::Unassembled { cylinder, time } => {
+                write!(
+                    f,
+                    "the linkage of {cylinder} cannot be assembled at {time} s: its rocker and link do not reach each other"
+                )
+            }
             Reason::Stopped { stopped, near_singular, .. } => {
                 let near = near_singular.as_ref().map_or_else(String::new, |said| format!("; {said}"));
                 write!(f, "{stopped}{near}")

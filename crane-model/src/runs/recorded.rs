@@ -9,7 +9,7 @@ use super::{Bound, Failed, Reason, Start, step_limit};
 use crate::{
     dyn_crane::DynCrane,
     dynamics::{self, Run, Sample, Watch},
-    results::{Recording, Table, Verification, cautions, verification},
+    results::{self, Recording, Table, Verification, cautions, verification},
     stability::cause,
 };
 
@@ -105,6 +105,9 @@ pub fn record(
         Reason::Stopped { stopped, near_singular: singular.clone(), limit }.of(&crane.description().name)
     })?;
     let table = recording.into_table();
+    if let Some((cylinder, time)) = results::unassembled(crane.description(), &table) {
+        return Err(Reason::Unassembled { cylinder, time }.of(&crane.description().name));
+    }
     let off = imbalance(&table);
     let unbalanced = (settings.audit && off > IMBALANCE).then(|| {
         format!(

@@ -32,10 +32,11 @@ pub enum Status {
 }
 
 impl Status {
-    /// A word for it: `stable`, `unstable`, `singular`, `overflow` or `not converged`.
+    /// A word for it: `stable`, `tips over`, `unstable`, `singular`, `overflow` or `not converged`.
     pub fn name(&self) -> &'static str {
         match self {
             Status::Converged => "stable",
+            Status::TipsOver { .. } => "tips over",
             Status::Unstable { .. } => "unstable",
             Status::Singular { .. } => "singular",
             Status::Overflow => "overflow",

@@ -36,6 +36,8 @@ pub const fn description(
         frictions: List::Static(&[]),
         loads: List::Static(&[]),
         inputs: List::Static(&[]),
+        cylinders: List::Static(&[]),
+        pump_flow: None,
         points: List::Static(&[]),
         statics: true,
         guess: List::Static(guess),

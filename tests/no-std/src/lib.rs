@@ -64,6 +64,7 @@ macro_rules! crane {
                 load_pieces(out: &mut [[f64; 2]]);
                 support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
                 support_gaps(q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
+                cylinder_states(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
                 drive_limits(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 drive_motions(t: f64, out: &mut [[f64; 2]]);
                 drive_pieces(out: &mut [[f64; 2]]);

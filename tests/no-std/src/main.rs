@@ -41,6 +41,7 @@ macro_rules! call_all {
         of::load_pieces(&crane, &mut pieces);
         of::support_reactions(&crane, &q, &v, &mut vectors);
         of::support_gaps(&crane, &q, &v, &mut gaps);
+        of::cylinder_states(&crane, &q, &v, &mut vectors);
         of::drive_limits(&crane, t, &q, &v, &mut motions);
         of::drive_motions(&crane, t, &mut motions);
         of::drive_pieces(&crane, &mut pieces);

@@ -5,7 +5,7 @@ use std::io::Write;
 use crane_model::{
     CoordinateInfo, CoordinateKind,
     dyn_crane::DynCrane,
-    results::cautions,
+    results::{CylinderState, cautions, cylinders_at},
     runs::{Reason, Recorded},
     statics::{Equilibrium, Settings},
 };
@@ -115,6 +115,9 @@ pub fn tables(cases: &[Case<'_>], limits: Limits) -> Report {
         }
     }
     report.grid(drives(cases));
+    if let Some(grid) = cylinders(cases) {
+        report.grid(grid);
+    }
     report.grid(reactions(cases));
     report.grid(points(cases));
     report.excerpt(pose(cases), 0);
@@ -190,6 +193,38 @@ fn drives(cases: &[Case<'_>]) -> Grid {
         grid.row(row);
     }
     grid
+}
+
+/// Lengths, forces and pressures of the cylinders.
+fn cylinders(cases: &[Case<'_>]) -> Option<Grid> {
+    let first = cases.iter().find(|case| !case.rig.description().cylinders.is_empty())?;
+    let headings = headings("cylinder", cases);
+    let [name, others @ ..] = headings.as_slice() else { return None };
+    let headings = [&[name.clone(), "quantity".into()], others].concat();
+    let mut grid = Grid::with_headings("cylinders", "Cylinders", headings);
+    let of = |case: &Case<'_>| {
+        let q = &case.equilibrium.q;
+        cylinders_at(case.rig, q, &case.rest(), &case.rig.drive_efforts_at_rest(q))
+    };
+    let states: Vec<Vec<CylinderState>> = cases.iter().map(of).collect();
+    for (index, info) in first.rig.description().cylinders.iter().enumerate() {
+        let kind = first.coordinates()[first.rig.description().drives[info.drive].coordinate].kind;
+        let oil = format!("{}/{}", kind.force_unit(), kind.unit());
+        let mut row = |quantity: &str, unit: &str, value: &dyn Fn(&CylinderState) -> Option<f64>| {
+            let values = states.iter().map(|states| Cell::from(states.get(index).and_then(value)));
+            let named: [Cell; 2] = [info.name.as_str().into(), quantity.into()];
+            grid.row(named.into_iter().chain(values).chain([unit.into()]).collect::<Vec<Cell>>());
+        };
+        row("length", "m", &|state| Some(state.length));
+        row("extended", "%", &|state| Some(100.0 * state.extension(info) / info.stroke));
+        row("force", "N", &|state| Some(state.force));
+        row("pressure, piston's side", "bar", &|state| Some(1e-5 * state.pressures[0]));
+        row("pressure, rod's side", "bar", &|state| Some(1e-5 * state.pressures[1]));
+        if info.bulk_modulus.is_some() {
+            row("stiffness of its oil", &oil, &|state| state.oil_stiffness(info));
+        }
+    }
+    Some(grid)
 }
 
 fn reactions(cases: &[Case<'_>]) -> Grid {

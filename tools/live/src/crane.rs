@@ -296,6 +296,10 @@ impl DynModel for LiveCrane {
         self.pairs(FunctionId::SupportGaps, &state(0.0, q, v), out);
     }
 
+    fn cylinder_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]) {
+        self.vectors(FunctionId::CylinderStates, &state(0.0, q, v), out);
+    }
+
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
         self.pairs(FunctionId::DriveMotions, &Arguments { t, ..Arguments::none() }, out);
     }

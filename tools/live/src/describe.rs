@@ -4,8 +4,8 @@ use crane_codegen::chain::{
     self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics, Value,
 };
 use crane_model::{
-    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, Description, DriveInfo, InputInfo, LoadInfo,
-    ParameterInfo, Refusal, SupportInfo,
+    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo, Description, DriveInfo, InputInfo,
+    LoadInfo, ParameterInfo, Refusal, SupportInfo,
 };
 
 /// The description of a chain, as the compiler writes it.
@@ -54,6 +54,17 @@ pub fn describe(chain: &Chain) -> Description {
         default: input.unless_set.start(&defaults),
         moves: !matches!(input.unless_set, Profile::Hold(_)),
     });
+    let cylinders = chain.cylinders.iter().map(|cylinder| CylinderInfo {
+        name: cylinder.name.clone().into(),
+        drive: chain.drive_of(cylinder),
+        areas: cylinder.areas(),
+        retracted: cylinder.retracted,
+        stroke: cylinder.stroke,
+        max_pressure: cylinder.max_pressure,
+        back_pressure: cylinder.back_pressure,
+        bulk_modulus: cylinder.bulk_modulus,
+        hose_volumes: cylinder.hose_volumes,
+    });
     Description {
         name: chain.name.clone().into(),
         title: chain.title.clone().into(),
@@ -67,6 +78,8 @@ pub fn describe(chain: &Chain) -> Description {
         frictions: chain.frictions().map(|(id, _)| id.0).collect(),
         loads: loads.collect(),
         inputs: inputs.collect(),
+        cylinders: cylinders.collect(),
+        pump_flow: chain.pump_flow,
         points: chain.points.iter().map(|point| point.name.clone().into()).collect(),
         statics: chain.analyses.statics,
         guess: chain.guess.iter().copied().collect(),

@@ -230,6 +230,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::Points | FunctionId::PointVelocities => 3 * points,
             FunctionId::SupportReactions => 3 * supports,
             FunctionId::SupportGaps => 2 * supports,
+            FunctionId::CylinderStates => 3 * description.cylinders.len(),
             FunctionId::DriveMotions | FunctionId::DriveLimits => 2 * drives,
             FunctionId::GravityEnergy
             | FunctionId::SupportEnergy

@@ -112,6 +112,7 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
         ("stop_energy", vec![crane.stop_energy(q)]),
         ("support_reactions", vectors(description.supports.len(), |out| crane.support_reactions(q, v, out))),
         ("support_gaps", pairs(description.supports.len(), |out| crane.support_gaps(q, v, out))),
+        ("cylinder_states", vectors(description.cylinders.len(), |out| crane.cylinder_states(q, v, out))),
         ("drive_limits", pairs(description.drives.len(), |out| crane.drive_limits(t, q, v, out))),
         ("drive_motions", pairs(description.drives.len(), |out| crane.drive_motions(t, out))),
         ("drive_forces_at_rest", numbers(n, |out| crane.drive_forces_at_rest(q, out))),

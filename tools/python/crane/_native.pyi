@@ -129,6 +129,10 @@ class Crane:
         """(..., supports, 3): forces of the supports on the crane, world frame, N."""
     def support_gaps(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., supports, 2): how far one-sided supports are above the ground, m, negative where pressed in, and its rate, m/s; 0 of others."""
+    def cylinder_states(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., cylinders, 3): length of each cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m."""
+    def drive_limits(self, t: ArrayLike, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., drives, 2): greatest effort, N or N m, 0 without a limit, and stiffness, N/m or N m/rad; zeros for a crane without limits."""
     def drive_motions(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., drives, 2): prescribed positions and rates of the drives at times t, m and rad, m/s and rad/s."""
     def forward_dynamics(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:

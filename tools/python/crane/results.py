@@ -39,7 +39,7 @@ class Equilibrium:
     """Where a crane rests, over the leading axes.
 
     q: (..., n), m and rad; NaN where there is no equilibrium.
-    status: "stable", "unstable", "singular", "not converged" or "overflow".
+    status: "stable", "tips over", "unstable", "singular", "not converged" or "overflow".
     residual: (...), the part of the balancing forces left over.
     steps: (...), Newton's steps.
     drive_efforts: (..., drives), N m and N, what the drives hold.

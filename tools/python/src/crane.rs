@@ -171,6 +171,17 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("supports", list(std::mem::take(&mut rows))?)?;
+        for info in &description.cylinders {
+            let coordinate = &description.coordinates[description.drives[info.drive].coordinate];
+            let row = PyDict::new(py);
+            row.set_item("name", &*info.name)?;
+            row.set_item("coordinate", &*coordinate.name)?;
+            row.set_item("areas", info.areas.to_vec())?;
+            row.set_item("retracted", info.retracted)?;
+            row.set_item("stroke", info.stroke)?;
+            rows.push(row);
+        }
+        all.set_item("cylinders", list(std::mem::take(&mut rows))?)?;
         for info in &description.parameters {
             let row = PyDict::new(py);
             row.set_item("name", &*info.name)?;

@@ -254,6 +254,36 @@ impl Crane {
         self.compute(py, Quantity::Of(FunctionId::SupportGaps), state, &own, invalid)
     }
 
+    /// (..., cylinders, 3): length of each cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m.
+    #[pyo3(signature = (q, v, *, invalid="raise"))]
+    fn cylinder_states<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let own = [self.live.description().cylinders.len(), 3];
+        let state = State { q: Some(q), v: Some(v), ..State::default() };
+        self.compute(py, Quantity::Of(FunctionId::CylinderStates), state, &own, invalid)
+    }
+
+    /// (..., drives, 2): greatest effort of each drive, N or N m, 0 if it has no limit, and its stiffness at the state, N/m or N m/rad. Zeros for a
+    /// crane without limits.
+    #[pyo3(signature = (t, q, v, *, invalid="raise"))]
+    fn drive_limits<'py>(
+        &self,
+        py: Python<'py>,
+        t: &Bound<'py, PyAny>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let own = [self.live.description().drives.len(), 2];
+        let state = State { t: Some(t), q: Some(q), v: Some(v), ..State::default() };
+        self.compute(py, Quantity::Of(FunctionId::DriveLimits), state, &own, invalid)
+    }
+
     /// (..., drives, 2): prescribed positions and rates of the drives at times t, m and rad, m/s and rad/s.
     #[pyo3(signature = (t, *, invalid="raise"))]
     fn drive_motions<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {

@@ -34,6 +34,8 @@ def on_paper(c, t, q, v):
         "drive_forces_at_rest": c.drive_forces_at_rest(q),
         "support_reactions": c.support_reactions(q, v),
         "support_gaps": c.support_gaps(q, v),
+        "cylinder_states": c.cylinder_states(q, v),
+        "drive_limits": c.drive_limits(t, q, v),
         "drive_motions": c.drive_motions(t),
         "points": c.points(q),
         "point_velocities": c.point_velocities(q, v),

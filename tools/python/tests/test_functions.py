@@ -22,6 +22,8 @@ FUNCTIONS = [
     ("drive_forces_at_rest", "q", lambda c: (c.n,)),
     ("support_reactions", "qv", lambda c: (len(c.info["supports"]), 3)),
     ("support_gaps", "qv", lambda c: (len(c.info["supports"]), 2)),
+    ("cylinder_states", "qv", lambda c: (len(c.info["cylinders"]), 3)),
+    ("drive_limits", "tqv", lambda c: (len(c.info["drives"]), 2)),
     ("drive_motions", "t", lambda c: (len(c.info["drives"]), 2)),
     ("forward_dynamics", "qvt", lambda c: (c.n,)),
     ("static_residual", "q", lambda c: (c.n,)),

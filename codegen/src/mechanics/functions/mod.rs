@@ -18,7 +18,7 @@ use super::kinematics::Kinematics;
 use super::model::Model;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
-use super::{drives, energy, joints, newton_euler, points, resisted, rotors, springs, supports, transforms};
+use super::{cylinders, drives, energy, joints, newton_euler, points, resisted, rotors, springs, supports, transforms};
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
@@ -108,6 +108,16 @@ impl<'g> Derivation<'g> {
                 &[Position, Velocity],
                 shape(),
                 points::velocities(&self.model, &self.kinematics, &self.twists),
+            ));
+        }
+        if !chain.cylinders.is_empty() {
+            functions.push(function(
+                FunctionId::CylinderStates,
+                "Length of every cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m.",
+                "ℓ, ℓ̇, ∂ℓ/∂q_j",
+                &[Position, Velocity],
+                Shape::Vectors(chain.cylinders.len()),
+                cylinders::states(&self.model, &self.kinematics, &self.twists),
             ));
         }
         functions

@@ -90,6 +90,14 @@ def test_envelope(output, tmp_path, more):
     assert found["load"] == "payload" and found["poses"] >= 3 and found["units"]["load_chart"]["radius"] == "m"
 
 
+def test_cylinders(output):
+    found = output("statics", "statics", ROOT / "tests/no-std/exact.yaml")
+    rows = {(row["cylinder"], row["quantity"]): row for row in found["cylinders"]}
+    assert {cylinder for cylinder, _ in rows} == {"slew", "lift"}
+    assert rows["lift", "length"]["unit"] == "m" and rows["lift", "stiffness of its oil"]["unit"] == "N m/rad"
+    assert ("slew", "stiffness of its oil") not in rows
+
+
 @pytest.mark.parametrize("pair", [["eight_link_flexible"], ["double_pendulum", "knuckle_boom"]])
 def test_compare(output, tmp_path, pair):
     found = output("compare", "compare", *pair, *SHORT, "--out", tmp_path)

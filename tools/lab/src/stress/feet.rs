@@ -67,7 +67,8 @@ fn tipping() -> f64 {
 /// Below its tipping load the truck stands, and beyond it tips over the line between the near feet.
 fn loaded(kinematics: &'static str, stiffness: f64, share: f64) -> Case {
     let stands = share < 1.0;
-    let expected = if stands { "stable, carries its weight".to_owned() } else { "tips over about s3 – s0".to_owned() };
+    let expected =
+        if stands { "stable, carries its weight".to_owned() } else { "tips over about s3 – s0".to_owned() };
     let name = format!("truck on {kinematics} feet of {stiffness:e} N/m, {share} of its tipping load");
     Case::new(GROUP, name, expected, move || {
         let load = share * tipping();

@@ -1,0 +1,75 @@
+//! Hydraulic cylinders between their pins.
+
+use std::f64::consts::PI;
+
+use super::{BodyId, Chain, CoordinateId, Value};
+
+/// The hydraulic cylinder of a driven joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cylinder {
+    /// Unique name.
+    pub name: String,
+    /// The coordinate of the joint.
+    pub coordinate: CoordinateId,
+    /// The pin of its barrel.
+    pub foot: Pin,
+    /// The pin on the other side of the joint: that of its rod, or of the linkage.
+    pub head: Pin,
+    /// Rocker and link between its rod and the head.
+    pub linkage: Option<Linkage>,
+    /// Diameter of the piston, m.
+    pub bore: f64,
+    /// Diameter of the rod, m.
+    pub rod: f64,
+    /// Distance of its pins when it is retracted, m.
+    pub retracted: f64,
+    /// Stroke, m.
+    pub stroke: f64,
+    /// Greatest pressure, Pa.
+    pub max_pressure: Option<f64>,
+    /// Pressure on the side that does not carry, Pa.
+    pub back_pressure: f64,
+    /// Bulk modulus of the oil, Pa.
+    pub bulk_modulus: Option<f64>,
+    /// Oil in hoses and valves on the piston's side and on the rod's, m³.
+    pub hose_volumes: [f64; 2],
+}
+
+/// A point of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pin {
+    /// The body.
+    pub body: BodyId,
+    /// Where, in its frame, m.
+    pub position: [Value; 3],
+}
+
+/// Rocker and link between a cylinder's rod and its head.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linkage {
+    /// The rocker's pivot in the frame of the body that carries the foot, m.
+    pub pivot: [Value; 3],
+    /// Length of the rocker, m.
+    pub rocker: Value,
+    /// Length of the link, m.
+    pub link: Value,
+    /// Whether the rod's pin is to the left of the line from the pivot to the head, seen against the joint's axis.
+    pub left: bool,
+}
+
+impl Cylinder {
+    /// Areas of the piston and of the ring around the rod, m².
+    #[must_use]
+    pub fn areas(&self) -> [f64; 2] {
+        let circle = |diameter: f64| PI / 4.0 * diameter * diameter;
+        [circle(self.bore), circle(self.bore) - circle(self.rod)]
+    }
+}
+
+impl Chain {
+    /// The index of the drive whose effort is that of a cylinder.
+    #[must_use]
+    pub fn drive_of(&self, cylinder: &Cylinder) -> usize {
+        self.drives.iter().position(|drive| drive.coordinate == cylinder.coordinate).unwrap_or_default()
+    }
+}

@@ -1,0 +1,87 @@
+//! Hydraulic cylinders between their pins.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Constant, Given, Number, Vector};
+
+/// The hydraulic cylinder of a driven joint, by its pins: its length, its force and its pressures follow from the drive.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a mapping of `name`, `coordinate`, `foot`, `head`, `bore`, `rod`, `retracted` and `stroke`"
+)]
+pub struct Cylinder {
+    /// Name, a `snake_case` identifier.
+    pub name: Given<String>,
+    /// The driven coordinate that it moves, such as `boom_psi`.
+    pub coordinate: Given<String>,
+    /// The pin of its barrel.
+    pub foot: Given<Pin>,
+    /// The pin of its rod, on the other side of the joint; with a linkage the pin of the linkage's link there.
+    pub head: Given<Pin>,
+    /// Rocker and link between its rod and `head`. Default: none.
+    pub linkage: Option<Given<Linkage>>,
+    /// Diameter of the piston, m.
+    pub bore: Given<Constant>,
+    /// Diameter of the rod, m.
+    pub rod: Given<Constant>,
+    /// Distance of its pins when it is retracted, m.
+    pub retracted: Given<Constant>,
+    /// Stroke, m.
+    pub stroke: Given<Constant>,
+    /// Greatest pressure, at which its relief valves open, Pa. Default: none.
+    pub max_pressure: Option<Given<Constant>>,
+    /// Pressure on the side that does not carry, Pa. Default 0.
+    pub back_pressure: Option<Given<Constant>>,
+    /// Bulk modulus of the oil with its hoses, Pa, for the stiffness of the trapped oil. Default: none.
+    pub bulk_modulus: Option<Given<Constant>>,
+    /// Oil in hoses and valves on the piston's side and on the rod's, m³. Default `[0, 0]`.
+    pub hose_volumes: Option<Given<HoseVolumes>>,
+}
+
+/// Volumes on the two sides of a piston.
+pub type HoseVolumes = [Given<Constant>; 2];
+
+/// A pin: a point of a link.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `link` and `at`")]
+pub struct Pin {
+    /// The link that carries it.
+    pub link: Given<String>,
+    /// Its position in the frame of the link (for a beam: undeformed), m.
+    pub at: Given<Vector>,
+}
+
+/// Rocker and link: the rocker turns about `pivot` on the link that carries the cylinder's foot, the link ends at the cylinder's `head`, and
+/// the rod is pinned to the joint between the two.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `pivot`, `rocker`, `link` and `side`")]
+pub struct Linkage {
+    /// The rocker's pivot in the frame of the link that carries the cylinder's foot, m.
+    pub pivot: Given<Vector>,
+    /// Length of the rocker, m.
+    pub rocker: Given<Number>,
+    /// Length of the link, m.
+    pub link: Given<Number>,
+    /// The side of the line from `pivot` to `head` on which the rod's pin is, with the joint's axis towards the viewer.
+    pub side: Given<Side>,
+}
+
+/// A side of a directed line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// To the left.
+    Left,
+    /// To the right.
+    Right,
+}
+
+/// What supplies the cylinders.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `max_flow`")]
+pub struct Pump {
+    /// Greatest flow to all cylinders together, m³/s; 60 l/min are 1e-3.
+    pub max_flow: Given<Constant>,
+}

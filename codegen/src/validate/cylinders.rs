@@ -1,0 +1,129 @@
+//! Hydraulic cylinders.
+
+use super::Check;
+use super::limits::Limit;
+use crate::chain::{BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Value};
+use crate::diagnostic::rule;
+use crate::spec::{self, Constant, Crane, Given, Side};
+
+impl<'a> Check<'a> {
+    pub(super) fn cylinders(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Cylinder> {
+        let given = crane.cylinders.as_ref().and_then(|cylinders| cylinders.value.as_deref()).unwrap_or_default();
+        let mut cylinders: Vec<Cylinder> = Vec::new();
+        for given in given.iter().filter_map(|cylinder| cylinder.value.as_ref()) {
+            if let Some(cylinder) = self.cylinder(given, drives) {
+                if let Some(other) = cylinders.iter().find(|other| other.coordinate == cylinder.coordinate) {
+                    let joint = given.coordinate.value.as_deref().unwrap_or_default();
+                    self.report(rule::second_cylinder(given.coordinate.span, joint, &other.name));
+                }
+                cylinders.push(cylinder);
+            }
+        }
+        cylinders
+    }
+
+    /// The greatest flow to all cylinders, m³/s.
+    pub(super) fn pump(&mut self, crane: &'a Crane) -> Option<f64> {
+        let given = crane.pump.as_ref()?;
+        if crane.cylinders.is_none() {
+            self.report(rule::pump_alone(given.span));
+        }
+        let pump = given.value.as_ref()?;
+        Some(self.constant(&pump.max_flow, "the greatest flow of the pump", "m³/s", Limit::Positive))
+    }
+
+    fn cylinder(&mut self, given: &spec::Cylinder, drives: &[Drive]) -> Option<Cylinder> {
+        let name = self.name(&given.name).unwrap_or_default().to_owned();
+        if !name.is_empty() {
+            self.take_name("cylinders", &name, "an earlier cylinder".into(), given.name.span);
+        }
+        let place = |what: &str| format!("the {what} of cylinder `{name}`");
+        let bore = self.constant(&given.bore, &place("bore"), "m", Limit::Positive);
+        let rod = self.constant(&given.rod, &place("rod"), "m", Limit::Positive);
+        if rod >= bore {
+            self.report(rule::thick_rod(given.rod.span, &name, rod, bore));
+        }
+        let retracted = self.constant(&given.retracted, &place("retracted length"), "m", Limit::Positive);
+        let stroke = self.constant(&given.stroke, &place("stroke"), "m", Limit::Positive);
+        let mut pressure = |given: Option<&Given<Constant>>, what: &str, limit| {
+            given.map(|given| self.constant(given, &place(what), "Pa", limit))
+        };
+        let max_pressure = pressure(given.max_pressure.as_ref(), "greatest pressure", Limit::Positive);
+        let back_pressure = pressure(given.back_pressure.as_ref(), "back pressure", Limit::NotNegative).unwrap_or(0.0);
+        let bulk_modulus = pressure(given.bulk_modulus.as_ref(), "bulk modulus", Limit::Positive);
+        let hose_volumes = match given.hose_volumes.as_ref().map(|volumes| &volumes.value) {
+            Some(Some(volumes)) => {
+                volumes.each_ref().map(|volume| self.constant(volume, &place("hose volume"), "m³", Limit::NotNegative))
+            }
+            Some(None) => [f64::NAN; 2],
+            None => [0.0; 2],
+        };
+        let foot = self.pin(given.foot.value.as_ref(), &place("foot"));
+        let head = self.pin(given.head.value.as_ref(), &place("head")).map(|(pin, _)| pin);
+        let joint = given.coordinate.value.as_deref().unwrap_or_default();
+        let coordinate = self.coordinate(&given.coordinate)?;
+        if !drives.iter().any(|drive| drive.coordinate == coordinate) {
+            self.report(rule::undriven(given.coordinate.span, &name, joint));
+        }
+        let kind = self.coordinates[coordinate.0].kind;
+        let linkage = given.linkage.as_ref().map(|linkage| {
+            if kind == CoordinateKind::Translation {
+                self.report(rule::straight_linkage(linkage.span, &name, joint));
+            }
+            let (_, start) = foot.as_ref()?;
+            linkage.value.as_ref().map(|linkage| self.linkage(linkage, &name, start))
+        });
+        let ((foot, _), head) = (foot?, head?);
+        self.spans(given, &name, coordinate, [foot.body, head.body]);
+        Some(Cylinder {
+            coordinate,
+            foot,
+            head,
+            linkage: linkage.flatten(),
+            bore,
+            rod,
+            retracted,
+            stroke,
+            max_pressure,
+            back_pressure,
+            bulk_modulus,
+            hose_volumes,
+            name,
+        })
+    }
+
+    /// A pin, and where the frame of its body is along the link, m.
+    fn pin(&mut self, given: Option<&spec::Pin>, place: &str) -> Option<(Pin, Value)> {
+        let given = given?;
+        let at = self.vector(&given.at, place, "m", Limit::Any);
+        let (body, position) = self.attach(&given.link, at.clone())?;
+        let [along, ..] = at;
+        let start = along - position[0].clone();
+        Some((Pin { body, position }, start))
+    }
+
+    /// `start`: where the frame of the body that carries the foot is along its link, m.
+    fn linkage(&mut self, given: &spec::Linkage, name: &str, start: &Value) -> Linkage {
+        let place = |what: &str| format!("the {what} of the linkage of cylinder `{name}`");
+        let [along, y, z] = self.vector(&given.pivot, &place("pivot"), "m", Limit::Any);
+        Linkage {
+            pivot: [along - start.clone(), y, z],
+            rocker: self.number(&given.rocker, &place("rocker"), "m", Limit::Positive),
+            link: self.number(&given.link, &place("link"), "m", Limit::Positive),
+            left: given.side.value == Some(Side::Left),
+        }
+    }
+
+    /// Reports a cylinder that does not have its joint, or has another one, between its pins.
+    fn spans(&mut self, given: &spec::Cylinder, name: &str, joint: CoordinateId, [foot, head]: [BodyId; 2]) {
+        let (near, far) = if foot < head { (foot, head) } else { (head, foot) };
+        let paths = self.bodies[near.0 + 1..=far.0].iter().flat_map(|body| &body.path);
+        let between: Vec<CoordinateId> = paths.flat_map(|step| step.coordinates()).copied().collect();
+        let called = &self.coordinates[joint.0].name;
+        if !between.contains(&joint) {
+            self.report(rule::spans_not(given.coordinate.span, name, called));
+        } else if let Some(other) = between.iter().find(|id| **id != joint && self.not_a_joint(**id).is_none()) {
+            self.report(rule::spans_more(given.coordinate.span, name, called, &self.coordinates[other.0].name));
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Hydraulic cylinders of driven joints: force, pressures and flow that the motion of a drive takes.
+//!
+//! A drive with the effort τ on its joint is a cylinder that pushes with `F = τ/(∂ℓ/∂q_j)`: both have the power `τ q̇_j`. With the areas A
+//! of the piston and A′ of the ring around the rod, `F = p A − p′ A′`; the side that does not carry has the back pressure. Oil
+//! flows into the side that grows, at the rate A ℓ̇ or A′ |ℓ̇|. The oil is taken as incompressible; how soft it would be is
+//! [`CylinderState::oil_stiffness`].
+
+use nalgebra::Vector3;
+
+use super::{Extremes, Table};
+use crate::{CylinderInfo, Description, DriveInfo, Text, dyn_crane::DynCrane};
+
+/// Pa
+const BAR: f64 = 1e5;
+/// m³/s
+const LITRE_PER_MINUTE: f64 = 1e-3 / 60.0;
+/// A drive as much stiffer than the oil of its cylinder, or more, is no longer a model of it.
+const STIFFER: f64 = 2.0;
+
+/// A cylinder at a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CylinderState {
+    /// Distance of its pins ℓ, m; not a number where its linkage cannot be assembled.
+    pub length: f64,
+    /// ℓ̇, m/s; positive if it extends.
+    pub speed: f64,
+    /// ∂ℓ/∂q_j, m/rad or m/m.
+    pub arm: f64,
+    /// What it pushes with, N; negative if it pulls.
+    pub force: f64,
+    /// Pressures on the piston's side and on the rod's, Pa.
+    pub pressures: [f64; 2],
+    /// Flow into the side that grows, m³/s.
+    pub flow: f64,
+}
+
+impl CylinderState {
+    fn new(info: &CylinderInfo, [length, speed, arm]: [f64; 3], effort: f64) -> Self {
+        let force = effort / arm;
+        let ([piston, ring], back) = (info.areas, info.back_pressure);
+        let pressures = if force + back * (ring - piston) > 0.0 {
+            [(force + back * ring) / piston, back]
+        } else {
+            [back, (back * piston - force) / ring]
+        };
+        let flow = if speed > 0.0 { piston * speed } else { -ring * speed };
+        CylinderState { length, speed, arm, force, pressures, flow }
+    }
+
+    /// Pressure at which oil flows in, Pa.
+    pub fn supply_pressure(&self) -> f64 {
+        self.pressures[usize::from(self.speed <= 0.0)]
+    }
+
+    /// How far it is extended beyond its retracted length, m.
+    pub fn extension(&self, info: &CylinderInfo) -> f64 {
+        self.length - info.retracted
+    }
+
+    /// Stiffness that the oil trapped on both sides gives the joint, N m/rad or N/m: `β (A²/V + A′²/V′) (∂ℓ/∂q_j)²`, if the spec gives its bulk modulus β.
+    pub fn oil_stiffness(&self, info: &CylinderInfo) -> Option<f64> {
+        let ([piston, ring], [of_piston, of_rod]) = (info.areas, info.hose_volumes);
+        let y = self.extension(info);
+        let volumes = [of_piston + piston * y, of_rod + ring * (info.stroke - y)];
+        let along = piston * piston / volumes[0] + ring * ring / volumes[1];
+        Some(info.bulk_modulus? * along * self.arm * self.arm).filter(|_| volumes.iter().all(|volume| *volume > 0.0))
+    }
+}
+
+/// Every cylinder at a state, with the efforts of all drives there, N m and N.
+pub fn cylinders_at(crane: &dyn DynCrane, q: &[f64], v: &[f64], efforts: &[f64]) -> Vec<CylinderState> {
+    let cylinders = &crane.description().cylinders;
+    let mut states = vec![Vector3::zeros(); cylinders.len()];
+    crane.cylinder_states(q, v, &mut states);
+    let states = states.into_iter().map(Into::into);
+    cylinders.iter().zip(states).map(|(info, state)| CylinderState::new(info, state, efforts[info.drive])).collect()
+}
+
+/// Flow that the pump delivers to all cylinders, m³/s, and its power, W: one pump at the greatest of their supply pressures.
+pub fn pump(cylinders: &[CylinderState]) -> [f64; 2] {
+    let flow: f64 = cylinders.iter().map(|cylinder| cylinder.flow).sum();
+    let moving = cylinders.iter().filter(|cylinder| cylinder.flow > 0.0);
+    let pressure = moving.map(CylinderState::supply_pressure).fold(0.0, f64::max);
+    [flow, flow * pressure]
+}
+
+/// The first cylinder of a run whose linkage does not reach, and when, s.
+pub(crate) fn unassembled(description: &Description, table: &Table) -> Option<(Text, f64)> {
+    description.cylinders.iter().find_map(|info| {
+        let [(length, _), ..] = columns(&info.name);
+        let row = table.values(&length)?.position(f64::is_nan)?;
+        Some((info.name.clone(), table.rows[row][0]))
+    })
+}
+
+/// Names and units of the columns of a cylinder.
+pub(super) fn columns(name: &str) -> [(String, &'static str); 6] {
+    [
+        ("length", "m"),
+        ("speed", "m/s"),
+        ("force", "N"),
+        ("piston_pressure", "Pa"),
+        ("rod_pressure", "Pa"),
+        ("flow", "m³/s"),
+    ]
+    .map(|(what, unit)| (format!("{name}_{what}"), unit))
+}
+
+/// Their values.
+pub(super) fn values(state: &CylinderState) -> [f64; 6] {
+    let [piston, rod] = state.pressures;
+    [state.length, state.speed, state.force, piston, rod, state.flow]
+}
+
+/// Cylinders that cannot take a pose at rest or hold it.
+pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
+    let description = crane.description();
+    if description.cylinders.is_empty() {
+        return Vec::new();
+    }
+    let rest = vec![0.0; q.len()];
+    let stiffness = drive_stiffness(crane, q);
+    let states = cylinders_at(crane, q, &rest, &crane.drive_efforts_at_rest(q));
+    let mut found = Vec::new();
+    for (info, state) in description.cylinders.iter().zip(&states) {
+        let still = |value| Extremes::at(0.0, value);
+        found.extend(out_of_stroke(info, &still(state.length), false));
+        found.extend(over_pressure(info, state.pressures.map(still), false));
+        let DriveInfo { coordinate, .. } = description.drives[info.drive];
+        let (own, coordinate) = (stiffness[info.drive], &description.coordinates[coordinate]);
+        let oil = state.oil_stiffness(info).filter(|oil| own > STIFFER * oil);
+        found.extend(oil.map(|oil| {
+            format!(
+                "the drive of {} is {:.1} times as stiff as the oil in {}, {oil:.3e} {}/{}: the real crane vibrates more slowly and \
+                 gives way more; write that as its `stiffness`",
+                coordinate.name,
+                own / oil,
+                info.name,
+                coordinate.kind.force_unit(),
+                coordinate.kind.unit()
+            )
+        }));
+    }
+    found
+}
+
+/// Cylinders that cannot follow a run, and when.
+pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
+    let mut found = Vec::new();
+    for info in &description.cylinders {
+        let [length, _, _, piston, rod, _] = columns(&info.name).map(|(column, _)| Extremes::of(table, &column));
+        found.extend(out_of_stroke(info, &length, true));
+        found.extend(over_pressure(info, [piston, rod], true));
+    }
+    let Extremes { maximum: flow, time_of_maximum: time, .. } = Extremes::of(table, "pump_flow");
+    let limit = description.pump_flow.filter(|limit| flow > *limit);
+    found.extend(limit.map(|limit| {
+        format!(
+            "the cylinders take up to {:.1} l/min, at {time:.2} s; the pump delivers {:.1} l/min",
+            flow / LITRE_PER_MINUTE,
+            limit / LITRE_PER_MINUTE
+        )
+    }));
+    found
+}
+
+/// Stiffness of every drive at a pose, N m/rad or N/m; 0 of rigid ones.
+fn drive_stiffness(crane: &dyn DynCrane, q: &[f64]) -> Vec<f64> {
+    let drives = &crane.description().drives;
+    let (mut linear, mut limits) = (vec![[0.0; 2]; q.len()], vec![[0.0; 2]; drives.len()]);
+    crane.joint_impedances(&mut linear);
+    crane.drive_limits(0.0, q, &vec![0.0; q.len()], &mut limits);
+    drives.iter().zip(limits).map(|(drive, [_, limited])| linear[drive.coordinate][0].max(limited)).collect()
+}
+
+fn when(time: f64, moves: bool) -> String {
+    if moves { format!(" at {time:.2} s") } else { String::new() }
+}
+
+fn out_of_stroke(info: &CylinderInfo, length: &Extremes, moves: bool) -> Option<String> {
+    let (least, greatest) = (info.retracted, info.retracted + info.stroke);
+    let name = &info.name;
+    if !length.minimum.is_finite() {
+        return Some(format!("{name} cannot be assembled: its rocker and link do not reach each other"));
+    }
+    let (length, time, beyond) = if least - length.minimum > length.maximum - greatest {
+        (length.minimum, length.time_of_minimum, least - length.minimum)
+    } else {
+        (length.maximum, length.time_of_maximum, length.maximum - greatest)
+    };
+    (beyond > 0.0).then(|| {
+        format!("{name} is {length:.3} m long{}: its stroke is from {least:.3} to {greatest:.3} m", when(time, moves))
+    })
+}
+
+fn over_pressure(info: &CylinderInfo, sides: [Extremes; 2], moves: bool) -> Option<String> {
+    let limit = info.max_pressure?;
+    let [piston, rod] = sides;
+    let (side, Extremes { maximum, time_of_maximum, .. }) =
+        if piston.maximum >= rod.maximum { ("piston", piston) } else { ("rod", rod) };
+    (maximum > limit).then(|| {
+        format!(
+            "{} needs {:.0} bar on the side of its {side}{}: its relief valve opens at {:.0} bar",
+            info.name,
+            maximum / BAR,
+            when(time_of_maximum, moves),
+            limit / BAR
+        )
+    })
+}

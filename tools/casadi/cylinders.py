@@ -1,0 +1,39 @@
+"""Cylinders between their pins: lengths written down in the world, by the law of cosines where there is a linkage; the rest is differentiated."""
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+
+@dataclass
+class Cylinder:
+    """A cylinder: the coordinate of its joint and its length."""
+
+    coordinate: object
+    length: ca.SX
+
+
+def turning_axis(rotation, angle):
+    """The axis about which a rotation matrix turns with an angle."""
+    slope = ca.reshape(ca.jacobian(ca.vec(rotation), angle), 3, 3)
+    spin = slope @ rotation.T
+    return ca.vertcat(spin[2, 1], spin[0, 2], spin[1, 0])
+
+
+def pin_of_rocker(pivot, head, axis, lengths, side):
+    """Where rocker and link meet: by the angle of the triangle pivot, pin, head at the pivot."""
+    rocker, link = lengths
+    distance = ca.norm_2(head - pivot)
+    cosine = (distance**2 + rocker**2 - link**2) / (2 * distance * rocker)
+    along = (head - pivot) / distance
+    across = ca.cross(axis, along)
+    across /= ca.norm_2(across)
+    turn = {"left": 1, "right": -1}[side] * ca.acos(cosine)
+    return pivot + rocker * (ca.cos(turn) * along + ca.sin(turn) * across)
+
+
+def state(cylinder, rate):
+    """Length, its rate and its derivative by the joint's coordinate; `rate` differentiates along the motion."""
+    return ca.vertcat(
+        cylinder.length, rate(cylinder.length), ca.jacobian(cylinder.length, cylinder.coordinate.q)
+    )

@@ -1,0 +1,168 @@
+//! Cylinders between their pins against geometry, virtual work and hydraulics by hand.
+
+use std::f64::consts::PI;
+
+use crane_codegen::SourceFile;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dynamics::Settings;
+use crane_model::results::{CylinderState, cautions, cylinders_at};
+use crane_model::runs::{self, Start};
+use crane_model::statics;
+
+const GRAVITY: f64 = 9.81;
+const BORE: f64 = 0.1;
+const ROD: f64 = 0.06;
+
+fn crane(text: &str) -> LiveCrane {
+    LiveCrane::from_spec(&SourceFile::new("cylinders.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+/// An arm about the world's y axis at the end of a short link, 200 kg at 2 m, whose cylinder has its foot 0.8 m below the joint; angles are
+/// positive downwards.
+fn arm(cylinder: &str) -> LiveCrane {
+    crane(&format!(
+        "format: 1
+name: arm
+links:
+  - {{name: post, joint: {{prismatic: {{axis: x}}}}, mass: 50, com: [0, 0, 0]}}
+  - {{name: arm, joint: {{revolute: {{axis: y}}}}, mass: 200, com: [2, 0, 0]}}
+drives:
+  - {{coordinate: post_x, rigid: true, motion: {{hold: 0}}}}
+  - {{coordinate: arm_theta, stiffness: 1e7, damping: 1e4, motion: {{quintic: {{from: 0, to: -0.6, duration: 3}}}}}}
+cylinders:
+  - name: lift
+    coordinate: arm_theta
+    foot: {{link: post, at: [0, 0, -0.8]}}
+    bore: {BORE}
+    rod: {ROD}
+{cylinder}
+"
+    ))
+}
+
+fn areas() -> [f64; 2] {
+    [PI / 4.0 * BORE * BORE, PI / 4.0 * (BORE * BORE - ROD * ROD)]
+}
+
+fn at(crane: &dyn DynCrane, q: &[f64], v: &[f64]) -> CylinderState {
+    cylinders_at(crane, q, v, &crane.drive_efforts_at(0.0, q, v))[0]
+}
+
+const PLAIN: &str = "    head: {link: arm, at: [0.6, 0, 0]}\n    retracted: 0.9\n    stroke: 0.6\n    back_pressure: 2e5\n    max_pressure: 21e6";
+
+/// The law of cosines gives the length, its derivative the lever, and the lever the force that holds the weight.
+#[test]
+fn a_cylinder_below_an_arm_carries_its_weight() {
+    let crane = arm(PLAIN);
+    let crane: &dyn DynCrane = &crane;
+    for theta in [-1.1, -0.4, 0.0, 0.5] {
+        let state = at(crane, &[0.0, theta], &[0.0, -0.3]);
+        // The angle between the pins at the joint.
+        let between = PI / 2.0 - theta;
+        let length = (0.8f64.powi(2) + 0.6f64.powi(2) - 2.0 * 0.8 * 0.6 * between.cos()).sqrt();
+        let arm = -0.8 * 0.6 * between.sin() / length;
+        assert!((state.length - length).abs() < 1e-14, "{theta}: {}", state.length);
+        assert!((state.arm - arm).abs() < 1e-14, "{theta}: {}", state.arm);
+        assert!((state.speed + 0.3 * arm).abs() < 1e-14, "{theta}: {}", state.speed);
+    }
+    let rest = crane.equilibrium(&statics::Settings::default());
+    let state = cylinders_at(crane, &rest.q, &[0.0; 2], &crane.drive_efforts_at_rest(&rest.q))[0];
+    let [piston, ring] = areas();
+    let force = 200.0 * GRAVITY * 2.0 * rest.q[1].cos() / -state.arm;
+    assert!((state.force / force - 1.0).abs() < 1e-9, "{} for {force}", state.force);
+    assert!((state.pressures[0] - (force + 2e5 * ring) / piston).abs() < 1e-2, "{:?}", state.pressures);
+    assert_eq!(state.pressures[1].to_bits(), 2e5f64.to_bits());
+}
+
+/// The cylinder has the power of its drive at every time of a run, and the oil that it takes is its volume.
+#[test]
+fn a_run_has_the_power_of_its_drive_and_the_oil_of_its_volume() {
+    let crane = arm(PLAIN);
+    let settings = Settings { duration: 3.5, output: 1e-3, ..Settings::of(crane.description()) };
+    let start = Start::of(&crane).expect("it stands");
+    let table =
+        runs::record(&crane, &start, &settings, &mut |_| std::ops::ControlFlow::Continue(())).expect("runs").table;
+    let column = |name: &str| table.values(name).unwrap_or_else(|| panic!("no {name}")).collect::<Vec<f64>>();
+    let [force, speed, length, flow] = ["force", "speed", "length", "flow"].map(|what| column(&format!("lift_{what}")));
+    let (torque, rate) = (column("arm_theta_drive_torque"), column("arm_theta_rate"));
+    let most = torque.iter().zip(&rate).map(|(torque, rate)| (torque * rate).abs()).fold(0.0, f64::max);
+    for k in 0..force.len() {
+        assert!((force[k] * speed[k] - torque[k] * rate[k]).abs() < 1e-12 * most, "row {k}");
+    }
+    // The trapezoidal rule over a smooth motion at 1 ms; the arm rises all the time but for its vibration.
+    let taken: f64 = flow.windows(2).map(|pair| 0.5e-3 * (pair[0] + pair[1])).sum();
+    let volume = areas()[0] * (length[length.len() - 1] - length[0]);
+    assert!(volume > 1e-3 && (taken / volume - 1.0).abs() < 1e-3, "{taken} m³ for {volume} m³");
+    assert_eq!(column("pump_flow"), flow);
+}
+
+/// A rocker as long as the arm's lever, and a link as long as its distance from the joint, are a parallelogram: the rocker turns with the
+/// arm. On the other branch it does not, and the derivative is still that of the length.
+#[test]
+fn a_parallelogram_turns_its_rocker_with_the_arm() {
+    let linkage = |side: &str| {
+        arm(&format!(
+            "    head: {{link: arm, at: [0.25, 0, 0]}}\n    linkage: {{pivot: [0, 0, -0.3], rocker: 0.25, link: 0.3, side: {side}}}\n    \
+             retracted: 0.5\n    stroke: 0.4"
+        ))
+    };
+    let right = linkage("right");
+    let left = linkage("left");
+    let mut differ = 0;
+    for theta in [-0.9f64, -0.3, 0.2, 0.7] {
+        // The rocker's pin in the x-z plane, from the foot 0.5 m below the pivot.
+        let length = (0.25 * theta.cos()).hypot(0.5 - 0.25 * theta.sin());
+        let own = [&right, &left].map(|crane| at(crane, &[0.0, theta], &[0.0; 2]).length);
+        let found = own.iter().filter(|own| (*own - length).abs() < 1e-13).count();
+        assert!(found >= 1, "{theta}: {own:?} for {length}");
+        differ += usize::from((own[0] - own[1]).abs() > 1e-3);
+        for crane in [&right, &left] {
+            let [less, more] = [-1e-5, 1e-5].map(|by| at(crane, &[0.0, theta + by], &[0.0; 2]).length);
+            let arm = at(crane, &[0.0, theta], &[0.0; 2]).arm;
+            // Central differences: the third derivative times 1e-10, and rounding over 1e-5.
+            assert!((arm - (more - less) / 2e-5).abs() < 1e-8, "{theta}: {arm}");
+        }
+    }
+    assert_eq!(differ, 4);
+}
+
+/// Where rocker and link do not reach, a run ends with the cylinder's name, and a pose says so.
+#[test]
+fn a_linkage_that_does_not_reach_is_named() {
+    // The pivot is 0.4 m from the joint, the link ends 0.25 m from it: 0.47 m apart at first, 0.57 m at the end of the motion upwards.
+    let crane = arm(
+        "    head: {link: arm, at: [0.25, 0, 0]}\n    linkage: {pivot: [0, 0, -0.4], rocker: 0.25, link: 0.3, side: left}\n    retracted: 0.2\n    \
+         stroke: 1",
+    );
+    let start = Start::of(&crane).expect("it stands");
+    let settings = Settings { duration: 3.0, ..Settings::of(crane.description()) };
+    let failed = runs::record(&crane, &start, &settings, &mut |_| std::ops::ControlFlow::Continue(()))
+        .expect_err("it does not reach");
+    let said = failed.to_string();
+    assert!(said.contains("the linkage of lift cannot be assembled at 1."), "{said}");
+    let said = cautions::of_pose(&crane, &[0.0, -0.6], 20.0);
+    assert!(said.iter().any(|said| said.contains("lift cannot be assembled")), "{said:?}");
+}
+
+/// Strokes, pressures and flows beyond their limits are named, and drives stiffer than their oil.
+#[test]
+fn limits_of_cylinders_are_cautions() {
+    let short = arm(&PLAIN.replace("stroke: 0.6", "stroke: 0.05").replace("21e6", "2e6"));
+    let rest = (&short as &dyn DynCrane).equilibrium(&statics::Settings::default());
+    let said = cautions::of_pose(&short, &rest.q, 20.0).join("; ");
+    // Its pins are 0.8 m and 0.6 m from the joint, at right angles but for the sag.
+    assert!(said.contains("lift is 1.000 m long: its stroke is from 0.900 to 0.950 m"), "{said}");
+    assert!(said.contains("on the side of its piston: its relief valve opens at 20 bar"), "{said}");
+    let oily = arm(&format!("{PLAIN}\n    bulk_modulus: 1.2e9\n    hose_volumes: [1e-3, 2e-3]"));
+    let info = &oily.description().cylinders[0];
+    let state = at(&oily, &[0.0, 0.0], &[0.0; 2]);
+    let ([piston, ring], y) = (areas(), state.length - 0.9);
+    let stiffness = 1.2e9 * (piston * piston / (1e-3 + piston * y) + ring * ring / (2e-3 + ring * (0.6 - y)));
+    let found = state.oil_stiffness(info).expect("there is oil");
+    assert!((found / (stiffness * state.arm * state.arm) - 1.0).abs() < 1e-14, "{found}");
+    let said = cautions::of_pose(&oily, &[0.0, 0.0], 20.0).join("; ");
+    let ratio = format!("the drive of arm_theta is {:.1} times as stiff as the oil in lift", 1e7 / found);
+    assert!(said.contains(&ratio), "{said}");
+    assert!(at(&short, &[0.0, 0.0], &[0.0; 2]).oil_stiffness(&short.description().cylinders[0]).is_none());
+}
