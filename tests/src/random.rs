@@ -292,7 +292,7 @@ impl Writer {
             let armature = self.positive(4.0);
             let rotor = if k % 2 == 0 { format!("armature: {armature}, ") } else { String::new() };
             // The second drive of every other crane has a limit that far states exceed.
-            let limit = if seed % 2 == 0 && k == 1 { ", max_effort: 300" } else { "" };
+            let limit = if seed.is_multiple_of(2) && k == 1 { ", max_effort: 300" } else { "" };
             let spring = if rigid {
                 "rigid: true".to_owned()
             } else {

@@ -66,7 +66,7 @@ fn geometry<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylin
     Geometry { head, length, by_head }
 }
 
-/// ℓ, ℓ̇ and ∂ℓ/∂q_j of every cylinder, m, m/s and m or m/rad.
+/// ℓ, ℓ̇ and `∂ℓ/∂q_j` of every cylinder, m, m/s and m or m/rad.
 pub fn states<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist<'g>]) -> Vec<Expr<'g>> {
     let state = |cylinder: &Cylinder| {
         let Geometry { head, length, by_head } = geometry(model, kinematics, cylinder);

@@ -2,7 +2,7 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Value};
+use crate::chain::{BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Step, Value};
 use crate::diagnostic::rule;
 use crate::spec::{self, Constant, Crane, Given, Side};
 
@@ -118,7 +118,7 @@ impl<'a> Check<'a> {
     fn spans(&mut self, given: &spec::Cylinder, name: &str, joint: CoordinateId, [foot, head]: [BodyId; 2]) {
         let (near, far) = if foot < head { (foot, head) } else { (head, foot) };
         let paths = self.bodies[near.0 + 1..=far.0].iter().flat_map(|body| &body.path);
-        let between: Vec<CoordinateId> = paths.flat_map(|step| step.coordinates()).copied().collect();
+        let between: Vec<CoordinateId> = paths.flat_map(Step::coordinates).copied().collect();
         let called = &self.coordinates[joint.0].name;
         if !between.contains(&joint) {
             self.report(rule::spans_not(given.coordinate.span, name, called));

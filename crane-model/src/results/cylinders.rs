@@ -24,7 +24,7 @@ pub struct CylinderState {
     pub length: f64,
     /// ℓ̇, m/s; positive if it extends.
     pub speed: f64,
-    /// ∂ℓ/∂q_j, m/rad or m/m.
+    /// `∂ℓ/∂q_j`, m/rad or m/m.
     pub arm: f64,
     /// What it pushes with, N; negative if it pulls.
     pub force: f64,

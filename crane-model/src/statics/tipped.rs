@@ -10,7 +10,7 @@ use crate::{
 /// Tipping margin below which a crane without a stable pose is reported to tip over: its drives and feet give way by less than that.
 const LITTLE: f64 = 0.1;
 
-/// Scaled residual below which a pose is at rest but for rounding, whatever Newton's method made of it.
+/// Scaled residual below which a pose is at rest except for rounding, whatever Newton's method made of it.
 const AT_REST: f64 = 1e-6;
 
 /// The equilibrium at time `t`, s, found from a pose, with the status that the crane tips over if it has feet that lift and the pose found is not stable
