@@ -6,7 +6,7 @@ use std::process::Command;
 use std::{env, fs};
 
 use crane_codegen::SourceFile;
-use crane_codegen::chain::{Analyses, Chain, Loops};
+use crane_codegen::chain::{Analyses, Chain, Input, Loops};
 use crane_codegen::compile::{generate_c, load};
 use crane_codegen::emit_c::{CCode, Precision};
 use crane_codegen::mechanics::derive;
@@ -19,6 +19,21 @@ fn shipped(name: &str) -> Chain {
     let path = format!("{}/../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
     load(&SourceFile::new(&path, fs::read_to_string(&path).unwrap())).unwrap()
 }
+
+/// A boom whose drive follows one input and is moved aside by another, with a load that a third one scales.
+const STEERED: &str = "format: 1
+name: steered
+parameters: {payload: {value: 80, unit: kg}}
+inputs:
+  lever: {motion: {quintic: {from: 0, to: 60 deg, begin: 0.2, duration: 3}}, unit: rad}
+  trim: {value: 0.1, unit: rad}
+  gust: {unit: N, about: wind at the tip}
+links:
+  - {name: boom, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 200, com: [2, 0, 0], inertia: {gyration: [0.1, 1, 1]}}
+  - {name: load, placement: {transform: {translation: [4, 0, 0]}}, joint: revolute, mass: payload, com: [0, -1, 0]}
+drives: [{coordinate: boom_psi, stiffness: 2e5, damping: 2e4, motion: {input: lever}, offset: trim}]
+loads: [{name: wind, link: boom, at: [4, 0, 0], force: [0, 1, 2], scale: {input: gust}}]
+";
 
 /// Numbers between −1 and 1, the same on every run.
 fn numbers(count: usize, seed: f64) -> Vec<f64> {
@@ -47,9 +62,19 @@ fn arguments(chain: &Chain, function: &Function) -> Vec<(Argument, Vec<f64>)> {
 }
 
 /// What the interpreter computes, in the order of the result in C.
-fn expected(program: &Program, function: &Function, chain: &Chain, factors: &[f64]) -> Vec<f64> {
+fn expected(
+    program: &Program,
+    function: &Function,
+    chain: &Chain,
+    factors: &[f64],
+    inputs: &[Option<f64>],
+) -> Vec<f64> {
+    // Of each input its value while it is set, else 0; and 0 while it is set, else 1.
+    let slots = inputs.iter().flat_map(|value| value.map_or(Input::NOT_SET, |value| [value, 0.0])).collect();
     let inputs = arguments(chain, function).into_iter().fold(
-        Inputs::state(0.0, vec![], vec![], chain.parameter_defaults()).with(Argument::Factors, factors.to_vec()),
+        Inputs::state(0.0, vec![], vec![], chain.parameter_defaults())
+            .with(Argument::Factors, factors.to_vec())
+            .with(Argument::Inputs, slots),
         |inputs, (argument, values)| inputs.with(argument, values),
     );
     let slots = program.evaluate(function, &inputs);
@@ -90,17 +115,32 @@ fn in_full(shape: &Shape, slots: &[f64]) -> Vec<f64> {
 }
 
 /// A program that calls all functions and prints their numbers, one per line.
-fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str) -> String {
+fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, inputs: &[Option<f64>]) -> String {
     let name = &code.name;
     let mut text = format!("#include <stdio.h>\n#include \"{name}.h\"\n\nint main(void)\n{{\n");
     if !chain.parameters.is_empty() {
         let _ = writeln!(text, "    const {name}_params params = {}_PARAMS;", name.to_uppercase());
         let _ = writeln!(text, "    static {name}_constants c;\n    {name}_set_params(&params, &c);");
     }
+    if !inputs.is_empty() {
+        let _ = writeln!(text, "    {name}_inputs u = {}_INPUTS;", name.to_uppercase());
+        for (input, value) in chain.inputs.iter().zip(inputs) {
+            let place = format!("{}_INPUT_{}", name.to_uppercase(), input.name.to_uppercase());
+            // What is set first and unset then is as if it had never been set.
+            let _ = writeln!(text, "    {name}_set_input(&u, {place}, {:?});", value.unwrap_or(17.0));
+            if value.is_none() {
+                let _ = writeln!(text, "    {name}_unset_input(&u, {place});");
+            }
+        }
+    }
     let _ = writeln!(text, "    static {number} f[100000];");
     for function in functions {
         let live = (!chain.parameters.is_empty()).then(|| "&c".to_owned());
-        let mut given: Vec<String> = live.into_iter().collect();
+        // The header says which functions depend on inputs.
+        let declared = code.header.split(&format!(" {name}_{}(", function.id.name())).nth(1).unwrap();
+        let declared = declared.split(')').next().unwrap();
+        let steered = declared.contains(&format!("const {name}_inputs *u")).then(|| "&u".to_owned());
+        let mut given: Vec<String> = live.into_iter().chain(steered).collect();
         text += "    {\n";
         let mut values = arguments(chain, function).into_iter();
         for argument in function.arguments {
@@ -155,7 +195,7 @@ fn run(folder: &Path, code: &CCode, main: &str) -> Vec<f64> {
 }
 
 /// Greatest difference of each function from the interpreter, relative to its greatest number.
-fn differences(name: &str, chain: &Chain, precision: Precision) -> Vec<(&'static str, f64)> {
+fn differences(name: &str, chain: &Chain, precision: Precision, inputs: &[Option<f64>]) -> Vec<(&'static str, f64)> {
     let straight = Chain { loops: Loops::Never, ..chain.clone() };
     let program = derive(&straight, EVERYTHING);
     let functions: Vec<&Function> = program.functions.iter().collect();
@@ -163,11 +203,11 @@ fn differences(name: &str, chain: &Chain, precision: Precision) -> Vec<(&'static
     let code = generate_c(chain, &names, &chain.parameter_defaults(), precision).unwrap();
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("c_{name}_{precision:?}"));
     let number = if precision == Precision::Double { "double" } else { "float" };
-    let printed = run(&folder, &code, &caller(&code, chain, &functions, number));
+    let printed = run(&folder, &code, &caller(&code, chain, &functions, number, inputs));
     let mut rest = printed.as_slice();
     let (mut found, mut factors) = (Vec::new(), Vec::new());
     for function in functions {
-        let expected = expected(&program, function, chain, &factors);
+        let expected = expected(&program, function, chain, &factors, inputs);
         let (own, others) = rest.split_at(expected.len());
         rest = others;
         if matches!(function.shape, Shape::Factors(_)) {
@@ -184,7 +224,7 @@ fn differences(name: &str, chain: &Chain, precision: Precision) -> Vec<(&'static
 #[test]
 fn every_function_of_every_kind_of_crane_is_the_interpreters() {
     for name in ["double_pendulum", "knuckle_boom", "eight_link_rigid", "eight_link_flexible"] {
-        for (function, off) in differences(name, &shipped(name), Precision::Double) {
+        for (function, off) in differences(name, &shipped(name), Precision::Double, &[]) {
             // The same operations, rounded alike except for sines; forward dynamics of stiff cranes cancels some digits.
             assert!(off < 1e-12, "{name}: {function} is off by {off:e}");
         }
@@ -193,12 +233,31 @@ fn every_function_of_every_kind_of_crane_is_the_interpreters() {
 
 #[test]
 fn single_precision_has_the_digits_that_the_manual_says() {
-    let off = differences("eight_link_flexible", &shipped("eight_link_flexible"), Precision::Single);
+    let off = differences("eight_link_flexible", &shipped("eight_link_flexible"), Precision::Single, &[]);
     let of = |name: &str| off.iter().find(|(function, _)| *function == name).unwrap().1;
     // Measured: 6e-8, 4e-8, 2e-6.
     assert!(of("mass_matrix") < 1e-6 && of("bias") < 1e-6 && of("forward_dynamics") < 1e-5, "{off:?}");
     // Numbers of 24 bits: an error below that would be double precision.
     assert!(of("forward_dynamics") > 1e-8, "{off:?}");
+}
+
+#[test]
+fn inputs_are_arguments() {
+    let steered = load(&SourceFile::new("steered.yaml", STEERED)).unwrap();
+    for (name, inputs) in [
+        ("none_set", [None, None, None]),
+        ("some_set", [Some(0.4), None, Some(-300.0)]),
+        ("all_set", [Some(-0.2), Some(0.3), Some(50.0)]),
+    ] {
+        for (function, off) in differences(name, &steered, Precision::Double, &inputs) {
+            assert!(off < 1e-12, "{name}: {function} is off by {off:e}");
+        }
+    }
+    let code = generate_c(&steered, &["mass_matrix", "forward_dynamics"], &[80.0], Precision::Double).unwrap();
+    // What depends on no input has no such argument.
+    assert!(code.header.contains("steered_mass_matrix(const steered_constants *c, const double q[2], double out[4])"));
+    assert!(code.header.contains("steered_forward_dynamics(const steered_constants *c, const steered_inputs *u,"));
+    assert!(code.header.contains("STEERED_INPUT_GUST = 2, /* N, wind at the tip */"));
 }
 
 #[test]

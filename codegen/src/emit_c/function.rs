@@ -101,7 +101,13 @@ impl Writer<'_> {
             vector => array(argument_name(*vector), n),
         };
         let live = (!self.chain.parameters.is_empty()).then_some(("c", constants));
-        live.into_iter().chain(function.arguments.iter().map(of)).collect()
+        let inputs = self.reads_inputs(function).then(|| ("u", format!("const {} *u", self.name("inputs"))));
+        live.into_iter().chain(inputs).chain(function.arguments.iter().map(of)).collect()
+    }
+
+    /// Whether a function depends on inputs.
+    fn reads_inputs(&self, function: &Function) -> bool {
+        self.blocks.functions.iter().any(|block| block.function.id == function.id && block.reads_inputs)
     }
 
     /// How many factors `solve` takes from `factorise`.
@@ -125,6 +131,33 @@ impl Writer<'_> {
             body.statement(statement);
         }
         (body.text, body.used)
+    }
+
+    /// The functions that set inputs; nothing without such.
+    pub fn inputs(&self) -> String {
+        if self.chain.inputs.is_empty() {
+            return String::new();
+        }
+        let slots = |value: &str, free: f64| {
+            let free = Expression::number(free, self.precision);
+            let slots = Input::SLOTS;
+            format!(
+                "{{\n    u->slots[{slots} * input] = {value};\n    u->slots[{slots} * input + 1] = {};\n}}\n\n",
+                free.text()
+            )
+        };
+        let [set, unset] = self.input_functions();
+        let not_set = Expression::number(Input::NOT_SET[0], self.precision);
+        format!("{set}\n{}{unset}\n{}", slots("value", 0.0), slots(not_set.text(), Input::NOT_SET[1]))
+    }
+
+    /// Signatures of the functions that set an input, and that give it back to the spec.
+    pub fn input_functions(&self) -> [String; 2] {
+        let (inputs, number) = (self.name("inputs"), self.precision.name());
+        [
+            format!("void {}({inputs} *u, int input, {number} value)", self.name("set_input")),
+            format!("void {}({inputs} *u, int input)", self.name("unset_input")),
+        ]
     }
 
     /// The function that makes constants of live parameters; nothing without such.
@@ -279,14 +312,13 @@ impl Body<'_> {
     fn input(&mut self, id: ExprId) -> String {
         let Op::Symbol(symbol) = self.writer.blocks.program.op(id) else { unreachable!("inputs are symbols") };
         let symbol = self.writer.blocks.program.symbol(symbol);
-        if symbol.argument == Argument::Inputs {
-            // Not set: 0 and 1 in turn.
-            let not_set = Input::NOT_SET[symbol.index % Input::SLOTS];
-            return format!("{not_set:?}{}", self.writer.precision.suffix());
-        }
         self.used.insert(symbol.argument);
         let name = argument_name(symbol.argument);
-        if symbol.argument == Argument::Time { name.to_owned() } else { format!("{name}[{}]", symbol.index) }
+        match symbol.argument {
+            Argument::Time => name.to_owned(),
+            Argument::Inputs => format!("{name}->slots[{}]", symbol.index),
+            _ => format!("{name}[{}]", symbol.index),
+        }
     }
 }
 
@@ -324,7 +356,7 @@ fn argument_name(argument: Argument) -> &'static str {
         Argument::BaseResistance => "base",
         Argument::Factors => "f",
         Argument::Parameters => "c",
-        Argument::Inputs => unreachable!("code in C has inputs as the spec says"),
+        Argument::Inputs => "u",
         Argument::Round | Argument::Loop => unreachable!("chains without loops have none"),
     }
 }

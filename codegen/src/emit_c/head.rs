@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::Precision;
 use super::function::{Writer, numbers};
-use crate::chain::{Chain, CoordinateKind};
+use crate::chain::{Chain, CoordinateKind, Input};
 use crate::program::{Argument, Function, Shape, Struct};
 
 /// The beginning of the source.
@@ -28,6 +28,7 @@ pub fn header(writer: &Writer) -> String {
     text += &coordinates(chain);
     text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     text += &parameters(writer);
+    text += &inputs(writer);
     for block in &blocks.functions {
         text += &documentation(writer, block.function, block.count.total());
         let _ = write!(text, "{};\n\n", writer.signature(block.function));
@@ -102,6 +103,39 @@ fn parameters(writer: &Writer) -> String {
         "}} {constants};\n\n/* Computes the constants of some parameters, once after they change. The rules of the spec language are not checked\n   \
          here: masses and stiffnesses must be as the spec allows them. */\nvoid {}(const {params} *params, {constants} *c);\n\n",
         writer.name("set_params")
+    );
+    text
+}
+
+/// Inputs by name, and what sets them; nothing without such.
+fn inputs(writer: &Writer) -> String {
+    let Writer { chain, precision, .. } = writer;
+    if chain.inputs.is_empty() {
+        return String::new();
+    }
+    let prefix = chain.name.to_uppercase();
+    let mut text = "/* Inputs. */\nenum {\n".to_owned();
+    for (index, input) in chain.inputs.iter().enumerate() {
+        let about = input.about.replace("*/", "* /").replace("/*", "/ *").replace(['\n', '\r'], " ");
+        let words =
+            [input.unit.as_str(), &about].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>().join(", ");
+        let comment = if words.is_empty() { String::new() } else { format!(" /* {words} */") };
+        let _ = writeln!(text, "    {prefix}_INPUT_{} = {index},{comment}", input.name.to_uppercase());
+    }
+    let not_set = chain.inputs.iter().flat_map(|_| Input::NOT_SET);
+    let not_set: Vec<String> = not_set.map(|slot| format!("{slot:?}{}", precision.suffix())).collect();
+    let (name, slots) = (writer.name("inputs"), Input::SLOTS * chain.inputs.len());
+    let _ = write!(
+        text,
+        "}};\n\n/* Values of the inputs; {prefix}_INPUTS, in which all are as the spec says, is the beginning. */\n\
+         typedef struct {{\n    {} slots[{slots}];\n}} {name};\n\n#define {prefix}_INPUTS {{{{{}}}}}\n\n",
+        precision.name(),
+        not_set.join(", ")
+    );
+    let [set, unset] = writer.input_functions();
+    let _ = write!(
+        text,
+        "/* Sets an input of the list above to a value. */\n{set};\n\n/* Gives an input back to what the spec says. */\n{unset};\n\n"
     );
     text
 }

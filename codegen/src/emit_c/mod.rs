@@ -61,8 +61,8 @@ pub fn emit_c(chain: &Chain, blocks: &Blocks, parameters: &[f64], precision: Pre
     let labels = Labels::new(chain, blocks);
     let writer = Writer { chain, blocks, labels: &labels, parameters, precision };
     let functions: String = blocks.functions.iter().map(|block| writer.function(block)).collect();
-    let constants = writer.constants();
-    let body = format!("{constants}{functions}");
+    let (constants, inputs) = (writer.constants(), writer.inputs());
+    let body = format!("{constants}{inputs}{functions}");
     let source = format!("{}{}{body}", head::source(chain), support::used(&body, precision));
     CCode { name: chain.name.clone(), header: head::header(&writer), source }
 }
