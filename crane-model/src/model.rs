@@ -13,7 +13,7 @@ use crate::support::lanes::f64x8;
 use crate::{Description, ParameterError, SectionModuli, Wrench};
 
 /// Poses, forces and potential energy of a crane.
-pub trait CraneModel<const N: usize> {
+pub trait CraneModel<const N: usize>: Send + Sync {
     /// Names, units and settings.
     fn description(&self) -> &Description;
 
@@ -245,7 +245,7 @@ impl<const N: usize, C: Dynamics<N>> LaneDynamics<N> for OneByOne<C> {
 /// of linear springs and dampers on single coordinates are constants; those of other laws are evaluated at each step.
 pub trait Implicit<const N: usize>: Dynamics<N> {
     /// The factors that [`Implicit::factorise`] computes for [`Implicit::solve`].
-    type Factors;
+    type Factors: Send;
 
     /// Factors of `A(q) + D̂`, in O(n). D̂ is block-diagonal: `base` in the rows and columns of the base's coordinates that
     /// the crane has, and `resistance` on the diagonal of all others. Positive semidefinite; kg and kg m².

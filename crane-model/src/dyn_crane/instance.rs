@@ -40,7 +40,7 @@ fn vector<T: nalgebra::Scalar + Copy, const N: usize>(slice: &[T]) -> SVector<T,
     SVector::from(<[T; N]>::try_from(slice).expect("as many numbers as coordinates"))
 }
 
-impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H> {
+impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for Instance<N, H> {
     fn description(&self) -> &Description {
         self.0.description()
     }
@@ -161,7 +161,7 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>>> DynModel for Instance<N, H
     }
 }
 
-impl<const N: usize, H: Deref<Target: Statics<N>>> DynStatics for Instance<N, H> {
+impl<const N: usize, H: Deref<Target: Statics<N>> + Send + Sync> DynStatics for Instance<N, H> {
     fn static_residual(&self, q: &[f64], out: &mut [f64]) {
         out.copy_from_slice(self.0.static_residual(&vector(q)).as_slice());
     }
@@ -175,7 +175,7 @@ impl<const N: usize, H: Deref<Target: Statics<N>>> DynStatics for Instance<N, H>
     }
 }
 
-impl<const N: usize, H: Deref<Target: Dynamics<N>>> DynDynamics for Instance<N, H> {
+impl<const N: usize, H: Deref<Target: Dynamics<N>> + Send + Sync> DynDynamics for Instance<N, H> {
     fn mass_matrix(&self, q: &[f64], out: &mut [f64]) {
         out.copy_from_slice(self.0.mass_matrix(&vector(q)).as_slice());
     }
@@ -193,7 +193,7 @@ impl<const N: usize, H: Deref<Target: Dynamics<N>>> DynDynamics for Instance<N, 
     }
 }
 
-impl<const N: usize, H: Deref<Target: Implicit<N> + Sized>> DynImplicit for Instance<N, H> {
+impl<const N: usize, H: Deref<Target: Implicit<N> + Sized> + Send + Sync> DynImplicit for Instance<N, H> {
     fn system(&self) -> Box<dyn DynSystem + '_> {
         Box::new(System::<N, H::Target> { crane: &self.0, factors: None })
     }
@@ -234,7 +234,7 @@ impl<const N: usize, C: Implicit<N>> DynSystem for System<'_, N, C> {
     }
 }
 
-impl<const N: usize, H: Deref<Target: Linearise<N>>> DynLinearise for Instance<N, H> {
+impl<const N: usize, H: Deref<Target: Linearise<N>> + Send + Sync> DynLinearise for Instance<N, H> {
     fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
         let Linearisation { mass: a, stiffness: k, damping: d } = self.0.linearise(&vector(q));
         let write = |out: &mut [f64], matrix: &SMatrix<f64, N, N>| out.copy_from_slice(matrix.as_slice());
@@ -244,7 +244,7 @@ impl<const N: usize, H: Deref<Target: Linearise<N>>> DynLinearise for Instance<N
     }
 }
 
-impl<const N: usize, H: Deref<Target: Ensemble<N> + Clone>> DynEnsemble for Instance<N, H> {
+impl<const N: usize, H: Deref<Target: Ensemble<N> + Clone> + Send + Sync> DynEnsemble for Instance<N, H> {
     fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
         let mut cranes: [H::Target; 8] = std::array::from_fn(|_| self.0.deref().clone());
         for (crane, parameters) in cranes.iter_mut().zip(parameters) {
@@ -263,7 +263,7 @@ impl<const N: usize, L: LaneDynamics<N>> DynBlock for Block<N, L> {
     }
 }
 
-impl<const N: usize, H: Deref<Target: InternalForces<N>>> DynInternalForces for Instance<N, H> {
+impl<const N: usize, H: Deref<Target: InternalForces<N>> + Send + Sync> DynInternalForces for Instance<N, H> {
     fn internal_forces(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
         self.0.internal_forces(t, &vector(q), &vector(v), &vector(a), out);
     }
@@ -277,7 +277,7 @@ impl<const N: usize, H: Deref<Target: InternalForces<N>>> DynInternalForces for 
     }
 }
 
-impl<const N: usize, H: Deref<Target: TransformDerivatives<N>>> DynDerivatives for Instance<N, H> {
+impl<const N: usize, H: Deref<Target: TransformDerivatives<N>> + Send + Sync> DynDerivatives for Instance<N, H> {
     fn transform_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
         self.0.transform_derivatives(&vector(q), out);
     }

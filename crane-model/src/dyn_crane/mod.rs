@@ -34,7 +34,7 @@ pub use quantities::{Energies, Member};
 use crate::{Description, ParameterError, SectionModuli, Wrench, support::lanes::f64x8};
 
 /// Poses, forces and potential energy of a crane: [`CraneModel`](crate::CraneModel) on slices.
-pub trait DynModel {
+pub trait DynModel: Send + Sync {
     /// Names, units and settings.
     fn description(&self) -> &Description;
 
@@ -172,7 +172,7 @@ pub trait DynImplicit: DynDynamics {
 }
 
 /// Systems `(A(q) + D̂) x = r` of a crane, one after the other.
-pub trait DynSystem {
+pub trait DynSystem: Send {
     /// Factorises `A(q) + D̂`, like [`Implicit::factorise`](crate::Implicit::factorise).
     fn factorise(&mut self, q: &[f64], resistance: &[f64], base: &Matrix6<f64>);
 

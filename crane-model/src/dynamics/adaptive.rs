@@ -86,7 +86,7 @@ impl<F: Formula> Adaptive<'_, F> {
     }
 }
 
-impl<F: Formula> Stepper for Adaptive<'_, F> {
+impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
         (self.step.t, self.step.length, self.next) = (t, 0.0, FIRST);
         self.motion.copy_from_slice(motion);

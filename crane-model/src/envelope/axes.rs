@@ -1,6 +1,6 @@
 //! What an envelope varies.
 
-use crate::dyn_crane::DynCrane;
+use crate::{Description, dyn_crane::DynCrane};
 
 /// What is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,6 +9,22 @@ pub enum Varied {
     Drive(usize),
     /// A live parameter, by its place in the description.
     Parameter(usize),
+}
+
+impl Varied {
+    /// The drive of a coordinate, or of a link that has only one drive, or the live parameter of this name.
+    pub fn named(name: &str, description: &Description) -> Option<Self> {
+        let driven = || description.drives.iter().map(|drive| description.coordinates[drive.coordinate].name.as_str());
+        let is_of_link = |coordinate: &&str| coordinate.rsplit_once('_').is_some_and(|(link, _)| link == name);
+        let mut of_link = driven().filter(is_of_link);
+        let drive = match (of_link.next(), of_link.next()) {
+            (Some(only), None) => only,
+            _ => name,
+        };
+        let parameter = || description.parameters.iter().position(|parameter| parameter.name == name);
+        let drive = driven().position(|coordinate| coordinate == drive);
+        drive.map(Varied::Drive).or_else(|| parameter().map(Varied::Parameter))
+    }
 }
 
 /// The values of one of them.

@@ -10,7 +10,7 @@ use super::{
     Axes, Limits, Rating,
     rating::{Posed, Wanted},
 };
-use crate::{ParameterError, dyn_crane::DynCrane, statics::Settings};
+use crate::{Description, ParameterError, dyn_crane::DynCrane, statics::Settings};
 
 /// Poses of a piece at most.
 pub const PIECE: usize = 25;
@@ -38,6 +38,27 @@ pub struct Conduct<'a> {
     pub done: &'a (dyn Fn(usize, &[Rating]) + Sync),
     /// Whether to give up what is not done; asked before every piece.
     pub called_off: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// Load that stands for the least where zero is not allowed, kg: a gram.
+const LEAST_LOAD: f64 = 1e-3;
+/// The greatest load looked at, in masses of the crane.
+const GREATEST_LOAD: f64 = 100.0;
+
+/// Place of the live parameter that is the load unless another is named: the only one in kg.
+pub fn only_mass(description: &Description) -> Option<usize> {
+    let mut masses = description.parameters.iter().enumerate().filter(|(_, parameter)| parameter.unit == "kg");
+    masses.next().filter(|_| masses.next().is_none()).map(|(index, _)| index)
+}
+
+/// The least load, which is allowed and as near to zero as possible, and the greatest one to look at: `greatest`, or a hundred times
+/// the mass of the crane.
+pub fn range_of_loads(description: &Description, load: usize, greatest: Option<f64>) -> [f64; 2] {
+    let info = &description.parameters[load];
+    let is_allowed = |value: &f64| info.check(*value).is_ok();
+    let least = [0.0, LEAST_LOAD, info.least.value].into_iter().find(is_allowed).unwrap_or(info.default);
+    let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
+    [least, greatest.unwrap_or(GREATEST_LOAD * mass.max(1.0)).min(info.greatest.value)]
 }
 
 impl Envelope {

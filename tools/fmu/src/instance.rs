@@ -1,16 +1,16 @@
 //! A crane at work inside of a simulation of others.
 
 use std::fmt;
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use crane_live::LiveCrane;
+use crane_live::{LiveCrane, Motion};
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
 use crane_model::dynamics::{InitialState, Settings, Stopped};
 use crane_model::results;
 use crane_model::runs::Start;
 use crane_model::statics;
 
-use crate::motion::Motion;
 use crate::resources::{self, Opened};
 use crate::variables::{self, Source, Variable};
 
@@ -50,6 +50,8 @@ impl fmt::Display for Fault {
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     parameters: Vec<f64>,
+    /// Values of the inputs that are set.
+    inputs: Vec<Option<f64>>,
     /// None before the crane has come to rest.
     moment: Option<Moment>,
 }
@@ -63,10 +65,11 @@ struct Moment {
 }
 
 impl State {
-    /// The state as numbers: parameters, and where there are such time, pose and rates.
+    /// The state as numbers: parameters, inputs, NaN where they are not set, and where there are such time, pose and rates.
     pub fn numbers(&self) -> Vec<f64> {
         let moment = self.moment.iter().flat_map(|Moment { t, q, v }| std::iter::once(t).chain(q).chain(v));
-        self.parameters.iter().chain(moment).copied().collect()
+        let inputs = self.inputs.iter().map(|value| value.unwrap_or(f64::NAN));
+        self.parameters.iter().copied().chain(inputs).chain(moment.copied()).collect()
     }
 }
 
@@ -79,7 +82,9 @@ pub struct Instance {
     /// Parameters at the start, and as they were set last.
     first: Vec<f64>,
     parameters: Vec<f64>,
-    /// Whether the crane has the parameters that were set last.
+    /// Inputs as they were set last.
+    inputs: Vec<Option<f64>>,
+    /// Whether the crane has the parameters and inputs that were set last.
     is_current: bool,
     settings: Settings,
     begin: f64,
@@ -109,7 +114,9 @@ impl Instance {
                 "the model description ({token}) is not that of this library and spec ({own}): export the unit again"
             ));
         }
+        let inputs = vec![None; crane.description().inputs.len()];
         Ok(Self {
+            inputs,
             settings: Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..Settings::of(crane.description()) },
             crane,
             variables,
@@ -165,6 +172,7 @@ impl Instance {
     /// Goes back to how it was made.
     pub fn reset(&mut self) {
         self.parameters.clone_from(&self.first);
+        self.inputs.fill(None);
         self.settings.tolerance = Settings::of(self.crane.description()).tolerance;
         (self.begin, self.has_begun, self.is_current) = (0.0, false, false);
         (self.moment, self.motion) = (None, None);
@@ -186,10 +194,11 @@ impl Instance {
         (self.quantities, self.accelerations) = (None, None);
     }
 
-    /// Gives the crane the parameters that were set, and lets it come to rest unless it is under way.
+    /// Gives the crane the parameters and inputs that were set, and lets it come to rest unless it is under way.
     fn settle(&mut self) -> Result<(), Fault> {
         if !self.is_current {
             DynCrane::set_parameters(&mut self.crane, &self.parameters).map_err(Fault::error)?;
+            self.crane = self.crane.with_inputs(&self.inputs);
             self.is_current = true;
             self.motion = None;
             self.forget();
@@ -240,6 +249,7 @@ impl Instance {
         for (&reference, place) in references.iter().zip(out) {
             *place = match self.variable(reference)?.source {
                 Source::Parameter(index) => self.parameters[index],
+                Source::Input(index) => self.input(index),
                 Source::Time => self.time(),
                 Source::Position(index) => self.moment()?.q[index],
                 Source::Rate(index) => self.moment()?.v[index],
@@ -248,6 +258,11 @@ impl Instance {
             };
         }
         Ok(())
+    }
+
+    /// Value of an input; while it is not set, that with which the spec begins.
+    fn input(&self, index: usize) -> f64 {
+        self.inputs[index].unwrap_or(self.crane.description().inputs[index].default)
     }
 
     fn quantities(&mut self) -> Result<&[f64], Fault> {
@@ -270,19 +285,26 @@ impl Instance {
         }))
     }
 
-    /// Sets variables by their references; parameters alone can be set. What several parameters must obey together is looked at
-    /// when the crane needs them.
+    /// Sets variables by their references; parameters and inputs alone can be set. What several parameters must obey together is
+    /// looked at when the crane needs them. An input that is set to the value that it has changes nothing.
     ///
     /// # Errors
-    /// A variable is not a parameter, or a value is not allowed; those before it are set.
+    /// A variable is neither a parameter nor an input, or a value is not allowed; those before it are set.
     pub fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault> {
         for (&reference, &value) in references.iter().zip(values) {
             let Variable { name, source, .. } = self.variable(reference)?;
-            let &Source::Parameter(index) = source else {
-                return Err(Fault::Error(format!("{name} cannot be set: it follows from the motion")));
-            };
-            self.crane.description().parameters[index].check(value).map_err(Fault::error)?;
-            self.parameters[index] = value;
+            match *source {
+                Source::Parameter(index) => {
+                    self.crane.description().parameters[index].check(value).map_err(Fault::error)?;
+                    self.parameters[index] = value;
+                }
+                Source::Input(_) if !value.is_finite() => {
+                    return Err(Fault::Error(format!("{name} = {value}: choose a finite number")));
+                }
+                Source::Input(index) if self.inputs[index] == Some(value) => continue,
+                Source::Input(index) => self.inputs[index] = Some(value),
+                _ => return Err(Fault::Error(format!("{name} cannot be set: it follows from the motion"))),
+            }
             self.is_current = false;
             if !self.has_begun {
                 self.moment = None;
@@ -293,12 +315,14 @@ impl Instance {
 
     /// The state, to come back to.
     pub fn state(&self) -> State {
-        State { parameters: self.parameters.clone(), moment: self.moment.clone() }
+        let Self { parameters, inputs, moment, .. } = self;
+        State { parameters: parameters.clone(), inputs: inputs.clone(), moment: moment.clone() }
     }
 
     /// Goes back to a state.
     pub fn set_state(&mut self, state: &State) {
         self.parameters.clone_from(&state.parameters);
+        self.inputs.clone_from(&state.inputs);
         self.moment.clone_from(&state.moment);
         (self.is_current, self.motion) = (false, None);
         self.forget();
@@ -307,6 +331,8 @@ impl Instance {
     /// A state of this crane from its numbers, if they are as many as such a state has.
     pub fn state_of(&self, numbers: &[f64]) -> Option<State> {
         let (parameters, rest) = numbers.split_at_checked(self.parameters.len())?;
+        let (inputs, rest) = rest.split_at_checked(self.inputs.len())?;
+        let inputs = inputs.iter().map(|value| Some(*value).filter(|value| !value.is_nan())).collect();
         let moment = match rest {
             [] => None,
             [t, motion @ ..] if motion.len() == self.states() => {
@@ -315,7 +341,7 @@ impl Instance {
             }
             _ => return None,
         };
-        Some(State { parameters: parameters.to_vec(), moment })
+        Some(State { parameters: parameters.to_vec(), inputs, moment })
     }
 
     /// Sets the time, s.
@@ -382,10 +408,11 @@ impl Instance {
         times.into_iter().flatten().filter(|time| *time > t && time.is_finite()).min_by(f64::total_cmp)
     }
 
-    /// How some variables change with coordinates and rates along a direction, by central differences.
+    /// How some variables change with coordinates, rates and inputs along a direction, by central differences.
     ///
     /// # Errors
-    /// As [`Instance::get`]; a variable of the direction is neither a coordinate nor a rate.
+    /// As [`Instance::get`]; a variable of the direction is neither a coordinate nor a rate nor an input, or it is an input that follows
+    /// the motion of its spec.
     pub fn directional_derivative(
         &mut self,
         unknowns: &[u32],
@@ -401,17 +428,24 @@ impl Instance {
             return Ok(());
         }
         let own = self.moment()?.clone();
+        let crane = self.crane.clone();
         let h = RELATIVE / greatest;
         let mut aside = |side: f64, out: &mut [f64]| {
             let Moment { mut q, mut v, .. } = own.clone();
+            let mut inputs = self.inputs.clone();
             for (&reference, along) in knowns.iter().zip(direction) {
                 let Variable { name, source, .. } = self.variable(reference)?;
                 match *source {
                     Source::Position(index) => q[index] += side * along,
                     Source::Rate(index) => v[index] += side * along,
-                    _ => return Err(Fault::Error(format!("{name} is neither a coordinate nor a rate"))),
+                    Source::Input(index) if inputs[index].is_none() && crane.description().inputs[index].moves => {
+                        return Err(Fault::Error(format!("{name} follows the motion of the spec: set it first")));
+                    }
+                    Source::Input(index) => inputs[index] = Some(self.input(index) + side * along),
+                    _ => return Err(Fault::Error(format!("{name} is neither a coordinate nor a rate nor an input"))),
                 }
             }
+            self.crane = crane.with_inputs(&inputs);
             (self.quantities, self.accelerations) = (None, None);
             self.moment = Some(Moment { t: own.t, q, v });
             self.get(unknowns, out)
@@ -419,7 +453,7 @@ impl Instance {
         let mut behind = vec![0.0; out.len()];
         let found = aside(h, out).and_then(|()| aside(-h, &mut behind));
         out.iter_mut().zip(&behind).for_each(|(ahead, behind)| *ahead = (*ahead - behind) / (2.0 * h));
-        self.moment = Some(own);
+        (self.moment, self.crane) = (Some(own), crane);
         self.forget();
         found
     }
@@ -443,7 +477,7 @@ impl Instance {
             Some(motion) => motion,
             None => Motion::new(self.crane.clone(), t, &InitialState { q, v }, &self.settings)?,
         };
-        motion.advance(from + length)?;
+        let _ = motion.advance(from + length, &mut |_| ControlFlow::Continue(()))?;
         let sample = motion.sample();
         let moment = Moment { t: sample.t, q: sample.q.to_vec(), v: sample.v.to_vec() };
         self.caution(&moment);

@@ -15,7 +15,6 @@
 mod abi;
 pub mod description;
 pub mod instance;
-mod motion;
 pub mod resources;
 pub mod variables;
 

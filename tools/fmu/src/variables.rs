@@ -18,6 +18,8 @@ pub enum Source {
     Quantity(usize),
     /// A live parameter, by its place in the description.
     Parameter(usize),
+    /// An input, by its place in the description.
+    Input(usize),
 }
 
 /// A variable. Its value reference is its place in the list.
@@ -35,7 +37,7 @@ pub struct Variable {
     pub is_output: bool,
 }
 
-/// The variables of a crane: time, coordinates, rates, what follows from them, accelerations, parameters.
+/// The variables of a crane: time, coordinates, rates, what follows from them, accelerations, parameters, inputs.
 ///
 /// Poses and rates of joints and of the base are outputs, and so are points, drives and reactions. Deformations of flexible links,
 /// their moments, energies and accelerations can be read as well, but are not offered for connections: they are many.
@@ -82,7 +84,18 @@ pub fn list(description: &Description) -> Vec<Variable> {
         source: Source::Parameter(index),
         is_output: false,
     });
-    quantities.chain(accelerations).chain(parameters).collect()
+    let inputs = description.inputs.iter().enumerate().map(|(index, input)| {
+        let until = if input.moves { "until it is set it follows the motion of the spec" } else { "" };
+        let about = [input.about.as_str(), until].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>();
+        Variable {
+            name: input.name.to_string(),
+            unit: input.unit.to_string(),
+            about: about.join("; "),
+            source: Source::Input(index),
+            is_output: false,
+        }
+    });
+    quantities.chain(accelerations).chain(parameters).chain(inputs).collect()
 }
 
 /// What a description and a library must agree in: the spec, and every variable with its place.

@@ -1,5 +1,7 @@
 """Units in FMPy: valid, and the same motion as the command's own."""
 
+import csv
+
 import numpy as np
 import pytest
 from conftest import Slave
@@ -29,6 +31,33 @@ points:
 guess: {rod_theta: 0.5}
 run: {duration: 2, output: 0.1}
 """
+
+
+# A boom whose drive follows an input, with a load that hangs from it and a wind that another input scales.
+STEERED = """
+format: 1
+name: steered
+parameters: {payload: {value: 80, unit: kg}}
+inputs:
+  lever: {motion: {quintic: {from: 0, to: 60 deg, begin: 0.2, duration: 3}}, unit: rad}
+  gust: {unit: N, about: wind at the tip}
+links:
+  - {name: boom, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 200, com: [2, 0, 0], inertia: {gyration: [0.1, 1, 1]}}
+  - {name: load, placement: {transform: {translation: [4, 0, 0]}}, joint: revolute, mass: payload, com: [0, -1, 0]}
+drives: [{coordinate: boom_psi, stiffness: 2e5, damping: 2e4, motion: {input: lever}}]
+loads: [{name: wind, link: boom, at: [4, 0, 0], force: [0, 0, 1], scale: {input: gust}}]
+damping: {load_psi: 40}
+points: [{name: hook, link: load, at: [0, -1, 0]}]
+run: {duration: 2, output: 0.1}
+"""
+
+
+@pytest.fixture(scope="session")
+def steered(export, tmp_path_factory):
+    """The spec with inputs, and its unit."""
+    file = tmp_path_factory.mktemp("steered") / "steered.yaml"
+    file.write_text(STEERED)
+    return file, export(str(file), name="steered")
 
 
 @pytest.fixture(scope="session")
@@ -107,6 +136,55 @@ def test_parameters_of_the_importer_and_of_the_export_are_those_of_the_command(e
         assert unit.get("payload") == [300]
         unit.follow(0, 0.5, 50)
         assert np.abs(unit.get("load_centre_x", "load_centre_z") - expected).max() < 1e-9
+
+
+def test_inputs_of_the_importer_are_those_of_the_command(steered, crane, tmp_path, slave):
+    """Set before the start, and not at all."""
+    file, unit = steered
+    assert validate_fmu(unit) == []
+    inputs = {variable.name: variable for variable in read_model_description(unit).modelVariables if variable.causality == "input"}
+    assert {name: (of.unit, of.start, of.variability) for name, of in inputs.items()} == {
+        "lever": ("rad", "0", "continuous"),
+        "gust": ("N", "0", "continuous"),
+    }
+    for number, given in enumerate([{}, {"gust": 500.0}, {"lever": 0.4, "gust": -300.0}]):
+        folder = tmp_path / str(number)
+        options = [f"--input={name}={value}" for name, value in given.items()]
+        crane("simulate", file, "--no-verify", "--output", "0.01", "--out", folder, *options)
+        with open(folder / "steered.csv", newline="") as table:
+            header, *rows = csv.reader(table)
+        own = dict(zip([title.split(" [")[0] for title in header], np.array(rows, dtype=float).T, strict=True))
+        one = slave(unit, **given)
+        one.follow(0, 2, 200)
+        names = ["boom_psi", "boom_psi_rate", "load_psi", "hook_x", "hook_z", "boom_psi_drive_torque"]
+        last = np.array([own[name][-1] for name in names])
+        np.testing.assert_allclose(one.get(*names), last, rtol=1e-9, atol=1e-9)
+
+
+def test_an_input_moves_the_crane_from_when_it_is_set(steered, slave):
+    one, other = slave(steered[1]), slave(steered[1])
+    for unit in (one, other):
+        unit.follow(0, 0.5, 5)
+    assert one.get("boom_psi") == other.get("boom_psi")
+    other.set(gust=500.0)
+    # Moment about the pin: 4 m · 500 N.
+    names = ("boom_psi_acceleration", "load_psi_acceleration")
+    assert other.get("boom_psi") == one.get("boom_psi") and other.get(*names)[0] > one.get(*names)[0] + 0.1
+    other.set(gust=0.0)
+    np.testing.assert_allclose(other.get(*names), one.get(*names), rtol=1e-12)
+    state = other.getFMUstate()
+    other.set(lever=0.3)
+    assert other.get("lever") == [0.3] and other.get("boom_psi_prescribed") == [0.3]
+    other.setFMUstate(state)
+    assert other.get("boom_psi_prescribed") == one.get("boom_psi_prescribed")
+    # Accelerations are linear in the wind: the derivative along it is the difference for 1 N.
+    references = [other.references[name] for name in names]
+    derivative = other.getDirectionalDerivative(references, [other.references["gust"]], [1.0])
+    before = other.get(*names)
+    other.set(gust=1.0)
+    np.testing.assert_allclose(derivative, other.get(*names) - before, rtol=1e-4, atol=1e-12)
+    with pytest.raises(Exception):
+        other.set(gust=np.nan)
 
 
 def test_a_parameter_can_change_while_the_crane_moves(pendulum, slave):

@@ -31,9 +31,11 @@ mod describe;
 pub mod layout;
 mod library;
 pub mod machine;
+mod motion;
 mod routine;
 pub mod rows;
 
 pub use crane::LiveCrane;
 pub use crane_codegen::program::FunctionId;
+pub use motion::Motion;
 pub use routine::Routine;

@@ -2,9 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use crane_live::LiveCrane;
-use crane_model::dynamics::{Course, InitialState, Sample, Settings, Stopped};
+use crane_model::dynamics::{Course, InitialState, Run, Sample, Settings, Stopped};
 use self_cell::self_cell;
+
+use crate::LiveCrane;
 
 self_cell!(
     struct Moving {
@@ -14,23 +15,39 @@ self_cell!(
     }
 );
 
-/// A crane that moves on from a state for as long as it is asked to.
+/// A crane that moves on from a state for as long as it is asked to, with the history of its method.
 pub struct Motion(Moving);
 
 impl Motion {
     /// From a state at a time, s.
+    ///
+    /// # Errors
+    /// As [`Course::new`].
     pub fn new(crane: LiveCrane, begin: f64, start: &InitialState, settings: &Settings) -> Result<Self, Stopped> {
         Moving::try_new(crane, |crane| Course::new(crane, begin, start, settings)).map(Self)
     }
 
-    /// Goes on to a later time, s.
-    pub fn advance(&mut self, result: f64) -> Result<(), Stopped> {
-        let go_on = &mut |_| ControlFlow::Continue(());
-        self.0.with_dependent_mut(|_, course| course.advance(result, go_on)).map(|_| ())
+    /// Goes on to a later time, s. `step` receives the time after every step, and may stop the motion: then the last result stays.
+    ///
+    /// # Errors
+    /// As [`Course::advance`].
+    pub fn advance(
+        &mut self,
+        result: f64,
+        step: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, Stopped> {
+        self.0.with_dependent_mut(|_, course| course.advance(result, step))
     }
 
     /// The state reached.
+    #[must_use]
     pub fn sample(&self) -> Sample<'_> {
         self.0.borrow_dependent().sample()
+    }
+
+    /// What it took so far.
+    #[must_use]
+    pub fn run(&self) -> Run {
+        self.0.borrow_dependent().run()
     }
 }

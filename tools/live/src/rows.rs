@@ -198,7 +198,7 @@ impl<T: Number> Call<T> {
     fn run(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T], out: &mut [T]) {
         let Some(routine) = library.routine(self.id) else { return };
         let t = lanes.t.first().copied().unwrap_or(T::splat(0.0));
-        let arguments = Arguments { t, q: &lanes.q, v: &lanes.v, inputs, ..Arguments::none() };
+        let arguments = Arguments { t, q: &lanes.q, v: &lanes.v, a: &lanes.a, inputs, ..Arguments::none() };
         match (routine.shape(), &self.places) {
             (Shape::Columns { points, .. }, _) => {
                 routine.run(&mut self.machine, &arguments, &mut self.factors);

@@ -19,7 +19,7 @@ use std::{
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
-    envelope::{Conduct, Limits, Rating},
+    envelope::{Conduct, Limits, Rating, range_of_loads},
 };
 
 use crate::{
@@ -38,10 +38,6 @@ use rows::{Layout, Row};
 
 /// Poses at most: some hours.
 const MOST_POSES: usize = 10_000_000;
-/// Load that stands for the least where zero is not allowed, kg: a gram.
-const LEAST_LOAD: f64 = 1e-3;
-/// The greatest load looked at, in masses of the crane.
-const GREATEST_LOAD: f64 = 100.0;
 
 /// Rates all poses and writes what follows from them.
 pub fn envelope(options: &Envelope, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
@@ -109,10 +105,7 @@ fn ask(options: &Envelope, rig: &dyn DynCrane) -> Outcome<(crane_model::envelope
             "leave its `--range` out, or name another load with `--load`",
         ));
     }
-    let allowed = |value: &f64| info.check(*value).is_ok();
-    let least = [0.0, LEAST_LOAD, info.least.value].into_iter().find(allowed).unwrap_or(info.default);
-    let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
-    let greatest = options.greatest_load.unwrap_or(GREATEST_LOAD * mass.max(1.0)).min(info.greatest.value);
+    let [least, greatest] = range_of_loads(description, load, options.greatest_load);
     if greatest.is_nan() || greatest <= least {
         return Err(Problem::usage(
             format!("`--greatest-load {greatest}` is not above the least load, {least}"),

@@ -39,20 +39,11 @@ pub fn varies(axes: &Axes, parameter: usize) -> bool {
 
 /// Place of a drive by its coordinate or by its link, if that has one drive alone, or of a live parameter.
 fn varied(name: &str, description: &Description) -> Outcome<Varied> {
+    if let Some(varied) = Varied::named(name, description) {
+        return Ok(varied);
+    }
     let driven = super::drives(description);
-    let of_link = |coordinate: &&&str| coordinate.rsplit_once('_').is_some_and(|(link, _)| link == name);
-    let mut on_link = driven.iter().filter(of_link);
-    let drive = match (on_link.next(), on_link.next()) {
-        (Some(only), None) => *only,
-        _ => name,
-    };
-    if let Some(place) = driven.iter().position(|coordinate| *coordinate == drive) {
-        return Ok(Varied::Drive(place));
-    }
     let parameters = description.parameters.iter().map(|parameter| parameter.name.as_str());
-    if let Some(place) = parameters.clone().position(|parameter| parameter == name) {
-        return Ok(Varied::Parameter(place));
-    }
     if description.coordinates.iter().any(|coordinate| coordinate.name == name) {
         return Err(Problem::usage(
             format!("{name} has no drive: its position follows from equilibrium"),

@@ -3,6 +3,7 @@
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
+    envelope::only_mass,
     statics::{Settings, Status},
     tipping::{TippingLine, lines},
 };
@@ -26,10 +27,7 @@ const DOUBLINGS: usize = 14;
 /// Place of the parameter that is the load: the one of this name, or else the only one in kg.
 pub fn parameter(rig: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usize>> {
     let parameters = &rig.description().parameters;
-    let Some(name) = name else {
-        let mut masses = parameters.iter().enumerate().filter(|(_, parameter)| parameter.unit.as_str() == "kg");
-        return Ok(masses.next().filter(|_| masses.next().is_none()).map(|(index, _)| index));
-    };
+    let Some(name) = name else { return Ok(only_mass(rig.description())) };
     let found = parameters.iter().position(|parameter| parameter.name.as_str() == name);
     found.map(Some).ok_or_else(|| {
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();

@@ -74,6 +74,7 @@ impl<'a> Subject<'a> {
         match variable.source {
             Source::Time => ["independent", "continuous"],
             Source::Parameter(_) => ["parameter", "tunable"],
+            Source::Input(_) => ["input", "continuous"],
             _ if variable.is_output => ["output", "continuous"],
             _ => ["local", "continuous"],
         }
@@ -85,9 +86,12 @@ impl<'a> Subject<'a> {
         if !variable.unit.is_empty() {
             attributes.push(("unit", variable.unit.clone()));
         }
-        if let Source::Parameter(index) = variable.source {
-            attributes.push(("start", number_text(self.crane.parameter(index))));
-        }
+        let start = match variable.source {
+            Source::Parameter(index) => Some(self.crane.parameter(index)),
+            Source::Input(index) => Some(self.crane.description().inputs[index].default),
+            _ => None,
+        };
+        attributes.extend(start.map(|start| ("start", number_text(start))));
         attributes
     }
 
