@@ -23,13 +23,14 @@ from ._native import (
     threads,
 )
 from .model import Crane, load
-from .results import Energies, Ensemble, Equilibrium, Linearisation, Modes, Run, Stability
+from .results import Energies, Ensemble, Envelope, Equilibrium, Linearisation, Modes, Run, Stability, Strength
 from .simulation import Simulation, State
 
 __all__ = [
     "Crane",
     "Energies",
     "Ensemble",
+    "Envelope",
     "Equilibrium",
     "InvalidRowWarning",
     "Linearisation",
@@ -42,6 +43,7 @@ __all__ = [
     "SpecWarning",
     "Stability",
     "State",
+    "Strength",
     "load",
     "set_threads",
     "shipped",

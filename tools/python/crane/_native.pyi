@@ -34,6 +34,15 @@ def set_threads(count: int | None = None) -> None:
 def threads() -> int:
     """How many threads a call takes."""
 
+class Motion:
+    """A motion that goes on from result to result, with the history of its method."""
+
+    def advance(self, dt: float) -> tuple[float, Array, Array, tuple[float, float, float]]:
+        """Goes on by a while, s, to its time, pose and rates; work of the drives, energy that dampers dissipated and work of the loads
+        since the start, J."""
+    def statistics(self) -> dict[str, int]:
+        """Steps, rejections, evaluations and factorisations so far."""
+
 class Crane:
     """A crane with its parameters: native part of `crane.Crane`."""
 
@@ -44,6 +53,7 @@ class Crane:
         parameters: dict[str, ArrayLike] | None = None,
         invalid: str = "raise",
         like: Crane | None = None,
+        inputs: dict[str, float | None] | None = None,
     ) -> Crane: ...
     @property
     def name(self) -> str:
@@ -65,6 +75,8 @@ class Crane:
         """Leading axes of the parameters; empty where all are numbers."""
     def describe(self) -> dict[str, Any]:
         """Coordinates, bodies, drives, supports, points and parameters."""
+    def picture(self) -> str:
+        """A picture of the chain: its bodies and coordinates at the guess, SVG."""
     def export(self, format: str) -> str:
         """The crane for other programs: "urdf", "springs" (what URDF does not hold, YAML) or "mjcf", with the present parameters."""
     def parameter_rows(self, index: int) -> Any:
@@ -81,6 +93,10 @@ class Crane:
         invalid: str = "raise",
     ) -> dict[str, Any]:
         """Equilibria: `Crane.statics` makes an `Equilibrium` of them."""
+    def run_envelope(
+        self, asked: dict[str, Any], progress: Callable[[int, int], Any] | None = None
+    ) -> dict[str, Any]:
+        """Largest loads: `Crane.envelope` makes an `Envelope` of them."""
     def vibrations(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:
         """Modes and stable steps: `Crane.modes` and `Crane.stability` name them."""
     def record(
@@ -91,10 +107,33 @@ class Crane:
         self, timing: dict[str, Any], invalid: str = "raise", progress: Callable[[int, int], Any] | None = None
     ) -> dict[str, Any]:
         """Runs over parameters: `Crane.simulate_ensemble` makes an `Ensemble` of them."""
-    def advance(
-        self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike, inputs: list[float | None]
-    ) -> tuple[float, Array, Array, tuple[float, float, float], int]:
-        """Time, pose, rates, energies and steps after a while: work of the drives, what dampers took out, work of the loads, J."""
+    def motion(self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike) -> Motion:
+        """The crane on its way from a time, s, a pose and rates, with its parameters and inputs."""
+    @property
+    def inputs(self) -> dict[str, float]:
+        """Inputs that are set, by name."""
+    def internal_forces(
+        self,
+        q: ArrayLike,
+        v: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> Array:
+        """(..., cuts, 6): force, N, and moment, N m, that the part beyond each cut exerts on the part before it; `Crane.info["cuts"]`
+        lists the cuts. a: accelerations; at rest unless v and a are given."""
+    def strength_rows(
+        self,
+        q: ArrayLike,
+        v: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> Array:
+        """(..., 5 sections + 5): stresses and utilisation of every section of beams, then margin, moments and supports of the governing
+        tipping line; `Crane.strength` names them."""
     def transforms(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., bodies, 4, 4): transforms of the bodies into the world frame, m."""
     def transform_derivatives(self, q: ArrayLike, *, invalid: str = "raise") -> Array:

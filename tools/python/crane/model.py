@@ -1,35 +1,46 @@
 """A crane: a spec with live parameters."""
 
+import html
 import os
 import warnings
+from collections.abc import Mapping
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from .results import Array, Energies, Ensemble, Equilibrium, Linearisation, Modes, Run, Stability
+from .results import Array, Energies, Ensemble, Envelope, Equilibrium, Linearisation, Modes, Run, Stability, Strength
 from .simulation import Simulation
 
 
-def load(source: str | os.PathLike[str], /, *, text: str | None = None, invalid: str = "raise", **parameters: ArrayLike) -> "Crane":
+def load(
+    source: str | os.PathLike[str],
+    /,
+    *,
+    text: str | None = None,
+    invalid: str = "raise",
+    inputs: dict[str, float | None] | None = None,
+    **parameters: ArrayLike,
+) -> "Crane":
     """Loads a crane: a shipped one by its name (`crane.shipped()` lists them), or that of a YAML file.
 
     text: the spec itself; `source` is then what messages call it.
     parameters: live parameters by name, in the units that `Crane.info` shows. Arrays of them make a batch: their axes are leading
     axes of all that is computed.
     invalid: "raise" raises where parameters of an array break a rule, "nan" makes results of those rows NaN and warns.
+    inputs: inputs of the spec by name, in the units that `Crane.info` shows; the others are as the spec says.
 
     Raises SpecError, which prints every mistake with its place and remedy; warns with SpecWarning of what is implausible.
     """
-    return Crane(os.fspath(source), text=text, parameters=parameters, invalid=invalid)
+    return Crane(os.fspath(source), text=text, parameters=parameters, invalid=invalid, inputs=inputs)
 
 
-def _load_again(source: str, text: str, parameters: dict[str, Any]) -> "Crane":
+def _load_again(source: str, text: str, parameters: dict[str, Any], inputs: dict[str, float]) -> "Crane":
     """A crane out of a pickle: what was warned of once is not warned of again."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return Crane(source, text=text, parameters=parameters, invalid="nan")
+        return Crane(source, text=text, parameters=parameters, invalid="nan", inputs=inputs)
 
 
 class Crane(_native.Crane):
@@ -45,16 +56,33 @@ class Crane(_native.Crane):
     """
 
     def __reduce__(self) -> tuple:
-        return _load_again, (self.source, self.spec, self.parameters)
+        return _load_again, (self.source, self.spec, self.parameters, self.inputs)
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={value}" for name, value in self.parameters.items() if np.ndim(value) == 0)
         batch = f", shape={self.shape}" if self.shape else ""
         return f"<crane {self.name}: {self.n} coordinates{', ' if values else ''}{values}{batch}>"
 
-    def replace(self, *, invalid: str = "raise", **parameters: ArrayLike) -> Self:
-        """The same crane with other live parameters; the others keep their values. Nothing is derived again."""
-        return type(self)(self.source, parameters=parameters, invalid=invalid, like=self)
+    def _repr_html_(self) -> str:
+        """A picture with a table of parameters and inputs, for notebooks."""
+        info = self.info
+        rows = [(of["name"], self.parameters[of["name"]], of["unit"], of["about"]) for of in info["parameters"]]
+        rows += [(of["name"], self.inputs.get(of["name"], "as the spec says"), of["unit"], of["about"]) for of in info["inputs"]]
+        cells = [(name, _shown(value), unit, about) for name, value, unit, about in rows]
+        head = "".join(f"<th>{heading}</th>" for heading in ("parameter or input", "value", "unit", "what it is"))
+        body = "".join(f"<tr>{''.join(f'<td>{html.escape(cell)}</td>' for cell in row)}</tr>" for row in cells)
+        table = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>" if cells else ""
+        title = html.escape(f"{self.name}: {self.title}" if self.title else self.name)
+        return f"<div><p><b>{title}</b><br>{self.n} coordinates, {len(info['bodies'])} bodies</p>{self.picture()}{table}</div>"
+
+    def replace(
+        self, *, invalid: str = "raise", inputs: dict[str, float | None] | None = None, **parameters: ArrayLike
+    ) -> Self:
+        """The same crane with other live parameters and inputs; the others keep their values. Nothing is derived again.
+
+        inputs: by name; None gives an input back to its spec. All functions of the crane use them.
+        """
+        return type(self)(self.source, parameters=parameters, invalid=invalid, like=self, inputs=inputs)
 
     @property
     def info(self) -> dict[str, Any]:
@@ -76,6 +104,36 @@ class Crane(_native.Crane):
         """Live parameters: one number each, or an array over the leading axes."""
         names = [parameter["name"] for parameter in self.info["parameters"]]
         return {name: self.parameter_rows(index) for index, name in enumerate(names)}
+
+    def strength(
+        self,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> Strength:
+        """Stresses of beams and the tipping margin, over the leading axes.
+
+        q: poses, the static equilibrium unless given; v: rates, at rest unless given.
+        a: accelerations; unless given, those with which the crane moves on from v, or none at rest. t: times of applied loads, s.
+        """
+        q = self.statics(invalid=invalid).q if q is None else q
+        if a is None and v is not None:
+            a = self.forward_dynamics(q, v, t, invalid=invalid)
+        rows = self.strength_rows(q, v, a, t, invalid=invalid)
+        sections, (margin, stabilising, overturning, *feet) = rows[..., :-5], np.moveaxis(rows[..., -5:], -1, 0)
+        stresses = sections.reshape(*rows.shape[:-1], -1, 5)
+        line = np.stack(feet, axis=-1)
+        return Strength(
+            self.internal_forces(q, v, a, t, invalid=invalid),
+            *(stresses[..., place] for place in range(5)),
+            margin,
+            stabilising,
+            overturning,
+            np.where(np.isnan(line), -1, line).astype(int),
+        )
 
     @property
     def guess(self) -> Array:
@@ -120,6 +178,48 @@ class Crane(_native.Crane):
         words = {key: _shaped(found.pop(key), shape) for key in ("status", "message", "steps")}
         return Equilibrium(**found, **words)
 
+    def envelope(
+        self,
+        ranges: Mapping[str, ArrayLike],
+        *,
+        load: str | None = None,
+        greatest_load: float | None = None,
+        tipping: float | None = 0.0,
+        utilisation: float | None = 1.0,
+        efforts: Mapping[str, float] | None = None,
+        deflections: Mapping[str, float] | None = None,
+        point: str | None = None,
+        progress: Any = None,
+    ) -> Envelope:
+        """The largest load within limits, at rest, for all combinations of positions of drives, m and rad, and live parameters.
+
+        ranges: values by the name of a coordinate, of its link if that has one drive alone, or of a live parameter; each is an axis of the
+        result. What is not named stands as at the start.
+        load: live parameter that is the load, the only one in kg unless given. greatest_load: the greatest one looked at.
+        tipping: least tipping margin; utilisation: greatest one of beams with a yield stress; None: no such limit.
+        efforts: greatest torque or force of drives, N m and N. deflections: how far the load may move points of interest, m.
+        point: the one whose radius and height are given; the only one, or the origin of the last link unless given.
+        `progress(done, all)` is called now and then.
+        """
+        axes = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in ranges.items()}
+        for name, values in axes.items():
+            if values.ndim != 1:
+                raise ValueError(f"ranges[{name!r}] has {values.ndim} axes: give a list of numbers")
+        asked = {
+            "ranges": [(name, values.tolist()) for name, values in axes.items()],
+            "load": load,
+            "greatest_load": greatest_load,
+            "tipping": tipping,
+            "utilisation": utilisation,
+            "efforts": list((efforts or {}).items()),
+            "deflections": list((deflections or {}).items()),
+            "point": point,
+        }
+        found = self.run_envelope(asked, progress)
+        shape = tuple(found.pop("shape"))
+        words = {key: np.asarray(found.pop(key)).reshape(shape) for key in ("governing", "governing_of")}
+        return Envelope(axes=axes, **found, **words)
+
     def modes(self, q: ArrayLike | None = None, *, invalid: str = "raise") -> Modes:
         """Undamped and damped modes about poses at rest; about the static equilibrium unless poses are given."""
         q = self.statics(invalid=invalid).q if q is None else np.asarray(q, dtype=float)
@@ -154,6 +254,7 @@ class Crane(_native.Crane):
         v: ArrayLike | None = None,
         verify: bool = True,
         bend_limit: float | None = None,
+        inputs: dict[str, float | None] | None = None,
     ) -> Run:
         """A run from the static equilibrium at rest, or from pose q and rates v.
 
@@ -163,12 +264,14 @@ class Crane(_native.Crane):
         force: run even where the step is beyond the largest stable one.
         verify: run once more, finer, to estimate the error of every column.
         bend_limit: degrees by which a section of a beam may turn before a caution says so.
+        inputs: of the spec, by name; held throughout the run.
 
         Ctrl-C ends it with KeyboardInterrupt.
         """
         timing = _timing(method, duration, output, tolerance, step, force)
         limits = {} if bend_limit is None else {"bend": bend_limit}
-        found = self.record(timing, q, v, verify, **limits)
+        crane = self.replace(inputs=inputs) if inputs else self
+        found = crane.record(timing, q, v, verify, **limits)
         units = dict(found.pop("columns"))
         differences = found.pop("differences")
         errors = None if differences is None else dict(zip(units, differences, strict=True))
@@ -221,6 +324,15 @@ def _timing(
         "safe_step": step == "auto",
         "force": force,
     }
+
+
+def _shown(value: Any) -> str:
+    """A parameter in few characters: an array by its shape and range."""
+    if isinstance(value, str):
+        return value
+    if np.ndim(value) == 0:
+        return f"{value:g}"
+    return f"{np.shape(value)}: {np.min(value):g} to {np.max(value):g}"
 
 
 def _shaped(rows: list, shape: tuple[int, ...]) -> Any:

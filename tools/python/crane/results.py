@@ -106,6 +106,65 @@ class Stability:
 
 
 @dataclass(frozen=True)
+class Envelope:
+    """The largest load within limits over positions of drives and live parameters: a load chart as arrays.
+
+    axes: values of each axis, by name; all arrays have these axes first.
+    load: (...), the largest load, in `unit`, up to which every smaller one is within all limits; NaN where not even the least one is.
+    parameter, unit: the live parameter that is the load, and its unit.
+    governing: (...), the limit that governs: "tipping", "utilisation", "effort", "deflection", "equilibrium", or "" up to the greatest load
+    looked at. governing_of: (...), the tipping line, section, drive or point.
+    radius, height: (...), m, of the point, from the slewing axis and above the world's origin, with the largest load; with the least load
+    where there is no largest one.
+    q: (..., n), pose with the same load, m and rad.
+    tipping_margin, utilisation: (...), with the crane's own load. drive_efforts: (..., drives), N m and N, with that load.
+    deflections: (..., points), m, by which that load moves the points of interest.
+    """
+
+    axes: dict[str, Array]
+    load: Array
+    parameter: str
+    unit: str
+    governing: Any
+    governing_of: Any
+    radius: Array
+    height: Array
+    q: Array
+    tipping_margin: Array
+    utilisation: Array
+    drive_efforts: Array
+    deflections: Array
+
+
+@dataclass(frozen=True)
+class Strength:
+    """What beams, joints and the ground carry, over the leading axes.
+
+    internal_forces: (..., cuts, 6), force, N, and moment, N m, that the part beyond each cut of `Crane.info["cuts"]` exerts on the part
+    before it: of the ground in the world frame about its origin, of a joint in the frame after it about its origin, of a section of a beam
+    in the section's frame, x along the beam.
+    normal, shear, torsion, equivalent: (..., sections), Pa, greatest stresses at the sections of `Crane.info["sections"]`: of normal force
+    and bending, of shear forces, of torsion, and von Mises' equivalent of all three; NaN where moduli of the section are unknown.
+    utilisation: (..., sections), equivalent stress over yield stress divided by safety factor; NaN without a yield stress.
+    tipping_margin: (...), 1 − overturning / stabilising about the governing tipping line: 1 where nothing overturns the crane, 0 where it
+    is about to tip; NaN where the supports form no polygon.
+    stabilising, overturning: (...), N m, moments about that line.
+    governing_line: (..., 2), its supports, as indices; −1 where there is no line.
+    """
+
+    internal_forces: Array
+    normal: Array
+    shear: Array
+    torsion: Array
+    equivalent: Array
+    utilisation: Array
+    tipping_margin: Array
+    stabilising: Array
+    overturning: Array
+    governing_line: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
 class Run(Mapping[str, Array]):
     """A run: its columns by name, as in `run["boom_psi_drive_torque"]`, at the times `run.t`.
 

@@ -1,6 +1,6 @@
 """Simulations that are stepped from outside, for controllers and learning."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from .results import Array
 
 if TYPE_CHECKING:
+    from ._native import Motion
     from .model import Crane
 
 
@@ -41,8 +42,9 @@ class Simulation:
 
     Inputs of the spec are set by name, `simulation.step(0.01, inputs={"pull": 300.0})`.
 
-    Each step is a run of its own from the present state: the same state and the same step give the same numbers, to the last
-    bit, whatever came before. So a saved state can be restored, copied or sent to another process.
+    Steps of the method go on across calls with their history, so that short calls cost no more than long ones. A new value of an
+    input or of a parameter, and `restore`, begin a new history from the present state: from then on the same calls give the same
+    numbers, to the last bit.
     """
 
     def __init__(
@@ -56,14 +58,27 @@ class Simulation:
     ) -> None:
         if crane.shape:
             raise ValueError("the parameters are arrays: a simulation needs one value of each")
-        # Each step starts from the state alone: methods of one step lose nothing by that.
-        method = timing["method"] or ("rk4" if timing["step"] else "rosw4")
+        method = timing["method"] or ("rk4" if timing["step"] else None)
         self._timing = {**timing, "method": method}
         self.crane = crane
         q = crane.statics(t=t).q if q is None else np.array(q, dtype=float)
         v = np.zeros_like(q) if v is None else np.array(v, dtype=float)
-        self._state = State(float(t), q, v, parameters=crane.parameters)
-        self.steps = 0
+        self._state = State(float(t), q, v, parameters=crane.parameters, inputs=crane.inputs)
+        self._counted = dict.fromkeys(("steps", "rejections", "evaluations", "factorisations"), 0)
+        # The method on its way, and the state from which it began.
+        self._motion: Motion | None = None
+        self._begin = self._state
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        """Steps, rejected steps, evaluations of accelerations and factorisations of all calls together."""
+        now = self._motion.statistics() if self._motion else {}
+        return {what: count + now.get(what, 0) for what, count in self._counted.items()}
+
+    @property
+    def steps(self) -> int:
+        """Steps of all calls together."""
+        return self.statistics["steps"]
 
     @property
     def t(self) -> float:
@@ -102,33 +117,41 @@ class Simulation:
 
         Where it fails or is interrupted, the simulation stays where it was.
         """
-        crane = self.crane.replace(**parameters) if parameters else self.crane
-        now = self._state
-        known = [info["name"] for info in crane.info["inputs"]]
-        set_now = self._inputs(known, inputs or {})
-        timing = {**self._timing, "duration": dt, "output": dt}
-        t, q, v, integrals, steps = crane.advance(timing, now.t, now.q, now.v, [set_now.get(name) for name in known])
-        work, dissipated, load_work = integrals
-        energies = {
-            "work": now.work + work,
-            "dissipated": now.dissipated + dissipated,
-            "load_work": now.load_work + load_work,
-        }
-        self._state = State(t, q, v, parameters=crane.parameters, inputs=set_now, **energies)
-        self.crane = crane
-        self.steps += steps
+        if parameters or inputs:
+            self._change(self.crane.replace(inputs=inputs, **parameters))
+        if self._motion is None:
+            self._motion = self.crane.motion(self._timing, self._state.t, self._state.q, self._state.v)
+            self._begin = self._state
+        try:
+            t, q, v, (work, dissipated, load_work) = self._motion.advance(dt)
+        except BaseException:
+            self._forget()
+            raise
+        begin = self._begin
+        self._state = State(
+            t,
+            q,
+            v,
+            work=begin.work + work,
+            dissipated=begin.dissipated + dissipated,
+            parameters=self._state.parameters,
+            load_work=begin.load_work + load_work,
+            inputs=self._state.inputs,
+        )
         return self._state
 
-    def _inputs(self, known: list[str], given: dict[str, float | None]) -> dict[str, float]:
-        """The inputs that are set from now on."""
-        for name, value in given.items():
-            if name not in known:
-                has = f"inputs: {', '.join(known)}" if known else "it has none; name them under `inputs:` in its spec"
-                raise ValueError(f"{self.crane.name} has no input `{name}`; {has}")
-            if value is not None and not np.isfinite(value):
-                raise ValueError(f"inputs[{name!r}] is {value}, not a finite number")
-        merged = {**self._state.inputs, **given}
-        return {name: float(value) for name, value in merged.items() if value is not None}
+    def _change(self, crane: "Crane") -> None:
+        """Takes another crane from now on, unless it has the same parameters and inputs."""
+        changed = {"parameters": crane.parameters, "inputs": crane.inputs}
+        if changed != {"parameters": self._state.parameters, "inputs": self._state.inputs}:
+            self._forget()
+            self.crane = crane
+            self._state = replace(self._state, **changed)
+
+    def _forget(self) -> None:
+        """Ends the history; what it took counts."""
+        self._counted = self.statistics
+        self._motion = None
 
     def save(self) -> State:
         """The current state."""
@@ -140,6 +163,7 @@ class Simulation:
         for name, numbers in (("q", state.q), ("v", state.v)):
             if np.shape(numbers) != (n,):
                 raise ValueError(f"{name} of the state has shape {np.shape(numbers)}, and the crane has {n} coordinates")
-        if state.parameters != self.crane.parameters:
-            self.crane = self.crane.replace(**state.parameters)
+        unset = dict.fromkeys(self._state.inputs, None)
+        self._change(self.crane.replace(inputs={**unset, **state.inputs}, **state.parameters))
+        self._forget()
         self._state = state

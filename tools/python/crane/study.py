@@ -1,7 +1,7 @@
 """Studies: a crane over many values of its parameters, in parts that are kept, on this machine or on many.
 
 >>> from crane import study
->>> cases = study.grid(load_mass=[0, 200, 400], boom_E=[2.0e11, 2.1e11])
+>>> cases = study.grid(load_mass=[0, 200, 400])
 >>> done = study.run("eight_link_flexible", cases, "loads", duration=5)      # doctest: +SKIP
 >>> done.to_pandas()[["load_mass", "boom_psi_drive_torque_max"]]             # doctest: +SKIP
 
@@ -37,7 +37,7 @@ MANIFEST = "manifest.json"
 # Cases of a part: some seconds of runs.
 PART = 200
 # Version of the folder's layout.
-FORMAT = 1
+FORMAT = 2
 # Key of a part's metadata that says which study it is of.
 DIGEST = b"crane_study"
 
@@ -115,6 +115,7 @@ class _Part:
     source: str
     text: str
     cases: Cases
+    inputs: dict[str, float]
     what: str | Callable[[Crane], Mapping[str, ArrayLike]]
     settings: dict[str, Any]
     digest: str
@@ -135,7 +136,7 @@ def run(
 ) -> Study:
     """Computes every case, but those of parts that the folder has already.
 
-    spec: a crane, its YAML file, or the name of a shipped one. cases: values of live parameters, columns of equal length.
+    spec: a crane, with its parameters and inputs, its YAML file, or the name of a shipped one. cases: values of live parameters, columns of equal length.
     what: "simulate": extremes, ends and status of a run of each case; `settings` are those of `Crane.simulate_ensemble`.
         "statics": pose, efforts of the drives, reactions, points and status; `settings` are those of `Crane.statics`.
         A function: it gets a crane with the cases of a part as arrays of parameters and returns columns, each as long as those;
@@ -173,6 +174,7 @@ def run(
         "what": _name(what),
         "settings": settings,
         "parameters": fixed,
+        "inputs": crane.inputs,
         "columns": list(cases),
         "cases": count,
         "cases_per_part": part,
@@ -187,7 +189,7 @@ def run(
         rows = slice(index * part, (index + 1) * part)
         own = {name: column[rows] for name, column in cases.items()}
         own |= {name: np.full(len(own[next(iter(cases))]), value) for name, value in fixed.items()}
-        return _Part(crane.source, crane.spec, own, what, settings, digest, threads)
+        return _Part(crane.source, crane.spec, own, crane.inputs, what, settings, digest, threads)
 
     show = _Line(len(missing), parts, sys.stderr.isatty() if progress is None else progress)
     compute = _here if engine is None else _on_workers(engine, retries)
@@ -238,7 +240,7 @@ def _compute(part: _Part) -> Any:
     if part.threads:
         # A worker has its own threads.
         _native.set_threads(part.threads)
-    crane = load(part.source, text=part.text, invalid="nan", **part.cases)
+    crane = load(part.source, text=part.text, invalid="nan", inputs=part.inputs, **part.cases)
     if callable(part.what):
         results = {name: (column, "") for name, column in part.what(crane).items()}
     else:
@@ -288,7 +290,7 @@ _RESULTS = {"simulate": _simulate, "statics": _statics}
 
 def _digest(crane: Crane, cases: Cases, fixed: dict, what: Any, settings: dict, part: int) -> str:
     """What distinguishes a study from another one."""
-    said = [FORMAT, crane.spec_hash, fixed, list(cases), _name(what), settings, part]
+    said = [FORMAT, crane.spec_hash, fixed, crane.inputs, list(cases), _name(what), settings, part]
     digest = hashlib.sha256(json.dumps(said, sort_keys=True).encode())
     for column in cases.values():
         digest.update(np.ascontiguousarray(column, dtype="<f8").tobytes())
@@ -317,7 +319,7 @@ def _claim(folder: Path, manifest: dict[str, Any]) -> None:
     except ValueError as error:
         raise ValueError(f"{path} is not the manifest of a study: {error}; use another folder") from None
     if known is not None and known.get("digest") != manifest["digest"]:
-        differs = [key for key in ("crane", "spec_hash", "what", "settings", "parameters", "columns", "cases", "cases_per_part")
+        differs = [key for key in ("crane", "spec_hash", "what", "settings", "parameters", "inputs", "columns", "cases", "cases_per_part")
                    if known.get(key) != manifest[key]]
         why = ", ".join(differs) or "cases"
         raise ValueError(f"{folder} has another study, which differs in: {why}; use another folder, or remove that study")

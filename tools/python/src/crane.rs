@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use crane_codegen::compile::check_with;
+use crane_codegen::picture::picture;
 use crane_codegen::{Checked, SourceFile, build, exchange};
 use crane_live::LiveCrane;
 use crane_live::rows::{Evaluation, Quantity};
-use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::{Cut, Description};
 use crane_specs::SPECS;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -17,6 +18,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::{Argument, Joined};
 use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn_of_rows, warn_of_spec};
+use crate::strength::sections;
 
 /// A crane with its parameters: native part of `crane.Crane`.
 #[pyclass(frozen, subclass, module = "crane._native")]
@@ -61,7 +63,7 @@ fn open(py: Python<'_>, named: &str) -> PyResult<SourceFile> {
 #[pymethods]
 impl Crane {
     #[new]
-    #[pyo3(signature = (named, text=None, parameters=None, invalid="raise", like=None))]
+    #[pyo3(signature = (named, text=None, parameters=None, invalid="raise", like=None, inputs=None))]
     fn new(
         py: Python<'_>,
         named: &str,
@@ -69,10 +71,11 @@ impl Crane {
         parameters: Option<&Bound<'_, PyDict>>,
         invalid: &str,
         like: Option<&Bound<'_, Crane>>,
+        inputs: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let invalid = Invalid::named(invalid)?;
         if let Some(like) = like {
-            return like.get().with_others(py, parameters, invalid);
+            return like.get().with_others(py, parameters, invalid)?.with_inputs(inputs);
         }
         let source = match text {
             Some(text) => SourceFile::new(named, text),
@@ -95,7 +98,7 @@ impl Crane {
                 chain.name
             )));
         }
-        Self::with(py, LiveCrane::new(chain), source, parameters, invalid)
+        Self::with(py, LiveCrane::new(chain), source, parameters, invalid)?.with_inputs(inputs)
     }
 
     #[getter]
@@ -126,6 +129,18 @@ impl Crane {
     #[getter]
     fn shape(&self) -> Vec<usize> {
         self.parameters.shape.clone()
+    }
+
+    /// Inputs that are set, by name.
+    #[getter]
+    fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for (index, info) in self.live.description().inputs.iter().enumerate() {
+            if let Some(value) = self.live.input(index) {
+                all.set_item(&*info.name, value)?;
+            }
+        }
+        Ok(all)
     }
 
     /// What the crane consists of.
@@ -200,10 +215,36 @@ impl Crane {
             row.set_item("moves", info.moves)?;
             rows.push(row);
         }
-        all.set_item("inputs", list(rows)?)?;
+        all.set_item("inputs", list(std::mem::take(&mut rows))?)?;
+        for cut in description.cuts() {
+            let (kind, body, x) = match cut {
+                Cut::Ground => ("ground", None, None),
+                Cut::Joint { body } => ("joint", Some(body), None),
+                Cut::Body { body, x: None } => ("link", Some(body), None),
+                Cut::Body { body, x } => ("section", Some(body), x),
+            };
+            let row = PyDict::new(py);
+            row.set_item("kind", kind)?;
+            row.set_item("link", body.map(|body| &*description.bodies[body].link))?;
+            row.set_item("x", x)?;
+            rows.push(row);
+        }
+        all.set_item("cuts", list(std::mem::take(&mut rows))?)?;
+        for (body, x) in sections(description) {
+            let row = PyDict::new(py);
+            row.set_item("beam", &*description.bodies[body].link)?;
+            row.set_item("x", x)?;
+            rows.push(row);
+        }
+        all.set_item("sections", list(rows)?)?;
         all.set_item("points", description.points.iter().map(|point| &**point).collect::<Vec<&str>>())?;
         all.set_item("run", (description.duration, description.step, description.output))?;
         Ok(all)
+    }
+
+    /// A picture of the chain: its bodies and coordinates at the guess, SVG.
+    fn picture(&self) -> String {
+        picture(self.live.chain())
     }
 
     /// The crane for other programs: "urdf", "springs" (what URDF does not hold, YAML) or "mjcf", with the present parameters.
@@ -241,6 +282,32 @@ impl Crane {
 }
 
 impl Crane {
+    /// The same crane with some inputs set to numbers, or given back to its spec by None.
+    fn with_inputs(mut self, given: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let Some(given) = given else { return Ok(self) };
+        let description = self.live.description();
+        let mut values: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| self.live.input(index)).collect();
+        for (name, value) in given {
+            let name: String = name.extract()?;
+            let known = || description.inputs.iter().map(|info| &*info.name);
+            let place = known().position(|known| known == name).ok_or_else(|| {
+                let known: Vec<&str> = known().collect();
+                let has = match known.as_slice() {
+                    [] => "it has none; name them under `inputs:` in its spec".to_owned(),
+                    _ => format!("inputs: {}", known.join(", ")),
+                };
+                PyValueError::new_err(format!("{} has no input `{name}`; {has}", description.name))
+            })?;
+            let value: Option<f64> = value.extract()?;
+            if let Some(wrong) = value.filter(|value| !value.is_finite()) {
+                return Err(PyValueError::new_err(format!("inputs['{name}'] is {wrong}, not a finite number")));
+            }
+            values[place] = value;
+        }
+        self.live = self.live.with_inputs(&values);
+        Ok(self)
+    }
+
     /// The same crane with other parameters; what is not named keeps its values.
     fn with_others(&self, py: Python<'_>, given: Option<&Bound<'_, PyDict>>, invalid: Invalid) -> PyResult<Self> {
         let all = PyDict::new(py);

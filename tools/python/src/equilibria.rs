@@ -45,18 +45,6 @@ impl Found {
         Self { equilibrium, efforts, reactions, points }
     }
 
-    /// A word for the status.
-    fn status(&self) -> &'static str {
-        match self.equilibrium.status {
-            Status::Converged => "stable",
-            Status::Unstable { .. } => "unstable",
-            Status::Singular { .. } => "singular",
-            Status::TipsOver { .. } => "tips over",
-            Status::Overflow => "overflow",
-            Status::NotConverged => "not converged",
-        }
-    }
-
     /// Whether the pose is an equilibrium of some kind.
     fn rests(&self) -> bool {
         matches!(self.equilibrium.status, Status::Converged | Status::Unstable { .. })
@@ -140,7 +128,7 @@ impl Crane {
         all.set_item("points", numbers(|found| &found.points, &[description.points.len(), 3])?)?;
         let residuals = found.iter().map(|found| found.equilibrium.residual()).collect();
         all.set_item("residual", array(py, residuals, &joined.shape, &[])?)?;
-        all.set_item("status", found.iter().map(Found::status).collect::<Vec<_>>())?;
+        all.set_item("status", found.iter().map(|found| found.equilibrium.status.name()).collect::<Vec<_>>())?;
         all.set_item("message", found.iter().map(|found| found.equilibrium.to_string()).collect::<Vec<_>>())?;
         all.set_item("steps", found.iter().map(|found| found.equilibrium.steps()).collect::<Vec<_>>())?;
         all.set_item("shape", joined.shape.clone())?;

@@ -14,18 +14,35 @@ use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::{for_rows, map_rows};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
-type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+/// An argument that may be left out.
+pub type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Rows that a thread takes at a time: some tens of microseconds of work.
 const PIECE: usize = 64;
 
 /// A state as it was given.
 #[derive(Clone, Copy, Default)]
-struct State<'a, 'py> {
-    t: Given<'a, 'py>,
-    q: Given<'a, 'py>,
-    v: Given<'a, 'py>,
-    a: Given<'a, 'py>,
+pub struct State<'a, 'py> {
+    /// Time.
+    pub t: Given<'a, 'py>,
+    /// Coordinates.
+    pub q: Given<'a, 'py>,
+    /// Rates.
+    pub v: Given<'a, 'py>,
+    /// Accelerations.
+    pub a: Given<'a, 'py>,
+}
+
+/// The state of a row; what was not given is empty, and the time 0.
+pub struct Moment {
+    /// Time, s.
+    pub t: f64,
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// Rates.
+    pub v: Vec<f64>,
+    /// Accelerations.
+    pub a: Vec<f64>,
 }
 
 #[pymethods]
@@ -55,7 +72,7 @@ impl Crane {
     fn transform_second_derivatives<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let (bodies, n) = (self.live.description().bodies.len(), self.live.size());
         let state = State { q: Some(q), ..State::default() };
-        self.one_by_one(py, state, &[bodies, n, n, 4, 4], invalid, |crane, _, q, _, out| {
+        self.one_by_one(py, state, &[bodies, n, n, 4, 4], invalid, |crane, Moment { q, .. }, out| {
             let crane: &dyn DynDerivatives = crane;
             let mut matrices = crane.transform_second_derivatives_at(q).into_iter();
             for (body, of_body) in crane.description().bodies.iter().zip(out.chunks_mut(16 * n * n)) {
@@ -216,7 +233,7 @@ impl Crane {
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn drive_forces_at_rest<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let state = State { q: Some(q), ..State::default() };
-        self.one_by_one(py, state, &[self.live.size()], invalid, |crane, _, q, _, out| {
+        self.one_by_one(py, state, &[self.live.size()], invalid, |crane, Moment { q, .. }, out| {
             crane.drive_forces_at_rest(q, out);
         })
     }
@@ -489,7 +506,7 @@ impl Crane {
 
 impl Crane {
     /// A quantity of all rows, `own`: the axes of one of them.
-    fn compute<'py>(
+    pub fn compute<'py>(
         &self,
         py: Python<'py>,
         quantity: Quantity,
@@ -518,13 +535,13 @@ impl Crane {
     }
 
     /// The same by a function of one crane.
-    fn one_by_one<'py>(
+    pub fn one_by_one<'py>(
         &self,
         py: Python<'py>,
         state: State<'_, 'py>,
         own: &[usize],
         invalid: &str,
-        write: impl Fn(&crane_live::LiveCrane, f64, &[f64], &[f64], &mut [f64]) + Sync,
+        write: impl Fn(&crane_live::LiveCrane, &Moment, &mut [f64]) + Sync,
     ) -> Array<'py> {
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;
@@ -537,9 +554,10 @@ impl Crane {
         let rows = map_rows(py, joined.rows(), |row, _| {
             let mut out = vec![0.0; width];
             if bad.iter().all(|bad| bad.row != row) {
-                let [t, q, v] = [(0, 1), (1, n), (2, n)].map(|(index, size)| of(&joined.arguments[index], size, row));
-                let crane = self.of_joined_row(&joined, row);
-                write(&crane, t.first().copied().unwrap_or(0.0), &q, &v, &mut out);
+                let [t, q, v, a] =
+                    [(0, 1), (1, n), (2, n), (3, n)].map(|(index, size)| of(&joined.arguments[index], size, row));
+                let moment = Moment { t: t.first().copied().unwrap_or(0.0), q, v, a };
+                write(&self.of_joined_row(&joined, row), &moment, &mut out);
             }
             out
         })?;

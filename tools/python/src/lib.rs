@@ -12,11 +12,13 @@
 
 mod arrays;
 mod crane;
+mod envelope;
 mod equilibria;
 mod functions;
 mod mistakes;
 mod motion;
 mod parallel;
+mod strength;
 mod vibrations;
 
 use pyo3::prelude::*;
@@ -30,6 +32,8 @@ mod _native {
     use crate::crane::shipped;
     #[pymodule_export]
     use crate::mistakes::{InvalidRowWarning, NoEquilibrium, ParameterError, SpecError, SpecWarning};
+    #[pymodule_export]
+    use crate::motion::Motion;
     #[pymodule_export]
     use crate::parallel::{set_threads, threads};
 }

@@ -2,14 +2,15 @@
 
 use std::ops::ControlFlow;
 use std::str::FromStr;
+use std::sync::{Mutex, PoisonError};
 
-use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::{self, InitialState, Method, Sample, Settings, Statistics};
+use crane_model::dynamics::{InitialState, Method, Sample, Settings, Statistics, Stopped};
 use crane_model::results::{Column, Peaks, cautions};
 use crane_model::runs::ensemble::{self, Conduct};
 use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, record_checked, step_limit};
 use crane_model::stability::cause;
+use crane_model::{Description, Text};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -291,54 +292,69 @@ impl Crane {
         Ok(all)
     }
 
-    /// Time, pose and rates after a while, from a time, a pose and rates, with inputs in the order of the description; work of the drives, dissipated energy
-    /// and work of the loads.
-    fn advance<'py>(
+    /// The crane on its way from a time, a pose and rates, with its parameters and inputs.
+    fn motion(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         timing: Timing,
         t: f64,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        inputs: Vec<Option<f64>>,
-    ) -> PyResult<Bound<'py, PyTuple>> {
-        let crane = &self.live.with_inputs(&inputs);
-        let description = crane.description();
+        q: &Bound<'_, PyAny>,
+        v: &Bound<'_, PyAny>,
+    ) -> PyResult<Motion> {
+        let description = self.live.description();
         if !self.is_single() {
             return Err(PyValueError::new_err("the parameters are arrays: a simulation needs one value of each"));
         }
         if !t.is_finite() {
             return Err(PyValueError::new_err(format!("t is {t}, not a finite number")));
         }
-        let settings = timing.settings(description)?;
+        let settings = Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..timing.settings(description)? };
         let start = InitialState { q: given("q", q, description)?, v: given("v", v, description)? };
+        let moving = py.detach(|| crane_live::Motion::new(self.live.clone(), t, &start, &settings));
+        let name = description.name.clone();
+        let moving = moving.map_err(|stopped| failed(stopped, &name))?;
+        Ok(Motion { name, moving: Mutex::new(moving) })
+    }
+}
+
+/// A motion that goes on from result to result, with the history of its method.
+#[pyclass(frozen, module = "crane._native")]
+pub struct Motion {
+    /// The crane's.
+    name: Text,
+    moving: Mutex<crane_live::Motion>,
+}
+
+#[pymethods]
+impl Motion {
+    /// Goes on by a while, s, to its time, pose, rates; work of the drives, dissipated energy and work of the loads since the start.
+    fn advance<'py>(&self, py: Python<'py>, dt: f64) -> PyResult<Bound<'py, PyTuple>> {
+        let (least, greatest) = Settings::TIMES;
+        if !(least..=greatest).contains(&dt) {
+            return Err(PyValueError::new_err(format!("dt={dt}: write a number from {least:e} to {greatest:e}, in s")));
+        }
         let watch = Watch::new();
-        let mut last = Last { end: (t, start.clone(), [0.0; 3]), watch: &watch };
-        let run = py.detach(|| dynamics::simulate_from(crane, t, &start, &settings, &mut last));
-        let (end, InitialState { q, v }, [work, dissipated, load_work]) = last.end;
+        let (advanced, t, q, v, integrals) = py.detach(|| {
+            let mut moving = self.moving.lock().unwrap_or_else(PoisonError::into_inner);
+            let result = moving.sample().t + dt;
+            let advanced = moving.advance(result, &mut |_| unless(watch.look()));
+            let Sample { t, q, v, work, dissipated, load_work } = moving.sample();
+            (advanced, t, q.to_vec(), v.to_vec(), (work, dissipated, load_work))
+        });
         watch.finish(py)?;
-        let run = run.map_err(|stopped| {
-            raised(&Reason::Stopped { stopped, near_singular: None, limit: None }.of(&description.name))
-        })?;
+        let _ = advanced.map_err(|stopped| failed(stopped, &self.name))?;
         let [q, v] = [q, v].map(|state| numpy::PyArray1::from_vec(py, state));
-        (end, q, v, (work, dissipated, load_work), run.statistics.steps).into_pyobject(py)
+        (t, q, v, integrals).into_pyobject(py)
+    }
+
+    /// Steps, rejections, evaluations and factorisations so far.
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let run = self.moving.lock().unwrap_or_else(PoisonError::into_inner).run();
+        statistics(py, &run.statistics)
     }
 }
 
-/// Keeps the last sample.
-struct Last<'a> {
-    end: (f64, InitialState, [f64; 3]),
-    watch: &'a Watch,
-}
-
-impl dynamics::Watch for Last<'_> {
-    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
-        let (q, v) = (sample.q.to_vec(), sample.v.to_vec());
-        self.end = (sample.t, InitialState { q, v }, [sample.work, sample.dissipated, sample.load_work]);
-        ControlFlow::Continue(())
-    }
-
-    fn step(&mut self, _: f64) -> ControlFlow<()> {
-        unless(self.watch.look())
-    }
+/// A motion that cannot be followed, as an exception.
+fn failed(stopped: Stopped, name: &Text) -> PyErr {
+    raised(&Reason::Stopped { stopped, near_singular: None, limit: None }.of(name))
 }

@@ -36,6 +36,8 @@ def on_paper(c, t, q, v):
         "support_gaps": c.support_gaps(q, v),
         "cylinder_states": c.cylinder_states(q, v),
         "drive_limits": c.drive_limits(t, q, v),
+        # The derivation takes the rates for the accelerations, too.
+        "internal_forces": c.internal_forces(q, v, v, t),
         "drive_motions": c.drive_motions(t),
         "points": c.points(q),
         "point_velocities": c.point_velocities(q, v),

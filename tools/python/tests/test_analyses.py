@@ -1,5 +1,6 @@
 """Statics, modes, stability, runs, ensembles and simulations."""
 
+import pickle
 import time
 
 import crane
@@ -133,17 +134,45 @@ def test_a_bad_row_of_an_ensemble_is_named_or_nan(knuckle):
 
 
 def test_a_simulation_comes_back_to_the_last_bit(knuckle):
+    """Each time it is restored, and in another simulation; within the tolerance of what went on with the history."""
     simulation = knuckle.simulation()
     for _ in range(5):
         simulation.step(0.05)
     saved = simulation.save()
-    first = [simulation.step(0.05) for _ in range(5)]
+    straight_on = [simulation.step(0.05) for _ in range(5)]
     simulation.restore(saved)
-    second = [simulation.step(0.05) for _ in range(5)]
-    for a, b in zip(first, second, strict=True):
+    first = [simulation.step(0.05) for _ in range(5)]
+    other = knuckle.simulation()
+    other.restore(saved)
+    second = [other.step(0.05) for _ in range(5)]
+    for a, b, c in zip(first, second, straight_on, strict=True):
         np.testing.assert_array_equal(a.q, b.q)
         np.testing.assert_array_equal(a.v, b.v)
+        np.testing.assert_allclose(a.q, c.q, atol=1e-4)
     assert abs(simulation.t - 0.5) < 1e-12
+
+
+@pytest.mark.parametrize("method", ["bdf", "rosw4"])
+def test_short_calls_cost_no_more_than_a_run(flexible, method):
+    """Two seconds in 200 calls take the evaluations of one call. A value that is set to what it is begins nothing new; others do."""
+    one = flexible.simulation(method=method)
+    one.step(2.0)
+    many = flexible.simulation(method=method)
+    for _ in range(200):
+        many.step(0.01)
+    again = flexible.simulation(method=method)
+    for _ in range(200):
+        again.step(0.01, load_mass=500.0)
+    assert flexible.parameters["load_mass"] == 500.0
+    changing = flexible.simulation(method=method)
+    for call in range(200):
+        changing.step(0.01, load_mass=500.0 + call % 2)
+    counts = [of.statistics["evaluations"] for of in (one, many, again, changing)]
+    assert counts[1] <= 1.02 * counts[0] and counts[2] == counts[1], counts
+    assert counts[3] > 3 * counts[1], counts
+    # Both follow the motion to the tolerance of a step, 2e-5, over some hundred steps.
+    np.testing.assert_allclose(many.q, one.q, atol=1e-3)
+    assert many.t == pytest.approx(2.0, abs=1e-12)
 
 
 def test_a_simulation_is_the_run(knuckle):
@@ -193,6 +222,29 @@ def test_inputs_are_set_between_steps():
         simulation.step(0.1, inputs={"levr": 1.0})
     with pytest.raises(ValueError, match="not a finite number"):
         simulation.step(0.1, inputs={"lever": np.nan})
+
+
+def test_inputs_hold_for_all_functions():
+    """A spring whose far end is an input: where the mass rests, what moves it, and how a run goes."""
+    text = (
+        "format: 1\nname: slide\ngravity: [0, 0, 0]\ninputs: {lever: {unit: m}}\n"
+        "links: [{name: slide, joint: {prismatic: {axis: x}}, mass: 4, com: [0, 0, 0]}]\n"
+        "drives: [{coordinate: slide_x, stiffness: 100, motion: {input: lever}}]\n"
+    )
+    slide = crane.load("slide.yaml", text=text)
+    pulled = slide.replace(inputs={"lever": 0.3})
+    assert slide.inputs == {} and pulled.inputs == {"lever": 0.3}
+    np.testing.assert_allclose(pulled.forces([[0.0], [0.1]], [0.0]), [[30.0], [20.0]], rtol=1e-12)
+    np.testing.assert_allclose(pulled.forces([0.0], [0.0]), [30.0], rtol=1e-12)
+    assert slide.forces([0.0], [0.0]) == 0.0
+    # From 0: x = 0.3 (1 − cos 5t).
+    run = slide.simulate(duration=1.0, q=[0.0], tolerance=1e-9, inputs={"lever": 0.3}, verify=False)
+    np.testing.assert_allclose(run["slide_x"], 0.3 * (1.0 - np.cos(5.0 * run.t)), atol=2e-6)
+    assert pickle.loads(pickle.dumps(pulled)).inputs == {"lever": 0.3}
+    assert pulled.replace(inputs={"lever": None}).inputs == {}
+    assert crane.load("slide.yaml", text=text, inputs={"lever": 0.1}).inputs == {"lever": 0.1}
+    with pytest.raises(ValueError, match="no input `levr`; inputs: lever"):
+        slide.replace(inputs={"levr": 1.0})
 
 
 def test_a_pendulum_swings_in_time(pendulum):

@@ -1,0 +1,225 @@
+//! Envelopes: the largest loads within limits, over positions of drives and live parameters.
+
+use std::sync::{Mutex, PoisonError};
+
+use crane_model::Description;
+use crane_model::dyn_crane::DynCrane;
+use crane_model::envelope::{
+    Axes, Axis, Condition, Conduct, Envelope, Limit, Limits, Rating, SlewAxis, Varied, only_mass, range_of_loads,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::array;
+use crate::crane::Crane;
+use crate::parallel::{Watch, threads};
+
+/// Poses at most: some hours.
+const MOST_POSES: usize = 10_000_000;
+
+/// What is asked, as it was given.
+#[derive(FromPyObject)]
+pub struct Asked {
+    #[pyo3(item)]
+    ranges: Vec<(String, Vec<f64>)>,
+    #[pyo3(item)]
+    load: Option<String>,
+    #[pyo3(item)]
+    greatest_load: Option<f64>,
+    #[pyo3(item)]
+    tipping: Option<f64>,
+    #[pyo3(item)]
+    utilisation: Option<f64>,
+    #[pyo3(item)]
+    efforts: Vec<(String, f64)>,
+    #[pyo3(item)]
+    deflections: Vec<(String, f64)>,
+    #[pyo3(item)]
+    point: Option<String>,
+}
+
+#[pymethods]
+impl Crane {
+    /// Ratings over the axes: `Crane.envelope` names them.
+    #[pyo3(signature = (asked, progress=None))]
+    fn run_envelope<'py>(
+        &self,
+        py: Python<'py>,
+        asked: Asked,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        if !self.is_single() {
+            return Err(PyValueError::new_err("the parameters are arrays: name them in `ranges` instead"));
+        }
+        let crane: &dyn DynCrane = &self.live;
+        let description = crane.description();
+        let point = asked.point.as_deref().map(|name| place(name, "point", &points(description))).transpose()?;
+        let point = point.or((description.points.len() == 1).then_some(0));
+        let envelope = asked.envelope(description)?;
+        let poses = envelope.axes.poses();
+        let ratings: Mutex<Vec<Option<Rating>>> = Mutex::new(vec![None; poses]);
+        let watch = Watch::reporting(progress, poses);
+        let caller = std::thread::current().id();
+        let run = py.detach(|| {
+            let done = |piece: usize, rated: &[Rating]| {
+                let mut ratings = ratings.lock().unwrap_or_else(PoisonError::into_inner);
+                for (pose, rating) in envelope.poses_of(piece).zip(rated) {
+                    ratings[pose] = Some(rating.clone());
+                    watch.count();
+                }
+            };
+            let called_off = || if std::thread::current().id() == caller { watch.look() } else { watch.is_off() };
+            let pieces: Vec<usize> = (0..envelope.pieces()).collect();
+            envelope.run(crane, &pieces, &Conduct { threads: threads(), done: &done, called_off: &called_off })
+        });
+        watch.finish(py)?;
+        run.map_err(|refused| PyValueError::new_err(refused.to_string()))?;
+        let ratings = ratings.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let ratings: Vec<Rating> = ratings.into_iter().flatten().collect();
+        Named { description, slew: SlewAxis::of(crane), point, shape: axes_shape(&envelope) }
+            .all(py, &envelope, &ratings)
+    }
+}
+
+impl Asked {
+    fn envelope(&self, description: &Description) -> PyResult<Envelope> {
+        let mut axes: Vec<Axis> = Vec::new();
+        for (name, values) in &self.ranges {
+            let varied = Varied::named(name, description).ok_or_else(|| {
+                let known =
+                    drives(description).into_iter().chain(parameters(description)).collect::<Vec<_>>().join(", ");
+                PyValueError::new_err(format!(
+                    "{} has no drive and no live parameter `{name}`; drives and parameters: {known}",
+                    description.name
+                ))
+            })?;
+            if axes.iter().any(|axis| axis.varied == varied) {
+                return Err(PyValueError::new_err(format!("ranges: `{name}` is given twice")));
+            }
+            if values.is_empty() || values.iter().any(|value| !value.is_finite()) {
+                return Err(PyValueError::new_err(format!("ranges['{name}']: write one or more finite numbers")));
+            }
+            axes.push(Axis { varied, values: values.clone() });
+        }
+        let axes = Axes(axes);
+        if axes.0.is_empty() || axes.poses() > MOST_POSES {
+            return Err(PyValueError::new_err(format!("ranges: give from 1 to {MOST_POSES} poses")));
+        }
+        let load = match &self.load {
+            Some(name) => place(name, "live parameter", &parameters(description))?,
+            None => only_mass(description).ok_or_else(|| {
+                let name = &description.name;
+                PyValueError::new_err(format!(
+                    "{name} has not exactly one live parameter in kg to vary as the load: name it with `load`"
+                ))
+            })?,
+        };
+        if axes.0.iter().any(|axis| axis.varied == Varied::Parameter(load)) {
+            let name = &description.parameters[load].name;
+            return Err(PyValueError::new_err(format!("{name} is the load, which is found for each pose")));
+        }
+        let loads = range_of_loads(description, load, self.greatest_load);
+        if loads[1].is_nan() || loads[1] <= loads[0] {
+            let [least, greatest] = loads;
+            return Err(PyValueError::new_err(format!("greatest_load={greatest}: write a number above {least}")));
+        }
+        for (name, value, is_allowed) in [
+            ("tipping", self.tipping, (|margin| (0.0..1.0).contains(&margin)) as fn(f64) -> bool),
+            ("utilisation", self.utilisation, |part| part > 0.0 && part.is_finite()),
+        ] {
+            if let Some(wrong) = value.filter(|value| !is_allowed(*value)) {
+                return Err(PyValueError::new_err(format!("{name}={wrong} is out of range")));
+            }
+        }
+        let limits = Limits {
+            tipping: self.tipping,
+            utilisation: self.utilisation,
+            efforts: limits(&self.efforts, "drive", &drives(description))?,
+            deflections: limits(&self.deflections, "point", &points(description))?,
+        };
+        Ok(Envelope { axes, load, loads, limits })
+    }
+}
+
+/// Ratings as arrays.
+struct Named<'a> {
+    description: &'a Description,
+    slew: SlewAxis,
+    point: Option<usize>,
+    shape: Vec<usize>,
+}
+
+impl Named<'_> {
+    fn all<'py>(&self, py: Python<'py>, envelope: &Envelope, ratings: &[Rating]) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        let numbers = |of: &dyn Fn(&Rating) -> Option<f64>| {
+            array(py, ratings.iter().map(|rating| of(rating).unwrap_or(f64::NAN)).collect(), &self.shape, &[])
+        };
+        let place =
+            |rating: &Rating| rating.loaded.as_ref().map(|at| self.point.map_or(at.end, |point| at.points[point]));
+        all.set_item("load", numbers(&|rating| rating.load)?)?;
+        all.set_item("radius", numbers(&|rating| Some(self.slew.radius(&place(rating)?)))?)?;
+        all.set_item("height", numbers(&|rating| Some(place(rating)?.z))?)?;
+        all.set_item("tipping_margin", numbers(&|rating| rating.own.as_ref()?.margin())?)?;
+        all.set_item("utilisation", numbers(&|rating| rating.own.as_ref()?.utilisation())?)?;
+        let n = self.description.coordinates.len();
+        let rows = |width: usize, of: &dyn Fn(&Rating) -> Option<Vec<f64>>| {
+            let row = |rating: &Rating| of(rating).unwrap_or_else(|| vec![f64::NAN; width]);
+            array(py, ratings.iter().flat_map(row).collect(), &self.shape, &[width])
+        };
+        all.set_item("q", rows(n, &|rating| Some(rating.loaded.as_ref()?.q.clone()))?)?;
+        let own = |of: fn(&Condition) -> &Vec<f64>| move |rating: &Rating| Some(of(rating.own.as_ref()?).clone());
+        all.set_item("drive_efforts", rows(self.description.drives.len(), &own(|own| &own.efforts))?)?;
+        let moved = |rating: &Rating| (!rating.deflections.is_empty()).then(|| rating.deflections.clone());
+        all.set_item("deflections", rows(self.description.points.len(), &moved)?)?;
+        let words = |of: &dyn Fn(Limit) -> String| -> Vec<String> {
+            ratings.iter().map(|rating| rating.governing.map_or_else(String::new, of)).collect()
+        };
+        all.set_item("governing", words(&|limit| limit.kind().to_owned()))?;
+        all.set_item("governing_of", words(&|limit| limit.place(self.description)))?;
+        all.set_item("shape", self.shape.clone())?;
+        all.set_item("unit", self.description.parameters[envelope.load].unit.as_str())?;
+        all.set_item("parameter", self.description.parameters[envelope.load].name.as_str())?;
+        Ok(all)
+    }
+}
+
+fn axes_shape(envelope: &Envelope) -> Vec<usize> {
+    envelope.axes.0.iter().map(|axis| axis.values.len()).collect()
+}
+
+fn drives(description: &Description) -> Vec<&str> {
+    description.drives.iter().map(|drive| &*description.coordinates[drive.coordinate].name).collect()
+}
+
+fn points(description: &Description) -> Vec<&str> {
+    description.points.iter().map(|point| &**point).collect()
+}
+
+fn parameters(description: &Description) -> Vec<&str> {
+    description.parameters.iter().map(|parameter| &*parameter.name).collect()
+}
+
+/// Place of a name.
+fn place(name: &str, what: &str, names: &[&str]) -> PyResult<usize> {
+    names
+        .iter()
+        .position(|known| *known == name)
+        .ok_or_else(|| PyValueError::new_err(format!("there is no {what} `{name}`; {what}s: {}", names.join(", "))))
+}
+
+/// Limits by name, infinite where none is given.
+fn limits(given: &[(String, f64)], what: &str, names: &[&str]) -> PyResult<Vec<f64>> {
+    let mut limits = vec![f64::INFINITY; names.len()];
+    for (name, limit) in given {
+        let place = place(name, what, names)?;
+        if limit.is_nan() || *limit <= 0.0 {
+            return Err(PyValueError::new_err(format!(
+                "the limit of `{name}` is {limit}: write a number above 0, in SI units"
+            )));
+        }
+        limits[place] = *limit;
+    }
+    Ok(limits)
+}

@@ -1,0 +1,92 @@
+//! What joints, sections and the ground carry, stresses of beams, and moments about tipping lines, row by row.
+
+use crane_live::FunctionId;
+use crane_live::LiveCrane;
+use crane_live::rows::Quantity;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::sections::stressed_sections;
+use crane_model::{Cut, Description, Stress, tipping};
+use numpy::PyArrayDyn;
+use pyo3::prelude::*;
+
+use crate::crane::Crane;
+use crate::functions::{Given, Moment, State};
+
+/// Numbers of a section: normal, shear, torsional and equivalent stress, utilisation.
+const OF_SECTION: usize = 5;
+/// Numbers of the governing tipping line: margin, stabilising and overturning moment, places of its two supports.
+const OF_LINE: usize = 5;
+
+#[pymethods]
+impl Crane {
+    /// (..., cuts, 6): force, N, and moment, N m, that the part beyond each cut exerts on the part before it; `Crane.info["cuts"]`
+    /// lists the cuts. a: accelerations; at rest unless v and a are given.
+    #[pyo3(signature = (q, v=None, a=None, t=None, *, invalid="raise"))]
+    fn internal_forces<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let rest = self.rest(py);
+        let state = State { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
+        let own = [self.live.description().cuts().len(), 6];
+        self.compute(py, Quantity::Of(FunctionId::InternalForces), state, &own, invalid)
+    }
+
+    /// (..., 5 sections + 5): stresses and utilisation of every section of beams, then margin, moments and supports of the governing
+    /// tipping line; `Crane.strength` names them.
+    #[pyo3(signature = (q, v=None, a=None, t=None, *, invalid="raise"))]
+    fn strength_rows<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let rest = self.rest(py);
+        let state = State { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
+        let width = OF_SECTION * sections(self.live.description()).count() + OF_LINE;
+        self.one_by_one(py, state, &[width], invalid, write)
+    }
+}
+
+impl Crane {
+    /// Rates and accelerations at rest.
+    fn rest<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        numpy::PyArray1::<f64>::zeros(py, self.live.size(), false).into_any()
+    }
+}
+
+/// The sections of beams: the body that begins at each, and the distance from the beam's beginning, m.
+pub fn sections(description: &Description) -> impl Iterator<Item = (usize, f64)> {
+    description.cuts().into_iter().filter_map(|cut| match cut {
+        Cut::Body { body, x: Some(x) } => Some((body, x)),
+        _ => None,
+    })
+}
+
+/// Stresses and the governing tipping line of a crane; NaN where moduli or lines are unknown.
+fn write(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
+    let crane: &dyn DynCrane = crane;
+    let description = crane.description();
+    out.fill(f64::NAN);
+    let wrenches = crane.internal_forces_at(*t, q, v, a);
+    let known = stressed_sections(description, &crane.section_moduli_at(), &wrenches);
+    for ((body, _), out) in sections(description).zip(out.chunks_mut(OF_SECTION)) {
+        if let Some(section) = known.iter().find(|section| section.body == body) {
+            let Stress { normal, shear, torsion, equivalent } = section.stress;
+            out.copy_from_slice(&[normal, shear, torsion, equivalent, section.utilisation.unwrap_or(f64::NAN)]);
+        }
+    }
+    let lines = tipping::lines_of(crane, q, &wrenches);
+    if let (Some(line), Some(out)) = (tipping::governing(&lines), out.last_chunk_mut::<OF_LINE>()) {
+        let [from, to] = line.feet.map(|foot| foot as f64);
+        *out = [line.margin(), line.stabilising, line.overturning, from, to];
+    }
+}

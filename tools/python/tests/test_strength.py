@@ -1,0 +1,171 @@
+"""Internal forces, stresses, tipping and load charts, against moments about known lines and the command's own laws."""
+
+import crane
+import numpy as np
+import pytest
+
+# A truck of 4 t, its centre amid four stiff feet 3 m and 2 m apart, and a load on an arm without mass that slews and telescopes.
+TRUCK = """
+format: 1
+name: truck
+parameters: {payload: {value: 100, unit: kg}}
+links:
+  - {name: truck, joint: free, mass: 4000, com: [0, 0, 0.5], inertia: {Ixx: 3000, Iyy: 3000, Izz: 3000}}
+  - {name: column, placement: {transform: {translation: [0, 0, 1]}}, joint: revolute, mass: 1, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+  - {name: arm, joint: {prismatic: {axis: x}}, mass: payload, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+supports:
+  - {name: front_left, at: [1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: front_right, at: [1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: rear_left, at: [-1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
+  - {name: rear_right, at: [-1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
+drives:
+  - {coordinate: column_psi, rigid: true, motion: {hold: 90 deg}}
+  - {coordinate: arm_x, rigid: true, motion: {hold: 3}}
+points: [{name: hook, link: arm, at: [0, 0, 0]}]
+"""
+
+# A beam clamped at one end, with a mass at the other.
+BEAM = """
+format: 1
+name: arm
+parameters: {tip: {value: 200, unit: kg}}
+links:
+  - name: arm
+    joint: fixed
+    beam:
+      length: 3
+      sections: 4
+      material: {E: 2.1e11, G: 8.1e10, density: 7850, yield_stress: 3.55e8}
+      section: {box: {height: 0.2, width: 0.1, thickness: 0.008}}
+      safety_factor: 1.5
+  - {name: tip, mass: tip, com: [0, 0, 0]}
+"""
+
+
+@pytest.fixture
+def truck():
+    return crane.load("truck.yaml", text=TRUCK)
+
+
+@pytest.fixture
+def arm():
+    return crane.load("arm.yaml", text=BEAM)
+
+
+def test_the_ground_carries_the_weight(truck):
+    """Over a batch of loads: force and moment about the origin of 4001 kg in the middle and the load 3 m to the left."""
+    loads = np.array([50.0, 100.0, 300.0])
+    batch = truck.replace(payload=loads)
+    forces = batch.internal_forces(batch.statics().q)
+    assert forces.shape == (3, len(truck.info["cuts"]), 6)
+    ground = [cut["kind"] for cut in truck.info["cuts"]].index("ground")
+    np.testing.assert_allclose(forces[:, ground, 2], -9.81 * (4001.0 + loads), rtol=1e-12)
+    # Springs of 1e10 N/m give way by some 1e-6 m.
+    np.testing.assert_allclose(forces[:, ground, 3], -9.81 * 3.0 * loads, rtol=1e-5, atol=0.1)
+
+
+def test_tipping_is_the_balance_of_moments(truck):
+    """About the left feet: 4001 kg at 1 m hold the load at 3 m − 1 m."""
+    loads = np.array([100.0, 500.0, 3000.0])
+    found = truck.replace(payload=loads).strength()
+    np.testing.assert_allclose(found.tipping_margin, 1.0 - 2.0 * loads / 4001.0, rtol=1e-4)
+    np.testing.assert_allclose(found.stabilising, 9.81 * 4001.0, rtol=1e-4)
+    np.testing.assert_allclose(found.overturning, 9.81 * 2.0 * loads, rtol=1e-4)
+    feet = [support["name"] for support in truck.info["supports"]]
+    assert {feet[place] for place in found.governing_line[0]} == {"front_left", "rear_left"}
+    # Without a batch: one number.
+    assert truck.strength().tipping_margin == found.tipping_margin[0]
+
+
+def test_a_clamped_beam_bends_as_a_lever(arm):
+    """σ = M/W with M = (m L + ρ A L²/2) g about y, the flat way; von Mises' equivalent with the shear forces; over loads as a batch."""
+    height, width, wall, length = 0.2, 0.1, 0.008, 3.0
+    inner = (height - 2 * wall) * (width - 2 * wall)
+    area = height * width - inner
+    inertia = (height * width**3 - (height - 2 * wall) * (width - 2 * wall) ** 3) / 12.0
+    loads = np.array([100.0, 200.0])
+    found = arm.replace(tip=loads).strength()
+    assert [section["beam"] for section in arm.info["sections"]] == ["arm"] * len(arm.info["sections"])
+    root = int(np.argmin([section["x"] for section in arm.info["sections"]]))
+    x = arm.info["sections"][root]["x"]
+    reach, mass = length - x, 7850.0 * area
+    moment = 9.81 * (loads * reach + mass * reach**2 / 2.0)
+    # The pose sinks by centimetres in metres, which shortens the lever by some 1e-4.
+    np.testing.assert_allclose(np.abs(found.normal[:, root]), moment * width / 2.0 / inertia, rtol=1e-3)
+    np.testing.assert_allclose(found.utilisation, found.equivalent * 1.5 / 3.55e8, rtol=1e-12)
+    von_mises = np.sqrt(found.normal**2 + 3.0 * (np.abs(found.shear) + np.abs(found.torsion)) ** 2)
+    np.testing.assert_allclose(found.equivalent, von_mises, rtol=1e-12)
+    assert np.isnan(found.tipping_margin).all() and (found.governing_line == -1).all()
+
+
+def test_inertia_adds_to_weight(arm):
+    """What a section carries is linear in the accelerations, and greater than at rest where these are not zero."""
+    q = arm.statics().q
+    still = arm.internal_forces(q)
+    root = [cut["kind"] for cut in arm.info["cuts"]].index("section")
+    a = np.random.default_rng(2).normal(size=arm.n)
+    moved = arm.internal_forces(q, np.zeros(arm.n), a)
+    twice = arm.internal_forces(q, np.zeros(arm.n), 2.0 * a)
+    np.testing.assert_allclose(twice - still, 2.0 * (moved - still), rtol=1e-9, atol=1e-9)
+    assert np.abs(moved - still)[root].max() > 1.0
+
+
+def test_at_rest_nothing_but_weight_acts(arm):
+    """A crane let go in its equilibrium does not accelerate: with rates of zero it carries what it carries at rest."""
+    q = arm.statics().q
+    let_go = arm.strength(q, np.zeros(arm.n))
+    np.testing.assert_allclose(let_go.equivalent, arm.strength(q).equivalent, rtol=1e-6)
+
+
+def test_bad_rows_are_named(arm):
+    q = np.stack([arm.statics().q] * 2)
+    q[1, 3] = np.nan
+    with pytest.raises(ValueError, match=r"row \[1\]"):
+        arm.strength(q)
+    with pytest.warns(crane.InvalidRowWarning, match=r"row \[1\]"):
+        found = arm.strength(q, invalid="nan")
+    assert np.isfinite(found.equivalent[0]).all() and np.isnan(found.equivalent[1]).all()
+
+
+def test_a_load_chart_is_the_balance_of_moments(truck):
+    """About each line: load · (distance beyond) = 0.8 · 4001 kg · (distance within), all round."""
+    angles, reaches = np.linspace(0.0, np.pi, 7), np.linspace(2.0, 6.0, 5)
+    calls = []
+    chart = truck.envelope({"column": angles, "arm_x": reaches}, tipping=0.2, progress=lambda done, all: calls.append((done, all)))
+    assert chart.load.shape == chart.governing.shape == (7, 5) and chart.q.shape == (7, 5, truck.n)
+    assert calls[-1] == (35, 35) and (chart.parameter, chart.unit) == ("payload", "kg")
+    angle, reach = np.meshgrid(angles, reaches, indexing="ij")
+    x, y = reach * np.cos(angle), reach * np.sin(angle)
+    beyond = np.stack([x - 1.5, -x - 1.5, y - 1.0])
+    within = np.array([1.5, 1.5, 1.0])[:, None, None]
+    with np.errstate(divide="ignore"):
+        of_lines = np.where(beyond > 1e-9, 0.8 * 4001.0 * within / beyond, np.inf)
+    expected, sides = of_lines.min(axis=0), np.array(["front", "rear", "left"])[of_lines.argmin(axis=0)]
+    tips = expected < 1e5
+    np.testing.assert_allclose(chart.load[tips], expected[tips], rtol=1e-4)
+    assert tips.sum() > 20 and (chart.governing[tips] == "tipping").all()
+    assert all(of.count(side) == 2 for of, side in zip(chart.governing_of[tips], sides[tips], strict=True))
+    np.testing.assert_allclose(chart.radius, reach, atol=1e-3)
+
+
+def test_limits_of_a_load_chart(truck, knuckle):
+    one = truck.envelope({"arm": [4.0]}, tipping=None, efforts={"column_psi": 1.0}, greatest_load=500.0)
+    assert one.load.shape == (1,) and one.load[0] == 500.0 and one.governing[0] == ""
+    for wrong, said in [
+        ({"ranges": {"arn": [1.0]}}, "no drive and no live parameter `arn`"),
+        ({"ranges": {"arm": [1.0], "arm_x": [2.0]}}, "twice"),
+        ({"ranges": {"payload": [1.0]}}, "is the load"),
+        ({"ranges": {"arm": [np.nan]}}, "finite"),
+        ({"ranges": {}}, "poses"),
+        ({"ranges": {"arm": [3.0]}, "tipping": 1.5}, "tipping=1.5 is out of range"),
+        ({"ranges": {"arm": [3.0]}, "efforts": {"boom": 1.0}}, "no drive `boom`"),
+        ({"ranges": {"arm": [3.0]}, "load": "pay"}, "no live parameter `pay`"),
+        ({"ranges": {"arm": [3.0]}, "point": "hok"}, "no point `hok`"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            truck.envelope(**wrong)
+    with pytest.raises(ValueError, match="parameters are arrays"):
+        truck.replace(payload=[1.0, 2.0]).envelope({"arm": [3.0]})
+    # As the command does: without a polygon and yield stresses nothing limits the load but the drives.
+    free = knuckle.envelope({"main_boom_theta": [-0.5, 0.0]}, greatest_load=1000.0)
+    assert np.isnan(free.tipping_margin).all() and (free.load == 1000.0).all()
