@@ -171,7 +171,8 @@ class Crane:
     def cylinder_states(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., cylinders, 3): length of each cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m."""
     def drive_limits(self, t: ArrayLike, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., drives, 2): greatest effort, N or N m, 0 without a limit, and stiffness, N/m or N m/rad; zeros for a crane without limits."""
+        """(..., drives, 2): greatest effort of each drive, N or N m, 0 if it has no limit, and its stiffness at the state, N/m or N m/rad. Zeros for a
+        crane without limits."""
     def drive_motions(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., drives, 2): prescribed positions and rates of the drives at times t, m and rad, m/s and rad/s."""
     def forward_dynamics(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
