@@ -11,7 +11,7 @@ def saturated(effort, limit):
     size = ca.fabs(effort)
     low, high = (1 - CORNER) * limit, (1 + CORNER) * limit
     parabola = limit - (high - size) ** 2 / (4 * CORNER * limit)
-    return ca.sign(effort) * ca.if_else(size < low, size, ca.if_else(size < high, parabola, limit))
+    return ca.if_else(size < low, effort, ca.sign(effort) * ca.if_else(size < high, parabola, limit))
 
 
 def stored(stiffness, stretch, limit):
