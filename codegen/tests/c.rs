@@ -15,6 +15,13 @@ use crane_codegen::program::{Argument, Function, Inputs, Program, Shape};
 const EVERYTHING: Analyses =
     Analyses { statics: true, dynamics: true, modes: true, internal_forces: true, derivatives: false, ensemble: false };
 
+/// A strut, a taut rope on a winch and a slack rope for the knuckle-boom crane.
+const CONNECTORS: &str = "connectors:
+- {name: strut, from: {at: [0.4, 0, 0.5]}, to: {link: main_boom, at: [1, 0, 0]}, law: {gas_spring: {force: 900, length: 2, stiffness: 300, damping: 50}}}
+- {name: guy, from: {at: [-1, 0, 5]}, to: {link: knuckle, at: [1, 0, 0]}, law: {rope: {stiffness: 2e4, damping: 0.1, motion: {cubic: {from: 2, to: 1, duration: 3}}}}}
+- {name: slack, from: {link: main_boom, at: [0, 0, 0]}, to: {link: hook, at: [0, 0, 0]}, law: {rope: {stiffness: 2e4, length: 40}}}
+";
+
 fn shipped(name: &str) -> Chain {
     let path = format!("{}/../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
     load(&SourceFile::new(&path, fs::read_to_string(&path).unwrap())).unwrap()
@@ -228,6 +235,18 @@ fn every_function_of_every_kind_of_crane_is_the_interpreters() {
             // The same operations, rounded alike except for sines; forward dynamics of stiff cranes cancels some digits.
             assert!(off < 1e-12, "{name}: {function} is off by {off:e}");
         }
+    }
+}
+
+#[test]
+fn springs_and_ropes_are_the_interpreters() {
+    let path = format!("{}/../specs/knuckle_boom.yaml", env!("CARGO_MANIFEST_DIR"));
+    let plain = fs::read_to_string(path).unwrap();
+    let chain = load(&SourceFile::new("connected.yaml", format!("{plain}\n{CONNECTORS}"))).unwrap();
+    let found = differences("connected", &chain, Precision::Double);
+    assert_eq!(found.iter().filter(|(function, _)| function.starts_with("connector_")).count(), 7);
+    for (function, off) in found {
+        assert!(off < 1e-12, "{function} is off by {off:e}");
     }
 }
 

@@ -52,8 +52,8 @@ pub mod support;
 pub mod tipping;
 
 pub use description::{
-    BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo, Description, DriveInfo, InputInfo,
-    LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, SupportInfo, TIPPED, Text,
+    AttachmentInfo, BodyInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo, Description,
+    DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, SupportInfo, TIPPED, Text,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,
@@ -65,4 +65,4 @@ pub use parameter::{Bound, ParameterError, Refusal};
 pub use stress::SectionModuli;
 #[cfg(feature = "std")]
 pub use stress::Stress;
-pub use wrench::{Cut, Wrench};
+pub use wrench::{Cut, Tension, Wrench};

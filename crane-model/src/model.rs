@@ -10,7 +10,7 @@ use nalgebra::{
 };
 
 use crate::support::lanes::f64x8;
-use crate::{Description, ParameterError, SectionModuli, Wrench};
+use crate::{Description, ParameterError, SectionModuli, Tension, Wrench};
 
 /// Poses, forces and potential energy of a crane.
 pub trait CraneModel<const N: usize>: Send + Sync {
@@ -94,6 +94,29 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         SVector::zeros()
     }
 
+    /// Generalized forces of connectors.
+    fn connector_forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
+    /// Generalized forces of connectors while nothing moves, not even a winch.
+    fn connector_forces_at_rest(&self, _t: f64, _q: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
+    /// Length (m) of every connector, and its rate (m/s). `out`: one pair per connector.
+    fn connector_lengths(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [[f64; 2]]) {}
+
+    /// Force of every connector and its slopes. `out`: one per connector.
+    fn connector_tensions(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Tension]) {}
+
+    /// `∂ℓ/∂q` of every connector, ℓ its length. `out`: one row per connector.
+    fn connector_jacobians(&self, _q: &SVector<f64, N>, _out: &mut [[f64; N]]) {}
+
+    /// Begin and end of the pieces in which winches move smoothly, s. `out`: one pair per piece, connector by connector, as many as
+    /// [`ConnectorInfo::pieces`](crate::ConnectorInfo::pieces) says.
+    fn winch_pieces(&self, _out: &mut [[f64; 2]]) {}
+
     /// Begin and end of the pieces in which the scales of loads are smooth, s. `out`: one pair per piece, load by load, as many
     /// as [`LoadInfo::pieces`](crate::LoadInfo::pieces) says.
     fn load_pieces(&self, _out: &mut [[f64; 2]]) {}
@@ -155,6 +178,16 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         0.0
     }
 
+    /// Energy of connectors. J.
+    fn connector_energy(&self, _t: f64, _q: &SVector<f64, N>) -> f64 {
+        0.0
+    }
+
+    /// Power that winches put in. W.
+    fn winch_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
+        0.0
+    }
+
     /// Power that the loads applied from outside put in. W.
     fn load_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
         0.0
@@ -168,7 +201,7 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// Potential energy of everything. J.
     fn potential_energy(&self, t: f64, q: &SVector<f64, N>) -> f64 {
         let linear = self.gravity_energy(q) + self.support_energy(q) + self.element_energy(q) + self.drive_energy(t, q);
-        linear + self.stop_energy(q)
+        linear + self.stop_energy(q) + self.connector_energy(t, q)
     }
 }
 
@@ -284,6 +317,11 @@ pub trait Statics<const N: usize>: CraneModel<N> {
     /// has 1 on the diagonal and zeros elsewhere in its row and column.
     fn tangent_stiffness(&self, q: &SVector<f64, N>) -> SMatrix<f64, N, N>;
 
+    /// The part of connectors in the tangent stiffness, with winches where they are at time t.
+    fn connector_stiffness(&self, _t: f64, _q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        SMatrix::zeros()
+    }
+
     /// Generalized forces of the drives that hold the crane at rest at t = 0: those of springs, and those that remain for rigid drives.
     /// N and N m.
     fn drive_forces_at_rest(&self, q: &SVector<f64, N>) -> SVector<f64, N> {
@@ -311,8 +349,8 @@ pub trait InternalForces<const N: usize>: CraneModel<N> {
     /// At every cut, the wrench that the part beyond it exerts on the part before it, in the cut's frame about its origin, at time t,
     /// pose q, rates v and accelerations a. `out`: one per cut, as [`Description::cuts`] lists them.
     ///
-    /// It is the inertia and the weight of everything beyond with the loads applied to it, so it is valid where only joints hold
-    /// that part: supports act only on the base. At the ground it is the load on the foundation or on the supports. In a section of
+    /// It is the inertia and the weight of everything beyond with the loads applied to it and the forces of the connectors attached to
+    /// it: a joint or a section transmits what no connector carries past it, and supports act only on the base. At the ground it is the load on the foundation or on the supports. In a section of
     /// a beam it is `N, Qy, Qz` and `Mx, My, Mz`: a positive N is tension; Mx, My and Mz have the signs of the deformations that they
     /// cause, φ, θ and ψ.
     fn internal_forces(

@@ -16,6 +16,28 @@ impl Wrench {
     pub const ZERO: Wrench = Wrench { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
 }
 
+/// Force with which a connector pulls its two points together, and how it depends on their distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tension {
+    /// Force, N; negative where the connector pushes.
+    pub force: f64,
+    /// Its derivative with respect to the length, N/m.
+    pub stiffness: f64,
+    /// Its derivative with respect to the rate of the length, N s/m.
+    pub damping: f64,
+}
+
+impl Tension {
+    /// No force.
+    pub const ZERO: Tension = Tension { force: 0.0, stiffness: 0.0, damping: 0.0 };
+
+    /// Stiffness and damping for an implicit step, nowhere negative.
+    #[cfg(feature = "std")]
+    pub(crate) fn impedance(&self) -> [f64; 2] {
+        [self.stiffness.max(0.0), self.damping.max(0.0)]
+    }
+}
+
 /// Where a crane is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cut {

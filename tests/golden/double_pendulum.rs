@@ -16,6 +16,7 @@
 //   end stops: the spec has none
 //   friction of joints: the spec has none
 //   loads applied from outside: the spec has none
+//   springs and ropes between points: the spec has none
 //   live parameters: the spec has none: all numbers are compiled in
 //   everything out of the crane's plane: all joints rotate about one direction, none translates along it
 //   static residual and tangent stiffness: `analyses` does not include statics
@@ -93,6 +94,7 @@ pub const DESCRIPTION: Description = Description {
     stops: List::Static(&[]),
     frictions: List::Static(&[]),
     loads: List::Static(&[]),
+    connectors: List::Static(&[]),
     inputs: List::Static(&[]),
     cylinders: List::Static(&[]),
     pump_flow: None,

@@ -14,6 +14,7 @@
 //   end stops: the spec has none
 //   friction of joints: the spec has none
 //   loads applied from outside: the spec has none
+//   springs and ropes between points: the spec has none
 //   everything out of the crane's plane: all joints rotate about one direction, none translates along it
 //   internal forces: `analyses` does not include internal_forces
 //   ∂T/∂q and ∂²T/∂q∂q: `analyses` does not include derivatives
@@ -149,6 +150,7 @@ pub const DESCRIPTION: Description = Description {
     stops: List::Static(&[]),
     frictions: List::Static(&[]),
     loads: List::Static(&[]),
+    connectors: List::Static(&[]),
     inputs: List::Static(&[]),
     cylinders: List::Static(&[]),
     pump_flow: None,

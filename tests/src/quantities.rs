@@ -82,6 +82,14 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("support_positions", vec![supports, 3]),
         ("section_moduli", vec![crane.beams().len(), 8]),
         ("load_power", vec![1]),
+        ("connector_forces", vec![n]),
+        ("connector_forces_at_rest", vec![n]),
+        ("connector_lengths", vec![crane.connectors.len(), 2]),
+        ("connector_tensions", vec![crane.connectors.len(), 3]),
+        ("connector_jacobians", vec![crane.connectors.len(), n]),
+        ("connector_stiffness", vec![n, n]),
+        ("connector_energy", vec![1]),
+        ("winch_power", vec![1]),
     ];
     rows.into_iter().map(|(name, shape)| Quantity { name, shape }).collect()
 }
@@ -188,6 +196,14 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     let mut tangents = vec![[0.0; 2]; info.coordinates.len()];
     crane.nonlinear_impedances(t, q, v, &mut tangents);
     let load_power = crane.load_power(t, q, v);
+    let mut lengths = vec![[0.0; 2]; info.connectors.len()];
+    crane.connector_lengths(q, v, &mut lengths);
+    let mut tensions = vec![Tension::ZERO; info.connectors.len()];
+    crane.connector_tensions(t, q, v, &mut tensions);
+    let mut jacobians = vec![[0.0; N]; info.connectors.len()];
+    crane.connector_jacobians(q, &mut jacobians);
+    let connectors = [crane.connector_forces(t, q, v), crane.connector_forces_at_rest(t, q)];
+    let of_connectors = [crane.connector_energy(t, q), crane.winch_power(t, q, v)];
     let (mut q, mut v) = (*q, *v);
     crane.prescribe(t, &mut q, &mut v);
     out.extend(q.iter().chain(&v));
@@ -199,6 +215,12 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         out.extend([area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress]);
     }
     out.push(load_power);
+    out.extend(connectors.iter().flatten());
+    out.extend(lengths.iter().flatten());
+    out.extend(tensions.iter().flat_map(|tension| [tension.force, tension.stiffness, tension.damping]));
+    out.extend(jacobians.iter().flatten());
+    out.extend(crane.connector_stiffness(t, q).iter());
+    out.extend(of_connectors);
     out
 }
 

@@ -75,6 +75,9 @@ impl Writer {
         if self.driven && seed % 4 == 3 {
             self.cylinders();
         }
+        if self.driven && seed % 4 >= 2 {
+            self.connectors();
+        }
         self.line("points:");
         for (name, link) in [("middle", "first"), ("end", "hand")] {
             let at = self.vector(0.5).replace("[-", "[");
@@ -327,6 +330,39 @@ impl Writer {
         self.line("friction:");
         self.line(&format!("  {second}: {{coulomb: 6, breakaway: 9, stribeck: 0.6, width: 0.3, viscous: 1.5}}"));
         self.line(&format!("  {last}: {{coulomb: payload, width: 0.4}}"));
+    }
+
+    /// A spring across several joints, a gas spring across one, a rope from the world on a winch, and a slack one.
+    fn connectors(&mut self) {
+        self.line("connectors:");
+        for (name, from, to, law) in [
+            (
+                "tie",
+                "{link: arm, at: [0.1, 1.5, 0.3]}",
+                "{link: second, at: [0.3, 0.1, 0]}",
+                "{spring: {stiffness: 300, damping: 8, length: 1.1}}",
+            ),
+            (
+                "strut",
+                "{link: hand, at: [0.2, 0.4, -0.7]}",
+                "{link: plate, at: [0, 0.3, 0.9]}",
+                "{gas_spring: {force: 40, length: 2, stiffness: 15, damping: 3}}",
+            ),
+            (
+                "hoist",
+                "{at: [1, 0.5, 9]}",
+                "{link: second, at: [0.2, 0, 0]}",
+                "{rope: {stiffness: 90, damping: 0.2, motion: {quintic: {from: 3, to: 2, begin: 0.1, duration: 1.5}}}}",
+            ),
+            (
+                "slack",
+                "{link: arm, at: [0, 0, 0.4]}",
+                "{link: hand, at: [0, 0, 0]}",
+                "{rope: {stiffness: 500, length: 90}}",
+            ),
+        ] {
+            self.line(&format!("  - {{name: {name}, from: {from}, to: {to}, law: {law}}}"));
+        }
     }
 
     /// A force of the world, a wrench that turns with its link and grows with time, and loads that follow inputs.

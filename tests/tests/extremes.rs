@@ -172,7 +172,7 @@ proptest! {
         let along = DVector::from_vec(direction);
 
         let residual = crane.interpreted.vector("static_residual", &state);
-        let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy"];
+        let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy", "connector_energy"];
         let slopes = parts.map(|part| crane.interpreted.get(part, &inputs, 1)[0].derivative());
         // Applied loads have no energy; they count by the work that they do along the direction.
         let work = crane.interpreted.vector("load_forces", &state).dot(&along);
@@ -198,10 +198,10 @@ proptest! {
         let parameters = crane.interpreted.chain.parameter_defaults().into_iter().map(|p| Dual::new(p, 0.0)).collect();
         let acceleration = crane.vector("forward_dynamics");
         let inputs = Inputs::state(Dual::new(*t, 1.0), pairs(q, v), pairs(v, acceleration.as_slice()), parameters);
-        let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy"];
+        let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy", "connector_energy"];
         let rates = parts.map(|part| crane.interpreted.get(part, &inputs, 1)[0].derivative());
         let scalar = |function: &str| crane.interpreted.scalar(function, &crane.state);
-        let supplied = scalar("drive_power") + scalar("load_power") - scalar("dissipation");
+        let supplied = scalar("drive_power") + scalar("load_power") + scalar("winch_power") - scalar("dissipation");
         let off = (rates.iter().sum::<f64>() - supplied).abs();
         // What a coordinate's inertia and its neighbours' forces do to one another cancels in the sum.
         let mass = crane.interpreted.matrix("mass_matrix", &crane.state);

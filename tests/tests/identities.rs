@@ -110,6 +110,7 @@ fn a_rotor_adds_to_the_diagonal_and_to_nothing_else() {
                 "stop_forces",
                 "friction_forces",
                 "load_forces",
+                "connector_forces",
             ];
             for force in forces {
                 assert_eq!(crane.vector(force, &state), without.vector(force, &state), "seed {seed}: {force}");
@@ -156,7 +157,8 @@ fn what_a_joint_transmits_along_its_axis_is_its_effort() {
             let a = DVector::from_column_slice(&state.v) * 3.0;
             let mut efforts = crane.matrix("mass_matrix", &state) * &a
                 - crane.vector("bias", &state)
-                - crane.vector("load_forces", &state);
+                - crane.vector("load_forces", &state)
+                - crane.vector("connector_forces", &state);
             for rotor in &chain.rotors {
                 efforts[rotor.coordinate.0] -= rotor.armature.at(&chain.parameter_defaults()) * a[rotor.coordinate.0];
             }
@@ -242,10 +244,19 @@ fn power_balances() {
         for state in states::far(&crane.chain, 3, seed) {
             let acceleration = crane.acceleration(&state);
             let inputs = moving(&crane, &state, (1.0, &state.v, acceleration.as_slice()));
-            let parts =
-                ["kinetic_energy", "gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy"];
+            let parts = [
+                "kinetic_energy",
+                "gravity_energy",
+                "support_energy",
+                "element_energy",
+                "drive_energy",
+                "stop_energy",
+                "connector_energy",
+            ];
             let rates: Vec<f64> = parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
-            let supplied = crane.scalar("drive_power", &state) + crane.scalar("load_power", &state)
+            let supplied = crane.scalar("drive_power", &state)
+                + crane.scalar("load_power", &state)
+                + crane.scalar("winch_power", &state)
                 - crane.scalar("dissipation", &state);
             let size = rates.iter().map(|rate| rate.abs()).sum();
             // q̈ comes from a dense solve, so the condition of A is in it.
@@ -320,7 +331,14 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
                 let mut direction = vec![0.0; n];
                 direction[j] = 1.0;
                 let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n]));
-                let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy"];
+                let parts = [
+                    "gravity_energy",
+                    "support_energy",
+                    "element_energy",
+                    "drive_energy",
+                    "stop_energy",
+                    "connector_energy",
+                ];
                 let slopes: Vec<f64> = parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
                 let size = slopes.iter().map(|slope| slope.abs()).sum::<f64>() + loads[j].abs();
                 let gradient = slopes.iter().sum::<f64>() - loads[j];

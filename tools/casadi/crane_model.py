@@ -98,6 +98,19 @@ class Load:
 
 
 @dataclass
+class Connector:
+    """An element between two points: the bodies that it pulls by their places, the points, and what its force follows from."""
+
+    bodies: list
+    points: list
+    is_rope: bool
+    stiffness: object
+    damping: object
+    length: object
+    push: object
+
+
+@dataclass
 class Support:
     """Springs and dampers along the world's axes; `elongation` and its columns for x, y, z. `full_hold` is None if it pulls, too."""
 
@@ -138,6 +151,7 @@ class Crane:
     frictions: list = field(default_factory=list)
     loads: list = field(default_factory=list)
     cylinders: list = field(default_factory=list)
+    connectors: list = field(default_factory=list)
     points: dict = field(default_factory=dict)
     guess: list = field(default_factory=list)
 
@@ -212,6 +226,8 @@ def read_crane(path):
         crane.loads.append(read_load(crane, written, spans[written["link"]]))
     for written in spec.get("cylinders", []):
         crane.cylinders.append(read_cylinder(crane, written, spans))
+    for written in spec.get("connectors", []):
+        crane.connectors.append(read_connector(crane, written, spans))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     crane.guess = read_guess(crane)
@@ -395,6 +411,26 @@ def read_cylinder(crane, written, spans):
         lengths = [spec.number(linkage[key]) for key in ("rocker", "link")]
         end = pin_of_rocker(pivot, end, axis, lengths, linkage["side"])
     return Cylinder(coordinate, ca.norm_2(end - start))
+
+
+def read_connector(crane, written, spans):
+    """An element between two points: a spring, a gas spring, which pushes, or a rope, which pulls."""
+    spec = crane.spec
+    bodies, points = [], []
+    for end in (written["from"], written["to"]):
+        at = spec.vector(end["at"])
+        if "link" in end:
+            body, at = carrier(spec, at, spans[end["link"]])
+            bodies.append(next(i for i, other in enumerate(crane.bodies) if other is body))
+            points.append(place(body.transform, at))
+        else:
+            bodies.append(None)
+            points.append(at)
+    ((kind, law),) = written["law"].items()
+    motion = law.get("motion", {"hold": law.get("length")})
+    length = read_profile(spec, motion, False, crane.time)[0]
+    stiffness, damping, push = (spec.number(law.get(key, 0)) for key in ("stiffness", "damping", "force"))
+    return Connector(bodies, points, kind == "rope", stiffness, damping, length, push)
 
 
 def read_point(spec, written, span):

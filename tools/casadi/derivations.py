@@ -85,6 +85,12 @@ class Derivations:
                 if load.body == place:
                     force = force - load.force
                     moment = moment - load.moment - ca.cross(load.position, load.force)
+            for connector in self.crane.connectors:
+                length, _, tension, _ = self.connector(connector)
+                pull = tension * (connector.points[1] - connector.points[0]) / length
+                for end, point, sign in zip(connector.bodies, connector.points, (1, -1)):
+                    if end == place:
+                        force, moment = force - sign * pull, moment - ca.cross(point, sign * pull)
             sums[place] = force, moment
         wrenches = []
         for cut in self.crane.cuts:
@@ -192,6 +198,68 @@ class Derivations:
                 forces[place] += ca.dot(ca.vertcat(spin[2, 1], spin[0, 2], spin[1, 0]), load.moment)
         return forces
 
+    def connector(self, connector, moving=True):
+        """Length, its rate, the force that pulls its points together, and the energy, of an element between two points.
+
+        At rest nothing has a rate, not even a winch.
+        """
+        length = ca.norm_2(connector.points[1] - connector.points[0])
+        rate = self.rate(length) if moving else ca.SX(0)
+        stretch = length - connector.length
+        if connector.is_rope:
+            stretch = ca.if_else(stretch > 0, stretch, 0)
+            growth = 1 + connector.damping * (rate - (self.rate(ca.SX(connector.length)) if moving else 0))
+            force = connector.stiffness * stretch * ca.if_else(growth > 0, growth, 0)
+        else:
+            force = connector.stiffness * stretch - connector.push + connector.damping * rate
+        return length, rate, force, connector.stiffness * stretch**2 / 2 - connector.push * stretch
+
+    def connector_forces(self):
+        """Generalized forces of elements between two points by virtual work, what winches put in, energies and damping at rest."""
+        q, v = self.crane.q, self.crane.v
+        forces, at_rest = ca.SX.zeros(q.shape), ca.SX.zeros(q.shape)
+        energy, power, lost, damping = ca.SX(0), ca.SX(0), ca.SX(0), ca.SX(q.numel(), q.numel())
+        lengths, tensions, rows = [ca.SX(0, 1)], [ca.SX(0, 1)], [ca.SX(0, q.numel())]
+        for connector in self.crane.connectors:
+            length, rate, force, stored = self.connector(connector)
+            still = self.connector(connector, moving=False)[2]
+            row = ca.jacobian(length, q)
+            forces -= row.T * force
+            at_rest -= row.T * still
+            energy += stored
+            wound = -force * self.rate(ca.SX(connector.length)) if connector.is_rope else 0
+            power += wound
+            lost += wound + force * rate - self.rate(stored)
+            # Of a rope the slope is taken where it is taut, of F(ℓ, ℓ̇) by symbols in their places.
+            stretched, running = ca.SX.sym("length"), ca.SX.sym("rate")
+            taut = stretched > connector.length
+            if connector.is_rope:
+                growth = 1 + connector.damping * (running - self.rate(ca.SX(connector.length)))
+                law = ca.if_else(taut, connector.stiffness * (stretched - connector.length), 0) * ca.if_else(growth > 0, growth, 0)
+            else:
+                law = connector.stiffness * (stretched - connector.length) + connector.damping * running
+            slopes = ca.substitute(
+                ca.vertcat(ca.jacobian(law, stretched), ca.jacobian(law, running)),
+                ca.vertcat(stretched, running),
+                ca.vertcat(length, rate),
+            )
+            lengths += [length, rate]
+            rows.append(row)
+            tensions += [force, slopes]
+            resting = connector.damping * (still if connector.is_rope else 1)
+            damping += row.T @ row * ca.substitute(ca.SX(resting), self.crane.time, 0)
+        stiffness = ca.hessian(energy, q)[0]
+        return {
+            "connector_stiffness": self.unknowns(stiffness, 0),
+            "connector_forces": forces,
+            "connector_forces_at_rest": at_rest,
+            "connector_energy": energy,
+            "winch_power": power,
+            "connector_lengths": ca.vertcat(*lengths),
+            "connector_tensions": ca.vertcat(*tensions),
+            "connector_jacobians": row_major(ca.densify(ca.vertcat(*rows))),
+        }, lost, damping
+
     def forces(self):
         """Generalized forces `-∂E_p/∂q - ∂R/∂q̇` by part and in all; power lost 2R; D = ∂²R/∂q̇²."""
         q, v = self.crane.q, self.crane.v
@@ -203,6 +271,7 @@ class Derivations:
         damping = -ca.substitute(ca.jacobian(linear, v), v, ca.DM.zeros(v.shape))
         stops, friction, stop_energy, at_rest = self.joint_forces()
         loads = self.load_forces()
+        connectors, lost_by_connectors, resting = self.connector_forces()
         contacts, contact_energy, contact_damping = self.contact_forces()
         by_part["support"] += contacts
         energies["support"] += contact_energy
@@ -222,15 +291,18 @@ class Derivations:
             "friction_forces": friction,
             "load_forces": loads,
             "load_power": ca.dot(loads, v),
+            **connectors,
             "stop_energy": stop_energy,
             "nonlinear_impedances": row_major(ca.densify(tangents)),
             LINEAR_DAMPING: row_major(ca.densify(step_damping)),
             **{f"{part}_forces": force for part, force in by_part.items()},
-            "forces": linear + contacts + drives + stops + friction + loads,
+            "forces": linear + contacts + drives + stops + friction + loads + connectors["connector_forces"],
             "gravity_energy": self.gravity_energy(),
             **{f"{part}_energy": energies[part] for part in ("support", "element", "drive")},
-            "dissipation": 2 * dissipation_function + drive_lost + lost,
-            "linearised_damping": self.unknowns(damping + contact_damping + ca.diag(at_rest + drive_damping), 0),
+            "dissipation": 2 * dissipation_function + drive_lost + lost + lost_by_connectors,
+            "linearised_damping": self.unknowns(
+                damping + contact_damping + ca.diag(at_rest + drive_damping) + resting, 0
+            ),
         }
 
     def limited_drives(self):
@@ -287,6 +359,7 @@ class Derivations:
         """Gradient and Hessian of the whole potential energy at t = 0."""
         potential = self.gravity_energy() + sum(energy for energy, _ in self.potentials().values())
         potential += self.joint_forces()[2] + self.contact_forces()[1] + self.limited_drives()[1]
+        potential += self.connector_forces()[0]["connector_energy"]
         stiffness, gradient = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
         loads = ca.substitute(self.load_forces(), self.crane.time, 0)
         slope = ca.jacobian(loads, self.crane.q)

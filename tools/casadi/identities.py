@@ -54,7 +54,7 @@ def relative(left, right, size=None):
 
 def parts_of(derived):
     """The sum of the generalized forces by part."""
-    return sum(derived[f"{part}_forces"] for part in ("support", "element", "drive", "hinge", "stop", "friction", "load"))
+    return sum(derived[f"{part}_forces"] for part in ("support", "element", "drive", "hinge", "stop", "friction", "load", "connector"))
 
 
 def evaluate(derivations, expression, states):
@@ -81,12 +81,12 @@ def power_balance(derivations, states, derived):
     size = len(crane.coordinates)
     mass = derived["mass_matrix"].reshape(-1, size, size)
     acceleration = np.linalg.solve(mass, (derived["bias"] + derived["forces"])[..., None])[..., 0]
-    potential = sum(quantities[f"{part}_energy"] for part in ("gravity", "support", "element", "drive", "stop"))
+    potential = sum(quantities[f"{part}_energy"] for part in ("gravity", "support", "element", "drive", "stop", "connector"))
     kinetic = quantities["kinetic_energy"]
     rate = evaluate(derivations, derivations.rate(kinetic + potential), states)[:, 0]
     momentum = evaluate(derivations, ca.gradient(kinetic, crane.v), states)
     rate = rate + np.einsum("si,si->s", momentum, acceleration)
-    put_in = derived["drive_power"][:, 0] + derived["load_power"][:, 0] - derived["dissipation"][:, 0]
+    put_in = derived["drive_power"][:, 0] + derived["load_power"][:, 0] + derived["winch_power"][:, 0] - derived["dissipation"][:, 0]
     terms = np.abs(states.v * derived["forces"]).sum(axis=1) + np.abs(states.v * derived["bias"]).sum(axis=1)
     return relative(rate, put_in, terms)
 

@@ -2,6 +2,7 @@
 //!
 //! // AFTER THIS POINT: no stage knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
+mod connector;
 mod cut;
 mod cylinder;
 mod force;
@@ -14,6 +15,7 @@ mod profile;
 mod start;
 mod value;
 
+pub use connector::{Attachment, Connector, ConnectorLaw};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin};
 pub use force::{End, ForceElement, Friction, Law, Stop};
@@ -72,6 +74,8 @@ pub struct Chain {
     pub cylinders: Vec<Cylinder>,
     /// Greatest flow to all cylinders together, m³/s.
     pub pump_flow: Option<f64>,
+    /// Elements between two points.
+    pub connectors: Vec<Connector>,
     /// Inputs that are set between steps.
     pub inputs: Vec<Input>,
     /// Rotors that joints drive through gears.

@@ -295,8 +295,8 @@ catalogue! {
     E113 rigid_input(coordinate) "the rigid drive of `{coordinate}` follows an input", "an input may jump, a rigid drive cannot",
         "give the drive `stiffness` and `damping`, or a motion without inputs";
     /// Every input is used.
-    E114 unused_input(input) "input `{input}` is not used", "no drive and no load refers to it",
-        "name it in `motion: {{input: …}}` or `offset` of a drive or in `scale: {{input: …}}` of a load, or remove it";
+    E114 unused_input(input) "input `{input}` is not used", "no drive, load or rope refers to it",
+        "name it in `motion: {{input: …}}` of a drive or a rope, in `offset` of a drive or in `scale: {{input: …}}` of a load, or remove it";
 
     // Cylinders.
     /// The rod of a cylinder is thinner than its piston.
@@ -319,6 +319,17 @@ catalogue! {
         "remove `linkage`, or name the coordinate of a revolute joint";
     /// A pump supplies cylinders.
     E126 pump_alone() "the pump supplies nothing", "the spec has no cylinders", "add `cylinders:`, or remove `pump`";
+
+    // Connectors.
+    /// Some coordinate changes the length of a connector.
+    E130 rigid_connector(connector) "connector `{connector}` cannot change its length", "there is no joint between its points",
+        "attach it to links on both sides of a joint, or to a link and the world";
+    /// A rope has a length or a motion of its winch.
+    E131 rope_length(connector) "rope `{connector}` needs exactly one of `length` and `motion`", "one of them is its length without force",
+        "write `length:` in m, or `motion:` for a winch";
+    /// The two points of a connector are apart.
+    E132 meeting_points(connector) "the two points of connector `{connector}` coincide", "the line between them has no direction",
+        "attach it to points that are apart at the `guess` and remain so while the crane moves";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
@@ -351,4 +362,7 @@ catalogue! {
     /// A one-sided support carries more than the pressing force from which it holds in full.
     W020 hold_beyond_weight(support, force, share) "`full_hold` of support `{support}` is {force} N",
         "its share of the crane's weight is {share} N", "write a pressing force that it has at rest, in N: below it the support holds sideways and damps in part only";
+    /// The length of a connector without force fits the distance of its points at the guess.
+    W021 connector_length(connector, length, distance) "connector `{connector}` is {length} m long without force", "its points are {distance} m apart at the guess",
+        "check the unit, the points and the `guess`: the spring or rope pulls or pushes with its stiffness times the difference";
 }

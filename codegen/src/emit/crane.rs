@@ -250,10 +250,15 @@ fn method(block: &Block) -> TokenStream {
                 }
             }
         }
-        Shape::Vectors(_) | Shape::Pairs(_) | Shape::Structs(..) | Shape::Transforms { corner: 1, .. } => {
+        Shape::Vectors(_)
+        | Shape::Pairs(_)
+        | Shape::Rows { .. }
+        | Shape::Structs(..)
+        | Shape::Transforms { corner: 1, .. } => {
             let element = match function.shape {
                 Shape::Vectors(_) => quote!(Vector3<f64>),
                 Shape::Pairs(_) => quote!([f64; 2]),
+                Shape::Rows { .. } => quote!([f64; N]),
                 Shape::Structs(of, _) => struct_name(of),
                 _ => quote!(Matrix4<f64>),
             };

@@ -6,7 +6,7 @@ use syn::{Item, parse_quote};
 
 use super::arithmetic::{integer, literal};
 use super::print::constant;
-use crate::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Profile, SupportKinematics, Value};
+use crate::chain::{BodyId, Chain, ConnectorLaw, CoordinateId, CoordinateKind, Profile, SupportKinematics, Value};
 
 /// Sizes and the `DESCRIPTION`.
 pub fn description(chain: &Chain) -> Vec<Item> {
@@ -48,6 +48,21 @@ fn description_constant(chain: &Chain) -> Item {
         let (name, pieces) = (text(&load.name), integer(load.pieces()));
         quote!(LoadInfo { name: #name, pieces: #pieces })
     });
+    let connectors = chain.connectors.iter().map(|connector| {
+        let name = text(&connector.name);
+        let is_rope = matches!(connector.law, ConnectorLaw::Rope { .. });
+        let [first, end] = chain.spanned(connector).map(integer);
+        let pieces = integer(connector.pieces());
+        let ends = connector.ends.iter().map(|end| {
+            let body = end.body.map_or_else(|| quote!(None), |BodyId(body)| {
+                let body = integer(body);
+                quote!(Some(#body))
+            });
+            let position = end.position.iter().map(at_defaults);
+            quote!(AttachmentInfo { body: #body, position: [#(#position),*] })
+        });
+        quote!(ConnectorInfo { name: #name, ends: [#(#ends),*], is_rope: #is_rope, spanned: [#first, #end], pieces: #pieces })
+    });
     let inputs = chain.inputs.iter().map(|input| {
         let [name, unit, about] = [&input.name, &input.unit, &input.about].map(|words| text(words));
         let default = literal(input.unless_set.start(&defaults));
@@ -79,6 +94,7 @@ fn description_constant(chain: &Chain) -> Item {
     let guess = chain.guess.iter().map(|&x| literal(x));
     let [coordinates, bodies] = [list(coordinates), list(bodies)];
     let [stops, frictions, loads, inputs] = [list(stops), list(frictions), list(loads), list(inputs)];
+    let connectors = list(connectors);
     let [supports, drives, points, guess] = [list(supports), list(drives), list(points), list(guess)];
     let (cylinders, pump_flow) = (list(cylinders), optional(chain.pump_flow));
     let [name, title, hash] = [&chain.name, &chain.title, &chain.spec_hash].map(|words| text(words));
@@ -97,6 +113,7 @@ fn description_constant(chain: &Chain) -> Item {
             stops: #stops,
             frictions: #frictions,
             loads: #loads,
+            connectors: #connectors,
             inputs: #inputs,
             cylinders: #cylinders,
             pump_flow: #pump_flow,

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::chain::{BodyId, Chain, Cut, Drive, Load};
+use crate::chain::{BodyId, Chain, Connector, Cut, Drive, Load};
 use crate::lower::Blocks;
 use crate::program::{Function, FunctionId, Shape, Struct};
 use crate::symbolic::ExprId;
@@ -72,7 +72,16 @@ impl<'a> Labels<'a> {
                 let of = |load: &'a Load| std::iter::repeat_n(&load.name, load.pieces());
                 chain.loads.iter().flat_map(of).nth(slot / 2).cloned()
             }
+            Shape::Pairs(_) if function.id == FunctionId::ConnectorLengths => {
+                Some(chain.connectors[slot / 2].name.clone())
+            }
+            Shape::Pairs(_) if function.id == FunctionId::WinchPieces => {
+                let of = |connector: &'a Connector| std::iter::repeat_n(&connector.name, connector.pieces());
+                chain.connectors.iter().flat_map(of).nth(slot / 2).cloned()
+            }
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
+            Shape::Rows { n, .. } => Some(chain.connectors[slot / n].name.clone()),
+            Shape::Structs(Struct::Tension, _) => Some(chain.connectors[slot / Struct::Tension.len()].name.clone()),
             Shape::Structs(Struct::SectionModuli, _) => {
                 Some(chain.beams[slot / Struct::SectionModuli.len()].link.clone())
             }

@@ -105,8 +105,10 @@ fn imports(items: &[syn::Item]) -> String {
         (
             "::crane_model",
             &[
+                "AttachmentInfo",
                 "BodyInfo",
                 "Bound",
+                "ConnectorInfo",
                 "CoordinateInfo",
                 "CoordinateKind",
                 "CoordinateRole",
@@ -130,6 +132,7 @@ fn imports(items: &[syn::Item]) -> String {
                 "SectionModuli",
                 "Statics",
                 "SupportInfo",
+                "Tension",
                 "Text",
                 "TransformDerivatives",
                 "Wrench",

@@ -53,6 +53,7 @@ impl<'f> Storage<'f> {
             Shape::Factors(_) => quote!(Factors),
             Shape::Vectors(n) => array(&quote!(Vector3<f64>), *n),
             Shape::Pairs(n) => array(&quote!([f64; 2]), *n),
+            Shape::Rows { count, .. } => array(&quote!([f64; N]), *count),
             Shape::Structs(of, n) => array(&struct_name(*of), *n),
             Shape::Transforms { .. } | Shape::Turned { .. } => array(&quote!(Matrix4<f64>), self.shape.matrices()),
             Shape::Record(name, _) => {
@@ -107,6 +108,7 @@ impl<'f> Storage<'f> {
             Shape::Factors(n) => array(&quote!(0.0), *n),
             Shape::Vectors(n) => array(&quote!(Vector3::zeros()), *n),
             Shape::Pairs(n) => array(&quote!([0.0; 2]), *n),
+            Shape::Rows { count, .. } => array(&quote!([0.0; N]), *count),
             Shape::Structs(of, n) => {
                 let of = struct_name(*of);
                 array(&quote!(#of::ZERO), *n)
@@ -203,6 +205,7 @@ impl<'f> Storage<'f> {
             Shape::Symmetric(n) | Shape::MassAndBias(n) => row_of_triangle(*n, slot).0,
             Shape::Vectors(_) => slot / 3,
             Shape::Pairs(_) => slot / 2,
+            Shape::Rows { n, .. } => slot / n,
             Shape::Structs(of, _) => slot / of.len(),
             Shape::Transforms { .. } => slot / 12,
             Shape::Turned { rotations, degrees, .. } => {
@@ -230,6 +233,7 @@ pub fn struct_name(of: Struct) -> TokenStream {
     match of {
         Struct::Wrench => quote!(Wrench),
         Struct::SectionModuli => quote!(SectionModuli),
+        Struct::Tension => quote!(Tension),
     }
 }
 
@@ -242,6 +246,7 @@ fn struct_slot(of: Struct, value: Expr, slot: usize) -> Expr {
                 ["area", "bending_y", "bending_z", "torsion", "shear_y", "shear_z", "corners", "allowable_stress"];
             field(value, fields[slot])
         }
+        Struct::Tension => field(value, ["force", "stiffness", "damping"][slot]),
     }
 }
 
@@ -290,6 +295,7 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
         }
         Shape::Vectors(_) => field(element(out, slot / 3), ["x", "y", "z"][slot % 3]),
         Shape::Pairs(_) => element(element(out, slot / 2), slot % 2),
+        Shape::Rows { n, .. } => element(element(out, slot / n), slot % n),
         Shape::Structs(of, _) => struct_slot(*of, element(out, slot / of.len()), slot % of.len()),
         Shape::Transforms { .. } => matrix_slot(out, slot),
         Shape::Turned { rotations, degrees, .. } => {

@@ -39,13 +39,13 @@ pub fn header(writer: &Writer) -> String {
 fn about(precision: Precision) -> &'static str {
     match precision {
         Precision::Double => {
-            "/* C99. No heap, no global data, no recursion; of the library sin and cos, sqrt where sections turn far, exp where\n   \
-             joints have friction. All functions may be called from several threads. SI units, rad. */"
+            "/* C99. No heap, no global data, no recursion; of the library sin and cos, sqrt where sections turn far or points are\n   \
+             connected, exp where joints have friction. All functions may be called from several threads. SI units, rad. */"
         }
         Precision::Single => {
             "/* C99, single precision: about six digits, fewer where large numbers cancel. No heap, no global data, no recursion; of\n   \
-             the library sinf and cosf, sqrtf where sections turn far, expf where joints have friction. All functions may be\n   \
-             called from several threads. SI units, rad. */"
+             the library sinf and cosf, sqrtf where sections turn far or points are connected, expf where joints have friction. All functions\n   \
+             may be called from several threads. SI units, rad. */"
         }
     }
 }
@@ -170,6 +170,10 @@ fn of_argument(argument: Argument) -> &'static str {
     }
 }
 
+fn connectors(chain: &Chain) -> Vec<&str> {
+    chain.connectors.iter().map(|connector| connector.name.as_str()).collect()
+}
+
 /// The shape of a result in words.
 fn result(chain: &Chain, shape: &Shape) -> String {
     let n = chain.coordinates.len();
@@ -186,6 +190,12 @@ fn result(chain: &Chain, shape: &Shape) -> String {
         }
         Shape::Vectors(count) => format!("out: x, y, z of {count} supports, one after the other"),
         Shape::Pairs(count) => format!("out: {count} pairs"),
+        Shape::Rows { count, n } => {
+            format!("out: {count} x {n}, row by row, of the connectors {}", names(connectors(chain)))
+        }
+        Shape::Structs(Struct::Tension, _) => {
+            format!("out: force, slope by length, slope by rate of the connectors {}", names(connectors(chain)))
+        }
         Shape::Structs(Struct::Wrench, count) => {
             format!(
                 "out: force x, y, z and moment x, y, z of {count} cuts from the ground to the tip, one after the other"

@@ -3,6 +3,7 @@
 //! `f_j = F · Ω_j x + M · ω_j` for the coordinates j that move the body, x the point in the world: the power `F · ẋ + M · ω` at unit
 //! rate of j.
 
+use super::connectors;
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::profile;
@@ -53,12 +54,12 @@ pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -
     forces
 }
 
-/// What acts on each body at time t, force and moment about its origin along its own axes.
-pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -> Vec<Option<[Vec3<'g>; 2]>> {
+/// The load on each body by loads and connectors, force and moment about its origin along its own axes.
+pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Option<[Vec3<'g>; 2]>> {
     let mut wrenches: Vec<Option<[Vec3<'g>; 2]>> = vec![None; model.chain.bodies.len()];
     for load in &model.chain.loads {
         let BodyId(body) = load.body;
-        let scale = scale(model, load, t);
+        let scale = scale(model, load, model.t);
         let along_own_axes = |vector: &[Value; 3]| {
             let vector = model.vector(vector);
             let turned = match load.axes {
@@ -69,12 +70,23 @@ pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>
         };
         let force = along_own_axes(&load.force);
         let moment = along_own_axes(&load.moment) + model.vector(&load.position).cross(force);
-        wrenches[body] = Some(match wrenches[body] {
-            Some([others, moments]) => [others + force, moments + moment],
-            None => [force, moment],
-        });
+        add(&mut wrenches[body], [force, moment]);
+    }
+    for (BodyId(body), point, pull) in connectors::pulls(model, kinematics) {
+        let pose = &kinematics.poses[body];
+        let force = pose.rotation.apply_transposed(pull);
+        let lever = pose.rotation.apply_transposed(point - pose.origin);
+        add(&mut wrenches[body], [force, lever.cross(force)]);
     }
     wrenches
+}
+
+/// Adds a force and a moment to those of a body.
+fn add<'g>(sum: &mut Option<[Vec3<'g>; 2]>, [force, moment]: [Vec3<'g>; 2]) {
+    *sum = Some(match *sum {
+        Some([others, moments]) => [others + force, moments + moment],
+        None => [force, moment],
+    });
 }
 
 /// Begin and end of the pieces of every load's scale.

@@ -6,6 +6,7 @@
 
 mod articulated;
 mod columns;
+mod connectors;
 mod contact;
 mod cylinders;
 mod drives;

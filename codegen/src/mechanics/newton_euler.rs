@@ -19,10 +19,10 @@ pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
 }
 
 /// Force and moment that the part beyond each cut exerts on the part before it: the inertia and the weight of everything
-/// beyond, and the loads that are applied to it.
+/// beyond, the loads applied to it and the forces of connectors on it.
 pub fn internal_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let motions = outward(model, factors, Some(&model.a));
-    let applied = loads::on_bodies(model, kinematics, model.t);
+    let applied = loads::on_bodies(model, kinematics);
     let cuts = inward(model, factors, &motions, &applied, |force, moment| Some([-force, -moment]));
     let wrenches = model.chain.cuts().into_iter().filter_map(|cut| match cut {
         Cut::Ground => cuts.ground,

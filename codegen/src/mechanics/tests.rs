@@ -57,6 +57,7 @@ fn double_pendulum() -> Chain {
         loads: vec![],
         cylinders: Vec::new(),
         pump_flow: None,
+        connectors: vec![],
         inputs: vec![],
         rotors: vec![],
         points: vec![Point { name: "tip".into(), body: BodyId(1), position: [c(LENGTH[1]), Value::ZERO, Value::ZERO] }],

@@ -73,6 +73,12 @@ functions! {
         FrictionForces = "friction_forces",
         LoadForces = "load_forces",
         LoadPieces = "load_pieces",
+        ConnectorForces = "connector_forces",
+        ConnectorForcesAtRest = "connector_forces_at_rest",
+        ConnectorLengths = "connector_lengths",
+        ConnectorTensions = "connector_tensions",
+        ConnectorJacobians = "connector_jacobians",
+        WinchPieces = "winch_pieces",
         SupportReactions = "support_reactions",
         SupportGaps = "support_gaps",
         CylinderStates = "cylinder_states",
@@ -85,8 +91,10 @@ functions! {
         ElementEnergy = "element_energy",
         DriveEnergy = "drive_energy",
         StopEnergy = "stop_energy",
+        ConnectorEnergy = "connector_energy",
         DrivePower = "drive_power",
         LoadPower = "load_power",
+        WinchPower = "winch_power",
         Dissipation = "dissipation",
     }
     Dynamics {
@@ -109,6 +117,7 @@ functions! {
         StaticResidual = "static_residual",
         TangentStiffness = "tangent_stiffness",
         DriveForcesAtRest = "drive_forces_at_rest",
+        ConnectorStiffness = "connector_stiffness",
     }
     Linearise {
         Linearise = "linearise",

@@ -16,6 +16,8 @@ pub enum Struct {
     Wrench,
     /// Area, moduli of bending about y and z and of torsion, shear areas along y and z, weight of corners, allowable stress.
     SectionModuli,
+    /// Force, slope by length, slope by rate.
+    Tension,
 }
 
 impl Struct {
@@ -26,6 +28,7 @@ impl Struct {
         match self {
             Struct::Wrench => 6,
             Struct::SectionModuli => 8,
+            Struct::Tension => 3,
         }
     }
 }
@@ -43,6 +46,13 @@ pub enum Shape {
     Vectors(usize),
     /// Several pairs.
     Pairs(usize),
+    /// Several rows with one number per coordinate.
+    Rows {
+        /// The number of rows.
+        count: usize,
+        /// The number of coordinates.
+        n: usize,
+    },
     /// Several of one type of the runtime.
     Structs(Struct, usize),
     /// Homogeneous transformations or their derivatives, grouped by body; slots are the upper three rows of each, row
@@ -99,6 +109,7 @@ impl Shape {
             Shape::Symmetric(n) => n * (n + 1) / 2,
             Shape::Vectors(n) => 3 * n,
             Shape::Pairs(n) => 2 * n,
+            Shape::Rows { count, n } => count * n,
             Shape::Structs(of, n) => of.len() * n,
             Shape::Transforms { counts, .. } => 12 * counts.iter().sum::<usize>(),
             Shape::Turned { degrees, rotations, vectors } => {

@@ -3,6 +3,7 @@
 //! The type of a key defines its allowed values; [`Given`] holds its location. An optional key is an `Option`.
 
 mod beam;
+mod connector;
 mod cylinder;
 mod drive;
 mod given;
@@ -17,6 +18,7 @@ mod schema;
 mod support;
 
 pub use beam::{Beam, BeamDamping, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring};
+pub use connector::{Attachment, Connector, ConnectorLaw, GasSpring, PointSpring, Rope};
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side};
 pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub(crate) use given::{EITHER, GIVEN, MANY};
@@ -89,6 +91,8 @@ pub struct Crane {
     pub friction: Option<Given<Entries<Friction>>>,
     /// Forces and moments applied from outside.
     pub loads: Option<Given<Vec<Given<Load>>>>,
+    /// Springs, gas springs and ropes between two points.
+    pub connectors: Option<Given<Vec<Given<Connector>>>>,
     /// Hydraulic cylinders of driven joints, by their pins.
     pub cylinders: Option<Given<Vec<Given<Cylinder>>>>,
     /// What supplies the cylinders.

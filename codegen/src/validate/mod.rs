@@ -5,6 +5,7 @@
 
 mod base;
 mod beam;
+mod connectors;
 mod cylinders;
 mod drives;
 mod elements;
@@ -68,6 +69,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
     if check.mistakes.is_empty() {
         // The mass matrix exists only if there are no other mistakes.
         check.regular(&chain, &spec.crane);
+        check.connectors_apart(&chain, &spec.crane);
         check.keep_masses(&mut chain);
     }
     if !check.mistakes.is_empty() {
@@ -169,6 +171,7 @@ impl<'a> Check<'a> {
         let loads = self.loads(crane);
         let cylinders = self.cylinders(crane, &drives);
         let pump_flow = self.pump(crane);
+        let connectors = self.connectors(crane, &cylinders);
         rotors.extend(self.rotors(crane, &drives));
         let points = self.points(crane, &supports);
         let guess = self.guess(crane, &drives);
@@ -196,6 +199,7 @@ impl<'a> Check<'a> {
             loads,
             cylinders,
             pump_flow,
+            connectors,
             inputs: std::mem::take(&mut self.inputs),
             rotors,
             points,

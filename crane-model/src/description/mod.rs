@@ -31,6 +31,8 @@ pub struct Description {
     pub frictions: List<usize>,
     /// Loads applied from outside.
     pub loads: List<LoadInfo>,
+    /// Springs, gas springs and ropes between two points.
+    pub connectors: List<ConnectorInfo>,
     /// Inputs that are set between steps.
     pub inputs: List<InputInfo>,
     /// Hydraulic cylinders of driven joints.
@@ -289,4 +291,35 @@ pub struct InputInfo {
     pub default: f64,
     /// Whether it follows a motion unless set.
     pub moves: bool,
+}
+
+/// An element between two points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConnectorInfo {
+    /// Name.
+    pub name: Text,
+    /// Its points.
+    pub ends: [AttachmentInfo; 2],
+    /// Whether it is a rope, which pulls and never pushes.
+    pub is_rope: bool,
+    /// The coordinates that change its length: the first, and the one after the last.
+    pub spanned: [usize; 2],
+    /// In how many pieces its winch moves smoothly.
+    pub pieces: usize,
+}
+
+impl ConnectorInfo {
+    /// Whether one of its points is a point of the world.
+    pub fn holds_to_world(&self) -> bool {
+        self.ends.iter().any(|end| end.body.is_none())
+    }
+}
+
+/// A point of a body or of the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AttachmentInfo {
+    /// Place of the body; `None` for the world.
+    pub body: Option<usize>,
+    /// Position in the frame of the body or of the world with default parameters, m.
+    pub position: [f64; 3],
 }

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     CraneModel, Description, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-    ParameterError, SectionModuli, Statics, TransformDerivatives, Wrench, support::lanes::f64x8,
+    ParameterError, SectionModuli, Statics, Tension, TransformDerivatives, Wrench, support::lanes::f64x8,
 };
 
 /// A crane compiled with every analysis except derivatives.
@@ -89,6 +89,30 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
         out.copy_from_slice(self.0.load_forces(t, &vector(q)).as_slice());
     }
 
+    fn connector_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.connector_forces(t, &vector(q), &vector(v)).as_slice());
+    }
+
+    fn connector_forces_at_rest(&self, t: f64, q: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.connector_forces_at_rest(t, &vector(q)).as_slice());
+    }
+
+    fn connector_lengths(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.0.connector_lengths(&vector(q), &vector(v), out);
+    }
+
+    fn connector_tensions(&self, t: f64, q: &[f64], v: &[f64], out: &mut [Tension]) {
+        self.0.connector_tensions(t, &vector(q), &vector(v), out);
+    }
+
+    fn connector_jacobians(&self, q: &[f64], out: &mut [f64]) {
+        self.0.connector_jacobians(&vector(q), out.as_chunks_mut().0);
+    }
+
+    fn winch_pieces(&self, out: &mut [[f64; 2]]) {
+        self.0.winch_pieces(out);
+    }
+
     fn load_pieces(&self, out: &mut [[f64; 2]]) {
         self.0.load_pieces(out);
     }
@@ -148,6 +172,14 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
         self.0.drive_power(t, &vector(q), &vector(v))
     }
 
+    fn connector_energy(&self, t: f64, q: &[f64]) -> f64 {
+        self.0.connector_energy(t, &vector(q))
+    }
+
+    fn winch_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        self.0.winch_power(t, &vector(q), &vector(v))
+    }
+
     fn load_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         self.0.load_power(t, &vector(q), &vector(v))
     }
@@ -168,6 +200,10 @@ impl<const N: usize, H: Deref<Target: Statics<N>> + Send + Sync> DynStatics for 
 
     fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]) {
         out.copy_from_slice(self.0.tangent_stiffness(&vector(q)).as_slice());
+    }
+
+    fn connector_stiffness(&self, t: f64, q: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.connector_stiffness(t, &vector(q)).as_slice());
     }
 
     fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {

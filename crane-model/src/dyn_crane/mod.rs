@@ -31,7 +31,7 @@ pub(crate) use instance::Block;
 pub use instance::{Crane, Instance, boxed};
 pub use quantities::{Energies, Member};
 
-use crate::{Description, ParameterError, SectionModuli, Wrench, support::lanes::f64x8};
+use crate::{Description, ParameterError, SectionModuli, Tension, Wrench, support::lanes::f64x8};
 
 /// Poses, forces and potential energy of a crane: [`CraneModel`](crate::CraneModel) on slices.
 pub trait DynModel: Send + Sync {
@@ -70,6 +70,24 @@ pub trait DynModel: Send + Sync {
 
     /// Generalized forces of the loads applied from outside.
     fn load_forces(&self, t: f64, q: &[f64], out: &mut [f64]);
+
+    /// Generalized forces of connectors.
+    fn connector_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
+
+    /// Generalized forces of connectors while nothing moves, not even a winch.
+    fn connector_forces_at_rest(&self, t: f64, q: &[f64], out: &mut [f64]);
+
+    /// Length of every connector, m, and its rate, m/s.
+    fn connector_lengths(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
+
+    /// Force of every connector and its slopes.
+    fn connector_tensions(&self, t: f64, q: &[f64], v: &[f64], out: &mut [Tension]);
+
+    /// `∂ℓ/∂q` of every connector, row by row.
+    fn connector_jacobians(&self, q: &[f64], out: &mut [f64]);
+
+    /// Begin and end of the pieces in which winches move smoothly, s; one pair per piece, connector by connector.
+    fn winch_pieces(&self, out: &mut [[f64; 2]]);
 
     /// Begin and end of the pieces in which the scales of loads are smooth, s; one pair per piece, load by load.
     fn load_pieces(&self, out: &mut [[f64; 2]]);
@@ -113,6 +131,12 @@ pub trait DynModel: Send + Sync {
     /// Power of the drives' motions, W.
     fn drive_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
+    /// Energy of connectors, J.
+    fn connector_energy(&self, t: f64, q: &[f64]) -> f64;
+
+    /// Power that winches put in, W.
+    fn winch_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
+
     /// Power that the loads applied from outside put in, W.
     fn load_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
@@ -132,6 +156,9 @@ pub trait DynStatics: DynModel {
 
     /// `∂²E_p/∂q²` at t = 0, n × n.
     fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]);
+
+    /// The part of connectors in the tangent stiffness, with winches where they are at time t, n × n.
+    fn connector_stiffness(&self, t: f64, q: &[f64], out: &mut [f64]);
 
     /// Generalized forces of the drives that hold the crane at rest at t = 0, including rigid drives.
     fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]);

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynModel};
 use crate::{
-    CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Wrench, dynamics,
+    CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Tension, Wrench, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
     modes::SmallMotions,
     statics,
@@ -28,12 +28,14 @@ pub struct Energies {
     pub drives: f64,
     /// End stops.
     pub stops: f64,
+    /// Springs, gas springs and ropes between two points.
+    pub connectors: f64,
 }
 
 impl Energies {
     /// Kinetic and potential energy together.
     pub fn total(&self) -> f64 {
-        self.kinetic + self.gravity + self.supports + self.elements + self.drives + self.stops
+        self.kinetic + self.gravity + self.supports + self.elements + self.drives + self.stops + self.connectors
     }
 }
 
@@ -163,6 +165,20 @@ impl dyn DynCrane + '_ {
         self.description().frictions.iter().map(|&coordinate| forces[coordinate]).collect()
     }
 
+    /// Length (m) of every connector, and its rate (m/s).
+    pub fn connector_lengths_at(&self, q: &[f64], v: &[f64]) -> Vec<[f64; 2]> {
+        let mut out = vec![[0.0; 2]; self.description().connectors.len()];
+        self.connector_lengths(q, v, &mut out);
+        out
+    }
+
+    /// Force of every connector and its slopes.
+    pub fn connector_tensions_at(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<Tension> {
+        let mut out = vec![Tension::ZERO; self.description().connectors.len()];
+        self.connector_tensions(t, q, v, &mut out);
+        out
+    }
+
     /// Forces of the supports on the crane, N.
     pub fn support_reactions_at(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>> {
         let mut out = vec![Vector3::zeros(); self.description().supports.len()];
@@ -203,9 +219,13 @@ impl dyn DynCrane + '_ {
         self.force_on_the_whole(q, self.bias_at(q, &vec![0.0; q.len()]).as_slice())
     }
 
-    /// Sum of the forces applied from outside at time `t`, world frame, N; unknown along an axis that the base cannot move along.
+    /// Sum of the forces of loads, and of connectors attached to the world, on the crane at rest at time `t`, world frame, N; unknown
+    /// along an axis that the base cannot move along.
     pub fn applied_force_at(&self, t: f64, q: &[f64]) -> [Option<f64>; 3] {
-        self.force_on_the_whole(q, &numbers(self, |out| self.load_forces(t, q, out)))
+        let loads = numbers(self, |out| self.load_forces(t, q, out));
+        let mut forces = numbers(self, |out| self.connector_forces_at_rest(t, q, out));
+        forces.iter_mut().zip(loads).for_each(|(sum, load)| *sum += load);
+        self.force_on_the_whole(q, &forces)
     }
 
     /// The force whose generalized forces are given: a translation of the base moves everything equally, so its generalized force is
@@ -237,6 +257,7 @@ impl dyn DynCrane + '_ {
             elements: self.element_energy(q),
             drives: self.drive_energy(t, q),
             stops: self.stop_energy(q),
+            connectors: self.connector_energy(t, q),
         }
     }
 

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::dyn_crane::DynDynamics;
 
-/// Integrals along an audited motion: work of the drives, energy that the dampers dissipated, work of the loads.
+/// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.
 pub(super) const INTEGRALS: usize = 3;
 
 /// A crane, the references of its motions, and the number of evaluations of its accelerations.
@@ -59,9 +59,10 @@ impl<'a> Equations<'a> {
         finite(out)
     }
 
-    /// Powers at a pose and its rates: of the drives, of the dampers, and of the loads.
+    /// Powers at a pose and its rates: of the drives and winches, of the dampers, and of the loads.
     pub fn powers_at(&self, t: f64, q: &[f64], v: &[f64]) -> [f64; INTEGRALS] {
-        [self.crane.drive_power(t, q, v), self.crane.dissipation(t, q, v), self.crane.load_power(t, q, v)]
+        let work = self.crane.drive_power(t, q, v) + self.crane.winch_power(t, q, v);
+        [work, self.crane.dissipation(t, q, v), self.crane.load_power(t, q, v)]
     }
 
     /// Slope of a motion given relative to the guides: rates, accelerations and powers.

@@ -5,6 +5,8 @@ mod adaptive;
 #[cfg(feature = "std")]
 pub mod bdf;
 #[cfg(feature = "std")]
+mod connected;
+#[cfg(feature = "std")]
 mod constant;
 #[cfg(feature = "std")]
 mod course;

@@ -1,4 +1,4 @@
-//! Times at which steps end: between them the drives' motions and the scales of loads are smooth.
+//! Times at which steps end: between them the motions of drives and winches and the scales of loads are smooth.
 
 use crate::{Description, dyn_crane::DynModel};
 
@@ -10,17 +10,21 @@ impl Stops {
     /// Times closer than this, relative to the run, are merged: no step is that short.
     const NEAR: f64 = 1e-9;
 
-    /// Begins and ends of the smooth intervals of the motions and loads of some cranes, within a run from one time to another, s;
+    /// Begins and ends of the smooth intervals of the motions, loads and winches of some cranes, within a run from one time to another, s;
     /// without an end, the run is as long as the motions.
     pub fn between<'a>(cranes: impl IntoIterator<Item = &'a dyn DynModel>, begin: f64, end: f64) -> Self {
         let mut times = Vec::new();
         for crane in cranes {
-            let Description { drives, loads, .. } = crane.description();
+            let Description { drives, loads, connectors, .. } = crane.description();
             let of_drives = drives.iter().map(|drive| drive.pieces).sum();
-            let mut pieces = vec![[f64::NAN; 2]; of_drives + loads.iter().map(|load| load.pieces).sum::<usize>()];
-            let (motions, scales) = pieces.split_at_mut(of_drives);
+            let of_loads = loads.iter().map(|load| load.pieces).sum();
+            let of_winches: usize = connectors.iter().map(|connector| connector.pieces).sum();
+            let mut pieces = vec![[f64::NAN; 2]; of_drives + of_loads + of_winches];
+            let (motions, rest) = pieces.split_at_mut(of_drives);
+            let (scales, winches) = rest.split_at_mut(of_loads);
             crane.drive_pieces(motions);
             crane.load_pieces(scales);
+            crane.winch_pieces(winches);
             times.extend(pieces.into_iter().flatten());
         }
         let last = times.iter().copied().fold(begin, f64::max);

@@ -8,9 +8,12 @@
 //! ```text
 //! (A + cD̂ + c²K̂) z = −c² ((D̂ + cK̂) G + K̂ P),     w = c G + z,     p = c (w + P)
 //! ```
+//!
+//! What connectors add, `Σ Jᵀ (c d + c² k) J`, is of low rank: [`Connected`].
 
 use nalgebra::Matrix6;
 
+use super::connected::Connected;
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
@@ -29,6 +32,8 @@ pub(super) struct System<'a> {
     base: [Matrix6<f64>; 2],
     /// Whether some law acts in one part of the poses and not in another.
     switches: bool,
+    /// Stiffness and damping of connectors.
+    connected: Connected,
     /// c, s.
     c: f64,
     resistance: Vec<f64>,
@@ -45,16 +50,18 @@ impl<'a> System<'a> {
         let mut linear = vec![[0.0; 2]; n];
         crane.joint_impedances(&mut linear);
         let zeros = || vec![0.0; n];
-        let Description { stops, frictions, supports, .. } = crane.description();
+        let Description { stops, frictions, supports, connectors, .. } = crane.description();
         let one_sided = supports.iter().any(|support| support.one_sided);
+        let ropes = connectors.iter().any(|connector| connector.is_rope);
         Self {
             crane,
-            switches: one_sided || !stops.is_empty() || !frictions.is_empty(),
+            switches: one_sided || ropes || !stops.is_empty() || !frictions.is_empty(),
             factors: crane.system(),
             joints: linear.clone(),
             linear,
             nonlinear: [vec![[0.0; 2]; n], vec![[0.0; 2]; n]],
             base: [Matrix6::zeros(); 2],
+            connected: Connected::new(crane),
             c: f64::NAN,
             resistance: zeros(),
             right: zeros(),
@@ -77,6 +84,7 @@ impl<'a> System<'a> {
         }
         let [stiffness, damping] = &self.base;
         self.factors.factorise(q, &self.resistance, &(damping * c + stiffness * (c * c)));
+        self.connected.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
         self.factorisations += 1;
     }
 
@@ -86,7 +94,6 @@ impl<'a> System<'a> {
         if !self.switches {
             return false;
         }
-        let differs = |before: f64, now: f64| (now - before).abs() > 0.5 * before.abs().max(now.abs());
         let [before, now] = &mut self.nonlinear;
         self.crane.nonlinear_impedances(t, q, v, now);
         let mut of_joints = before.as_flattened().iter().zip(now.as_flattened());
@@ -95,6 +102,7 @@ impl<'a> System<'a> {
         let mut of_base = self.base.iter().zip(&base).map(|(before, now)| (diagonal(before), diagonal(now)));
         of_joints.any(|(before, now)| differs(*before, *now))
             || of_base.any(|(before, now)| before.iter().zip(&now).any(|(before, now)| differs(*before, *now)))
+            || self.connected.switched(self.crane, t, (q, v))
     }
 
     /// u for a right-hand side `(P, G, ·)`.
@@ -111,10 +119,12 @@ impl<'a> System<'a> {
                 *right += damping[(row, column)] * g + stiffness[(row, column)] * (c * g + p);
             }
         }
+        self.connected.add_to((g, p), c, &mut self.right);
         for right in &mut self.right {
             *right *= -c * c;
         }
         self.factors.solve(&self.right, &mut self.solution);
+        self.connected.correct(&mut self.solution);
         let (of_q, rest) = u.split_at_mut(n);
         let (of_v, of_integrals) = rest.split_at_mut(n);
         for i in 0..n {
@@ -125,4 +135,9 @@ impl<'a> System<'a> {
             *u = c * rhs;
         }
     }
+}
+
+/// Whether a stiffness or a damping is less than half, or more than twice, of what it was.
+pub(super) fn differs(before: f64, now: f64) -> bool {
+    (now - before).abs() > 0.5 * before.abs().max(now.abs())
 }

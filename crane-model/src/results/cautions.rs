@@ -1,14 +1,14 @@
 //! Cautions about poses and runs for which the model is not valid.
 
 pub use super::feet::of_reactions;
-use super::{Extremes, Table, cylinders, feet, limits, stop_effort};
+use super::{Extremes, Table, connectors, cylinders, feet, limits, stop_effort};
 use crate::{Description, dyn_crane::DynCrane};
 
 /// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
 /// have an error of about 1 %.
 pub const BEND: f64 = 20.0;
 
-/// Feet that pull the crane down or have lifted, joints on their stops, and elements bent beyond `bend` degrees, at a pose at rest.
+/// Feet that pull the crane down or have lifted, joints on their stops, slack ropes, and elements bent beyond `bend` degrees, at a pose at rest.
 pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let description = rig.description();
     let angles = description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role.is_element());
@@ -22,6 +22,7 @@ pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
         .chain(limits::of_pose(rig, q))
         .chain(cylinders::of_pose(rig, q))
         .chain(stopped)
+        .chain(connectors::of_pose(rig, q))
         .chain(bent_beyond(bent, bend))
         .collect()
 }
@@ -39,6 +40,7 @@ pub fn of_run(rig: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
         .chain(limits::of_run(rig, table))
         .chain(cylinders::of_run(description, table))
         .chain(stopped)
+        .chain(connectors::of_run(description, table))
         .chain(bent_beyond(bent, bend))
         .collect()
 }

@@ -1,6 +1,6 @@
 //! The most important columns of a run, by kind.
 
-use super::{Extremes, Table, drive_effort};
+use super::{Extremes, Table, connector_force, drive_effort};
 use crate::Description;
 
 /// The measure of a quantity's size, relative to which its error is judged.
@@ -52,7 +52,7 @@ impl Kind {
     }
 }
 
-/// The most important columns of a run: efforts of the drives, paths of the points, vertical forces of the supports.
+/// The most important columns of a run: efforts of the drives, paths of the points, vertical forces of the supports, forces of connectors.
 pub fn headlines(description: &Description) -> Vec<Kind> {
     let efforts = |unit: &str| -> Vec<String> {
         let coordinates = description.drives.iter().map(|drive| &description.coordinates[drive.coordinate]);
@@ -63,10 +63,12 @@ pub fn headlines(description: &Description) -> Vec<Kind> {
         |name: String| ["x", "y", "z"].map(|axis| format!("{name}_{axis}")).into_iter().collect::<Vec<String>>();
     let points = description.points.iter().flat_map(|point| each_axis(point.to_string())).collect();
     let supports = description.supports.iter().map(|support| format!("{}_reaction_z", support.name));
+    let connectors = description.connectors.iter().map(|connector| connector_force(&connector.name));
     vec![
         Kind::new(efforts("N m"), "N m", Size::Peak),
         Kind::new(efforts("N"), "N", Size::Peak),
         Kind::new(points, "m", Size::Range),
         Kind::new(supports.collect(), "N", Size::Peak),
+        Kind::new(connectors.collect(), "N", Size::Peak),
     ]
 }

@@ -1,6 +1,7 @@
 //! Results as columns with names and units, their extremes, their errors, and cautions about them.
 
 pub mod cautions;
+mod connectors;
 mod cylinders;
 mod extremes;
 mod feet;
@@ -16,6 +17,6 @@ pub use cylinders::{CylinderState, cylinders_at, pump};
 pub use extremes::Extremes;
 pub use headlines::{Kind, headlines};
 pub use peaks::Peaks;
-pub use recording::{Recording, drive_effort, quantities, quantities_at, stop_effort, support_gap};
+pub use recording::{Recording, connector_force, drive_effort, quantities, quantities_at, stop_effort, support_gap};
 pub use table::{Column, Table};
 pub use verification::Verification;

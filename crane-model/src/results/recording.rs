@@ -12,7 +12,8 @@ use crate::{
 /// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; of a drive `<coordinate>_prescribed` and
 /// `<coordinate>_drive_torque` or `_drive_force`; of a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`,
 /// `_rod_pressure` and `_flow`, of all `pump_flow` and `pump_power`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
-/// `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap` as well; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
+/// `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap` as well; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; of a
+/// connector `<connector>_length`, `<connector>_length_rate` and `<connector>_force`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
 /// error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
@@ -88,9 +89,16 @@ fn push_quantities(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], row: &mut
     row.extend(crane.element_moments_at(q, v));
     row.extend(crane.stop_efforts_at(q, v));
     row.extend(crane.friction_efforts_at(v));
+    for (length, tension) in crane.connector_lengths_at(q, v).into_iter().zip(crane.connector_tensions_at(t, q, v)) {
+        row.extend(length);
+        row.push(tension.force);
+    }
     row.extend([energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives]);
     if !crane.description().stops.is_empty() {
         row.push(energies.stops);
+    }
+    if !crane.description().connectors.is_empty() {
+        row.push(energies.connectors);
     }
     energies
 }
@@ -142,11 +150,19 @@ pub fn quantities(description: &Description) -> Vec<Column> {
             table.add(effort(&coordinate.name, what, coordinate.kind), coordinate.kind.force_unit());
         }
     }
+    for connector in &description.connectors {
+        table.add(format!("{}_length", connector.name), "m");
+        table.add(format!("{}_length_rate", connector.name), "m/s");
+        table.add(connector_force(&connector.name), "N");
+    }
     for energy in ["kinetic", "gravity", "support", "element", "drive"] {
         table.add(format!("{energy}_energy"), "J");
     }
     if !description.stops.is_empty() {
         table.add("stop_energy", "J");
+    }
+    if !description.connectors.is_empty() {
+        table.add("connector_energy", "J");
     }
     table.columns
 }
@@ -161,6 +177,11 @@ fn audited(description: &Description) -> Vec<Column> {
 /// Name of the column with the gap under a one-sided support.
 pub fn support_gap(support: &str) -> String {
     format!("{support}_gap")
+}
+
+/// Name of the column with the force of a connector.
+pub fn connector_force(connector: &str) -> String {
+    format!("{connector}_force")
 }
 
 /// Name of the column with the torque or force of a drive.

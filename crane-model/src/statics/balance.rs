@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::{CoordinateKind, CoordinateRole, dyn_crane::DynStatics};
+use crate::{CoordinateKind, CoordinateRole, Tension, dyn_crane::DynStatics};
 
 /// Least scale of the forces against that of the moments, 1/m, and the other way about, m: where all moments cancel, forces
 /// at levers of some metres leave their rounding.
@@ -69,10 +69,11 @@ impl Balance {
 
     /// The least scaled residual that poses in double precision have: coordinates are rounded, and stiff springs make forces
     /// of that.
-    pub(super) fn rounding(&self, stiffness: &DMatrix<f64>, q: &DVector<f64>) -> f64 {
+    pub(super) fn rounding(&self, crane: &dyn DynStatics, stiffness: &DMatrix<f64>, q: &DVector<f64>) -> f64 {
         /// Roundings of a coordinate and of the sums that it goes through.
         const ROUNDINGS: f64 = 4.0;
-        ROUNDINGS * f64::EPSILON * self.norm(&(stiffness.abs() * (q.abs() + &self.reach)))
+        let of_coordinates = stiffness.abs() * (q.abs() + &self.reach);
+        ROUNDINGS * f64::EPSILON * self.norm(&(of_coordinates + of_lengths(crane, q)))
     }
 
     /// Springs that hold the crane against all forces here within about 1 rad and 1 m, and each coordinate by at least its own
@@ -80,4 +81,29 @@ impl Balance {
     pub(super) fn springs(&self, stiffness: &DMatrix<f64>) -> DVector<f64> {
         DVector::from_fn(self.scale.len(), |i, _| self.scale[i] + stiffness[(i, i)].abs())
     }
+}
+
+/// Size of the forces that connectors would have over lengths as great as the numbers from which their lengths are computed: a length
+/// is the difference of two places.
+fn of_lengths(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
+    let connectors = &crane.description().connectors;
+    let mut sum = DVector::zeros(q.len());
+    if connectors.is_empty() {
+        return sum;
+    }
+    let rest = vec![0.0; q.len()];
+    let mut jacobians = vec![0.0; connectors.len() * q.len()];
+    let (mut lengths, mut tensions) = (vec![[0.0; 2]; connectors.len()], vec![Tension::ZERO; connectors.len()]);
+    crane.connector_jacobians(q.as_slice(), &mut jacobians);
+    crane.connector_lengths(q.as_slice(), &rest, &mut lengths);
+    crane.connector_tensions(0.0, q.as_slice(), &rest, &mut tensions);
+    let rows = jacobians.chunks_exact(q.len()).zip(connectors.iter().zip(lengths.iter().zip(&tensions)));
+    for (row, (connector, ([length, _], tension))) in rows {
+        let places = connector.ends.iter().flat_map(|end| end.position);
+        let size = places.fold(*length, |size: f64, x| size.max(x.abs()));
+        for (sum, slope) in sum.iter_mut().zip(row) {
+            *sum += tension.stiffness * slope.abs() * size;
+        }
+    }
+    sum
 }

@@ -33,7 +33,7 @@ impl Equations for AtStart<'_> {
     }
 }
 
-/// The equilibrium with the drives at given positions and the loads as at another time.
+/// The equilibrium with the drives at given positions, and loads and winches as at another time.
 pub(super) struct Held<'a> {
     crane: &'a dyn DynStatics,
     positions: &'a [f64],
@@ -41,12 +41,12 @@ pub(super) struct Held<'a> {
     motions: Vec<[f64; 2]>,
     /// The prescribed rates, at which dampers of drives are unloaded, at the places of their coordinates.
     rates: Vec<f64>,
-    /// Time of the loads, s.
+    /// Time of loads and winches, s.
     t: f64,
 }
 
 impl<'a> Held<'a> {
-    /// With the drives at `positions`, one per drive, and the loads as at time `t`, s.
+    /// With the drives at `positions`, one per drive, and loads and winches as at time `t`, s.
     pub(super) fn new(crane: &'a dyn DynStatics, t: f64, positions: &'a [f64]) -> Self {
         let Description { drives, coordinates, .. } = crane.description();
         let (mut motions, mut rates) = (vec![[0.0; 2]; drives.len()], vec![0.0; coordinates.len()]);
@@ -96,11 +96,21 @@ impl Equations for Held<'_> {
                 residual[drive.coordinate] += sign * forces[drive.coordinate];
             }
         }
-        let loads_change = !description.loads.is_empty() && self.t != 0.0;
-        for (sign, t) in [(1.0, 0.0), (-1.0, self.t)].into_iter().filter(|_| loads_change) {
-            crane.load_forces(t, q.as_slice(), &mut forces);
+        let [loads_change, winches_move] =
+            [!description.loads.is_empty(), !description.connectors.is_empty()].map(|any| any && self.t != 0.0);
+        let mut add = |sign: f64, forces: &[f64]| {
             for (index, force) in forces.iter().enumerate().filter(|(index, _)| !self.is_rigid(*index)) {
                 residual[index] += sign * force;
+            }
+        };
+        for (sign, t) in [(1.0, 0.0), (-1.0, self.t)] {
+            if loads_change {
+                crane.load_forces(t, q.as_slice(), &mut forces);
+                add(sign, &forces);
+            }
+            if winches_move {
+                crane.connector_forces_at_rest(t, q.as_slice(), &mut forces);
+                add(sign, &forces);
             }
         }
         residual
@@ -116,6 +126,12 @@ impl Equations for Held<'_> {
             for (drive, [_, own]) in drives.iter().zip(&limits).filter(|(drive, _)| !self.is_rigid(drive.coordinate)) {
                 stiffness[(drive.coordinate, drive.coordinate)] += sign * own;
             }
+        }
+        let winches_move = !self.crane.description().connectors.is_empty() && self.t != 0.0;
+        let mut connectors = DMatrix::zeros(q.len(), q.len());
+        for (sign, t) in [(-1.0, 0.0), (1.0, self.t)].into_iter().filter(|_| winches_move) {
+            self.crane.connector_stiffness(t, q.as_slice(), connectors.as_mut_slice());
+            stiffness += &connectors * sign;
         }
         stiffness
     }

@@ -33,18 +33,25 @@ pub(super) fn iterate(
         let Some(tangent) = Tangent::new(&stiffness, description).filter(|_| norm.is_finite()) else {
             break Status::Overflow;
         };
-        if norm <= settings.tolerance.max(balance.rounding(&stiffness, &q)) {
+        if norm <= settings.tolerance.max(balance.rounding(equations.crane(), &stiffness, &q)) {
             break tangent.status(description);
         }
         if history.len() > settings.iterations {
             break Status::NotConverged;
         }
-        let step = limited(tangent.step(&residual), |i| description.coordinates[i].kind);
+        let newton = tangent.step(&residual);
+        // A stiff connector makes a curved valley: its force grows along a straight step, even if the step leads towards the
+        // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count alike:
+        // the natural monotonicity test, P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004.
+        let way = newton.norm();
+        let is_nearer =
+            |residual: &DVector<f64>| !description.connectors.is_empty() && tangent.step(residual).norm() < way;
+        let step = limited(newton, |i| description.coordinates[i].kind);
         let improved = (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
             let pose = &q + &step * fraction;
             let residual = equations.residual(&pose);
             let trial = balance.norm(&residual);
-            (trial < norm).then_some((pose, residual, trial, fraction))
+            (trial < norm || is_nearer(&residual)).then_some((pose, residual, trial, fraction))
         });
         let Some((pose, next, trial, fraction)) = improved else {
             // A free direction explains why no step helps.

@@ -35,6 +35,7 @@ pub const fn description(
         stops: List::Static(&[]),
         frictions: List::Static(&[]),
         loads: List::Static(&[]),
+        connectors: List::Static(&[]),
         inputs: List::Static(&[]),
         cylinders: List::Static(&[]),
         pump_flow: None,

@@ -62,6 +62,12 @@ macro_rules! crane {
                 friction_forces(v: &Vector) -> Vector;
                 load_forces(t: f64, q: &Vector) -> Vector;
                 load_pieces(out: &mut [[f64; 2]]);
+                connector_forces(t: f64, q: &Vector, v: &Vector) -> Vector;
+                connector_forces_at_rest(t: f64, q: &Vector) -> Vector;
+                connector_lengths(q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
+                connector_tensions(t: f64, q: &Vector, v: &Vector, out: &mut [Tension]);
+                connector_jacobians(q: &Vector, out: &mut [[f64; N]]);
+                winch_pieces(out: &mut [[f64; 2]]);
                 support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
                 support_gaps(q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 cylinder_states(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
@@ -76,6 +82,8 @@ macro_rules! crane {
                 stop_energy(q: &Vector) -> f64;
                 potential_energy(t: f64, q: &Vector) -> f64;
                 drive_power(t: f64, q: &Vector, v: &Vector) -> f64;
+                connector_energy(t: f64, q: &Vector) -> f64;
+                winch_power(t: f64, q: &Vector, v: &Vector) -> f64;
                 load_power(t: f64, q: &Vector, v: &Vector) -> f64;
                 dissipation(t: f64, q: &Vector, v: &Vector) -> f64;
                 mass_matrix(q: &Vector) -> Matrix;

@@ -39,6 +39,14 @@ macro_rules! call_all {
         black_box(of::friction_forces(&crane, &v));
         black_box(of::load_forces(&crane, t, &q));
         of::load_pieces(&crane, &mut pieces);
+        black_box(of::connector_forces(&crane, t, &q, &v));
+        black_box(of::connector_forces_at_rest(&crane, t, &q));
+        of::connector_lengths(&crane, &q, &v, &mut motions);
+        of::connector_tensions(&crane, t, &q, &v, &mut [Tension::ZERO; 2]);
+        of::connector_jacobians(&crane, &q, &mut [[0.0; of::N]; 2]);
+        of::winch_pieces(&crane, &mut pieces);
+        black_box(of::connector_energy(&crane, t, &q));
+        black_box(of::winch_power(&crane, t, &q, &v));
         of::support_reactions(&crane, &q, &v, &mut vectors);
         of::support_gaps(&crane, &q, &v, &mut gaps);
         of::cylinder_states(&crane, &q, &v, &mut vectors);

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use crane_model::{
-    CoordinateInfo, CoordinateKind,
+    CoordinateInfo, CoordinateKind, Description, Tension,
     dyn_crane::DynCrane,
     results::{CylinderState, cautions, cylinders_at},
     runs::{Reason, Recorded},
@@ -119,6 +119,9 @@ pub fn tables(cases: &[Case<'_>], limits: Limits) -> Report {
         report.grid(grid);
     }
     report.grid(reactions(cases));
+    if let Some(grid) = connectors(cases) {
+        report.grid(grid);
+    }
     report.grid(points(cases));
     report.excerpt(pose(cases), 0);
     report
@@ -240,12 +243,40 @@ fn reactions(cases: &[Case<'_>]) -> Grid {
         let sums = reactions.iter().map(|of| <[f64; 3]>::from(of.iter().sum::<Vector3<f64>>()));
         grid.row(vector_row("Σ supports", sums, "N"));
         grid.row(vector_row("weight", cases.iter().map(|case| case.rig.weight_at(&case.equilibrium.q)), "N"));
-        if cases.iter().any(|case| !case.rig.description().loads.is_empty()) {
+        let is_loaded = |description: &Description| {
+            !description.loads.is_empty() || description.connectors.iter().any(|connector| connector.holds_to_world())
+        };
+        if cases.iter().any(|case| is_loaded(case.rig.description())) {
             let loads = cases.iter().map(|case| case.rig.applied_force_at(0.0, &case.equilibrium.q));
             grid.row(vector_row("applied loads", loads, "N"));
         }
     }
     grid
+}
+
+/// Lengths and forces of connectors.
+fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
+    let first = cases.iter().find(|case| !case.rig.description().connectors.is_empty())?;
+    let mut headings = headings("connector", cases);
+    headings.insert(1, "quantity".into());
+    let title = "Connectors: lengths, and forces, positive where they pull";
+    let mut grid = Grid::with_headings("connectors", title, headings);
+    let at_rest = |case: &Case<'_>| {
+        let (q, rest) = (&case.equilibrium.q, case.rest());
+        let lengths = case.rig.connector_lengths_at(q, &rest).into_iter().map(|[length, _]| length);
+        lengths.zip(case.rig.connector_tensions_at(0.0, q, &rest)).collect::<Vec<_>>()
+    };
+    let values: Vec<_> = cases.iter().map(at_rest).collect();
+    for (index, connector) in first.rig.description().connectors.iter().enumerate() {
+        let mut row = |quantity: &str, unit: &str, of: fn(&(f64, Tension)) -> f64| {
+            let cells = values.iter().map(|values| Cell::from(values.get(index).map(of)));
+            let words = [connector.name.as_str().into(), quantity.into()];
+            grid.row(words.into_iter().chain(cells).chain([unit.into()]).collect::<Vec<_>>());
+        };
+        row("length", "m", |(length, _)| *length);
+        row("force", "N", |(_, tension)| tension.force);
+    }
+    Some(grid)
 }
 
 fn points(cases: &[Case<'_>]) -> Grid {

@@ -12,7 +12,7 @@ use crane_model::dyn_crane::{
 };
 use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
 use crane_model::support::lanes::f64x8;
-use crane_model::{Description, ParameterError, SectionModuli, Wrench};
+use crane_model::{Description, ParameterError, SectionModuli, Tension, Wrench};
 
 use crate::closing::{mass_matrix, second_derivatives};
 use crate::describe::{describe, refusal};
@@ -284,6 +284,33 @@ impl DynModel for LiveCrane {
         self.numbers(FunctionId::LoadForces, &state(t, q, &[]), out);
     }
 
+    fn connector_forces(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::ConnectorForces, &state(t, q, v), out);
+    }
+
+    fn connector_forces_at_rest(&self, t: f64, q: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::ConnectorForcesAtRest, &state(t, q, &[]), out);
+    }
+
+    fn connector_lengths(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::ConnectorLengths, &state(0.0, q, v), out);
+    }
+
+    fn connector_tensions(&self, t: f64, q: &[f64], v: &[f64], out: &mut [Tension]) {
+        self.call(FunctionId::ConnectorTensions, &state(t, q, v), |_, results| {
+            let tension = |&[force, stiffness, damping]: &[f64; 3]| Tension { force, stiffness, damping };
+            copy_as(results.as_chunks().0, tension, out);
+        });
+    }
+
+    fn connector_jacobians(&self, q: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::ConnectorJacobians, &at(q), out);
+    }
+
+    fn winch_pieces(&self, out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::WinchPieces, &Arguments::none(), out);
+    }
+
     fn load_pieces(&self, out: &mut [[f64; 2]]) {
         self.pairs(FunctionId::LoadPieces, &Arguments::none(), out);
     }
@@ -344,6 +371,14 @@ impl DynModel for LiveCrane {
         self.scalar(FunctionId::DrivePower, &state(t, q, v))
     }
 
+    fn connector_energy(&self, t: f64, q: &[f64]) -> f64 {
+        self.scalar(FunctionId::ConnectorEnergy, &state(t, q, &[]))
+    }
+
+    fn winch_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        self.scalar(FunctionId::WinchPower, &state(t, q, v))
+    }
+
     fn load_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         self.scalar(FunctionId::LoadPower, &state(t, q, v))
     }
@@ -360,6 +395,10 @@ impl DynStatics for LiveCrane {
 
     fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]) {
         self.numbers(FunctionId::TangentStiffness, &at(q), out);
+    }
+
+    fn connector_stiffness(&self, t: f64, q: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::ConnectorStiffness, &state(t, q, &[]), out);
     }
 
     fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {

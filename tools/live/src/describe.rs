@@ -1,11 +1,11 @@
 //! Metadata of a live crane.
 
 use crane_codegen::chain::{
-    self, BodyId, Chain, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics, Value,
+    self, BodyId, Chain, ConnectorLaw, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics, Value,
 };
 use crane_model::{
-    BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo, Description, DriveInfo, InputInfo,
-    LoadInfo, ParameterInfo, Refusal, SupportInfo,
+    AttachmentInfo, BodyInfo, Bound, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo,
+    Description, DriveInfo, InputInfo, LoadInfo, ParameterInfo, Refusal, SupportInfo,
 };
 
 /// The description of a chain, as the compiler writes it.
@@ -47,6 +47,16 @@ pub fn describe(chain: &Chain) -> Description {
         pieces: drive.profile.pieces().len(),
     });
     let loads = chain.loads.iter().map(|load| LoadInfo { name: load.name.clone().into(), pieces: load.pieces() });
+    let connectors = chain.connectors.iter().map(|connector| ConnectorInfo {
+        name: connector.name.clone().into(),
+        ends: connector.ends.each_ref().map(|end| AttachmentInfo {
+            body: end.body.map(|BodyId(body)| body),
+            position: end.position.each_ref().map(|x| x.at(&defaults)),
+        }),
+        is_rope: matches!(connector.law, ConnectorLaw::Rope { .. }),
+        spanned: chain.spanned(connector),
+        pieces: connector.pieces(),
+    });
     let inputs = chain.inputs.iter().map(|input| InputInfo {
         name: input.name.clone().into(),
         unit: input.unit.clone().into(),
@@ -77,6 +87,7 @@ pub fn describe(chain: &Chain) -> Description {
         stops: chain.stopped().into_iter().map(|id| id.0).collect(),
         frictions: chain.frictions().map(|(id, _)| id.0).collect(),
         loads: loads.collect(),
+        connectors: connectors.collect(),
         inputs: inputs.collect(),
         cylinders: cylinders.collect(),
         pump_flow: chain.pump_flow,

@@ -45,6 +45,7 @@ fn append(shape: &Shape, first: usize, entries: &mut Vec<Entry>) {
         | Shape::Vector(_)
         | Shape::Vectors(_)
         | Shape::Pairs(_)
+        | Shape::Rows { .. }
         | Shape::Structs(..)
         | Shape::Turned { .. }
         | Shape::Columns { .. }

@@ -239,15 +239,19 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::StopEnergy
             | FunctionId::KineticEnergy
             | FunctionId::DrivePower
+            | FunctionId::ConnectorEnergy
+            | FunctionId::WinchPower
             | FunctionId::LoadPower
             | FunctionId::Dissipation => 1,
-            FunctionId::MassMatrix | FunctionId::TangentStiffness => n * n,
+            FunctionId::MassMatrix | FunctionId::TangentStiffness | FunctionId::ConnectorStiffness => n * n,
             FunctionId::Linearise => 3 * n * n,
             FunctionId::Forces
             | FunctionId::SupportForces
             | FunctionId::HingeForces
             | FunctionId::ElementForces
             | FunctionId::DriveForces
+            | FunctionId::ConnectorForces
+            | FunctionId::ConnectorForcesAtRest
             | FunctionId::StopForces
             | FunctionId::FrictionForces
             | FunctionId::LoadForces
@@ -255,6 +259,12 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::DriveForcesAtRest
             | FunctionId::Bias
             | FunctionId::ForwardDynamics => n,
+            FunctionId::ConnectorLengths => 2 * description.connectors.len(),
+            FunctionId::ConnectorTensions => 3 * description.connectors.len(),
+            FunctionId::ConnectorJacobians => n * description.connectors.len(),
+            FunctionId::WinchPieces => {
+                2 * description.connectors.iter().map(|connector| connector.pieces).sum::<usize>()
+            }
             FunctionId::JointImpedances | FunctionId::NonlinearImpedances => 2 * n,
             FunctionId::BaseStiffness | FunctionId::BaseDamping => 36,
             FunctionId::DrivePieces => 2 * description.drives.iter().map(|drive| drive.pieces).sum::<usize>(),

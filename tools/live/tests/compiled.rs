@@ -84,6 +84,11 @@ fn moduli(crane: &dyn DynCrane) -> Vec<f64> {
     crane.section_moduli_at().iter().flat_map(numbers).collect()
 }
 
+fn tensions(crane: &dyn DynCrane, t: f64, [q, v]: [&[f64]; 2]) -> Vec<f64> {
+    let tensions = crane.connector_tensions_at(t, q, v);
+    tensions.iter().flat_map(|tension| [tension.force, tension.stiffness, tension.damping]).collect()
+}
+
 /// Everything that a crane computes at a state, by name.
 fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
     let (t, q, v) = state(crane);
@@ -92,6 +97,8 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
     let n = crane.size();
     let degrees: Vec<usize> = description.bodies.iter().map(|body| body.degrees_of_freedom).collect();
     let pieces = description.drives.iter().map(|drive| drive.pieces).sum();
+    let connectors = &description.connectors;
+    let of_winches = connectors.iter().map(|connector| connector.pieces).sum();
     let of_loads = description.loads.iter().map(|load| load.pieces).sum();
     let (mut mass, mut stiffness, mut damping) = (vec![f64::NAN; n * n], vec![f64::NAN; n * n], vec![f64::NAN; n * n]);
     crane.linearise(q, &mut mass, &mut stiffness, &mut damping);
@@ -117,6 +124,14 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
         ("drive_motions", pairs(description.drives.len(), |out| crane.drive_motions(t, out))),
         ("drive_forces_at_rest", numbers(n, |out| crane.drive_forces_at_rest(q, out))),
         ("drive_pieces", pairs(pieces, |out| crane.drive_pieces(out))),
+        ("connector_forces", numbers(n, |out| crane.connector_forces(t, q, v, out))),
+        ("connector_forces_at_rest", numbers(n, |out| crane.connector_forces_at_rest(t, q, out))),
+        ("connector_lengths", pairs(connectors.len(), |out| crane.connector_lengths(q, v, out))),
+        ("connector_tensions", tensions(crane, t, [q, v])),
+        ("connector_stiffness", numbers(n * n, |out| crane.connector_stiffness(t, q, out))),
+        ("connector_jacobians", numbers(n * connectors.len(), |out| crane.connector_jacobians(q, out))),
+        ("connector_energy", vec![crane.connector_energy(t, q), crane.winch_power(t, q, v)]),
+        ("winch_pieces", pairs(of_winches, |out| crane.winch_pieces(out))),
         ("load_pieces", pairs(of_loads, |out| crane.load_pieces(out))),
         ("energies", vec![crane.gravity_energy(q), crane.support_energy(q), crane.element_energy(q)]),
         ("drive_energy", vec![crane.drive_energy(t, q)]),

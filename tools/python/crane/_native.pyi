@@ -162,6 +162,13 @@ class Crane:
         """(..., n): generalized forces of friction in joints, N and N m."""
     def load_forces(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., n): generalized forces of the loads applied from outside, N and N m. t: s, 0 unless given."""
+    def connector_forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., n): generalized forces of the connectors, N and N m. t: s, 0 unless given."""
+    def connector_lengths(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., connectors, 2): lengths of the connectors, m, and their rates, m/s."""
+    def connector_tensions(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(..., connectors, 3): forces of the connectors, N, positive where they pull, and their derivatives with respect to length, N/m,
+        and its rate, N s/m."""
     def drive_forces_at_rest(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m."""
     def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
@@ -197,6 +204,8 @@ class Crane:
         """(...): energy of the drives' springs, J."""
     def stop_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(...): energy of the end stops, J."""
+    def connector_energy(self, q: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
+        """(...): energy of the connectors, J."""
     def drive_power(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(...): power that the drives' motions put in, W."""
     def dissipation(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:

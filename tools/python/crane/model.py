@@ -154,6 +154,7 @@ class Crane(_native.Crane):
             self.element_energy(q, invalid=invalid),
             self.drive_energy(q, t, invalid=invalid),
             self.stop_energy(q, invalid=invalid),
+            self.connector_energy(q, t, invalid=invalid),
         )
 
     def statics(

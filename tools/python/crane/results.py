@@ -19,11 +19,13 @@ class Energies(NamedTuple):
     elements: Array
     drives: Array
     stops: Array
+    connectors: Array
 
     @property
     def total(self) -> Array:
         """Kinetic and potential energy together, J."""
-        return self.kinetic + self.gravity + self.supports + self.elements + self.drives + self.stops
+        springs = self.supports + self.elements + self.drives + self.stops + self.connectors
+        return self.kinetic + self.gravity + springs
 
 
 class Linearisation(NamedTuple):

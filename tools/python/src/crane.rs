@@ -197,6 +197,13 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("cylinders", list(std::mem::take(&mut rows))?)?;
+        for info in &description.connectors {
+            let row = PyDict::new(py);
+            row.set_item("name", &*info.name)?;
+            row.set_item("rope", info.is_rope)?;
+            rows.push(row);
+        }
+        all.set_item("connectors", list(std::mem::take(&mut rows))?)?;
         for info in &description.parameters {
             let row = PyDict::new(py);
             row.set_item("name", &*info.name)?;

@@ -229,6 +229,51 @@ impl Crane {
         self.compute(py, Quantity::Of(FunctionId::LoadForces), state, &own, invalid)
     }
 
+    /// (..., n): generalized forces of the connectors, N and N m. t: s, 0 unless given.
+    #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
+    fn connector_forces<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let own = [self.live.size()];
+        let state = State { t, q: Some(q), v: Some(v), a: None };
+        self.compute(py, Quantity::Of(FunctionId::ConnectorForces), state, &own, invalid)
+    }
+
+    /// (..., connectors, 2): lengths of the connectors, m, and their rates, m/s.
+    #[pyo3(signature = (q, v, *, invalid="raise"))]
+    fn connector_lengths<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let own = [self.live.description().connectors.len(), 2];
+        let state = State { q: Some(q), v: Some(v), ..State::default() };
+        self.compute(py, Quantity::Of(FunctionId::ConnectorLengths), state, &own, invalid)
+    }
+
+    /// (..., connectors, 3): forces of the connectors, N, positive where they pull, and their derivatives with respect to length, N/m, and its
+    /// rate, N s/m.
+    #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
+    fn connector_tensions<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let own = [self.live.description().connectors.len(), 3];
+        let state = State { t, q: Some(q), v: Some(v), a: None };
+        self.compute(py, Quantity::Of(FunctionId::ConnectorTensions), state, &own, invalid)
+    }
+
     /// (..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m.
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn drive_forces_at_rest<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
@@ -463,6 +508,19 @@ impl Crane {
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn stop_energy<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         self.compute(py, Quantity::Of(FunctionId::StopEnergy), State { q: Some(q), ..State::default() }, &[], invalid)
+    }
+
+    /// (...): energy of the connectors, J.
+    #[pyo3(signature = (q, t=None, *, invalid="raise"))]
+    fn connector_energy<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
+        let state = State { t, q: Some(q), ..State::default() };
+        self.compute(py, Quantity::Of(FunctionId::ConnectorEnergy), state, &[], invalid)
     }
 
     /// (...): power that the drives' motions put in, W.

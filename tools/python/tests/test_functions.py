@@ -19,6 +19,9 @@ FUNCTIONS = [
     ("stop_forces", "qv", lambda c: (c.n,)),
     ("friction_forces", "v", lambda c: (c.n,)),
     ("load_forces", "qt", lambda c: (c.n,)),
+    ("connector_forces", "qvt", lambda c: (c.n,)),
+    ("connector_lengths", "qv", lambda c: (len(c.info["connectors"]), 2)),
+    ("connector_tensions", "qvt", lambda c: (len(c.info["connectors"]), 3)),
     ("drive_forces_at_rest", "q", lambda c: (c.n,)),
     ("support_reactions", "qv", lambda c: (len(c.info["supports"]), 3)),
     ("support_gaps", "qv", lambda c: (len(c.info["supports"]), 2)),
@@ -35,6 +38,7 @@ FUNCTIONS = [
     ("element_energy", "q", lambda c: ()),
     ("drive_energy", "qt", lambda c: ()),
     ("stop_energy", "q", lambda c: ()),
+    ("connector_energy", "qt", lambda c: ()),
     ("drive_power", "qvt", lambda c: ()),
     ("dissipation", "qvt", lambda c: ()),
 ]

@@ -1,5 +1,6 @@
 // A crane in three dimensions, drawn from its chain: links from frame to frame, as thick as their mass makes likely,
-// flexible links bent, in the outline of their section where the spec gives one, pins where joints turn, legs where it stands.
+// flexible links bent, in the outline of their section where the spec gives one, pins where joints turn, legs where it stands, and
+// springs and ropes between their points.
 import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
 import { BeamGeometry } from "./beam.js";
 import { Kinematics, links } from "./kinematics.js";
@@ -10,6 +11,9 @@ const FILLING = 2400;
 const THICKNESS = [0.012, 0.06];
 /** A length below this part of the crane's size is none. */
 const NOTHING = 1e-3;
+
+/** Radius of a spring and of a rope as drawn, of the crane's size. */
+const RADIUS = { spring: 0.004, rope: 0.0015 };
 
 /** Room around the axes of the links, of the crane's size. */
 const MARGIN = 0.03;
@@ -88,6 +92,7 @@ export class Figure {
     this.pins();
     this.end();
     this.stand();
+    this.connect();
   }
 
   beam({ name, bodies: elements }) {
@@ -269,6 +274,15 @@ export class Figure {
     });
   }
 
+  /** A bar for each connector, of length 1 until a pose stretches it. */
+  connect() {
+    this.connectors = this.crane.scene.connectors.map(({ rope, ends }) => {
+      const radius = (rope ? RADIUS.rope : RADIUS.spring) * this.size;
+      const mesh = this.mesh(new CylinderGeometry(radius, radius, 1, 16), rope ? COLOURS.pin : COLOURS.slide);
+      return { mesh, ends: ends.map(({ body, at }) => ({ body, at: new Vector3(...at) })) };
+    });
+  }
+
   /** Takes a pose. */
   pose(q, factor) {
     const frames = this.kinematics.pose(q, factor);
@@ -277,6 +291,13 @@ export class Figure {
       mesh.matrixWorldNeedsUpdate = true;
     }
     for (const { geometry, elements } of this.beams) geometry.follow(elements.map((p) => frames[p]));
+    for (const { mesh, ends } of this.connectors) {
+      const [from, to] = ends.map(({ body, at }) => (body === null ? at.clone() : at.clone().applyMatrix4(frames[body])));
+      const way = to.clone().sub(from);
+      mesh.position.addVectors(from, to).divideScalar(2);
+      mesh.scale.set(1, Math.max(way.length(), 1e-9), 1);
+      mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), way.normalize());
+    }
   }
 
   /** Colours the beams along their lengths: `colours(name)` is a function of the place, m, or nothing; `null`: as they were. */
@@ -324,6 +345,8 @@ export function extent(crane) {
     for (const frame of frames) include(new Vector3().setFromMatrixPosition(frame));
     kinematics.points.forEach((_, index) => include(kinematics.point(index)));
     crane.scene.supports.forEach(({ at }) => include(new Vector3(...at).applyMatrix4(frames[0])));
+    const anchors = crane.scene.connectors.flatMap(({ ends }) => ends.filter(({ body }) => body === null));
+    anchors.forEach(({ at }) => include(new Vector3(...at)));
   }
   if (crane.coordinates[0]?.role !== "base") include(new Vector3());
   const last = kinematics.bodies.at(-1);

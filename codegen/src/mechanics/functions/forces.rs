@@ -1,9 +1,9 @@
 //! Forces and energies by part, and the functions of drives.
 
 use super::{Derivation, function, sum};
-use crate::mechanics::{drives, gravity, joints, loads, springs, supports};
+use crate::mechanics::{connectors, drives, gravity, joints, loads, springs, supports};
 use crate::program::Argument::{Position, Time, Velocity};
-use crate::program::{Argument, Function, FunctionId, Shape};
+use crate::program::{Argument, Function, FunctionId, Shape, Struct};
 use crate::symbolic::{Expr, Tape};
 
 /// A part of the forces: which, documentation, equation and arguments of its function, and its expressions.
@@ -107,6 +107,10 @@ impl<'g> Derivation<'g> {
                 ));
             }
         }
+        if !chain.connectors.is_empty() {
+            parts.push(connectors::forces(model, &self.kinematics, model.t, Some(&model.v)));
+            functions.extend(self.connectors());
+        }
         if parts.len() > 1 {
             functions.push(
                 function(
@@ -146,6 +150,66 @@ impl<'g> Derivation<'g> {
             ));
         }
         parts
+    }
+
+    /// Forces, lengths and tangents of connectors.
+    fn connectors(&self) -> Vec<Function> {
+        let (model, kinematics) = (&self.model, &self.kinematics);
+        let count = model.chain.connectors.len();
+        let mut functions = vec![
+            function(
+                FunctionId::ConnectorForces,
+                "Generalized forces of connectors, N and N m.",
+                "−Jᵀ F",
+                &[Time, Position, Velocity],
+                Shape::Vector(model.size()),
+                connectors::forces(model, kinematics, model.t, Some(&model.v)),
+            ),
+            function(
+                FunctionId::ConnectorForcesAtRest,
+                "Generalized forces of connectors while nothing moves, not even a winch, N and N m.",
+                "−Jᵀ F(ℓ, 0)",
+                &[Time, Position],
+                Shape::Vector(model.size()),
+                connectors::forces(model, kinematics, model.t, None),
+            ),
+            function(
+                FunctionId::ConnectorLengths,
+                "Length ℓ (m) of every connector, and its rate ℓ̇ (m/s).",
+                "|p₂ − p₁|, J q̇",
+                &[Position, Velocity],
+                Shape::Pairs(count),
+                connectors::lengths(model, kinematics),
+            ),
+            function(
+                FunctionId::ConnectorTensions,
+                "Force F of every connector (N), positive where it pulls, and its slopes ∂F/∂ℓ (N/m) and ∂F/∂ℓ̇ (N s/m).",
+                "k (ℓ − ℓ₀) + d ℓ̇ − P; k σ max(0, 1 + a σ̇)",
+                &[Time, Position, Velocity],
+                Shape::Structs(Struct::Tension, count),
+                connectors::tensions(model, kinematics),
+            ),
+            function(
+                FunctionId::ConnectorJacobians,
+                "How the length of every connector changes with the coordinates, one row per connector, m/rad and 1.",
+                "J = ∂ℓ/∂q",
+                &[Position],
+                Shape::Rows { count, n: model.size() },
+                connectors::jacobians(model, kinematics),
+            ),
+        ];
+        let pieces = connectors::pieces(model);
+        if !pieces.is_empty() {
+            functions.push(function(
+                FunctionId::WinchPieces,
+                "Begin and end of the intervals in which winches move smoothly, connector by connector, s.",
+                "t_begin, t_end",
+                &[],
+                Shape::Pairs(pieces.len() / 2),
+                pieces,
+            ));
+        }
+        functions
     }
 
     /// Efforts, powers and motions of drives, from their generalized forces.
@@ -250,6 +314,9 @@ impl<'g> Derivation<'g> {
         if !model.chain.loads.is_empty() {
             parts.push(loads::forces(model, &self.kinematics, t));
         }
+        if !model.chain.connectors.is_empty() {
+            parts.push(connectors::forces(model, &self.kinematics, t, Some(v)));
+        }
         sum(&parts)
     }
 
@@ -316,6 +383,24 @@ impl<'g> Derivation<'g> {
                 loads::power(model, &self.kinematics, &self.twists),
             ));
         }
+        if !chain.connectors.is_empty() {
+            functions.push(scalar(
+                FunctionId::ConnectorEnergy,
+                "Energy of connectors, J.",
+                "½ Σ k (ℓ − ℓ₀)² − P (ℓ − ℓ₀)",
+                &[Time, Position],
+                connectors::energy(model, &self.kinematics),
+            ));
+        }
+        if chain.connectors.iter().any(|connector| connector.winch().is_some()) {
+            functions.push(scalar(
+                FunctionId::WinchPower,
+                "Power that winches put in, W.",
+                "−Σ F ℓ̇₀",
+                &[Time, Position, Velocity],
+                connectors::winch_power(model, &self.kinematics),
+            ));
+        }
         if chain.stops().next().is_some() {
             functions.push(scalar(
                 FunctionId::StopEnergy,
@@ -327,7 +412,9 @@ impl<'g> Derivation<'g> {
         }
         let linear =
             supports::dissipation(model, &self.kinematics) + springs::dissipation(model) + drives::dissipation(model);
-        let dissipation = if chain.forces.is_empty() { linear } else { linear + joints::dissipation(model) };
+        let joints = if chain.forces.is_empty() { linear } else { linear + joints::dissipation(model) };
+        let between_points = (!chain.connectors.is_empty()).then(|| connectors::dissipation(model, &self.kinematics));
+        let dissipation = between_points.map_or(joints, |connectors| joints + connectors);
         if !dissipation.is_zero() {
             functions.push(scalar(
                 FunctionId::Dissipation,

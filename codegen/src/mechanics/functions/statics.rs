@@ -3,8 +3,8 @@
 use super::{Derivation, function, sum};
 use crate::mechanics::columns::columns;
 use crate::mechanics::vector::SymmetricMatrix;
-use crate::mechanics::{drives, gravity, joints, loads, springs, supports};
-use crate::program::Argument::Position;
+use crate::mechanics::{connectors, drives, gravity, joints, loads, springs, supports};
+use crate::program::Argument::{Position, Time};
 use crate::program::{Function, FunctionId, Shape};
 use crate::symbolic::Expr;
 
@@ -36,6 +36,18 @@ impl<'g> Derivation<'g> {
                 &[Position],
                 Shape::Vector(self.model.size()),
                 self.drive_forces_at_rest(),
+            ));
+        }
+        if !self.model.chain.connectors.is_empty() {
+            let mut stiffness = SymmetricMatrix::zero(self.model.graph, self.model.size());
+            connectors::stiffness(&self.model, &self.kinematics, self.model.t, &mut stiffness);
+            functions.push(function(
+                FunctionId::ConnectorStiffness,
+                "The part of connectors in the tangent stiffness, with winches at time t; N/m, N and N m.",
+                "∂²E/∂q∂q",
+                &[Time, Position],
+                Shape::Symmetric(self.model.size()),
+                self.unknowns(stiffness, 0.0).into_upper(),
             ));
         }
         functions
@@ -84,6 +96,9 @@ impl<'g> Derivation<'g> {
         if !model.chain.loads.is_empty() {
             forces.push(loads::forces(model, &self.kinematics, model.zero()));
         }
+        if !model.chain.connectors.is_empty() {
+            forces.push(connectors::forces(model, &self.kinematics, model.zero(), None));
+        }
         let forces = sum(&forces);
         gravity.into_iter().zip(forces).map(|(g, f)| g - f).collect()
     }
@@ -94,6 +109,7 @@ impl<'g> Derivation<'g> {
         joints::stiffness(model, &mut matrix);
         loads::stiffness(model, &self.kinematics, &mut matrix);
         drives::stiffness(model, &mut matrix);
+        connectors::stiffness(model, &self.kinematics, model.zero(), &mut matrix);
         gravity::stiffness(model, &self.kinematics, &self.inertias, &mut matrix);
         matrix
     }
@@ -103,6 +119,7 @@ impl<'g> Derivation<'g> {
         let mut damping = self.impedances().1;
         joints::damping(model, &mut damping);
         drives::damping(model, &mut damping);
+        connectors::damping(model, &self.kinematics, &mut damping);
         let columns = columns(model, &self.factors);
         let mut outputs = self.unknowns(columns.mass_matrix(model), 1.0).into_upper();
         outputs.extend(self.unknowns(self.stiffness(), 1.0).into_upper());

@@ -22,6 +22,15 @@ impl Look<'_> {
             let name = load.name.value.as_deref().unwrap_or_default();
             self.place(load.at.as_ref(), &format!("load `{name}`"));
         }
+        for connector in items(crane.connectors.as_ref()) {
+            let name = connector.name.value.as_deref().unwrap_or_default();
+            for end in [&connector.from, &connector.to].into_iter().filter_map(|end| end.value.as_ref()) {
+                // Where the crane stands in the world says nothing.
+                if end.link.is_some() {
+                    self.place(Some(&end.at), &format!("connector `{name}`"));
+                }
+            }
+        }
         for point in items(crane.points.as_ref()) {
             let name = point.name.value.as_deref().unwrap_or_default();
             self.place(Some(&point.at), &format!("point `{name}`"));

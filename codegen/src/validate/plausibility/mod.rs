@@ -5,6 +5,7 @@
 
 mod angles;
 mod beams;
+mod connectors;
 mod feet;
 mod lengths;
 mod masses;
@@ -23,6 +24,7 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
         look.damping();
         look.masses();
         look.feet();
+        look.connectors();
     }
     look.angles();
     look.warnings

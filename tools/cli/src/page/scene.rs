@@ -13,7 +13,7 @@ use crane_model::{
 use nalgebra::{Matrix4, Vector3};
 use serde_json::{Value, json};
 
-/// Frames, screws, supports and points of a crane for pose `q`.
+/// Frames, screws, supports, connectors and points of a crane for pose `q`.
 pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
     let rig: &dyn DynCrane = live;
     let description = rig.description();
@@ -37,9 +37,17 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
         .iter()
         .map(|support| json!({"name": support.name.as_str(), "at": support.position}))
         .collect();
+    let connectors: Vec<Value> = description
+        .connectors
+        .iter()
+        .map(|connector| {
+            let ends = connector.ends.iter().map(|end| json!({"body": end.body, "at": end.position}));
+            json!({"rope": connector.is_rope, "ends": ends.collect::<Vec<_>>()})
+        })
+        .collect();
     json!({
         "pose": q, "reference": reference, "vectors": is_vector, "bodies": bodies,
-        "screws": screws(live, &reference, &frames), "supports": supports, "points": points(rig, q),
+        "screws": screws(live, &reference, &frames), "supports": supports, "connectors": connectors, "points": points(rig, q),
     })
 }
 

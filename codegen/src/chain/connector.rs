@@ -1,0 +1,98 @@
+//! Connectors: elements between two points.
+
+use super::{BodyId, Chain, Frame, Profile, Value};
+
+/// An element between two points. With ℓ their distance, it pulls them together with the force F(ℓ, ℓ̇).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Connector {
+    /// Unique name.
+    pub name: String,
+    /// The points.
+    pub ends: [Attachment; 2],
+    /// How F depends on ℓ.
+    pub law: ConnectorLaw,
+}
+
+/// A point of a body or of the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attachment {
+    /// The body; `None` for the world.
+    pub body: Option<BodyId>,
+    /// Position in the frame of the body or of the world, m.
+    pub position: [Value; 3],
+}
+
+/// How the force of a connector depends on its length.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConnectorLaw {
+    /// `F = k (ℓ − ℓ₀) + d ℓ̇ − P`: a spring and a damper; a gas spring pushes with P at ℓ₀, and with more when it is shorter.
+    Linear {
+        /// k, N/m.
+        stiffness: Value,
+        /// d, N s/m.
+        damping: Value,
+        /// ℓ₀, m.
+        length: Value,
+        /// P, N.
+        push: Value,
+    },
+    /// `F = k σ max(0, 1 + a σ̇)` with `σ = max(0, ℓ − ℓ₀(t))`: a rope, which pulls and never pushes.
+    Rope {
+        /// k, N/m.
+        stiffness: Value,
+        /// a, s/m.
+        damping: Value,
+        /// ℓ₀(t), m: its length without force; a winch changes it.
+        length: Profile,
+    },
+}
+
+impl Connector {
+    /// Number of intervals in which its winch moves smoothly.
+    #[must_use]
+    pub fn pieces(&self) -> usize {
+        self.winch().map_or(0, |length| length.pieces().len())
+    }
+
+    /// The motion of its winch.
+    #[must_use]
+    pub fn winch(&self) -> Option<&Profile> {
+        match &self.law {
+            ConnectorLaw::Rope { length: Profile::Hold(_), .. } | ConnectorLaw::Linear { .. } => None,
+            ConnectorLaw::Rope { length, .. } => Some(length),
+        }
+    }
+}
+
+impl Chain {
+    /// The coordinates that change the length of a connector, the first and the one after the last: those that move only one of its
+    /// points.
+    #[must_use]
+    pub fn spanned(&self, connector: &Connector) -> [usize; 2] {
+        let [one, other] = connector.ends.each_ref().map(|end| self.reach(end));
+        [one.min(other), one.max(other)]
+    }
+
+    /// The distance of a connector's points at a pose, m.
+    #[must_use]
+    pub fn distance(&self, connector: &Connector, q: &[f64], parameters: &[f64]) -> f64 {
+        let mut frame = Frame::WORLD;
+        let mut frames = Vec::with_capacity(self.bodies.len());
+        for body in &self.bodies {
+            frame = body.path.iter().fold(frame, |frame, step| frame.after(step, self, q, parameters));
+            frames.push(frame);
+        }
+        let place = |end: &Attachment| {
+            let frame = end.body.map_or(Frame::WORLD, |BodyId(body)| frames[body]);
+            frame.place(end.position.each_ref().map(|x| x.at(parameters)))
+        };
+        let [one, other] = connector.ends.each_ref().map(place);
+        (0..3).map(|i| (other[i] - one[i]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Number of coordinates that move a point: the first so many do.
+    #[must_use]
+    pub fn reach(&self, end: &Attachment) -> usize {
+        end.body.map_or(0, |body| self.degrees_of_freedom(body))
+    }
+}

@@ -1,0 +1,262 @@
+//! Connectors: elements that pull or push two points along the line between them.
+//!
+//! Notation
+//! : points p₁, p₂ in the world, `ℓ = |p₂ − p₁|`, `e = (p₂ − p₁)/ℓ`. `J_j = ∂ℓ/∂q_j = e · (∂p₂/∂q_j − ∂p₁/∂q_j)` for the coordinates
+//!   that move only one of the points: those that move both do not change ℓ. `ℓ̇ = J q̇`.
+//!
+//! F is the force that pulls both points together, so `f = −Jᵀ F`.
+
+use super::kinematics::{Kinematics, Pose};
+use super::model::Model;
+use super::profile;
+use super::vector::{SymmetricMatrix, Vec3};
+use crate::chain::{Attachment, BodyId, Connector, ConnectorLaw, Profile};
+use crate::symbolic::Expr;
+
+/// A connector at the present state.
+struct Stretched<'g> {
+    /// p₁, p₂.
+    points: [Vec3<'g>; 2],
+    /// e.
+    direction: Vec3<'g>,
+    /// ℓ, m.
+    length: Expr<'g>,
+    /// Places and values of J.
+    jacobian: Vec<(usize, Expr<'g>)>,
+}
+
+/// The position of an end in the world.
+fn point<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, end: &Attachment) -> Vec3<'g> {
+    let at = model.vector(&end.position);
+    match end.body {
+        Some(BodyId(body)) => {
+            let Pose { rotation, origin } = kinematics.poses[body];
+            origin + rotation.apply(at)
+        }
+        None => at,
+    }
+}
+
+impl<'g> Stretched<'g> {
+    fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, connector: &Connector) -> Self {
+        let points = connector.ends.each_ref().map(|end| point(model, kinematics, end));
+        let way = points[1] - points[0];
+        let length = way.dot(way).sqrt();
+        let direction = (1.0 / length) * way;
+        let [first, last] = model.chain.spanned(connector);
+        let second = model.chain.reach(&connector.ends[1]) == last;
+        let (moved, sign) = if second { (points[1], 1.0) } else { (points[0], -1.0) };
+        let column = |j: usize| (j, sign * direction.dot(kinematics.generators[j].velocity(moved)));
+        Stretched { points, direction, length, jacobian: (first..last).map(column).collect() }
+    }
+
+    /// ℓ̇
+    fn rate(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Expr<'g> {
+        self.jacobian.iter().fold(model.zero(), |sum, &(j, column)| sum + column * v[j])
+    }
+}
+
+/// Length and rate on which the force depends; at rest nothing has a rate, not even a winch.
+#[derive(Clone, Copy, Debug)]
+struct Strain<'g> {
+    t: Expr<'g>,
+    length: Expr<'g>,
+    rate: Option<Expr<'g>>,
+}
+
+/// A rope: ℓ₀ − ℓ, σ and σ̇.
+struct Rope<'g> {
+    slack: Expr<'g>,
+    stretch: Expr<'g>,
+    rate: Expr<'g>,
+}
+
+impl<'g> Rope<'g> {
+    fn new(model: &Model<'g>, strain: &Strain<'g>, unstretched: &Profile) -> Self {
+        let length = profile::position(model, unstretched, strain.t);
+        let slack = length - strain.length;
+        Rope {
+            slack,
+            stretch: slack.select(model.zero(), strain.length - length),
+            rate: strain.rate.map_or(model.zero(), |rate| rate - profile::rate(model, unstretched, strain.t)),
+        }
+    }
+
+    /// A number where the rope is taut, else 0. Just taut counts: a rope that is about to pull is where Newton's method begins.
+    fn where_taut(&self, number: Expr<'g>) -> Expr<'g> {
+        self.slack.select(self.slack.graph().constant(0.0), number)
+    }
+}
+
+/// F
+fn force<'g>(model: &Model<'g>, law: &ConnectorLaw, strain: &Strain<'g>) -> Expr<'g> {
+    match law {
+        ConnectorLaw::Linear { stiffness, damping, length, push } => {
+            let elastic = model.number(stiffness) * (strain.length - model.number(length)) - model.number(push);
+            strain.rate.map_or(elastic, |rate| elastic + model.number(damping) * rate)
+        }
+        ConnectorLaw::Rope { stiffness, damping, length } => {
+            let rope = Rope::new(model, strain, length);
+            let growth = (1.0 + model.number(damping) * rope.rate).max(model.zero());
+            model.number(stiffness) * rope.stretch * growth
+        }
+    }
+}
+
+/// `∂F/∂ℓ` and `∂F/∂ℓ̇`.
+fn slopes<'g>(model: &Model<'g>, law: &ConnectorLaw, strain: &Strain<'g>) -> [Expr<'g>; 2] {
+    match law {
+        ConnectorLaw::Linear { stiffness, damping, .. } => [model.number(stiffness), model.number(damping)],
+        ConnectorLaw::Rope { stiffness, damping, length } => {
+            let rope = Rope::new(model, strain, length);
+            let (stiffness, damping) = (model.number(stiffness), model.number(damping));
+            let growth = 1.0 + damping * rope.rate;
+            let by_length = rope.where_taut(stiffness * growth.max(model.zero()));
+            [by_length, growth.select(stiffness * damping * rope.stretch, model.zero())]
+        }
+    }
+}
+
+/// All connectors at time t, moving or at rest.
+fn stretched<'g, 'a>(
+    model: &'a Model<'g>,
+    kinematics: &'a Kinematics<'g>,
+    (t, v): (Expr<'g>, Option<&'a [Expr<'g>]>),
+) -> impl Iterator<Item = (&'a Connector, Stretched<'g>, Strain<'g>)> {
+    model.chain.connectors.iter().map(move |connector| {
+        let stretched = Stretched::new(model, kinematics, connector);
+        let strain = Strain { t, length: stretched.length, rate: v.map(|v| stretched.rate(model, v)) };
+        (connector, stretched, strain)
+    })
+}
+
+/// Generalized forces at time t, `−Jᵀ F`; without rates those at rest.
+pub fn forces<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    t: Expr<'g>,
+    v: Option<&[Expr<'g>]>,
+) -> Vec<Expr<'g>> {
+    let mut forces = model.zeros();
+    for (connector, stretched, strain) in stretched(model, kinematics, (t, v)) {
+        let pull = force(model, &connector.law, &strain);
+        for (j, column) in stretched.jacobian {
+            forces[j] = forces[j] - column * pull;
+        }
+    }
+    forces
+}
+
+/// ℓ and ℓ̇ of every connector.
+pub fn lengths<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let pair = |connector| {
+        let stretched = Stretched::new(model, kinematics, connector);
+        [stretched.length, stretched.rate(model, &model.v)]
+    };
+    model.chain.connectors.iter().flat_map(pair).collect()
+}
+
+/// J of every connector, row by row.
+pub fn jacobians<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let row = |connector| {
+        let mut row = model.zeros();
+        for (j, column) in Stretched::new(model, kinematics, connector).jacobian {
+            row[j] = column;
+        }
+        row
+    };
+    model.chain.connectors.iter().flat_map(row).collect()
+}
+
+/// `F, ∂F/∂ℓ, ∂F/∂ℓ̇` of every connector.
+pub fn tensions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let all = stretched(model, kinematics, (model.t, Some(&model.v)));
+    all.flat_map(|(Connector { law, .. }, _, strain)| {
+        let [by_length, by_rate] = slopes(model, law, &strain);
+        [force(model, law, &strain), by_length, by_rate]
+    })
+    .collect()
+}
+
+/// `½ Σ k (ℓ − ℓ₀)² − P (ℓ − ℓ₀)`, of ropes `½ Σ k σ²`.
+pub fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
+    let all = stretched(model, kinematics, (model.t, None));
+    all.fold(model.zero(), |sum, (connector, _, strain)| {
+        sum + match &connector.law {
+            ConnectorLaw::Linear { stiffness, length, push, .. } => {
+                let stretch = strain.length - model.number(length);
+                0.5 * (model.number(stiffness) * stretch.squared()) - model.number(push) * stretch
+            }
+            ConnectorLaw::Rope { stiffness, length, .. } => {
+                0.5 * (model.number(stiffness) * Rope::new(model, &strain, length).stretch.squared())
+            }
+        }
+    })
+}
+
+/// Power lost: `d ℓ̇²`, of ropes `k σ max(−1, a σ̇) σ̇`.
+pub fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
+    let all = stretched(model, kinematics, (model.t, Some(&model.v)));
+    all.fold(model.zero(), |sum, (connector, _, strain)| {
+        sum + match &connector.law {
+            ConnectorLaw::Linear { damping, .. } => {
+                model.number(damping) * strain.rate.unwrap_or(model.zero()).squared()
+            }
+            ConnectorLaw::Rope { stiffness, damping, length } => {
+                let rope = Rope::new(model, &strain, length);
+                let share = (model.number(damping) * rope.rate).max(model.graph.constant(-1.0));
+                model.number(stiffness) * rope.stretch * (share * rope.rate)
+            }
+        }
+    })
+}
+
+/// Power that winches put in, `−Σ F ℓ̇₀`.
+pub fn winch_power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
+    let all = stretched(model, kinematics, (model.t, Some(&model.v)));
+    all.fold(model.zero(), |sum, (connector, _, strain)| match connector.winch() {
+        Some(length) => sum - force(model, &connector.law, &strain) * profile::rate(model, length, model.t),
+        None => sum,
+    })
+}
+
+/// Begin and end of the intervals in which every winch moves smoothly.
+pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let winches = model.chain.connectors.iter().filter_map(Connector::winch);
+    winches.flat_map(|length| length.pieces()).flatten().map(|time| model.number(&time)).collect()
+}
+
+/// Adds `∂²E/∂q_i∂q_j` at rest at time t.
+pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    let forces = forces(model, kinematics, t, None);
+    let reach = model.chain.connectors.iter().map(|connector| model.chain.spanned(connector)[1]).max().unwrap_or(0);
+    for (j, q) in model.q.iter().enumerate().take(reach) {
+        for (i, slope) in model.graph.derivatives(&forces, *q).into_iter().enumerate().take(j + 1) {
+            matrix.add(i, j, -slope);
+        }
+    }
+}
+
+/// Adds `Σ Jᵀ ∂F/∂ℓ̇ J` at rest and t = 0.
+pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    for (connector, stretched, strain) in stretched(model, kinematics, (model.zero(), None)) {
+        let [_, by_rate] = slopes(model, &connector.law, &strain);
+        for (place, &(j, one)) in stretched.jacobian.iter().enumerate() {
+            for &(i, other) in &stretched.jacobian[..=place] {
+                matrix.add(i, j, by_rate * one * other);
+            }
+        }
+    }
+}
+
+/// Forces on the bodies at both ends, in the world: body, point, force.
+pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(BodyId, Vec3<'g>, Vec3<'g>)> {
+    let all = stretched(model, kinematics, (model.t, Some(&model.v)));
+    all.flat_map(|(connector, stretched, strain)| {
+        let pull = force(model, &connector.law, &strain) * stretched.direction;
+        let [one, other] = connector.ends.each_ref().map(|end| end.body);
+        [(one, stretched.points[0], pull), (other, stretched.points[1], -pull)]
+    })
+    .filter_map(|(body, point, force)| Some((body?, point, force)))
+    .collect()
+}

@@ -1,0 +1,114 @@
+//! Connectors: elements between two points.
+
+use super::Check;
+use super::limits::Limit;
+use crate::chain::{Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateKind, Cylinder, Profile, Value};
+use crate::diagnostic::{Span, rule};
+use crate::spec::{self, Crane, Given, Number, Rope};
+
+impl<'a> Check<'a> {
+    pub(super) fn connectors(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Connector> {
+        let given = crane.connectors.as_ref().and_then(|connectors| connectors.value.as_deref()).unwrap_or_default();
+        let mut connectors = Vec::new();
+        for connector in given.iter().filter_map(|connector| connector.value.as_ref()) {
+            let name = self.name(&connector.name).unwrap_or_default().to_owned();
+            if !name.is_empty() {
+                self.take_name("connectors", &name, "an earlier connector".into(), connector.name.span);
+                // Both have columns of results with a length and a force.
+                if cylinders.iter().any(|cylinder| cylinder.name == name) {
+                    self.report(rule::duplicate_name(connector.name.span, "elements", &name, "a cylinder"));
+                }
+            }
+            let [from, to] = [&connector.from, &connector.to].map(|end| self.attachment(end, &name));
+            let law = connector.law.value.as_ref().map(|law| self.connector_law(law, connector.law.span, &name));
+            let (Some(from), Some(to), Some(law)) = (from, to, law) else { continue };
+            if self.reach(&from) == self.reach(&to) {
+                self.report(rule::rigid_connector(connector.name.span, &name));
+            }
+            connectors.push(Connector { name, ends: [from, to], law });
+        }
+        connectors
+    }
+
+    /// Reports connectors whose points coincide at the guess.
+    pub(super) fn connectors_apart(&mut self, chain: &Chain, crane: &Crane) {
+        /// Distance below which two points are one up to rounding, m.
+        const NONE: f64 = 1e-9;
+        let given = crane.connectors.as_ref().and_then(|connectors| connectors.value.as_deref()).unwrap_or_default();
+        let given = given.iter().filter_map(|connector| connector.value.as_ref());
+        for (connector, given) in chain.connectors.iter().zip(given) {
+            if chain.distance(connector, &chain.guess, &self.defaults) < NONE {
+                self.report(rule::meeting_points(given.name.span, &connector.name));
+            }
+        }
+    }
+
+    fn attachment(&mut self, given: &Given<spec::Attachment>, name: &str) -> Option<Attachment> {
+        let end = given.value.as_ref()?;
+        let at = self.vector(&end.at, &format!("an end of connector `{name}`"), "m", Limit::Any);
+        let Some(link) = &end.link else { return Some(Attachment { body: None, position: at }) };
+        let (body, position) = self.attach(link, at)?;
+        Some(Attachment { body: Some(body), position })
+    }
+
+    /// How many coordinates move an end.
+    fn reach(&self, end: &Attachment) -> usize {
+        end.body.map_or(0, |BodyId(body)| {
+            self.bodies[..=body].iter().flat_map(|body| &body.path).map(|step| step.coordinates().len()).sum()
+        })
+    }
+
+    fn connector_law(&mut self, law: &spec::ConnectorLaw, span: Span, name: &str) -> ConnectorLaw {
+        let mut number = |given: &Given<Number>, what: &str, unit, limit| {
+            self.number(given, &format!("the {what} of connector `{name}`"), unit, limit)
+        };
+        match law {
+            spec::ConnectorLaw::Spring(spring) => ConnectorLaw::Linear {
+                stiffness: number(&spring.stiffness, "stiffness", "N/m", Limit::NotNegative),
+                length: number(&spring.length, "length", "m", Limit::Positive),
+                damping: optional(&mut number, spring.damping.as_ref(), "damping", "N s/m"),
+                push: Value::ZERO,
+            },
+            spec::ConnectorLaw::GasSpring(spring) => ConnectorLaw::Linear {
+                push: number(&spring.force, "force", "N", Limit::NotNegative),
+                length: number(&spring.length, "length", "m", Limit::Positive),
+                stiffness: optional(&mut number, spring.stiffness.as_ref(), "stiffness", "N/m"),
+                damping: optional(&mut number, spring.damping.as_ref(), "damping", "N s/m"),
+            },
+            spec::ConnectorLaw::Rope(rope) => {
+                let stiffness = number(&rope.stiffness, "stiffness", "N/m", Limit::Positive);
+                let damping = optional(&mut number, rope.damping.as_ref(), "damping", "s/m");
+                ConnectorLaw::Rope { stiffness, damping, length: self.rope_length(rope, span, name) }
+            }
+        }
+    }
+
+    fn rope_length(&mut self, rope: &Rope, span: Span, name: &str) -> Profile {
+        let wrong = Profile::Hold(f64::NAN.into());
+        match (&rope.length, &rope.motion) {
+            (Some(length), None) => {
+                let place = format!("the length of connector `{name}`");
+                Profile::Hold(self.number(length, &place, "m", Limit::Positive))
+            }
+            (None, Some(motion)) => {
+                let way = Some(CoordinateKind::Translation);
+                let profile = motion.value.as_ref().and_then(|value| self.motion(value, way, motion.span));
+                profile.unwrap_or(wrong)
+            }
+            _ => {
+                self.report(rule::rope_length(span, name));
+                wrong
+            }
+        }
+    }
+}
+
+/// A number that may be left out, and is then zero.
+fn optional(
+    number: &mut impl FnMut(&Given<Number>, &str, &'static str, Limit) -> Value,
+    given: Option<&Given<Number>>,
+    what: &str,
+    unit: &'static str,
+) -> Value {
+    given.map_or(Value::ZERO, |given| number(given, what, unit, Limit::NotNegative))
+}

@@ -1,0 +1,27 @@
+//! Lengths of connectors beside the distance of their points.
+
+use super::{Look, items, rounded};
+use crate::chain::ConnectorLaw;
+use crate::diagnostic::rule;
+
+/// Usual lengths without force, in parts of the distance of the points at the guess.
+const USUAL: [f64; 2] = [0.1, 10.0];
+/// A rope at the guess is at most so many times as long as without force: steel breaks long before.
+const STRETCHED: f64 = 1.2;
+
+impl Look<'_> {
+    /// A spring or rope whose length does not fit its points.
+    pub(super) fn connectors(&mut self) {
+        let (crane, chain) = (self.crane, self.chain);
+        for (given, connector) in items(crane.connectors.as_ref()).zip(&chain.connectors) {
+            let distance = chain.distance(connector, &chain.guess, &self.values);
+            let (length, least) = match &connector.law {
+                ConnectorLaw::Linear { length, .. } => (length.at(&self.values), USUAL[0]),
+                ConnectorLaw::Rope { length, .. } => (length.start(&self.values), 1.0 / STRETCHED),
+            };
+            if length < least * distance || length > USUAL[1] * distance {
+                self.warn(rule::connector_length(given.law.span, &connector.name, rounded(length), rounded(distance)));
+            }
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Slack ropes.
+
+use super::{Extremes, Table, connector_force};
+use crate::{ConnectorInfo, Description, dyn_crane::DynCrane};
+
+/// Ropes that are slack at a pose at rest.
+pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> Vec<String> {
+    let tensions = rig.connector_tensions_at(0.0, q, &vec![0.0; q.len()]);
+    let connectors = rig.description().connectors.iter().zip(tensions);
+    let slack = connectors.filter(|(connector, tension)| connector.is_rope && tension.force == 0.0);
+    slack.map(|(rope, _)| format!("rope {} is slack", rope.name)).collect()
+}
+
+/// Ropes that are slack at times in a run.
+pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
+    description.connectors.iter().filter_map(|connector| goes_slack(connector, table)).collect()
+}
+
+/// Says when a rope is first slack in a run, for how long in all, and its largest force.
+fn goes_slack(connector: &ConnectorInfo, table: &Table) -> Option<String> {
+    let column = connector_force(&connector.name);
+    let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(table, &column);
+    let samples = table.values(&column)?.filter(|force| *force == 0.0).count();
+    let duration = table.rows.last().map_or(0.0, |row| row[0]);
+    let slack = samples as f64 * duration / (table.rows.len().max(2) - 1) as f64;
+    (connector.is_rope && minimum == 0.0).then(|| {
+        format!(
+            "rope {} is slack for {slack:.2} s, first at {time_of_minimum:.2} s; it pulls with up to {maximum:.1} N, at \
+             {time_of_maximum:.2} s",
+            connector.name
+        )
+    })
+}
