@@ -77,6 +77,7 @@ impl Writer {
         }
         if self.driven && seed % 4 >= 2 {
             self.connectors();
+            self.couplings();
         }
         self.line("points:");
         for (name, link) in [("middle", "first"), ("end", "hand")] {
@@ -362,6 +363,18 @@ impl Writer {
             ),
         ] {
             self.line(&format!("  - {{name: {name}, from: {from}, to: {to}, law: {law}}}"));
+        }
+    }
+
+    /// A coordinate that follows another one on the other side of several joints, and one that follows its neighbour.
+    fn couplings(&mut self) {
+        let names: Vec<String> = self.coordinates.iter().map(|(name, _)| name.clone()).collect();
+        let ([first, second, ..], Some(last)) = (names.as_slice(), names.last()) else { return };
+        self.line("couplings:");
+        for (name, coordinate, follows) in [("gear", last, second), ("stage", first, second)] {
+            let (ratio, offset) = (self.number(2.0), self.number(0.3));
+            let own = format!("coordinate: {coordinate}, follows: {follows}, ratio: {ratio}, offset: {offset}");
+            self.line(&format!("  - {{name: {name}, {own}, stiffness: 70, damping: 4}}"));
         }
     }
 

@@ -31,9 +31,9 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.drive_pieces(&mut places.pieces);
     crane.load_pieces(&mut places.pieces);
     crane.connector_lengths(q, v, &mut places.motions);
-    crane.connector_tensions(t, q, v, &mut [Tension::ZERO; 4]);
+    crane.connector_tensions(t, q, v, &mut [Tension::ZERO; 6]);
     black_box(crane.connector_stiffness(t, q));
-    crane.connector_jacobians(q, &mut [[0.0; N]; 4]);
+    crane.connector_jacobians(q, &mut [[0.0; N]; 6]);
     crane.winch_pieces(&mut places.pieces);
     black_box((crane.connector_forces(t, q, v), crane.connector_forces_at_rest(t, q)));
     black_box((crane.connector_energy(t, q), crane.winch_power(t, q, v)));

@@ -99,10 +99,11 @@ class Load:
 
 @dataclass
 class Connector:
-    """An element between two points: the bodies that it pulls by their places, the points, and what its force follows from."""
+    """An element whose force follows from its length; between points the bodies that it pulls by their places, and the points."""
 
     bodies: list
     points: list
+    strain: ca.SX
     is_rope: bool
     stiffness: object
     damping: object
@@ -228,6 +229,8 @@ def read_crane(path):
         crane.cylinders.append(read_cylinder(crane, written, spans))
     for written in spec.get("connectors", []):
         crane.connectors.append(read_connector(crane, written, spans))
+    for written in spec.get("couplings", []):
+        crane.connectors.append(read_coupling(crane, written))
     for written in spec.get("points", []):
         crane.points[written["name"]] = read_point(spec, written, spans[written["link"]])
     crane.guess = read_guess(crane)
@@ -430,7 +433,17 @@ def read_connector(crane, written, spans):
     motion = law.get("motion", {"hold": law.get("length")})
     length = read_profile(spec, motion, False, crane.time)[0]
     stiffness, damping, push = (spec.number(law.get(key, 0)) for key in ("stiffness", "damping", "force"))
-    return Connector(bodies, points, kind == "rope", stiffness, damping, length, push)
+    strain = ca.norm_2(points[1] - points[0])
+    return Connector(bodies, points, strain, kind == "rope", stiffness, damping, length, push)
+
+
+def read_coupling(crane, written):
+    """A coordinate that follows another one through a spring and a damper."""
+    spec = crane.spec
+    own, leader = (crane.coordinate(written[key]).q for key in ("coordinate", "follows"))
+    stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
+    strain = own - spec.number(written["ratio"]) * leader
+    return Connector([], [], strain, False, stiffness, damping, spec.number(written.get("offset", 0)), 0)
 
 
 def read_point(spec, written, span):

@@ -86,6 +86,8 @@ class Derivations:
                     force = force - load.force
                     moment = moment - load.moment - ca.cross(load.position, load.force)
             for connector in self.crane.connectors:
+                if not connector.points:
+                    continue
                 length, _, tension, _ = self.connector(connector)
                 pull = tension * (connector.points[1] - connector.points[0]) / length
                 for end, point, sign in zip(connector.bodies, connector.points, (1, -1)):
@@ -203,7 +205,7 @@ class Derivations:
 
         At rest nothing has a rate, not even a winch.
         """
-        length = ca.norm_2(connector.points[1] - connector.points[0])
+        length = connector.strain
         rate = self.rate(length) if moving else ca.SX(0)
         stretch = length - connector.length
         if connector.is_rope:

@@ -1,16 +1,32 @@
-//! Connectors: elements between two points.
+//! Connectors: elements between two points, or between two coordinates.
 
-use super::{BodyId, Chain, Frame, Profile, Value};
+use super::{BodyId, Chain, CoordinateId, CoordinateKind, Frame, Profile, Value};
 
-/// An element between two points. With ℓ their distance, it pulls them together with the force F(ℓ, ℓ̇).
+/// An element whose force F(ℓ, ℓ̇) resists the growth of its length ℓ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Connector {
     /// Unique name.
     pub name: String,
-    /// The points.
-    pub ends: [Attachment; 2],
+    /// What ℓ is.
+    pub strain: Strain,
     /// How F depends on ℓ.
     pub law: ConnectorLaw,
+}
+
+/// The length of a connector.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Strain {
+    /// The distance of two points, m.
+    Distance([Attachment; 2]),
+    /// `q_j − r q_i`, m or rad: how far a coordinate is from where another one takes it.
+    Coupling {
+        /// j
+        coordinate: CoordinateId,
+        /// i
+        leader: CoordinateId,
+        /// r
+        ratio: Value,
+    },
 }
 
 /// A point of a body or of the world.
@@ -65,17 +81,33 @@ impl Connector {
 }
 
 impl Chain {
-    /// The coordinates that change the length of a connector, the first and the one after the last: those that move only one of its
-    /// points.
+    /// The coordinates that change the length of a connector, the first and the one after the last: of two points, those that move only
+    /// one of them.
     #[must_use]
     pub fn spanned(&self, connector: &Connector) -> [usize; 2] {
-        let [one, other] = connector.ends.each_ref().map(|end| self.reach(end));
-        [one.min(other), one.max(other)]
+        match &connector.strain {
+            Strain::Distance(ends) => {
+                let [one, other] = ends.each_ref().map(|end| self.reach(end));
+                [one.min(other), one.max(other)]
+            }
+            Strain::Coupling { coordinate: CoordinateId(one), leader: CoordinateId(other), .. } => {
+                [*one.min(other), *one.max(other) + 1]
+            }
+        }
     }
 
-    /// The distance of a connector's points at a pose, m.
+    /// Whether the length of a connector is a length or an angle.
     #[must_use]
-    pub fn distance(&self, connector: &Connector, q: &[f64], parameters: &[f64]) -> f64 {
+    pub fn kind_of(&self, connector: &Connector) -> CoordinateKind {
+        match &connector.strain {
+            Strain::Distance(_) => CoordinateKind::Translation,
+            Strain::Coupling { coordinate, .. } => self.coordinates[coordinate.0].kind,
+        }
+    }
+
+    /// The distance of two points at a pose, m.
+    #[must_use]
+    pub fn distance(&self, ends: &[Attachment; 2], q: &[f64], parameters: &[f64]) -> f64 {
         let mut frame = Frame::WORLD;
         let mut frames = Vec::with_capacity(self.bodies.len());
         for body in &self.bodies {
@@ -86,7 +118,7 @@ impl Chain {
             let frame = end.body.map_or(Frame::WORLD, |BodyId(body)| frames[body]);
             frame.place(end.position.each_ref().map(|x| x.at(parameters)))
         };
-        let [one, other] = connector.ends.each_ref().map(place);
+        let [one, other] = ends.each_ref().map(place);
         (0..3).map(|i| (other[i] - one[i]).powi(2)).sum::<f64>().sqrt()
     }
 

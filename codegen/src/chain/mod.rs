@@ -15,7 +15,7 @@ mod profile;
 mod start;
 mod value;
 
-pub use connector::{Attachment, Connector, ConnectorLaw};
+pub use connector::{Attachment, Connector, ConnectorLaw, Strain};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin};
 pub use force::{End, ForceElement, Friction, Law, Stop};
@@ -74,7 +74,7 @@ pub struct Chain {
     pub cylinders: Vec<Cylinder>,
     /// Greatest flow to all cylinders together, m³/s.
     pub pump_flow: Option<f64>,
-    /// Elements between two points.
+    /// Elements between two points, and couplings of coordinates.
     pub connectors: Vec<Connector>,
     /// Inputs that are set between steps.
     pub inputs: Vec<Input>,

@@ -330,6 +330,9 @@ catalogue! {
     /// The two points of a connector are apart.
     E132 meeting_points(connector) "the two points of connector `{connector}` coincide", "the line between them has no direction",
         "attach it to points that are apart at the `guess` and remain so while the crane moves";
+    /// A coupling joins two coordinates.
+    E133 own_leader(coupling) "coupling `{coupling}` makes a coordinate follow itself", "the same as `coordinate`",
+        "write under `follows` the other coordinate, the one that leads";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.

@@ -6,7 +6,9 @@ use syn::{Item, parse_quote};
 
 use super::arithmetic::{integer, literal};
 use super::print::constant;
-use crate::chain::{BodyId, Chain, ConnectorLaw, CoordinateId, CoordinateKind, Profile, SupportKinematics, Value};
+use crate::chain::{
+    BodyId, Chain, ConnectorLaw, CoordinateId, CoordinateKind, Profile, Strain, SupportKinematics, Value,
+};
 
 /// Sizes and the `DESCRIPTION`.
 pub fn description(chain: &Chain) -> Vec<Item> {
@@ -53,15 +55,28 @@ fn description_constant(chain: &Chain) -> Item {
         let is_rope = matches!(connector.law, ConnectorLaw::Rope { .. });
         let [first, end] = chain.spanned(connector).map(integer);
         let pieces = integer(connector.pieces());
-        let ends = connector.ends.iter().map(|end| {
-            let body = end.body.map_or_else(|| quote!(None), |BodyId(body)| {
-                let body = integer(body);
-                quote!(Some(#body))
-            });
-            let position = end.position.iter().map(at_defaults);
-            quote!(AttachmentInfo { body: #body, position: [#(#position),*] })
-        });
-        quote!(ConnectorInfo { name: #name, ends: [#(#ends),*], is_rope: #is_rope, spanned: [#first, #end], pieces: #pieces })
+        let ends = match &connector.strain {
+            Strain::Distance(ends) => {
+                let ends = ends.iter().map(|end| {
+                    let body = match end.body {
+                        Some(BodyId(body)) => {
+                            let body = integer(body);
+                            quote!(Some(#body))
+                        }
+                        None => quote!(None),
+                    };
+                    let position = end.position.iter().map(at_defaults);
+                    quote!(AttachmentInfo { body: #body, position: [#(#position),*] })
+                });
+                quote!(Some([#(#ends),*]))
+            }
+            Strain::Coupling { .. } => quote!(None),
+        };
+        let kind = match chain.kind_of(connector) {
+            CoordinateKind::Translation => quote!(CoordinateKind::Translation),
+            CoordinateKind::Rotation => quote!(CoordinateKind::Rotation),
+        };
+        quote!(ConnectorInfo { name: #name, ends: #ends, kind: #kind, is_rope: #is_rope, spanned: [#first, #end], pieces: #pieces })
     });
     let inputs = chain.inputs.iter().map(|input| {
         let [name, unit, about] = [&input.name, &input.unit, &input.about].map(|words| text(words));

@@ -53,8 +53,8 @@ pub fn approximations(chain: &Chain) -> Option<String> {
     });
     let joints = (!chain.forces.is_empty()).then(|| "End stops and friction of joints are left out.".to_owned());
     let loads = (!chain.loads.is_empty()).then(|| "Loads applied from outside are left out.".to_owned());
-    let connectors =
-        (!chain.connectors.is_empty()).then(|| "Springs and ropes between points are left out.".to_owned());
+    let connectors = (!chain.connectors.is_empty())
+        .then(|| "Springs and ropes between points and couplings of coordinates are left out.".to_owned());
     let lost: Vec<String> = hinges.into_iter().chain(joints).chain(loads).chain(connectors).collect();
     (!lost.is_empty()).then(|| lost.join(" "))
 }

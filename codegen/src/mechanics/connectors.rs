@@ -1,28 +1,27 @@
-//! Connectors: elements that pull or push two points along the line between them.
+//! Connectors: elements that pull or push two points along the line between them, and couplings of two coordinates.
 //!
 //! Notation
 //! : points p₁, p₂ in the world, `ℓ = |p₂ − p₁|`, `e = (p₂ − p₁)/ℓ`. `J_j = ∂ℓ/∂q_j = e · (∂p₂/∂q_j − ∂p₁/∂q_j)` for the coordinates
-//!   that move only one of the points: those that move both do not change ℓ. `ℓ̇ = J q̇`.
+//!   that move only one of the points: those that move both do not change ℓ. `ℓ̇ = J q̇`. Of a coupling `ℓ = q_j − r q_i`, `J_j = 1`,
+//!   `J_i = −r`.
 //!
-//! F is the force that pulls both points together, so `f = −Jᵀ F`.
+//! F is the force that resists the growth of ℓ, so `f = −Jᵀ F`.
 
 use super::kinematics::{Kinematics, Pose};
 use super::model::Model;
 use super::profile;
 use super::vector::{SymmetricMatrix, Vec3};
-use crate::chain::{Attachment, BodyId, Connector, ConnectorLaw, Profile};
+use crate::chain::{Attachment, BodyId, Connector, ConnectorLaw, CoordinateId, Profile, Strain};
 use crate::symbolic::Expr;
 
 /// A connector at the present state.
 struct Stretched<'g> {
-    /// p₁, p₂.
-    points: [Vec3<'g>; 2],
-    /// e.
-    direction: Vec3<'g>,
-    /// ℓ, m.
+    /// ℓ, m or rad.
     length: Expr<'g>,
     /// Places and values of J.
     jacobian: Vec<(usize, Expr<'g>)>,
+    /// p₁, p₂ and e of an element between points.
+    line: Option<([Vec3<'g>; 2], Vec3<'g>)>,
 }
 
 /// The position of an end in the world.
@@ -39,15 +38,25 @@ fn point<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, end: &Attachment) -
 
 impl<'g> Stretched<'g> {
     fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, connector: &Connector) -> Self {
-        let points = connector.ends.each_ref().map(|end| point(model, kinematics, end));
-        let way = points[1] - points[0];
-        let length = way.dot(way).sqrt();
-        let direction = (1.0 / length) * way;
-        let [first, last] = model.chain.spanned(connector);
-        let second = model.chain.reach(&connector.ends[1]) == last;
-        let (moved, sign) = if second { (points[1], 1.0) } else { (points[0], -1.0) };
-        let column = |j: usize| (j, sign * direction.dot(kinematics.generators[j].velocity(moved)));
-        Stretched { points, direction, length, jacobian: (first..last).map(column).collect() }
+        let [first, end] = model.chain.spanned(connector);
+        match &connector.strain {
+            Strain::Distance(ends) => {
+                let points = ends.each_ref().map(|end| point(model, kinematics, end));
+                let way = points[1] - points[0];
+                let length = way.dot(way).sqrt();
+                let direction = (1.0 / length) * way;
+                let moves_second = model.chain.reach(&ends[1]) == end;
+                let (moved, sign) = if moves_second { (points[1], 1.0) } else { (points[0], -1.0) };
+                let column = |j: usize| (j, sign * direction.dot(kinematics.generators[j].velocity(moved)));
+                Stretched { length, jacobian: (first..end).map(column).collect(), line: Some((points, direction)) }
+            }
+            Strain::Coupling { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio } => {
+                let ratio = model.number(ratio);
+                let mut jacobian = vec![(*j, model.graph.constant(1.0)), (*i, -ratio)];
+                jacobian.sort_by_key(|(place, _)| *place);
+                Stretched { length: model.q[*j] - ratio * model.q[*i], jacobian, line: None }
+            }
+        }
     }
 
     /// ℓ̇
@@ -58,7 +67,7 @@ impl<'g> Stretched<'g> {
 
 /// Length and rate on which the force depends; at rest nothing has a rate, not even a winch.
 #[derive(Clone, Copy, Debug)]
-struct Strain<'g> {
+struct State<'g> {
     t: Expr<'g>,
     length: Expr<'g>,
     rate: Option<Expr<'g>>,
@@ -72,13 +81,13 @@ struct Rope<'g> {
 }
 
 impl<'g> Rope<'g> {
-    fn new(model: &Model<'g>, strain: &Strain<'g>, unstretched: &Profile) -> Self {
-        let length = profile::position(model, unstretched, strain.t);
-        let slack = length - strain.length;
+    fn new(model: &Model<'g>, state: &State<'g>, unstretched: &Profile) -> Self {
+        let length = profile::position(model, unstretched, state.t);
+        let slack = length - state.length;
         Rope {
             slack,
-            stretch: slack.select(model.zero(), strain.length - length),
-            rate: strain.rate.map_or(model.zero(), |rate| rate - profile::rate(model, unstretched, strain.t)),
+            stretch: slack.select(model.zero(), state.length - length),
+            rate: state.rate.map_or(model.zero(), |rate| rate - profile::rate(model, unstretched, state.t)),
         }
     }
 
@@ -89,14 +98,14 @@ impl<'g> Rope<'g> {
 }
 
 /// F
-fn force<'g>(model: &Model<'g>, law: &ConnectorLaw, strain: &Strain<'g>) -> Expr<'g> {
+fn force<'g>(model: &Model<'g>, law: &ConnectorLaw, state: &State<'g>) -> Expr<'g> {
     match law {
         ConnectorLaw::Linear { stiffness, damping, length, push } => {
-            let elastic = model.number(stiffness) * (strain.length - model.number(length)) - model.number(push);
-            strain.rate.map_or(elastic, |rate| elastic + model.number(damping) * rate)
+            let elastic = model.number(stiffness) * (state.length - model.number(length)) - model.number(push);
+            state.rate.map_or(elastic, |rate| elastic + model.number(damping) * rate)
         }
         ConnectorLaw::Rope { stiffness, damping, length } => {
-            let rope = Rope::new(model, strain, length);
+            let rope = Rope::new(model, state, length);
             let growth = (1.0 + model.number(damping) * rope.rate).max(model.zero());
             model.number(stiffness) * rope.stretch * growth
         }
@@ -104,11 +113,11 @@ fn force<'g>(model: &Model<'g>, law: &ConnectorLaw, strain: &Strain<'g>) -> Expr
 }
 
 /// `∂F/∂ℓ` and `∂F/∂ℓ̇`.
-fn slopes<'g>(model: &Model<'g>, law: &ConnectorLaw, strain: &Strain<'g>) -> [Expr<'g>; 2] {
+fn slopes<'g>(model: &Model<'g>, law: &ConnectorLaw, state: &State<'g>) -> [Expr<'g>; 2] {
     match law {
         ConnectorLaw::Linear { stiffness, damping, .. } => [model.number(stiffness), model.number(damping)],
         ConnectorLaw::Rope { stiffness, damping, length } => {
-            let rope = Rope::new(model, strain, length);
+            let rope = Rope::new(model, state, length);
             let (stiffness, damping) = (model.number(stiffness), model.number(damping));
             let growth = 1.0 + damping * rope.rate;
             let by_length = rope.where_taut(stiffness * growth.max(model.zero()));
@@ -122,11 +131,11 @@ fn stretched<'g, 'a>(
     model: &'a Model<'g>,
     kinematics: &'a Kinematics<'g>,
     (t, v): (Expr<'g>, Option<&'a [Expr<'g>]>),
-) -> impl Iterator<Item = (&'a Connector, Stretched<'g>, Strain<'g>)> {
+) -> impl Iterator<Item = (&'a Connector, Stretched<'g>, State<'g>)> {
     model.chain.connectors.iter().map(move |connector| {
         let stretched = Stretched::new(model, kinematics, connector);
-        let strain = Strain { t, length: stretched.length, rate: v.map(|v| stretched.rate(model, v)) };
-        (connector, stretched, strain)
+        let state = State { t, length: stretched.length, rate: v.map(|v| stretched.rate(model, v)) };
+        (connector, stretched, state)
     })
 }
 
@@ -138,8 +147,8 @@ pub fn forces<'g>(
     v: Option<&[Expr<'g>]>,
 ) -> Vec<Expr<'g>> {
     let mut forces = model.zeros();
-    for (connector, stretched, strain) in stretched(model, kinematics, (t, v)) {
-        let pull = force(model, &connector.law, &strain);
+    for (connector, stretched, state) in stretched(model, kinematics, (t, v)) {
+        let pull = force(model, &connector.law, &state);
         for (j, column) in stretched.jacobian {
             forces[j] = forces[j] - column * pull;
         }
@@ -171,9 +180,9 @@ pub fn jacobians<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr
 /// `F, ∂F/∂ℓ, ∂F/∂ℓ̇` of every connector.
 pub fn tensions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
     let all = stretched(model, kinematics, (model.t, Some(&model.v)));
-    all.flat_map(|(Connector { law, .. }, _, strain)| {
-        let [by_length, by_rate] = slopes(model, law, &strain);
-        [force(model, law, &strain), by_length, by_rate]
+    all.flat_map(|(Connector { law, .. }, _, state)| {
+        let [by_length, by_rate] = slopes(model, law, &state);
+        [force(model, law, &state), by_length, by_rate]
     })
     .collect()
 }
@@ -181,14 +190,14 @@ pub fn tensions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<
 /// `½ Σ k (ℓ − ℓ₀)² − P (ℓ − ℓ₀)`, of ropes `½ Σ k σ²`.
 pub fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     let all = stretched(model, kinematics, (model.t, None));
-    all.fold(model.zero(), |sum, (connector, _, strain)| {
+    all.fold(model.zero(), |sum, (connector, _, state)| {
         sum + match &connector.law {
             ConnectorLaw::Linear { stiffness, length, push, .. } => {
-                let stretch = strain.length - model.number(length);
+                let stretch = state.length - model.number(length);
                 0.5 * (model.number(stiffness) * stretch.squared()) - model.number(push) * stretch
             }
             ConnectorLaw::Rope { stiffness, length, .. } => {
-                0.5 * (model.number(stiffness) * Rope::new(model, &strain, length).stretch.squared())
+                0.5 * (model.number(stiffness) * Rope::new(model, &state, length).stretch.squared())
             }
         }
     })
@@ -197,13 +206,13 @@ pub fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
 /// Power lost: `d ℓ̇²`, of ropes `k σ max(−1, a σ̇) σ̇`.
 pub fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     let all = stretched(model, kinematics, (model.t, Some(&model.v)));
-    all.fold(model.zero(), |sum, (connector, _, strain)| {
+    all.fold(model.zero(), |sum, (connector, _, state)| {
         sum + match &connector.law {
             ConnectorLaw::Linear { damping, .. } => {
-                model.number(damping) * strain.rate.unwrap_or(model.zero()).squared()
+                model.number(damping) * state.rate.unwrap_or(model.zero()).squared()
             }
             ConnectorLaw::Rope { stiffness, damping, length } => {
-                let rope = Rope::new(model, &strain, length);
+                let rope = Rope::new(model, &state, length);
                 let share = (model.number(damping) * rope.rate).max(model.graph.constant(-1.0));
                 model.number(stiffness) * rope.stretch * (share * rope.rate)
             }
@@ -214,8 +223,8 @@ pub fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'
 /// Power that winches put in, `−Σ F ℓ̇₀`.
 pub fn winch_power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     let all = stretched(model, kinematics, (model.t, Some(&model.v)));
-    all.fold(model.zero(), |sum, (connector, _, strain)| match connector.winch() {
-        Some(length) => sum - force(model, &connector.law, &strain) * profile::rate(model, length, model.t),
+    all.fold(model.zero(), |sum, (connector, _, state)| match connector.winch() {
+        Some(length) => sum - force(model, &connector.law, &state) * profile::rate(model, length, model.t),
         None => sum,
     })
 }
@@ -239,8 +248,8 @@ pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>
 
 /// Adds `Σ Jᵀ ∂F/∂ℓ̇ J` at rest and t = 0.
 pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    for (connector, stretched, strain) in stretched(model, kinematics, (model.zero(), None)) {
-        let [_, by_rate] = slopes(model, &connector.law, &strain);
+    for (connector, stretched, state) in stretched(model, kinematics, (model.zero(), None)) {
+        let [_, by_rate] = slopes(model, &connector.law, &state);
         for (place, &(j, one)) in stretched.jacobian.iter().enumerate() {
             for &(i, other) in &stretched.jacobian[..=place] {
                 matrix.add(i, j, by_rate * one * other);
@@ -249,14 +258,17 @@ pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut 
     }
 }
 
-/// Forces on the bodies at both ends, in the world: body, point, force.
+/// Forces on the bodies at both ends, in the world: body, point, force. A coupling acts along its joints, like their drives.
 pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(BodyId, Vec3<'g>, Vec3<'g>)> {
     let all = stretched(model, kinematics, (model.t, Some(&model.v)));
-    all.flat_map(|(connector, stretched, strain)| {
-        let pull = force(model, &connector.law, &strain) * stretched.direction;
-        let [one, other] = connector.ends.each_ref().map(|end| end.body);
-        [(one, stretched.points[0], pull), (other, stretched.points[1], -pull)]
+    all.filter_map(|(connector, stretched, state)| {
+        let (Strain::Distance(ends), Some((points, direction))) = (&connector.strain, stretched.line) else {
+            return None;
+        };
+        let pull = force(model, &connector.law, &state) * direction;
+        Some([(ends[0].body, points[0], pull), (ends[1].body, points[1], -pull)])
     })
+    .flatten()
     .filter_map(|(body, point, force)| Some((body?, point, force)))
     .collect()
 }

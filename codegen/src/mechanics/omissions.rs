@@ -25,7 +25,7 @@ pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'stati
     out(chain.stops().next().is_none(), "end stops", "the spec has none");
     out(chain.frictions().next().is_none(), "friction of joints", "the spec has none");
     out(chain.loads.is_empty(), "loads applied from outside", "the spec has none");
-    out(chain.connectors.is_empty(), "springs and ropes between points", "the spec has none");
+    out(chain.connectors.is_empty(), "springs and ropes between points, couplings of coordinates", "the spec has none");
     out(chain.points.is_empty(), "points of interest", "the spec has none");
     out(chain.parameters.is_empty(), "live parameters", "the spec has none: all numbers are compiled in");
     out(

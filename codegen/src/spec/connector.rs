@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Given, Motion, Number, Vector};
+use super::{Angle, Given, Motion, Number, Vector};
 
 /// A spring, gas spring or rope between two points, which pulls or pushes them along the line between them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -27,6 +27,26 @@ pub struct Attachment {
     pub link: Option<Given<String>>,
     /// Position in the frame of the link (of a beam: undeformed) or of the world, m.
     pub at: Given<Vector>,
+}
+
+/// A coupling: one coordinate follows another through a spring and a damper.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `name`, `coordinate`, `follows`, `ratio` and `stiffness`")]
+pub struct Coupling {
+    /// Name, a `snake_case` identifier.
+    pub name: Given<String>,
+    /// The coordinate that follows.
+    pub coordinate: Given<String>,
+    /// The coordinate that leads.
+    pub follows: Given<String>,
+    /// How far the one moves per unit of the other: m, rad, m/rad or rad/m.
+    pub ratio: Given<Number>,
+    /// Where the one is while the other is at 0, m or rad. Default 0.
+    pub offset: Option<Given<Angle>>,
+    /// Stiffness, N/m or N m/rad, of the coordinate that follows.
+    pub stiffness: Given<Number>,
+    /// Damping, N s/m or N m s/rad. Default 0.
+    pub damping: Option<Given<Number>>,
 }
 
 /// How the force of a connector depends on its length.

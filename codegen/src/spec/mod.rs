@@ -18,7 +18,7 @@ mod schema;
 mod support;
 
 pub use beam::{Beam, BeamDamping, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring};
-pub use connector::{Attachment, Connector, ConnectorLaw, GasSpring, PointSpring, Rope};
+pub use connector::{Attachment, Connector, ConnectorLaw, Coupling, GasSpring, PointSpring, Rope};
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side};
 pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub(crate) use given::{EITHER, GIVEN, MANY};
@@ -93,6 +93,8 @@ pub struct Crane {
     pub loads: Option<Given<Vec<Given<Load>>>>,
     /// Springs, gas springs and ropes between two points.
     pub connectors: Option<Given<Vec<Given<Connector>>>>,
+    /// Coordinates that follow others: stages of telescopes, gears.
+    pub couplings: Option<Given<Vec<Given<Coupling>>>>,
     /// Hydraulic cylinders of driven joints, by their pins.
     pub cylinders: Option<Given<Vec<Given<Cylinder>>>>,
     /// What supplies the cylinders.

@@ -1,8 +1,11 @@
-//! Connectors: elements between two points.
+//! Connectors: elements between two points, and couplings of coordinates.
 
 use super::Check;
+use super::drives::{Units, units};
 use super::limits::Limit;
-use crate::chain::{Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateKind, Cylinder, Profile, Value};
+use crate::chain::{
+    Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateKind, Cylinder, Profile, Strain, Value,
+};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Crane, Given, Number, Rope};
 
@@ -25,9 +28,42 @@ impl<'a> Check<'a> {
             if self.reach(&from) == self.reach(&to) {
                 self.report(rule::rigid_connector(connector.name.span, &name));
             }
-            connectors.push(Connector { name, ends: [from, to], law });
+            connectors.push(Connector { name, strain: Strain::Distance([from, to]), law });
         }
+        connectors.extend(self.couplings(crane));
         connectors
+    }
+
+    /// Couplings of two coordinates.
+    fn couplings(&mut self, crane: &'a Crane) -> Vec<Connector> {
+        let given = crane.couplings.as_ref().and_then(|couplings| couplings.value.as_deref()).unwrap_or_default();
+        let mut couplings = Vec::new();
+        for coupling in given.iter().filter_map(|coupling| coupling.value.as_ref()) {
+            let name = self.name(&coupling.name).unwrap_or_default().to_owned();
+            if !name.is_empty() {
+                self.take_name("connectors", &name, "an earlier connector".into(), coupling.name.span);
+            }
+            let coordinate = self.joint_of(&coupling.coordinate, "a coupling");
+            let leader = self.joint_of(&coupling.follows, "a coupling");
+            if coordinate.is_some() && coordinate == leader {
+                self.report(rule::own_leader(coupling.follows.span, &name));
+            }
+            let kind = self.kind_of(coordinate);
+            let place = |what: &str| format!("the {what} of coupling `{name}`");
+            let Units { stiffness, damping, .. } = units(kind);
+            let ratio = self.number(&coupling.ratio, &place("ratio"), "", Limit::Any);
+            let offset = coupling.offset.as_ref();
+            let law = ConnectorLaw::Linear {
+                stiffness: self.number(&coupling.stiffness, &place("stiffness"), stiffness, Limit::NotNegative),
+                damping: self.number_or(coupling.damping.as_ref(), 0.0, &place("damping"), damping, Limit::NotNegative),
+                length: offset.map_or(Value::ZERO, |offset| self.position(offset, kind, "`offset`")),
+                push: Value::ZERO,
+            };
+            if let (Some(coordinate), Some(leader)) = (coordinate, leader) {
+                couplings.push(Connector { name, strain: Strain::Coupling { coordinate, leader, ratio }, law });
+            }
+        }
+        couplings
     }
 
     /// Reports connectors whose points coincide at the guess.
@@ -37,7 +73,8 @@ impl<'a> Check<'a> {
         let given = crane.connectors.as_ref().and_then(|connectors| connectors.value.as_deref()).unwrap_or_default();
         let given = given.iter().filter_map(|connector| connector.value.as_ref());
         for (connector, given) in chain.connectors.iter().zip(given) {
-            if chain.distance(connector, &chain.guess, &self.defaults) < NONE {
+            let Strain::Distance(ends) = &connector.strain else { continue };
+            if chain.distance(ends, &chain.guess, &self.defaults) < NONE {
                 self.report(rule::meeting_points(given.name.span, &connector.name));
             }
         }

@@ -37,7 +37,7 @@ impl<'a> Check<'a> {
     }
 
     /// The coordinate of a joint by its name.
-    fn joint_of(&mut self, name: &Given<String>, what: &str) -> Option<CoordinateId> {
+    pub(super) fn joint_of(&mut self, name: &Given<String>, what: &str) -> Option<CoordinateId> {
         let id = self.coordinate(name)?;
         if let Some(owner) = self.not_a_joint(id) {
             let coordinate = self.coordinates[id.0].name.clone();
@@ -118,7 +118,8 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn kind_of(&self, coordinate: Option<CoordinateId>) -> Option<CoordinateKind> {
+    /// The kind of a coordinate.
+    pub(super) fn kind_of(&self, coordinate: Option<CoordinateId>) -> Option<CoordinateKind> {
         coordinate.map(|CoordinateId(index)| self.coordinates[index].kind)
     }
 }

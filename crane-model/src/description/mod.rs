@@ -31,7 +31,7 @@ pub struct Description {
     pub frictions: List<usize>,
     /// Loads applied from outside.
     pub loads: List<LoadInfo>,
-    /// Springs, gas springs and ropes between two points.
+    /// Springs, gas springs and ropes between two points, and couplings of coordinates.
     pub connectors: List<ConnectorInfo>,
     /// Inputs that are set between steps.
     pub inputs: List<InputInfo>,
@@ -293,13 +293,15 @@ pub struct InputInfo {
     pub moves: bool,
 }
 
-/// An element between two points.
+/// An element between two points, or a coupling of two coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConnectorInfo {
     /// Name.
     pub name: Text,
-    /// Its points.
-    pub ends: [AttachmentInfo; 2],
+    /// Its points; `None` for a coupling.
+    pub ends: Option<[AttachmentInfo; 2]>,
+    /// Whether its length is a length or an angle.
+    pub kind: CoordinateKind,
     /// Whether it is a rope, which pulls and never pushes.
     pub is_rope: bool,
     /// The coordinates that change its length: the first, and the one after the last.
@@ -311,7 +313,7 @@ pub struct ConnectorInfo {
 impl ConnectorInfo {
     /// Whether one of its points is a point of the world.
     pub fn holds_to_world(&self) -> bool {
-        self.ends.iter().any(|end| end.body.is_none())
+        self.ends.iter().flatten().any(|end| end.body.is_none())
     }
 }
 

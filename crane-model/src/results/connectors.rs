@@ -18,7 +18,7 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
 
 /// Says when a rope is first slack in a run, for how long in all, and its largest force.
 fn goes_slack(connector: &ConnectorInfo, table: &Table) -> Option<String> {
-    let column = connector_force(&connector.name);
+    let column = connector_force(connector);
     let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(table, &column);
     let samples = table.values(&column)?.filter(|force| *force == 0.0).count();
     let duration = table.rows.last().map_or(0.0, |row| row[0]);

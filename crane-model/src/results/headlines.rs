@@ -63,12 +63,16 @@ pub fn headlines(description: &Description) -> Vec<Kind> {
         |name: String| ["x", "y", "z"].map(|axis| format!("{name}_{axis}")).into_iter().collect::<Vec<String>>();
     let points = description.points.iter().flat_map(|point| each_axis(point.to_string())).collect();
     let supports = description.supports.iter().map(|support| format!("{}_reaction_z", support.name));
-    let connectors = description.connectors.iter().map(|connector| connector_force(&connector.name));
+    let connectors = |unit: &str| -> Vec<String> {
+        let of_unit = description.connectors.iter().filter(|connector| connector.kind.force_unit() == unit);
+        of_unit.map(connector_force).collect()
+    };
     vec![
         Kind::new(efforts("N m"), "N m", Size::Peak),
         Kind::new(efforts("N"), "N", Size::Peak),
         Kind::new(points, "m", Size::Range),
         Kind::new(supports.collect(), "N", Size::Peak),
-        Kind::new(connectors.collect(), "N", Size::Peak),
+        Kind::new(connectors("N"), "N", Size::Peak),
+        Kind::new(connectors("N m"), "N m", Size::Peak),
     ]
 }

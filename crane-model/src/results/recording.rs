@@ -1,7 +1,7 @@
 //! Everything of a run that is worth a column.
 
 use crate::{
-    CoordinateKind, Description,
+    ConnectorInfo, CoordinateKind, Description,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
     results::{Column, Table, cylinders},
@@ -13,7 +13,7 @@ use crate::{
 /// `<coordinate>_drive_torque` or `_drive_force`; of a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`,
 /// `_rod_pressure` and `_flow`, of all `pump_flow` and `pump_power`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
 /// `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap` as well; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; of a
-/// connector `<connector>_length`, `<connector>_length_rate` and `<connector>_force`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
+/// connector `<connector>_length`, `<connector>_length_rate` and `<connector>_force`, of a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
 /// error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
@@ -151,9 +151,10 @@ pub fn quantities(description: &Description) -> Vec<Column> {
         }
     }
     for connector in &description.connectors {
-        table.add(format!("{}_length", connector.name), "m");
-        table.add(format!("{}_length_rate", connector.name), "m/s");
-        table.add(connector_force(&connector.name), "N");
+        let (what, unit) = (length_of(connector), connector.kind.unit());
+        table.add(format!("{}_{what}", connector.name), unit);
+        table.add(format!("{}_{what}_rate", connector.name), format!("{unit}/s"));
+        table.add(connector_force(connector), connector.kind.force_unit());
     }
     for energy in ["kinetic", "gravity", "support", "element", "drive"] {
         table.add(format!("{energy}_energy"), "J");
@@ -179,9 +180,17 @@ pub fn support_gap(support: &str) -> String {
     format!("{support}_gap")
 }
 
-/// Name of the column with the force of a connector.
-pub fn connector_force(connector: &str) -> String {
-    format!("{connector}_force")
+/// What the length of a connector is called: the distance of points, or how much a coupling gives way.
+fn length_of(connector: &ConnectorInfo) -> &'static str {
+    if connector.ends.is_some() { "length" } else { "slip" }
+}
+
+/// Name of the column with the force or torque of a connector.
+pub fn connector_force(connector: &ConnectorInfo) -> String {
+    match connector.kind {
+        CoordinateKind::Translation => format!("{}_force", connector.name),
+        CoordinateKind::Rotation => format!("{}_torque", connector.name),
+    }
 }
 
 /// Name of the column with the torque or force of a drive.

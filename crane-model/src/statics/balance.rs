@@ -99,7 +99,7 @@ fn of_lengths(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
     crane.connector_tensions(0.0, q.as_slice(), &rest, &mut tensions);
     let rows = jacobians.chunks_exact(q.len()).zip(connectors.iter().zip(lengths.iter().zip(&tensions)));
     for (row, (connector, ([length, _], tension))) in rows {
-        let places = connector.ends.iter().flat_map(|end| end.position);
+        let places = connector.ends.iter().flatten().flat_map(|end| end.position);
         let size = places.fold(*length, |size: f64, x| size.max(x.abs()));
         for (sum, slope) in sum.iter_mut().zip(row) {
             *sum += tension.stiffness * slope.abs() * size;

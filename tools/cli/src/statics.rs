@@ -273,8 +273,8 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
             let words = [connector.name.as_str().into(), quantity.into()];
             grid.row(words.into_iter().chain(cells).chain([unit.into()]).collect::<Vec<_>>());
         };
-        row("length", "m", |(length, _)| *length);
-        row("force", "N", |(_, tension)| tension.force);
+        row("length", connector.kind.unit(), |(length, _)| *length);
+        row("force", connector.kind.force_unit(), |(_, tension)| tension.force);
     }
     Some(grid)
 }

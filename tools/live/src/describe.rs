@@ -1,7 +1,7 @@
 //! Metadata of a live crane.
 
 use crane_codegen::chain::{
-    self, BodyId, Chain, ConnectorLaw, CoordinateId, CoordinateKind as Kind, Profile, SupportKinematics, Value,
+    self, BodyId, Chain, ConnectorLaw, CoordinateId, CoordinateKind as Kind, Profile, Strain, SupportKinematics, Value,
 };
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo,
@@ -22,10 +22,7 @@ pub fn describe(chain: &Chain) -> Description {
     });
     let coordinates = chain.coordinates.iter().enumerate().map(|(index, coordinate)| CoordinateInfo {
         name: coordinate.name.clone().into(),
-        kind: match coordinate.kind {
-            Kind::Translation => CoordinateKind::Translation,
-            Kind::Rotation => CoordinateKind::Rotation,
-        },
+        kind: kind_of(coordinate.kind),
         role: role(chain, index),
     });
     let bodies = chain.bodies.iter().enumerate().map(|(index, body)| BodyInfo {
@@ -49,10 +46,14 @@ pub fn describe(chain: &Chain) -> Description {
     let loads = chain.loads.iter().map(|load| LoadInfo { name: load.name.clone().into(), pieces: load.pieces() });
     let connectors = chain.connectors.iter().map(|connector| ConnectorInfo {
         name: connector.name.clone().into(),
-        ends: connector.ends.each_ref().map(|end| AttachmentInfo {
-            body: end.body.map(|BodyId(body)| body),
-            position: end.position.each_ref().map(|x| x.at(&defaults)),
-        }),
+        ends: match &connector.strain {
+            Strain::Distance(ends) => Some(ends.each_ref().map(|end| AttachmentInfo {
+                body: end.body.map(|BodyId(body)| body),
+                position: end.position.each_ref().map(|x| x.at(&defaults)),
+            })),
+            Strain::Coupling { .. } => None,
+        },
+        kind: kind_of(chain.kind_of(connector)),
         is_rope: matches!(connector.law, ConnectorLaw::Rope { .. }),
         spanned: chain.spanned(connector),
         pieces: connector.pieces(),
@@ -123,5 +124,12 @@ fn role(chain: &Chain, index: usize) -> CoordinateRole {
         CoordinateRole::Element
     } else {
         CoordinateRole::Passive
+    }
+}
+
+fn kind_of(kind: Kind) -> CoordinateKind {
+    match kind {
+        Kind::Translation => CoordinateKind::Translation,
+        Kind::Rotation => CoordinateKind::Rotation,
     }
 }

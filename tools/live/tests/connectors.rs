@@ -288,3 +288,37 @@ fn implicit_steps_know_springs_across_several_joints() {
     assert!(off < 1e-4, "off by {off:.1e}");
     assert!(5 * steps < most, "{steps} steps, {most} of dopri5");
 }
+
+/// The second stage of a telescope follows the first. The chain carries the second stage's weight, and the drive lifts both: by
+/// virtual work with `δy = δx`, and twice the way of the second stage.
+#[test]
+fn a_second_stage_follows_the_first() {
+    let [first, second] = [30.0, 20.0];
+    let telescope = crane(&format!(
+        "format: 1\nname: telescope\nlinks:\n- {{name: one, joint: {{prismatic: {{axis: z}}}}, mass: {first}, com: [0, 0, 0]}}\n\
+         - {{name: two, joint: {{prismatic: {{axis: z}}}}, mass: {second}, com: [0, 0, 0]}}\n\
+         drives: [{{coordinate: one_z, stiffness: 1e7, damping: 1e4, motion: {{quintic: {{from: 0.2, to: 1.4, duration: 2}}}}}}]\n\
+         couplings: [{{name: chain, coordinate: two_z, follows: one_z, ratio: 1, offset: 0.3, stiffness: 4e6, damping: 2e4}}]\n"
+    ));
+    let telescope: &dyn DynCrane = &telescope;
+    let q = rest(telescope);
+    let (slip, effort) = (-second * GRAVITY / 4e6, (first + 2.0 * second) * GRAVITY);
+    assert!((q[1] - q[0] - 0.3 - slip).abs() < 1e-11, "{q:?}");
+    assert!((telescope.drive_efforts_at_rest(&q)[0] / effort - 1.0).abs() < 1e-9);
+    // At the end of the motion both stages have gone as far.
+    let start = InitialState { q: q.clone(), v: vec![0.0; 2] };
+    let of_spec = Settings::of(telescope.description());
+    let settings = Settings { tolerance: 1e-6, duration: 6.0, output: 1.0, audit: true, ..of_spec };
+    let (mut end, mut recording) = (Vec::new(), Recording::new(telescope));
+    run(telescope, &settings, &start, &mut |sample| {
+        recording.push(sample);
+        end = sample.q.to_vec();
+    });
+    assert!((end[0] - q[0] - 1.2).abs() < 1e-5 && (end[1] - q[1] - 1.2).abs() < 1e-5, "{end:?}");
+    let table = recording.into_table();
+    let last = |name: &str| table.values(name).and_then(Iterator::last).expect("a column");
+    assert!((last("chain_force") + second * GRAVITY).abs() < 1e-2 && (last("chain_slip") - 0.3 - slip).abs() < 1e-8);
+    // What the drive did is the potential energy of both.
+    let work = (first + 2.0 * second) * GRAVITY * 1.2;
+    assert!((last("drive_work") / work - 1.0).abs() < 1e-3, "{} J instead of {work} J", last("drive_work"));
+}

@@ -201,6 +201,7 @@ impl Crane {
             let row = PyDict::new(py);
             row.set_item("name", &*info.name)?;
             row.set_item("rope", info.is_rope)?;
+            row.set_item("unit", info.kind.unit())?;
             rows.push(row);
         }
         all.set_item("connectors", list(std::mem::take(&mut rows))?)?;

@@ -1,7 +1,7 @@
 //! Lengths of connectors beside the distance of their points.
 
 use super::{Look, items, rounded};
-use crate::chain::ConnectorLaw;
+use crate::chain::{ConnectorLaw, Strain};
 use crate::diagnostic::rule;
 
 /// Usual lengths without force, in parts of the distance of the points at the guess.
@@ -14,7 +14,8 @@ impl Look<'_> {
     pub(super) fn connectors(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
         for (given, connector) in items(crane.connectors.as_ref()).zip(&chain.connectors) {
-            let distance = chain.distance(connector, &chain.guess, &self.values);
+            let Strain::Distance(ends) = &connector.strain else { continue };
+            let distance = chain.distance(ends, &chain.guess, &self.values);
             let (length, least) = match &connector.law {
                 ConnectorLaw::Linear { length, .. } => (length.at(&self.values), USUAL[0]),
                 ConnectorLaw::Rope { length, .. } => (length.start(&self.values), 1.0 / STRETCHED),

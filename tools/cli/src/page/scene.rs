@@ -40,9 +40,9 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
     let connectors: Vec<Value> = description
         .connectors
         .iter()
-        .map(|connector| {
-            let ends = connector.ends.iter().map(|end| json!({"body": end.body, "at": end.position}));
-            json!({"rope": connector.is_rope, "ends": ends.collect::<Vec<_>>()})
+        .filter_map(|connector| {
+            let ends = connector.ends.as_ref()?.each_ref().map(|end| json!({"body": end.body, "at": end.position}));
+            Some(json!({"rope": connector.is_rope, "ends": ends}))
         })
         .collect();
     json!({
