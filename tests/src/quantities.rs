@@ -3,7 +3,7 @@
 use crane_model::dyn_crane::Crane;
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use crane_model::support::lanes::f64x8;
-use crane_model::{Description, LaneDynamics, Linearisation, SectionModuli, TransformDerivatives, Wrench};
+use crane_model::{Description, LaneDynamics, Linearisation, SectionModuli, Tension, TransformDerivatives, Wrench};
 
 /// A quantity: its name and the shape of its numbers, row-major.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use crane_model::dyn_crane::{Crane, DynCrane};
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector3};
 use crane_model::support::lanes::splat;
-use crane_model::{CraneModel, Ensemble, LaneDynamics, SectionModuli, TransformDerivatives, Wrench};
+use crane_model::{CraneModel, Ensemble, LaneDynamics, SectionModuli, Tension, TransformDerivatives, Wrench};
 use crane_specs as cranes;
 
 /// Calls every function of the traits at the guess; vectors and matrices stay on the stack, lists go into `places`.

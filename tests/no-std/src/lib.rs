@@ -24,7 +24,7 @@ macro_rules! crane {
             use crane_model::support::lanes::f64x8;
             use crane_model::{
                 CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-                ParameterError, SectionModuli, Statics, TransformDerivatives, Wrench,
+                ParameterError, SectionModuli, Statics, Tension, TransformDerivatives, Wrench,
             };
 
             pub use generated::{Crane, DESCRIPTION, N};
@@ -100,6 +100,7 @@ macro_rules! crane {
                 base_damping(q: &Vector, v: &Vector) -> BaseMatrix;
                 static_residual(q: &Vector) -> Vector;
                 tangent_stiffness(q: &Vector) -> Matrix;
+                connector_stiffness(t: f64, q: &Vector) -> Matrix;
                 drive_forces_at_rest(q: &Vector) -> Vector;
                 linearise(q: &Vector) -> Linearisation<N>;
                 internal_forces(t: f64, q: &Vector, v: &Vector, a: &Vector, out: &mut [Wrench]);

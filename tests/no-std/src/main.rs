@@ -5,7 +5,7 @@ use std::hint::black_box;
 use crane_model::dynamics::rk4::State;
 use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::support::lanes::splat;
-use crane_model::{Ensemble, Implicit, SectionModuli, Wrench};
+use crane_model::{Ensemble, Implicit, SectionModuli, Tension, Wrench};
 
 /// Calls every function of a crane.
 macro_rules! call_all {
@@ -23,6 +23,8 @@ macro_rules! call_all {
         let pieces = DESCRIPTION.drives.iter().map(|drive| drive.pieces).sum();
         let mut pieces = vec![[0.0; 2]; black_box(pieces)];
         let mut impedances = vec![[0.0; 2]; black_box(q.len())];
+        let connectors = black_box(DESCRIPTION.connectors.len());
+        let (mut tensions, mut rows) = (vec![Tension::ZERO; connectors], vec![[0.0; of::N]; connectors]);
         let mut gaps = vec![[0.0; 2]; black_box(DESCRIPTION.supports.len())];
         let mut mass = Matrix::zeros();
         let _ = black_box(of::set_parameter(&mut crane, black_box(0), black_box(400.0)));
@@ -42,8 +44,8 @@ macro_rules! call_all {
         black_box(of::connector_forces(&crane, t, &q, &v));
         black_box(of::connector_forces_at_rest(&crane, t, &q));
         of::connector_lengths(&crane, &q, &v, &mut motions);
-        of::connector_tensions(&crane, t, &q, &v, &mut [Tension::ZERO; 2]);
-        of::connector_jacobians(&crane, &q, &mut [[0.0; of::N]; 2]);
+        of::connector_tensions(&crane, t, &q, &v, &mut tensions);
+        of::connector_jacobians(&crane, &q, &mut rows);
         of::winch_pieces(&crane, &mut pieces);
         black_box(of::connector_energy(&crane, t, &q));
         black_box(of::winch_power(&crane, t, &q, &v));
@@ -77,6 +79,7 @@ macro_rules! call_all {
         black_box(of::base_damping(&crane, &q, &v));
         black_box(of::static_residual(&crane, &q));
         black_box(of::tangent_stiffness(&crane, &q));
+        black_box(of::connector_stiffness(&crane, t, &q));
         black_box(of::drive_forces_at_rest(&crane, &q));
         black_box(of::linearise(&crane, &q));
         of::internal_forces(&crane, t, &q, &v, &v, &mut wrenches);
