@@ -203,6 +203,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     let mut jacobians = vec![[0.0; N]; info.connectors.len()];
     crane.connector_jacobians(q, &mut jacobians);
     let connectors = [crane.connector_forces(t, q, v), crane.connector_forces_at_rest(t, q)];
+    let stiffness = crane.connector_stiffness(t, q);
     let of_connectors = [crane.connector_energy(t, q), crane.winch_power(t, q, v)];
     let (mut q, mut v) = (*q, *v);
     crane.prescribe(t, &mut q, &mut v);
@@ -219,7 +220,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     out.extend(lengths.iter().flatten());
     out.extend(tensions.iter().flat_map(|tension| [tension.force, tension.stiffness, tension.damping]));
     out.extend(jacobians.iter().flatten());
-    out.extend(crane.connector_stiffness(t, q).iter());
+    out.extend(stiffness.iter());
     out.extend(of_connectors);
     out
 }
