@@ -243,7 +243,7 @@ fn springs_and_ropes_are_the_interpreters() {
     let path = format!("{}/../specs/knuckle_boom.yaml", env!("CARGO_MANIFEST_DIR"));
     let plain = fs::read_to_string(path).unwrap();
     let chain = load(&SourceFile::new("connected.yaml", format!("{plain}\n{CONNECTORS}"))).unwrap();
-    let found = differences("connected", &chain, Precision::Double);
+    let found = differences("connected", &chain, Precision::Double, &[]);
     assert_eq!(found.iter().filter(|(function, _)| function.starts_with("connector_")).count(), 7);
     for (function, off) in found {
         assert!(off < 1e-12, "{function} is off by {off:e}");

@@ -7,7 +7,8 @@ use syn::{Item, parse_quote};
 use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{
-    BodyId, Chain, ConnectorLaw, CoordinateId, CoordinateKind, Profile, Strain, SupportKinematics, Value,
+    Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Profile, Strain,
+    SupportKinematics, Value,
 };
 
 /// Sizes and the `DESCRIPTION`.
@@ -50,34 +51,7 @@ fn description_constant(chain: &Chain) -> Item {
         let (name, pieces) = (text(&load.name), integer(load.pieces()));
         quote!(LoadInfo { name: #name, pieces: #pieces })
     });
-    let connectors = chain.connectors.iter().map(|connector| {
-        let name = text(&connector.name);
-        let is_rope = matches!(connector.law, ConnectorLaw::Rope { .. });
-        let [first, end] = chain.spanned(connector).map(integer);
-        let pieces = integer(connector.pieces());
-        let ends = match &connector.strain {
-            Strain::Distance(ends) => {
-                let ends = ends.iter().map(|end| {
-                    let body = match end.body {
-                        Some(BodyId(body)) => {
-                            let body = integer(body);
-                            quote!(Some(#body))
-                        }
-                        None => quote!(None),
-                    };
-                    let position = end.position.iter().map(at_defaults);
-                    quote!(AttachmentInfo { body: #body, position: [#(#position),*] })
-                });
-                quote!(Some([#(#ends),*]))
-            }
-            Strain::Coupling { .. } => quote!(None),
-        };
-        let kind = match chain.kind_of(connector) {
-            CoordinateKind::Translation => quote!(CoordinateKind::Translation),
-            CoordinateKind::Rotation => quote!(CoordinateKind::Rotation),
-        };
-        quote!(ConnectorInfo { name: #name, ends: #ends, kind: #kind, is_rope: #is_rope, spanned: [#first, #end], pieces: #pieces })
-    });
+    let connectors = chain.connectors.iter().map(|connector| connector_info(chain, connector));
     let inputs = chain.inputs.iter().map(|input| {
         let [name, unit, about] = [&input.name, &input.unit, &input.about].map(|words| text(words));
         let default = literal(input.unless_set.start(&defaults));
@@ -181,4 +155,35 @@ fn role(chain: &Chain, coordinate: usize) -> TokenStream {
     };
     let role = format_ident!("{role}");
     quote!(#role)
+}
+
+fn connector_info(chain: &Chain, connector: &Connector) -> TokenStream {
+    let name = text(&connector.name);
+    let is_rope = matches!(connector.law, ConnectorLaw::Rope { .. });
+    let [first, end] = chain.spanned(connector).map(integer);
+    let pieces = integer(connector.pieces());
+    let ends = match &connector.strain {
+        Strain::Distance(ends) => {
+            let ends = ends.iter().map(|end| attachment_info(chain, end));
+            quote!(Some([#(#ends),*]))
+        }
+        Strain::Coupling { .. } => quote!(None),
+    };
+    let kind = match chain.kind_of(connector) {
+        CoordinateKind::Translation => quote!(CoordinateKind::Translation),
+        CoordinateKind::Rotation => quote!(CoordinateKind::Rotation),
+    };
+    quote!(ConnectorInfo { name: #name, ends: #ends, kind: #kind, is_rope: #is_rope, spanned: [#first, #end], pieces: #pieces })
+}
+
+fn attachment_info(chain: &Chain, end: &Attachment) -> TokenStream {
+    let defaults = chain.parameter_defaults();
+    let position = end.position.iter().map(|x| literal(x.at(&defaults)));
+    let body = if let Some(BodyId(body)) = end.body {
+        let body = integer(body);
+        quote!(Some(#body))
+    } else {
+        quote!(None)
+    };
+    quote!(AttachmentInfo { body: #body, position: [#(#position),*] })
 }

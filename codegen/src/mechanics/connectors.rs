@@ -232,7 +232,7 @@ pub fn winch_power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'
 /// Begin and end of the intervals in which every winch moves smoothly.
 pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let winches = model.chain.connectors.iter().filter_map(Connector::winch);
-    winches.flat_map(|length| length.pieces()).flatten().map(|time| model.number(&time)).collect()
+    winches.flat_map(Profile::pieces).flatten().map(|time| model.number(&time)).collect()
 }
 
 /// Adds `∂²E/∂q_i∂q_j` at rest at time t.

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use crane_model::{
-    CoordinateInfo, CoordinateKind, Description, Tension,
+    ConnectorInfo, CoordinateInfo, CoordinateKind, Description, Tension,
     dyn_crane::DynCrane,
     results::{CylinderState, cautions, cylinders_at},
     runs::{Reason, Recorded},
@@ -244,7 +244,7 @@ fn reactions(cases: &[Case<'_>]) -> Grid {
         grid.row(vector_row("Σ supports", sums, "N"));
         grid.row(vector_row("weight", cases.iter().map(|case| case.rig.weight_at(&case.equilibrium.q)), "N"));
         let is_loaded = |description: &Description| {
-            !description.loads.is_empty() || description.connectors.iter().any(|connector| connector.holds_to_world())
+            !description.loads.is_empty() || description.connectors.iter().any(ConnectorInfo::holds_to_world)
         };
         if cases.iter().any(|case| is_loaded(case.rig.description())) {
             let loads = cases.iter().map(|case| case.rig.applied_force_at(0.0, &case.equilibrium.q));

@@ -167,8 +167,7 @@ class Crane:
     def connector_lengths(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., connectors, 2): lengths of the connectors, m, and their rates, m/s."""
     def connector_tensions(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., connectors, 3): forces of the connectors, N, positive where they pull, and their derivatives with respect to length, N/m,
-        and its rate, N s/m."""
+        """(..., connectors, 3): forces of the connectors, N, positive where they pull, and their derivatives by length, N/m, and rate, N s/m."""
     def drive_forces_at_rest(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m."""
     def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:

@@ -258,8 +258,7 @@ impl Crane {
         self.compute(py, Quantity::Of(FunctionId::ConnectorLengths), state, &own, invalid)
     }
 
-    /// (..., connectors, 3): forces of the connectors, N, positive where they pull, and their derivatives with respect to length, N/m, and its
-    /// rate, N s/m.
+    /// (..., connectors, 3): forces of the connectors, N, positive where they pull, and their derivatives by length, N/m, and rate, N s/m.
     #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
     fn connector_tensions<'py>(
         &self,

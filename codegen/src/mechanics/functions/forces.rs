@@ -320,6 +320,33 @@ impl<'g> Derivation<'g> {
         sum(&parts)
     }
 
+    /// Energy of connectors and power of winches, if there are any.
+    fn connector_energies(&self) -> Vec<Function> {
+        let (model, chain) = (&self.model, self.model.chain);
+        let mut functions = Vec::new();
+        if !chain.connectors.is_empty() {
+            functions.push(function(
+                FunctionId::ConnectorEnergy,
+                "Energy of connectors, J.",
+                "½ Σ k (ℓ − ℓ₀)² − P (ℓ − ℓ₀)",
+                &[Time, Position],
+                Shape::Scalar,
+                vec![connectors::energy(model, &self.kinematics)],
+            ));
+        }
+        if chain.connectors.iter().any(|connector| connector.winch().is_some()) {
+            functions.push(function(
+                FunctionId::WinchPower,
+                "Power that winches put in, W.",
+                "−Σ F ℓ̇₀",
+                &[Time, Position, Velocity],
+                Shape::Scalar,
+                vec![connectors::winch_power(model, &self.kinematics)],
+            ));
+        }
+        functions
+    }
+
     pub(super) fn energies(&self) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
         let scalar =
@@ -383,24 +410,7 @@ impl<'g> Derivation<'g> {
                 loads::power(model, &self.kinematics, &self.twists),
             ));
         }
-        if !chain.connectors.is_empty() {
-            functions.push(scalar(
-                FunctionId::ConnectorEnergy,
-                "Energy of connectors, J.",
-                "½ Σ k (ℓ − ℓ₀)² − P (ℓ − ℓ₀)",
-                &[Time, Position],
-                connectors::energy(model, &self.kinematics),
-            ));
-        }
-        if chain.connectors.iter().any(|connector| connector.winch().is_some()) {
-            functions.push(scalar(
-                FunctionId::WinchPower,
-                "Power that winches put in, W.",
-                "−Σ F ℓ̇₀",
-                &[Time, Position, Velocity],
-                connectors::winch_power(model, &self.kinematics),
-            ));
-        }
+        functions.extend(self.connector_energies());
         if chain.stops().next().is_some() {
             functions.push(scalar(
                 FunctionId::StopEnergy,
