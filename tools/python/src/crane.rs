@@ -10,7 +10,7 @@ use crane_codegen::{Checked, SourceFile, build, exchange};
 use crane_live::LiveCrane;
 use crane_live::rows::{Evaluation, Quantity};
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::{Cut, Description};
+use crane_model::{ConnectorInfo, Cut, Description};
 use crane_specs::SPECS;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -197,14 +197,7 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("cylinders", list(std::mem::take(&mut rows))?)?;
-        for info in &description.connectors {
-            let row = PyDict::new(py);
-            row.set_item("name", &*info.name)?;
-            row.set_item("rope", info.is_rope)?;
-            row.set_item("unit", info.kind.unit())?;
-            rows.push(row);
-        }
-        all.set_item("connectors", list(std::mem::take(&mut rows))?)?;
+        all.set_item("connectors", describe_connectors(py, description)?)?;
         for info in &description.parameters {
             let row = PyDict::new(py);
             row.set_item("name", &*info.name)?;
@@ -410,4 +403,16 @@ fn place(description: &Description, name: &str) -> PyResult<usize> {
         };
         PyTypeError::new_err(format!("{} has no live parameter `{name}`; {known}", description.name))
     })
+}
+
+/// Springs, ropes and couplings, one dictionary each.
+fn describe_connectors<'py>(py: Python<'py>, description: &Description) -> PyResult<Bound<'py, PyList>> {
+    let describe = |info: &ConnectorInfo| -> PyResult<Bound<'py, PyDict>> {
+        let row = PyDict::new(py);
+        row.set_item("name", &*info.name)?;
+        row.set_item("rope", info.is_rope)?;
+        row.set_item("unit", info.kind.unit())?;
+        Ok(row)
+    };
+    PyList::new(py, description.connectors.iter().map(describe).collect::<PyResult<Vec<_>>>()?)
 }
