@@ -196,15 +196,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     let mut tangents = vec![[0.0; 2]; info.coordinates.len()];
     crane.nonlinear_impedances(t, q, v, &mut tangents);
     let load_power = crane.load_power(t, q, v);
-    let mut lengths = vec![[0.0; 2]; info.connectors.len()];
-    crane.connector_lengths(q, v, &mut lengths);
-    let mut tensions = vec![Tension::ZERO; info.connectors.len()];
-    crane.connector_tensions(t, q, v, &mut tensions);
-    let mut jacobians = vec![[0.0; N]; info.connectors.len()];
-    crane.connector_jacobians(q, &mut jacobians);
-    let connectors = [crane.connector_forces(t, q, v), crane.connector_forces_at_rest(t, q)];
-    let stiffness = crane.connector_stiffness(t, q);
-    let of_connectors = [crane.connector_energy(t, q), crane.winch_power(t, q, v)];
+    let connectors = of_connectors(crane, t, q, v);
     let (mut q, mut v) = (*q, *v);
     crane.prescribe(t, &mut q, &mut v);
     out.extend(q.iter().chain(&v));
@@ -216,12 +208,26 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         out.extend([area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress]);
     }
     out.push(load_power);
-    out.extend(connectors.iter().flatten());
+    out.extend(connectors);
+    out
+}
+
+/// The quantities of connectors.
+fn of_connectors<const N: usize, C: Crane<N>>(crane: &C, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Vec<f64> {
+    let count = crane.description().connectors.len();
+    let (mut lengths, mut tensions) = (vec![[0.0; 2]; count], vec![Tension::ZERO; count]);
+    let mut jacobians = vec![[0.0; N]; count];
+    crane.connector_lengths(q, v, &mut lengths);
+    crane.connector_tensions(t, q, v, &mut tensions);
+    crane.connector_jacobians(q, &mut jacobians);
+    let mut out = Vec::new();
+    out.extend(&crane.connector_forces(t, q, v));
+    out.extend(&crane.connector_forces_at_rest(t, q));
     out.extend(lengths.iter().flatten());
     out.extend(tensions.iter().flat_map(|tension| [tension.force, tension.stiffness, tension.damping]));
     out.extend(jacobians.iter().flatten());
-    out.extend(stiffness.iter());
-    out.extend(of_connectors);
+    out.extend(&crane.connector_stiffness(t, q));
+    out.extend([crane.connector_energy(t, q), crane.winch_power(t, q, v)]);
     out
 }
 
