@@ -1,6 +1,6 @@
 //! Physical identities on random cranes with fixed seeds, by the interpreter.
 
-use crane_codegen::chain::{Chain, CoordinateKind, Cut, Step};
+use crane_codegen::chain::{Chain, CoordinateKind, Cut, Step, Strain};
 use crane_codegen::program::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use crane_tests::dual::Dual;
@@ -147,8 +147,19 @@ fn wrenches(crane: &Interpreted, state: &State, a: &DVector<f64>) -> Vec<[f64; 6
     crane.get("internal_forces", &inputs, 0).as_chunks().0.to_vec()
 }
 
+/// Generalized forces of connectors between points, `−Jᵀ F`; couplings act along their joints.
+fn forces_between_points(crane: &Interpreted, state: &State) -> DVector<f64> {
+    let inputs = crane.inputs(state);
+    let (tensions, rows) = (crane.get("connector_tensions", &inputs, 0), crane.get("connector_jacobians", &inputs, 0));
+    let elements = tensions.chunks_exact(3).zip(rows.chunks_exact(crane.size())).zip(&crane.chain.connectors);
+    let between = elements.filter(|(_, connector)| matches!(connector.strain, Strain::Distance(_)));
+    between.fold(DVector::zeros(crane.size()), |sum, ((tension, row), _)| {
+        sum - DVector::from_column_slice(row) * tension[0]
+    })
+}
+
 /// Along the axis of a joint's last coordinate, a cut transmits what moves that coordinate: `A a − e` without the rotor, less what
-/// loads do.
+/// loads and connectors between points do.
 #[test]
 fn what_a_joint_transmits_along_its_axis_is_its_effort() {
     for (seed, crane) in cranes() {
@@ -158,7 +169,7 @@ fn what_a_joint_transmits_along_its_axis_is_its_effort() {
             let mut efforts = crane.matrix("mass_matrix", &state) * &a
                 - crane.vector("bias", &state)
                 - crane.vector("load_forces", &state)
-                - crane.vector("connector_forces", &state);
+                - forces_between_points(&crane, &state);
             for rotor in &chain.rotors {
                 efforts[rotor.coordinate.0] -= rotor.armature.at(&chain.parameter_defaults()) * a[rotor.coordinate.0];
             }
@@ -287,6 +298,7 @@ fn prescribed_coordinates_are_no_unknowns() {
                 "stop_forces",
                 "friction_forces",
                 "load_forces",
+                "connector_forces",
             ];
             let sum = parts.iter().fold(DVector::zeros(n), |sum, part| sum + crane.vector(part, &state));
             let forces = crane.vector("forces", &state);
