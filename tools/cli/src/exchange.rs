@@ -25,6 +25,12 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
             "write a spec that `extends` the crane with `sections: rigid`, and export that",
         ));
     }
+    if !options.crane.inputs.is_empty() {
+        return Err(Problem::usage(
+            "`--input` is not available with `export`",
+            "set the input where the exported crane runs, or change its `value` in the spec",
+        ));
+    }
     let (chain, spec) = own::load_named(&options.crane.name, options.crane.strict, fleet)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();

@@ -151,6 +151,10 @@ fn a_crane_goes_to_other_programs_and_comes_back() {
         text(&output.stderr).contains("error[U002]") && output.status.code() == Some(1) && output.stdout.is_empty()
     );
     assert_eq!(fs::read_dir(&out).expect("a folder").count(), 4, "nothing half-written is left behind");
+    refused(
+        &["export", "knuckle_boom", "--format", "c", "--input", "pull=3"],
+        &["`--input`", "where the exported crane runs"],
+    );
     refused(&["export", "knuckle_bom", "--format", "urdf"], &["there is no crane `knuckle_bom`", "`knuckle_boom`"]);
     refused(
         &["export", "knuckle_boom", "--format", "mjcf", "--set", "load=1"],
