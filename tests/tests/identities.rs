@@ -9,6 +9,9 @@ use crane_tests::quantities::State;
 use crane_tests::{random, states, workspace};
 
 const SEEDS: std::ops::Range<u64> = 0..24;
+/// Functions that add up to the potential energy.
+const POTENTIAL_ENERGIES: [&str; 6] =
+    ["gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy", "connector_energy"];
 
 fn cranes() -> impl Iterator<Item = (u64, Interpreted)> {
     SEEDS.map(|seed| (seed, Interpreted::new(workspace::chain_of("random", &random::spec(seed)))))
@@ -255,16 +258,8 @@ fn power_balances() {
         for state in states::far(&crane.chain, 3, seed) {
             let acceleration = crane.acceleration(&state);
             let inputs = moving(&crane, &state, (1.0, &state.v, acceleration.as_slice()));
-            let parts = [
-                "kinetic_energy",
-                "gravity_energy",
-                "support_energy",
-                "element_energy",
-                "drive_energy",
-                "stop_energy",
-                "connector_energy",
-            ];
-            let rates: Vec<f64> = parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
+            let parts = ["kinetic_energy"].into_iter().chain(POTENTIAL_ENERGIES);
+            let rates: Vec<f64> = parts.map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
             let supplied = crane.scalar("drive_power", &state)
                 + crane.scalar("load_power", &state)
                 + crane.scalar("winch_power", &state)
@@ -343,15 +338,8 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
                 let mut direction = vec![0.0; n];
                 direction[j] = 1.0;
                 let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n]));
-                let parts = [
-                    "gravity_energy",
-                    "support_energy",
-                    "element_energy",
-                    "drive_energy",
-                    "stop_energy",
-                    "connector_energy",
-                ];
-                let slopes: Vec<f64> = parts.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
+                let slopes: Vec<f64> =
+                    POTENTIAL_ENERGIES.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
                 let size = slopes.iter().map(|slope| slope.abs()).sum::<f64>() + loads[j].abs();
                 let gradient = slopes.iter().sum::<f64>() - loads[j];
                 if crane.prescribed().contains(&j) {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
-use super::{DynCrane, DynDerivatives, DynModel};
+use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
 use crate::{
     CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Tension, Wrench, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
@@ -53,6 +53,18 @@ fn numbers(crane: &(impl DynModel + ?Sized), write: impl FnOnce(&mut [f64])) -> 
     let mut out = vec![0.0; crane.size()];
     write(&mut out);
     out
+}
+
+impl dyn DynImplicit + '_ {
+    /// Stiffness of every drive at rest in a pose, N m/rad or N/m; 0 of rigid ones, and of those beyond their limit.
+    pub(crate) fn drive_stiffness(&self, q: &[f64]) -> Vec<f64> {
+        let drives = &self.description().drives;
+        let (mut linear, mut limits) = (vec![[0.0; 2]; q.len()], vec![[0.0; 2]; drives.len()]);
+        self.joint_impedances(&mut linear);
+        self.drive_limits(0.0, q, &vec![0.0; q.len()], &mut limits);
+        // A drive with a limit is not among the linear ones.
+        drives.iter().zip(limits).map(|(drive, [_, limited])| linear[drive.coordinate][0].max(limited)).collect()
+    }
 }
 
 /// # Panics

@@ -62,15 +62,14 @@ impl Norm {
         let n = crane.size();
         let mut impedances = vec![[0.0; 2]; n];
         crane.joint_impedances(&mut impedances);
-        // Drives with a limit are among the laws that are not linear; at the guess they are far from it.
-        let mut nonlinear = impedances.clone();
-        crane.nonlinear_impedances(0.0, &crane.description().guess, &vec![0.0; crane.size()], &mut nonlinear);
-        impedances.iter_mut().zip(&nonlinear).for_each(|(linear, nonlinear)| linear[0] += nonlinear[0]);
-        let effort = |coordinate: usize| {
-            let [stiffness, damping] = impedances[coordinate];
+        // At the guess drives with a limit are far from it.
+        let stiffness = crane.drive_stiffness(&crane.description().guess);
+        let effort = |(coordinate, stiffness): (usize, f64)| {
+            let [_, damping] = impedances[coordinate];
             Effort { coordinate, stiffness, damping, scale: 0.0, peak: 0.0, error: 0.0, rounding: 0.0 }
         };
-        let drives = crane.description().drives.iter().map(|drive| effort(drive.coordinate));
+        let coordinates = crane.description().drives.iter().map(|drive| drive.coordinate);
+        let drives = coordinates.zip(stiffness).map(effort);
         let drives = drives.filter(|effort| effort.stiffness > 0.0);
         Self { n, tolerance, efforts: drives.collect() }
     }

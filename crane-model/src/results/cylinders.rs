@@ -8,7 +8,10 @@
 use nalgebra::Vector3;
 
 use super::{Extremes, Table};
-use crate::{CylinderInfo, Description, DriveInfo, Text, dyn_crane::DynCrane};
+use crate::{
+    CylinderInfo, Description, DriveInfo, Text,
+    dyn_crane::{DynCrane, DynImplicit},
+};
 
 /// Pa
 const BAR: f64 = 1e5;
@@ -119,7 +122,7 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
         return Vec::new();
     }
     let rest = vec![0.0; q.len()];
-    let stiffness = drive_stiffness(crane, q);
+    let stiffness = (crane as &dyn DynImplicit).drive_stiffness(q);
     let states = cylinders_at(crane, q, &rest, &crane.drive_efforts_at_rest(q));
     let mut found = Vec::new();
     for (info, state) in description.cylinders.iter().zip(&states) {
@@ -162,15 +165,6 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
         )
     }));
     found
-}
-
-/// Stiffness of every drive at a pose, N m/rad or N/m; 0 of rigid ones.
-fn drive_stiffness(crane: &dyn DynCrane, q: &[f64]) -> Vec<f64> {
-    let drives = &crane.description().drives;
-    let (mut linear, mut limits) = (vec![[0.0; 2]; q.len()], vec![[0.0; 2]; drives.len()]);
-    crane.joint_impedances(&mut linear);
-    crane.drive_limits(0.0, q, &vec![0.0; q.len()], &mut limits);
-    drives.iter().zip(limits).map(|(drive, [_, limited])| linear[drive.coordinate][0].max(limited)).collect()
 }
 
 fn when(time: f64, moves: bool) -> String {
