@@ -1,11 +1,13 @@
 //! Whatever a file contains, reader and validator answer with a chain or with mistakes, and never panic.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use crane_codegen::diagnostic::Mistake;
 use crane_codegen::{Checked, SourceFile, check, read};
 use proptest::prelude::*;
 use proptest::sample::Index;
+use proptest::test_runner::RngSeed;
 
 /// Reads, validates and draws.
 fn answer(bytes: &[u8]) {
@@ -36,6 +38,8 @@ fn specs() -> Vec<String> {
         .filter_map(|path| std::fs::read_to_string(path).ok())
         .collect()
 }
+
+static SPECS: LazyLock<Vec<String>> = LazyLock::new(specs);
 
 /// Words to put in place of others: keys, numbers at the edges, YAML's own signs.
 const WORDS: &[&str] = &[
@@ -173,8 +177,39 @@ fn apply(text: &str, change: &Change) -> String {
     parts.concat()
 }
 
+/// The same cases in every run, so that a test that fails fails again. `PROPTEST_CASES=1000000 PROPTEST_RNG_SEED=7` looks further.
+fn settings() -> ProptestConfig {
+    let given = ProptestConfig::default();
+    let rng_seed = if given.rng_seed == RngSeed::Random { RngSeed::Fixed(2016) } else { given.rng_seed };
+    ProptestConfig { cases: given.cases.max(1500), rng_seed, failure_persistence: None, ..given }
+}
+
+/// A beam that cannot be divided has no bodies; what is attached to it is looked at all the same.
+#[test]
+fn attachments_to_a_link_without_bodies_get_an_answer() {
+    let crane = |attached: &str| {
+        format!(
+            "format: 1
+name: bad
+links:
+  - {{name: slide, joint: prismatic, mass: 10, com: [0, 0, 0]}}
+  - {{name: boom, joint: revolute, beam: {{sections: 0, length: 1}}}}
+{attached}"
+        )
+    };
+    let ends = "from: {link: slide, at: [0, 0, 1]}, to: {link: boom, at: [1, 0, 0]}";
+    answer(
+        crane(&format!("connectors:\n  - {{name: tie, {ends}, law: {{spring: {{stiffness: 100, length: 1}}}}}}"))
+            .as_bytes(),
+    );
+    let drive = "drives:\n  - {coordinate: boom_psi, stiffness: 1e6, motion: {hold: 0}}";
+    let cylinder = "{name: lift, coordinate: boom_psi, foot: {link: slide, at: [0, 0, 1]}, head: {link: boom, at: [1, 0, 0]}, \
+                    bore: 0.1, rod: 0.05, retracted: 0.5, stroke: 0.8}";
+    answer(crane(&format!("{drive}\ncylinders:\n  - {cylinder}")).as_bytes());
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(settings())]
 
     #[test]
     fn any_bytes_get_an_answer(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
@@ -189,7 +224,7 @@ proptest! {
 
     #[test]
     fn changed_specs_get_an_answer(spec in any::<Index>(), changes in proptest::collection::vec(change(), 1..6)) {
-        let specs = specs();
+        let specs = &*SPECS;
         let text = changes.iter().fold(specs[spec.index(specs.len())].clone(), |text, change| apply(&text, change));
         answer(text.as_bytes());
     }

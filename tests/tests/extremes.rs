@@ -8,6 +8,7 @@ use crane_tests::interpreted::Interpreted;
 use crane_tests::quantities::State;
 use crane_tests::{random, states, workspace};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// Of a sum, against the terms that cancel in it: the recursions over 20 coordinates take some hundred roundings a number,
 /// and each of six joints may lose a digit where it carries a mass that is a millionth of its neighbour's.
@@ -121,7 +122,12 @@ impl Crane {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 40,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(2016),
+        ..ProptestConfig::default()
+    })]
 
     /// `A q̈ = e + f` and `½ vᵀ A v = E_k`, A symmetric positive definite: the recursion and the matrix share nothing.
     #[test]

@@ -88,10 +88,11 @@ impl<'a> Check<'a> {
         Some(Attachment { body: Some(body), position })
     }
 
-    /// How many coordinates move an end.
+    /// How many coordinates move an end. After a mistake the bodies may end before it.
     fn reach(&self, end: &Attachment) -> usize {
         end.body.map_or(0, |BodyId(body)| {
-            self.bodies[..=body].iter().flat_map(|body| &body.path).map(|step| step.coordinates().len()).sum()
+            let before = self.bodies.iter().take(body + 1);
+            before.flat_map(|body| &body.path).map(|step| step.coordinates().len()).sum()
         })
     }
 

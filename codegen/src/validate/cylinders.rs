@@ -117,7 +117,7 @@ impl<'a> Check<'a> {
     /// Reports a cylinder that does not have its joint, or has another one, between its pins.
     fn spans(&mut self, given: &spec::Cylinder, name: &str, joint: CoordinateId, [foot, head]: [BodyId; 2]) {
         let (near, far) = if foot < head { (foot, head) } else { (head, foot) };
-        let paths = self.bodies[near.0 + 1..=far.0].iter().flat_map(|body| &body.path);
+        let paths = self.bodies.iter().take(far.0 + 1).skip(near.0 + 1).flat_map(|body| &body.path);
         let between: Vec<CoordinateId> = paths.flat_map(Step::coordinates).copied().collect();
         let called = &self.coordinates[joint.0].name;
         if !between.contains(&joint) {
