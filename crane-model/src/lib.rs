@@ -36,6 +36,8 @@ pub mod dynamics;
 #[cfg(feature = "std")]
 pub mod envelope;
 #[cfg(feature = "std")]
+pub mod hydraulics;
+#[cfg(feature = "std")]
 pub mod modes;
 #[cfg(feature = "std")]
 pub mod results;
@@ -53,7 +55,8 @@ pub mod tipping;
 
 pub use description::{
     AttachmentInfo, BodyInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo, Description,
-    DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, SupportInfo, TIPPED, Text,
+    DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, PumpInfo, SupportInfo, TIPPED,
+    Text, ValveInfo,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,

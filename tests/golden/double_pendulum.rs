@@ -97,7 +97,7 @@ pub const DESCRIPTION: Description = Description {
     connectors: List::Static(&[]),
     inputs: List::Static(&[]),
     cylinders: List::Static(&[]),
-    pump_flow: None,
+    pump: None,
     points: List::Static(&[Text::Static("end")]),
     statics: false,
     guess: List::Static(&[1.5707963267948966, -1.5707963267948966]),

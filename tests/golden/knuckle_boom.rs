@@ -153,7 +153,7 @@ pub const DESCRIPTION: Description = Description {
     connectors: List::Static(&[]),
     inputs: List::Static(&[]),
     cylinders: List::Static(&[]),
-    pump_flow: None,
+    pump: None,
     points: List::Static(&[Text::Static("boom_tip"), Text::Static("load_centre")]),
     statics: true,
     guess: List::Static(

@@ -33,6 +33,38 @@ pub struct Cylinder {
     pub bulk_modulus: Option<f64>,
     /// Oil in hoses and valves on the piston's side and on the rod's, m³.
     pub hose_volumes: [f64; 2],
+    /// The valve that moves it, if its pressures are states of the motion.
+    pub valve: Option<Valve>,
+}
+
+/// A proportional directional valve and its servo.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Valve {
+    /// Flow through a fully open edge at the pressure drop, m³/s.
+    pub flow: f64,
+    /// That pressure drop, Pa.
+    pub pressure_drop: f64,
+    /// Share of the spool's way that is covered.
+    pub overlap: f64,
+    /// Time constant of the spool, s.
+    pub lag: f64,
+    /// Opening for an error of length, 1/m.
+    pub gain: f64,
+    /// Share of the opening that a speed takes which is set ahead of any error.
+    pub feed_forward: f64,
+    /// Leakage past the piston, m³/(s Pa).
+    pub leakage: f64,
+}
+
+/// What supplies the cylinders.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pump {
+    /// Greatest flow, m³/s.
+    pub max_flow: f64,
+    /// Pressure that it keeps up, Pa.
+    pub pressure: Option<f64>,
+    /// Oil between pump and valves, m³.
+    pub volume: f64,
 }
 
 /// A point of a body.

@@ -17,7 +17,7 @@ mod value;
 
 pub use connector::{Attachment, Connector, ConnectorLaw, Strain};
 pub use cut::Cut;
-pub use cylinder::{Cylinder, Linkage, Pin};
+pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
 pub use force::{End, ForceElement, Friction, Law, Stop};
 pub use frame::{Frame, Vector};
 pub use input::{Input, InputId};
@@ -73,7 +73,7 @@ pub struct Chain {
     /// Hydraulic cylinders of driven joints.
     pub cylinders: Vec<Cylinder>,
     /// Greatest flow to all cylinders together, m³/s.
-    pub pump_flow: Option<f64>,
+    pub pump: Option<Pump>,
     /// Elements between two points, and couplings of coordinates.
     pub connectors: Vec<Connector>,
     /// Inputs that are set between steps.
@@ -307,6 +307,11 @@ pub enum Transmission {
     },
     /// A rigid connection: the coordinate is prescribed.
     Rigid,
+    /// The oil of a cylinder with a valve: at rest a spring, in motion the pressures are states.
+    Oil {
+        /// Stiffness at rest, N m/rad or N/m.
+        stiffness: Value,
+    },
 }
 
 impl Drive {
@@ -315,7 +320,16 @@ impl Drive {
     pub fn spring(&self) -> Option<(&Value, &Value)> {
         match &self.transmission {
             Transmission::Flexible { stiffness, damping, .. } => Some((stiffness, damping)),
-            Transmission::Rigid => None,
+            Transmission::Rigid | Transmission::Oil { .. } => None,
+        }
+    }
+
+    /// Stiffness at rest, if oil moves it.
+    #[must_use]
+    pub fn oil(&self) -> Option<&Value> {
+        match &self.transmission {
+            Transmission::Oil { stiffness } => Some(stiffness),
+            Transmission::Flexible { .. } | Transmission::Rigid => None,
         }
     }
 
@@ -324,7 +338,7 @@ impl Drive {
     pub fn max_effort(&self) -> Option<&Value> {
         match &self.transmission {
             Transmission::Flexible { max_effort, .. } => max_effort.as_ref(),
-            Transmission::Rigid => None,
+            Transmission::Rigid | Transmission::Oil { .. } => None,
         }
     }
 }

@@ -314,6 +314,22 @@ catalogue! {
     /// A joint has one cylinder; two side by side are one with twice the area.
     E119 second_cylinder(coordinate, other) "`{coordinate}` has two cylinders", "moved by cylinder `{other}` already",
         "give one cylinder: two equal ones side by side have √2 times the `bore` and `rod` of each";
+    /// The oil of a cylinder with a valve is compressible, stands on both sides and is kept below some pressure.
+    E120 valve_without_oil(cylinder, missing) "the valve of cylinder `{cylinder}` needs {missing}", "pressures follow from the oil's volumes and stiffness",
+        "typical: `bulk_modulus: 1.2e9` Pa, `max_pressure: 28e6` Pa and `hose_volumes: [5e-4, 5e-4]` m³";
+    /// A pump supplies the valves with pressure.
+    E121 valve_without_pressure(cylinder) "nothing supplies the valve of cylinder `{cylinder}`", "the spec gives no pressure of a pump",
+        "add `pump: {{max_flow: 1.5e-3, pressure: 22e6}}` with the data of your pump, in m³/s and Pa";
+    /// A joint that oil moves has a drive with a stiffness and without a limit of its own.
+    E122 valve_of_another_drive(cylinder, coordinate) "cylinder `{cylinder}` has a valve, but the drive of `{coordinate}` is rigid or limited",
+        "oil moves this joint: the cylinder's pressures limit its force",
+        "give the drive a `stiffness`, which holds the crane at rest before the run, and neither `rigid` nor `max_effort`";
+    /// A valve opens before its spool has gone all the way.
+    E123 covered_valve(cylinder, overlap) "the valve of cylinder `{cylinder}` never opens", "an overlap of {overlap} covers all of the spool's way",
+        "`overlap` is a share of the spool's way below 1, such as 0.05";
+    /// Oil remains on both sides at the ends of the stroke.
+    E124 no_oil_at_the_end(cylinder) "cylinder `{cylinder}` has no oil left at an end of its stroke", "a volume of 0 m³ has an infinite stiffness",
+        "give both sides the oil of hoses and dead ends, such as `[5e-4, 5e-4]` m³";
     /// A linkage moves a joint that rotates.
     E125 straight_linkage(cylinder, coordinate) "cylinder `{cylinder}` has a linkage, but `{coordinate}` slides", "rocker and link need a joint that rotates",
         "remove `linkage`, or name the coordinate of a revolute joint";

@@ -8,7 +8,7 @@ use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{
     Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Profile, Strain,
-    SupportKinematics, Value,
+    SupportKinematics, Value, Valve,
 };
 
 /// Sizes and the `DESCRIPTION`.
@@ -17,6 +17,20 @@ pub fn description(chain: &Chain) -> Vec<Item> {
     let mut items = vec![constant("Number of generalized coordinates.", "N", &quote!(usize), &quote!(#n))];
     items.push(description_constant(chain));
     items
+}
+
+fn valve_info(valve: &Valve) -> TokenStream {
+    let [flow, pressure_drop, overlap, lag] = [valve.flow, valve.pressure_drop, valve.overlap, valve.lag].map(literal);
+    let [gain, feed_forward, leakage] = [valve.gain, valve.feed_forward, valve.leakage].map(literal);
+    quote!(Some(ValveInfo {
+        flow: #flow,
+        pressure_drop: #pressure_drop,
+        overlap: #overlap,
+        lag: #lag,
+        gain: #gain,
+        feed_forward: #feed_forward,
+        leakage: #leakage
+    }))
 }
 
 fn description_constant(chain: &Chain) -> Item {
@@ -64,6 +78,7 @@ fn description_constant(chain: &Chain) -> Item {
             [cylinder.retracted, cylinder.stroke, cylinder.back_pressure].map(literal);
         let [of_piston, of_rod] = cylinder.hose_volumes.map(literal);
         let (name, drive) = (text(&cylinder.name), integer(chain.drive_of(cylinder)));
+        let valve = cylinder.valve.as_ref().map_or_else(|| quote!(None), valve_info);
         let [max_pressure, bulk_modulus] = [cylinder.max_pressure, cylinder.bulk_modulus].map(optional);
         quote!(CylinderInfo {
             name: #name,
@@ -74,9 +89,17 @@ fn description_constant(chain: &Chain) -> Item {
             max_pressure: #max_pressure,
             back_pressure: #back_pressure,
             bulk_modulus: #bulk_modulus,
-            hose_volumes: [#of_piston, #of_rod]
+            hose_volumes: [#of_piston, #of_rod],
+            valve: #valve
         })
     });
+    let pump = chain.pump.as_ref().map_or_else(
+        || quote!(None),
+        |pump| {
+            let (max_flow, pressure, volume) = (literal(pump.max_flow), optional(pump.pressure), literal(pump.volume));
+            quote!(Some(PumpInfo { max_flow: #max_flow, pressure: #pressure, volume: #volume }))
+        },
+    );
     let points = chain.points.iter().map(|point| text(&point.name));
     let parameters = if chain.parameters.is_empty() { quote!(&[]) } else { quote!(&PARAMETERS) };
     let statics = chain.analyses.statics;
@@ -85,7 +108,7 @@ fn description_constant(chain: &Chain) -> Item {
     let [stops, frictions, loads, inputs] = [list(stops), list(frictions), list(loads), list(inputs)];
     let connectors = list(connectors);
     let [supports, drives, points, guess] = [list(supports), list(drives), list(points), list(guess)];
-    let (cylinders, pump_flow) = (list(cylinders), optional(chain.pump_flow));
+    let cylinders = list(cylinders);
     let [name, title, hash] = [&chain.name, &chain.title, &chain.spec_hash].map(|words| text(words));
     let (duration, step, output) = (literal(chain.run.duration), literal(chain.run.step), literal(chain.run.output));
     parse_quote! {
@@ -105,7 +128,7 @@ fn description_constant(chain: &Chain) -> Item {
             connectors: #connectors,
             inputs: #inputs,
             cylinders: #cylinders,
-            pump_flow: #pump_flow,
+            pump: #pump,
             points: #points,
             statics: #statics,
             guess: #guess,

@@ -1,4 +1,5 @@
-//! Drives: a spring and a damper between a coordinate and its prescribed motion, or that motion itself.
+//! Drives: a spring and a damper between a coordinate and its prescribed motion, or that motion itself. What oil moves has a spring at
+//! rest only: its force in motion follows from pressures, which are states of the run.
 
 use super::model::Model;
 use super::profile;
@@ -10,6 +11,11 @@ use crate::symbolic::Expr;
 /// Drives with a spring, with its stiffness and damping.
 fn flexible<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value, &'a Value)> {
     model.chain.drives.iter().filter_map(|drive| drive.spring().map(|(s, d)| (drive, s, d)))
+}
+
+/// Drives by oil, with their stiffness at rest.
+fn moved_by_oil<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value)> {
+    model.chain.drives.iter().filter_map(|drive| drive.oil().map(|stiffness| (drive, stiffness)))
 }
 
 /// `s (q_dr − q) + d (q̇_dr − q̇)`
@@ -72,6 +78,10 @@ pub fn forces_at_rest<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
         let stretch = stretch(model, drive, model.zero());
         forces[drive.coordinate.0] = named(model, drive, limited(model, drive, model.number(stiffness) * stretch));
     }
+    for (drive, stiffness) in moved_by_oil(model) {
+        let effort = model.number(stiffness) * stretch(model, drive, model.zero());
+        forces[drive.coordinate.0] = named(model, drive, effort);
+    }
     forces
 }
 
@@ -119,6 +129,13 @@ pub fn impedances<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
 pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     for ((drive, s, _), spring) in saturations(model, model.zero()) {
         matrix.add(drive.coordinate.0, drive.coordinate.0, spring.slope() * model.number(s));
+    }
+}
+
+/// Stiffness at rest of drives by oil, on the diagonal.
+pub fn holding_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    for (drive, stiffness) in moved_by_oil(model) {
+        matrix.add(drive.coordinate.0, drive.coordinate.0, model.number(stiffness));
     }
 }
 

@@ -56,7 +56,7 @@ fn double_pendulum() -> Chain {
         forces: vec![],
         loads: vec![],
         cylinders: Vec::new(),
-        pump_flow: None,
+        pump: None,
         connectors: vec![],
         inputs: vec![],
         rotors: vec![],

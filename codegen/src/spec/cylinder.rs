@@ -38,6 +38,29 @@ pub struct Cylinder {
     pub bulk_modulus: Option<Given<Constant>>,
     /// Oil in hoses and valves on the piston's side and on the rod's, m³. Default `[0, 0]`.
     pub hose_volumes: Option<Given<HoseVolumes>>,
+    /// The valve that moves it: its pressures and the valve's opening become states of the motion. Default: none, the
+    /// drive moves the joint.
+    pub valve: Option<Given<Valve>>,
+}
+
+/// A proportional directional valve, and the servo that makes the cylinder follow the drive's motion.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `flow`, `pressure_drop`, `lag` and `gain`")]
+pub struct Valve {
+    /// Flow through an edge of the fully open valve at `pressure_drop`, m³/s; 60 l/min are 1e-3.
+    pub flow: Given<Constant>,
+    /// Pressure drop over that edge, Pa.
+    pub pressure_drop: Given<Constant>,
+    /// Share of the spool's way from the middle that is covered: below it no oil flows. Default 0.
+    pub overlap: Option<Given<Constant>>,
+    /// Time constant of the spool, s.
+    pub lag: Given<Constant>,
+    /// Opening for an error of the cylinder's length, 1/m; 1 is fully open.
+    pub gain: Given<Constant>,
+    /// Share of the opening for the speed of the motion, at the pressures measured, that the servo sets ahead of any error. Default 1.
+    pub feed_forward: Option<Given<Constant>>,
+    /// Leakage past the piston, m³/s per Pa. Default 0.
+    pub leakage: Option<Given<Constant>>,
 }
 
 /// Volumes on the two sides of a piston.
@@ -80,8 +103,12 @@ pub enum Side {
 
 /// What supplies the cylinders.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `max_flow`")]
+#[serde(deny_unknown_fields, expecting = "a mapping of `max_flow` and, for cylinders with a valve, `pressure`")]
 pub struct Pump {
     /// Greatest flow to all cylinders together, m³/s; 60 l/min are 1e-3.
     pub max_flow: Given<Constant>,
+    /// Pressure that it keeps up until its flow is at its limit, Pa; cylinders with a valve need it. Default: none.
+    pub pressure: Option<Given<Constant>>,
+    /// Oil between the pump and the valves, m³. Default 0.005.
+    pub volume: Option<Given<Constant>>,
 }

@@ -19,7 +19,7 @@ mod support;
 
 pub use beam::{Beam, BeamDamping, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring};
 pub use connector::{Attachment, Connector, ConnectorLaw, Coupling, GasSpring, PointSpring, Rope};
-pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side};
+pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side, Valve};
 pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub(crate) use given::{EITHER, GIVEN, MANY};
 pub use given::{Either, Entries, Given, Many};

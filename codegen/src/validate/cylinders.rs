@@ -2,9 +2,14 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Step, Value};
+use crate::chain::{
+    BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Pump, Step, Transmission, Value, Valve,
+};
 use crate::diagnostic::rule;
 use crate::spec::{self, Constant, Crane, Given, Side};
+
+/// Oil between pump and valves unless given, m³.
+const VOLUME: f64 = 5e-3;
 
 impl<'a> Check<'a> {
     pub(super) fn cylinders(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Cylinder> {
@@ -22,14 +27,89 @@ impl<'a> Check<'a> {
         cylinders
     }
 
-    /// The greatest flow to all cylinders, m³/s.
-    pub(super) fn pump(&mut self, crane: &'a Crane) -> Option<f64> {
+    /// What supplies the cylinders.
+    pub(super) fn pump(&mut self, crane: &'a Crane) -> Option<Pump> {
         let given = crane.pump.as_ref()?;
         if crane.cylinders.is_none() {
             self.report(rule::pump_alone(given.span));
         }
         let pump = given.value.as_ref()?;
-        Some(self.constant(&pump.max_flow, "the greatest flow of the pump", "m³/s", Limit::Positive))
+        let max_flow = self.constant(&pump.max_flow, "the greatest flow of the pump", "m³/s", Limit::Positive);
+        let pressure = pump.pressure.as_ref();
+        let pressure = pressure.map(|given| self.constant(given, "the pressure of the pump", "Pa", Limit::Positive));
+        let volume = pump
+            .volume
+            .as_ref()
+            .map_or(VOLUME, |given| self.constant(given, "the volume between pump and valves", "m³", Limit::Positive));
+        Some(Pump { max_flow, pressure, volume })
+    }
+
+    /// Makes oil move the joints of cylinders with a valve.
+    pub(super) fn moved_by_oil(
+        &mut self,
+        crane: &'a Crane,
+        cylinders: &[Cylinder],
+        pump: Option<&Pump>,
+        drives: &mut [Drive],
+    ) {
+        let given = crane.cylinders.as_ref().and_then(|cylinders| cylinders.value.as_deref()).unwrap_or_default();
+        for given in given.iter().filter_map(|cylinder| cylinder.value.as_ref()) {
+            let Some(valve) = &given.valve else { continue };
+            let name = given.name.value.as_deref().unwrap_or_default();
+            if pump.is_none_or(|pump| pump.pressure.is_none()) {
+                self.report(rule::valve_without_pressure(valve.span, name));
+            }
+            let needed = [
+                ("bulk_modulus", given.bulk_modulus.is_some()),
+                ("max_pressure", given.max_pressure.is_some()),
+                ("hose_volumes", given.hose_volumes.is_some()),
+            ];
+            let missing: Vec<String> =
+                needed.iter().filter(|(_, there)| !there).map(|(key, _)| format!("`{key}`")).collect();
+            if !missing.is_empty() {
+                self.report(rule::valve_without_oil(valve.span, name, missing.join(", ")));
+            }
+            let Some(cylinder) = cylinders.iter().find(|cylinder| cylinder.name == name) else { continue };
+            if let Some(volumes) = &given.hose_volumes
+                && cylinder.hose_volumes.contains(&0.0)
+            {
+                self.report(rule::no_oil_at_the_end(volumes.span, name));
+            }
+            let Some(drive) = drives.iter_mut().find(|drive| drive.coordinate == cylinder.coordinate) else { continue };
+            match &drive.transmission {
+                Transmission::Flexible { stiffness, max_effort: None, .. } => {
+                    drive.transmission = Transmission::Oil { stiffness: stiffness.clone() };
+                }
+                Transmission::Flexible { .. } | Transmission::Rigid => {
+                    let joint = self.coordinates[cylinder.coordinate.0].name.clone();
+                    self.report(rule::valve_of_another_drive(valve.span, name, joint));
+                }
+                Transmission::Oil { .. } => (),
+            }
+        }
+    }
+
+    fn valve(&mut self, given: &spec::Valve, name: &str) -> Valve {
+        let place = |what: &str| format!("the {what} of the valve of cylinder `{name}`");
+        let flow = self.constant(&given.flow, &place("flow"), "m³/s", Limit::Positive);
+        let drop = self.constant(&given.pressure_drop, &place("pressure drop"), "Pa", Limit::Positive);
+        let mut optional = |given: Option<&Given<Constant>>, what: &str, unit, limit, default| {
+            given.map_or(default, |given| self.constant(given, &place(what), unit, limit))
+        };
+        let overlap = optional(given.overlap.as_ref(), "overlap", "", Limit::NotNegative, 0.0);
+        let valve = Valve {
+            flow,
+            pressure_drop: drop,
+            overlap,
+            lag: optional(Some(&given.lag), "lag", "s", Limit::Positive, 0.0),
+            gain: optional(Some(&given.gain), "gain", "1/m", Limit::NotNegative, 0.0),
+            feed_forward: optional(given.feed_forward.as_ref(), "feed-forward", "", Limit::NotNegative, 1.0),
+            leakage: optional(given.leakage.as_ref(), "leakage", "m³/(s Pa)", Limit::NotNegative, 0.0),
+        };
+        if let Some(given) = given.overlap.as_ref().filter(|_| overlap >= 1.0) {
+            self.report(rule::covered_valve(given.span, name, overlap));
+        }
+        valve
     }
 
     fn cylinder(&mut self, given: &spec::Cylinder, drives: &[Drive]) -> Option<Cylinder> {
@@ -58,6 +138,7 @@ impl<'a> Check<'a> {
             Some(None) => [f64::NAN; 2],
             None => [0.0; 2],
         };
+        let valve = given.valve.as_ref().and_then(|valve| valve.value.as_ref()).map(|valve| self.valve(valve, &name));
         let foot = self.pin(given.foot.value.as_ref(), &place("foot"));
         let head = self.pin(given.head.value.as_ref(), &place("head")).map(|(pin, _)| pin);
         let joint = given.coordinate.value.as_deref().unwrap_or_default();
@@ -88,6 +169,7 @@ impl<'a> Check<'a> {
             back_pressure,
             bulk_modulus,
             hose_volumes,
+            valve,
             name,
         })
     }

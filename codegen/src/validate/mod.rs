@@ -165,12 +165,13 @@ impl<'a> Check<'a> {
         };
         self.links(&crane.links);
         let supports = self.supports(crane);
-        let (drives, mut rotors) = self.drives(crane);
+        let (mut drives, mut rotors) = self.drives(crane);
         let hinges = self.hinges(crane, &drives);
         let forces = self.joint_forces(crane);
         let loads = self.loads(crane);
         let cylinders = self.cylinders(crane, &drives);
-        let pump_flow = self.pump(crane);
+        let pump = self.pump(crane);
+        self.moved_by_oil(crane, &cylinders, pump.as_ref(), &mut drives);
         let connectors = self.connectors(crane, &cylinders);
         rotors.extend(self.rotors(crane, &drives));
         let points = self.points(crane, &supports);
@@ -198,7 +199,7 @@ impl<'a> Check<'a> {
             forces,
             loads,
             cylinders,
-            pump_flow,
+            pump,
             connectors,
             inputs: std::mem::take(&mut self.inputs),
             rotors,

@@ -37,8 +37,8 @@ pub struct Description {
     pub inputs: List<InputInfo>,
     /// Hydraulic cylinders of driven joints.
     pub cylinders: List<CylinderInfo>,
-    /// Greatest flow to all cylinders together, m³/s, if it is limited.
-    pub pump_flow: Option<f64>,
+    /// What supplies them.
+    pub pump: Option<PumpInfo>,
     /// Names of the points of interest.
     pub points: List<Text>,
     /// Whether the spec requests statics: a run then starts from the static equilibrium, otherwise from the guess.
@@ -267,6 +267,38 @@ pub struct CylinderInfo {
     pub bulk_modulus: Option<f64>,
     /// Oil in hoses and valves on the piston's side and on the rod's, m³.
     pub hose_volumes: [f64; 2],
+    /// The valve that moves it; its pressures and the valve's opening are then states of the motion.
+    pub valve: Option<ValveInfo>,
+}
+
+/// A proportional directional valve, and the servo that makes its cylinder follow the drive's motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValveInfo {
+    /// Flow through a fully open edge at the pressure drop, m³/s.
+    pub flow: f64,
+    /// That pressure drop, Pa.
+    pub pressure_drop: f64,
+    /// Share of the spool's way from the middle that is covered.
+    pub overlap: f64,
+    /// Time constant of the spool, s.
+    pub lag: f64,
+    /// Opening for an error of the cylinder's length, 1/m.
+    pub gain: f64,
+    /// Share of the opening that the speed of the motion takes which is set ahead of any error.
+    pub feed_forward: f64,
+    /// Leakage past the piston, m³/(s Pa).
+    pub leakage: f64,
+}
+
+/// What supplies the cylinders.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PumpInfo {
+    /// Greatest flow to all cylinders together, m³/s.
+    pub max_flow: f64,
+    /// Pressure that it keeps up until its flow is at its limit, Pa.
+    pub pressure: Option<f64>,
+    /// Oil between it and the valves, m³.
+    pub volume: f64,
 }
 
 /// A load applied from outside.

@@ -224,6 +224,10 @@ impl<const N: usize, H: Deref<Target: Dynamics<N>> + Send + Sync> DynDynamics fo
         out.copy_from_slice(self.0.forward_dynamics(t, &vector(q), &vector(v)).as_slice());
     }
 
+    fn solve_mass(&self, q: &[f64], r: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.solve_mass(&vector(q), &vector(r)).as_slice());
+    }
+
     fn kinetic_energy(&self, q: &[f64], v: &[f64]) -> f64 {
         self.0.kinetic_energy(&vector(q), &vector(v))
     }

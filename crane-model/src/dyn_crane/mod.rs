@@ -175,6 +175,9 @@ pub trait DynDynamics: DynModel {
     /// Accelerations q̈.
     fn forward_dynamics(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
 
+    /// x of `A(q) x = r`.
+    fn solve_mass(&self, q: &[f64], r: &[f64], out: &mut [f64]);
+
     /// Kinetic energy, J.
     fn kinetic_energy(&self, q: &[f64], v: &[f64]) -> f64;
 }

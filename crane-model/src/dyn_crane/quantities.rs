@@ -8,6 +8,7 @@ use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
 use crate::{
     CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Tension, Wrench, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
+    hydraulics,
     modes::SmallMotions,
     statics,
     statics::Equilibrium,
@@ -294,9 +295,11 @@ impl dyn DynCrane + '_ {
         statics::solve_holding_dyn(self, positions, q, settings)
     }
 
-    /// Coefficients of small motions about a pose at rest.
+    /// Coefficients of small motions about a pose at rest, with shut valves.
     pub fn small_motions_at(&self, q: &[f64]) -> SmallMotions {
-        SmallMotions::of(self, q)
+        let mut motions = SmallMotions::of(self, q);
+        hydraulics::stiffen(self, q, &mut motions);
+        motions
     }
 
     /// A run: [`dynamics::simulate`].

@@ -3,8 +3,15 @@
 use nalgebra::Vector3;
 
 use super::{
-    Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped, equations::Equations, guides::Guides, rk4,
-    roughness::Roughness, settings::divided, state::NotFinite, stopped::Place,
+    Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped,
+    equations::Equations,
+    guides::Guides,
+    motion::{add, add_all},
+    rk4,
+    roughness::Roughness,
+    settings::divided,
+    state::NotFinite,
+    stopped::Place,
 };
 use crate::dyn_crane::DynDynamics;
 
@@ -17,6 +24,7 @@ pub struct Rk4<'a> {
     /// Rates at the start of a step.
     before: Vec<f64>,
     room: Vec<f64>,
+    first_order: FirstOrder,
     steps: Equal,
     done: usize,
 }
@@ -54,6 +62,7 @@ impl<'a> Rk4<'a> {
             motion: vec![0.0; equations.len()],
             before: vec![0.0; n],
             room: vec![0.0; rk4::ROOM * n],
+            first_order: FirstOrder::new(if equations.states() > 0 { equations.len() } else { 0 }),
             equations,
             settings: *settings,
             roughness: Roughness::new(Vec::new()),
@@ -71,6 +80,66 @@ impl<'a> Rk4<'a> {
     fn rough(&self, place: &Place<'_>, otherwise: impl FnOnce(&Place<'_>) -> Stopped) -> Stopped {
         let rough = self.roughness.roughest().map(|coordinate| place.stopped(Cause::Step, coordinate));
         rough.unwrap_or_else(|| otherwise(place))
+    }
+}
+
+/// A step of pose, rates and integrals.
+fn advance(
+    equations: &mut Equations<'_>,
+    t: f64,
+    h: f64,
+    motion: &mut [f64],
+    room: &mut [f64],
+) -> Result<(), NotFinite> {
+    let mut powers = [Vector3::zeros(); rk4::STAGES];
+    let (pose, rest) = motion.split_at_mut(equations.n);
+    let (rates, integrals) = rest.split_at_mut(equations.n);
+    let audit = !integrals.is_empty();
+    let advanced = rk4::advance(t, h, [pose, rates], room, |stage, t, q, v, out| {
+        if audit {
+            powers[stage] = equations.powers_at(t, q, v).into();
+        }
+        equations.accelerate(t, q, v, out)
+    });
+    for (integral, increment) in integrals.iter_mut().zip(&rk4::increments(&powers, h)) {
+        *integral += increment;
+    }
+    advanced
+}
+
+/// The method on all numbers of a motion alike, for cranes whose oil has states.
+#[derive(Default)]
+struct FirstOrder {
+    slopes: [Vec<f64>; rk4::STAGES],
+    place: Vec<f64>,
+}
+
+impl FirstOrder {
+    /// Storage for motions of this many numbers.
+    fn new(len: usize) -> Self {
+        Self { slopes: std::array::from_fn(|_| vec![0.0; len]), place: vec![0.0; len] }
+    }
+
+    /// A step; `first` receives the accelerations at its start.
+    fn advance(
+        &mut self,
+        equations: &mut Equations<'_>,
+        t: f64,
+        h: f64,
+        motion: &mut [f64],
+        first: &mut [f64],
+    ) -> Result<(), NotFinite> {
+        for stage in 0..rk4::STAGES {
+            let fraction = [0.0, 0.5, 0.5, 1.0][stage];
+            self.place.copy_from_slice(motion);
+            if stage > 0 {
+                add(&mut self.place, fraction * h, &self.slopes[stage - 1]);
+            }
+            equations.slope(t + fraction * h, &self.place, &mut self.slopes[stage])?;
+        }
+        first.copy_from_slice(&self.slopes[0][equations.n..2 * equations.n]);
+        add_all(motion, h / 6.0, &[1.0, 2.0, 2.0, 1.0], &self.slopes);
+        Ok(())
     }
 }
 
@@ -99,21 +168,14 @@ impl Stepper for Rk4<'_> {
         let (t, h) = steps.next();
         let n = equations.n;
         before.copy_from_slice(&motion[n..2 * n]);
-        let mut powers = [Vector3::zeros(); rk4::STAGES];
-        let (pose, rest) = motion.split_at_mut(n);
-        let (rates, integrals) = rest.split_at_mut(n);
-        let audit = !integrals.is_empty();
-        let advanced = rk4::advance(t, h, [pose, rates], room, |stage, t, q, v, out| {
-            if audit {
-                powers[stage] = equations.powers_at(t, q, v).into();
-            }
-            equations.accelerate(t, q, v, out)
-        });
+        let advanced = if equations.states() > 0 {
+            self.first_order.advance(equations, t, h, motion, &mut room[..n])
+        } else {
+            advance(equations, t, h, motion, room)
+        };
         if advanced.is_ok() {
-            equations.crane.prescribe(t + h, pose, rates);
-        }
-        for (integral, increment) in integrals.iter_mut().zip(&rk4::increments(&powers, h)) {
-            *integral += increment;
+            let (pose, rest) = motion.split_at_mut(n);
+            equations.crane.prescribe(t + h, pose, &mut rest[..n]);
         }
         if let Err(NotFinite) = advanced {
             let place = self.place(t, h);

@@ -14,7 +14,10 @@ use super::{
     stopped::{Place, without_inertia},
     stops::Stops,
 };
-use crate::dyn_crane::{DynDynamics, DynImplicit, DynModel};
+use crate::{
+    dyn_crane::{DynDynamics, DynImplicit, DynModel},
+    hydraulics::Hydraulics,
+};
 
 /// A motion on its way. It stops wherever a result is wanted and goes on from there with the steps and the history that it has, so
 /// that the times of results cost nothing.
@@ -22,6 +25,8 @@ pub struct Course<'a> {
     crane: &'a dyn DynDynamics,
     stepper: Box<dyn Stepper + 'a>,
     settings: Settings,
+    /// Number of states of oil.
+    states: usize,
     stops: Stops,
     /// Where it begins and ends, s.
     begin: f64,
@@ -41,7 +46,7 @@ impl<'a> Course<'a> {
     /// [`Stopped`] where the mass matrix is not positive definite or accelerations are not finite.
     ///
     /// # Panics
-    /// Where the start has not as many numbers as the crane has coordinates.
+    /// Where the start has not as many numbers as the crane has coordinates and its oil has states.
     pub fn new(
         crane: &'a dyn DynImplicit,
         begin: f64,
@@ -70,13 +75,18 @@ impl<'a> Course<'a> {
             let place = Place { method, t: begin, h: settings.step, q: &start.q, description: crane.description() };
             place.stopped(Cause::MassMatrix, index)
         })?;
-        let mut motion = [start.q.as_slice(), &start.v, if settings.audit { &[0.0; INTEGRALS] } else { &[] }].concat();
+        let mut hydraulics = Hydraulics::new(crane.description());
+        let states = if start.x.is_empty() { hydraulics.holding(crane, begin, &start.q) } else { start.x.clone() };
+        assert_eq!(states.len(), hydraulics.len(), "one number for each state of the oil");
+        let integrals: &[f64] = if settings.audit { &[0.0; INTEGRALS] } else { &[] };
+        let mut motion = [start.q.as_slice(), &start.v, &states, integrals].concat();
         let (pose, rates) = motion[..2 * n].split_at_mut(n);
         crane.prescribe(begin, pose, rates);
         stepper.start(begin, &motion)?;
         let end = begin + settings.duration;
         let stops = Stops::between([crane as &dyn DynModel], begin, end);
-        Ok(Self { crane, stepper, settings: *settings, stops, begin, end, reached: begin, time: begin, motion })
+        let states = hydraulics.len();
+        Ok(Self { crane, states, stepper, settings: *settings, stops, begin, end, reached: begin, time: begin, motion })
     }
 
     /// Goes on to a later time, s. `step` receives the time after every step and may stop the motion: then the last result stays.
@@ -114,9 +124,10 @@ impl<'a> Course<'a> {
     /// The last result.
     pub fn sample(&self) -> Sample<'_> {
         let (q, rest) = self.motion.split_at(self.crane.size());
-        let (v, integrals) = rest.split_at(q.len());
+        let (v, rest) = rest.split_at(q.len());
+        let (x, integrals) = rest.split_at(self.states);
         let [work, dissipated, load_work] = *integrals.first_chunk().unwrap_or(&[0.0; INTEGRALS]);
-        Sample { t: self.time, q, v, work, dissipated, load_work }
+        Sample { t: self.time, q, v, x, work, dissipated, load_work }
     }
 
     /// What it took up to the last result.

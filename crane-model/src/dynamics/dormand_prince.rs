@@ -84,7 +84,7 @@ impl<'a> DormandPrince<'a> {
     /// With the tolerance of the settings.
     pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
         let equations = Equations::new(crane, Guides::rigid(crane), settings.audit);
-        let norm = Norm::new(equations.n, settings.tolerance);
+        let norm = Norm::with_states(crane, settings.tolerance);
         Self(Adaptive::new(Tableau::new(equations.len()), equations, norm))
     }
 }

@@ -138,6 +138,7 @@ impl<'a> Batch<'a> {
         models: Vec<&'a dyn DynModel>,
     ) -> Self {
         let description = models[0].description();
+        assert!(description.cylinders.iter().all(|cylinder| cylinder.valve.is_none()), "oil has no lanes");
         let (n, vectors) = (description.coordinates.len(), lanes / LANES);
         let prescribes = description.coordinates.iter().any(|info| info.role == CoordinateRole::Prescribed);
         let mut start = [(); 2].map(|()| vec![f64x8::splat(0.0); n * vectors]);
@@ -227,7 +228,7 @@ impl<'a> Batch<'a> {
             for (lane, _) in results.iter().enumerate().filter(|(_, result)| result.is_ok()) {
                 self.lane(lane, &self.q, &mut q);
                 self.lane(lane, &self.v, &mut v);
-                observe(lane, &Sample { t: begin, q: &q, v: &v, work: 0.0, dissipated: 0.0, load_work: 0.0 });
+                observe(lane, &Sample { t: begin, q: &q, v: &v, x: &[], work: 0.0, dissipated: 0.0, load_work: 0.0 });
             }
             if interval == intervals || results.iter().all(Result::is_err) {
                 break;

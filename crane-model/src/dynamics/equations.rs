@@ -4,7 +4,10 @@ use super::{
     guides::Guides,
     state::{NotFinite, finite},
 };
-use crate::dyn_crane::DynDynamics;
+use crate::{
+    dyn_crane::DynDynamics,
+    hydraulics::{Hydraulics, Pushed, add_efforts, power},
+};
 
 /// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.
 pub(super) const INTEGRALS: usize = 3;
@@ -21,18 +24,51 @@ pub(super) struct Equations<'a> {
     pub evaluations: usize,
     /// Pose and rates of the last evaluated motion.
     state: Vec<f64>,
+    oil: Oil,
+}
+
+/// The oil of cylinders, with storage for an evaluation.
+struct Oil {
+    hydraulics: Hydraulics,
+    pushed: Vec<Pushed>,
+    rates: Vec<f64>,
+    forces: Vec<f64>,
+    accelerations: Vec<f64>,
 }
 
 impl<'a> Equations<'a> {
     /// For a crane, with or without integrals.
     pub fn new(crane: &'a dyn DynDynamics, guides: Guides, audit: bool) -> Self {
         let n = crane.size();
-        Self { crane, n, audit, guides, evaluations: 0, state: vec![0.0; 2 * n] }
+        let hydraulics = Hydraulics::new(crane.description());
+        let oil = Oil {
+            pushed: vec![Pushed::default(); hydraulics.count()],
+            rates: vec![0.0; hydraulics.len()],
+            forces: vec![0.0; n],
+            accelerations: vec![0.0; n],
+            hydraulics,
+        };
+        Self { crane, n, audit, guides, evaluations: 0, state: vec![0.0; 2 * n], oil }
     }
 
-    /// The number of components of a motion: coordinates, rates and integrals.
+    /// The number of components of a motion: coordinates, rates, states of oil and integrals.
     pub fn len(&self) -> usize {
-        2 * self.n + if self.audit { INTEGRALS } else { 0 }
+        self.integrals() + if self.audit { INTEGRALS } else { 0 }
+    }
+
+    /// Number of states of oil.
+    pub fn states(&self) -> usize {
+        self.oil.rates.len()
+    }
+
+    /// Where the integrals of a motion begin.
+    pub fn integrals(&self) -> usize {
+        2 * self.n + self.states()
+    }
+
+    /// The states of oil in a motion.
+    pub fn oil<'m>(&self, motion: &'m [f64]) -> &'m [f64] {
+        &motion[2 * self.n..self.integrals()]
     }
 
     /// Converts a motion to deviations from the guides.
@@ -79,8 +115,15 @@ impl<'a> Equations<'a> {
         self.state(t, motion);
         self.evaluations += 1;
         let (q, v) = self.state.split_at(n);
-        let accelerations = &mut out[n..2 * n];
+        let (_, rest) = out.split_at_mut(n);
+        let (accelerations, rest) = rest.split_at_mut(n);
         self.crane.forward_dynamics(t, q, v, accelerations);
+        if !self.oil.hydraulics.is_empty() {
+            let rates = &mut rest[..self.oil.rates.len()];
+            let x = &motion[2 * n..2 * n + rates.len()];
+            self.oil.accelerate(self.crane, t, (q, v), x, rates, accelerations);
+            finite(rates)?;
+        }
         self.guides.take_accelerations(self.crane, t, accelerations);
         finite(accelerations)
     }
@@ -90,7 +133,35 @@ impl<'a> Equations<'a> {
         if self.audit {
             self.state(t, motion);
             let (q, v) = self.state.split_at(self.n);
-            slope[2 * self.n..].copy_from_slice(&self.powers_at(t, q, v));
+            let mut powers = self.powers_at(t, q, v);
+            let begin = self.integrals();
+            if !self.oil.hydraulics.is_empty() {
+                let Oil { hydraulics, pushed, rates, .. } = &mut self.oil;
+                hydraulics.evaluate(self.crane, t, (q, v), &motion[2 * self.n..begin], rates, pushed, None);
+                powers[0] += power(pushed);
+            }
+            slope[begin..].copy_from_slice(&powers);
+        }
+    }
+}
+
+impl Oil {
+    /// Rates of the states, and what the cylinders add to the accelerations.
+    fn accelerate(
+        &mut self,
+        crane: &dyn DynDynamics,
+        t: f64,
+        (q, v): (&[f64], &[f64]),
+        x: &[f64],
+        rates: &mut [f64],
+        accelerations: &mut [f64],
+    ) {
+        self.hydraulics.evaluate(crane, t, (q, v), x, rates, &mut self.pushed, None);
+        self.forces.fill(0.0);
+        add_efforts(&self.pushed, &mut self.forces);
+        crane.solve_mass(q, &self.forces, &mut self.accelerations);
+        for (all, own) in accelerations.iter_mut().zip(&self.accelerations) {
+            *all += own;
         }
     }
 }

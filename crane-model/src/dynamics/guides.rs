@@ -45,12 +45,15 @@ impl Guides {
     }
 
     fn new(crane: &dyn DynModel, counts: impl Fn(usize, bool) -> bool) -> Self {
-        let Description { drives, coordinates, .. } = crane.description();
+        let Description { drives, coordinates, cylinders, .. } = crane.description();
         let guided = drives.iter().enumerate().map(|(drive, info)| {
             let rigid = coordinates[info.coordinate].role == CoordinateRole::Prescribed;
             Guided { coordinate: info.coordinate, drive, rigid }
         });
-        let guided = guided.filter(|guided| counts(guided.drive, guided.rigid)).collect();
+        // What oil moves does not follow its drive's motion closely.
+        let by_oil =
+            |drive: usize| cylinders.iter().any(|cylinder| cylinder.drive == drive && cylinder.valve.is_some());
+        let guided = guided.filter(|guided| counts(guided.drive, guided.rigid) && !by_oil(guided.drive)).collect();
         let motions = vec![[0.0; 2]; drives.len()];
         Self { guided, near: [motions.clone(), motions.clone()], motions, within: [0.0; 2] }
     }

@@ -1,7 +1,11 @@
 //! The size of an error of a motion, in units of the tolerance.
 
 use super::equations::Equations;
-use crate::{CoordinateKind, dyn_crane::DynImplicit};
+use crate::{
+    CoordinateKind,
+    dyn_crane::{DynImplicit, DynModel},
+    hydraulics::Hydraulics,
+};
 
 /// Weight of an error of a rate relative to one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
 const RATE: f64 = 0.2;
@@ -16,12 +20,14 @@ const ROUNDINGS: f64 = 4.0;
 /// Maximum amplification of rounding by successive stages: their coefficients are up to 40.
 const MAGNIFIED: f64 = 1e3;
 
-/// The measure of errors: of coordinates, rates and the efforts of drives.
+/// The measure of errors: of coordinates, rates, states of oil and the efforts of drives.
 pub(super) struct Norm {
     n: usize,
     /// Allowed error of a step, m and rad.
     tolerance: f64,
     efforts: Vec<Effort>,
+    /// Sizes of the states of oil.
+    states: Vec<f64>,
 }
 
 /// The effort of a drive, `−s u − d u̇` with the deviation u from its motion.
@@ -54,7 +60,13 @@ pub struct EffortAccuracy {
 impl Norm {
     /// For coordinates and rates only.
     pub fn new(n: usize, tolerance: f64) -> Self {
-        Self { n, tolerance, efforts: Vec::new() }
+        Self { n, tolerance, efforts: Vec::new(), states: Vec::new() }
+    }
+
+    /// For coordinates, rates and states of oil.
+    pub fn with_states(crane: &dyn DynModel, tolerance: f64) -> Self {
+        let states = Hydraulics::new(crane.description()).scales();
+        Self { states, ..Self::new(crane.description().coordinates.len(), tolerance) }
     }
 
     /// Also for the drives' efforts, for a motion relative to the drives' motions.
@@ -71,7 +83,7 @@ impl Norm {
         let coordinates = crane.description().drives.iter().map(|drive| drive.coordinate);
         let drives = coordinates.zip(stiffness).map(effort);
         let drives = drives.filter(|effort| effort.stiffness > 0.0);
-        Self { n, tolerance, efforts: drives.collect() }
+        Self { efforts: drives.collect(), ..Self::with_states(crane, tolerance) }
     }
 
     /// Starts at a pose: the crane's weight there gives the scale of the efforts.
@@ -97,7 +109,7 @@ impl Norm {
         self.note_rounding(&q, &v);
     }
 
-    /// Size of an error of a motion: the largest of `|δq|` in m and rad, `|δv|/(1 + |v|)` times [`RATE`], and of efforts over
+    /// Size of an error of a motion: the largest of `|δq|` in m and rad, `|δv|/(1 + |v|)` times [`RATE`], and of pressures, spools and efforts over
     /// their scales, over the tolerance; infinite if one is NaN.
     pub fn size(&self, motion: &[f64], error: &[f64]) -> f64 {
         let mut greatest = Greatest::default();
@@ -106,6 +118,9 @@ impl Norm {
         }
         for (error, rate) in error[self.n..2 * self.n].iter().zip(&motion[self.n..2 * self.n]) {
             greatest.note(error.abs() * RATE / (1.0 + rate.abs()));
+        }
+        for (error, scale) in error[2 * self.n..].iter().zip(&self.states) {
+            greatest.note(error.abs() / (EFFORT * scale));
         }
         for effort in &self.efforts {
             greatest.note(effort.of(self.n, error, f64::abs) / (EFFORT * effort.scale));

@@ -11,7 +11,9 @@ pub struct Sample<'a> {
     pub q: &'a [f64],
     /// Their rates, m/s and rad/s.
     pub v: &'a [f64],
-    /// Work of the drives' motions since t = 0, J; 0 without audit.
+    /// States of the oil of cylinders with a valve, in the order of [`hydraulics`](crate::hydraulics): Pa and shares.
+    pub x: &'a [f64],
+    /// Work of the drives' motions and of cylinders since t = 0, J; 0 without audit.
     pub work: f64,
     /// Energy that the dampers dissipated since t = 0, J; 0 without audit.
     pub dissipated: f64,

@@ -53,6 +53,9 @@ pub struct InitialState {
     pub q: Vec<f64>,
     /// Their rates, m/s and rad/s.
     pub v: Vec<f64>,
+    /// States of the oil of cylinders with a valve, in the order of [`hydraulics`](crate::hydraulics): Pa and shares. Empty: those that hold
+    /// the pose at rest.
+    pub x: Vec<f64>,
 }
 
 #[cfg(feature = "std")]
@@ -60,13 +63,13 @@ impl InitialState {
     /// Pose `q` at rest.
     pub fn at_rest(q: Vec<f64>) -> Self {
         let v = vec![0.0; q.len()];
-        Self { q, v }
+        Self { q, v, x: Vec::new() }
     }
 }
 
 #[cfg(feature = "std")]
 impl<const N: usize> From<&State<N>> for InitialState {
     fn from(state: &State<N>) -> Self {
-        Self { q: state.q.as_slice().to_vec(), v: state.v.as_slice().to_vec() }
+        Self { q: state.q.as_slice().to_vec(), v: state.v.as_slice().to_vec(), x: Vec::new() }
     }
 }

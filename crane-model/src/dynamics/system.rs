@@ -9,7 +9,8 @@
 //! (A + cD̂ + c²K̂) z = −c² ((D̂ + cK̂) G + K̂ P),     w = c G + z,     p = c (w + P)
 //! ```
 //!
-//! What connectors add, `Σ Jᵀ (c d + c² k) J`, is of low rank: [`Connected`].
+//! What connectors add, `Σ Jᵀ (c d + c² k) J`, is of low rank: [`Connected`]. So is what oil adds, whose states are eliminated:
+//! [`Eliminated`].
 
 use nalgebra::Matrix6;
 
@@ -17,6 +18,7 @@ use super::connected::Connected;
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
+    hydraulics::{Eliminated, Hydraulics},
 };
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.
@@ -34,6 +36,9 @@ pub(super) struct System<'a> {
     switches: bool,
     /// Stiffness and damping of connectors.
     connected: Connected,
+    /// The oil of cylinders, and the number of its states.
+    oil: Eliminated,
+    states: usize,
     /// c, s.
     c: f64,
     resistance: Vec<f64>,
@@ -62,6 +67,8 @@ impl<'a> System<'a> {
             nonlinear: [vec![[0.0; 2]; n], vec![[0.0; 2]; n]],
             base: [Matrix6::zeros(); 2],
             connected: Connected::new(crane),
+            oil: Eliminated::new(crane),
+            states: Hydraulics::new(crane.description()).len(),
             c: f64::NAN,
             resistance: zeros(),
             right: zeros(),
@@ -70,8 +77,8 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Factorises at a state.
-    pub fn factorise(&mut self, t: f64, (q, v): (&[f64], &[f64]), c: f64) {
+    /// Factorises at a state of the crane and its oil.
+    pub fn factorise(&mut self, t: f64, (q, v): (&[f64], &[f64]), x: &[f64], c: f64) {
         self.c = c;
         let [nonlinear, _] = &mut self.nonlinear;
         self.crane.nonlinear_impedances(t, q, v, nonlinear);
@@ -85,6 +92,11 @@ impl<'a> System<'a> {
         let [stiffness, damping] = &self.base;
         self.factors.factorise(q, &self.resistance, &(damping * c + stiffness * (c * c)));
         self.connected.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
+        let Self { factors, connected, .. } = self;
+        self.oil.factorise(self.crane, t, (q, v), x, c, &mut |right, solution| {
+            factors.solve(right, solution);
+            connected.correct(solution);
+        });
         self.factorisations += 1;
     }
 
@@ -105,7 +117,7 @@ impl<'a> System<'a> {
             || self.connected.switched(self.crane, t, (q, v))
     }
 
-    /// u for a right-hand side `(P, G, ·)`.
+    /// u for a right-hand side `(P, G, R, ·)`.
     pub fn solve(&mut self, rhs: &[f64], u: &mut [f64]) {
         let (c, n) = (self.c, self.joints.len());
         let (p, g) = rhs[..2 * n].split_at(n);
@@ -120,18 +132,23 @@ impl<'a> System<'a> {
             }
         }
         self.connected.add_to((g, p), c, &mut self.right);
+        let (r, of_integrals) = rhs[2 * n..].split_at(self.states);
+        self.oil.add_to((g, p), r, c, &mut self.right);
         for right in &mut self.right {
             *right *= -c * c;
         }
         self.factors.solve(&self.right, &mut self.solution);
         self.connected.correct(&mut self.solution);
+        self.oil.correct(&mut self.solution);
         let (of_q, rest) = u.split_at_mut(n);
-        let (of_v, of_integrals) = rest.split_at_mut(n);
+        let (of_v, rest) = rest.split_at_mut(n);
+        let (of_x, rest) = rest.split_at_mut(self.states);
         for i in 0..n {
             of_v[i] = c * g[i] + self.solution[i];
             of_q[i] = c * (of_v[i] + p[i]);
         }
-        for (u, rhs) in of_integrals.iter_mut().zip(&rhs[2 * n..]) {
+        self.oil.states((of_q, of_v), r, of_x);
+        for (u, rhs) in rest.iter_mut().zip(of_integrals) {
             *u = c * rhs;
         }
     }

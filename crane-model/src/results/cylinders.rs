@@ -38,7 +38,7 @@ pub struct CylinderState {
 }
 
 impl CylinderState {
-    fn new(info: &CylinderInfo, [length, speed, arm]: [f64; 3], effort: f64) -> Self {
+    pub(crate) fn new(info: &CylinderInfo, [length, speed, arm]: [f64; 3], effort: f64) -> Self {
         let force = effort / arm;
         let ([piston, ring], back) = (info.areas, info.back_pressure);
         let pressures = if force + back * (ring - piston) > 0.0 {
@@ -109,6 +109,11 @@ pub(super) fn columns(name: &str) -> [(String, &'static str); 6] {
     .map(|(what, unit)| (format!("{name}_{what}"), unit))
 }
 
+/// Name of the column with the opening of a cylinder's valve, −1 to 1.
+pub(crate) fn spool(cylinder: &str) -> String {
+    format!("{cylinder}_valve")
+}
+
 /// Their values.
 pub(super) fn values(state: &CylinderState) -> [f64; 6] {
     let [piston, rod] = state.pressures;
@@ -131,7 +136,7 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
         found.extend(over_pressure(info, state.pressures.map(still), false));
         let DriveInfo { coordinate, .. } = description.drives[info.drive];
         let (own, coordinate) = (stiffness[info.drive], &description.coordinates[coordinate]);
-        let oil = state.oil_stiffness(info).filter(|oil| own > STIFFER * oil);
+        let oil = state.oil_stiffness(info).filter(|oil| info.valve.is_none() && own > STIFFER * oil);
         found.extend(oil.map(|oil| {
             format!(
                 "the drive of {} is {:.1} times as stiff as the oil in {}, {oil:.3e} {}/{}: the real crane vibrates more slowly and \
@@ -156,7 +161,7 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
         found.extend(over_pressure(info, [piston, rod], true));
     }
     let Extremes { maximum: flow, time_of_maximum: time, .. } = Extremes::of(table, "pump_flow");
-    let limit = description.pump_flow.filter(|limit| flow > *limit);
+    let limit = description.pump.map(|pump| pump.max_flow).filter(|limit| flow > *limit);
     found.extend(limit.map(|limit| {
         format!(
             "the cylinders take up to {:.1} l/min, at {time:.2} s; the pump delivers {:.1} l/min",

@@ -4,6 +4,7 @@ use crate::{
     ConnectorInfo, CoordinateKind, Description,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
+    hydraulics::Oil,
     results::{Column, Table, cylinders},
 };
 
@@ -36,9 +37,9 @@ impl<'a> Recording<'a> {
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
-        let &Sample { t, q, v, work, dissipated, load_work } = sample;
+        let &Sample { t, q, v, x, work, dissipated, load_work } = sample;
         let mut row = Vec::with_capacity(self.table.columns.len());
-        let energy = push_quantities(self.crane, t, q, v, &mut row).total();
+        let energy = push_quantities(self.crane, t, (q, v), x, &mut row).total();
         if self.table.rows.is_empty() {
             self.energy_at_start = energy;
         }
@@ -56,27 +57,37 @@ impl<'a> Recording<'a> {
     }
 }
 
-/// What follows from a state: all columns of a [`Recording`] but those of its audit, in the order of [`quantities`].
-pub fn quantities_at(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
+/// What follows from a state of the crane and its oil: all columns of a [`Recording`] but those of its audit, in the order of
+/// [`quantities`].
+pub fn quantities_at(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Vec<f64> {
     let mut row = Vec::new();
-    push_quantities(crane, t, q, v, &mut row);
+    push_quantities(crane, t, (q, v), x, &mut row);
     row
 }
 
 /// Adds what follows from a state to a row; its energies.
-fn push_quantities(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], row: &mut Vec<f64>) -> Energies {
+fn push_quantities(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64], row: &mut Vec<f64>) -> Energies {
     let energies = crane.energies_at(t, q, v);
     row.push(t);
     row.extend_from_slice(q);
     row.extend_from_slice(v);
-    let efforts = crane.drive_efforts_at(t, q, v);
+    let mut efforts = crane.drive_efforts_at(t, q, v);
+    let oil = Oil::at(crane, t, (q, v), x);
+    if let Some(oil) = &oil {
+        oil.give_efforts(crane.description(), &mut efforts);
+    }
     for ([position, _], effort) in crane.drive_motions_at(t).into_iter().zip(&efforts) {
         row.extend([position, *effort]);
     }
-    let cylinders = cylinders::cylinders_at(crane, q, v, &efforts);
+    let mut cylinders = cylinders::cylinders_at(crane, q, v, &efforts);
+    if let Some(oil) = &oil {
+        oil.give_states(&mut cylinders);
+    }
     row.extend(cylinders.iter().flat_map(cylinders::values));
-    if !cylinders.is_empty() {
-        row.extend(cylinders::pump(&cylinders));
+    match &oil {
+        Some(oil) => row.extend(oil.pump_and_spools()),
+        None if cylinders.is_empty() => (),
+        None => row.extend(cylinders::pump(&cylinders)),
     }
     for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {
         row.extend(position.iter().chain(&velocity));
@@ -124,6 +135,12 @@ pub fn quantities(description: &Description) -> Vec<Column> {
     if !description.cylinders.is_empty() {
         table.add("pump_flow", "m³/s");
         table.add("pump_power", "W");
+        if description.cylinders.iter().any(|cylinder| cylinder.valve.is_some()) {
+            table.add("pump_pressure", "Pa");
+        }
+        for cylinder in description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
+            table.add(cylinders::spool(&cylinder.name), "");
+        }
     }
     for point in &description.points {
         for axis in ["x", "y", "z"] {

@@ -82,7 +82,10 @@ pub struct Conduct<'a> {
 /// Runs the crane with every row of parameters, all of them in the order of the description, each from its own [`Start`]. One outcome
 /// per row, in order.
 pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, conduct: &Conduct<'_>) -> Vec<Outcome> {
-    let piece = if settings.method == Method::Rk4 { crane.lanes() } else { 1 };
+    // Valves have no lanes.
+    let valves = crane.description().cylinders.iter().any(|cylinder| cylinder.valve.is_some());
+    let in_lanes = settings.method == Method::Rk4 && !valves;
+    let piece = if in_lanes { crane.lanes() } else { 1 };
     let waiting = Mutex::new(rows.chunks(piece).enumerate());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
     let finished = Mutex::new(Vec::with_capacity(rows.len()));
@@ -91,7 +94,7 @@ pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, conduct
         while let Some((index, rows)) = next() {
             let outcomes = match rows {
                 _ if off() => rows.iter().map(|_| Outcome::without_run(Reason::CalledOff)).collect(),
-                [row] if settings.method != Method::Rk4 => vec![alone(crane, row, settings, &off)],
+                [row] if !in_lanes => vec![alone(crane, row, settings, &off)],
                 rows => side_by_side(crane, rows, settings),
             };
             for (place, outcome) in outcomes.into_iter().enumerate() {
@@ -146,8 +149,10 @@ impl<'a> Gathering<'a> {
         *tilted = tilted.take().or_else(|| description.large_tilt(sample.q));
         self.end.q.clear();
         self.end.v.clear();
+        self.end.x.clear();
         self.end.q.extend_from_slice(sample.q);
         self.end.v.extend_from_slice(sample.v);
+        self.end.x.extend_from_slice(sample.x);
     }
 
     fn finish(self, run: Result<Run, dynamics::Stopped>) -> Outcome {

@@ -19,6 +19,8 @@ pub struct Start {
     pub q: Vec<f64>,
     /// Its rates, m/s and rad/s.
     pub v: Vec<f64>,
+    /// States of the oil; empty: those that hold the pose at rest.
+    pub x: Vec<f64>,
     /// In words: [`EQUILIBRIUM`], [`GUESS`], or the request.
     pub what: String,
     /// Whether the crane would stay there with its drives stopped.
@@ -51,17 +53,17 @@ impl Start {
         if !q.is_empty() && crane.mass_matrix_at(&q).cholesky().is_none() {
             return Err(Reason::MassMatrix.of(name));
         }
-        Ok(Self { v: vec![0.0; q.len()], q, what: EQUILIBRIUM.to_owned(), rests: true })
+        Ok(Self { v: vec![0.0; q.len()], q, x: Vec::new(), what: EQUILIBRIUM.to_owned(), rests: true })
     }
 
     /// The guess of a crane.
     pub fn guess(crane: &dyn DynCrane) -> Self {
         let q = crane.guess();
-        Self { v: vec![0.0; q.len()], q, what: GUESS.to_owned(), rests: false }
+        Self { v: vec![0.0; q.len()], q, x: Vec::new(), what: GUESS.to_owned(), rests: false }
     }
 
     /// Pose and rates.
     pub fn state(&self) -> InitialState {
-        InitialState { q: self.q.clone(), v: self.v.clone() }
+        InitialState { q: self.q.clone(), v: self.v.clone(), x: self.x.clone() }
     }
 }

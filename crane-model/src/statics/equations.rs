@@ -91,7 +91,7 @@ impl Equations for Held<'_> {
         let (crane, description) = (self.crane, self.crane.description());
         let (mut residual, mut forces) = (AtStart(crane).residual(q), vec![0.0; q.len()]);
         for (sign, q) in [(1.0, q), (-1.0, &self.moved(q))] {
-            crane.drive_forces(0.0, q.as_slice(), &self.rates, &mut forces);
+            crane.drive_forces_at_rest(q.as_slice(), &mut forces);
             for drive in description.drives.iter().filter(|drive| !self.is_rigid(drive.coordinate)) {
                 residual[drive.coordinate] += sign * forces[drive.coordinate];
             }

@@ -38,7 +38,7 @@ pub const fn description(
         connectors: List::Static(&[]),
         inputs: List::Static(&[]),
         cylinders: List::Static(&[]),
-        pump_flow: None,
+        pump: None,
         points: List::Static(&[]),
         statics: true,
         guess: List::Static(guess),

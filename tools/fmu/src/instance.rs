@@ -270,7 +270,7 @@ impl Instance {
         let Self { crane, moment: Some(Moment { t, q, v }), quantities, .. } = self else {
             return Err(Fault::nowhere());
         };
-        Ok(quantities.get_or_insert_with(|| results::quantities_at(crane, *t, q, v)))
+        Ok(quantities.get_or_insert_with(|| results::quantities_at(crane, *t, (q, v), &[])))
     }
 
     fn accelerations(&mut self) -> Result<&[f64], Fault> {
@@ -475,7 +475,7 @@ impl Instance {
         }
         let mut motion = match self.motion.take() {
             Some(motion) => motion,
-            None => Motion::new(self.crane.clone(), t, &InitialState { q, v }, &self.settings)?,
+            None => Motion::new(self.crane.clone(), t, &InitialState { q, v, x: Vec::new() }, &self.settings)?,
         };
         let _ = motion.advance(from + length, &mut |_| ControlFlow::Continue(()))?;
         let sample = motion.sample();

@@ -430,6 +430,10 @@ impl DynDynamics for LiveCrane {
         self.numbers(FunctionId::ForwardDynamics, &state(t, q, v), out);
     }
 
+    fn solve_mass(&self, q: &[f64], r: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::SolveMass, &Arguments { right: r, ..at(q) }, out);
+    }
+
     fn kinetic_energy(&self, q: &[f64], v: &[f64]) -> f64 {
         self.scalar(FunctionId::KineticEnergy, &state(0.0, q, v))
     }

@@ -5,7 +5,7 @@ use crane_codegen::chain::{
 };
 use crane_model::{
     AttachmentInfo, BodyInfo, Bound, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo,
-    Description, DriveInfo, InputInfo, LoadInfo, ParameterInfo, Refusal, SupportInfo,
+    Description, DriveInfo, InputInfo, LoadInfo, ParameterInfo, PumpInfo, Refusal, SupportInfo, ValveInfo,
 };
 
 /// The description of a chain, as the compiler writes it.
@@ -75,6 +75,20 @@ pub fn describe(chain: &Chain) -> Description {
         back_pressure: cylinder.back_pressure,
         bulk_modulus: cylinder.bulk_modulus,
         hose_volumes: cylinder.hose_volumes,
+        valve: cylinder.valve.as_ref().map(|valve| ValveInfo {
+            flow: valve.flow,
+            pressure_drop: valve.pressure_drop,
+            overlap: valve.overlap,
+            lag: valve.lag,
+            gain: valve.gain,
+            feed_forward: valve.feed_forward,
+            leakage: valve.leakage,
+        }),
+    });
+    let pump = chain.pump.as_ref().map(|pump| PumpInfo {
+        max_flow: pump.max_flow,
+        pressure: pump.pressure,
+        volume: pump.volume,
     });
     Description {
         name: chain.name.clone().into(),
@@ -91,7 +105,7 @@ pub fn describe(chain: &Chain) -> Description {
         connectors: connectors.collect(),
         inputs: inputs.collect(),
         cylinders: cylinders.collect(),
-        pump_flow: chain.pump_flow,
+        pump,
         points: chain.points.iter().map(|point| point.name.clone().into()).collect(),
         statics: chain.analyses.statics,
         guess: chain.guess.iter().copied().collect(),

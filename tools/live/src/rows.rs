@@ -258,7 +258,8 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::StaticResidual
             | FunctionId::DriveForcesAtRest
             | FunctionId::Bias
-            | FunctionId::ForwardDynamics => n,
+            | FunctionId::ForwardDynamics
+            | FunctionId::SolveMass => n,
             FunctionId::ConnectorLengths => 2 * description.connectors.len(),
             FunctionId::ConnectorTensions => 3 * description.connectors.len(),
             FunctionId::ConnectorJacobians => n * description.connectors.len(),
@@ -275,7 +276,6 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::SectionModuli
             | FunctionId::PrescribedMotions
             | FunctionId::MassMatrixAndBias
-            | FunctionId::SolveMass
             | FunctionId::Factorise
             | FunctionId::Solve
             | FunctionId::TransformSecondDerivatives => crane.library().routine(id).map_or(0, Routine::results),

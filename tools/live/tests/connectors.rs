@@ -159,7 +159,7 @@ fn a_falling_weight_is_caught_by_its_rope() {
     let crane = hung("{rope: {stiffness: 2e4, length: 2}}");
     let crane: &dyn DynCrane = &crane;
     let taut = 4.0 - 0.5 - 2.0;
-    let start = InitialState { q: vec![taut + fall], v: vec![0.0] };
+    let start = InitialState { q: vec![taut + fall], v: vec![0.0], ..InitialState::default() };
     assert_eq!(cautions::of_pose(crane, &start.q, cautions::BEND), ["rope hoist is slack"]);
     // Down, up again, and half of the second fall.
     let duration = 2.6 * (2.0 * fall / GRAVITY).sqrt();
@@ -195,7 +195,7 @@ fn a_winch_does_the_work_of_the_weight() {
     let crane =
         hung("{rope: {stiffness: 2e4, damping: 5, motion: {quintic: {from: 2, to: 0.8, begin: 0.5, duration: 3}}}}");
     let crane: &dyn DynCrane = &crane;
-    let start = InitialState { q: rest(crane), v: vec![0.0] };
+    let start = InitialState { q: rest(crane), v: vec![0.0], ..InitialState::default() };
     let of_spec = Settings::of(crane.description());
     let settings = Settings { tolerance: 1e-7, duration: 10.0, output: 0.1, audit: true, ..of_spec };
     let mut end = (0.0, 0.0);
@@ -245,7 +245,7 @@ fn a_spring_along_a_slide_steps_like_that_of_a_drive() {
     };
     let between = "connectors: [{name: tie, from: {at: [0, 0, 0]}, to: {link: slide, at: [0, 0, 2]}, law: {spring: {stiffness: 2e6, damping: 900, length: 2}}}]";
     let driven = "drives: [{coordinate: slide_z, stiffness: 2e6, damping: 900, motion: {hold: 0}}]";
-    let start = InitialState { q: vec![0.1], v: vec![0.0] };
+    let start = InitialState { q: vec![0.1], v: vec![0.0], ..InitialState::default() };
     for method in [Method::Bdf, Method::Rosenbrock] {
         let [one, other] = [between, driven].map(|spring| {
             let slide = slide(spring);
@@ -276,7 +276,7 @@ fn implicit_steps_know_springs_across_several_joints() {
          connectors: [{name: tie, from: {at: [0, 0, 1]}, to: {link: three, at: [0.8, 0, 0]}, law: {spring: {stiffness: 1e8, damping: 1e5, length: 2.2}}}]\n",
     );
     let arms: &dyn DynCrane = &arms;
-    let start = InitialState { q: rest(arms), v: vec![0.0; 3] };
+    let start = InitialState { q: rest(arms), v: vec![0.0; 3], ..InitialState::default() };
     let of_spec = Settings::of(arms.description());
     let [(q, steps), (exact, most)] = [Method::Bdf, Method::DormandPrince].map(|method| {
         let settings = Settings { method, tolerance: 1e-5, duration: 0.6, output: 0.6, ..of_spec };
@@ -306,7 +306,7 @@ fn a_second_stage_follows_the_first() {
     assert!((q[1] - q[0] - 0.3 - slip).abs() < 1e-11, "{q:?}");
     assert!((telescope.drive_efforts_at_rest(&q)[0] / effort - 1.0).abs() < 1e-9);
     // At the end of the motion both stages have gone as far.
-    let start = InitialState { q: q.clone(), v: vec![0.0; 2] };
+    let start = InitialState { q: q.clone(), v: vec![0.0; 2], ..InitialState::default() };
     let of_spec = Settings::of(telescope.description());
     let settings = Settings { tolerance: 1e-6, duration: 6.0, output: 1.0, audit: true, ..of_spec };
     let (mut end, mut recording) = (Vec::new(), Recording::new(telescope));

@@ -197,7 +197,7 @@ fn free_play_is_a_gap() {
     let (fall, omega) = ((2.0 * gap / gravity).sqrt(), (stiffness / mass).sqrt());
     let contact = 2.0 / omega * (std::f64::consts::PI - (gravity * fall * omega / gravity).atan());
     let period = 2.0 * fall + contact;
-    let start = InitialState { q: vec![0.0], v: vec![0.0] };
+    let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
         let mut last = 0.0;
         run(&jumper, &start, &settings(&jumper, method, 1e-9, period, 1e-4), mass * gravity * gap, &mut |t, q, _| {

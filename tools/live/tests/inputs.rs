@@ -99,7 +99,7 @@ struct Last(InitialState);
 
 impl Watch for Last {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
-        self.0 = InitialState { q: sample.q.to_vec(), v: sample.v.to_vec() };
+        self.0 = InitialState { q: sample.q.to_vec(), v: sample.v.to_vec(), ..InitialState::default() };
         ControlFlow::Continue(())
     }
 }
@@ -117,7 +117,7 @@ fn a_controller_sets_inputs_between_steps() {
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
         let of_spec = Settings::of(slide.description());
         let settings = Settings { method, tolerance: 1e-9, duration: 0.3, output: 0.3, ..of_spec };
-        let mut state = InitialState { q: vec![0.0], v: vec![0.0] };
+        let mut state = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
         let (mut x, mut v) = (0.0, 0.0);
         for (step, lever) in [0.5, -0.2, 0.9, 0.1, 0.4].into_iter().enumerate() {
             DynCrane::set_input(&mut slide, 0, Some(lever));

@@ -24,7 +24,7 @@ fn run(crane: &LiveCrane, method: Method, tolerance: f64, duration: f64, v: f64)
     let crane: &dyn DynCrane = crane;
     let own = Settings::of(crane.description());
     let settings = Settings { method, tolerance, duration, output: 1e-3, step: 1e-5, audit: true, ..own };
-    let start = InitialState { q: vec![0.0], v: vec![v] };
+    let start = InitialState { q: vec![0.0], v: vec![v], ..InitialState::default() };
     let energy = |sample: &Sample<'_>| crane.energies_at(sample.t, sample.q, sample.v).total();
     let mut samples = Vec::new();
     let run = crane.simulate(&start, &settings, &mut |sample: &Sample<'_>| {

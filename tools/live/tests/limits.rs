@@ -22,7 +22,7 @@ fn a_drive_at_its_limit_accelerates_evenly() {
          drives: [{{coordinate: slide_x, stiffness: 1e4, damping: 10, max_effort: {limit}, motion: {{hold: 8}}}}]\n"
     ));
     let slide: &dyn DynCrane = &slide;
-    let start = InitialState { q: vec![0.0], v: vec![0.0] };
+    let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
     let begin = slide.energies_at(0.0, &start.q, &start.v).total();
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
         let own = Settings::of(slide.description());

@@ -71,7 +71,7 @@ fn the_work_of_a_load_is_kinetic_energy() {
     );
     let slide: &dyn DynCrane = &slide;
     let settings = Settings { audit: true, duration: 2.0, ..Settings::of(slide.description()) };
-    let start = InitialState { q: vec![0.0], v: vec![0.0] };
+    let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
     let mut last = [0.0; 3];
     let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
         last = [sample.q[0], sample.v[0], sample.load_work];
@@ -97,7 +97,7 @@ fn no_step_misses_a_short_push() {
         let of_spec = Settings::of(slide.description());
         let settings = Settings { method, tolerance: 1e-8, duration: 10.0, output: 10.0, ..of_spec };
         let mut speed = 0.0;
-        let start = InitialState { q: vec![0.0], v: vec![0.0] };
+        let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
         let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
             speed = sample.v[0];
             ControlFlow::Continue(())

@@ -37,8 +37,8 @@ def threads() -> int:
 class Motion:
     """A motion that goes on from result to result, with the history of its method."""
 
-    def advance(self, dt: float) -> tuple[float, Array, Array, tuple[float, float, float]]:
-        """Goes on by a while, s, to its time, pose and rates; work of the drives, energy that dampers dissipated and work of the loads
+    def advance(self, dt: float) -> tuple[float, Array, Array, Array, tuple[float, float, float]]:
+        """Goes on by a while, s, to its time, pose, rates and states of the oil; work of the drives, energy that dampers dissipated and work of the loads
         since the start, J."""
     def statistics(self) -> dict[str, int]:
         """Steps, rejections, evaluations and factorisations so far."""
@@ -107,8 +107,8 @@ class Crane:
         self, timing: dict[str, Any], invalid: str = "raise", progress: Callable[[int, int], Any] | None = None
     ) -> dict[str, Any]:
         """Runs over parameters: `Crane.simulate_ensemble` makes an `Ensemble` of them."""
-    def motion(self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike) -> Motion:
-        """The crane on its way from a time, s, a pose and rates, with its parameters and inputs."""
+    def motion(self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike, x: ArrayLike) -> Motion:
+        """The crane on its way from a time, s, a pose, rates and states of the oil, with its parameters and inputs."""
     @property
     def inputs(self) -> dict[str, float]:
         """Inputs that are set, by name."""

@@ -18,7 +18,8 @@ class State:
     """A moment of a simulation, to come back to.
 
     t: s. q, v: (n), m and rad, m/s and rad/s. work, dissipated, load_work: J since the start. parameters: live parameters.
-    inputs: those that are set.
+    inputs: those that are set. x: states of the oil of cylinders with a valve (pressures on the sides of piston and rod, Pa, and opening of
+    each, then the pump's pressure, Pa); empty before the first step, which begins with those that hold the pose.
     """
 
     t: float
@@ -29,6 +30,7 @@ class State:
     parameters: dict[str, float] = field(default_factory=dict)
     load_work: float = 0.0
     inputs: dict[str, float] = field(default_factory=dict)
+    x: Array = field(default_factory=lambda: np.zeros(0))
 
 
 class Simulation:
@@ -120,10 +122,10 @@ class Simulation:
         if parameters or inputs:
             self._change(self.crane.replace(inputs=inputs, **parameters))
         if self._motion is None:
-            self._motion = self.crane.motion(self._timing, self._state.t, self._state.q, self._state.v)
+            self._motion = self.crane.motion(self._timing, self._state.t, self._state.q, self._state.v, self._state.x)
             self._begin = self._state
         try:
-            t, q, v, (work, dissipated, load_work) = self._motion.advance(dt)
+            t, q, v, x, (work, dissipated, load_work) = self._motion.advance(dt)
         except BaseException:
             self._forget()
             raise
@@ -137,6 +139,7 @@ class Simulation:
             parameters=self._state.parameters,
             load_work=begin.load_work + load_work,
             inputs=self._state.inputs,
+            x=x,
         )
         return self._state
 

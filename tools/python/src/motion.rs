@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings, Statistics, Stopped};
+use crane_model::hydraulics::Hydraulics;
 use crane_model::results::{Column, Peaks, cautions};
 use crane_model::runs::ensemble::{self, Conduct};
 use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, record_checked, step_limit};
@@ -192,7 +193,9 @@ impl Crane {
         let watch = Watch::new();
         let result = py.detach(|| {
             let mut start = match &q {
-                Some(q) => Start { v: vec![0.0; q.len()], q: q.clone(), what: GIVEN.to_owned(), rests: false },
+                Some(q) => {
+                    Start { v: vec![0.0; q.len()], q: q.clone(), x: Vec::new(), what: GIVEN.to_owned(), rests: false }
+                }
                 None => Start::of(crane).map_err(|failed| raised(&failed))?,
             };
             if let Some(v) = v {
@@ -300,6 +303,7 @@ impl Crane {
         t: f64,
         q: &Bound<'_, PyAny>,
         v: &Bound<'_, PyAny>,
+        x: Vec<f64>,
     ) -> PyResult<Motion> {
         let description = self.live.description();
         if !self.is_single() {
@@ -309,7 +313,11 @@ impl Crane {
             return Err(PyValueError::new_err(format!("t is {t}, not a finite number")));
         }
         let settings = Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..timing.settings(description)? };
-        let start = InitialState { q: given("q", q, description)?, v: given("v", v, description)? };
+        let start = InitialState { q: given("q", q, description)?, v: given("v", v, description)?, x };
+        let states = Hydraulics::new(description).len();
+        if !start.x.is_empty() && start.x.len() != states {
+            return Err(PyValueError::new_err(format!("x has {} numbers: the oil has {states} states", start.x.len())));
+        }
         let moving = py.detach(|| crane_live::Motion::new(self.live.clone(), t, &start, &settings));
         let name = description.name.clone();
         let moving = moving.map_err(|stopped| failed(stopped, &name))?;
@@ -327,24 +335,24 @@ pub struct Motion {
 
 #[pymethods]
 impl Motion {
-    /// Goes on by a while, s, to its time, pose, rates; work of the drives, dissipated energy and work of the loads since the start.
+    /// Goes on by a while, s, to its time, pose, rates, states of the oil; work of the drives, dissipated energy and work of the loads since the start.
     fn advance<'py>(&self, py: Python<'py>, dt: f64) -> PyResult<Bound<'py, PyTuple>> {
         let (least, greatest) = Settings::TIMES;
         if !(least..=greatest).contains(&dt) {
             return Err(PyValueError::new_err(format!("dt={dt}: write a number from {least:e} to {greatest:e}, in s")));
         }
         let watch = Watch::new();
-        let (advanced, t, q, v, integrals) = py.detach(|| {
+        let (advanced, t, [q, v, x], integrals) = py.detach(|| {
             let mut moving = self.moving.lock().unwrap_or_else(PoisonError::into_inner);
             let result = moving.sample().t + dt;
             let advanced = moving.advance(result, &mut |_| unless(watch.look()));
-            let Sample { t, q, v, work, dissipated, load_work } = moving.sample();
-            (advanced, t, q.to_vec(), v.to_vec(), (work, dissipated, load_work))
+            let Sample { t, q, v, x, work, dissipated, load_work } = moving.sample();
+            (advanced, t, [q, v, x].map(<[f64]>::to_vec), (work, dissipated, load_work))
         });
         watch.finish(py)?;
         let _ = advanced.map_err(|stopped| failed(stopped, &self.name))?;
-        let [q, v] = [q, v].map(|state| numpy::PyArray1::from_vec(py, state));
-        (t, q, v, integrals).into_pyobject(py)
+        let [q, v, x] = [q, v, x].map(|state| numpy::PyArray1::from_vec(py, state));
+        (t, q, v, x, integrals).into_pyobject(py)
     }
 
     /// Steps, rejections, evaluations and factorisations so far.

@@ -25,10 +25,11 @@ impl<'g> Derivation<'g> {
                 "∂²E_p/∂q∂q",
                 &[Position],
                 Shape::Symmetric(self.model.size()),
-                self.unknowns(self.stiffness(), 1.0).into_upper(),
+                self.unknowns(self.tangent_stiffness(), 1.0).into_upper(),
             ),
         ];
-        if self.rigid {
+        let by_oil = self.model.chain.drives.iter().any(|drive| drive.oil().is_some());
+        if self.rigid || by_oil {
             functions.push(function(
                 FunctionId::DriveForcesAtRest,
                 "Generalized forces of the drives that hold the crane at rest at t = 0, N and N m.",
@@ -103,6 +104,14 @@ impl<'g> Derivation<'g> {
         gravity.into_iter().zip(forces).map(|(g, f)| g - f).collect()
     }
 
+    /// With the springs that stand for oil at rest.
+    fn tangent_stiffness(&self) -> SymmetricMatrix<'g> {
+        let mut matrix = self.stiffness();
+        drives::holding_stiffness(&self.model, &mut matrix);
+        matrix
+    }
+
+    /// Without what oil moves, whose stiffness follows from its volumes.
     fn stiffness(&self) -> SymmetricMatrix<'g> {
         let model = &self.model;
         let mut matrix = self.impedances().0;

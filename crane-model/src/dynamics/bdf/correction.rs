@@ -48,18 +48,19 @@ impl<'a> Correction<'a> {
         self.t = history.t + history.h;
         self.c = history.h / GAMMAS[history.order];
         equations.guides.step_within(history.t, self.t);
-        self.system.factorise(self.t, equations.state(self.t, &self.end), self.c);
+        let x = equations.oil(&self.end);
+        self.system.factorise(self.t, equations.state(self.t, &self.end), x, self.c);
     }
 
     /// One step of the iteration. Integrals follow at its end.
     pub fn improve(&mut self, equations: &mut Equations<'_>) -> Result<(), NotFinite> {
         let Self { past, end, d, rhs, improvement, .. } = self;
-        let n = equations.n;
+        let integrals = equations.integrals();
         equations.derivative(self.t, end, rhs)?;
         // f − (ψ + d)/c; zero for integrals.
-        add(&mut rhs[..2 * n], -1.0, past);
-        add(&mut rhs[..2 * n], -self.c.recip(), d);
-        rhs[2 * n..].fill(0.0);
+        add(&mut rhs[..integrals], -1.0, past);
+        add(&mut rhs[..integrals], -self.c.recip(), d);
+        rhs[integrals..].fill(0.0);
         self.system.solve(rhs, improvement);
         add(end, 1.0, improvement);
         add(d, 1.0, improvement);
@@ -69,7 +70,7 @@ impl<'a> Correction<'a> {
     /// Integrals over the step from the state found: at the prediction stiff springs are far from balance.
     pub fn integrate(&mut self, equations: &mut Equations<'_>) {
         equations.powers(self.t, &self.end, &mut self.rhs);
-        for i in 2 * equations.n..self.end.len() {
+        for i in equations.integrals()..self.end.len() {
             self.d[i] = (self.rhs[i] - self.past[i]) * self.c;
             self.end[i] += self.d[i];
         }

@@ -1,0 +1,62 @@
+//! Flow through the edges of a valve.
+
+use crate::ValveInfo;
+
+/// Pressure difference below which the flow through an edge is laminar, Pa.
+const LAMINAR: f64 = 1e5;
+
+/// A number and its derivative.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sloped {
+    pub value: f64,
+    pub slope: f64,
+}
+
+/// `r(Δ) = Δ/(Δ² + ε²)^¼`: the square root of a pressure difference, with its sign, and laminar in the middle. √Pa.
+pub(super) fn root(difference: f64) -> Sloped {
+    let (square, epsilon) = (difference * difference, LAMINAR * LAMINAR);
+    let sum = square + epsilon;
+    let fourth = sum.sqrt().sqrt();
+    Sloped { value: difference / fourth, slope: (0.5 * square + epsilon) / (sum * fourth) }
+}
+
+/// As [`root`], behind a check valve: nothing flows backwards.
+fn checked(difference: f64) -> Sloped {
+    if difference > 0.0 { root(difference) } else { Sloped::default() }
+}
+
+/// What flows into the two sides of a cylinder, m³/s, and from the pump.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Flows {
+    /// Into the side of the piston, and of the rod.
+    pub into: [f64; 2],
+    /// Their derivatives by the pressure on the own side, by the pump's, and by the spool's place.
+    pub by_own: [f64; 2],
+    pub by_pump: [f64; 2],
+    pub by_spool: [f64; 2],
+}
+
+/// Flows at pressures on the sides of piston and rod, of the pump and of the tank, Pa, with the spool at u from −1 to 1: u > 0 connects
+/// the piston's side to the pump and the rod's to the tank, u < 0 the other way about.
+pub(super) fn flows(valve: &ValveInfo, u: f64, sides: [f64; 2], pump: f64, tank: f64) -> Flows {
+    // Exactly the nominal flow at the nominal pressure drop.
+    let gain = valve.flow / root(valve.pressure_drop).value;
+    let way = (u.abs() - valve.overlap) / (1.0 - valve.overlap);
+    if way <= 0.0 {
+        return Flows::default();
+    }
+    let by_spool = gain * u.signum() / (1.0 - valve.overlap);
+    let open = gain * way;
+    let mut flows = Flows::default();
+    let (fed, drained) = if u > 0.0 { (0, 1) } else { (1, 0) };
+    let inflow = checked(pump - sides[fed]);
+    flows.into[fed] = open * inflow.value;
+    flows.by_own[fed] = -open * inflow.slope;
+    flows.by_pump[fed] = open * inflow.slope;
+    flows.by_spool[fed] = by_spool * inflow.value;
+    let outflow = root(sides[drained] - tank);
+    flows.into[drained] = -open * outflow.value;
+    flows.by_own[drained] = -open * outflow.slope;
+    flows.by_spool[drained] = -by_spool * outflow.value;
+    flows
+}
