@@ -84,6 +84,7 @@ fn predicted_limits_of_all_shipped_cranes_are_observed() {
         cantilever,
         double_pendulum,
         eight_link_flexible,
+        eight_link_hydraulic,
         eight_link_identified,
         eight_link_rigid,
         eight_link_two_flexible,

@@ -52,7 +52,8 @@ class Cut:
 
 @dataclass
 class Spring:
-    """Spring and damper on one coordinate: an element's, or with a motion a drive's; a rigid drive has neither."""
+    """Spring and damper on one coordinate: an element's, or with a motion a drive's; a rigid drive has neither. One by oil
+    has its spring at rest only."""
 
     coordinate: Coordinate
     stiffness: object
@@ -61,6 +62,7 @@ class Spring:
     moves_within: tuple = (0.0, 0.0)
     is_rigid: bool = False
     max_effort: object = None
+    by_oil: bool = False
 
 
 @dataclass
@@ -227,6 +229,8 @@ def read_crane(path):
         crane.loads.append(read_load(crane, written, spans[written["link"]]))
     for written in spec.get("cylinders", []):
         crane.cylinders.append(read_cylinder(crane, written, spans))
+        for drive in crane.drives:
+            drive.by_oil |= "valve" in written and drive.coordinate.name == written["coordinate"]
     for written in spec.get("connectors", []):
         crane.connectors.append(read_connector(crane, written, spans))
     for written in spec.get("couplings", []):

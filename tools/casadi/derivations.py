@@ -152,7 +152,7 @@ class Derivations:
             return sum_of(s.damping * (self.rate(ca.SX(s.motion)) - s.coordinate.v) ** 2 / 2 for s in springs)
 
         anchored = [s for s in crane.supports if s.full_hold is None]
-        unlimited = [drive for drive in crane.drives if drive.max_effort is None]
+        unlimited = [drive for drive in crane.drives if drive.max_effort is None and not drive.by_oil]
         return {
             "support": (
                 sum_of(ca.dot(s.stiffness, s.elongation**2) / 2 for s in anchored),
@@ -363,10 +363,12 @@ class Derivations:
         potential += self.joint_forces()[2] + self.contact_forces()[1] + self.limited_drives()[1]
         potential += self.connector_forces()[0]["connector_energy"]
         stiffness, gradient = ca.hessian(ca.substitute(potential, self.crane.time, 0), self.crane.q)
+        oil, of_oil = ca.hessian(ca.substitute(self.holding_energy(), self.crane.time, 0), self.crane.q)
+        gradient += of_oil
         loads = ca.substitute(self.load_forces(), self.crane.time, 0)
         slope = ca.jacobian(loads, self.crane.q)
         stiffness, gradient = stiffness - (slope + slope.T) / 2, gradient - loads
-        stiffness = self.unknowns(stiffness, 1)
+        tangent, stiffness = self.unknowns(stiffness + oil, 1), self.unknowns(stiffness, 1)
         residual, holding = ca.densify(gradient), self.springs_at_rest()
         for place in self.crane.rigid_drives:
             holding[place], residual[place] = gradient[place], 0
@@ -375,14 +377,19 @@ class Derivations:
         return {
             "static_residual": residual,
             "drive_forces_at_rest": holding,
-            "tangent_stiffness": stiffness,
+            "tangent_stiffness": tangent,
             "linearised_stiffness": stiffness,
             SPRINGS: row_major(ca.densify(springs)),
         }
 
+    def holding_energy(self):
+        """Energy of the springs that stand for oil at rest."""
+        held = [drive for drive in self.crane.drives if drive.by_oil]
+        return sum((d.stiffness * (d.motion - d.coordinate.q) ** 2 / 2 for d in held), ca.SX(0))
+
     def springs_at_rest(self):
         """Generalized forces of the drives' springs at t = 0."""
-        energy = self.potentials()["drive"][0] + self.limited_drives()[1]
+        energy = self.potentials()["drive"][0] + self.limited_drives()[1] + self.holding_energy()
         return ca.densify(ca.substitute(-ca.gradient(energy, self.crane.q), self.crane.time, 0))
 
     def motions(self):

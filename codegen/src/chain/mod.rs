@@ -467,6 +467,12 @@ impl Chain {
         self.drives.iter().any(|drive| drive.max_effort().is_some())
     }
 
+    /// Whether oil moves a joint, through a cylinder with a valve.
+    #[must_use]
+    pub fn has_valves(&self) -> bool {
+        self.cylinders.iter().any(|cylinder| cylinder.valve.is_some())
+    }
+
     /// Rigid drives: their coordinates are prescribed, not unknown.
     pub fn rigid_drives(&self) -> impl Iterator<Item = &Drive> {
         self.drives.iter().filter(|drive| drive.transmission == Transmission::Rigid)

@@ -275,6 +275,11 @@ impl Hydraulics {
             wanted_v[moved.coordinate] = rate;
         }
         crane.cylinder_states(wanted_q, wanted_v, &mut self.wanted);
+        // What bends between the pins of a cylinder changes its length a little, but only its joint takes its force.
+        for Moved { index, coordinate, .. } in &self.cylinders {
+            self.here[*index].y = self.here[*index].z * v[*coordinate];
+            self.wanted[*index].y = self.wanted[*index].z * wanted_v[*coordinate];
+        }
     }
 
     /// The pump at its pressure: flow, m³/s, and power, W.
@@ -405,6 +410,18 @@ impl Oil {
     pub fn pump_and_spools(&self) -> impl Iterator<Item = f64> {
         self.pump.into_iter().chain(self.cylinders.iter().map(|(.., spool)| *spool))
     }
+}
+
+/// Names of the columns of results with the states, in their order.
+pub fn columns(description: &Description) -> Vec<String> {
+    let valves = description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
+    let of_cylinder =
+        |info: &CylinderInfo| ["piston_pressure", "rod_pressure", "valve"].map(|what| format!("{}_{what}", info.name));
+    let mut names: Vec<String> = valves.flat_map(of_cylinder).collect();
+    if !names.is_empty() {
+        names.push("pump_pressure".to_owned());
+    }
+    names
 }
 
 /// Adds the stiffness of the oil that shut valves trap, `k (∂ℓ/∂q)² − F ∂²ℓ/∂q²`, to that of small motions about a pose at rest.

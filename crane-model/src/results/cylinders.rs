@@ -160,6 +160,10 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
         found.extend(out_of_stroke(info, &length, true));
         found.extend(over_pressure(info, [piston, rod], true));
     }
+    if description.has_valves() {
+        found.extend(short_of_oil(description, table));
+        return found;
+    }
     let Extremes { maximum: flow, time_of_maximum: time, .. } = Extremes::of(table, "pump_flow");
     let limit = description.pump.map(|pump| pump.max_flow).filter(|limit| flow > *limit);
     found.extend(limit.map(|limit| {
@@ -170,6 +174,22 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
         )
     }));
     found
+}
+
+/// When and for how long the pump delivers all it can.
+fn short_of_oil(description: &Description, table: &Table) -> Option<String> {
+    /// Share of the greatest flow from which it counts.
+    const ALL: f64 = 0.999;
+    let limit = description.pump?.max_flow;
+    let rows: Vec<f64> = table.values("pump_flow")?.collect();
+    let first = rows.iter().position(|flow| *flow >= ALL * limit)?;
+    let interval = table.rows.get(1)?[0] - table.rows[0][0];
+    let time = interval * rows.iter().filter(|flow| **flow >= ALL * limit).count() as f64;
+    Some(format!(
+        "the pump delivers all it can, {:.1} l/min, for {time:.2} s, first at {:.2} s: cylinders lag behind their motions",
+        limit / LITRE_PER_MINUTE,
+        table.rows[first][0]
+    ))
 }
 
 fn when(time: f64, moves: bool) -> String {

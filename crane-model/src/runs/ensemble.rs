@@ -83,8 +83,7 @@ pub struct Conduct<'a> {
 /// per row, in order.
 pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, conduct: &Conduct<'_>) -> Vec<Outcome> {
     // Valves have no lanes.
-    let valves = crane.description().cylinders.iter().any(|cylinder| cylinder.valve.is_some());
-    let in_lanes = settings.method == Method::Rk4 && !valves;
+    let in_lanes = settings.method == Method::Rk4 && !crane.description().has_valves();
     let piece = if in_lanes { crane.lanes() } else { 1 };
     let waiting = Mutex::new(rows.chunks(piece).enumerate());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();

@@ -21,6 +21,19 @@ use crate::{
 /// Evaluates and prints or writes.
 pub fn eval(options: &Eval, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let crane = fleet.live(options.crane.open(fleet)?.as_ref())?;
+    let by_forces = [Quantity::Forces, Quantity::Accelerations, Quantity::DriveEfforts];
+    if let Some(quantity) = options.quantities.iter().find(|quantity| by_forces.contains(quantity))
+        && crane.description().has_valves()
+    {
+        return Err(Problem::usage(
+            format!(
+                "`{}` of {} follows from the pressures of its cylinders",
+                quantity.name(),
+                crane.description().name
+            ),
+            "ask for other `--quantities`, or simulate: results have pressures and forces",
+        ));
+    }
     let states = states(options, &crane)?;
     let arrays = arrays(options, &crane, &states);
     let description = crane.description();

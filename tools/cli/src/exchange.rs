@@ -55,8 +55,23 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
             vec![(file, text.map_err(|failure| Problem::failed(failure.title, failure.help))?)]
         }
         Language::C => {
+            let by_forces = ["forces", "forward_dynamics"];
+            if let Some(name) = options.functions.iter().find(|name| by_forces.contains(&name.as_str()))
+                && chain.has_valves()
+            {
+                return Err(Problem::usage(
+                    format!("`{name}` of {} in C would lack what its cylinders push with", chain.name),
+                    "export `bias` and `solve_mass`, and add the cylinders' forces there; or remove `valve` from the cylinders",
+                ));
+            }
             let code = in_c(options, &chain, &parameters)?;
             vec![(file.with_file_name(format!("{}.h", code.name)), code.header), (file, code.source)]
+        }
+        Language::Fmu if chain.has_valves() => {
+            return Err(Problem::usage(
+                format!("{} has cylinders with valves, whose states an FMU does not have yet", chain.name),
+                "remove `valve` from the cylinders: an FMU then has the springs of their drives",
+            ));
         }
         Language::Fmu => return fmu::write(options, &file, chain, &spec, &parameters, out),
     };

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crane_model::{Description, dyn_crane::DynCrane, runs::Start};
+use crane_model::{Description, dyn_crane::DynCrane, hydraulics, runs::Start};
 
 use crate::{
     arguments::Timing,
@@ -12,24 +12,33 @@ use crate::{
 /// What follows a coordinate's name in the name of its rate.
 const RATE: &str = "_rate";
 
-/// A coordinate or its rate, by its place.
+/// A coordinate, its rate, or a state of the oil, by its place.
 #[derive(Clone, Copy)]
 enum Variable {
     Position(usize),
     Rate(usize),
+    /// A state of the oil.
+    Oil(usize),
 }
 
 impl Variable {
     fn of(name: &str, description: &Description) -> Option<Self> {
         let place = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
         let rate = || name.strip_suffix(RATE).and_then(place).map(Self::Rate);
-        place(name).map(Self::Position).or_else(rate)
+        let oil = || hydraulics::columns(description).iter().position(|column| column == name).map(Self::Oil);
+        place(name).map(Self::Position).or_else(rate).or_else(oil)
     }
 
     fn set(self, start: &mut Start, value: f64) {
         match self {
             Self::Position(place) => start.q[place] = value,
             Self::Rate(place) => start.v[place] = value,
+            Self::Oil(place) => {
+                if start.x.len() <= place {
+                    start.x.resize(place + 1, f64::NAN);
+                }
+                start.x[place] = value;
+            }
         }
     }
 }
@@ -50,6 +59,15 @@ impl Timing {
         if let Some(file) = &self.from {
             for (variable, value) in end(file, description)? {
                 variable.set(&mut start, value);
+            }
+            let states = hydraulics::columns(description);
+            start.x.resize(if start.x.is_empty() { 0 } else { states.len() }, f64::NAN);
+            if let Some(place) = start.x.iter().position(|x| x.is_nan()) {
+                let title = format!("{} has no column {}", file.display(), states[place]);
+                return Err(Problem::usage(
+                    title,
+                    "a run that goes on needs all pressures and valves of the one before",
+                ));
             }
             start.what = format!("end of {}", file.display());
         }

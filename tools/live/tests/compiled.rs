@@ -180,6 +180,7 @@ fn derivatives_give_the_same_bits() {
         cantilever,
         double_pendulum,
         eight_link_flexible,
+        eight_link_hydraulic,
         eight_link_identified,
         eight_link_rigid,
         eight_link_two_flexible,

@@ -74,7 +74,14 @@ fn stiffness(z: f64) -> f64 {
 }
 
 fn settings(method: Method, tolerance: f64, duration: f64) -> Settings {
-    Settings { method, tolerance, duration, step: 5e-5, output: 0.01, ..Settings::of(lift(SHUT, HOLD, PUMP).description()) }
+    Settings {
+        method,
+        tolerance,
+        duration,
+        step: 5e-5,
+        output: 0.01,
+        ..Settings::of(lift(SHUT, HOLD, PUMP).description())
+    }
 }
 
 fn record(crane: &LiveCrane, settings: &Settings) -> Table {

@@ -571,6 +571,17 @@ impl Crane {
         own: &[usize],
         invalid: &str,
     ) -> Array<'py> {
+        let by_forces = matches!(
+            quantity,
+            Quantity::Of(
+                FunctionId::ForwardDynamics | FunctionId::Forces | FunctionId::DriveForces | FunctionId::DrivePower
+            )
+        );
+        if by_forces && self.live.description().has_valves() {
+            return Err(PyValueError::new_err(
+                "the cylinders' forces follow from their pressures, which are states of a run: use simulate or simulation",
+            ));
+        }
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;
         let bad = self.bad_rows(&joined, Invalid::named(invalid)?)?;
