@@ -66,7 +66,7 @@ impl Timing {
                 let title = format!("{} has no column {}", file.display(), states[place]);
                 return Err(Problem::usage(
                     title,
-                    "a run that goes on needs all pressures and valves of the one before",
+                    "a run that goes on needs all pressures and valves of the earlier run",
                 ));
             }
             start.what = format!("end of {}", file.display());
