@@ -7,7 +7,7 @@ use syn::{Item, parse_quote};
 use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{
-    Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Profile, Strain,
+    Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Cylinder, Profile, Strain,
     SupportKinematics, Value, Valve,
 };
 
@@ -17,6 +17,27 @@ pub fn description(chain: &Chain) -> Vec<Item> {
     let mut items = vec![constant("Number of generalized coordinates.", "N", &quote!(usize), &quote!(#n))];
     items.push(description_constant(chain));
     items
+}
+
+fn cylinder_info(chain: &Chain, cylinder: &Cylinder) -> TokenStream {
+    let [piston, annulus] = cylinder.areas().map(literal);
+    let [retracted, stroke, back_pressure] = [cylinder.retracted, cylinder.stroke, cylinder.back_pressure].map(literal);
+    let [of_piston, of_rod] = cylinder.hose_volumes.map(literal);
+    let (name, drive) = (text(&cylinder.name), integer(chain.drive_of(cylinder)));
+    let valve = cylinder.valve.as_ref().map_or_else(|| quote!(None), valve_info);
+    let [max_pressure, bulk_modulus] = [cylinder.max_pressure, cylinder.bulk_modulus].map(optional);
+    quote!(CylinderInfo {
+        name: #name,
+        drive: #drive,
+        areas: [#piston, #annulus],
+        retracted: #retracted,
+        stroke: #stroke,
+        max_pressure: #max_pressure,
+        back_pressure: #back_pressure,
+        bulk_modulus: #bulk_modulus,
+        hose_volumes: [#of_piston, #of_rod],
+        valve: #valve
+    })
 }
 
 fn valve_info(valve: &Valve) -> TokenStream {
@@ -72,27 +93,7 @@ fn description_constant(chain: &Chain) -> Item {
         let moves = !matches!(input.unless_set, Profile::Hold(_));
         quote!(InputInfo { name: #name, unit: #unit, about: #about, default: #default, moves: #moves })
     });
-    let cylinders = chain.cylinders.iter().map(|cylinder| {
-        let [piston, annulus] = cylinder.areas().map(literal);
-        let [retracted, stroke, back_pressure] =
-            [cylinder.retracted, cylinder.stroke, cylinder.back_pressure].map(literal);
-        let [of_piston, of_rod] = cylinder.hose_volumes.map(literal);
-        let (name, drive) = (text(&cylinder.name), integer(chain.drive_of(cylinder)));
-        let valve = cylinder.valve.as_ref().map_or_else(|| quote!(None), valve_info);
-        let [max_pressure, bulk_modulus] = [cylinder.max_pressure, cylinder.bulk_modulus].map(optional);
-        quote!(CylinderInfo {
-            name: #name,
-            drive: #drive,
-            areas: [#piston, #annulus],
-            retracted: #retracted,
-            stroke: #stroke,
-            max_pressure: #max_pressure,
-            back_pressure: #back_pressure,
-            bulk_modulus: #bulk_modulus,
-            hose_volumes: [#of_piston, #of_rod],
-            valve: #valve
-        })
-    });
+    let cylinders = chain.cylinders.iter().map(|cylinder| cylinder_info(chain, cylinder));
     let pump = chain.pump.as_ref().map_or_else(
         || quote!(None),
         |pump| {

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     dyn_crane::DynDynamics,
-    hydraulics::{Hydraulics, Pushed, add_efforts, power},
+    hydraulics::{Hydraulics, Moment, Pushed, add_efforts, power},
 };
 
 /// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.
@@ -121,7 +121,7 @@ impl<'a> Equations<'a> {
         if !self.oil.hydraulics.is_empty() {
             let rates = &mut rest[..self.oil.rates.len()];
             let x = &motion[2 * n..2 * n + rates.len()];
-            self.oil.accelerate(self.crane, t, (q, v), x, rates, accelerations);
+            self.oil.accelerate(self.crane, &Moment { t, q, v, x }, rates, accelerations);
             finite(rates)?;
         }
         self.guides.take_accelerations(self.crane, t, accelerations);
@@ -137,7 +137,8 @@ impl<'a> Equations<'a> {
             let begin = self.integrals();
             if !self.oil.hydraulics.is_empty() {
                 let Oil { hydraulics, pushed, rates, .. } = &mut self.oil;
-                hydraulics.evaluate(self.crane, t, (q, v), &motion[2 * self.n..begin], rates, pushed, None);
+                let moment = Moment { t, q, v, x: &motion[2 * self.n..begin] };
+                hydraulics.evaluate(self.crane, &moment, rates, pushed, None);
                 powers[0] += power(pushed);
             }
             slope[begin..].copy_from_slice(&powers);
@@ -150,16 +151,14 @@ impl Oil {
     fn accelerate(
         &mut self,
         crane: &dyn DynDynamics,
-        t: f64,
-        (q, v): (&[f64], &[f64]),
-        x: &[f64],
+        moment: &Moment<'_>,
         rates: &mut [f64],
         accelerations: &mut [f64],
     ) {
-        self.hydraulics.evaluate(crane, t, (q, v), x, rates, &mut self.pushed, None);
+        self.hydraulics.evaluate(crane, moment, rates, &mut self.pushed, None);
         self.forces.fill(0.0);
         add_efforts(&self.pushed, &mut self.forces);
-        crane.solve_mass(q, &self.forces, &mut self.accelerations);
+        crane.solve_mass(moment.q, &self.forces, &mut self.accelerations);
         for (all, own) in accelerations.iter_mut().zip(&self.accelerations) {
             *all += own;
         }

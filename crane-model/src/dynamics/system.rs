@@ -18,7 +18,7 @@ use super::connected::Connected;
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
-    hydraulics::{Eliminated, Hydraulics},
+    hydraulics::{Eliminated, Hydraulics, Moment},
 };
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.
@@ -93,7 +93,7 @@ impl<'a> System<'a> {
         self.factors.factorise(q, &self.resistance, &(damping * c + stiffness * (c * c)));
         self.connected.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
         let Self { factors, connected, .. } = self;
-        self.oil.factorise(self.crane, t, (q, v), x, c, &mut |right, solution| {
+        self.oil.factorise(self.crane, &Moment { t, q, v, x }, c, &mut |right, solution| {
             factors.solve(right, solution);
             connected.correct(solution);
         });

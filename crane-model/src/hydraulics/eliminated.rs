@@ -13,7 +13,7 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use super::{Hydraulics, Pushed, STATES};
+use super::{Hydraulics, Moment, Pushed, STATES};
 use crate::dyn_crane::DynModel;
 
 /// The oil of a crane at a state, and its part in the system there.
@@ -60,9 +60,7 @@ impl Eliminated {
     pub fn factorise(
         &mut self,
         crane: &dyn DynModel,
-        t: f64,
-        state: (&[f64], &[f64]),
-        x: &[f64],
+        moment: &Moment<'_>,
         c: f64,
         solve: &mut dyn FnMut(&[f64], &mut [f64]),
     ) {
@@ -70,7 +68,7 @@ impl Eliminated {
         if hydraulics.is_empty() {
             return;
         }
-        hydraulics.evaluate(crane, t, state, x, rates, pushed, Some(by_states));
+        hydraulics.evaluate(crane, moment, rates, pushed, Some(by_states));
         let len = rates.len();
         let states = (DMatrix::identity(len, len) / c - &*by_states).lu();
         let count = pushed.len();

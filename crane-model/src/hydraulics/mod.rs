@@ -20,7 +20,7 @@
 //! with the length ℓ* that the cylinder has where the drive's motion is; its speed is set ahead with the pressures measured. The pump keeps up its pressure as long as the valves take no more than
 //! its greatest flow; `ṗ_s = β/V_s (Q_pump − Σ Q)`. At the ends of the stroke the piston meets a stiff stop (Hunt–Crossley).
 //!
-//! The states are, cylinder by cylinder, p, p′ and u, and p_s behind all of them. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
+//! The states are, cylinder by cylinder, p, p′ and u, and `p_s` behind all of them. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
 
 mod eliminated;
 mod valve;
@@ -89,6 +89,15 @@ struct Pump {
     info: PumpInfo,
     pressure: f64,
     bulk_modulus: f64,
+}
+
+/// A state of a crane and its oil.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment<'a> {
+    pub t: f64,
+    pub q: &'a [f64],
+    pub v: &'a [f64],
+    pub x: &'a [f64],
 }
 
 /// A cylinder at a state, with derivatives by what it depends on.
@@ -188,9 +197,7 @@ impl Hydraulics {
     pub(crate) fn evaluate(
         &mut self,
         crane: &dyn DynModel,
-        t: f64,
-        (q, v): (&[f64], &[f64]),
-        x: &[f64],
+        &Moment { t, q, v, x }: &Moment<'_>,
         rates: &mut [f64],
         pushed: &mut [Pushed],
         mut by_states: Option<&mut DMatrix<f64>>,
@@ -368,13 +375,14 @@ pub(crate) struct Oil {
 
 impl Oil {
     /// At a state of the crane and its oil.
-    pub fn at(crane: &dyn DynModel, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Option<Self> {
+    pub fn at(crane: &dyn DynModel, moment: &Moment<'_>) -> Option<Self> {
+        let x = moment.x;
         let mut hydraulics = Hydraulics::new(crane.description());
         if hydraulics.is_empty() || x.len() != hydraulics.len() {
             return None;
         }
         let mut pushed = vec![Pushed::default(); hydraulics.count()];
-        hydraulics.evaluate(crane, t, (q, v), x, &mut vec![0.0; x.len()], &mut pushed, None);
+        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut pushed, None);
         let cylinders =
             hydraulics.cylinders.iter().zip(&pushed).zip(x.chunks_exact(STATES)).map(|((moved, own), x)| {
                 let state = CylinderState {

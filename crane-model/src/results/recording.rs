@@ -4,7 +4,7 @@ use crate::{
     ConnectorInfo, CoordinateKind, Description,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
-    hydraulics::Oil,
+    hydraulics::{Moment, Oil},
     results::{Column, Table, cylinders},
 };
 
@@ -72,7 +72,7 @@ fn push_quantities(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[
     row.extend_from_slice(q);
     row.extend_from_slice(v);
     let mut efforts = crane.drive_efforts_at(t, q, v);
-    let oil = Oil::at(crane, t, (q, v), x);
+    let oil = Oil::at(crane, &Moment { t, q, v, x });
     if let Some(oil) = &oil {
         oil.give_efforts(crane.description(), &mut efforts);
     }

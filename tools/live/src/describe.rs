@@ -65,26 +65,7 @@ pub fn describe(chain: &Chain) -> Description {
         default: input.unless_set.start(&defaults),
         moves: !matches!(input.unless_set, Profile::Hold(_)),
     });
-    let cylinders = chain.cylinders.iter().map(|cylinder| CylinderInfo {
-        name: cylinder.name.clone().into(),
-        drive: chain.drive_of(cylinder),
-        areas: cylinder.areas(),
-        retracted: cylinder.retracted,
-        stroke: cylinder.stroke,
-        max_pressure: cylinder.max_pressure,
-        back_pressure: cylinder.back_pressure,
-        bulk_modulus: cylinder.bulk_modulus,
-        hose_volumes: cylinder.hose_volumes,
-        valve: cylinder.valve.as_ref().map(|valve| ValveInfo {
-            flow: valve.flow,
-            pressure_drop: valve.pressure_drop,
-            overlap: valve.overlap,
-            lag: valve.lag,
-            gain: valve.gain,
-            feed_forward: valve.feed_forward,
-            leakage: valve.leakage,
-        }),
-    });
+    let cylinders = chain.cylinders.iter().map(|cylinder| cylinder_info(chain, cylinder));
     let pump = chain.pump.as_ref().map(|pump| PumpInfo {
         max_flow: pump.max_flow,
         pressure: pump.pressure,
@@ -145,5 +126,28 @@ fn kind_of(kind: Kind) -> CoordinateKind {
     match kind {
         Kind::Translation => CoordinateKind::Translation,
         Kind::Rotation => CoordinateKind::Rotation,
+    }
+}
+
+fn cylinder_info(chain: &Chain, cylinder: &chain::Cylinder) -> CylinderInfo {
+    CylinderInfo {
+        name: cylinder.name.clone().into(),
+        drive: chain.drive_of(cylinder),
+        areas: cylinder.areas(),
+        retracted: cylinder.retracted,
+        stroke: cylinder.stroke,
+        max_pressure: cylinder.max_pressure,
+        back_pressure: cylinder.back_pressure,
+        bulk_modulus: cylinder.bulk_modulus,
+        hose_volumes: cylinder.hose_volumes,
+        valve: cylinder.valve.as_ref().map(|valve| ValveInfo {
+            flow: valve.flow,
+            pressure_drop: valve.pressure_drop,
+            overlap: valve.overlap,
+            lag: valve.lag,
+            gain: valve.gain,
+            feed_forward: valve.feed_forward,
+            leakage: valve.leakage,
+        }),
     }
 }

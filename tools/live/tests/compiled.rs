@@ -137,6 +137,7 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
         ("drive_energy", vec![crane.drive_energy(t, q)]),
         ("powers", vec![crane.drive_power(t, q, v), crane.dissipation(t, q, v)]),
         ("prescribed motions", prescribed(crane)),
+        ("solve_mass", numbers(n, |out| crane.solve_mass(q, &r, out))),
         ("static_residual", numbers(n, |out| crane.static_residual(q, out))),
         ("tangent_stiffness", numbers(n * n, |out| crane.tangent_stiffness(q, out))),
         ("mass_matrix", numbers(n * n, |out| crane.mass_matrix(q, out))),

@@ -150,7 +150,7 @@ fn a_slender_block_rocks_as_housner_says() {
     let p = (BLOCK * 9.81 * radius / (INERTIA + BLOCK * radius * radius)).sqrt();
     let theta = 0.6 * alpha;
     let expected = (1.0 / (1.0 - theta / alpha)).acosh() / p;
-    let start = InitialState { q: turned(b, theta), v: vec![0.0; 3] };
+    let start = InitialState { q: turned(b, theta), v: vec![0.0; 3], ..InitialState::default() };
     let at_stake = BLOCK * 9.81 * radius * ((alpha - theta).cos() - alpha.cos()).abs();
     let mut landed = None;
     let rig: &dyn DynCrane = &block;
@@ -170,7 +170,7 @@ fn a_slender_block_rocks_as_housner_says() {
 fn energy_balances_over_lifting_and_landing() {
     let (b, h) = (0.3, 0.8);
     let block = block(b, h, 1e7, 2e4);
-    let start = InitialState { q: turned(b, 0.2), v: vec![0.0; 3] };
+    let start = InitialState { q: turned(b, 0.2), v: vec![0.0; 3], ..InitialState::default() };
     let at_stake = BLOCK * 9.81 * b * 0.2;
     for (method, tolerance) in [(Method::Bdf, 1e-8), (Method::Rosenbrock, 1e-8), (Method::DormandPrince, 1e-7)] {
         let rig: &dyn DynCrane = &block;

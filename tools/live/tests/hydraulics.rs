@@ -173,7 +173,7 @@ fn against_its_end_the_relief_valve_limits_the_pressure() {
     assert!(beyond > 0.9 * expected && beyond < 1.1 * expected, "{beyond} against {expected}");
 }
 
-/// The laws a second time: z, ż, p, p′, u, p_s of the lift that follows a quintic motion, by the classical Runge–Kutta method.
+/// The laws a second time: z, ż, p, p′, u and the pressure of the pump, of the lift that follows a quintic motion, by the classical Runge–Kutta method.
 fn by_hand(end: f64, [from, to, duration]: [f64; 3], start: [f64; 6], [gain, share]: [f64; 2]) -> [f64; 6] {
     let root = |d: f64| d / (d * d + 1e10).powf(0.25);
     let k = FLOW / root(DROP);
