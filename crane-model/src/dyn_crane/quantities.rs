@@ -126,12 +126,11 @@ impl dyn DynCrane + '_ {
         let Description { drives, coordinates, .. } = self.description();
         let motions = self.drive_motions_at(0.0);
         // A drive feels how far its coordinate is from its position alone; a rigid one holds what the pose asks for.
-        let (mut moved, mut rates) = (q.to_vec(), vec![0.0; q.len()]);
-        for (drive, (position, [start, rate])) in drives.iter().zip(positions.iter().zip(motions)) {
+        let mut moved = q.to_vec();
+        for (drive, (position, [start, _])) in drives.iter().zip(positions.iter().zip(motions)) {
             moved[drive.coordinate] -= position - start;
-            rates[drive.coordinate] = rate;
         }
-        let springs = numbers(self, |out| self.drive_forces(0.0, &moved, &rates, out));
+        let springs = numbers(self, |out| self.drive_forces_at_rest(&moved, out));
         let is_rigid = |drive: &DriveInfo| coordinates[drive.coordinate].role == CoordinateRole::Prescribed;
         let held = if drives.iter().any(is_rigid) {
             numbers(self, |out| self.drive_forces_at_rest(q, out))

@@ -420,6 +420,25 @@ impl Oil {
     }
 }
 
+/// Accelerations at a state of a crane and its oil, m/s² and rad/s².
+///
+/// # Panics
+/// Where there is not one number for each state of the oil.
+pub fn accelerations(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Vec<f64> {
+    let mut accelerations = crane.accelerations_at(t, q, v).as_slice().to_vec();
+    let mut hydraulics = Hydraulics::new(crane.description());
+    assert_eq!(x.len(), hydraulics.len(), "one number for each state of the oil");
+    if !hydraulics.is_empty() {
+        let mut pushed = vec![Pushed::default(); hydraulics.count()];
+        hydraulics.evaluate(crane, &Moment { t, q, v, x }, &mut vec![0.0; x.len()], &mut pushed, None);
+        let (mut forces, mut own) = (vec![0.0; q.len()], vec![0.0; q.len()]);
+        add_efforts(&pushed, &mut forces);
+        crane.solve_mass(q, &forces, &mut own);
+        accelerations.iter_mut().zip(own).for_each(|(all, own)| *all += own);
+    }
+    accelerations
+}
+
 /// Names of the columns of results with the states, in their order.
 pub fn columns(description: &Description) -> Vec<String> {
     let valves = description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());

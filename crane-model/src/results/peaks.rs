@@ -4,6 +4,7 @@ use crate::{
     Description,
     dyn_crane::DynCrane,
     dynamics::Sample,
+    hydraulics::{Moment, Oil},
     results::{Column, Extremes, Table, drive_effort},
 };
 
@@ -45,11 +46,14 @@ impl Peaks {
 
     /// Adds a sample of the run of `crane`.
     pub fn push(&mut self, crane: &dyn DynCrane, sample: &Sample<'_>) {
-        let &Sample { t, q, v, .. } = sample;
+        let &Sample { t, q, v, x, .. } = sample;
         self.last.clear();
         self.last.extend(crane.points_at(q).iter().flatten());
         let reactions = crane.support_reactions_at(q, v);
-        let efforts = crane.drive_efforts_at(t, q, v);
+        let mut efforts = crane.drive_efforts_at(t, q, v);
+        if let Some(oil) = Oil::at(crane, &Moment { t, q, v, x }) {
+            oil.give_efforts(crane.description(), &mut efforts);
+        }
         let values = self.last.iter().copied().chain(efforts).chain(reactions.iter().flatten().copied());
         for (index, value) in values.enumerate() {
             match self.extremes.get_mut(index) {

@@ -36,7 +36,14 @@ impl Found {
                 for (drive, [_, rate]) in crane.description().drives.iter().zip(crane.drive_motions_at(t)) {
                     rates[drive.coordinate] = rate;
                 }
-                crane.drive_efforts_at(t, q, &rates)
+                let mut efforts = crane.drive_efforts_at(t, q, &rates);
+                let positions: Vec<f64> = crane.drive_motions_at(t).iter().map(|[position, _]| *position).collect();
+                let holding = crane.drive_efforts_holding(&positions, q);
+                let cylinders = crane.description().cylinders.iter();
+                for cylinder in cylinders.filter(|cylinder| cylinder.valve.is_some()) {
+                    efforts[cylinder.drive] = holding[cylinder.drive];
+                }
+                efforts
             }
         };
         let flat = |vectors: Vec<crane_model::nalgebra::Vector3<f64>>| vectors.iter().flatten().copied().collect();

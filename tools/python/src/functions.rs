@@ -574,12 +574,16 @@ impl Crane {
         let by_forces = matches!(
             quantity,
             Quantity::Of(
-                FunctionId::ForwardDynamics | FunctionId::Forces | FunctionId::DriveForces | FunctionId::DrivePower
+                FunctionId::ForwardDynamics
+                    | FunctionId::Forces
+                    | FunctionId::DriveForces
+                    | FunctionId::DrivePower
+                    | FunctionId::Linearise
             )
         );
         if by_forces && self.live.description().has_valves() {
             return Err(PyValueError::new_err(
-                "the cylinders' forces follow from their pressures, which are states of a run: use simulate or simulation",
+                "the cylinders' forces follow from their pressures, which are states of a run: use simulate, simulation or modes",
             ));
         }
         let arguments = self.read(state)?;

@@ -3,7 +3,8 @@
 use crane_model::{
     Cut, Description, Wrench,
     dyn_crane::DynCrane,
-    results::Table,
+    hydraulics,
+    results::{self, Table},
     tipping::{TippingLine, governing, lines},
 };
 
@@ -32,9 +33,9 @@ impl Instant {
     }
 
     /// In motion.
-    fn moving(rig: &dyn DynCrane, t: f64, q: &[f64], v: &[f64]) -> Self {
-        let a = rig.accelerations_at(t, q, v);
-        Self { t, lines: lines(rig, t, q, v, a.as_slice()), wrenches: rig.internal_forces_at(t, q, v, a.as_slice()) }
+    fn moving(rig: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Self {
+        let a = hydraulics::accelerations(rig, t, (q, v), x);
+        Self { t, lines: lines(rig, t, q, v, &a), wrenches: rig.internal_forces_at(t, q, v, &a) }
     }
 }
 
@@ -42,7 +43,14 @@ impl Instant {
 pub fn of<'a>(rig: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64>>) -> Vec<Instant> {
     let n = rig.size();
     // Time, coordinates and rates come first.
-    rows.map(|row| Instant::moving(rig, row[0], &row[1..=n], &row[n + 1..=2 * n])).collect()
+    let columns = results::quantities(rig.description());
+    let place = |name: String| columns.iter().position(|column| column.name == name);
+    let oil: Vec<usize> = hydraulics::columns(rig.description()).into_iter().filter_map(place).collect();
+    rows.map(|row| {
+        let x: Vec<f64> = oil.iter().map(|&place| row[place]).collect();
+        Instant::moving(rig, row[0], (&row[1..=n], &row[n + 1..=2 * n]), &x)
+    })
+    .collect()
 }
 
 /// The moment nearest to tipping, or the first.
