@@ -11,6 +11,7 @@
 //! | runs of many cranes, eight at a time | `dynamics::ensemble` | `std` |
 //! | complete runs: from rest, recorded, verified; ensembles on threads | `runs` | `std` |
 //! | frequencies, damping | `modes` | `std` |
+//! | cylinders with a valve: pressures as states | `hydraulics` | `std` |
 //! | largest stable step | `stability` | `std` |
 //! | moments about tipping lines | `tipping` | `std` |
 //! | stresses at the sections of beams | `sections` | `std` |

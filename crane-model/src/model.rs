@@ -54,7 +54,8 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// Velocities of the points of interest in the world frame, m/s. `out`: one per point.
     fn point_velocities(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
-    /// Generalized forces of everything except inertia and gravity: supports, elements, drives, hinges. N and N m.
+    /// Generalized forces of everything except inertia and gravity: supports, elements, drives, hinges. N and N m. What cylinders with a valve
+    /// push with depends on their pressures and is not among them.
     fn forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::zeros()
     }
@@ -224,7 +225,8 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
     /// Bias `e = −(h + g)`, Eq. (9): velocity and gravity forces.
     fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N>;
 
-    /// Accelerations q̈ of `A q̈ = e + f`, Eq. (23), in O(n) by articulated bodies: A is never formed. m/s² and rad/s².
+    /// Accelerations q̈ of `A q̈ = e + f`, Eq. (23), in O(n) by articulated bodies: A is never formed. m/s² and rad/s². Cylinders with a valve do
+    /// not push here, see [`forces`](CraneModel::forces).
     fn forward_dynamics(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         self.solve_mass(q, &(self.bias(q, v) + self.forces(t, q, v)))
     }

@@ -4,7 +4,8 @@ use nalgebra::SVector;
 
 use crate::Dynamics;
 
-/// An acceleration is not finite: a body has no inertia, or the pose contains NaN.
+/// An acceleration is not finite: a body has no inertia, or the pose contains NaN. Or it depends on pressures, which single steps do not
+/// have: a `Course` does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotFinite;
 
@@ -35,6 +36,9 @@ pub fn acceleration<const N: usize, C: Dynamics<N>>(
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
 ) -> Result<SVector<f64, N>, NotFinite> {
+    if crane.description().has_valves() {
+        return Err(NotFinite);
+    }
     let a = crane.forward_dynamics(t, q, v);
     finite(a.as_slice()).map(|()| a)
 }

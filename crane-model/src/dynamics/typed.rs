@@ -28,6 +28,9 @@ pub(super) fn step<const N: usize>(
     state: &State<N>,
     formula: &mut impl Formula,
 ) -> Result<(State<N>, State<N>), NotFinite> {
+    if equations.states() > 0 {
+        return Err(NotFinite);
+    }
     let mut step = Step { t, length: h, start: motion_of(state), ..Step::new(2 * N) };
     equations.count(t, &mut step.start);
     equations.guides.step_within(t, t + h);

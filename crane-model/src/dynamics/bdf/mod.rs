@@ -72,6 +72,9 @@ pub fn step<const N: usize, C: Implicit<N>>(
     const EXACT: f64 = 1e-14;
     let crane = Instance::<N, _>(crane);
     let mut equations = Equations::new(&crane, Guides::of(&crane), false);
+    if equations.states() > 0 {
+        return Err(NotFinite);
+    }
     let mut history = History::new(2 * N);
     let mut past: Vec<_> = past.iter().map(motion_of).collect();
     for (k, motion) in past.iter_mut().enumerate() {
