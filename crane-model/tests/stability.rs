@@ -84,14 +84,15 @@ fn predicted_limits_of_all_shipped_cranes_are_observed() {
         cantilever,
         double_pendulum,
         eight_link_flexible,
-        eight_link_hydraulic,
         eight_link_identified,
         eight_link_rigid,
         eight_link_two_flexible,
         knuckle_boom,
         loader_tipping
     );
-    assert_eq!(seen, cranes::all().len(), "a crane is missing above");
+    // Single steps do not have the states of valves.
+    let with_valves = cranes::all().iter().filter(|crane| crane.description().has_valves()).count();
+    assert_eq!(seen + with_valves, cranes::all().len(), "a crane is missing above");
 }
 
 #[test]

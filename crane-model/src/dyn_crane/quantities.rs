@@ -8,7 +8,7 @@ use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
 use crate::{
     CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Tension, Wrench, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
-    hydraulics,
+    hydraulics::{self, Moment, Oil},
     modes::SmallMotions,
     statics,
     statics::Equilibrium,
@@ -113,6 +113,16 @@ impl dyn DynCrane + '_ {
     pub fn drive_efforts_at(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
         let forces = numbers(self, |out| self.drive_forces(t, q, v, out));
         self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
+    }
+
+    /// Torques and forces of the drives at a sample of a run, those of cylinders with a valve by their pressures: N m and N.
+    pub fn drive_efforts_of(&self, sample: &Sample<'_>) -> Vec<f64> {
+        let &Sample { t, q, v, x, .. } = sample;
+        let mut efforts = self.drive_efforts_at(t, q, v);
+        if let Some(oil) = Oil::at(self, &Moment { t, q, v, x }) {
+            oil.give_efforts(self.description(), &mut efforts);
+        }
+        efforts
     }
 
     /// Torques and forces of the drives that hold the crane at rest at t = 0, including rigid drives: N m and N.

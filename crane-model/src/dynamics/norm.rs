@@ -11,6 +11,8 @@ use crate::{
 const RATE: f64 = 0.2;
 /// Fraction of a drive's effort that counts as much as an error of 1 m or rad.
 const EFFORT: f64 = 20.0;
+/// Share of the pump's pressure, or of a spool's way, that counts as much as an error of 1 m or rad.
+const OIL: f64 = 5.0;
 /// Smallest scale of an effort, as a fraction of the largest force or moment of the crane's weight on a coordinate.
 const LEAST: f64 = 0.01;
 /// Stiffness over the scale of an effort about which nothing else is known, 1/m or 1/rad.
@@ -120,7 +122,7 @@ impl Norm {
             greatest.note(error.abs() * RATE / (1.0 + rate.abs()));
         }
         for (error, scale) in error[2 * self.n..].iter().zip(&self.states) {
-            greatest.note(error.abs() / (EFFORT * scale));
+            greatest.note(error.abs() / (OIL * scale));
         }
         for effort in &self.efforts {
             greatest.note(effort.of(self.n, error, f64::abs) / (EFFORT * effort.scale));

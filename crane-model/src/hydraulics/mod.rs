@@ -25,12 +25,12 @@
 mod eliminated;
 mod valve;
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{Complex, DMatrix, Vector3};
 
 use crate::{
     CylinderInfo, Description, PumpInfo, ValveInfo,
     dyn_crane::{DynCrane, DynDynamics, DynModel},
-    modes::SmallMotions,
+    modes::{DampedMode, SmallMotions},
     results::{CylinderState, cylinders_at},
 };
 pub(crate) use eliminated::Eliminated;
@@ -437,6 +437,24 @@ pub fn accelerations(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: 
         accelerations.iter_mut().zip(own).for_each(|(all, own)| *all += own);
     }
     accelerations
+}
+
+/// How fast the oil of each cylinder with a valve may decay at a pose, as a mode of its joint: while its suction valves let in oil, with edges
+/// near balance. Explicit methods are limited by it.
+pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
+    let cylinders = &crane.description().cylinders;
+    let mut lengths = vec![Vector3::zeros(); cylinders.len()];
+    crane.cylinder_states(q, &vec![0.0; q.len()], &mut lengths);
+    let decay = |(info, length): (&CylinderInfo, &Vector3<f64>)| {
+        let (valve, bulk_modulus) = (info.valve?, info.bulk_modulus?);
+        let y = (length.x - info.retracted).clamp(0.0, info.stroke);
+        let [of_piston, of_rod] = info.hose_volumes;
+        let volume = (of_piston + info.areas[0] * y).min(of_rod + info.areas[1] * (info.stroke - y));
+        let slope = 1.0 / SUCTION + root(0.0).slope / root(valve.pressure_drop).value;
+        let eigenvalue = Complex::new(-bulk_modulus / volume * valve.flow * slope, 0.0);
+        Some(DampedMode { eigenvalue, dominating: vec![crane.description().drives[info.drive].coordinate] })
+    };
+    cylinders.iter().zip(&lengths).filter_map(decay).collect()
 }
 
 /// Names of the columns of results with the states, in their order.

@@ -4,7 +4,6 @@ use crate::{
     Description,
     dyn_crane::DynCrane,
     dynamics::Sample,
-    hydraulics::{Moment, Oil},
     results::{Column, Extremes, Table, drive_effort},
 };
 
@@ -46,14 +45,11 @@ impl Peaks {
 
     /// Adds a sample of the run of `crane`.
     pub fn push(&mut self, crane: &dyn DynCrane, sample: &Sample<'_>) {
-        let &Sample { t, q, v, x, .. } = sample;
+        let &Sample { t, q, v, .. } = sample;
         self.last.clear();
         self.last.extend(crane.points_at(q).iter().flatten());
         let reactions = crane.support_reactions_at(q, v);
-        let mut efforts = crane.drive_efforts_at(t, q, v);
-        if let Some(oil) = Oil::at(crane, &Moment { t, q, v, x }) {
-            oil.give_efforts(crane.description(), &mut efforts);
-        }
+        let efforts = crane.drive_efforts_of(sample);
         let values = self.last.iter().copied().chain(efforts).chain(reactions.iter().flatten().copied());
         for (index, value) in values.enumerate() {
             match self.extremes.get_mut(index) {

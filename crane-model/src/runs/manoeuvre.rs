@@ -4,6 +4,7 @@ use super::{Failed, Reason, Start};
 use crate::{
     dyn_crane::DynCrane,
     dynamics::Method,
+    hydraulics,
     modes::{self, DampedMode},
     stability::{Limit, limit},
     statics::Settings,
@@ -20,7 +21,7 @@ pub const SAFE: f64 = 0.9;
 pub struct Pose {
     /// Time, s.
     pub t: f64,
-    /// Modes about the pose at rest.
+    /// Modes about the pose at rest, and how fast oil may decay.
     pub modes: Vec<DampedMode>,
 }
 
@@ -66,7 +67,10 @@ pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<
 }
 
 fn modes_at(crane: &dyn DynCrane, q: &[f64]) -> Result<Vec<DampedMode>, Failed> {
-    modes::damped(&crane.small_motions_at(q)).map_err(|no_modes| Reason::Modes(no_modes).of(&crane.description().name))
+    let modes = modes::damped(&crane.small_motions_at(q));
+    let mut modes = modes.map_err(|no_modes| Reason::Modes(no_modes).of(&crane.description().name))?;
+    modes.extend(hydraulics::decays(crane, q));
+    Ok(modes)
 }
 
 /// The limit of the step of [`Method::Rk4`] during the manoeuvre; `None` if there is none or there are no modes.

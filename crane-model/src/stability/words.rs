@@ -30,7 +30,13 @@ fn moving(description: &Description, coordinate: usize) -> (String, Option<&str>
     let name = &description.coordinates[coordinate].name;
     match description.coordinates[coordinate].role {
         CoordinateRole::Base => (format!("base ({name})"), None),
-        CoordinateRole::Driven | CoordinateRole::Prescribed => (format!("drive of {name}"), None),
+        CoordinateRole::Driven | CoordinateRole::Prescribed => {
+            let mut cylinders = description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
+            match cylinders.find(|cylinder| description.drives[cylinder.drive].coordinate == coordinate) {
+                Some(cylinder) => (format!("oil of {}", cylinder.name), None),
+                None => (format!("drive of {name}"), None),
+            }
+        }
         CoordinateRole::Passive => (format!("joint {name}"), None),
         CoordinateRole::Element | CoordinateRole::ElementVector => {
             // The rotations of an element are consecutive; the first body that a coordinate moves carries it.

@@ -286,3 +286,19 @@ fn a_run_goes_on_from_the_states_of_its_oil() {
     }
     assert_eq!(crane.description().cylinders.len(), 1);
 }
+
+/// The largest stable step counts the oil, and a run by the classical method with nine tenths of it is right.
+#[test]
+fn oil_limits_the_step_of_explicit_methods() {
+    let crane = lift("gain: 10", "{quintic: {from: 0.1, to: 0.4, duration: 2}}", PUMP);
+    let start = Start::of(&crane).expect("it rests");
+    let limit = runs::step_limit(&crane, &start).expect("a limit").limit;
+    assert!(limit.step < 0.2 * 2.8 / (stiffness(0.1) / MASS).sqrt(), "{} s", limit.step);
+    let said = crane_model::stability::cause(crane.description(), &limit.mode);
+    assert!(said.starts_with("oil of ram; "), "{said}");
+    let exact = column(&record(&crane, &settings(Method::Bdf, 1e-8, 0.5)), "slide_z");
+    let own = Settings { step: 0.9 * limit.step, ..settings(Method::Rk4, 1e-8, 0.5) };
+    let found = column(&record(&crane, &own), "slide_z");
+    let off = exact.iter().zip(&found).map(|(exact, found)| (exact - found).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-5, "{off:.1e} m");
+}

@@ -3,6 +3,7 @@
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::Method;
+use crane_model::hydraulics;
 use crane_model::modes::{DampedMode, Mode, NoModes, damped, undamped};
 use crane_model::stability::{cause, limit};
 use numpy::PyArray1;
@@ -19,6 +20,8 @@ use crate::parallel::map_rows;
 struct Modes {
     undamped: Vec<Mode>,
     damped: Vec<DampedMode>,
+    /// Those that may limit a step: the damped ones, and the decays of oil.
+    limiting: Vec<DampedMode>,
 }
 
 impl Modes {
@@ -26,8 +29,11 @@ impl Modes {
         if !q.iter().all(|x| x.is_finite()) {
             return Err(NoModes::MassMatrix);
         }
-        let motions = (crane as &dyn DynCrane).small_motions_at(q);
-        Ok(Self { undamped: undamped(&motions)?, damped: damped(&motions)? })
+        let crane: &dyn DynCrane = crane;
+        let motions = crane.small_motions_at(q);
+        let damped = damped(&motions)?;
+        let limiting = [damped.clone(), hydraulics::decays(crane, q)].concat();
+        Ok(Self { undamped: undamped(&motions)?, damped, limiting })
     }
 }
 
@@ -80,7 +86,7 @@ impl Crane {
         }
         let limits = |method: &Method| -> (Vec<f64>, Vec<String>) {
             let limits = found.iter().map(|found| {
-                let limit = limit(&found.as_ref().ok()?.damped, &method.stability())?;
+                let limit = limit(&found.as_ref().ok()?.limiting, &method.stability())?;
                 Some((limit.step, cause(description, &limit.mode)))
             });
             limits.map(|limit| limit.unwrap_or((f64::INFINITY, "nothing".to_owned()))).unzip()
