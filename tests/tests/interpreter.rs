@@ -40,7 +40,7 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
         "lane_forward_dynamics" => crane.get("forward_dynamics", inputs, n),
         "implicit_solution" => implicit_solution(crane, inputs),
         "prescribed" => prescribed(crane, inputs),
-        "drive_forces_at_rest" if crane.prescribed().is_empty() => {
+        "drive_forces_at_rest" if crane.prescribed().is_empty() && !crane.chain.has_valves() => {
             let start = inputs.clone().with(Argument::Time, vec![Runtime(0.0)]);
             let mut rates = vec![Runtime(0.0); n];
             for (drive, motion) in crane.chain.drives.iter().zip(crane.get("drive_motions", &start, 0).chunks(2)) {
