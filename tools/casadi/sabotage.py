@@ -26,7 +26,7 @@ def unnoticed(derived, groups, trials=10, seed=1):
     rng = np.random.default_rng(seed)
     return [
         quantity
-        for quantity, values in derived.items()
+        for quantity, values in ((quantity, np.nan_to_num(values)) for quantity, values in derived.items())
         if values.size > 0
         and any(compare(quantity, values, perturb(quantity, values, rng), groups).passed for _ in range(trials))
     ]

@@ -61,13 +61,15 @@ pub const LARGE_TILT: f64 = 0.1;
 /// Rotation of a base beyond which a crane on feet that lift has tipped over, rad: soft feet give way by some hundredths.
 pub const TIPPED: f64 = 0.5;
 
-#[cfg(feature = "std")]
 impl Description {
     /// Whether oil moves a joint, through a cylinder with a valve: forces and accelerations then need its pressures, too.
     pub fn has_valves(&self) -> bool {
         self.cylinders.iter().any(|cylinder| cylinder.valve.is_some())
     }
+}
 
+#[cfg(feature = "std")]
+impl Description {
     /// Indices in `q` of the coordinates that rigid drives prescribe, which are not unknowns.
     pub fn prescribed(&self) -> Vec<usize> {
         let prescribed = |i: &usize| self.coordinates[*i].role == CoordinateRole::Prescribed;
