@@ -72,7 +72,7 @@ def compare(quantity, derived, generated, groups, tolerance=None):
         return Comparison(quantity, entries, np.inf, np.inf, 0, 0, tolerance)
     if derived.size == 0:
         return Comparison(quantity, entries, 0.0, 0.0, 0, 0, tolerance)
-    # Far from the guess a linkage may not reach: then both say that there is no number.
+    # Far from the guess a linkage may not reach: both values are then NaN.
     neither = np.isnan(derived) & np.isnan(generated)
     derived, generated = np.where(neither, 0.0, derived), np.where(neither, 0.0, generated)
     by_state, by_entry = [], []

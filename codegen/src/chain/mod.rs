@@ -72,7 +72,7 @@ pub struct Chain {
     pub loads: Vec<Load>,
     /// Hydraulic cylinders of driven joints.
     pub cylinders: Vec<Cylinder>,
-    /// Greatest flow to all cylinders together, m³/s.
+    /// What supplies the cylinders.
     pub pump: Option<Pump>,
     /// Elements between two points, and couplings of coordinates.
     pub connectors: Vec<Connector>,

@@ -17,8 +17,8 @@
 //! u* = gain (ℓ* − ℓ) + share · A ẏ*/(K r(p_s − p)),     between −1 and 1
 //! ```
 //!
-//! with the length ℓ* that the cylinder has where the drive's motion is; its speed is set ahead with the pressures measured. The pump keeps up its pressure as long as the valves take no more than
-//! its greatest flow; `ṗ_s = β/V_s (Q_pump − Σ Q)`. At the ends of the stroke the piston meets a stiff stop (Hunt–Crossley).
+//! with the length ℓ* that the cylinder has where the drive's motion is; its speed is set ahead with the pressures measured. The pump
+//! keeps up its pressure as long as the valves take no more than its greatest flow; `ṗ_s = β/V_s (Q_pump − Σ Q)`. At the ends of the stroke the piston meets a stiff stop (Hunt–Crossley).
 //!
 //! The states are, cylinder by cylinder, p, p′ and u, and `p_s` behind all of them. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
 
@@ -289,7 +289,7 @@ impl Hydraulics {
         }
     }
 
-    /// The pump at its pressure: flow, m³/s, and power, W.
+    /// The pump at its pressure: flow, m³/s, power, W, and that pressure, Pa.
     fn delivered(&self, x: &[f64]) -> [f64; 3] {
         let (Some(pump), Some(&pressure)) = (self.pump, x.last()) else { return [0.0; 3] };
         let (flow, _) = pump.flow(pressure);
@@ -397,9 +397,7 @@ impl Oil {
             });
         Some(Self { cylinders: cylinders.collect(), pump: hydraulics.delivered(x) })
     }
-}
 
-impl Oil {
     /// Puts the efforts of cylinders with a valve in place of those of their drives.
     pub fn give_efforts(&self, description: &Description, efforts: &mut [f64]) {
         for (index, state, _) in &self.cylinders {
@@ -474,7 +472,7 @@ pub(crate) fn stiffen(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotion
     /// Difference over which a lever is differenced, m or rad: an error of 1e-8 of the second term.
     const DIFFERENCE: f64 = 1e-4;
     let cylinders = &crane.description().cylinders;
-    if cylinders.iter().all(|cylinder| cylinder.valve.is_none()) {
+    if !crane.description().has_valves() {
         return;
     }
     let rest = vec![0.0; q.len()];

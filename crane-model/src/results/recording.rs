@@ -135,7 +135,7 @@ pub fn quantities(description: &Description) -> Vec<Column> {
     if !description.cylinders.is_empty() {
         table.add("pump_flow", "m³/s");
         table.add("pump_power", "W");
-        if description.cylinders.iter().any(|cylinder| cylinder.valve.is_some()) {
+        if description.has_valves() {
             table.add("pump_pressure", "Pa");
         }
         for cylinder in description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
