@@ -1,24 +1,25 @@
 //! Cylinders between their pins: length, its rate, and its derivative by the joint's coordinate.
 //!
 //! Notation
-//! : A the foot, B the rod's pin, H the head, P the pivot of the rocker, all in the world; e = (B − A)/ℓ. What moves H as seen from
-//!   the body that carries A and P is Ḣ; without a linkage B = H:
+//! : A the foot, B the rod's pin, H the head, P the pivot of the rocker, all in the world; e = (B − A)/ℓ. Rates are those seen from the
+//!   body that carries A and P; without a linkage B = H:
 //!
 //! ```text
 //! ℓ = |B − A|        ℓ̇ = e · Ḃ
 //! ```
 //!
 //! With a linkage, B is at the rocker's length r from P and at the link's length l from H, in the plane across the joint's axis n. With
-//! `c = (H − P)/|H − P|` and `m = ± (n × c)/|n × c|`:
+//! `w = H − P`, `d = |w|`, `c = w/d` and `m = ± (n × w)/|n × w|`:
 //!
 //! ```text
-//! B = P + a c + √(r² − a²) m,     a = (|H − P|² + r² − l²)/(2|H − P|)
-//! Ḃ = ω n × (B − P),              ω = (B − H) · Ḣ / ((B − H) · n × (B − P))
+//! B = P + a c + h m,              a = (d² + r² − l²)/2d,   h = √(r² − a²)
+//! Ḃ = ȧ c + a ċ + ḣ m + h ṁ,      ȧ = ḋ (1 − a/d),         ḣ = −a ȧ/h
 //! ```
 //!
-//! A square root of a negative number, not a number, is a pose that cannot be assembled.
+//! The axis turns, too, as seen from there, where something bends between the pins and the joint. A square root of a negative number,
+//! not a number, is a pose that cannot be assembled.
 
-use super::kinematics::Kinematics;
+use super::kinematics::{Generator, Kinematics};
 use super::model::Model;
 use super::twist::Twist;
 use super::vector::Vec3;
@@ -31,8 +32,70 @@ struct Geometry<'g> {
     head: Vec3<'g>,
     /// ℓ
     length: Expr<'g>,
-    /// What gives ℓ̇ as a scalar product with Ḣ.
-    by_head: Vec3<'g>,
+    /// e
+    direction: Vec3<'g>,
+    linkage: Option<Assembled<'g>>,
+}
+
+/// A linkage in a pose.
+struct Assembled<'g> {
+    /// n
+    axis: Vec3<'g>,
+    /// w and d
+    across: Vec3<'g>,
+    distance: Expr<'g>,
+    /// a and h, of the side of the rocker's pin
+    along: Expr<'g>,
+    height: Expr<'g>,
+    /// c and m
+    unit_along: Vec3<'g>,
+    unit_height: Vec3<'g>,
+    /// |n × w|
+    normal_length: Expr<'g>,
+}
+
+impl<'g> Assembled<'g> {
+    fn new(axis: Vec3<'g>, across: Vec3<'g>, [rocker, link]: [Expr<'g>; 2], left: bool) -> Self {
+        let distance = across.dot(across).sqrt();
+        let along = (distance.squared() + rocker.squared() - link.squared()) / (2.0 * distance);
+        let height = (rocker.squared() - along.squared()).sqrt();
+        let normal = axis.cross(across);
+        let normal_length = normal.dot(normal).sqrt();
+        Assembled {
+            axis,
+            across,
+            distance,
+            along,
+            height: if left { height } else { -height },
+            unit_along: (1.0 / distance) * across,
+            unit_height: (1.0 / normal_length) * normal,
+            normal_length,
+        }
+    }
+
+    /// B − P
+    fn pin(&self) -> Vec3<'g> {
+        self.along * self.unit_along + self.height * self.unit_height
+    }
+
+    /// Ḃ, from Ḣ and ṅ.
+    fn pin_rate(&self, head: Vec3<'g>, axis: Vec3<'g>) -> Vec3<'g> {
+        let distance = self.unit_along.dot(head);
+        let along = distance * (1.0 - self.along / self.distance);
+        let height = -(self.along * along / self.height);
+        let unit_along = (1.0 / self.distance) * (head - distance * self.unit_along);
+        let normal = axis.cross(self.across) + self.axis.cross(head);
+        let unit_height = (1.0 / self.normal_length) * (normal - self.unit_height.dot(normal) * self.unit_height);
+        along * self.unit_along + self.along * unit_along + height * self.unit_height + self.height * unit_height
+    }
+}
+
+impl<'g> Geometry<'g> {
+    /// ℓ̇, from Ḣ and ṅ.
+    fn rate(&self, head: Vec3<'g>, axis: Vec3<'g>) -> Expr<'g> {
+        let pin = self.linkage.as_ref().map_or(head, |linkage| linkage.pin_rate(head, axis));
+        self.direction.dot(pin)
+    }
 }
 
 fn place<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, pin: &Pin) -> Vec3<'g> {
@@ -42,42 +105,47 @@ fn place<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, pin: &Pin) -> Vec3<
 
 fn geometry<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Geometry<'g> {
     let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| place(model, kinematics, pin));
-    let Some(linkage) = &cylinder.linkage else {
-        let way = head - foot;
-        let length = way.dot(way).sqrt();
-        return Geometry { head, length, by_head: (1.0 / length) * way };
-    };
-    let Linkage { pivot, rocker, link, left } = linkage;
-    let pivot = place(model, kinematics, &Pin { position: pivot.clone(), ..cylinder.foot.clone() });
-    let [rocker, link] = [rocker, link].map(|length| model.number(length));
-    let axis = kinematics.generators[cylinder.coordinate.0].omega;
-    let across = head - pivot;
-    let distance = across.dot(across).sqrt();
-    let along = (distance.squared() + rocker.squared() - link.squared()) / (2.0 * distance);
-    let height = (rocker.squared() - along.squared()).sqrt();
-    let normal = axis.cross(across);
-    let side = if *left { height } else { -height };
-    let arm = (along / distance) * across + (side / normal.dot(normal).sqrt()) * normal;
-    let pin = pivot + arm;
+    let linkage = cylinder.linkage.as_ref().map(|Linkage { pivot, rocker, link, left }| {
+        let pivot = place(model, kinematics, &Pin { position: pivot.clone(), ..cylinder.foot.clone() });
+        let lengths = [rocker, link].map(|length| model.number(length));
+        let axis = kinematics.generators[cylinder.coordinate.0].omega;
+        (pivot, Assembled::new(axis, head - pivot, lengths, *left))
+    });
+    let pin = linkage.as_ref().map_or(head, |(pivot, linkage)| *pivot + linkage.pin());
     let way = pin - foot;
     let length = way.dot(way).sqrt();
-    let (of_link, turned) = (pin - head, axis.cross(arm));
-    let by_head = (way.dot(turned) / (length * of_link.dot(turned))) * of_link;
-    Geometry { head, length, by_head }
+    let linkage = linkage.map(|(_, linkage)| linkage);
+    Geometry { head, length, direction: (1.0 / length) * way, linkage }
+}
+
+/// Angular velocity of a joint's axis as seen from a body: what turns between them.
+fn spin_of_axis<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, joint: usize, from: usize) -> Vec3<'g> {
+    let turning = |(j, generator): (usize, &Generator<'g>)| match (generator.body > from, j < joint) {
+        (true, true) => Some(model.v[j] * generator.omega),
+        (false, false) if j > joint => Some(-(model.v[j] * generator.omega)),
+        _ => None,
+    };
+    let all = kinematics.generators.iter().enumerate();
+    all.filter_map(turning).fold(Vec3::zero(model.graph), |sum, rate| sum + rate)
 }
 
 /// ℓ, ℓ̇ and `∂ℓ/∂q_j` of every cylinder, m, m/s and m or m/rad.
 pub fn states<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist<'g>]) -> Vec<Expr<'g>> {
     let state = |cylinder: &Cylinder| {
-        let Geometry { head, length, by_head } = geometry(model, kinematics, cylinder);
-        let [at_foot, at_head] = [&cylinder.foot, &cylinder.head].map(|pin| {
-            let twist = &twists[pin.body.0];
+        let (joint, foot) = (cylinder.coordinate.0, cylinder.foot.body.0);
+        let geometry = geometry(model, kinematics, cylinder);
+        let head = geometry.head;
+        let [at_foot, at_head] = [foot, cylinder.head.body.0].map(|body| {
+            let twist = &twists[body];
             twist.omega.cross(head) + twist.upsilon
         });
-        let arm = by_head.dot(kinematics.generators[cylinder.coordinate.0].velocity(head));
+        let axis = kinematics.generators[joint].omega;
+        let turned = spin_of_axis(model, kinematics, joint, foot).cross(axis);
+        let rate = geometry.rate(at_head - at_foot, turned);
+        let arm = geometry.rate(kinematics.generators[joint].velocity(head), Vec3::zero(model.graph));
         // The joint moves the body with the greater index.
         let arm = if cylinder.head.body > cylinder.foot.body { arm } else { -arm };
-        [length, by_head.dot(at_head - at_foot), arm]
+        [geometry.length, rate, arm]
     };
     model.chain.cylinders.iter().flat_map(state).collect()
 }

@@ -127,6 +127,64 @@ fn a_parallelogram_turns_its_rocker_with_the_arm() {
     assert_eq!(differ, 4);
 }
 
+/// Where a boom bends between the pins of a linkage and its joint, in both planes and in torsion, the rate of the length is that along the
+/// motion: the axis of the joint turns, too, as seen from the rocker's pivot.
+#[test]
+fn the_rate_over_a_bending_boom_is_that_along_the_motion() {
+    let crane = crane(
+        "format: 1
+name: bending
+materials:
+  steel: {E: 2.1e11, G: 8.1e10, density: 7850}
+links:
+  - {name: column, joint: {revolute: {axis: z}}, mass: 50, com: [0, 0, 0.5], inertia: {Ixx: 5, Iyy: 5, Izz: 5}}
+  - name: boom
+    placement: {transform: {translation: [0, 0, 1], rotation: {x: 90 deg}}}
+    joint: {revolute: {axis: z}}
+    beam: {length: 3, sections: 3, material: steel, section: {box: {height: 0.2, width: 0.2, thickness: 0.008}}}
+  - {name: jib, joint: {revolute: {axis: z}}, mass: 90, com: [0, -1, 0], inertia: {Ixx: 30, Iyy: 3, Izz: 30}}
+drives:
+  - {coordinate: column_psi, stiffness: 1e6, motion: {hold: 0}}
+  - {coordinate: boom_psi, stiffness: 1e6, motion: {hold: 0}}
+  - {coordinate: jib_psi, stiffness: 1e6, motion: {hold: 1}}
+cylinders:
+  - name: jib_cylinder
+    coordinate: jib_psi
+    foot: {link: boom, at: [1.2, 0.3, 0.02]}
+    head: {link: jib, at: [0.3, 0.2, 0.01]}
+    linkage: {pivot: [1.3, 0.15, 0], rocker: 1.7, link: 0.45, side: left}
+    bore: 0.1
+    rod: 0.06
+    retracted: 0.9
+    stroke: 0.9
+",
+    );
+    let n = crane.description().coordinates.len();
+    let numbers = |scale: f64, seed: f64| -> Vec<f64> {
+        (0..n).map(|j| scale * (seed + 2.3 * j as f64).sin()).collect()
+    };
+    for seed in [0.3, 1.7, 4.1] {
+        let mut q = numbers(0.02, seed);
+        q[n - 1] = 0.8;
+        let v = numbers(1.0, 3.0 * seed);
+        let state = at(&crane, &q, &v);
+        let along = |step: f64| {
+            let moved: Vec<f64> = q.iter().zip(&v).map(|(q, v)| q + step * v).collect();
+            at(&crane, &moved, &v).length
+        };
+        let by_joint = |step: f64| {
+            let mut moved = q.clone();
+            moved[n - 1] += step;
+            at(&crane, &moved, &v).length
+        };
+        // Central differences: the third derivative times 1e-10, and rounding over 1e-5.
+        for (found, of) in [(state.speed, &along as &dyn Fn(f64) -> f64), (state.arm, &by_joint)] {
+            let slope = (of(1e-5) - of(-1e-5)) / 2e-5;
+            assert!((found - slope).abs() < 1e-8, "{seed}: {found} for {slope}");
+        }
+    }
+}
+
 /// Where rocker and link do not reach, a run ends with the cylinder's name, and a pose says so.
 #[test]
 fn a_linkage_that_does_not_reach_is_named() {
