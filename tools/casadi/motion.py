@@ -2,8 +2,7 @@
 
     python motion.py --command target/release/crane [--crane NAME]... [--duration 0.5]
 
-Neither the model nor the method is shared with the generated code and its integrators: only the YAML file, and the pose and
-results that `crane simulate` writes. Exit code 0 if every method agrees on every crane, 1 if one does not.
+Neither the model nor the method is shared with the generated code and its integrators: only the YAML file, and the states that `crane simulate` writes. Exit code 0 if every method agrees on every crane, 1 if one does not.
 """
 
 import argparse
@@ -19,9 +18,10 @@ from scipy.integrate import solve_ivp
 
 from crane_model import read_crane
 from derivations import PRESCRIBED, Derivations, solve_unknown
+from hydraulics import Oil
 
 WORKSPACE = Path(__file__).resolve().parents[2]
-CRANES = ["double_pendulum", "eight_link_flexible", "knuckle_boom"]
+CRANES = ["double_pendulum", "eight_link_flexible", "eight_link_hydraulic", "knuckle_boom"]
 # Of Radau: an error per step, m and rad.
 TOLERANCE = 1e-9
 # Of our adaptive methods likewise; bdf, of order 4 at most, adds up more steps.
@@ -44,19 +44,22 @@ def main():
 def compare(name, options):
     """Runs a crane by its own methods and by Radau from the same pose at rest."""
     crane = read_crane(WORKSPACE / "specs" / f"{name}.yaml")
-    slope, jacobian, rates = equations(crane)
+    slope, jacobian, rates, oil = equations(crane)
     names = [coordinate.name for coordinate in crane.coordinates]
+    scales = np.concatenate([np.ones(len(names)), oil.scales])
+    places = np.r_[: len(names), 2 * len(names) : 2 * len(names) + len(oil.names)]
     agree = True
     exact = None
     for method, tolerance in METHODS.items():
-        times, poses = simulate(name, method, tolerance, names, options)
+        times, states = simulate(name, method, tolerance, names + oil.names, options)
+        states /= scales
         if exact is None:
-            start = np.concatenate([poses[0], rates])
+            start = np.concatenate([states[0, : len(names)], rates, states[0, len(names) :]])
             span = (times[0], times[-1])
             # An error of a rate counts less than one of a coordinate, as it lasts.
             exact = solve_ivp(slope, span, start, "Radau", times, jac=jacobian, rtol=TOLERANCE, atol=TOLERANCE)
-        error = np.abs(poses - exact.y[: len(names)].T).max() / max(1.0, np.abs(poses).max())
-        moved = np.abs(poses - poses[0]).max()
+        error = np.abs(states - exact.y[places].T).max() / max(1.0, np.abs(states).max())
+        moved = np.abs(states - states[0]).max()
         good = bool(exact.success) and error < AGREEMENT
         verdict = "ok" if good else "FAILED"
         print(f"{name:24} {method:8} moved {moved:8.1e}  off by {error:8.1e}  tolerance {AGREEMENT:.0e}  {verdict}")
@@ -65,7 +68,8 @@ def compare(name, options):
 
 
 def equations(crane):
-    """Slopes of (q, v) and their Jacobian as functions of t and (q, v), and the rates at t = 0.
+    """Slopes of (q, v, x) and their Jacobian as functions of t and (q, v, x), the rates at t = 0, and the oil, whose states x are in
+    parts of the pump's pressure.
 
     Where a rigid drive prescribes a coordinate, its acceleration is given: it is integrated along, as a check of the motion too.
     """
@@ -73,31 +77,36 @@ def equations(crane):
     quantities = derivations.quantities
     count = crane.q.numel()
     mass = ca.reshape(quantities["mass_matrix"], count, count)
-    state = ca.vertcat(crane.q, crane.v)
-    forces = quantities["bias"] + quantities["forces"]
+    oil = Oil(crane, derivations.rate)
+    scales = ca.DM(oil.scales)
+    scaled = ca.SX.sym("x", len(oil.names))
+    state = ca.vertcat(crane.q, crane.v, scaled)
+    by_oil = [ca.substitute(part, oil.x, scales * scaled) for part in (oil.forces, oil.rates / scales)]
+    forces = quantities["bias"] + quantities["forces"] + by_oil[0]
     prescribed = list(crane.rigid_drives)
     defaults = ca.DM(list(crane.spec.defaults.values()))
-    at = [crane.time, crane.q, crane.v, crane.parameters]
+    at = [crane.time, state, crane.parameters]
     rates = ca.Function("rates", [crane.time, crane.parameters], [ca.densify(given_rates(crane, derivations))])
-    function = ca.Function("forces", at, [mass, forces, ca.jacobian(forces, state), quantities[PRESCRIBED]])
+    slopes = [ca.jacobian(forces, state), ca.jacobian(by_oil[1], state)]
+    function = ca.Function("forces", at, [mass, forces, quantities[PRESCRIBED], by_oil[1], *slopes])
 
     def values(t, y):
-        mass, forces, slopes, given = function(t, y[:count], y[count:], defaults)
-        return mass.full(), forces.full()[:, 0], slopes.full(), given.full()[:, 0]
+        mass, forces, given, of_oil, slopes, slopes_of_oil = (part.full() for part in function(t, y, defaults))
+        return mass, forces[:, 0], given[:, 0], of_oil.reshape(-1), slopes, slopes_of_oil
 
     def slope(t, y):
-        mass, forces, _, given = values(t, y)
+        mass, forces, given, of_oil, *_ = values(t, y)
         others = solve_unknown(mass[None], (forces - mass @ given)[None], prescribed)[0]
-        return np.concatenate([y[count:], given + others])
+        return np.concatenate([y[count : 2 * count], given + others, of_oil])
 
     def jacobian(t, y):
         """Without the change of the mass matrix: Newton's iteration needs no more, and its result does not depend on it."""
-        mass, _, slopes, _ = values(t, y)
-        upper = np.hstack([np.zeros((count, count)), np.eye(count)])
+        mass, *_, slopes, slopes_of_oil = values(t, y)
+        upper = np.hstack([np.zeros((count, count)), np.eye(count), np.zeros((count, len(oil.names)))])
         columns = [solve_unknown(mass[None], column[None], prescribed)[0] for column in slopes.T]
-        return np.vstack([upper, np.column_stack(columns)])
+        return np.vstack([upper, np.column_stack(columns), slopes_of_oil])
 
-    return slope, jacobian, rates(0, defaults).full()[:, 0]
+    return slope, jacobian, rates(0, defaults).full()[:, 0], oil
 
 
 def given_rates(crane, derivations):
@@ -108,8 +117,8 @@ def given_rates(crane, derivations):
     return rates
 
 
-def simulate(name, method, tolerance, coordinates, options):
-    """Times and poses that `crane simulate` writes."""
+def simulate(name, method, tolerance, states, options):
+    """Times and states that `crane simulate` writes."""
     with tempfile.TemporaryDirectory() as folder:
         arguments = ["simulate", name, "--method", method, "--tolerance", str(tolerance), "--out", folder]
         arguments += ["--duration", str(options.duration), "--output", str(options.duration / 50)]
@@ -118,7 +127,7 @@ def simulate(name, method, tolerance, coordinates, options):
             rows = list(csv.reader(file))
     columns = [title.split(" ")[0] for title in rows[0]]
     table = np.array(rows[1:], dtype=float)
-    return table[:, columns.index("t")], table[:, [columns.index(coordinate) for coordinate in coordinates]]
+    return table[:, columns.index("t")], table[:, [columns.index(state) for state in states]]
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     dyn_crane::DynDynamics,
-    hydraulics::{Hydraulics, Moment, Pushed, add_efforts, power},
+    hydraulics::{Hydraulics, Moment},
 };
 
 /// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.
@@ -24,31 +24,18 @@ pub(super) struct Equations<'a> {
     pub evaluations: usize,
     /// Pose and rates of the last evaluated motion.
     state: Vec<f64>,
-    oil: Oil,
-}
-
-/// The oil of cylinders, with storage for an evaluation.
-struct Oil {
-    hydraulics: Hydraulics,
-    pushed: Vec<Pushed>,
+    oil: Hydraulics,
+    /// Rates of its states, for the powers.
     rates: Vec<f64>,
-    forces: Vec<f64>,
-    accelerations: Vec<f64>,
 }
 
 impl<'a> Equations<'a> {
     /// For a crane, with or without integrals.
     pub fn new(crane: &'a dyn DynDynamics, guides: Guides, audit: bool) -> Self {
         let n = crane.size();
-        let hydraulics = Hydraulics::new(crane.description());
-        let oil = Oil {
-            pushed: vec![Pushed::default(); hydraulics.count()],
-            rates: vec![0.0; hydraulics.len()],
-            forces: vec![0.0; n],
-            accelerations: vec![0.0; n],
-            hydraulics,
-        };
-        Self { crane, n, audit, guides, evaluations: 0, state: vec![0.0; 2 * n], oil }
+        let oil = Hydraulics::new(crane.description());
+        let rates = vec![0.0; oil.len()];
+        Self { crane, n, audit, guides, evaluations: 0, state: vec![0.0; 2 * n], oil, rates }
     }
 
     /// The number of components of a motion: coordinates, rates, states of oil and integrals.
@@ -58,7 +45,7 @@ impl<'a> Equations<'a> {
 
     /// Number of states of oil.
     pub fn states(&self) -> usize {
-        self.oil.rates.len()
+        self.rates.len()
     }
 
     /// Where the integrals of a motion begin.
@@ -118,8 +105,8 @@ impl<'a> Equations<'a> {
         let (_, rest) = out.split_at_mut(n);
         let (accelerations, rest) = rest.split_at_mut(n);
         self.crane.forward_dynamics(t, q, v, accelerations);
-        if !self.oil.hydraulics.is_empty() {
-            let rates = &mut rest[..self.oil.rates.len()];
+        if !self.oil.is_empty() {
+            let rates = &mut rest[..self.rates.len()];
             let x = &motion[2 * n..2 * n + rates.len()];
             self.oil.accelerate(self.crane, &Moment { t, q, v, x }, rates, accelerations);
             finite(rates)?;
@@ -135,32 +122,12 @@ impl<'a> Equations<'a> {
             let (q, v) = self.state.split_at(self.n);
             let mut powers = self.powers_at(t, q, v);
             let begin = self.integrals();
-            if !self.oil.hydraulics.is_empty() {
-                let Oil { hydraulics, pushed, rates, .. } = &mut self.oil;
+            if !self.oil.is_empty() {
                 let moment = Moment { t, q, v, x: &motion[2 * self.n..begin] };
-                hydraulics.evaluate(self.crane, &moment, rates, pushed, None);
-                powers[0] += power(pushed);
+                self.oil.evaluate(self.crane, &moment, &mut self.rates, None);
+                powers[0] += self.oil.power();
             }
             slope[begin..].copy_from_slice(&powers);
-        }
-    }
-}
-
-impl Oil {
-    /// Rates of the states, and what the cylinders add to the accelerations.
-    fn accelerate(
-        &mut self,
-        crane: &dyn DynDynamics,
-        moment: &Moment<'_>,
-        rates: &mut [f64],
-        accelerations: &mut [f64],
-    ) {
-        self.hydraulics.evaluate(crane, moment, rates, &mut self.pushed, None);
-        self.forces.fill(0.0);
-        add_efforts(&self.pushed, &mut self.forces);
-        crane.solve_mass(moment.q, &self.forces, &mut self.accelerations);
-        for (all, own) in accelerations.iter_mut().zip(&self.accelerations) {
-            *all += own;
         }
     }
 }

@@ -19,7 +19,6 @@ use crate::dyn_crane::DynModel;
 /// The oil of a crane at a state, and its part in the system there.
 pub(crate) struct Eliminated {
     hydraulics: Hydraulics,
-    pushed: Vec<Pushed>,
     rates: Vec<f64>,
     by_states: DMatrix<f64>,
     /// W, as factors of its inverse.
@@ -42,7 +41,6 @@ impl Eliminated {
         let (count, len) = (hydraulics.count(), hydraulics.len());
         let square = |size| DMatrix::zeros(size, size);
         Self {
-            pushed: vec![Pushed::default(); count],
             rates: vec![0.0; len],
             by_states: square(len),
             states: None,
@@ -64,11 +62,12 @@ impl Eliminated {
         c: f64,
         solve: &mut dyn FnMut(&[f64], &mut [f64]),
     ) {
-        let Self { hydraulics, pushed, rates, by_states, .. } = self;
+        let Self { hydraulics, rates, by_states, .. } = self;
         if hydraulics.is_empty() {
             return;
         }
-        hydraulics.evaluate(crane, moment, rates, pushed, Some(by_states));
+        hydraulics.evaluate(crane, moment, rates, Some(by_states));
+        let pushed = hydraulics.pushed();
         let len = rates.len();
         let states = (DMatrix::identity(len, len) / c - &*by_states).lu();
         let count = pushed.len();
@@ -101,10 +100,10 @@ impl Eliminated {
         let Some(states) = &self.states else { return };
         let mut of_states = DVector::from_column_slice(r);
         states.solve_mut(&mut of_states);
-        let of = |x: &[f64]| DVector::from_iterator(self.pushed.len(), self.pushed.iter().map(|own| own.along(x)));
+        let of = |x: &[f64]| DVector::from_iterator(self.hydraulics.count(), self.hydraulics.pushed().iter().map(|own| own.along(x)));
         let (g, p) = (of(g), of(p));
         let forces = &self.delta * &g + &self.kappa * (g * c + p);
-        for (place, (own, force)) in self.pushed.iter().zip(&forces).enumerate() {
+        for (place, (own, force)) in self.hydraulics.pushed().iter().zip(&forces).enumerate() {
             let force = force + own.pull(of_states.as_slice(), place) / c;
             right[own.coordinate] -= own.arm * force;
         }
@@ -113,7 +112,7 @@ impl Eliminated {
     /// Turns the solution of the system without oil into that of the system with it.
     pub fn correct(&self, solution: &mut [f64]) {
         let Some(correction) = &self.correction else { return };
-        let along = DVector::from_iterator(self.pushed.len(), self.pushed.iter().map(|own| own.along(solution)));
+        let along = DVector::from_iterator(self.hydraulics.count(), self.hydraulics.pushed().iter().map(|own| own.along(solution)));
         let mut shares = &self.resistance * along;
         correction.solve_mut(&mut shares);
         for (answer, share) in self.answers.iter().zip(&shares) {
@@ -127,7 +126,7 @@ impl Eliminated {
     pub fn states(&self, (p, w): (&[f64], &[f64]), r: &[f64], out: &mut [f64]) {
         let Some(states) = &self.states else { return };
         let mut answer = DVector::from_column_slice(r);
-        for (own, part) in self.pushed.iter().zip(answer.as_mut_slice().chunks_exact_mut(STATES)) {
+        for (own, part) in self.hydraulics.pushed().iter().zip(answer.as_mut_slice().chunks_exact_mut(STATES)) {
             let (p, w) = (own.along(p), own.along(w));
             for (i, x) in part.iter_mut().enumerate() {
                 *x += own.rates_by_length[i] * p + own.rates_by_speed[i] * w;

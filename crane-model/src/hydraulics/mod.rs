@@ -61,6 +61,10 @@ pub struct Hydraulics {
     wanted: Vec<Vector3<f64>>,
     motions: Vec<[f64; 2]>,
     place: [Vec<f64>; 2],
+    /// The cylinders with a valve where they were evaluated last.
+    pushed: Vec<Pushed>,
+    /// Their generalized forces, and what those add to the accelerations.
+    efforts: [Vec<f64>; 2],
 }
 
 /// A cylinder with a valve.
@@ -145,6 +149,8 @@ impl Hydraulics {
             wanted: vec![Vector3::zeros(); description.cylinders.len()],
             motions: vec![[0.0; 2]; description.drives.len()],
             place: [vec![0.0; n], vec![0.0; n]],
+            pushed: vec![Pushed::default(); cylinders.len()],
+            efforts: [vec![0.0; n], vec![0.0; n]],
             cylinders,
         }
     }
@@ -165,7 +171,7 @@ impl Hydraulics {
     }
 
     /// Sizes by which errors of the states are measured: the pump's pressure, and the full way of a spool.
-    pub(crate) fn scales(&self) -> Vec<f64> {
+    pub fn scales(&self) -> Vec<f64> {
         let pressure = self.pump.map_or(1.0, |pump| pump.pressure);
         let of_cylinder = [pressure, pressure, 1.0];
         let all = self.cylinders.iter().flat_map(|_| of_cylinder);
@@ -173,7 +179,7 @@ impl Hydraulics {
     }
 
     /// The states that hold a pose at rest at a time: shut valves, and the side that does not carry at the pressure of the tank.
-    pub(crate) fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
+    pub fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
         if self.is_empty() {
             return Vec::new();
         }
@@ -199,7 +205,6 @@ impl Hydraulics {
         crane: &dyn DynModel,
         &Moment { t, q, v, x }: &Moment<'_>,
         rates: &mut [f64],
-        pushed: &mut [Pushed],
         mut by_states: Option<&mut DMatrix<f64>>,
     ) {
         let Some((&p_s, _)) = x.split_last() else { return };
@@ -260,13 +265,41 @@ impl Hydraulics {
                 matrix[(last, first + 2)] = -of_pump * flows.by_spool[fed];
                 matrix[(first + 2, last)] = command.by_pump / lag;
             }
-            pushed[place] = own;
+            self.pushed[place] = own;
         }
         let (delivered, slope) = pump.map_or((0.0, 0.0), |pump| pump.flow(p_s));
         rates[last] = of_pump * (delivered - taken);
         if let Some(matrix) = by_states {
             matrix[(last, last)] = of_pump * (slope - taken_by_pump);
         }
+    }
+
+    /// Adds what the cylinders contribute to the accelerations, and writes the rates of the states.
+    pub(crate) fn accelerate(
+        &mut self,
+        crane: &dyn DynDynamics,
+        moment: &Moment<'_>,
+        rates: &mut [f64],
+        accelerations: &mut [f64],
+    ) {
+        self.evaluate(crane, moment, rates, None);
+        let [efforts, own] = &mut self.efforts;
+        efforts.fill(0.0);
+        for pushed in &self.pushed {
+            efforts[pushed.coordinate] += pushed.force * pushed.arm;
+        }
+        crane.solve_mass(moment.q, efforts, own);
+        accelerations.iter_mut().zip(own).for_each(|(all, own)| *all += *own);
+    }
+
+    /// The cylinders with a valve where they were evaluated last.
+    pub(crate) fn pushed(&self) -> &[Pushed] {
+        &self.pushed
+    }
+
+    /// Power that the cylinders put in where they were evaluated last, `Σ F ℓ̇`, W.
+    pub(crate) fn power(&self) -> f64 {
+        self.pushed.iter().map(|own| own.force * own.speed).sum()
     }
 
     /// Lengths of all cylinders here, and where the drives' motions are.
@@ -381,10 +414,9 @@ impl Oil {
         if hydraulics.is_empty() || x.len() != hydraulics.len() {
             return None;
         }
-        let mut pushed = vec![Pushed::default(); hydraulics.count()];
-        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut pushed, None);
+        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], None);
         let cylinders =
-            hydraulics.cylinders.iter().zip(&pushed).zip(x.chunks_exact(STATES)).map(|((moved, own), x)| {
+            hydraulics.cylinders.iter().zip(&hydraulics.pushed).zip(x.chunks_exact(STATES)).map(|((moved, own), x)| {
                 let state = CylinderState {
                     length: hydraulics.here[moved.index].x,
                     speed: own.speed,
@@ -418,23 +450,19 @@ impl Oil {
     }
 }
 
-/// Accelerations at a state of a crane and its oil, m/s² and rad/s².
+/// Accelerations at a state of a crane and its oil, m/s² and rad/s², and the rates of the states of the oil.
 ///
 /// # Panics
 /// Where there is not one number for each state of the oil.
-pub fn accelerations(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Vec<f64> {
-    let mut accelerations = crane.accelerations_at(t, q, v).as_slice().to_vec();
+pub fn accelerations(crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
+    crane.forward_dynamics(t, q, v, &mut accelerations);
     let mut hydraulics = Hydraulics::new(crane.description());
     assert_eq!(x.len(), hydraulics.len(), "one number for each state of the oil");
     if !hydraulics.is_empty() {
-        let mut pushed = vec![Pushed::default(); hydraulics.count()];
-        hydraulics.evaluate(crane, &Moment { t, q, v, x }, &mut vec![0.0; x.len()], &mut pushed, None);
-        let (mut forces, mut own) = (vec![0.0; q.len()], vec![0.0; q.len()]);
-        add_efforts(&pushed, &mut forces);
-        crane.solve_mass(q, &forces, &mut own);
-        accelerations.iter_mut().zip(own).for_each(|(all, own)| *all += own);
+        hydraulics.accelerate(crane, &Moment { t, q, v, x }, &mut rates, &mut accelerations);
     }
-    accelerations
+    (accelerations, rates)
 }
 
 /// How fast the oil of each cylinder with a valve may decay at a pose, as a mode of its joint: while its suction valves let in oil, with edges
@@ -493,18 +521,6 @@ pub(crate) fn stiffen(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotion
         let oil = state.oil_stiffness(info).unwrap_or(f64::NAN);
         motions.stiffness[(place, place)] += oil - state.force * curvature;
     }
-}
-
-/// Adds the cylinders' generalized forces.
-pub(crate) fn add_efforts(pushed: &[Pushed], forces: &mut [f64]) {
-    for own in pushed {
-        forces[own.coordinate] += own.force * own.arm;
-    }
-}
-
-/// Power that the cylinders put in, `Σ F ℓ̇`, W.
-pub(crate) fn power(pushed: &[Pushed]) -> f64 {
-    pushed.iter().map(|own| own.force * own.speed).sum()
 }
 
 #[cfg(test)]

@@ -67,12 +67,6 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
             let code = in_c(options, &chain, &parameters)?;
             vec![(file.with_file_name(format!("{}.h", code.name)), code.header), (file, code.source)]
         }
-        Language::Fmu if chain.has_valves() => {
-            return Err(Problem::usage(
-                format!("{} has cylinders with valves, whose states an FMU does not have yet", chain.name),
-                "remove `valve` from the cylinders: an FMU then has the springs of their drives",
-            ));
-        }
         Language::Fmu => return fmu::write(options, &file, chain, &spec, &parameters, out),
     };
     for (file, text) in &texts {

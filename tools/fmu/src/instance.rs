@@ -5,8 +5,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use crane_live::{LiveCrane, Motion};
-use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
+use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Settings, Stopped};
+use crane_model::hydraulics::{self, Hydraulics};
 use crane_model::results;
 use crane_model::runs::Start;
 use crane_model::statics;
@@ -56,18 +57,20 @@ pub struct State {
     moment: Option<Moment>,
 }
 
-/// Time, pose and rates.
+/// Time, pose and rates, and the states of the oil.
 #[derive(Clone, Debug, PartialEq)]
 struct Moment {
     t: f64,
     q: Vec<f64>,
     v: Vec<f64>,
+    x: Vec<f64>,
 }
 
 impl State {
-    /// The state as numbers: parameters, inputs, NaN where they are not set, and where there are such time, pose and rates.
+    /// The state as numbers: parameters, inputs, NaN where they are not set, and where there are such time, pose, rates and
+    /// states of the oil.
     pub fn numbers(&self) -> Vec<f64> {
-        let moment = self.moment.iter().flat_map(|Moment { t, q, v }| std::iter::once(t).chain(q).chain(v));
+        let moment = self.moment.iter().flat_map(|Moment { t, q, v, x }| std::iter::once(t).chain(q).chain(v).chain(x));
         let inputs = self.inputs.iter().map(|value| value.unwrap_or(f64::NAN));
         self.parameters.iter().copied().chain(inputs).chain(moment.copied()).collect()
     }
@@ -94,7 +97,8 @@ pub struct Instance {
     /// Steps of the crane's own, on their way.
     motion: Option<Motion>,
     quantities: Option<Vec<f64>>,
-    accelerations: Option<Vec<f64>>,
+    /// Accelerations, and the rates of the oil's states.
+    accelerations: Option<(Vec<f64>, Vec<f64>)>,
     /// What is to be said, and what has been said once.
     said: Vec<String>,
     cautions: Vec<&'static str>,
@@ -180,9 +184,9 @@ impl Instance {
         self.forget();
     }
 
-    /// Number of continuous states: coordinates and rates.
+    /// Number of continuous states: coordinates, rates and states of the oil.
     pub fn states(&self) -> usize {
-        2 * self.crane.size()
+        2 * self.crane.size() + hydraulics::columns(self.crane.description()).len()
     }
 
     /// The time, s.
@@ -212,13 +216,14 @@ impl Instance {
                 q = Start::at(crane, &equilibrium).map_err(Fault::error)?.q;
             }
             self.crane.prescribe(self.begin, &mut q, &mut v);
-            self.moment = Some(Moment { t: self.begin, q, v });
+            let x = Hydraulics::new(self.crane.description()).holding(&self.crane, self.begin, &q);
+            self.moment = Some(Moment { t: self.begin, q, v, x });
             self.forget();
         }
         Ok(())
     }
 
-    /// Time, pose and rates.
+    /// Time, pose and rates, and the states of the oil.
     fn moment(&mut self) -> Result<&Moment, Fault> {
         self.settle()?;
         self.moment.as_ref().ok_or_else(Fault::nowhere)
@@ -253,7 +258,9 @@ impl Instance {
                 Source::Time => self.time(),
                 Source::Position(index) => self.moment()?.q[index],
                 Source::Rate(index) => self.moment()?.v[index],
-                Source::Acceleration(index) => self.accelerations()?[index],
+                Source::Acceleration(index) => self.accelerations()?.0[index],
+                Source::Oil(index) => self.moment()?.x[index],
+                Source::OilRate(index) => self.accelerations()?.1[index],
                 Source::Quantity(index) => self.quantities()?[index],
             };
         }
@@ -267,22 +274,18 @@ impl Instance {
 
     fn quantities(&mut self) -> Result<&[f64], Fault> {
         self.settle()?;
-        let Self { crane, moment: Some(Moment { t, q, v }), quantities, .. } = self else {
+        let Self { crane, moment: Some(Moment { t, q, v, x }), quantities, .. } = self else {
             return Err(Fault::nowhere());
         };
-        Ok(quantities.get_or_insert_with(|| results::quantities_at(crane, *t, (q, v), &[])))
+        Ok(quantities.get_or_insert_with(|| results::quantities_at(crane, *t, (q, v), x)))
     }
 
-    fn accelerations(&mut self) -> Result<&[f64], Fault> {
+    fn accelerations(&mut self) -> Result<&(Vec<f64>, Vec<f64>), Fault> {
         self.settle()?;
-        let Self { crane, moment: Some(Moment { t, q, v }), accelerations, .. } = self else {
+        let Self { crane, moment: Some(Moment { t, q, v, x }), accelerations, .. } = self else {
             return Err(Fault::nowhere());
         };
-        Ok(accelerations.get_or_insert_with(|| {
-            let mut out = vec![0.0; q.len()];
-            crane.forward_dynamics(*t, q, v, &mut out);
-            out
-        }))
+        Ok(accelerations.get_or_insert_with(|| hydraulics::accelerations(crane, *t, (q, v), x)))
     }
 
     /// Sets variables by their references; parameters and inputs alone can be set. What several parameters must obey together is
@@ -336,8 +339,9 @@ impl Instance {
         let moment = match rest {
             [] => None,
             [t, motion @ ..] if motion.len() == self.states() => {
-                let (q, v) = motion.split_at(self.crane.size());
-                Some(Moment { t: *t, q: q.to_vec(), v: v.to_vec() })
+                let (q, rest) = motion.split_at(self.crane.size());
+                let (v, x) = rest.split_at(q.len());
+                Some(Moment { t: *t, q: q.to_vec(), v: v.to_vec(), x: x.to_vec() })
             }
             _ => return None,
         };
@@ -352,16 +356,18 @@ impl Instance {
         self.change(|moment| moment.t = t)
     }
 
-    /// Sets coordinates and rates.
+    /// Sets coordinates, rates and states of the oil.
     ///
     /// # Errors
     /// As [`Instance::get`]; the numbers are not as many as states.
     pub fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Fault> {
         self.check_states(states.len())?;
-        let (q, v) = states.split_at(self.crane.size());
+        let (q, rest) = states.split_at(self.crane.size());
+        let (v, x) = rest.split_at(q.len());
         self.change(|moment| {
             moment.q.copy_from_slice(q);
             moment.v.copy_from_slice(v);
+            moment.x.copy_from_slice(x);
         })
     }
 
@@ -370,33 +376,37 @@ impl Instance {
         if count == states { Ok(()) } else { Err(Fault::Error(format!("{count} numbers for {states} states"))) }
     }
 
-    /// Coordinates and rates.
+    /// Coordinates, rates and states of the oil.
     ///
     /// # Errors
     /// As [`Instance::get`]; `out` is not as long as there are states.
     pub fn continuous_states(&mut self, out: &mut [f64]) -> Result<(), Fault> {
         self.check_states(out.len())?;
-        let Moment { q, v, .. } = self.moment()?;
-        out.iter_mut().zip(q.iter().chain(v)).for_each(|(place, value)| *place = *value);
+        let Moment { q, v, x, .. } = self.moment()?;
+        out.iter_mut().zip(q.iter().chain(v).chain(x)).for_each(|(place, value)| *place = *value);
         Ok(())
     }
 
-    /// Rates and accelerations.
+    /// Rates, accelerations and the rates of the oil's states.
     ///
     /// # Errors
-    /// As [`Instance::get`]; `out` is not as long as there are states; an acceleration is not finite.
+    /// As [`Instance::get`]; `out` is not as long as there are states; one of them is not finite.
     pub fn derivatives(&mut self, out: &mut [f64]) -> Result<(), Fault> {
         self.check_states(out.len())?;
-        let (rates, accelerations) = out.split_at_mut(self.crane.size());
+        let (rates, rest) = out.split_at_mut(self.crane.size());
         rates.copy_from_slice(&self.moment()?.v);
-        accelerations.copy_from_slice(self.accelerations()?);
-        match accelerations.iter().position(|a| !a.is_finite()) {
-            Some(index) => {
-                let name = &self.crane.description().coordinates[index].name;
-                Err(Fault::Discard(format!("the acceleration of {name} is not finite at t = {} s", self.time())))
+        let (accelerations, of_oil) = self.accelerations()?;
+        rest.iter_mut().zip(accelerations.iter().chain(of_oil)).for_each(|(place, value)| *place = *value);
+        let name = match rest.iter().position(|rate| !rate.is_finite()) {
+            Some(index) if index < rates.len() => {
+                format!("the acceleration of {}", self.crane.description().coordinates[index].name)
             }
-            None => Ok(()),
-        }
+            Some(index) => {
+                format!("the rate of {}", hydraulics::columns(self.crane.description())[index - rates.len()])
+            }
+            None => return Ok(()),
+        };
+        Err(Fault::Discard(format!("{name} is not finite at t = {} s", self.time())))
     }
 
     /// The next time at which a drive's motion is not smooth, s.
@@ -408,10 +418,10 @@ impl Instance {
         times.into_iter().flatten().filter(|time| *time > t && time.is_finite()).min_by(f64::total_cmp)
     }
 
-    /// How some variables change with coordinates, rates and inputs along a direction, by central differences.
+    /// How some variables change with coordinates, rates, states of the oil and inputs along a direction, by central differences.
     ///
     /// # Errors
-    /// As [`Instance::get`]; a variable of the direction is neither a coordinate nor a rate nor an input, or it is an input that follows
+    /// As [`Instance::get`]; a variable of the direction is neither a state nor an input, or it is an input that follows
     /// the motion of its spec.
     pub fn directional_derivative(
         &mut self,
@@ -422,7 +432,12 @@ impl Instance {
     ) -> Result<(), Fault> {
         /// The cube root of the accuracy of a number balances truncation and rounding of central differences.
         const RELATIVE: f64 = 6e-6;
-        let greatest = direction.iter().fold(0.0_f64, |greatest, x| greatest.max(x.abs()));
+        let scales = Hydraulics::new(self.crane.description()).scales();
+        let mut greatest = 0.0_f64;
+        for (&reference, along) in knowns.iter().zip(direction) {
+            let scale = if let Source::Oil(index) = self.variable(reference)?.source { scales[index] } else { 1.0 };
+            greatest = greatest.max(along.abs() / scale);
+        }
         if greatest == 0.0 {
             out.fill(0.0);
             return Ok(());
@@ -431,23 +446,24 @@ impl Instance {
         let crane = self.crane.clone();
         let h = RELATIVE / greatest;
         let mut aside = |side: f64, out: &mut [f64]| {
-            let Moment { mut q, mut v, .. } = own.clone();
+            let Moment { mut q, mut v, mut x, .. } = own.clone();
             let mut inputs = self.inputs.clone();
             for (&reference, along) in knowns.iter().zip(direction) {
                 let Variable { name, source, .. } = self.variable(reference)?;
                 match *source {
                     Source::Position(index) => q[index] += side * along,
                     Source::Rate(index) => v[index] += side * along,
+                    Source::Oil(index) => x[index] += side * along,
                     Source::Input(index) if inputs[index].is_none() && crane.description().inputs[index].moves => {
                         return Err(Fault::Error(format!("{name} follows the motion of the spec: set it first")));
                     }
                     Source::Input(index) => inputs[index] = Some(self.input(index) + side * along),
-                    _ => return Err(Fault::Error(format!("{name} is neither a coordinate nor a rate nor an input"))),
+                    _ => return Err(Fault::Error(format!("{name} is neither a state nor an input"))),
                 }
             }
             self.crane = crane.with_inputs(&inputs);
             (self.quantities, self.accelerations) = (None, None);
-            self.moment = Some(Moment { t: own.t, q, v });
+            self.moment = Some(Moment { t: own.t, q, v, x });
             self.get(unknowns, out)
         };
         let mut behind = vec![0.0; out.len()];
@@ -466,7 +482,7 @@ impl Instance {
     pub fn step(&mut self, from: f64, length: f64) -> Result<(), Fault> {
         /// Part of a step by which a sum of steps may be off.
         const ROUNDING: f64 = 1e-6;
-        let Moment { t, q, v } = self.moment()?.clone();
+        let Moment { t, q, v, x } = self.moment()?.clone();
         if !(length > 0.0 && length.is_finite()) {
             return Err(Fault::Error(format!("a step of {length} s: choose one above 0")));
         }
@@ -475,11 +491,11 @@ impl Instance {
         }
         let mut motion = match self.motion.take() {
             Some(motion) => motion,
-            None => Motion::new(self.crane.clone(), t, &InitialState { q, v, x: Vec::new() }, &self.settings)?,
+            None => Motion::new(self.crane.clone(), t, &InitialState { q, v, x }, &self.settings)?,
         };
         let _ = motion.advance(from + length, &mut |_| ControlFlow::Continue(()))?;
         let sample = motion.sample();
-        let moment = Moment { t: sample.t, q: sample.q.to_vec(), v: sample.v.to_vec() };
+        let moment = Moment { t: sample.t, q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() };
         self.caution(&moment);
         (self.moment, self.motion) = (Some(moment), Some(motion));
         self.forget();

@@ -34,7 +34,7 @@ impl Instant {
 
     /// In motion.
     fn moving(rig: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Self {
-        let a = hydraulics::accelerations(rig, t, (q, v), x);
+        let (a, _) = hydraulics::accelerations(rig, t, (q, v), x);
         Self { t, lines: lines(rig, t, q, v, &a), wrenches: rig.internal_forces_at(t, q, v, &a) }
     }
 }

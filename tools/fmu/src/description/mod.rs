@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use crane_codegen::exchange::xml::{Xml, number_text};
 use crane_model::dyn_crane::DynModel;
 use crane_model::dynamics::Settings;
+use crane_model::hydraulics;
 
 use crate::variables::{self, Source, Variable};
 
@@ -44,6 +45,7 @@ impl<'a> Subject<'a> {
         match source {
             Source::Rate(index) => Some(Source::Position(index)),
             Source::Acceleration(index) => Some(Source::Rate(index)),
+            Source::OilRate(index) => Some(Source::Oil(index)),
             _ => None,
         }
     }
@@ -52,7 +54,8 @@ impl<'a> Subject<'a> {
     fn derivatives(&self) -> Vec<usize> {
         let n = self.crane.size();
         let (rates, accelerations) = ((0..n).map(Source::Rate), (0..n).map(Source::Acceleration));
-        rates.chain(accelerations).map(|source| self.reference(source)).collect()
+        let oil = (0..hydraulics::columns(self.crane.description()).len()).map(Source::OilRate);
+        rates.chain(accelerations).chain(oil).map(|source| self.reference(source)).collect()
     }
 
     /// Value references of the outputs.
@@ -63,7 +66,7 @@ impl<'a> Subject<'a> {
     /// Value references of what is computed before a run begins: outputs, states and derivatives.
     fn initial_unknowns(&self) -> Vec<usize> {
         let is_unknown = |variable: &Variable| {
-            let moves = matches!(variable.source, Source::Position(_) | Source::Rate(_) | Source::Acceleration(_));
+            let moves = Self::integral(variable.source).is_some() || matches!(variable.source, Source::Position(_));
             variable.is_output || moves
         };
         (0..self.variables.len()).filter(|&index| is_unknown(&self.variables[index])).collect()

@@ -1,0 +1,127 @@
+"""Cylinders that oil moves: pressures of chambers, spools and the pump, from balances of volume."""
+
+import math
+
+import casadi as ca
+
+# Pressure difference below which the flow through an edge is laminar, Pa.
+LAMINAR = 1e5
+# Relief valves pass the nominal flow at this share above their pressure; the pump delivers all it can this far below its own.
+BAND = 0.05
+# Suction valves pass the nominal flow this far below the pressure of the tank, Pa.
+SUCTION = 1e5
+# A stop gives way by this much under the cylinder's greatest force, m, and is damped, s/m.
+STOP, STOP_DAMPING = 1e-3, 3.0
+
+
+class Oil:
+    """The oil of a crane: its states x, their scales, their rates, and the generalized forces of the cylinders.
+
+    x holds pressure at the piston, pressure at the rod and opening for each cylinder with a valve, then the pressure of the pump.
+    """
+
+    def __init__(self, crane, rate):
+        spec = crane.spec.keys
+        self.names, self.scales, symbols, rates = [], [], [], []
+        self.forces = ca.SX.zeros(crane.q.shape)
+        moved = [pair for pair in zip(spec.get("cylinders", []), crane.cylinders) if "valve" in pair[0]]
+        if not moved:
+            self.x, self.rates = ca.SX(0, 1), ca.SX(0, 1)
+            return
+        supply = float(spec["pump"]["pressure"])
+        pump = ca.SX.sym("pump")
+        taken = 0
+        targets = wanted_motions(crane, moved, rate)
+        for written, cylinder in moved:
+            name = written["name"]
+            piston, rod, spool = (ca.SX.sym(f"{name}_{what}") for what in ("piston", "rod", "spool"))
+            symbols += [piston, rod, spool]
+            self.names += [f"{name}_piston_pressure", f"{name}_rod_pressure", f"{name}_valve"]
+            self.scales += [supply, supply, 1.0]
+            own = Chambers(written, cylinder, (piston, rod), spool, pump)
+            target = ca.substitute(own.lengths, ca.vertcat(*targets[0], *targets[1]), ca.vertcat(*targets[2], *targets[3]))
+            rates += own.rates(target)
+            taken += ca.if_else(spool > 0, own.inflows[0], own.inflows[1])
+            j = crane.coordinates.index(cylinder.coordinate)
+            self.forces[j] += own.force * own.lever
+        volume = float(spec["pump"].get("volume", 5e-3))
+        bulk_modulus = float(moved[0][0]["bulk_modulus"])
+        share = ca.fmax(0, ca.fmin(1, (supply - pump) / (BAND * supply)))
+        self.x = ca.vertcat(*symbols, pump)
+        self.rates = ca.vertcat(*rates, bulk_modulus / volume * (float(spec["pump"]["max_flow"]) * share - taken))
+        self.names.append("pump_pressure")
+        self.scales.append(supply)
+
+
+class Chambers:
+    """The two chambers of a cylinder and the edges of its valve."""
+
+    def __init__(self, written, cylinder, pressures, spool, pump):
+        self.written, self.valve, self.spool, self.pump, self.pressures = written, written["valve"], spool, pump, pressures
+        joint = cylinder.coordinate
+        self.lever = ca.jacobian(cylinder.length, joint.q)
+        # Only the joint takes the force, and only its motion moves oil.
+        self.lengths = ca.vertcat(cylinder.length, self.lever * joint.v)
+        bore, rod = float(written["bore"]), float(written["rod"])
+        self.areas = math.pi / 4 * bore**2, math.pi / 4 * (bore**2 - rod**2)
+        self.tank = float(written.get("back_pressure", 0))
+        self.limit = float(written["max_pressure"])
+        overlap = float(self.valve.get("overlap", 0))
+        self.gain = float(self.valve["flow"]) / root(float(self.valve["pressure_drop"]))
+        opening = ca.fmax(0, (ca.fabs(spool) - overlap) / (1 - overlap)) * self.gain
+        into = [opening * root(ca.fmax(0, pump - p)) for p in pressures]
+        out = [opening * root(p - self.tank) for p in pressures]
+        forwards = spool > 0
+        self.inflows = into
+        self.flows = ca.if_else(forwards, into[0], -out[0]), ca.if_else(forwards, -out[1], into[1])
+        self.force = pressures[0] * self.areas[0] - pressures[1] * self.areas[1] - self.stop()
+
+    def stop(self):
+        """What the ends of the stroke push back with."""
+        extension, stroke = self.lengths[0] - float(self.written["retracted"]), float(self.written["stroke"])
+        stiffness = self.areas[0] * self.limit / STOP
+        ahead, behind = ca.fmax(0, extension - stroke), ca.fmax(0, -extension)
+        damped = [ca.fmax(0, 1 + STOP_DAMPING * side * self.lengths[1]) for side in (1, -1)]
+        return stiffness * (ahead * damped[0] - behind * damped[1])
+
+    def rates(self, target):
+        """Rates of both pressures and of the spool; `target` has length and speed where the drive's motion is."""
+        stroke = float(self.written["stroke"])
+        extension = ca.fmax(0, ca.fmin(stroke, self.lengths[0] - float(self.written["retracted"])))
+        leakage = float(self.valve.get("leakage", 0)) * (self.pressures[0] - self.pressures[1])
+        rates = []
+        for side, way, sign in ((0, extension, 1), (1, stroke - extension, -1)):
+            pressure, area = self.pressures[side], self.areas[side]
+            volume = float(self.written["hose_volumes"][side]) + area * way
+            balance = self.flows[side] - sign * (area * self.lengths[1] + leakage) + self.guard(pressure)
+            rates.append(float(self.written["bulk_modulus"]) / volume * balance)
+        command = ca.fmax(-1, ca.fmin(1, self.command(target)))
+        return [*rates, (command - self.spool) / float(self.valve["lag"])]
+
+    def guard(self, pressure):
+        """What relief and suction valves let in."""
+        flow = float(self.valve["flow"])
+        relief = ca.fmax(0, pressure - self.limit) * flow / (BAND * self.limit)
+        return ca.fmax(0, self.tank - pressure) * flow / SUCTION - relief
+
+    def command(self, target):
+        """The opening that the servo wants."""
+        drop = float(self.valve["pressure_drop"])
+        ahead = target[1] > 0
+        area, pressure = (ca.if_else(ahead, *pair) for pair in (self.areas, self.pressures))
+        available = root(ca.fmax(self.pump - pressure, 0.1 * drop))
+        share = float(self.valve.get("feed_forward", 1))
+        return float(self.valve["gain"]) * (target[0] - self.lengths[0]) + share * area * target[1] / (self.gain * available)
+
+
+def root(difference):
+    """A square root with its sign, laminar in the middle."""
+    return difference / (difference**2 + LAMINAR**2) ** 0.25
+
+
+def wanted_motions(crane, moved, rate):
+    """Coordinates and rates that oil moves, and what their drives want of both."""
+    moving = [cylinder.coordinate for _, cylinder in moved]
+    motions = [next(drive.motion for drive in crane.drives if drive.coordinate is joint) for joint in moving]
+    positions = [ca.SX(motion) for motion in motions]
+    return [joint.q for joint in moving], [joint.v for joint in moving], positions, [rate(motion) for motion in positions]
