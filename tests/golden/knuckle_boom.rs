@@ -711,7 +711,7 @@ pub fn drive_motions(t: f64) -> [[f64; 2]; 3] {
     out
 }
 
-/// Begin and end of the intervals in which the drives' motions are smooth, drive by drive, s.
+/// Begin and end of the intervals in which the motions and valves' commands of drives are smooth, drive by drive, s.
 ///
 /// `t_begin, t_end`
 ///

@@ -74,6 +74,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("cylinder_states", vec![crane.cylinders.len(), 3]),
         ("drive_limits", vec![drives, 2]),
         ("drive_motions", vec![drives, 2]),
+        ("valve_openings", vec![drives, 2]),
         ("drive_power", vec![1]),
         ("dissipation", vec![1]),
         ("prescribed", vec![2, n]),
@@ -185,6 +186,9 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     crane.drive_limits(t, q, v, &mut motions);
     out.extend(motions.iter().flatten());
     crane.drive_motions(t, &mut motions);
+    out.extend(motions.iter().flatten());
+    motions.fill([0.0; 2]);
+    crane.valve_openings(t, &mut motions);
     out.extend(motions.iter().flatten());
     out.extend([crane.drive_power(t, q, v), crane.dissipation(t, q, v)]);
     let mut wrenches = vec![Wrench::ZERO; info.cuts().len()];

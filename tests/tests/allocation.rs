@@ -28,6 +28,7 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.cylinder_states(q, v, &mut places.vectors);
     crane.drive_limits(t, q, v, &mut places.motions);
     crane.drive_motions(t, &mut places.motions);
+    crane.valve_openings(t, &mut places.motions);
     crane.drive_pieces(&mut places.pieces);
     crane.load_pieces(&mut places.pieces);
     crane.connector_lengths(q, v, &mut places.motions);

@@ -63,6 +63,7 @@ class Spring:
     is_rigid: bool = False
     max_effort: object = None
     by_oil: bool = False
+    opening: object = 0
 
 
 @dataclass
@@ -230,7 +231,9 @@ def read_crane(path):
     for written in spec.get("cylinders", []):
         crane.cylinders.append(read_cylinder(crane, written, spans))
         for drive in crane.drives:
-            drive.by_oil |= "valve" in written and drive.coordinate.name == written["coordinate"]
+            if "valve" in written and drive.coordinate.name == written["coordinate"]:
+                drive.by_oil = True
+                drive.opening = read_opening(crane, written["valve"])
     for written in spec.get("connectors", []):
         crane.connectors.append(read_connector(crane, written, spans))
     for written in spec.get("couplings", []):
@@ -369,6 +372,11 @@ def read_drive(crane, written):
     stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
     limit = spec.number(written["max_effort"]) if "max_effort" in written else None
     return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False), limit)
+
+
+def read_opening(crane, valve):
+    """The command of a valve over time; 0 where a servo commands it."""
+    return read_profile(crane.spec, valve["opening"], False, crane.time)[0] if "opening" in valve else 0
 
 
 def read_stops(spec, written, coordinate):

@@ -398,6 +398,7 @@ class Derivations:
         points = ca.vertcat(*crane.points.values())
         prescribed = ca.vertcat(*[ca.SX(drive.motion) for drive in crane.drives])
         rates = self.rate(prescribed)
+        openings = ca.vertcat(*[ca.SX(drive.opening) for drive in crane.drives])
         return {
             "points": points,
             "point_velocities": self.rate(points),
@@ -406,6 +407,7 @@ class Derivations:
             "cylinder_states": ca.vertcat(*[cylinders.state(cylinder, self.rate) for cylinder in crane.cylinders]),
             "drive_limits": self.drive_limits(),
             "drive_motions": row_major(ca.horzcat(prescribed, rates)),
+            "valve_openings": row_major(ca.horzcat(openings, self.rate(openings))),
             "drive_power": ca.dot(self.driving_forces(), rates),
         }
 

@@ -40,7 +40,7 @@ class Oil:
             self.scales += [supply, supply, 1.0]
             own = Chambers(written, cylinder, (piston, rod), spool, pump)
             target = ca.substitute(own.lengths, ca.vertcat(*targets[0], *targets[1]), ca.vertcat(*targets[2], *targets[3]))
-            rates += own.rates(target)
+            rates += own.rates(target, opening_of(crane, cylinder))
             taken += ca.if_else(spool > 0, own.inflows[0], own.inflows[1])
             j = crane.coordinates.index(cylinder.coordinate)
             self.forces[j] += own.force * own.lever
@@ -84,8 +84,9 @@ class Chambers:
         damped = [ca.fmax(0, 1 + STOP_DAMPING * side * self.lengths[1]) for side in (1, -1)]
         return stiffness * (ahead * damped[0] - behind * damped[1])
 
-    def rates(self, target):
-        """Rates of both pressures and of the spool; `target` has length and speed where the drive's motion is."""
+    def rates(self, target, opening):
+        """Rates of both pressures and of the spool; `target` has length and speed where the drive's motion is, `opening` the command of a
+        valve without a servo."""
         stroke = float(self.written["stroke"])
         extension = ca.fmax(0, ca.fmin(stroke, self.lengths[0] - float(self.written["retracted"])))
         leakage = float(self.valve.get("leakage", 0)) * (self.pressures[0] - self.pressures[1])
@@ -95,7 +96,8 @@ class Chambers:
             volume = float(self.written["hose_volumes"][side]) + area * way
             balance = self.flows[side] - sign * (area * self.lengths[1] + leakage) + self.guard(pressure)
             rates.append(float(self.written["bulk_modulus"]) / volume * balance)
-        command = ca.fmax(-1, ca.fmin(1, self.command(target)))
+        wanted = opening if "opening" in self.valve else self.command(target)
+        command = ca.fmax(-1, ca.fmin(1, wanted))
         return [*rates, (command - self.spool) / float(self.valve["lag"])]
 
     def guard(self, pressure):
@@ -112,6 +114,11 @@ class Chambers:
         available = root(ca.fmax(self.pump - pressure, 0.1 * drop))
         share = float(self.valve.get("feed_forward", 1))
         return float(self.valve["gain"]) * (target[0] - self.lengths[0]) + share * area * target[1] / (self.gain * available)
+
+
+def opening_of(crane, cylinder):
+    """The command over time of a cylinder's valve."""
+    return next(drive.opening for drive in crane.drives if drive.coordinate is cylinder.coordinate)
 
 
 def root(difference):

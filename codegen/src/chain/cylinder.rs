@@ -48,7 +48,7 @@ pub struct Valve {
     pub overlap: f64,
     /// Time constant of the spool, s.
     pub lag: f64,
-    /// Opening for an error of length, 1/m.
+    /// Opening for an error of length, 1/m; 0 if the drive has a command.
     pub gain: f64,
     /// Share of the opening that a speed takes which is set ahead of any error.
     pub feed_forward: f64,

@@ -311,6 +311,8 @@ pub enum Transmission {
     Oil {
         /// Stiffness at rest, N m/rad or N/m.
         stiffness: Value,
+        /// The command of the valve over time, unless a servo follows the motion.
+        opening: Option<Profile>,
     },
 }
 
@@ -328,9 +330,24 @@ impl Drive {
     #[must_use]
     pub fn oil(&self) -> Option<&Value> {
         match &self.transmission {
-            Transmission::Oil { stiffness } => Some(stiffness),
+            Transmission::Oil { stiffness, .. } => Some(stiffness),
             Transmission::Flexible { .. } | Transmission::Rigid => None,
         }
+    }
+
+    /// The command of its valve over time, if it has one.
+    #[must_use]
+    pub fn opening(&self) -> Option<&Profile> {
+        match &self.transmission {
+            Transmission::Oil { opening, .. } => opening.as_ref(),
+            Transmission::Flexible { .. } | Transmission::Rigid => None,
+        }
+    }
+
+    /// Begin and end, s, of the intervals in which its motion and its valve's command are smooth.
+    #[must_use]
+    pub fn pieces(&self) -> Vec<[Value; 2]> {
+        [Some(&self.profile), self.opening()].into_iter().flatten().flat_map(Profile::pieces).collect()
     }
 
     /// The greatest effort, if it is limited.

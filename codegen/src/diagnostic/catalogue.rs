@@ -335,6 +335,12 @@ catalogue! {
         "remove `linkage`, or name the coordinate of a revolute joint";
     /// A pump supplies cylinders.
     E126 pump_alone() "the pump supplies nothing", "the spec has no cylinders", "add `cylinders:`, or remove `pump`";
+    /// A servo or an opening over time commands a valve.
+    E127 uncommanded_valve(cylinder) "nothing commands the valve of cylinder `{cylinder}`", "neither `gain` nor `opening`",
+        "write `gain:`, 1/m, for a servo that follows the drive's motion, or `opening:`, a motion or an input from -1 to 1";
+    /// Only one of them does.
+    E128 valve_commanded_twice(cylinder, other) "the valve of cylinder `{cylinder}` has two commands", "`opening`, and {other}",
+        "with `opening`, remove `gain` and `feed_forward`, and let the drive's motion `hold` where the crane stands before the run";
 
     // Connectors.
     /// Some coordinate changes the length of a connector.

@@ -23,8 +23,10 @@ fn cylinder_info(chain: &Chain, cylinder: &Cylinder) -> TokenStream {
     let [piston, annulus] = cylinder.areas().map(literal);
     let [retracted, stroke, back_pressure] = [cylinder.retracted, cylinder.stroke, cylinder.back_pressure].map(literal);
     let [of_piston, of_rod] = cylinder.hose_volumes.map(literal);
-    let (name, drive) = (text(&cylinder.name), integer(chain.drive_of(cylinder)));
-    let valve = cylinder.valve.as_ref().map_or_else(|| quote!(None), valve_info);
+    let of_drive = chain.drive_of(cylinder);
+    let (name, drive) = (text(&cylinder.name), integer(of_drive));
+    let commanded = chain.drives[of_drive].opening().is_some();
+    let valve = cylinder.valve.as_ref().map_or_else(|| quote!(None), |valve| valve_info(valve, commanded));
     let [max_pressure, bulk_modulus] = [cylinder.max_pressure, cylinder.bulk_modulus].map(optional);
     quote!(CylinderInfo {
         name: #name,
@@ -40,7 +42,7 @@ fn cylinder_info(chain: &Chain, cylinder: &Cylinder) -> TokenStream {
     })
 }
 
-fn valve_info(valve: &Valve) -> TokenStream {
+fn valve_info(valve: &Valve, commanded: bool) -> TokenStream {
     let [flow, pressure_drop, overlap, lag] = [valve.flow, valve.pressure_drop, valve.overlap, valve.lag].map(literal);
     let [gain, feed_forward, leakage] = [valve.gain, valve.feed_forward, valve.leakage].map(literal);
     quote!(Some(ValveInfo {
@@ -48,6 +50,7 @@ fn valve_info(valve: &Valve) -> TokenStream {
         pressure_drop: #pressure_drop,
         overlap: #overlap,
         lag: #lag,
+        commanded: #commanded,
         gain: #gain,
         feed_forward: #feed_forward,
         leakage: #leakage
@@ -77,7 +80,7 @@ fn description_constant(chain: &Chain) -> Item {
     });
     let drives = chain.drives.iter().map(|drive| {
         let (coordinate, start) = (integer(drive.coordinate.0), literal(drive.profile.start(&defaults)));
-        let pieces = integer(drive.profile.pieces().len());
+        let pieces = integer(drive.pieces().len());
         quote!(DriveInfo { coordinate: #coordinate, start: #start, pieces: #pieces })
     });
     let stops = chain.stopped().into_iter().map(|id| integer(id.0));

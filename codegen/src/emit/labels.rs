@@ -65,7 +65,7 @@ impl<'a> Labels<'a> {
                 chain.rigid_drives().nth(slot / 2).map(|drive| coordinate(drive.coordinate.0).to_owned())
             }
             Shape::Pairs(_) if function.id == FunctionId::DrivePieces => {
-                let of = |drive: &'a Drive| std::iter::repeat_n(drive.coordinate.0, drive.profile.pieces().len());
+                let of = |drive: &'a Drive| std::iter::repeat_n(drive.coordinate.0, drive.pieces().len());
                 chain.drives.iter().flat_map(of).nth(slot / 2).map(|i| coordinate(i).to_owned())
             }
             Shape::Pairs(_) if function.id == FunctionId::LoadPieces => {

@@ -169,9 +169,19 @@ pub fn motions<'g, 'a>(model: &Model<'g>, drives: impl Iterator<Item = &'a Drive
     drives.flat_map(motion).collect()
 }
 
-/// Begin and end of the smooth intervals of every drive's motion.
+/// Opening and its rate of every drive's valve that has a command over time; zeros of all others.
+pub fn openings<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let opening = |drive: &Drive| {
+        drive.opening().map_or([model.zero(); 2], |profile| {
+            [profile::position(model, profile, model.t), profile::rate(model, profile, model.t)]
+        })
+    };
+    model.chain.drives.iter().flat_map(opening).collect()
+}
+
+/// Begin and end of the smooth intervals of every drive's motion and valve.
 pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    let pieces = model.chain.drives.iter().flat_map(|drive| drive.profile.pieces());
+    let pieces = model.chain.drives.iter().flat_map(Drive::pieces);
     pieces.flatten().map(|time| model.number(&time)).collect()
 }
 

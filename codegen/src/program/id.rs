@@ -83,6 +83,7 @@ functions! {
         SupportGaps = "support_gaps",
         CylinderStates = "cylinder_states",
         DriveMotions = "drive_motions",
+        ValveOpenings = "valve_openings",
         DriveLimits = "drive_limits",
         PrescribedMotions = "prescribed_motions",
         DrivePieces = "drive_pieces",

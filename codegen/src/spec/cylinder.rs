@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Constant, Given, Number, Vector};
+use super::{Constant, Given, Motion, Number, Vector};
 
 /// The hydraulic cylinder of a driven joint, by its pins: its length, its force and its pressures follow from the drive.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -43,9 +43,9 @@ pub struct Cylinder {
     pub valve: Option<Given<Valve>>,
 }
 
-/// A proportional directional valve, and the servo that makes the cylinder follow the drive's motion.
+/// A proportional directional valve, and what commands it: a servo that makes the cylinder follow the drive's motion, or an opening over time.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `flow`, `pressure_drop`, `lag` and `gain`")]
+#[serde(deny_unknown_fields, expecting = "a mapping of `flow`, `pressure_drop`, `lag` and `gain` or `opening`")]
 pub struct Valve {
     /// Flow through an edge of the fully open valve at `pressure_drop`, m³/s; 60 l/min are 1e-3.
     pub flow: Given<Constant>,
@@ -55,8 +55,11 @@ pub struct Valve {
     pub overlap: Option<Given<Constant>>,
     /// Time constant of the spool, s.
     pub lag: Given<Constant>,
-    /// Opening for an error of the cylinder's length, 1/m; 1 is fully open.
-    pub gain: Given<Constant>,
+    /// Opening of the servo for an error of the cylinder's length, 1/m; 1 is fully open.
+    pub gain: Option<Given<Constant>>,
+    /// The spool's command over time instead of the servo, from −1 (fully open, retracts) to 1 (fully open, extends): a motion, a table or an
+    /// input. The drive's motion must then `hold` where the crane stands before the run.
+    pub opening: Option<Given<Motion>>,
     /// Share of the opening for the speed of the motion, at the pressures measured, that the servo sets ahead of any error. Default 1.
     pub feed_forward: Option<Given<Constant>>,
     /// Leakage past the piston, m³/s per Pa. Default 0.

@@ -3,9 +3,10 @@
 use super::Check;
 use super::limits::Limit;
 use crate::chain::{
-    BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Pump, Step, Transmission, Value, Valve,
+    BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Profile, Pump, Step, Transmission, Value,
+    Valve,
 };
-use crate::diagnostic::rule;
+use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Constant, Crane, Given, Side};
 
 /// Oil between pump and valves unless given, m³.
@@ -55,6 +56,7 @@ impl<'a> Check<'a> {
         let given = crane.cylinders.as_ref().and_then(|cylinders| cylinders.value.as_deref()).unwrap_or_default();
         for given in given.iter().filter_map(|cylinder| cylinder.value.as_ref()) {
             let Some(valve) = &given.valve else { continue };
+            let span = valve.span;
             let name = given.name.value.as_deref().unwrap_or_default();
             if pump.is_none_or(|pump| pump.pressure.is_none()) {
                 self.report(rule::valve_without_pressure(valve.span, name));
@@ -75,10 +77,14 @@ impl<'a> Check<'a> {
             {
                 self.report(rule::no_oil_at_the_end(volumes.span, name));
             }
+            let opening = valve.value.as_ref().and_then(|valve| self.opening(valve, span, name));
             let Some(drive) = drives.iter_mut().find(|drive| drive.coordinate == cylinder.coordinate) else { continue };
+            if opening.is_some() && !matches!(drive.profile, Profile::Hold(_)) {
+                self.report(rule::valve_commanded_twice(valve.span, name, "a drive that moves"));
+            }
             match &drive.transmission {
                 Transmission::Flexible { stiffness, max_effort: None, .. } => {
-                    drive.transmission = Transmission::Oil { stiffness: stiffness.clone() };
+                    drive.transmission = Transmission::Oil { stiffness: stiffness.clone(), opening };
                 }
                 Transmission::Flexible { .. } | Transmission::Rigid => {
                     let joint = self.coordinates[cylinder.coordinate.0].name.clone();
@@ -87,6 +93,23 @@ impl<'a> Check<'a> {
                 Transmission::Oil { .. } => (),
             }
         }
+    }
+
+    /// The command of a valve over time, if it has one.
+    fn opening(&mut self, valve: &spec::Valve, span: Span, name: &str) -> Option<Profile> {
+        let Some(given) = &valve.opening else {
+            if valve.gain.is_none() {
+                self.report(rule::uncommanded_valve(span, name));
+            }
+            return None;
+        };
+        for (key, other) in [("`gain`", &valve.gain), ("`feed_forward`", &valve.feed_forward)] {
+            if let Some(other) = other {
+                self.report(rule::valve_commanded_twice(other.span, name, key));
+            }
+        }
+        // A share is not an angle.
+        self.motion(given.value.as_ref()?, Some(CoordinateKind::Translation), given.span)
     }
 
     fn valve(&mut self, given: &spec::Valve, name: &str) -> Valve {
@@ -102,7 +125,7 @@ impl<'a> Check<'a> {
             pressure_drop: drop,
             overlap,
             lag: optional(Some(&given.lag), "lag", "s", Limit::Positive, 0.0),
-            gain: optional(Some(&given.gain), "gain", "1/m", Limit::NotNegative, 0.0),
+            gain: optional(given.gain.as_ref(), "gain", "1/m", Limit::NotNegative, 0.0),
             feed_forward: optional(given.feed_forward.as_ref(), "feed-forward", "", Limit::NotNegative, 1.0),
             leakage: optional(given.leakage.as_ref(), "leakage", "m³/(s Pa)", Limit::NotNegative, 0.0),
         };

@@ -278,7 +278,7 @@ pub struct CylinderInfo {
     pub valve: Option<ValveInfo>,
 }
 
-/// A proportional directional valve, and the servo that makes its cylinder follow the drive's motion.
+/// A proportional directional valve; a servo makes its cylinder follow the drive's motion, unless it is commanded over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValveInfo {
     /// Flow through a fully open edge at the pressure drop, m³/s.
@@ -289,7 +289,9 @@ pub struct ValveInfo {
     pub overlap: f64,
     /// Time constant of the spool, s.
     pub lag: f64,
-    /// Opening for an error of the cylinder's length, 1/m.
+    /// Whether it is commanded over time, without a servo.
+    pub commanded: bool,
+    /// Opening of the servo for an error of the cylinder's length, 1/m.
     pub gain: f64,
     /// Share of the opening that the speed of the motion takes which is set ahead of any error.
     pub feed_forward: f64,

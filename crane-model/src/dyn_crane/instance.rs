@@ -144,6 +144,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
         v.copy_from_slice(rates.as_slice());
     }
 
+    fn valve_openings(&self, t: f64, out: &mut [[f64; 2]]) {
+        self.0.valve_openings(t, out);
+    }
+
     fn drive_pieces(&self, out: &mut [[f64; 2]]) {
         self.0.drive_pieces(out);
     }

@@ -110,7 +110,10 @@ pub trait DynModel: Send + Sync {
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t.
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]);
 
-    /// Begin and end of the intervals in which the drives' motions are smooth, s; one pair per interval, drive by drive.
+    /// Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one.
+    fn valve_openings(&self, t: f64, out: &mut [[f64; 2]]);
+
+    /// Begin and end of the intervals in which the drives' motions and valves' commands are smooth, s; one pair per interval, drive by drive.
     fn drive_pieces(&self, out: &mut [[f64; 2]]);
 
     /// Potential energy of gravity, J.

@@ -100,7 +100,9 @@ impl Eliminated {
         let Some(states) = &self.states else { return };
         let mut of_states = DVector::from_column_slice(r);
         states.solve_mut(&mut of_states);
-        let of = |x: &[f64]| DVector::from_iterator(self.hydraulics.count(), self.hydraulics.pushed().iter().map(|own| own.along(x)));
+        let of = |x: &[f64]| {
+            DVector::from_iterator(self.hydraulics.count(), self.hydraulics.pushed().iter().map(|own| own.along(x)))
+        };
         let (g, p) = (of(g), of(p));
         let forces = &self.delta * &g + &self.kappa * (g * c + p);
         for (place, (own, force)) in self.hydraulics.pushed().iter().zip(&forces).enumerate() {
@@ -112,7 +114,10 @@ impl Eliminated {
     /// Turns the solution of the system without oil into that of the system with it.
     pub fn correct(&self, solution: &mut [f64]) {
         let Some(correction) = &self.correction else { return };
-        let along = DVector::from_iterator(self.hydraulics.count(), self.hydraulics.pushed().iter().map(|own| own.along(solution)));
+        let along = DVector::from_iterator(
+            self.hydraulics.count(),
+            self.hydraulics.pushed().iter().map(|own| own.along(solution)),
+        );
         let mut shares = &self.resistance * along;
         correction.solve_mut(&mut shares);
         for (answer, share) in self.answers.iter().zip(&shares) {

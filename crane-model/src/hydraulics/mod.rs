@@ -11,7 +11,7 @@
 //! λ is the leakage past the piston. Relief valves open at the greatest pressure of the cylinder, suction valves below that of the
 //! tank. The spool at u, −1 to 1, opens an edge from the pump to one side and one from the other side to the tank; the flow through an edge is
 //! `K |u| r(Δp)` with `r(Δ) = Δ/(Δ² + ε²)^¼`, a square root that is laminar below ε = 1 bar; check valves keep oil from flowing back to
-//! the pump. The spool lags behind its command, `u̇ = (u* − u)/T`, which the servo gives:
+//! the pump. The spool lags behind its command, `u̇ = (u* − u)/T`, which the servo gives, or the spec over time:
 //!
 //! ```text
 //! u* = gain (ℓ* − ℓ) + share · A ẏ*/(K r(p_s − p)),     between −1 and 1
@@ -60,6 +60,8 @@ pub struct Hydraulics {
     /// The same with all drives where their motions are.
     wanted: Vec<Vector3<f64>>,
     motions: Vec<[f64; 2]>,
+    /// Commands over time of the drives' valves.
+    openings: Vec<[f64; 2]>,
     place: [Vec<f64>; 2],
     /// The cylinders with a valve where they were evaluated last.
     pushed: Vec<Pushed>,
@@ -148,6 +150,7 @@ impl Hydraulics {
             here: vec![Vector3::zeros(); description.cylinders.len()],
             wanted: vec![Vector3::zeros(); description.cylinders.len()],
             motions: vec![[0.0; 2]; description.drives.len()],
+            openings: vec![[0.0; 2]; description.drives.len()],
             place: [vec![0.0; n], vec![0.0; n]],
             pushed: vec![Pushed::default(); cylinders.len()],
             efforts: [vec![0.0; n], vec![0.0; n]],
@@ -251,7 +254,12 @@ impl Hydraulics {
                     matrix[(last, first + side)] = if side == fed { -of_pump * flows.by_own[side] } else { 0.0 };
                 }
             }
-            let command = moved.command(here, wanted, [x[first], x[first + 1]], p_s);
+            let command = if moved.valve.commanded {
+                let [opening, _] = self.openings[moved.info.drive];
+                Command { opening: opening.clamp(-1.0, 1.0), ..Command::default() }
+            } else {
+                moved.command(here, wanted, [x[first], x[first + 1]], p_s)
+            };
             let lag = moved.valve.lag;
             rates[first + 2] = (command.opening - u) / lag;
             own.rates_by_length[2] = command.by_length / lag;
@@ -306,6 +314,7 @@ impl Hydraulics {
     fn measure(&mut self, crane: &dyn DynModel, t: f64, q: &[f64], v: &[f64]) {
         crane.cylinder_states(q, v, &mut self.here);
         crane.drive_motions(t, &mut self.motions);
+        crane.valve_openings(t, &mut self.openings);
         let [wanted_q, wanted_v] = &mut self.place;
         wanted_q.copy_from_slice(q);
         wanted_v.copy_from_slice(v);

@@ -11,6 +11,7 @@ fn moved() -> Moved {
         pressure_drop: 1e6,
         overlap: 0.05,
         lag: 0.02,
+        commanded: false,
         gain: 8.0,
         feed_forward: 0.9,
         leakage: 1e-12,

@@ -73,6 +73,7 @@ macro_rules! crane {
                 cylinder_states(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
                 drive_limits(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 drive_motions(t: f64, out: &mut [[f64; 2]]);
+                valve_openings(t: f64, out: &mut [[f64; 2]]);
                 drive_pieces(out: &mut [[f64; 2]]);
                 prescribe(t: f64, q: &mut Vector, v: &mut Vector);
                 gravity_energy(q: &Vector) -> f64;

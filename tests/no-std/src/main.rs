@@ -54,6 +54,7 @@ macro_rules! call_all {
         of::cylinder_states(&crane, &q, &v, &mut vectors);
         of::drive_limits(&crane, t, &q, &v, &mut motions);
         of::drive_motions(&crane, t, &mut motions);
+        of::valve_openings(&crane, t, &mut motions);
         of::drive_pieces(&crane, &mut pieces);
         of::prescribe(&crane, t, &mut q, &mut v);
         black_box(of::gravity_energy(&crane, &q));

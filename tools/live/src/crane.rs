@@ -343,6 +343,10 @@ impl DynModel for LiveCrane {
         });
     }
 
+    fn valve_openings(&self, t: f64, out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::ValveOpenings, &Arguments { t, ..Arguments::none() }, out);
+    }
+
     fn drive_pieces(&self, out: &mut [[f64; 2]]) {
         self.pairs(FunctionId::DrivePieces, &Arguments::none(), out);
     }

@@ -41,7 +41,7 @@ pub fn describe(chain: &Chain) -> Description {
     let drives = chain.drives.iter().map(|drive| DriveInfo {
         coordinate: drive.coordinate.0,
         start: drive.profile.start(&defaults),
-        pieces: drive.profile.pieces().len(),
+        pieces: drive.pieces().len(),
     });
     let loads = chain.loads.iter().map(|load| LoadInfo { name: load.name.clone().into(), pieces: load.pieces() });
     let connectors = chain.connectors.iter().map(|connector| ConnectorInfo {
@@ -145,6 +145,7 @@ fn cylinder_info(chain: &Chain, cylinder: &chain::Cylinder) -> CylinderInfo {
             pressure_drop: valve.pressure_drop,
             overlap: valve.overlap,
             lag: valve.lag,
+            commanded: chain.drives[chain.drive_of(cylinder)].opening().is_some(),
             gain: valve.gain,
             feed_forward: valve.feed_forward,
             leakage: valve.leakage,

@@ -231,7 +231,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::SupportReactions => 3 * supports,
             FunctionId::SupportGaps => 2 * supports,
             FunctionId::CylinderStates => 3 * description.cylinders.len(),
-            FunctionId::DriveMotions | FunctionId::DriveLimits => 2 * drives,
+            FunctionId::DriveMotions | FunctionId::DriveLimits | FunctionId::ValveOpenings => 2 * drives,
             FunctionId::GravityEnergy
             | FunctionId::SupportEnergy
             | FunctionId::ElementEnergy

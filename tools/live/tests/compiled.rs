@@ -122,6 +122,7 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
         ("cylinder_states", vectors(description.cylinders.len(), |out| crane.cylinder_states(q, v, out))),
         ("drive_limits", pairs(description.drives.len(), |out| crane.drive_limits(t, q, v, out))),
         ("drive_motions", pairs(description.drives.len(), |out| crane.drive_motions(t, out))),
+        ("valve_openings", pairs(description.drives.len(), |out| crane.valve_openings(t, out))),
         ("drive_forces_at_rest", numbers(n, |out| crane.drive_forces_at_rest(q, out))),
         ("drive_pieces", pairs(pieces, |out| crane.drive_pieces(out))),
         ("connector_forces", numbers(n, |out| crane.connector_forces(t, q, v, out))),

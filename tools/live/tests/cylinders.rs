@@ -160,9 +160,8 @@ cylinders:
 ",
     );
     let n = crane.description().coordinates.len();
-    let numbers = |scale: f64, seed: f64| -> Vec<f64> {
-        (0..n).map(|j| scale * (seed + 2.3 * j as f64).sin()).collect()
-    };
+    let numbers =
+        |scale: f64, seed: f64| -> Vec<f64> { (0..n).map(|j| scale * (seed + 2.3 * j as f64).sin()).collect() };
     for seed in [0.3, 1.7, 4.1] {
         let mut q = numbers(0.02, seed);
         q[n - 1] = 0.8;

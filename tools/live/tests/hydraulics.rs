@@ -31,10 +31,15 @@ const LARGEST: f64 = 2.5e7;
 
 /// A mass that slides upwards, on a cylinder along its way.
 fn lift(valve: &str, motion: &str, pump: f64) -> LiveCrane {
+    lift_with("", valve, motion, pump)
+}
+
+/// The same with more keys.
+fn lift_with(more: &str, valve: &str, motion: &str, pump: f64) -> LiveCrane {
     let text = format!(
         "format: 1
 name: lift
-links:
+{more}links:
   - {{name: post, joint: {{prismatic: {{axis: x}}}}, mass: 50, com: [0, 0, 0]}}
   - {{name: slide, joint: {{prismatic: {{axis: z}}}}, mass: {MASS}, com: [0, 0, 0]}}
 drives:
@@ -134,6 +139,40 @@ fn a_shut_valve_holds_the_crane_where_it_rests() {
     let push = column(&table, "ram_force")[0];
     assert!((push / (MASS * GRAVITY) - 1.0).abs() < 1e-12, "{push} N");
     assert_eq!(column(&table, "ram_rod_pressure")[0], TANK);
+}
+
+/// An open valve lets the cylinder move as fast as both edges in series let the oil through, from whatever commands it.
+#[test]
+fn a_commanded_valve_lets_the_oil_through() {
+    const OPENING: f64 = 0.25;
+    let root = |difference: f64| difference / (difference * difference + 1e10).powf(0.25);
+    let edge = OPENING * FLOW / root(DROP);
+    let [piston, ring] = areas();
+    // The speed at which the pressures, those that the flows take, carry the weight.
+    let (mut least, mut greatest) = (0.0, 1.0);
+    for _ in 0..60 {
+        let speed = 0.5 * (least + greatest);
+        let back = TANK + (ring * speed / edge).powi(2);
+        // The pump's pressure falls by 5 % up to its greatest flow.
+        let flow = piston * speed;
+        let fed = PUMP - 0.05 * PUMP * flow / MAX_FLOW - (flow / edge).powi(2);
+        let spare = fed * piston - back * ring - MASS * GRAVITY;
+        (least, greatest) = if spare > 0.0 { (speed, greatest) } else { (least, speed) };
+    }
+    let commands = [
+        ("", format!("opening: {{table: {{times: [0.1, 0.2], values: [0, {OPENING}]}}}}")),
+        ("inputs: {lever: {about: where the lever is}}\n", "opening: {input: lever}".to_owned()),
+    ];
+    for (more, valve) in commands {
+        let crane =
+            lift_with(more, &valve, HOLD, PUMP).with_inputs(&vec![Some(OPENING); usize::from(!more.is_empty())]);
+        let table = record(&crane, &settings(Method::Bdf, 1e-8, 1.0));
+        let (z, spool) = (column(&table, "slide_z"), column(&table, "ram_valve"));
+        let speed = (z[100] - z[90]) / 0.1;
+        // The edges are laminar below 1 bar, a share of 1e-4 of the smaller pressure drop, 1.6 MPa.
+        assert!((speed / least - 1.0).abs() < 1e-3, "{valve}: {speed} m/s instead of {least}");
+        assert!((spool[100] - OPENING).abs() < 1e-9, "{valve}: {}", spool[100]);
+    }
 }
 
 /// With its speed set ahead the cylinder moves as fast as its motion, and both edges carry the oil that the piston sweeps.

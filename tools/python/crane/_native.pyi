@@ -181,6 +181,8 @@ class Crane:
         crane without limits."""
     def drive_motions(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., drives, 2): prescribed positions and rates of the drives at times t, m and rad, m/s and rad/s."""
+    def valve_openings(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
+        """(..., drives, 2): commands over time of the drives' valves at times t, −1 to 1, and their rates, 1/s; zeros without one."""
     def forward_dynamics(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., n): accelerations q̈ of `A q̈ = e + f`, m/s² and rad/s²."""
     def inverse_dynamics(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, invalid: str = "raise") -> Array:

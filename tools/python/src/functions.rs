@@ -358,6 +358,14 @@ impl Crane {
         )
     }
 
+    /// (..., drives, 2): commands over time of the drives' valves at times t, −1 to 1, and their rates, 1/s; zeros without one.
+    #[pyo3(signature = (t, *, invalid="raise"))]
+    fn valve_openings<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
+        let own = [self.live.description().drives.len(), 2];
+        let state = State { t: Some(t), ..State::default() };
+        self.compute(py, Quantity::Of(FunctionId::ValveOpenings), state, &own, invalid)
+    }
+
     /// (..., n): accelerations q̈ of `A q̈ = e + f`, m/s² and rad/s².
     #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
     fn forward_dynamics<'py>(

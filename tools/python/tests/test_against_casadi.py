@@ -42,6 +42,7 @@ def on_paper(c, t, q, v):
         # The derivation takes the rates for the accelerations, too.
         "internal_forces": c.internal_forces(q, v, v, t),
         "drive_motions": c.drive_motions(t),
+        "valve_openings": c.valve_openings(t),
         "points": c.points(q),
         "point_velocities": c.point_velocities(q, v),
         "static_residual": c.static_residual(q),

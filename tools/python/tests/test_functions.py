@@ -28,6 +28,7 @@ FUNCTIONS = [
     ("cylinder_states", "qv", lambda c: (len(c.info["cylinders"]), 3)),
     ("drive_limits", "tqv", lambda c: (len(c.info["drives"]), 2)),
     ("drive_motions", "t", lambda c: (len(c.info["drives"]), 2)),
+    ("valve_openings", "t", lambda c: (len(c.info["drives"]), 2)),
     ("forward_dynamics", "qvt", lambda c: (c.n,)),
     ("static_residual", "q", lambda c: (c.n,)),
     ("tangent_stiffness", "q", lambda c: (c.n, c.n)),

@@ -249,11 +249,21 @@ impl<'g> Derivation<'g> {
                 drives::limits(model),
             ));
         }
+        if chain.drives.iter().any(|drive| drive.opening().is_some()) {
+            functions.push(function(
+                FunctionId::ValveOpenings,
+                "Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one.",
+                "u*(t), u̇*(t)",
+                &[Time],
+                Shape::Pairs(chain.drives.len()),
+                drives::openings(model),
+            ));
+        }
         let pieces = drives::pieces(model);
         if !pieces.is_empty() {
             functions.push(function(
                 FunctionId::DrivePieces,
-                "Begin and end of the intervals in which the drives' motions are smooth, drive by drive, s.",
+                "Begin and end of the intervals in which the motions and valves' commands of drives are smooth, drive by drive, s.",
                 "t_begin, t_end",
                 &[],
                 Shape::Pairs(pieces.len() / 2),
