@@ -10,6 +10,7 @@
 //! | [`DynDynamics`] | [`Dynamics`](crate::Dynamics) | explicit methods |
 //! | [`DynImplicit`] | [`Implicit`](crate::Implicit) | implicit methods |
 //! | [`DynLinearise`] | [`Linearise`](crate::Linearise) | modes, stability |
+//! | [`DynLineariseMotion`] | none: only cranes that are not compiled have it | modes about a motion |
 //! | [`DynInternalForces`] | [`InternalForces`](crate::InternalForces) | bearing loads, stresses |
 //! | [`DynEnsemble`] | [`Ensemble`](crate::Ensemble) | runs of many cranes |
 //! | [`DynDerivatives`] | [`TransformDerivatives`](crate::TransformDerivatives) | tables of derivatives |
@@ -217,6 +218,21 @@ pub trait DynSystem: Send {
 pub trait DynLinearise: DynModel {
     /// A, K and D at a pose, each n × n.
     fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]);
+}
+
+/// Small motions about any motion.
+pub trait DynLineariseMotion: DynDynamics {
+    /// `A`, `K = ∂(A a − e − f)/∂q` and `D = −∂(e + f)/∂v` at time t, pose q, rates v and accelerations a, each n × n, column by
+    /// column: `A δq̈ + D δq̇ + K δq = 0`. K and D contain centrifugal and gyroscopic terms and need not be symmetric. Coordinates that
+    /// rigid drives prescribe oscillate separately at 1 rad/s.
+    fn linearise_motion(
+        &self,
+        t: f64,
+        motion: [&[f64]; 3],
+        mass: &mut [f64],
+        stiffness: &mut [f64],
+        damping: &mut [f64],
+    );
 }
 
 /// Forces and moments between the parts of a crane: [`InternalForces`](crate::InternalForces) on slices.

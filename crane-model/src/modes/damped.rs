@@ -40,6 +40,18 @@ impl DampedMode {
 /// # Errors
 /// The mass matrix is not positive definite, or the QR algorithm does not converge.
 pub fn damped(motions: &SmallMotions) -> Result<Vec<DampedMode>, NoModes> {
+    Ok(damped_with_shapes(motions)?.into_iter().map(|(mode, _)| mode).collect())
+}
+
+/// A shape in generalized coordinates, with phases.
+pub type ComplexShape = DVector<Complex<f64>>;
+
+/// Damped modes and their shapes x, lowest frequency first: displacements `Re (x exp λt)` of the coordinates that can move, with
+/// `xᴴ A x = 1` and the dominant coordinate real and positive.
+///
+/// # Errors
+/// As [`damped`].
+pub fn damped_with_shapes(motions: &SmallMotions) -> Result<Vec<(DampedMode, ComplexShape)>, NoModes> {
     if motions.mass.is_empty() {
         return Ok(Vec::new());
     }
@@ -51,15 +63,26 @@ pub fn damped(motions: &SmallMotions) -> Result<Vec<DampedMode>, NoModes> {
     let iterations = ITERATIONS * state.nrows();
     let (vectors, t) = Schur::try_new(state, PRECISION, iterations).ok_or(NoModes::Eigenvalues)?.unpack();
     let (blocks, least) = (Block::all(&t), rounding(&t));
-    let mut modes: Vec<DampedMode> = blocks
+    let mass = motions.mass.map(Complex::from);
+    let mut modes: Vec<_> = blocks
         .iter()
         .map(|block| {
             let shape = shape(&vectors, &scales, &block.eigenvector(&t, &blocks, least));
-            DampedMode { eigenvalue: block.eigenvalue(&t), dominating: motions.dominating(&shape) }
+            let dominating = motions.dominating(&shape);
+            let first = motions.unknowns.iter().position(|unknown| Some(unknown) == dominating.first());
+            let shape = normalised(shape, &mass, first);
+            (DampedMode { eigenvalue: block.eigenvalue(&t), dominating }, shape)
         })
         .collect();
-    modes.sort_by(|a, b| a.eigenvalue.norm().total_cmp(&b.eigenvalue.norm()));
+    modes.sort_by(|(a, _), (b, _)| a.eigenvalue.norm().total_cmp(&b.eigenvalue.norm()));
     Ok(modes)
+}
+
+/// The shape with `xᴴ A x = 1`, and real and positive at one place.
+fn normalised(shape: ComplexShape, mass: &DMatrix<Complex<f64>>, at: Option<usize>) -> ComplexShape {
+    let norm = shape.dotc(&(mass * &shape)).re.sqrt();
+    let phase = at.map_or(0.0, |place| shape[place].arg());
+    if norm > 0.0 { shape * Complex::from_polar(1.0 / norm, -phase) } else { shape }
 }
 
 /// Displacements of a mode, the upper half of its state, from its eigenvector `y` in the basis of the Schur form.

@@ -1,12 +1,14 @@
-//! Small vibrations about a pose at rest: `A δq̈ + D δq̇ + K δq = 0`.
+//! Small vibrations about a pose at rest or a steady motion: `A δq̈ + D δq̇ + K δq = 0`.
 
 mod damped;
 mod eigenvectors;
 mod small_motions;
+mod steady;
 mod undamped;
 
-pub use damped::{DampedMode, damped};
+pub use damped::{ComplexShape, DampedMode, damped, damped_with_shapes};
 pub use small_motions::SmallMotions;
+pub use steady::{Held, NotSteady, Steady, steady};
 pub use undamped::{Mode, undamped};
 
 use std::{error::Error, fmt};

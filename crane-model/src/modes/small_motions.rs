@@ -3,19 +3,23 @@
 use nalgebra::{ComplexField, DMatrix, DVector, DVectorView};
 
 use super::NoModes;
-use crate::{Linearisation, dyn_crane::DynLinearise, model::state_blocks};
+use crate::{
+    Linearisation,
+    dyn_crane::{DynLinearise, DynLineariseMotion},
+    model::state_blocks,
+};
 
 /// A coordinate dominates a mode from this fraction of the largest share of energy.
 const SHARE: f64 = 0.2;
 
-/// Coefficients of `A δq̈ + D δq̇ + K δq = 0`, of the coordinates that can move.
+/// Coefficients of `A δq̈ + D δq̇ + K δq = 0`, of the coordinates that can move. About a pose at rest K and D are symmetric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SmallMotions {
     /// Mass matrix A.
     pub mass: DMatrix<f64>,
-    /// Tangent stiffness K.
+    /// Tangent stiffness K; about a motion with centrifugal terms.
     pub stiffness: DMatrix<f64>,
-    /// Damping matrix D.
+    /// Damping matrix D; about a motion with gyroscopic terms.
     pub damping: DMatrix<f64>,
     /// Indices in q of the rows and columns: all except those that rigid drives prescribe.
     pub unknowns: Vec<usize>,
@@ -41,6 +45,26 @@ impl SmallMotions {
         crane.linearise(q, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
         let all = Self { mass, stiffness, damping, unknowns: (0..q.len()).collect(), size: q.len() };
         all.without(&crane.description().prescribed())
+    }
+
+    /// About a motion of a crane of any size: pose, rates and accelerations at time t.
+    pub fn about_motion(crane: &(impl DynLineariseMotion + ?Sized), t: f64, motion: [&[f64]; 3]) -> Self {
+        let size = crane.size();
+        let zeros = || DMatrix::zeros(size, size);
+        let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
+        crane.linearise_motion(t, motion, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
+        let all = Self { mass, stiffness, damping, unknowns: (0..size).collect(), size };
+        all.without(&crane.description().prescribed())
+    }
+
+    /// The skew part of D, `(D − Dᵀ)/2`: gyroscopic forces, which do no work.
+    pub fn gyroscopic(&self) -> DMatrix<f64> {
+        skew(&self.damping)
+    }
+
+    /// The skew part of K, `(K − Kᵀ)/2`: circulatory forces, which have no potential.
+    pub fn circulatory(&self) -> DMatrix<f64> {
+        skew(&self.stiffness)
     }
 
     /// The coefficients of the other coordinates, with these held fixed.
@@ -99,4 +123,9 @@ impl SmallMotions {
         dominating.sort_by(|&i, &j| share[j].total_cmp(&share[i]));
         dominating.into_iter().map(|i| self.unknowns[i]).collect()
     }
+}
+
+/// `(X − Xᵀ)/2`
+fn skew(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    (matrix - matrix.transpose()) * 0.5
 }

@@ -30,6 +30,7 @@ Examples:
                                        load chart and slew diagram: the largest load within limits, pose by pose
   crane compare my.yaml                your own crane, with beams that bend and with rigid ones
   crane modes                          frequencies and damping about the static pose
+  crane linearise --time 2.5           matrices and modes about the motion in the middle of the manoeuvre
   crane stability                      largest stable steps and what limits them, with a figure
   crane check my.yaml; crane run my.yaml
                                        your own crane: find its mistakes, then compute everything
@@ -79,6 +80,8 @@ pub enum Action {
     Simulate(Simulate),
     /// Compute frequencies, damping and dominant coordinates about the static pose
     Modes(Modes),
+    /// Linearise about a pose or a motion: A, D, K with gyroscopic terms, eigenvalues, mode shapes
+    Linearise(Linearise),
     /// Write statics, motion and modes as one HTML page with the crane in 3-D
     Report(Page),
     /// Compute the largest stable step of every method and what limits it
@@ -134,6 +137,7 @@ impl Action {
             Action::Run(options) | Action::Simulate(options) => Some(&mut options.analysis.crane),
             Action::Statics(options) | Action::Info(options) => Some(&mut options.crane),
             Action::Modes(options) => Some(&mut options.analysis.crane),
+            Action::Linearise(options) => Some(&mut options.analysis.crane),
             Action::Strength(options) => Some(&mut options.analysis.crane),
             Action::Envelope(options) => Some(&mut options.analysis.crane),
             Action::Stability(options) => Some(&mut options.analysis.crane),
@@ -173,6 +177,8 @@ pub enum Output {
     Statics,
     /// Small motions.
     Modes,
+    /// Small motions about a pose or a motion.
+    Linearise,
     /// Largest stable steps.
     Stability,
     /// A run.
@@ -545,6 +551,27 @@ pub struct Modes {
     /// Write pose, mass, stiffness and damping matrices, eigenvalues and mode shapes to a file, `.json` or `.npz`
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub matrices: Option<PathBuf>,
+}
+
+/// Small motions about a pose or a motion.
+#[derive(Debug, Args)]
+pub struct Linearise {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Time at which drives, loads and winches are, s; driven coordinates have the rates of their motions then [default: 0, or that
+    /// of the last row with --from]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
+    pub time: Option<f64>,
+    /// Hold a coordinate at a position or at a rate, in m, rad, m/s or rad/s or as an angle, as in `boom_psi=30deg` and
+    /// `column_psi_rate=0.2`; the others take the pose in which they stay; may be given several times
+    #[arg(long = "hold", value_name = "NAME=VALUE", allow_hyphen_values = true, conflicts_with = "from")]
+    pub held: Vec<String>,
+    /// Linearise about the motion in a row of a CSV file of results, the last or that at --time, instead of a steady motion
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    pub from: Option<PathBuf>,
+    /// Also write motion, matrices, eigenvalues and shapes to an archive for `numpy.load`
+    #[arg(short = 'o', long, value_name = "FILE.npz", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
 }
 
 /// Stability of time steps.

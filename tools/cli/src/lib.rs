@@ -27,6 +27,7 @@ mod help;
 mod info;
 mod journal;
 mod linearisation;
+mod linearise;
 mod modes;
 mod new;
 mod npz;
@@ -122,6 +123,7 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
             None => simulate::simulate(options, fleet, out),
         },
         Some(Action::Modes(options)) => modes::modes(options, fleet, out),
+        Some(Action::Linearise(options)) => linearise::linearise(options, fleet, out),
         Some(Action::Stability(options)) => stability::stability(options, fleet, out),
         Some(Action::Strength(options)) => strength::strength(options, fleet, out),
         Some(Action::Envelope(options)) => envelope::envelope(options, fleet, out),

@@ -90,6 +90,7 @@ pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
     grid
 }
 
-fn names(description: &Description, coordinates: &[usize]) -> Cell {
+/// Names of coordinates in a table.
+pub fn names(description: &Description, coordinates: &[usize]) -> Cell {
     Cell::Names(coordinates.iter().map(|&index| description.coordinates[index].name.to_string()).collect())
 }

@@ -14,19 +14,30 @@ const RATE: &str = "_rate";
 
 /// A coordinate, its rate, or a state of the oil, by its place.
 #[derive(Clone, Copy)]
-enum Variable {
+pub enum Variable {
+    /// A coordinate.
     Position(usize),
+    /// The rate of a coordinate.
     Rate(usize),
     /// A state of the oil.
     Oil(usize),
 }
 
 impl Variable {
+    /// What a column of results is called.
     fn of(name: &str, description: &Description) -> Option<Self> {
         let place = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
         let rate = || name.strip_suffix(RATE).and_then(place).map(Self::Rate);
         let oil = || hydraulics::columns(description).iter().position(|column| column == name).map(Self::Oil);
         place(name).map(Self::Position).or_else(rate).or_else(oil)
+    }
+
+    /// What an option that takes coordinates and rates means.
+    ///
+    /// # Errors
+    /// The crane has no such coordinate.
+    pub fn named(name: &str, description: &Description) -> Outcome<Self> {
+        Self::of(name, description).ok_or_else(|| unknown(name, description))
     }
 
     fn set(self, start: &mut Start, value: f64) {
@@ -57,7 +68,7 @@ impl Timing {
         let mut start = Start::of(rig).unwrap_or_else(|_| Start::guess(rig));
         start.rests = false;
         if let Some(file) = &self.from {
-            for (variable, value) in end(file, description)? {
+            for (variable, value) in row(file, description, None)?.values {
                 variable.set(&mut start, value);
             }
             let states = hydraulics::columns(description);
@@ -108,21 +119,52 @@ fn unknown(name: &str, description: &Description) -> Problem {
     )
 }
 
-/// Values of coordinates and rates in the last row of the results of a run.
-fn end(file: &Path, description: &Description) -> Outcome<Vec<(Variable, f64)>> {
+/// A row of the results of a run.
+pub struct Row {
+    /// Its time, s, if the results have one.
+    pub time: Option<f64>,
+    /// Values of coordinates and rates.
+    pub values: Vec<(Variable, f64)>,
+}
+
+/// Name of the column of times.
+const TIME: &str = "t";
+/// Greatest distance of a row from the time asked for, s: results are written with all digits.
+const SAME_TIME: f64 = 1e-9;
+
+/// The last row of the results of a run, or the row at a time, s.
+///
+/// # Errors
+/// The file cannot be used, or has no row at that time.
+pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<Row> {
     let help = "give a CSV file of results written by `crane simulate` or `crane run`";
     let unreadable = |error: csv::Error| Problem::usage(format!("cannot use {}: {error}", file.display()), help);
     let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(unreadable)?;
     let headers = csv.headers().map_err(unreadable)?.clone();
-    let mut last = None;
+    let name_of = |header: &str| header.split(" [").next().unwrap_or(header).to_owned();
+    let clock = headers.iter().position(|header| name_of(header) == TIME);
+    let time_of = |record: &csv::StringRecord| clock.and_then(|place| record.get(place)?.parse::<f64>().ok());
+    let off = |record: &csv::StringRecord| at.zip(time_of(record)).map(|(at, time)| (time - at).abs());
+    let mut chosen: Option<csv::StringRecord> = None;
     for record in csv.records() {
-        last = Some(record.map_err(unreadable)?);
+        let record = record.map_err(unreadable)?;
+        // The nearest one; without a time the last.
+        if chosen.as_ref().is_none_or(|chosen| at.is_none() || off(&record) < off(chosen)) {
+            chosen = Some(record);
+        }
     }
-    let last = last.ok_or_else(|| Problem::usage(format!("{} has no rows", file.display()), help))?;
+    let record = chosen.ok_or_else(|| Problem::usage(format!("{} has no rows", file.display()), help))?;
+    let time = time_of(&record);
+    if let Some(at) = at
+        && off(&record).is_none_or(|off| off > SAME_TIME)
+    {
+        let nearest = time.map_or("it has no times".to_owned(), |time| format!("the nearest row is at t = {time} s"));
+        return Err(Problem::usage(format!("{} has no row at t = {at} s", file.display()), nearest));
+    }
     let mut values = Vec::new();
-    for (header, text) in headers.iter().zip(&last) {
-        let name = header.split(" [").next().unwrap_or(header);
-        let Some(variable) = Variable::of(name, description) else { continue };
+    for (header, text) in headers.iter().zip(&record) {
+        let name = name_of(header);
+        let Some(variable) = Variable::of(&name, description) else { continue };
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
         let number = number.ok_or_else(|| {
             let title = format!("{}: `{text}` is not a valid value for {name}", file.display());
@@ -134,5 +176,5 @@ fn end(file: &Path, description: &Description) -> Outcome<Vec<(Variable, f64)>> 
         let title = format!("{} has no column for any coordinate of {}", file.display(), description.name);
         return Err(Problem::usage(title, help));
     }
-    Ok(values)
+    Ok(Row { time, values })
 }

@@ -312,6 +312,65 @@ fn evaluation_is_shaped_as_announced() {
     assert!(npz.stdout.windows(6).any(|bytes| bytes == b"\x93NUMPY"));
 }
 
+/// The motion in a row of results, with its accelerations; about a motion the state matrix has their derivatives.
+#[test]
+fn a_moment_of_a_run_is_linearised() {
+    let folder = folder("moment").display().to_string();
+    let run = crane(&[
+        "simulate",
+        "double_pendulum",
+        "--start",
+        "upper_theta=0.5",
+        "--duration",
+        "0.2",
+        "--output",
+        "0.1",
+        "--out",
+        &folder,
+    ]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let results = format!("{folder}/double_pendulum.csv");
+    let found = json(&["linearise", "double_pendulum", "--from", &results, "--time", "0.1", "--format", "json"]);
+    assert_eq!((found["about"].as_str(), found["time"].as_f64()), (Some("a moment of a run"), Some(0.1)));
+    let column = |key: &str| -> Vec<f64> {
+        let rows = found["motion"].as_array().expect("a table");
+        rows.iter().map(|row| row[key].as_f64().expect("a number")).collect()
+    };
+    let joined = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    let (q, v) = (column("position"), column("rate"));
+    let accelerations = |q: &[f64]| -> Vec<f64> {
+        let state = ["--q", &joined(q), "--v", &joined(&v), "--quantities", "accelerations"];
+        let found = json(&[&["eval", "double_pendulum"], &state[..]].concat());
+        found["accelerations"].as_array().expect("numbers").iter().map(|a| a.as_f64().expect("a number")).collect()
+    };
+    assert_eq!(column("acceleration"), accelerations(&q));
+    // A ∂q̈/∂q = −K, by central differences over 1e-5 rad: 1e-10 by their order, 1e-11 by rounding.
+    let entry = |key: &str, i: usize, j: usize| found[key][i][j].as_f64().expect("a number");
+    for j in 0..2 {
+        let [ahead, behind] = [1e-5, -1e-5].map(|by| {
+            let mut q = q.clone();
+            q[j] += by;
+            accelerations(&q)
+        });
+        for i in 0..2 {
+            let product: f64 = (0..2).map(|k| entry("mass", i, k) * (ahead[k] - behind[k]) / 2e-5).sum();
+            let size = entry("stiffness", i, i).abs();
+            assert!((product + entry("stiffness", i, j)).abs() < 1e-8 * size, "{i} {j}: {product}");
+        }
+    }
+    refused(
+        &["linearise", "double_pendulum", "--from", &results, "--time", "0.13"],
+        &["no row at t = 0.13 s", "the nearest row is at t = 0.1 s"],
+    );
+    refused(
+        &["linearise", "double_pendulum", "--hold", "uper_theta=1"],
+        &["no coordinate `uper_theta`", "`upper_theta`"],
+    );
+    refused(&["linearise", "double_pendulum", "--hold", "upper_theta=high"], &["`high` is not a valid value"]);
+    refused(&["linearise", "double_pendulum", "-o", "a.json"], &["has not the ending .npz"]);
+    refused(&["linearise", "eight_link_hydraulic"], &["pressures of its cylinders", "`crane modes`"]);
+}
+
 /// A run in two halves ends where one of the same length does, to the tolerance, where nothing is driven.
 #[test]
 fn a_run_goes_on_from_the_end_of_another() {

@@ -30,10 +30,12 @@ mod crane;
 mod describe;
 pub mod layout;
 mod library;
+mod linearise;
 pub mod machine;
 mod motion;
 mod routine;
 pub mod rows;
+mod sloped;
 
 pub use crane::LiveCrane;
 pub use crane_codegen::program::FunctionId;

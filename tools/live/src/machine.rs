@@ -1,4 +1,4 @@
-//! Runs bytecode, for one state or for eight at a time.
+//! Runs bytecode, for one state or for eight at a time, or for one state with its derivatives.
 
 use std::ops::{Div, Mul, Neg};
 
@@ -8,16 +8,10 @@ use crane_model::support::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stump
 
 use crate::bytecode::{Code, Fixed, Instruction, Kind};
 
-/// One number, or eight of different states.
+/// One number, eight of different states, or one with its derivatives.
 pub trait Number:
     Copy + Fused + Function + Div<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
 {
-    /// The number of numbers it holds.
-    const LANES: usize;
-    /// Numbers by their places.
-    fn from_lanes(number: impl Fn(usize) -> f64) -> Self;
-    /// The number at a place below [`LANES`](Self::LANES).
-    fn lane(&self, place: usize) -> f64;
     /// The same number everywhere.
     fn splat(number: f64) -> Self;
     /// The smaller of two.
@@ -32,17 +26,20 @@ pub trait Number:
     fn stumpff(arguments: [Self; ANGLES]) -> [[Self; ANGLES]; 6];
 }
 
+/// The number of one state, or numbers of several.
+pub trait Batch: Number {
+    /// The number of numbers it holds.
+    const LANES: usize;
+    /// Numbers by their places.
+    fn from_lanes(number: impl Fn(usize) -> f64) -> Self;
+    /// The number at a place below [`LANES`](Self::LANES).
+    fn lane(&self, place: usize) -> f64;
+}
+
 /// Number of angles, or arguments of Stumpff's functions, processed at a time.
 pub const ANGLES: usize = 8;
 
 impl Number for f64 {
-    const LANES: usize = 1;
-    fn from_lanes(number: impl Fn(usize) -> f64) -> Self {
-        number(0)
-    }
-    fn lane(&self, _: usize) -> f64 {
-        *self
-    }
     fn splat(number: f64) -> Self {
         number
     }
@@ -60,14 +57,17 @@ impl Number for f64 {
     }
 }
 
-impl Number for f64x8 {
-    const LANES: usize = 8;
+impl Batch for f64 {
+    const LANES: usize = 1;
     fn from_lanes(number: impl Fn(usize) -> f64) -> Self {
-        f64x8::new(std::array::from_fn(number))
+        number(0)
     }
-    fn lane(&self, place: usize) -> f64 {
-        self.as_array()[place]
+    fn lane(&self, _: usize) -> f64 {
+        *self
     }
+}
+
+impl Number for f64x8 {
     fn splat(number: f64) -> Self {
         f64x8::splat(number)
     }
@@ -82,6 +82,16 @@ impl Number for f64x8 {
     }
     fn stumpff(arguments: [Self; ANGLES]) -> [[Self; ANGLES]; 6] {
         stumpff_lanes(arguments)
+    }
+}
+
+impl Batch for f64x8 {
+    const LANES: usize = 8;
+    fn from_lanes(number: impl Fn(usize) -> f64) -> Self {
+        f64x8::new(std::array::from_fn(number))
+    }
+    fn lane(&self, place: usize) -> f64 {
+        self.as_array()[place]
     }
 }
 

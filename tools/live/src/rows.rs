@@ -14,7 +14,7 @@ use crane_model::support::fma;
 use crate::LiveCrane;
 use crate::closing::mass_matrix;
 use crate::library::Library;
-use crate::machine::{Arguments, Machine, Number};
+use crate::machine::{Arguments, Batch, Machine, Number};
 use crate::routine::Routine;
 
 /// The quantity computed for every row. Matrices are written row by row.
@@ -109,26 +109,15 @@ impl<T: Number> Evaluation<T> {
         self.width
     }
 
-    /// Computes some rows into `out`, row after row.
-    pub fn run(&mut self, rows: &Rows<'_>, range: Range<usize>, out: &mut [f64]) {
-        let mut first = range.start;
-        for several in out.chunks_mut((T::LANES * self.width).max(1)) {
-            let count = (range.end - first).min(T::LANES);
-            self.lanes.take(self.sizes, rows, first, count);
-            let given = rows.parameters.len();
-            if given > 0 && (first == range.start || given > self.sizes[1]) {
-                for call in self.calls.iter_mut().flatten() {
-                    call.set_parameters(&self.library, &self.lanes.parameters);
-                }
-            }
-            self.evaluate();
-            for (lane, row) in several.chunks_mut(self.width.max(1)).enumerate().take(count) {
-                for (out, result) in row.iter_mut().zip(&self.results) {
-                    *out = result.lane(lane);
-                }
-            }
-            first += count;
+    /// The results at one state, with the crane's parameters.
+    pub(crate) fn at(&mut self, t: T, q: &[T], v: &[T], a: &[T]) -> &[T] {
+        let Lanes { t: times, q: poses, v: rates, a: accelerations, .. } = &mut self.lanes;
+        for (lanes, given) in [(times, [t].as_slice()), (poses, q), (rates, v), (accelerations, a)] {
+            lanes.clear();
+            lanes.extend_from_slice(given);
         }
+        self.evaluate();
+        &self.results
     }
 
     /// Computes the results of the states taken.
@@ -162,7 +151,31 @@ impl<T: Number> Evaluation<T> {
     }
 }
 
-impl<T: Number> Lanes<T> {
+impl<T: Batch> Evaluation<T> {
+    /// Computes some rows into `out`, row after row.
+    pub fn run(&mut self, rows: &Rows<'_>, range: Range<usize>, out: &mut [f64]) {
+        let mut first = range.start;
+        for several in out.chunks_mut((T::LANES * self.width).max(1)) {
+            let count = (range.end - first).min(T::LANES);
+            self.lanes.take(self.sizes, rows, first, count);
+            let given = rows.parameters.len();
+            if given > 0 && (first == range.start || given > self.sizes[1]) {
+                for call in self.calls.iter_mut().flatten() {
+                    call.set_parameters(&self.library, &self.lanes.parameters);
+                }
+            }
+            self.evaluate();
+            for (lane, row) in several.chunks_mut(self.width.max(1)).enumerate().take(count) {
+                for (out, result) in row.iter_mut().zip(&self.results) {
+                    *out = result.lane(lane);
+                }
+            }
+            first += count;
+        }
+    }
+}
+
+impl<T: Batch> Lanes<T> {
     /// Takes rows of a crane with so many coordinates and parameters; the last of them fills the lanes that are left.
     fn take(&mut self, [n, parameters]: [usize; 2], rows: &Rows<'_>, first: usize, count: usize) {
         let states =

@@ -23,7 +23,18 @@ from ._native import (
     threads,
 )
 from .model import Crane, load
-from .results import Energies, Ensemble, Envelope, Equilibrium, Linearisation, Modes, Run, Stability, Strength
+from .results import (
+    Energies,
+    Ensemble,
+    Envelope,
+    Equilibrium,
+    Linearisation,
+    Modes,
+    Run,
+    Stability,
+    SteadyMotion,
+    Strength,
+)
 from .simulation import Simulation, State
 
 __all__ = [
@@ -43,6 +54,7 @@ __all__ = [
     "SpecWarning",
     "Stability",
     "State",
+    "SteadyMotion",
     "Strength",
     "load",
     "set_threads",

@@ -193,6 +193,22 @@ class Crane:
         """(..., n, n): `∂²E_p/∂q²` at t = 0, N/m, N and N m."""
     def small_motions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them."""
+    def small_motions_about(
+        self, q: ArrayLike, v: ArrayLike, a: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise"
+    ) -> Array:
+        """(..., 3, n, n): A, K and D of small motions about motions; `linearise` names them."""
+    def steady_rows(
+        self,
+        held: list[tuple[int, bool]],
+        start: ArrayLike,
+        rates: ArrayLike,
+        positions: ArrayLike,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> Array:
+        """(..., 3 n + 3): poses, rates and efforts of steady motions, drift, acceleration, part reached; `steady_motion` names them.
+        held: coordinates, and whether a position is given; their rates and positions stand at their places in `rates` and `positions`."""
     def kinetic_energy(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(...): kinetic energy, J."""
     def gravity_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:

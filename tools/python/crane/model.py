@@ -10,7 +10,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from .results import Array, Energies, Ensemble, Envelope, Equilibrium, Linearisation, Modes, Run, Stability, Strength
+from ._native import NoEquilibrium
+from .results import (
+    Array,
+    Energies,
+    Ensemble,
+    Envelope,
+    Equilibrium,
+    Linearisation,
+    Modes,
+    Run,
+    Stability,
+    SteadyMotion,
+    Strength,
+)
 from .simulation import Simulation
 
 
@@ -140,10 +153,73 @@ class Crane(_native.Crane):
         """Start of statics, (..., n), m and rad."""
         return self.guess_rows()
 
-    def linearise(self, q: ArrayLike, *, invalid: str = "raise") -> Linearisation:
-        """Coefficients of small motions about poses at rest: A, K, D, each (..., n, n)."""
-        matrices = self.small_motions(q, invalid=invalid)
+    def linearise(
+        self,
+        q: ArrayLike,
+        v: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        invalid: str = "raise",
+    ) -> Linearisation:
+        """Coefficients of small motions: A, K, D, each (..., n, n), about poses at rest at t = 0, or about motions if v, a or t is given.
+
+        About a motion K and D contain centrifugal and gyroscopic terms: `K = ∂(A a − e − f)/∂q`, `D = −∂(e + f)/∂v`. v and a are
+        zero unless given: with a = 0 about a motion at constant rates, which `steady_motion` finds.
+        """
+        if v is None and a is None and t is None:
+            matrices = self.small_motions(q, invalid=invalid)
+        else:
+            v, a = (np.zeros(self.n) if rates is None else rates for rates in (v, a))
+            matrices = self.small_motions_about(q, v, a, t, invalid=invalid)
         return Linearisation(*(matrices[..., place, :, :] for place in range(3)))
+
+    def steady_motion(
+        self,
+        *,
+        rates: Mapping[str, ArrayLike] | None = None,
+        positions: Mapping[str, ArrayLike] | None = None,
+        t: ArrayLike = 0.0,
+        start: ArrayLike | None = None,
+        invalid: str = "raise",
+    ) -> SteadyMotion:
+        """The motion at constant rates in which all coordinates that do not move stay where they are.
+
+        rates, m/s and rad/s, and positions, m and rad: of coordinates that are held, by name; numbers, or arrays, whose axes are leading axes
+        of the result. Driven coordinates that are not held have the rates of their motions at times t, s, all others none.
+        start: (..., n), pose without motion from which the rates are increased; the equilibrium unless given.
+
+        Raises NoEquilibrium where a row has no steady motion; with invalid="nan" its numbers are NaN and `reached` is below 1.
+        """
+        rates, positions = dict(rates or {}), dict(positions or {})
+        for name in (*rates, *positions):
+            if name not in self.coordinates:
+                raise ValueError(f"there is no coordinate {name!r}: write one of {', '.join(self.coordinates)}")
+        held = [name for name in self.coordinates if name in rates or name in positions]
+        given = [np.asarray(number, dtype=float) for number in (*rates.values(), *positions.values())]
+        axes = np.broadcast_shapes(*(numbers.shape for numbers in given))
+
+        def rows(numbers: Mapping[str, ArrayLike]) -> Array:
+            row = np.zeros((*axes, self.n))
+            for name, number in numbers.items():
+                row[..., self.coordinates.index(name)] = number
+            return row
+
+        if start is None:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                rest = self.statics(t=t, invalid="nan").q
+            start = np.where(np.isnan(rest), self.guess, rest)
+        places = [(self.coordinates.index(name), name in positions) for name in held]
+        found = self.steady_rows(places, start, rows(rates), rows(positions), t, invalid=invalid)
+        q, v, efforts = (found[..., self.n * place : self.n * (place + 1)] for place in range(3))
+        drift, acceleration, reached = (found[..., place] for place in (-3, -2, -1))
+        if invalid == "raise" and np.any(reached < 1.0):
+            least = 100.0 * np.min(reached)
+            raise NoEquilibrium(
+                f"no steady motion: the search ends at {least:.1f} % of the rates; hold what nothing constrains, or smaller rates"
+            )
+        return SteadyMotion(q, v, efforts, drift, acceleration, reached)
 
     def energies(self, q: ArrayLike, v: ArrayLike, t: ArrayLike = 0.0, *, invalid: str = "raise") -> Energies:
         """Energies by part, each (...), J."""

@@ -29,11 +29,51 @@ class Energies(NamedTuple):
 
 
 class Linearisation(NamedTuple):
-    """Coefficients of small motions about a pose at rest, `A δq̈ + D δq̇ + K δq = 0`; each (..., n, n)."""
+    """Coefficients of small motions about a pose or a motion, `A δq̈ + D δq̇ + K δq = 0`; each (..., n, n).
+
+    Coordinates that rigid drives prescribe do not move: in these matrices they oscillate separately, at 1 rad/s.
+    """
 
     mass: Array
     stiffness: Array
     damping: Array
+
+    @property
+    def gyroscopic(self) -> Array:
+        """The skew part of D, (..., n, n): gyroscopic forces, which do no work."""
+        return (self.damping - np.swapaxes(self.damping, -1, -2)) / 2.0
+
+    @property
+    def circulatory(self) -> Array:
+        """The skew part of K, (..., n, n): forces without a potential."""
+        return (self.stiffness - np.swapaxes(self.stiffness, -1, -2)) / 2.0
+
+    @property
+    def state_matrix(self) -> Array:
+        """`[[0, 1], [−A⁻¹K, −A⁻¹D]]` of `d/dt [δq; δq̇]`, (..., 2n, 2n): `numpy.linalg.eig` gives eigenvalues, 1/s, and shapes."""
+        unit = np.broadcast_to(np.eye(self.mass.shape[-1]), self.mass.shape)
+        lower = np.linalg.solve(self.mass, np.concatenate([-self.stiffness, -self.damping], axis=-1))
+        return np.concatenate([np.concatenate([np.zeros_like(unit), unit], axis=-1), lower], axis=-2)
+
+
+@dataclass(frozen=True)
+class SteadyMotion:
+    """Motions at constant rates, over the leading axes; NaN where there is none.
+
+    q, v: (..., n), pose, m and rad, and rates, m/s and rad/s.
+    efforts: (..., n), what holding a coordinate takes besides its drive, N and N m; 0 for coordinates that are not held.
+    drift: (...), the greatest rate at which the pose of the other coordinates would have to change for the motion to remain steady, m/s
+    and rad/s: 0 if it does.
+    acceleration: (...), the greatest acceleration of a drive's motion whose coordinate is not held, m/s² and rad/s².
+    reached: (...), the part of the rates up to which there is one: 1 if it was found.
+    """
+
+    q: Array
+    v: Array
+    efforts: Array
+    drift: Array
+    acceleration: Array
+    reached: Array
 
 
 @dataclass(frozen=True)

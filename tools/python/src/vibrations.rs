@@ -1,18 +1,19 @@
-//! Modes and stability about poses at rest, row by row.
+//! Modes and stability about poses at rest, small motions about any motion, and steady motions, row by row.
 
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::{DynCrane, DynLineariseMotion, DynModel};
 use crane_model::dynamics::Method;
 use crane_model::hydraulics;
-use crane_model::modes::{DampedMode, Mode, NoModes, damped, undamped};
+use crane_model::modes::{DampedMode, Held, Mode, NoModes, damped, steady, undamped};
 use crane_model::stability::{cause, limit};
-use numpy::PyArray1;
-use pyo3::exceptions::PyArithmeticError;
+use numpy::{PyArray1, PyArrayDyn};
+use pyo3::exceptions::{PyArithmeticError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
+use crate::functions::{Given, Moment, State};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::map_rows;
 
@@ -39,6 +40,73 @@ impl Modes {
 
 #[pymethods]
 impl Crane {
+    /// (..., 3, n, n): A, K and D of small motions about motions; `linearise` names them.
+    #[pyo3(signature = (q, v, a, t=None, *, invalid="raise"))]
+    fn small_motions_about<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        a: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.refuse_valves()?;
+        let n = self.live.size();
+        self.one_by_one(py, State { t, q: Some(q), v: Some(v), a: Some(a) }, &[3, n, n], invalid, |crane, at, out| {
+            let (mass, rest) = out.split_at_mut(n * n);
+            let (stiffness, damping) = rest.split_at_mut(n * n);
+            crane.linearise_motion(at.t, [&at.q, &at.v, &at.a], mass, stiffness, damping);
+            // Row by row.
+            for matrix in [mass, stiffness, damping] {
+                for i in 0..n {
+                    for j in 0..i {
+                        matrix.swap(i * n + j, j * n + i);
+                    }
+                }
+            }
+        })
+    }
+
+    /// (..., 3 n + 3): poses, rates and efforts of steady motions, drift, acceleration, part reached; `steady_motion` names them.
+    /// held: coordinates, and whether a position is given; their rates and positions stand at their places in `rates` and `positions`.
+    #[pyo3(signature = (held, start, rates, positions, t=None, *, invalid="raise"))]
+    #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
+    fn steady_rows<'py>(
+        &self,
+        py: Python<'py>,
+        held: Vec<(usize, bool)>,
+        start: &Bound<'py, PyAny>,
+        rates: &Bound<'py, PyAny>,
+        positions: &Bound<'py, PyAny>,
+        t: Given<'_, 'py>,
+        invalid: &str,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.refuse_valves()?;
+        let n = self.live.size();
+        let find = |crane: &LiveCrane, at: &Moment, out: &mut [f64]| {
+            let of = |&(coordinate, positioned): &(usize, bool)| Held {
+                coordinate,
+                position: positioned.then(|| at.a[coordinate]),
+                rate: at.v[coordinate],
+            };
+            let held: Vec<Held> = held.iter().map(of).collect();
+            match steady(crane, at.t, &at.q, &held) {
+                Ok(found) => {
+                    let numbers =
+                        [found.q, found.v, found.efforts, vec![found.drift, found.acceleration, 1.0]].concat();
+                    out.copy_from_slice(&numbers);
+                }
+                Err(refused) => {
+                    out.fill(f64::NAN);
+                    out[3 * n + 2] = refused.reached;
+                }
+            }
+        };
+        let state = State { t, q: Some(start), v: Some(rates), a: Some(positions) };
+        self.one_by_one(py, state, &[3 * n + 3], invalid, find)
+    }
+
     /// Modes about poses, over parameters and poses; `methods`: those whose largest stable step is told.
     #[pyo3(signature = (q, invalid="raise"))]
     fn vibrations<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> PyResult<Bound<'py, PyDict>> {
@@ -115,5 +183,16 @@ impl Crane {
         all.set_item("stable_steps", steps)?;
         all.set_item("shape", joined.shape.clone())?;
         Ok(all)
+    }
+}
+
+impl Crane {
+    /// Forces of oil follow from its pressures, not from pose and rates alone.
+    fn refuse_valves(&self) -> PyResult<()> {
+        if self.live.description().has_valves() {
+            let message = "the cylinders' forces follow from their pressures, which are states of a run: use modes";
+            return Err(PyValueError::new_err(message));
+        }
+        Ok(())
     }
 }

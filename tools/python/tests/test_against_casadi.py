@@ -84,3 +84,33 @@ def test_quantities(name):
             continue
         comparison = compare(quantity, derived[quantity], values, states.groups)
         assert comparison.passed, comparison.row()
+
+
+@pytest.mark.parametrize("name", ["eight_link_rigid", "knuckle_boom", "double_pendulum"])
+def test_small_motions_about_any_motion(name):
+    """K and D beside CasADi's Jacobians of what a motion requires, `A a − e − f`, by its own A, e and f."""
+    import casadi as ca
+    from crane_model import read_crane
+    from derivations import Derivations
+    from states import random_states
+
+    derived_crane = read_crane(ROOT / f"specs/{name}.yaml")
+    derivations = Derivations(derived_crane)
+    states = random_states(derived_crane, NEAR_AND_FAR, 2)
+    time, q, v, parameters = derivations.arguments
+    count = q.numel()
+    a = ca.SX.sym("a", count)
+    mass = ca.reshape(derivations.quantities["mass_matrix"], count, count)
+    required = mass @ a - derivations.quantities["bias"] - derivations.quantities["forces"]
+    jacobians = ca.Function("k_and_d", [time, q, v, parameters, a], [ca.jacobian(required, q), ca.jacobian(required, v)])
+    c = crane.load(name, **dict(zip(derived_crane.spec.defaults, states.parameters.T, strict=True)))
+    accelerations = np.random.default_rng(3).normal(size=states.q.shape)
+    small = c.linearise(states.q, states.v, accelerations, states.time)
+    for row in range(NEAR_AND_FAR):
+        stiffness, damping = jacobians(
+            states.time[row], states.q[row], states.v[row], states.parameters[row], accelerations[row]
+        )
+        for found, expected in ((small.stiffness[row], stiffness), (small.damping[row], damping)):
+            expected = expected.full()
+            # Some hundred roundings of the largest entry, a support's stiffness or what the acceleration of all masses takes.
+            np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())

@@ -272,3 +272,37 @@ def test_oil_moves_a_crane_and_its_states_are_saved():
     # At rest it would hold the boom with the torque that statics give.
     run = boom.simulate(duration=0.1)
     np.testing.assert_allclose(run["boom_psi_drive_torque"][0], boom.statics().drive_efforts[1], rtol=1e-9)
+
+
+def test_a_pendulum_on_a_turning_shaft():
+    """At rates Ω of a shaft that turns freely a pendulum keeps `cos θ = g/(l Ω²)`, and swings with `ω² = Ω² (1 + 3 cos² θ)`."""
+    text = """
+format: 1
+name: pendulum
+links:
+  - {name: shaft, joint: {revolute: {axis: z}}, mass: 1, com: [0, 0, 0], inertia: {Ixx: 1e-12, Iyy: 1e-12, Izz: 1e-12}}
+  - {name: rod, joint: {revolute: {axis: y}}, mass: 3, com: [0, 0, -0.8]}
+"""
+    c = crane.load("pendulum.yaml", text=text)
+    rates = np.array([4.0, 5.0, 6.0])
+    found = c.steady_motion(rates={"shaft_psi": rates}, start=[0.0, 1.0])
+    cosine = 9.81 / (0.8 * rates**2)
+    np.testing.assert_allclose(np.cos(found.q[:, 1]), cosine, rtol=1e-12)
+    np.testing.assert_allclose(found.efforts, 0.0, atol=1e-9)
+    small = c.linearise(found.q, found.v)
+    np.testing.assert_allclose(small.gyroscopic[:, 0, 1], -small.gyroscopic[:, 1, 0])
+    fastest = np.abs(np.linalg.eigvals(small.state_matrix).imag).max(axis=-1)
+    np.testing.assert_allclose(fastest**2, rates**2 * (1.0 + 3.0 * cosine**2), rtol=1e-9)
+    # At rest nothing holds the shaft's angle.
+    with pytest.raises(crane.NoEquilibrium, match="no steady motion"):
+        c.steady_motion()
+    with pytest.raises(ValueError, match="no coordinate 'shaft'"):
+        c.steady_motion(rates={"shaft": 1.0})
+
+
+def test_linearising_at_rest_is_linearising_without_rates():
+    c = crane.load("eight_link_flexible")
+    q = c.statics().q
+    rest, motion = c.linearise(q), c.linearise(q, np.zeros(c.n))
+    for one, other in zip(rest, motion, strict=True):
+        np.testing.assert_allclose(other, one, rtol=0, atol=1e-13 * np.abs(one).max())

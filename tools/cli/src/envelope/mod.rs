@@ -34,6 +34,7 @@ use crate::{
     strength::load_parameter,
 };
 
+pub use ranges::number;
 use rows::{Layout, Row};
 
 /// Poses at most: some hours.

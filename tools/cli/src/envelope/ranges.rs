@@ -86,7 +86,7 @@ fn values_of(name: &str, text: &str) -> Outcome<Vec<f64>> {
 }
 
 /// A finite number or an angle.
-fn number(text: &str) -> Option<f64> {
+pub fn number(text: &str) -> Option<f64> {
     text.parse().ok().or_else(|| parse_angle(text)).filter(|number: &f64| number.is_finite())
 }
 

@@ -46,6 +46,16 @@ def test_modes(output, crane_name):
     assert all(isinstance(name, str) for mode in found["undamped"] for name in mode["dominated_by"])
 
 
+@pytest.mark.parametrize("options", [[], ["--time", "2.5"], ["--hold", "boom_psi=40deg", "--hold", "column_psi_rate=0.2"]])
+def test_linearise(output, options):
+    found = output("linearise", "linearise", "eight_link_rigid", *options)
+    count = len(found["coordinates"])
+    assert found["about"] == ("a steady motion" if options else "a pose at rest")
+    assert all(len(found[key]) == count for key in ("mass", "damping", "stiffness", "gyroscopic", "circulatory"))
+    assert all(len(shape) == count for shape in found["shapes"]) and len(found["shapes"]) == len(found["modes"])
+    assert {row["coordinate"] for row in found["held"]} == ({"boom_psi", "column_psi"} if "--hold" in options else set())
+
+
 @pytest.mark.parametrize("along", [0, 3])
 def test_stability(output, tmp_path, along):
     found = output("stability", "stability", "knuckle_boom", "--along", along, "--out", tmp_path)

@@ -1,0 +1,316 @@
+//! `crane linearise`: small motions about a pose, a steady motion, or a moment of a run.
+
+use std::{io::Write, path::Path};
+
+use crane_live::LiveCrane;
+use crane_model::{
+    Description,
+    dyn_crane::{DynCrane, DynModel},
+    modes::{ComplexShape, DampedMode, Held, SmallMotions, damped_with_shapes, steady},
+    statics,
+};
+use nalgebra::{Complex, DMatrix};
+use serde_json::Value;
+
+use crate::{
+    Fleet,
+    arguments::Linearise,
+    envelope::number,
+    files, modes,
+    npz::{Array, npz},
+    problem::{Outcome, Problem},
+    report::{Cell, Grid, Report},
+    start::{Variable, row},
+};
+
+/// Modes from the lowest on that people see first.
+const LOWEST: usize = 10;
+/// Motions that grow more slowly than this, 1/s, are not told from rounding.
+const GROWTH: f64 = 1e-5;
+/// Accelerations up to this, m/s² and rad/s², are those of a steady motion.
+const STEADY: f64 = 1e-3;
+/// The pose may change by this part of the rates before a motion no longer counts as steady.
+const DRIFT: f64 = 1e-3;
+
+/// The motion about which motions are small.
+struct Motion {
+    /// What it is, in words.
+    about: &'static str,
+    t: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+    /// What holding each coordinate takes, N and N m; `None` where it is not held.
+    efforts: Vec<Option<f64>>,
+    cautions: Vec<String>,
+}
+
+/// A mode and its shape.
+type Mode = (DampedMode, ComplexShape);
+
+/// Prints the motion, its modes and, for programs, the matrices; writes an archive if asked to.
+pub fn linearise(options: &Linearise, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    let crane = fleet.live(options.analysis.crane.open(fleet)?.as_ref())?;
+    let description = crane.description();
+    if description.has_valves() {
+        return Err(Problem::usage(
+            format!("the forces of {} follow from the pressures of its cylinders", description.name),
+            "`crane modes` has the small motions about rest, with shut valves",
+        ));
+    }
+    let motion = match &options.from {
+        Some(file) => of_results(&crane, file, options.time)?,
+        None => of_steady(&crane, options)?,
+    };
+    let small = SmallMotions::about_motion(&crane, motion.t, [&motion.q, &motion.v, &motion.a]);
+    let found = damped_with_shapes(&small)?;
+    if let Some(file) = &options.file {
+        write(file, &arrays(&motion, &small, &found))?;
+    }
+    let mut report = Report::default();
+    report.fact("crane", description.name.as_str(), "");
+    report.fact("about", motion.about, "");
+    report.fact("time", motion.t, "s");
+    let growth = found.iter().map(|(mode, _)| mode.eigenvalue.re).fold(f64::NEG_INFINITY, f64::max);
+    report.value("stable", growth <= GROWTH);
+    if let Some((mode, _)) = found.iter().find(|(mode, _)| mode.eigenvalue.re > GROWTH) {
+        let names: Vec<&str> =
+            mode.dominating.iter().map(|index| description.coordinates[*index].name.as_str()).collect();
+        report.caution(Some(format!(
+            "unstable: a disturbance of {} grows, at most by {growth:.3} 1/s",
+            names.join(", ")
+        )));
+    }
+    for caution in &motion.cautions {
+        report.caution(Some(caution.as_str()));
+    }
+    report.caution(description.near_singular(&motion.q));
+    for (key, value) in values(description, &small, &found) {
+        report.value(key, value);
+    }
+    report.grid(held(description, &motion));
+    report.excerpt(modes_of(description, &found), LOWEST);
+    report.excerpt(states(description, &motion), 0);
+    report.show_all(options.analysis.all);
+    report.print(options.analysis.format, out)
+}
+
+/// The motion in a row of results, with the accelerations that follow from it.
+fn of_results(crane: &LiveCrane, file: &Path, at: Option<f64>) -> Outcome<Motion> {
+    let rig: &dyn DynCrane = crane;
+    let found = row(file, rig.description(), at)?;
+    let (mut q, mut v) = (rig.guess(), vec![0.0; rig.size()]);
+    let mut missing: Vec<&str> = rig.description().coordinates.iter().map(|info| info.name.as_str()).collect();
+    for (variable, value) in found.values {
+        match variable {
+            Variable::Position(index) => {
+                q[index] = value;
+                missing.retain(|name| **name != *rig.description().coordinates[index].name);
+            }
+            Variable::Rate(index) => v[index] = value,
+            Variable::Oil(_) => {}
+        }
+    }
+    if !missing.is_empty() {
+        return Err(Problem::usage(
+            format!("{} lacks coordinates of {}: {}", file.display(), rig.description().name, missing.join(", ")),
+            "give results of the same crane",
+        ));
+    }
+    let t = at.or(found.time).unwrap_or(0.0);
+    let a = rig.accelerations_at(t, &q, &v).as_slice().to_vec();
+    let greatest = a.iter().fold(0.0, |greatest: f64, a| greatest.max(a.abs()));
+    let cautions = (greatest > STEADY)
+        .then(|| format!("not steady: accelerations reach {greatest:.2e} m/s² or rad/s², so that matrices and modes hold for this moment"));
+    let efforts = vec![None; q.len()];
+    Ok(Motion { about: "a moment of a run", t, q, v, a, efforts, cautions: cautions.into_iter().collect() })
+}
+
+/// The steady motion with drives as at a time and some coordinates held.
+fn of_steady(crane: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
+    let rig: &dyn DynCrane = crane;
+    let t = options.time.unwrap_or(0.0);
+    let held = read_held(&options.held, rig.description())?;
+    let settings = statics::Settings::default();
+    let mut rest = rig.equilibrium(&settings);
+    if t != 0.0 {
+        rest = rig.equilibrium_at(t, &rest.q, &settings);
+    }
+    let start = if rest.status == statics::Status::NotConverged { rig.guess() } else { rest.q };
+    let found = steady(crane, t, &start, &held).map_err(|refused| {
+        Problem::failed(
+            format!("{}: {refused}", rig.description().name),
+            "hold what nothing constrains, `--hold NAME=VALUE`, or hold rates that are smaller",
+        )
+    })?;
+    let greatest = found.v.iter().fold(0.0, |greatest: f64, v| greatest.max(v.abs()));
+    let mut cautions = Vec::new();
+    if found.drift > DRIFT * greatest && found.drift > GROWTH {
+        cautions.push(format!(
+            "not steady: the pose changes by up to {:.2e} rad/s or m/s as the motion goes on, so that matrices and modes hold for \
+             this moment",
+            found.drift
+        ));
+    }
+    if found.acceleration > STEADY {
+        cautions.push(format!(
+            "not steady: drives speed up or slow down at t = {t} s, by up to {:.2e} rad/s² or m/s²; their rates are held here",
+            found.acceleration
+        ));
+    }
+    let mut efforts = vec![None; start.len()];
+    for held in &held {
+        efforts[held.coordinate] = Some(found.efforts[held.coordinate]);
+    }
+    let about = if greatest > 0.0 { "a steady motion" } else { "a pose at rest" };
+    Ok(Motion { about, t, a: vec![0.0; start.len()], q: found.q, v: found.v, efforts, cautions })
+}
+
+/// What `--hold` asks for.
+fn read_held(given: &[String], description: &Description) -> Outcome<Vec<Held>> {
+    let mut held: Vec<Held> = Vec::new();
+    for text in given {
+        let (name, value) = text.split_once('=').ok_or_else(|| {
+            let help =
+                "write `--hold coordinate=value`, such as `--hold boom_psi=30deg` or `--hold column_psi_rate=0.2`";
+            Problem::usage(format!("`--hold {text}` has no value"), help)
+        })?;
+        let value = number(value).ok_or_else(|| {
+            let help = "write a finite number in m, rad, m/s or rad/s, or an angle such as `30deg`";
+            Problem::usage(format!("`{value}` is not a valid value for {name}"), help)
+        })?;
+        let (coordinate, position, rate) = match Variable::named(name.trim(), description)? {
+            Variable::Position(index) => (index, Some(value), None),
+            Variable::Rate(index) => (index, None, Some(value)),
+            // Cranes with oil were refused.
+            Variable::Oil(_) => continue,
+        };
+        match held.iter_mut().find(|held| held.coordinate == coordinate) {
+            Some(held) => {
+                held.position = position.or(held.position);
+                held.rate = rate.unwrap_or(held.rate);
+            }
+            None => held.push(Held { coordinate, position, rate: rate.unwrap_or(0.0) }),
+        }
+    }
+    Ok(held)
+}
+
+/// What holds the coordinates that are held.
+fn held(description: &Description, motion: &Motion) -> Grid {
+    let mut grid = Grid::new(
+        "held",
+        "Torques and forces that hold coordinates, besides drives",
+        &["coordinate", "effort", "unit"],
+    );
+    for (info, effort) in description.coordinates.iter().zip(&motion.efforts) {
+        if let Some(effort) = effort {
+            grid.row([info.name.as_str().into(), Cell::from(*effort), info.kind.force_unit().into()]);
+        }
+    }
+    grid
+}
+
+/// Eigenvalues as a table.
+fn modes_of(description: &Description, found: &[Mode]) -> Grid {
+    let mut grid = Grid::new(
+        "modes",
+        "Modes (frequency |λ|/2π; ratio 1: returns without oscillating)",
+        &["mode", "frequency [Hz]", "damping ratio", "re [1/s]", "im [1/s]", "dominated by"],
+    );
+    for (index, (mode, _)) in found.iter().enumerate() {
+        grid.row([
+            (index + 1).into(),
+            (mode.eigenvalue.im != 0.0).then(|| mode.frequency()).into(),
+            mode.damping_ratio().into(),
+            mode.eigenvalue.re.into(),
+            mode.eigenvalue.im.into(),
+            modes::names(description, &mode.dominating),
+        ]);
+    }
+    grid
+}
+
+/// Pose, rates and accelerations.
+fn states(description: &Description, motion: &Motion) -> Grid {
+    let headings = ["coordinate", "position", "unit", "rate", "acceleration", "unit of rates"];
+    let mut grid = Grid::new("motion", "Motion: pose, rates and accelerations", &headings);
+    for (index, info) in description.coordinates.iter().enumerate() {
+        let is_angle = info.kind.unit() == "rad";
+        let cell = |value: f64| if is_angle { Cell::Angle(value) } else { Cell::Number(value) };
+        let [unit, of_rates] =
+            if is_angle { [Cell::AngleUnit, "rad/s, rad/s²".into()] } else { ["m".into(), "m/s, m/s²".into()] };
+        let (rate, acceleration) = (motion.v[index].into(), motion.a[index].into());
+        grid.row([info.name.as_str().into(), cell(motion.q[index]), unit, rate, acceleration, of_rates]);
+    }
+    grid
+}
+
+/// The matrices by their keys.
+fn matrices(small: &SmallMotions) -> [(&'static str, DMatrix<f64>); 5] {
+    [
+        ("mass", small.mass.clone()),
+        ("damping", small.damping.clone()),
+        ("stiffness", small.stiffness.clone()),
+        ("gyroscopic", small.gyroscopic()),
+        ("circulatory", small.circulatory()),
+    ]
+}
+
+/// Row by row.
+fn array(name: &'static str, matrix: &DMatrix<f64>) -> Array {
+    Array {
+        name: name.into(),
+        shape: vec![matrix.nrows(), matrix.ncols()],
+        data: matrix.transpose().as_slice().to_vec(),
+    }
+}
+
+/// What programs get besides tables: names and units of the rows, matrices, and shapes as pairs of real and imaginary parts.
+fn values(description: &Description, small: &SmallMotions, found: &[Mode]) -> Vec<(&'static str, Value)> {
+    let info = |place: &usize| &description.coordinates[*place];
+    let names: Value = small.unknowns.iter().map(|place| info(place).name.as_str()).collect();
+    let units: Value = small.unknowns.iter().map(|place| info(place).kind.unit()).collect();
+    let shape = |shape: &ComplexShape| -> Value { shape.iter().map(|x| Value::from(vec![x.re, x.im])).collect() };
+    let mut values = vec![("coordinates", names), ("coordinate_units", units)];
+    values.extend(matrices(small).map(|(name, matrix)| (name, array(name, &matrix).json())));
+    values.push(("shapes", found.iter().map(|(_, of_mode)| shape(of_mode)).collect()));
+    values
+}
+
+/// The same as arrays; pose, rates and accelerations of all coordinates.
+fn arrays(motion: &Motion, small: &SmallMotions, found: &[Mode]) -> Vec<Array> {
+    let list = |name: &'static str, data: Vec<f64>| Array { name: name.into(), shape: vec![data.len()], data };
+    let shapes = |name: &'static str, part: fn(&Complex<f64>) -> f64| {
+        let shape = vec![found.len(), small.unknowns.len()];
+        Array { name: name.into(), shape, data: found.iter().flat_map(|(_, shape)| shape.iter().map(part)).collect() }
+    };
+    let eigenvalues = |part: fn(&Complex<f64>) -> f64| found.iter().map(|(mode, _)| part(&mode.eigenvalue)).collect();
+    let mut arrays = vec![
+        list("time", vec![motion.t]),
+        list("pose", motion.q.clone()),
+        list("rates", motion.v.clone()),
+        list("accelerations", motion.a.clone()),
+        list("efforts", motion.efforts.iter().map(|effort| effort.unwrap_or(0.0)).collect()),
+        list("rows", small.unknowns.iter().map(|index| *index as f64).collect()),
+    ];
+    arrays.extend(matrices(small).map(|(name, matrix)| array(name, &matrix)));
+    arrays.extend([
+        list("eigenvalues_real", eigenvalues(|x| x.re)),
+        list("eigenvalues_imaginary", eigenvalues(|x| x.im)),
+    ]);
+    arrays.extend([shapes("shapes_real", |x| x.re), shapes("shapes_imaginary", |x| x.im)]);
+    arrays
+}
+
+/// Writes an archive.
+fn write(file: &Path, arrays: &[Array]) -> Outcome<()> {
+    if file.extension().is_none_or(|end| end != "npz") {
+        return Err(Problem::usage(
+            format!("`--file {}` has not the ending .npz", file.display()),
+            "give it that ending; `--format json` prints the same as JSON",
+        ));
+    }
+    let bytes = npz(arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
+    files::write(file, |out| out.write_all(&bytes))
+}

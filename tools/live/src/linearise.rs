@@ -1,0 +1,53 @@
+//! Small motions about any motion, by exact derivatives of the forces that it requires.
+
+use crane_codegen::program::FunctionId;
+use crane_model::dyn_crane::{DynDynamics, DynLineariseMotion, DynModel};
+
+use crate::LiveCrane;
+use crate::machine::Number;
+use crate::rows::{Evaluation, Quantity};
+use crate::sloped::{DIRECTIONS, Sloped};
+
+impl DynLineariseMotion for LiveCrane {
+    fn linearise_motion(
+        &self,
+        t: f64,
+        [q, v, a]: [&[f64]; 3],
+        mass: &mut [f64],
+        stiffness: &mut [f64],
+        damping: &mut [f64],
+    ) {
+        let n = self.size();
+        self.mass_matrix(q, mass);
+        // A a − e, and f.
+        let quantities = [Quantity::InverseDynamics, Quantity::Of(FunctionId::Forces)];
+        let mut forces = quantities.map(|quantity| Evaluation::<Sloped>::new(self, quantity));
+        let numbers = |values: &[f64], first: Option<usize>| -> Vec<Sloped> {
+            let along = |i: usize| first.and_then(|first| i.checked_sub(first)).filter(|place| *place < DIRECTIONS);
+            values.iter().enumerate().map(|(i, value)| Sloped::along(*value, along(i))).collect()
+        };
+        let (t, a) = (Sloped::splat(t), numbers(a, None));
+        for first in (0..n).step_by(DIRECTIONS) {
+            for (of_rates, columns) in [(false, &mut *stiffness), (true, &mut *damping)] {
+                let q = numbers(q, (!of_rates).then_some(first));
+                let v = numbers(v, of_rates.then_some(first));
+                let [required, given] = &mut forces;
+                let (required, given) = (required.at(t, &q, &v, &a), given.at(t, &q, &v, &a));
+                for (place, column) in columns.chunks_exact_mut(n).skip(first).take(DIRECTIONS).enumerate() {
+                    for (entry, (required, given)) in column.iter_mut().zip(required.iter().zip(given)) {
+                        *entry = required.slope(place) - given.slope(place);
+                    }
+                }
+            }
+        }
+        // Prescribed coordinates do not move: as about a pose at rest they oscillate separately, at 1 rad/s.
+        for j in self.description().prescribed() {
+            for (matrix, diagonal) in [(&mut *mass, 1.0), (&mut *stiffness, 1.0), (&mut *damping, 0.0)] {
+                for k in 0..n {
+                    (matrix[j + n * k], matrix[k + n * j]) = (0.0, 0.0);
+                }
+                matrix[j + n * j] = diagonal;
+            }
+        }
+    }
+}
