@@ -1,7 +1,9 @@
 //! Lists every spec of this folder in `cranes.rs`, and compiles it where the crate has the feature `compiled`.
 
 use std::path::{Path, PathBuf};
-use std::{env, fs, io};
+use std::{fs, io};
+
+use crane_codegen::build;
 
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=.");
@@ -10,10 +12,11 @@ fn main() -> io::Result<()> {
     // The order of a folder differs from machine to machine.
     specs.sort();
     let names: Vec<String> = specs.iter().map(|spec| name(spec)).collect();
+    // A spec that extends another is one text with it: nobody who reads it has this folder.
     let texts: io::Result<Vec<String>> = names
         .iter()
         .zip(&specs)
-        .map(|(name, spec)| Ok(format!("({name:?}, {:?}),", fs::read_to_string(spec)?)))
+        .map(|(name, spec)| Ok(format!("({name:?}, {:?}),", build::open(spec).map_err(io::Error::other)?.text)))
         .collect();
     let cranes = if cfg!(feature = "compiled") {
         format!("crane_model::cranes! {{ {} }}", names.join(", "))
@@ -24,14 +27,13 @@ fn main() -> io::Result<()> {
         "{cranes}\n\n/// Names and specs (YAML) of all cranes.\npub const SPECS: &[(&str, &str)] = &[{}];\n",
         texts?.concat()
     );
-    let out = env::var_os("OUT_DIR").map(PathBuf::from).ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?;
-    fs::write(out.join("cranes.rs"), module)
+    fs::write(build::out_dir().join("cranes.rs"), module)
 }
 
 /// Compiles the crane of a spec; its name. Tests and the command use every analysis of every crane.
 #[cfg(feature = "compiled")]
 fn name(spec: &Path) -> String {
-    crane_codegen::build::compile_spec_for(spec, Some(crane_codegen::chain::Analyses::ALL)).name
+    build::compile_spec_for(spec, Some(crane_codegen::chain::Analyses::ALL)).name
 }
 
 /// The name of the crane of a spec: that of the file.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crane_codegen::{SourceFile, compile};
+use crane_codegen::{build, compile};
 
 fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
@@ -49,7 +49,7 @@ fn build_script(spec: &str, at: &Path, out: &Path) -> Output {
 fn build_script_and_library_write_the_same_bytes() {
     let name = "eight_link_rigid";
     let path = spec(name).display().to_string();
-    let source = SourceFile::new(path.clone(), fs::read_to_string(&path).unwrap());
+    let source = build::open(path.as_ref()).unwrap();
     let library = compile::compile(&source, None).unwrap().code.text;
 
     // Another process has other hash seeds, another folder other paths.
@@ -57,7 +57,10 @@ fn build_script_and_library_write_the_same_bytes() {
     let built = build_script(&path, &workspace(), &out);
     assert!(built.status.success(), "{}", text(&built.stderr));
     assert!(library == fs::read_to_string(out.join(format!("{name}.rs"))).unwrap());
-    assert!(text(&built.stdout).contains(&format!("cargo::rerun-if-changed={path}\n")));
+    // Cargo runs it again when this spec changes, or the one that it extends.
+    for path in [path, spec("eight_link_flexible").display().to_string()] {
+        assert!(text(&built.stdout).contains(&format!("cargo::rerun-if-changed={path}\n")), "{path}");
+    }
 }
 
 #[test]

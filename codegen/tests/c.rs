@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use crane_codegen::SourceFile;
 use crane_codegen::chain::{Analyses, Chain, Input, Loops};
 use crane_codegen::compile::{generate_c, load};
 use crane_codegen::emit_c::{CCode, Precision};
 use crane_codegen::mechanics::derive;
 use crane_codegen::program::{Argument, Function, Inputs, Program, Shape};
+use crane_codegen::{SourceFile, build};
 
 const EVERYTHING: Analyses =
     Analyses { statics: true, dynamics: true, modes: true, internal_forces: true, derivatives: false, ensemble: false };
@@ -24,7 +24,7 @@ const CONNECTORS: &str = "connectors:
 
 fn shipped(name: &str) -> Chain {
     let path = format!("{}/../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
-    load(&SourceFile::new(&path, fs::read_to_string(&path).unwrap())).unwrap()
+    load(&build::open(path.as_ref()).unwrap()).unwrap()
 }
 
 /// A boom whose drive follows one input and is moved aside by another, with a load that a third one scales.
@@ -241,8 +241,7 @@ fn every_function_of_every_kind_of_crane_is_the_interpreters() {
 #[test]
 fn springs_and_ropes_are_the_interpreters() {
     let path = format!("{}/../specs/knuckle_boom.yaml", env!("CARGO_MANIFEST_DIR"));
-    let plain = fs::read_to_string(path).unwrap();
-    let chain = load(&SourceFile::new("connected.yaml", format!("{plain}\n{CONNECTORS}"))).unwrap();
+    let chain = load(&build::open(path.as_ref()).unwrap().changed(CONNECTORS)).unwrap();
     let found = differences("connected", &chain, Precision::Double, &[]);
     assert_eq!(found.iter().filter(|(function, _)| function.starts_with("connector_")).count(), 7);
     for (function, off) in found {

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crane_codegen::chain::Chain;
-use crane_codegen::{SourceFile, compile, exchange};
+use crane_codegen::{SourceFile, build, compile, exchange};
 
 /// Files of a folder of this package, in order.
 fn files(folder: &str) -> Vec<PathBuf> {
@@ -21,14 +21,14 @@ fn stem(path: &Path) -> String {
     path.file_stem().expect("a name").to_string_lossy().into_owned()
 }
 
-fn chain(name: &str, text: String) -> Chain {
-    compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+fn chain(source: &SourceFile) -> Chain {
+    compile::load(source).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
 /// The shipped cranes.
 fn shipped() -> Vec<Chain> {
     let specs = files("../specs").into_iter().filter(|path| path.extension().is_some_and(|found| found == "yaml"));
-    specs.map(|path| chain(&stem(&path), std::fs::read_to_string(&path).expect("a spec"))).collect()
+    specs.map(|path| chain(&build::open(&path).expect("a shipped spec"))).collect()
 }
 
 fn snapshot(name: &str, text: &str) {
@@ -60,7 +60,7 @@ fn a_crane_comes_back_from_urdf() {
     for crane in shipped() {
         let urdf = exchange::urdf(&crane, &crane.parameter_defaults());
         let spec = exchange::import(&SourceFile::new(format!("{}.urdf", crane.name), urdf), &[]).expect("a robot");
-        let back = chain(&crane.name, spec);
+        let back = chain(&SourceFile::new(&crane.name, spec));
         assert_eq!(back.coordinates.len(), crane.coordinates.len());
         for (old, new) in crane.coordinates.iter().zip(&back.coordinates) {
             assert_eq!((old.kind, old.axis), (new.kind, new.axis), "{}: {}", crane.name, old.name);
@@ -82,7 +82,7 @@ fn friction_of_a_robots_joint_is_that_of_the_crane() {
                 <joint name='shoulder' type='continuous'><parent link='base'/><child link='upper'/><axis xyz='0 0 1'/>\
                 <dynamics damping='0.5' friction='2.5'/></joint></robot>";
     let spec = exchange::import(&SourceFile::new("arm.urdf", urdf), &[]).expect("a robot");
-    let crane = chain("arm", spec);
+    let crane = chain(&SourceFile::new("arm", spec));
     let coulomb: Vec<f64> = crane.frictions().map(|(_, friction)| friction.coulomb.at(&[])).collect();
     assert_eq!(coulomb, [2.5]);
 }

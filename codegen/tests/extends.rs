@@ -6,10 +6,6 @@ use std::path::{Path, PathBuf};
 use crane_codegen::chain::Chain;
 use crane_codegen::{Diagnostics, SourceFile, build, compile};
 
-fn shipped(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs").join(name).with_extension("yaml")
-}
-
 /// A folder of this test with files in it.
 fn folder(name: &str, files: &[(&str, &str)]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -37,27 +33,60 @@ fn mistakes(file: &Path) -> Diagnostics {
     }
 }
 
+/// Every key of both is written again in one file, as a person would without `extends`.
 #[test]
-fn the_rigid_reference_crane_is_the_flexible_one_with_a_rigid_boom() {
-    let base = fs::read_to_string(shipped("eight_link_flexible")).expect("a spec");
-    let rigid = "
-extends: flexible.yaml
-name: eight_link_rigid
-analyses: [statics, dynamics, modes]
+fn an_extending_spec_is_the_crane_written_in_full() {
+    let base = "
+format: 1
+name: base
+materials: {steel: {E: 2.1e11, G: 8.1e10, density: 7850}}
+links:
+  - name: boom
+    joint: revolute
+    beam:
+      length: 2
+      sections: 2
+      section_joint: paper
+      material: steel
+      section: {circle: {diameter: 0.1}}
+      damping: {beta: 1e-3}
+  - {name: load, joint: revolute, mass: 10, com: [0, -1, 0]}
+drives: [{coordinate: boom_psi, stiffness: 1e6, damping: 5, motion: {quintic: {from: 0, to: 1, duration: 5}}}]
+run: {duration: 3, output: 0.1}
+";
+    let over = "
+extends: base.yaml
+name: mine
+materials: {steel: {density: 8000}}
 links:
   - name: boom
     beam: {sections: rigid, section_joint: ~, damping: ~}
+drives: [{coordinate: boom_psi, damping: ~, motion: {quintic: {duration: 7}}}]
 ";
-    let folder = folder("extends_rigid", &[("flexible.yaml", &base), ("rigid.yaml", rigid)]);
-    let source = opened(&folder.join("rigid.yaml"));
-    let extended = compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"));
-    let written = compile::load(&opened(&shipped("eight_link_rigid"))).expect("a shipped crane");
-    assert_eq!(extended.name, "eight_link_rigid");
-    assert_eq!(anonymous(extended.clone()), anonymous(written));
+    let full = "
+format: 1
+name: mine
+materials: {steel: {E: 2.1e11, G: 8.1e10, density: 8000}}
+links:
+  - name: boom
+    joint: revolute
+    beam: {length: 2, sections: rigid, material: steel, section: {circle: {diameter: 0.1}}}
+  - {name: load, joint: revolute, mass: 10, com: [0, -1, 0]}
+drives: [{coordinate: boom_psi, stiffness: 1e6, motion: {quintic: {from: 0, to: 1, duration: 7}}}]
+run: {duration: 3, output: 0.1}
+";
+    let folder = folder("extends_full", &[("base.yaml", base), ("over.yaml", over), ("full.yaml", full)]);
+    let source = opened(&folder.join("over.yaml"));
+    let load = |source: &SourceFile| compile::load(source).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let extended = load(&source);
+    assert_eq!(anonymous(extended.clone()), anonymous(load(&opened(&folder.join("full.yaml")))));
     // What was put together is a file of its own: wherever it is written, it is the same crane.
     let whole = folder.join("whole.yaml");
     fs::write(&whole, &source.text).expect("a file");
-    assert_eq!(compile::load(&opened(&whole)).expect("the same crane"), extended);
+    assert_eq!(load(&opened(&whole)), extended);
+    // Changes in memory are the same as those of a file.
+    let changes = over.replace("extends: base.yaml\n", "");
+    assert_eq!(anonymous(load(&opened(&folder.join("base.yaml")).changed(&changes))), anonymous(extended));
 }
 
 #[test]

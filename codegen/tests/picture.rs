@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use crane_codegen::chain::Chain;
-use crane_codegen::{SourceFile, compile, picture};
+use crane_codegen::{build, compile, picture};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -17,7 +17,7 @@ fn shipped() -> Vec<Chain> {
     let mut specs: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|found| found == "yaml")).collect();
     specs.sort();
     let chain = |path: PathBuf| {
-        let source = SourceFile::new("shipped.yaml", fs::read_to_string(path).expect("a spec"));
+        let source = build::open(&path).unwrap_or_else(|failure| panic!("{failure}"));
         compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"))
     };
     specs.into_iter().map(chain).collect()

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};
 
 use crane_codegen::chain::{Chain, CoordinateKind, Inertia, Profile, Step, Value};
-use crane_codegen::{SourceFile, json_schema, read, validate};
+use crane_codegen::{build, json_schema, read, validate};
 
 /// The folder of shipped specs.
 fn folder() -> PathBuf {
@@ -13,8 +13,7 @@ fn folder() -> PathBuf {
 
 /// A shipped spec as a chain; its mistakes fail the test.
 fn chain(name: &str) -> Chain {
-    let text = std::fs::read_to_string(folder().join(format!("{name}.yaml"))).expect("a shipped spec");
-    let source = SourceFile::new(format!("specs/{name}.yaml"), text);
+    let source = build::open(&folder().join(format!("{name}.yaml"))).unwrap_or_else(|failure| panic!("{failure}"));
     read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 

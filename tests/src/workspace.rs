@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crane_codegen::chain::Chain;
-use crane_codegen::{SourceFile, compile};
+use crane_codegen::{SourceFile, build, compile};
 
 /// The workspace's root.
 #[must_use]
@@ -21,39 +21,49 @@ pub fn specs() -> Vec<PathBuf> {
     paths
 }
 
+/// A spec, and those that it extends.
+#[must_use]
+pub fn source(path: &Path) -> SourceFile {
+    build::open(path).unwrap_or_else(|failure| panic!("{failure}"))
+}
+
+/// A shipped spec.
+#[must_use]
+pub fn shipped(name: &str) -> SourceFile {
+    source(&root().join("specs").join(format!("{name}.yaml")))
+}
+
 /// The chain of a shipped spec.
 #[must_use]
 pub fn chain(name: &str) -> Chain {
-    let path = root().join("specs").join(format!("{name}.yaml"));
-    let text = std::fs::read_to_string(&path).expect("the spec is there");
-    chain_of(name, &text)
+    chain_in(&shipped(name))
 }
 
 /// The chain of the reference crane with another number of sections.
 #[must_use]
 pub fn reference(sections: usize) -> Chain {
-    chain_of("reference", &reference_text(sections))
+    reference_with(&format!("sections: {sections}"))
 }
 
 /// The reference crane with another number of sections, and symmetric joints between them.
 #[must_use]
 pub fn reference_symmetric(sections: usize) -> Chain {
-    let mut text = reference_text(sections);
-    assert!(text.contains("section_joint: paper"), "the reference crane has the paper's joints");
-    text = text.replace("section_joint: paper", "section_joint: symmetric");
-    chain_of("reference_symmetric", &text)
+    reference_with(&format!("sections: {sections}, section_joint: symmetric"))
 }
 
-fn reference_text(sections: usize) -> String {
-    let path = root().join("specs/eight_link_flexible.yaml");
-    let text = std::fs::read_to_string(&path).expect("the spec is there");
-    let changed = text.replace("sections: 4", &format!("sections: {sections}"));
-    assert!(sections == 4 || changed != text, "the reference crane has 4 sections");
-    changed
+/// The reference crane with other keys of its boom's beam.
+fn reference_with(beam: &str) -> Chain {
+    chain_in(&shipped("eight_link_flexible").changed(&format!("links: [{{name: boom, beam: {{{beam}}}}}]")))
 }
 
 /// The chain of a spec's text.
 #[must_use]
 pub fn chain_of(name: &str, text: &str) -> Chain {
-    compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    chain_in(&SourceFile::new(name, text))
+}
+
+/// The chain of a spec.
+#[must_use]
+pub fn chain_in(source: &SourceFile) -> Chain {
+    compile::load(source).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }

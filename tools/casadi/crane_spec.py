@@ -4,7 +4,7 @@ import math
 import re
 
 import casadi as ca
-from ruamel.yaml import YAML
+from overlay import read_whole
 
 ANGLE = re.compile(
     r"(?P<sign>[+-]?)\s*(?P<numerator>\d+\.?\d*(?:[eE][+-]?\d+)?)?\s*"
@@ -19,8 +19,7 @@ class CraneSpec:
     """
 
     def __init__(self, path):
-        with open(path, encoding="utf-8") as file:
-            self.keys = YAML(typ="safe", pure=True).load(file)
+        self.keys = read_whole(path)
         if self.keys.get("format") != 1:
             raise ValueError(f"{path}: format 1 expected")
         self.defaults = {name: parse_angle(entry["value"]) for name, entry in self.get("parameters", {}).items()}

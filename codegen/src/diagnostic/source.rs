@@ -55,6 +55,12 @@ impl SourceFile {
         SourceFile::new(&self.name, before + &part(named, &self.text))
     }
 
+    /// The same crane with changes: a spec in memory that extends it.
+    #[must_use]
+    pub fn changed(&self, changes: &str) -> Self {
+        SourceFile::new(&self.name, changes).extended(self, "crane.yaml", "changes.yaml")
+    }
+
     /// Its parts, each of which extends the previous one; usually one, the whole.
     #[must_use]
     pub fn parts(&self) -> Vec<Part<'_>> {

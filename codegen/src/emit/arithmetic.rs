@@ -4,7 +4,12 @@
 
 use proc_macro2::Span;
 use syn::punctuated::Punctuated;
-use syn::{BinOp, Expr, ExprBinary, ExprCall, ExprParen, ExprPath, ExprReference, ExprUnary, Ident, Lit, Token, UnOp};
+use syn::{
+    BinOp, Expr, ExprBinary, ExprCall, ExprParen, ExprPath, ExprReference, ExprUnary, Ident, Lit, Token, UnOp,
+    parse_quote,
+};
+
+use crate::lower::Progression;
 
 /// A variable or path of one word.
 pub fn variable(name: &str) -> Expr {
@@ -149,6 +154,27 @@ fn binary(a: Expr, op: BinOp, b: Expr) -> Expr {
     let left = if precedence(&a) < own { parenthesised(a) } else { a };
     let right = if precedence(&b) <= own { parenthesised(b) } else { b };
     Expr::Binary(ExprBinary { attrs: vec![], left: Box::new(left), op, right: Box::new(right) })
+}
+
+/// `array[index]`
+#[expect(clippy::needless_pass_by_value, reason = "as `element`, which a constant index goes to")]
+pub fn place(array: Expr, index: &Expr) -> Expr {
+    parse_quote!(#array[#index])
+}
+
+/// `8 + 3 * k`
+pub fn at(Progression { first, step }: Progression) -> Expr {
+    let k = Ident::new("k", Span::call_site());
+    let way: Expr = match integer(step.unsigned_abs()) {
+        _ if step.unsigned_abs() == 1 => parse_quote!(#k),
+        stride => parse_quote!(#stride * #k),
+    };
+    let start = integer(first);
+    match (first, step) {
+        (0, 0..) => way,
+        (_, 0..) => parse_quote!(#start + #way),
+        _ => parse_quote!(#start - #way),
+    }
 }
 
 #[cfg(test)]

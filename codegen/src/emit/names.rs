@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::rounds;
 use crate::program::{Argument, Program};
 use crate::symbolic::{ExprId, Op};
 
@@ -40,6 +39,16 @@ const TAKEN: &[&str] = &[
     "N",
 ];
 
+/// Variables of a loop.
+pub const OF_LOOPS: [&str; 4] = ["numbers", "gathered", "carried", "kept"];
+
+/// `kept_1`, a variable of the first loop.
+pub fn of_loop(name: &str, of: usize) -> String {
+    let name = format!("{name}_{}", of + 1);
+    // Tables are statics.
+    if name.starts_with("numbers") { name.to_uppercase() } else { name }
+}
+
 /// Gives every value of a function one valid, unique name.
 pub struct Names<'p> {
     program: &'p Program,
@@ -51,7 +60,7 @@ pub struct Names<'p> {
 impl<'p> Names<'p> {
     /// For a function with this many loops.
     pub fn new(program: &'p Program, loops: usize) -> Self {
-        let of_loops = (0..loops).flat_map(|of| rounds::NAMES.map(|name| rounds::owned_name(name, of)));
+        let of_loops = (0..loops).flat_map(|of| OF_LOOPS.map(|name| of_loop(name, of)));
         let taken = TAKEN.iter().map(ToString::to_string).chain(of_loops).collect();
         Names { program, given: HashMap::new(), taken, next: 0 }
     }

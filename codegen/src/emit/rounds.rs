@@ -1,25 +1,22 @@
 //! A loop as Rust.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
-use syn::{Expr, Ident, Stmt, parse_quote};
+use syn::{Expr, Stmt, parse_quote};
 
-use super::arithmetic::{element, integer, variable};
+use super::arithmetic::{at, element, integer, place, variable};
 use super::function::{Used, Writer, pattern};
-use super::names::Names;
+use super::names::{Names, OF_LOOPS, of_loop};
 use super::number::Number;
 use super::print::comment;
-use crate::lower::{Place, Progression, Source, Statement, Taking};
+use crate::lower::{Place, Source, Statement, Taking};
 use crate::symbolic::ExprId;
-
-/// Names of the variables of a loop.
-pub const NAMES: [&str; 4] = ["numbers", "gathered", "carried", "kept"];
 
 impl Writer<'_> {
     /// The initial values of a loop, and the loop.
     pub(super) fn rounds(&self, of: usize, body: &[Statement], names: &mut Names, used: &mut Used) -> Vec<Stmt> {
         let own = &self.block.rolled.loops[of];
-        let [numbers, gathered, carried, kept] = NAMES.map(|name| owned(name, of));
+        let [numbers, gathered, carried, kept] = OF_LOOPS.map(|name| owned(name, of));
         let (number, rounds) = (self.number.of(), integer(own.rounds));
         let [first, last] = &own.places;
         let mut statements = vec![comment(&format!("{} to {}", way(first), last.body))];
@@ -103,38 +100,10 @@ pub fn patterns(array: &str, ids: &[Option<ExprId>], names: &mut Names) -> Optio
 
 /// `kept_1` of the first loop.
 fn owned(name: &str, of: usize) -> Expr {
-    variable(&owned_name(name, of))
-}
-
-/// Name of a variable of a loop.
-pub fn owned_name(name: &str, of: usize) -> String {
-    let name = format!("{name}_{}", of + 1);
-    // Tables are statics.
-    if name.starts_with("numbers") { name.to_uppercase() } else { name }
+    variable(&of_loop(name, of))
 }
 
 /// `[a, b, c]`
 fn row(values: impl Iterator<Item = Expr>) -> TokenStream {
     quote!([#(#values),*])
-}
-
-/// `array[index]`
-#[expect(clippy::needless_pass_by_value, reason = "as `element`, which a constant index goes to")]
-pub fn place(array: Expr, index: &Expr) -> Expr {
-    parse_quote!(#array[#index])
-}
-
-/// `8 + 3 * k`
-pub fn at(Progression { first, step }: Progression) -> Expr {
-    let k = Ident::new("k", Span::call_site());
-    let way: Expr = match integer(step.unsigned_abs()) {
-        _ if step.unsigned_abs() == 1 => parse_quote!(#k),
-        stride => parse_quote!(#stride * #k),
-    };
-    let start = integer(first);
-    match (first, step) {
-        (0, 0..) => way,
-        (_, 0..) => parse_quote!(#start + #way),
-        _ => parse_quote!(#start - #way),
-    }
 }

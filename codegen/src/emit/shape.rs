@@ -4,9 +4,8 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{Expr, parse_quote};
 
-use super::arithmetic::{element, field, integer, variable};
+use super::arithmetic::{at, element, field, integer, place, variable};
 use super::number::Number;
-use super::rounds::{at, place};
 use crate::lower::Progression;
 use crate::program::{Function, Point, Shape, Struct};
 

@@ -13,10 +13,9 @@ use nalgebra::{Matrix4, SMatrix, SVector};
 pub struct Live<const N: usize>(LiveCrane);
 
 impl<const N: usize> Live<N> {
-    /// The crane of a text, which must have `N` coordinates.
-    pub fn new(text: &str) -> Self {
-        let crane =
-            LiveCrane::from_spec(&SourceFile::new("spec", text)).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    /// The crane of a spec, which must have `N` coordinates.
+    pub fn new(spec: &SourceFile) -> Self {
+        let crane = LiveCrane::from_spec(spec).unwrap_or_else(|mistakes| panic!("{mistakes}"));
         assert_eq!(crane.size(), N);
         Self(crane)
     }

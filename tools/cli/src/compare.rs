@@ -1,24 +1,18 @@
 //! `crane` alone: compares the eight-link crane with a rigid and with a flexible boom, as [Urbaś 2016, section 3] does; `crane compare`:
 //! any two cranes.
 
-use std::{io::Write, mem, thread, time::Instant};
+use std::{io::Write, mem, time::Instant};
 
-use crane_model::{
-    Description,
-    dyn_crane::DynCrane,
-    dynamics::{Method, Settings},
-    results::Table,
-    runs::Recorded,
-};
+use crane_model::{Description, dyn_crane::DynCrane, dynamics::Method, results::Table};
 
 use crate::{
     Fleet,
-    arguments::{Compare, ComparePair, Format, Limits, Parameters, Timing, spec_file},
+    arguments::{Compare, ComparePair, Format, Parameters, spec_file},
     extremes::extremes,
     figures::{Curve, Mark, PALETTE, Panel},
     files, own, page,
     problem::{Outcome, Problem},
-    run::{progress, record_checked},
+    run::runs,
     simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
     statics::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, tables},
     variants::renamed,
@@ -38,8 +32,7 @@ pub fn load(options: &mut ComparePair, fleet: &mut Fleet) -> Outcome<()> {
     let ComparePair { first, second, strict, .. } = options;
     if let Some(file) = spec_file(first) {
         let (chain, text) = own::load(file, *strict)?;
-        fleet.add(&chain.name, text);
-        *first = chain.name;
+        *first = fleet.add_read(chain, text)?;
     }
     let Some(name) = second else {
         // The first stands for the rigid crane, as in the comparison of the eight-link cranes.
@@ -48,14 +41,14 @@ pub fn load(options: &mut ComparePair, fleet: &mut Fleet) -> Outcome<()> {
         return Ok(());
     };
     if let Some(file) = spec_file(name) {
-        let (chain, mut text) = own::load(file, *strict)?;
-        *name = chain.name;
-        if name == first {
+        let (chain, text) = own::load(file, *strict)?;
+        if chain.name == *first {
             // Two versions of a crane have one name.
-            name.push_str("_other");
-            text = renamed(name, &text);
+            *name = format!("{first}_other");
+            fleet.add(name, renamed(name, &text));
+        } else {
+            *name = fleet.add_read(chain, text)?;
         }
-        fleet.add(name, text);
     }
     Ok(())
 }
@@ -150,40 +143,6 @@ fn side_by_side(
         writeln!(out, "\nTotal time: {:.1} s", begin.elapsed().as_secs_f64())?;
     }
     Ok(())
-}
-
-/// Runs cranes side by side, each from its own start; `default`: the method unless one is asked for.
-pub fn runs(
-    cases: &[Case<'_>],
-    timing: &Timing,
-    limits: Limits,
-    default: Method,
-) -> Outcome<(Vec<Settings>, Vec<Recorded>)> {
-    // The last is the one that the arguments are about.
-    let starts = cases.iter().enumerate();
-    let starts =
-        starts.map(|(index, case)| timing.start(case.rig, index + 1 < cases.len())).collect::<Outcome<Vec<_>>>()?;
-    let settings = cases
-        .iter()
-        .zip(&starts)
-        .map(|(case, start)| timing.settings(case.rig, start, default))
-        .collect::<Outcome<Vec<_>>>()?;
-    let bar = progress(settings.iter().map(|settings| settings.duration).sum());
-    bar.set_message("simulating");
-    let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
-        let runs: Vec<_> = cases
-            .iter()
-            .zip(&starts)
-            .zip(&settings)
-            .map(|((case, start), settings)| {
-                scope.spawn(|| record_checked(case.rig, start, settings, (!timing.no_verify, limits), &bar))
-            })
-            .collect();
-        let broken = |_| Err(Problem::failed("a simulation broke off", "please report this as a bug"));
-        runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
-    });
-    bar.finish_and_clear();
-    Ok((settings, results.into_iter().collect::<Outcome<_>>()?))
 }
 
 /// How far the second crane's points are from the first one's of the same name over time, along each axis.

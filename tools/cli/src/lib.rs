@@ -101,8 +101,7 @@ fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outco
         }
         if let Some(file) = choice.file() {
             let (chain, spec) = own::load(file, choice.strict)?;
-            fleet.add(&chain.name, spec);
-            choice.name = chain.name;
+            choice.name = fleet.add_read(chain, spec)?;
         }
         if choice.rigid {
             choice.name = fleet.add_rigid(&choice.name)?;

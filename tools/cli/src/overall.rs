@@ -7,11 +7,11 @@ use crane_model::dynamics::Method;
 use crate::{
     Fleet,
     arguments::Simulate,
-    compare::runs,
     extremes::extremes,
     files,
     page::{cases, twin, write},
     problem::{Outcome, Problem},
+    run::runs,
     simulate::{Trace, file_list, summary, write_figures, write_run},
     statics::{caution_of_runs, deflection, tables},
 };

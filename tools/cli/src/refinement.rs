@@ -87,6 +87,5 @@ fn with(name: &str, text: &str, sections: impl Fn(f64) -> f64) -> Option<String>
     let kept = asked.iter().filter_map(|analysis| analysis.value).filter(|analysis| *analysis != Analysis::Ensemble);
     let kept: Vec<&str> = kept.map(Analysis::name).collect();
     let analyses = if asked.is_empty() { String::new() } else { format!("analyses: [{}]\n", kept.join(", ")) };
-    let changes = SourceFile::new(name, format!("name: {name}\n{analyses}links:\n{}", links.concat()));
-    Some(changes.extended(&base, "crane.yaml", "sections.yaml").text)
+    Some(base.changed(&format!("name: {name}\n{analyses}links:\n{}", links.concat())).text)
 }

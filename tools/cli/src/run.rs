@@ -1,6 +1,6 @@
 //! Runs as the command takes them: settings from arguments, progress on screen.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, thread};
 
 use crane_model::{
     dyn_crane::DynCrane,
@@ -13,6 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::{
     arguments::{Limits, Step, Timing},
     problem::{Outcome, Problem},
+    statics::Case,
 };
 
 impl Timing {
@@ -177,4 +178,38 @@ pub fn record_checked(
     bar: &ProgressBar,
 ) -> Outcome<Recorded> {
     Ok(runs::record_checked(rig, start, settings, (verify, limits.bend), &mut show(bar))?)
+}
+
+/// Runs cranes side by side, each from its own start; `default`: the method unless one is asked for.
+pub fn runs(
+    cases: &[Case<'_>],
+    timing: &Timing,
+    limits: Limits,
+    default: Method,
+) -> Outcome<(Vec<dynamics::Settings>, Vec<Recorded>)> {
+    // The last is the one that the arguments are about.
+    let starts = cases.iter().enumerate();
+    let starts =
+        starts.map(|(index, case)| timing.start(case.rig, index + 1 < cases.len())).collect::<Outcome<Vec<_>>>()?;
+    let settings = cases
+        .iter()
+        .zip(&starts)
+        .map(|(case, start)| timing.settings(case.rig, start, default))
+        .collect::<Outcome<Vec<_>>>()?;
+    let bar = progress(settings.iter().map(|settings| settings.duration).sum());
+    bar.set_message("simulating");
+    let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
+        let runs: Vec<_> = cases
+            .iter()
+            .zip(&starts)
+            .zip(&settings)
+            .map(|((case, start), settings)| {
+                scope.spawn(|| record_checked(case.rig, start, settings, (!timing.no_verify, limits), &bar))
+            })
+            .collect();
+        let broken = |_| Err(Problem::failed("a simulation broke off", "please report this as a bug"));
+        runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
+    });
+    bar.finish_and_clear();
+    Ok((settings, results.into_iter().collect::<Outcome<_>>()?))
 }

@@ -1,8 +1,8 @@
 //! The cranes that the command can choose from, with parameters set.
 
-use std::{borrow::Cow, path::Path};
+use std::{borrow::Cow, path::Path, sync::OnceLock};
 
-use crane_codegen::SourceFile;
+use crane_codegen::{SourceFile, chain::Chain};
 use crane_live::LiveCrane;
 use crane_model::{
     Description, ParameterError, Refusal,
@@ -31,19 +31,33 @@ struct Entry {
     spec: Cow<'static, str>,
     /// The crane as machine code; a live crane is made of the spec otherwise.
     compiled: Option<Box<dyn DynCrane>>,
+    /// The live crane, once it is asked for: its clones share what is derived.
+    live: OnceLock<LiveCrane>,
 }
 
 impl Entry {
+    fn new(name: &str, spec: Cow<'static, str>) -> Self {
+        Self { name: name.to_owned(), spec, compiled: None, live: OnceLock::new() }
+    }
+
     fn open(&self) -> Outcome<Box<dyn DynCrane>> {
         match &self.compiled {
             Some(compiled) => Ok(compiled.boxed_clone()),
-            None => Ok(Box::new(self.live()?)),
+            None => Ok(self.live()?.boxed_clone()),
         }
     }
 
-    fn live(&self) -> Outcome<LiveCrane> {
+    fn live(&self) -> Outcome<&LiveCrane> {
+        if let Some(live) = self.live.get() {
+            return Ok(live);
+        }
         let source = SourceFile::new(format!("{}.yaml", self.name), self.spec.clone());
-        let crane = LiveCrane::from_spec(&source).map_err(Problem::mistakes)?;
+        let crane = self.checked(LiveCrane::from_spec(&source).map_err(Problem::mistakes)?)?;
+        Ok(self.live.get_or_init(|| crane))
+    }
+
+    /// The crane, unless it is too large.
+    fn checked(&self, crane: LiveCrane) -> Outcome<LiveCrane> {
         let (count, most) = (crane.description().coordinates.len(), LiveCrane::MOST_COORDINATES);
         if count > most {
             let title = format!("{} has {count} coordinates; the command supports at most {most}", self.name);
@@ -59,15 +73,31 @@ impl Fleet {
         let entry = |&(name, spec): &(&'static str, &'static str)| {
             let index = compiled.iter().position(|crane| crane.description().name == name);
             let compiled = index.map(|index| compiled.swap_remove(index));
-            Entry { name: name.to_owned(), spec: Cow::Borrowed(spec), compiled }
+            Entry { compiled, ..Entry::new(name, Cow::Borrowed(spec)) }
         };
         Self { entries: specs.iter().map(entry).collect(), shipped: specs.iter().map(|(name, _)| *name).collect() }
     }
 
     /// Adds a crane by its spec, in place of one of the same name.
     pub fn add(&mut self, name: &str, spec: String) {
-        self.entries.retain(|entry| entry.name != name);
-        self.entries.push(Entry { name: name.to_owned(), spec: Cow::Owned(spec), compiled: None });
+        self.replace(Entry::new(name, Cow::Owned(spec)));
+    }
+
+    /// As [`Self::add`], of a spec that has been read; the crane's name.
+    ///
+    /// # Errors
+    /// The crane is too large.
+    pub fn add_read(&mut self, chain: Chain, spec: String) -> Outcome<String> {
+        let name = chain.name.clone();
+        let entry = Entry::new(&name, Cow::Owned(spec));
+        let live = entry.checked(LiveCrane::new(chain))?;
+        self.replace(Entry { live: live.into(), ..entry });
+        Ok(name)
+    }
+
+    fn replace(&mut self, entry: Entry) {
+        self.entries.retain(|known| known.name != entry.name);
+        self.entries.push(entry);
     }
 
     /// Names of the shipped cranes.
@@ -120,7 +150,8 @@ impl Fleet {
     pub(super) fn live(&self, crane: &dyn DynCrane) -> Outcome<LiveCrane> {
         let description = crane.description();
         let entry = self.entries.iter().find(|entry| entry.name == description.name.as_str());
-        let mut live = entry.ok_or_else(|| Problem::failed(format!("{} has no spec", description.name), ""))?.live()?;
+        let entry = entry.ok_or_else(|| Problem::failed(format!("{} has no spec", description.name), ""))?;
+        let mut live = entry.live()?.clone();
         let values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
         DynCrane::set_parameters(&mut live, &values).map_err(|refused| {
             let (title, help) = told(&refused);

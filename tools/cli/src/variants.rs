@@ -10,7 +10,7 @@ const RIGID: &str = "_rigid";
 
 /// A spec under another name.
 pub fn renamed(name: &str, text: &str) -> String {
-    extended(name, text, &format!("name: {name}\n"))
+    SourceFile::new(name, text).changed(&format!("name: {name}\n")).text
 }
 
 /// Name and spec of a crane whose beams do not bend, and nothing else is different; `None` for a crane without beams that bend.
@@ -36,13 +36,9 @@ pub fn rigid(crane: &str, text: &str) -> Result<Option<(String, String)>, String
         guesses_of_elements(&spec, &flexible).map(|coordinate| format!("{coordinate}: ~")).collect();
     let guess = if guesses.is_empty() { String::new() } else { format!("guess: {{{}}}\n", guesses.join(", ")) };
     let name = format!("{crane}{RIGID}");
-    let text = extended(&name, text, &format!("name: {name}\nlinks:\n{}{guess}", links.concat()));
+    let changes = format!("name: {name}\nlinks:\n{}{guess}", links.concat());
+    let text = SourceFile::new(&name, text).changed(&changes).text;
     Ok(Some((name, text)))
-}
-
-/// A spec with changes, under another name.
-fn extended(name: &str, text: &str, changes: &str) -> String {
-    SourceFile::new(name, changes).extended(&SourceFile::new(name, text), "crane.yaml", "changes.yaml").text
 }
 
 /// Beams and the names of their links.

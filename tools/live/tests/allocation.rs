@@ -1,6 +1,6 @@
 //! A call in a loop allocates nothing, and a dropped crane leaves nothing.
 
-use crane_codegen::SourceFile;
+use crane_codegen::build;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynDynamics, DynEnsemble, DynImplicit, DynModel, DynStatics};
 use crane_model::nalgebra::{Matrix6, Vector3};
@@ -8,8 +8,8 @@ use crane_model::support::lanes::f64x8;
 
 fn crane() -> LiveCrane {
     let path = format!("{}/../../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).unwrap();
-    LiveCrane::from_spec(&SourceFile::new(&path, &text)).unwrap()
+    let source = build::open(path.as_ref()).unwrap_or_else(|failure| panic!("{failure}"));
+    LiveCrane::from_spec(&source).unwrap()
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Bytecode against the interpreter of the compiler, which is the meaning of a program.
 
-use crane_codegen::SourceFile;
+use crane_codegen::build;
 use crane_codegen::chain::{Analyses, Chain};
 use crane_codegen::program::{Argument, Function, FunctionId, Inputs, Program, Shape, Symbol};
 use crane_codegen::symbolic::{Expr, Graph, SymbolId, Tape};
@@ -16,8 +16,8 @@ const SPECS: [&str; 4] = ["eight_link_flexible", "eight_link_identified", "knuck
 /// A chain and all its functions.
 fn crane(name: &str) -> (Chain, Program) {
     let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).unwrap();
-    let chain = compile::load(&SourceFile::new(&path, &text)).unwrap();
+    let source = build::open(path.as_ref()).unwrap_or_else(|failure| panic!("{failure}"));
+    let chain = compile::load(&source).unwrap();
     let program = mechanics::derive(&chain, Analyses::ALL);
     (chain, program)
 }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crane_codegen::SourceFile;
+use crane_codegen::build;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, Instance, Member};
 use crane_model::dynamics::{InitialState, Settings};
@@ -15,8 +15,8 @@ const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 fn live(name: &str) -> LiveCrane {
     let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).unwrap();
-    LiveCrane::from_spec(&SourceFile::new(&path, &text)).unwrap()
+    let source = build::open(path.as_ref()).unwrap_or_else(|failure| panic!("{failure}"));
+    LiveCrane::from_spec(&source).unwrap()
 }
 
 /// Every shipped crane, compiled and live.

@@ -1,6 +1,6 @@
 //! Rows compared with the functions of one crane: the same bits, whatever the other rows contain.
 
-use crane_codegen::SourceFile;
+use crane_codegen::build;
 use crane_live::rows::{Evaluation, Quantity, Rows};
 use crane_live::{FunctionId, LiveCrane};
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
@@ -12,8 +12,8 @@ const COUNT: usize = 11;
 
 fn crane() -> LiveCrane {
     let path = format!("{}/../../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).unwrap();
-    LiveCrane::from_spec(&SourceFile::new(&path, &text)).unwrap()
+    let source = build::open(path.as_ref()).unwrap_or_else(|failure| panic!("{failure}"));
+    LiveCrane::from_spec(&source).unwrap()
 }
 
 /// Poses about the guess, row after row.

@@ -1,6 +1,6 @@
 //! The permitted imports; ARCHITECTURE.md gives the reasons.
 
-use crate::workspace;
+use crate::{circles, workspace};
 
 /// A folder of the compiler, and the modules of the compiler that it may name besides itself.
 const MAY_IMPORT: [(&str, &[&str]); 13] = [
@@ -89,6 +89,7 @@ pub fn check() -> Result<(), String> {
             }
         }
     }
+    breaches.extend(circles::circles()?);
     if breaches.is_empty() { Ok(()) } else { Err(format!("\n{}", breaches.join("\n"))) }
 }
 

@@ -20,12 +20,12 @@ use serde_json::{Value, json};
 use crate::{
     Fleet,
     arguments::{Limits, Page},
-    compare::runs,
     extremes::extremes,
     files, modes, own,
     problem::Outcome,
     refinement,
     report::Report,
+    run::runs,
     simulate::summary,
     stability,
     statics::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, tables},

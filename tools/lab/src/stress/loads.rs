@@ -1,9 +1,10 @@
 //! Loads from nothing to a hundred tonnes, neighbours of very different mass, links of hardly any.
 
+use crane_codegen::SourceFile;
+
 use super::{
     GRAVITY, Specs,
     case::{Case, expect},
-    spec::Spec,
     subject::{Subject, balanced, timing},
 };
 use crane_model::{dynamics::Method, modes::undamped, statics::Status};
@@ -27,7 +28,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     cases
 }
 
-fn statics(spec: Spec, load: f64) -> Case {
+fn statics(spec: SourceFile, load: f64) -> Case {
     let weight = GRAVITY * (15000.0 + 515.5 + 408.1 + 335.0 + 224.0 + 346.0 + load);
     let expected = format!("stable; reactions carry {weight:.6e} N, the weight");
     Case::new("load", format!("eight_link_flexible with {load:e} kg, statics"), expected, move || {
@@ -40,7 +41,7 @@ fn statics(spec: Spec, load: f64) -> Case {
     })
 }
 
-fn motion(spec: Spec, load: f64) -> Case {
+fn motion(spec: SourceFile, load: f64) -> Case {
     let expected = "1 s to the end, energy balanced to 0.1 %";
     Case::new("load", format!("eight_link_flexible with {load:e} kg, motion"), expected, move || {
         let recorded = Subject::new(&spec)?.set("load_mass", load)?.run(&timing(Method::RECOMMENDED, 1e-4, 1.0))?;
@@ -49,7 +50,7 @@ fn motion(spec: Spec, load: f64) -> Case {
 }
 
 /// A mass that no crane has, as `--set` would take it.
-fn senseless(spec: Spec, mass: f64) -> Case {
+fn senseless(spec: SourceFile, mass: f64) -> Case {
     let expected = "refused with a reason; all numbers finite";
     Case::new("load", format!("eight_link_flexible with {mass:e} kg"), expected, move || {
         let subject = match Subject::new(&spec)?.set("load_mass", mass) {
@@ -64,9 +65,11 @@ fn senseless(spec: Spec, mass: f64) -> Case {
 }
 
 /// Two rods of 1 m, hinged about y, each with a point mass at its end.
-fn rods(upper: f64, lower: f64, guess: [f64; 2]) -> Spec {
-    Spec::new(format!(
-        "format: 1
+fn rods(upper: f64, lower: f64, guess: [f64; 2]) -> SourceFile {
+    SourceFile::new(
+        "spec",
+        format!(
+            "format: 1
 name: rods
 links:
   - {{name: upper, joint: {{revolute: {{axis: y}}}}, mass: {upper:e}, com: [0, 0, -1]}}
@@ -79,8 +82,9 @@ guess: {{upper_theta: {:e}, lower_theta: {:e}}}
 points: [{{name: end, link: lower, at: [0, 0, -1]}}]
 run: {{duration: 10, step: 1e-4}}
 ",
-        guess[0], guess[1]
-    ))
+            guess[0], guess[1]
+        ),
+    )
 }
 
 /// `ω² = g/l (1 + μ)(1 ± √(μ/(1 + μ)))`, μ = m₂/m₁, of the double pendulum of equal lengths (L. D. Landau, E. M. Lifshitz,
@@ -114,8 +118,7 @@ fn swing(upper: f64, lower: f64) -> Case {
             format!("pendulum of {upper:e} and {lower:e} kg, motion"),
             expected,
             move || {
-                let subject =
-                    Subject::new(&rods(upper, lower, [1.0, 0.5]).with("links:", "analyses: [dynamics]\nlinks:"))?;
+                let subject = Subject::new(&rods(upper, lower, [1.0, 0.5]).changed("analyses: [dynamics]"))?;
                 let mut told = String::new();
                 for (method, accuracy) in [(Method::DormandPrince, 1e-9), (Method::RECOMMENDED, 1e-6)] {
                     match subject.run(&timing(method, accuracy, 2.0)) {
@@ -130,7 +133,7 @@ fn swing(upper: f64, lower: f64) -> Case {
     }
     let expected = "2 s to the end with dopri5, energy constant to 1e-5";
     Case::new("mass ratio", format!("pendulum of {upper:e} and {lower:e} kg, motion"), expected, move || {
-        let spec = rods(upper, lower, [1.0, 0.5]).with("links:", "analyses: [dynamics]\nlinks:");
+        let spec = rods(upper, lower, [1.0, 0.5]).changed("analyses: [dynamics]");
         let recorded = Subject::new(&spec)?.run(&timing(Method::DormandPrince, 1e-9, 2.0))?;
         balanced(&recorded, 1e-5)
     })
@@ -140,7 +143,7 @@ fn swing(upper: f64, lower: f64) -> Case {
 fn nearly_massless(mass: f64) -> Case {
     let expected = "stable; slowest ω within 1e-4 of the massless link's √(g/l), l = 2 m";
     Case::new("nearly massless links", format!("link of {mass:e} kg over 100 kg"), expected, move || {
-        let spec = Spec::new(format!(
+        let spec = SourceFile::new("spec", format!(
             "format: 1
 name: crank
 links:

@@ -9,7 +9,6 @@ mod loads;
 mod motions;
 mod numbers;
 mod poses;
-mod spec;
 mod stiffness;
 mod subject;
 mod supports;
@@ -22,6 +21,7 @@ use std::{
     thread,
 };
 
+use crane_codegen::SourceFile;
 use indicatif::ProgressBar;
 
 use crane_cli::{
@@ -31,10 +31,11 @@ use crane_cli::{
 
 use crate::arguments::Stress;
 use case::{Case, Verdict};
-use spec::Spec;
 
 /// Gravity of the shipped specs, m/s².
 const GRAVITY: f64 = 9.81;
+/// Changes of a spec that take gravity away.
+const WEIGHTLESS: &str = "gravity: [0, 0, 0]";
 /// What the tables say of a case that went as expected, and of one that did not.
 const VERDICTS: [&str; 2] = ["FAILED", "ok"];
 
@@ -44,20 +45,43 @@ struct Specs<'a> {
 }
 
 impl Specs<'_> {
-    fn shipped(&self, name: &str) -> Spec {
-        let text = self.fleet.spec(name);
-        Spec { missing: text.is_none().then(|| name.to_owned()), text: text.unwrap_or_default().to_owned() }
+    fn shipped(&self, name: &str) -> SourceFile {
+        // Without the crane, its cases are refused: the spec is empty.
+        SourceFile::new(format!("{name}.yaml"), self.fleet.spec(name).unwrap_or_default())
     }
 
     /// The reference crane.
-    fn reference(&self) -> Spec {
+    fn reference(&self) -> SourceFile {
         self.shipped("eight_link_flexible")
     }
 
     /// The cantilever, in so many sections.
-    fn cantilever(&self, sections: usize) -> Spec {
-        self.shipped("cantilever").with("sections: 8 ", &format!("sections: {sections} "))
+    fn cantilever(&self, sections: usize) -> SourceFile {
+        self.shipped("cantilever").changed(&format!("links: [{{name: beam, beam: {{sections: {sections}}}}}]"))
     }
+}
+
+/// Drives of the reference crane and their stiffness, N m/rad and N/m.
+const DRIVES: [(&str, f64); 5] =
+    [("column_psi", 1e7), ("boom_psi", 1e7), ("outer_boom_psi", 1e7), ("telescope_z", 1e8), ("grapple_psi", 1e7)];
+/// Stiffness of its eight supports along x, y and z, N/m.
+const SUPPORT: [f64; 3] = [3e6, 3e6, 1e7];
+
+/// The reference crane with other keys of its boom's beam.
+fn with_boom(reference: &SourceFile, keys: &str) -> SourceFile {
+    reference.changed(&format!("links: [{{name: boom, beam: {{{keys}}}}}]"))
+}
+
+/// The reference crane with other keys of each drive, which depend on its stiffness.
+fn with_drives(reference: &SourceFile, keys: impl Fn(f64) -> String) -> SourceFile {
+    let drive = |(coordinate, stiffness)| format!("  - {{coordinate: {coordinate}, {}}}\n", keys(stiffness));
+    reference.changed(&format!("drives:\n{}", DRIVES.map(drive).concat()))
+}
+
+/// The reference crane on supports of another stiffness.
+fn with_supports(reference: &SourceFile, stiffness: [f64; 3]) -> SourceFile {
+    let support = |number| format!("  - {{name: s{number}, stiffness: {stiffness:?}}}\n");
+    reference.changed(&format!("supports:\n{}", [1, 2, 3, 4, 5, 6, 7, 8].map(support).concat()))
 }
 
 /// Runs the suite, prints it and writes it.

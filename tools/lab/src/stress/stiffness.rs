@@ -2,18 +2,20 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use crane_codegen::SourceFile;
+
 use super::{
-    GRAVITY, Specs,
+    GRAVITY, SUPPORT, Specs, WEIGHTLESS,
     case::{Case, expect},
-    spec::Spec,
     subject::{Subject, cautions, imbalance, timing},
+    with_boom, with_drives, with_supports,
 };
 use crane_model::{
     dynamics::Method,
     modes::{damped, undamped},
 };
 
-const DRIVES: &str = "stiffness of drives";
+const OF_DRIVES: &str = "stiffness of drives";
 /// Factors of a stiffness.
 const FACTORS: [f64; 8] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e2, 1e4, 1e6];
 /// Moment of all weights about the pin of the reference crane's boom while boom, outer boom and telescope lie level, N m:
@@ -22,7 +24,7 @@ const LEVEL_MOMENT: f64 = GRAVITY * (408.1 * 1.75 + 335.0 * 4.76 + 224.0 * 6.08 
 /// Weight of the reference crane, N.
 const WEIGHT: f64 = GRAVITY * (15000.0 + 515.5 + 408.1 + 335.0 + 224.0 + 846.0);
 /// Vertical stiffness of its eight supports, N/m.
-const GROUND: f64 = 8.0 * 1e7;
+const GROUND: f64 = 8.0 * SUPPORT[2];
 /// The rotation of a base from which linear supports are off by more than half a percent, rad.
 const SMALL: f64 = 0.1;
 /// Simulated time of a run, s: the beginning of the manoeuvre.
@@ -34,30 +36,38 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     let mut cases = Vec::new();
     for factor in FACTORS {
         cases.push(drives(specs.reference(), factor));
-        cases.push(run(DRIVES, specs.reference().scaled("drives", "stiffness:", factor), factor));
+        cases.push(run(OF_DRIVES, stiffened_drives(&specs.reference(), factor), factor));
         cases.push(single_element(specs.cantilever(1), factor));
-        let elements = |spec: Spec| spec.scaled("materials", "E:", factor).scaled("materials", "G:", factor);
-        cases.push(run("stiffness of elements", elements(specs.reference()), factor));
+        cases.push(run("stiffness of elements", stiffened_steel(&specs.reference(), factor), factor));
         cases.push(supports(specs.reference(), factor));
         // Below, the crane turns over.
         if factor >= 1e-2 {
-            cases.push(run(
-                "stiffness of supports",
-                specs.reference().scaled("supports", "stiffness:", factor),
-                factor,
-            ));
+            cases.push(run("stiffness of supports", stiffened_supports(&specs.reference(), factor), factor));
         }
     }
     for beta in [0.0, 1e-6, 1e-4, 1e-2, 1e-1] {
-        cases.push(damping(specs.cantilever(8), beta));
-        let spec = specs.reference().with("beta: 1.5e-3", &format!("beta: {beta:e}"));
+        cases.push(damping(&specs.cantilever(8), beta));
+        let spec = with_boom(&specs.reference(), &format!("damping: {{beta: {beta:e}}}"));
         cases.push(run("damping of elements", spec, beta));
     }
     cases
 }
 
+fn stiffened_drives(spec: &SourceFile, factor: f64) -> SourceFile {
+    with_drives(spec, |stiffness| format!("stiffness: {:e}", factor * stiffness))
+}
+
+/// A crane of another steel.
+fn stiffened_steel(spec: &SourceFile, factor: f64) -> SourceFile {
+    spec.changed(&format!("materials: {{steel: {{E: {:e}, G: {:e}}}}}", factor * 2.1e11, factor * 8.1e10))
+}
+
+fn stiffened_supports(spec: &SourceFile, factor: f64) -> SourceFile {
+    with_supports(spec, SUPPORT.map(|stiffness| factor * stiffness))
+}
+
 /// A run as the command does it by default.
-fn run(group: &'static str, spec: Spec, factor: f64) -> Case {
+fn run(group: &'static str, spec: SourceFile, factor: f64) -> Case {
     let what = if group.starts_with("damping") { "β = " } else { "× " };
     let expected = format!("{DURATION} s to the end, energy balanced to {:.1} %", BALANCE * 100.0);
     let case = Case::new(group, format!("eight_link_flexible {what}{factor:e}, motion"), expected, move || {
@@ -67,18 +77,18 @@ fn run(group: &'static str, spec: Spec, factor: f64) -> Case {
 
         expect(recorded.run.time == DURATION && off < BALANCE, format!("{steps} steps, energy off by {off:.1e}{said}"))
     });
-    if factor == 1e-4 || factor == 1e6 && group != DRIVES { case } else { case.long() }
+    if factor == 1e-4 || factor == 1e6 && group != OF_DRIVES { case } else { case.long() }
 }
 
-fn drives(spec: Spec, factor: f64) -> Case {
+fn drives(spec: SourceFile, factor: f64) -> Case {
     let stiff = factor >= 1.0;
     let expected = if stiff {
         format!("stable; boom drive carries {:.1} kN m ± 2 %, the moment of the horizontal boom", LEVEL_MOMENT / 1e3)
     } else {
         format!("stable; boom sinks and its drive carries up to {:.1} kN m", LEVEL_MOMENT / 1e3)
     };
-    Case::new(DRIVES, format!("eight_link_flexible × {factor:e}, statics"), expected, move || {
-        let subject = Subject::new(&spec.scaled("drives", "stiffness:", factor))?;
+    Case::new(OF_DRIVES, format!("eight_link_flexible × {factor:e}, statics"), expected, move || {
+        let subject = Subject::new(&stiffened_drives(&spec, factor))?;
         let rest = subject.rest()?;
         let boom = subject.index("boom_psi")?;
         let drives = &subject.rig.description().drives;
@@ -93,7 +103,7 @@ fn drives(spec: Spec, factor: f64) -> Case {
 }
 
 /// A cantilever of one section is a rod on one spring in its middle: `s θ = g cos θ (m l/2 + μ l²/8)`, s = EI/l.
-fn single_element(spec: Spec, factor: f64) -> Case {
+fn single_element(spec: SourceFile, factor: f64) -> Case {
     /// Steel of 60 × 40 mm, 2 m long, 20 kg at its end; weak axis.
     const LENGTH: f64 = 2.0;
     const LOAD: f64 = 20.0;
@@ -110,7 +120,7 @@ fn single_element(spec: Spec, factor: f64) -> Case {
     // A symmetric section joint is regular there.
     let expected = format!("stable; tip sinks by {sunk:.6} m, spring rotated by {angle:.6} rad; no caution about ±90°");
     Case::new("stiffness of elements", format!("cantilever of 1 section × {factor:e}, statics"), expected, move || {
-        let subject = Subject::new(&spec.scaled("materials", "E:", factor).scaled("materials", "G:", factor))?;
+        let subject = Subject::new(&stiffened_steel(&spec, factor))?;
         let rest = subject.rest()?;
         let description = subject.rig.description();
         let tip = subject.rig.points_at(&rest.q)[1];
@@ -122,7 +132,7 @@ fn single_element(spec: Spec, factor: f64) -> Case {
     })
 }
 
-fn supports(spec: Spec, factor: f64) -> Case {
+fn supports(spec: SourceFile, factor: f64) -> Case {
     // The load's moment over the supports' stiffness against tilting about y, 1.5 m to either side.
     let tilt = LEVEL_MOMENT / (factor * GROUND * 1.5 * 1.5);
     let small = tilt < SMALL;
@@ -133,7 +143,7 @@ fn supports(spec: Spec, factor: f64) -> Case {
         format!("a caution that the base rotates too far for linear supports, by about {tilt:.2} rad")
     };
     Case::new("stiffness of supports", format!("eight_link_flexible × {factor:e}, statics"), expected, move || {
-        let subject = Subject::new(&spec.scaled("supports", "stiffness:", factor))?;
+        let subject = Subject::new(&stiffened_supports(&spec, factor))?;
         let equilibrium = subject.equilibrium();
         if !small {
             let caution = subject.rig.description().large_tilt(&equilibrium.q);
@@ -149,9 +159,10 @@ fn supports(spec: Spec, factor: f64) -> Case {
 }
 
 /// Damping in proportion to stiffness, `D = β K`: mode by mode `ζ = β ω/2`.
-fn damping(spec: Spec, beta: f64) -> Case {
+fn damping(spec: &SourceFile, beta: f64) -> Case {
     // Gravity's stiffness is not damped.
-    let spec = spec.with("beta: 1e-4", &format!("beta: {beta:e}")).with("[0, 0, -9.81]", "[0, 0, 0]");
+    let changes = format!("links: [{{name: beam, beam: {{damping: {{beta: {beta:e}}}}}}}]\n");
+    let spec = spec.changed(&(changes + WEIGHTLESS));
     let expected = "every underdamped mode has ζ = β ω/2 to 1e-6, all others decay without oscillating";
     Case::new("damping of elements", format!("cantilever β = {beta:e}, modes"), expected, move || {
         let subject = Subject::new(&spec)?;

@@ -4,10 +4,7 @@ use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use indicatif::ProgressBar;
 
-use super::{
-    case::{Finding, expect},
-    spec::Spec,
-};
+use super::case::{Finding, expect};
 use crane_model::{
     dyn_crane::DynCrane,
     dynamics::Method,
@@ -25,11 +22,8 @@ pub struct Subject {
 
 impl Subject {
     /// The crane of a spec, or the codes and titles of its mistakes.
-    pub fn new(spec: &Spec) -> Result<Self, String> {
-        if let Some(words) = &spec.missing {
-            return Err(format!("the shipped spec has no `{words}` any more"));
-        }
-        let crane = LiveCrane::from_spec(&SourceFile::new("spec", spec.text.as_str())).map_err(|mistakes| {
+    pub fn new(spec: &SourceFile) -> Result<Self, String> {
+        let crane = LiveCrane::from_spec(spec).map_err(|mistakes| {
             let told = mistakes.mistakes().iter().map(|mistake| format!("{}: {}", mistake.code, mistake.title));
             format!("refused, {}", told.collect::<Vec<_>>().join("; "))
         })?;

@@ -1,0 +1,72 @@
+"""Specs that extend others: mappings merged key by key, lists of named entries entry by entry."""
+
+from pathlib import Path
+
+from ruamel.yaml import YAML
+
+KINDS = ("joint", "motion", "placement", "section")
+IDENTITIES = ("name", "coordinate")
+
+
+def read_whole(path):
+    """The keys of a spec over those of all specs that it extends.
+
+    A file of several documents holds a spec after those that it extends.
+    """
+    path = Path(path)
+    documents = list(YAML(typ="safe", pure=True).load_all(path.read_text(encoding="utf-8")))
+    base = documents[0].pop("extends", None)
+    whole = merge(read_whole(path.parent / base), documents[0]) if base else documents[0]
+    for document in documents[1:]:
+        document.pop("extends", None)
+        whole = merge(whole, document)
+    return whole
+
+
+def merge(base, over):
+    """A value laid over another."""
+    if isinstance(base, dict) and isinstance(over, dict):
+        return merge_mappings(base, over)
+    if isinstance(base, list) and isinstance(over, list) and are_named(base) and are_named(over):
+        return merge_entries(base, over)
+    return over
+
+
+def merge_mappings(base, over):
+    """Key by key; a key without a value removes what it names."""
+    merged = dict(base)
+    for key, value in over.items():
+        if value is None:
+            del merged[key]
+        elif key in KINDS and kind(base.get(key)) != kind(value):
+            merged[key] = value
+        else:
+            merged[key] = merge(base[key], value) if key in base else value
+    return merged
+
+
+def merge_entries(base, over):
+    """Entry by entry, in the order of the base; new entries come last, `remove: true` removes one."""
+    merged = {identity(entry): entry for entry in base}
+    for entry in over:
+        name = identity(entry)
+        if entry.get("remove") is True:
+            del merged[name]
+        else:
+            merged[name] = merge(merged[name], entry) if name in merged else entry
+    return list(merged.values())
+
+
+def kind(value):
+    """The kind of a value that is one of several: the name of its only key."""
+    return next(iter(value), None) if isinstance(value, dict) else None
+
+
+def are_named(entries):
+    """Whether every entry of a list is known by a name."""
+    return all(isinstance(entry, dict) and identity(entry) is not None for entry in entries)
+
+
+def identity(entry):
+    """What an entry of a list is known by."""
+    return next((entry[key] for key in IDENTITIES if key in entry), None)

@@ -1,0 +1,204 @@
+//! Circles of imports: files that need each other, directly or through others.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::workspace;
+
+/// Folders whose files import each other in one direction, except for a file and its helper.
+const FOLDERS: [(&str, &str); 6] = [
+    ("codegen/src", "codegen/src/emit"),
+    ("codegen/src", "codegen/src/lower"),
+    ("codegen/src", "codegen/src/symbolic"),
+    ("crane-model/src", "crane-model/src/dynamics"),
+    ("crane-model/src", "crane-model/src/statics"),
+    ("tools/cli/src", "tools/cli/src"),
+];
+/// Most files of a circle: a file and its helper.
+const HELPED: usize = 2;
+
+/// A file and the files that it names.
+type Imports = BTreeMap<String, BTreeSet<String>>;
+
+/// Every circle, as a line that names its files.
+pub fn circles() -> Result<Vec<String>, String> {
+    let mut found = Vec::new();
+    for (root, folder) in FOLDERS {
+        // A crate's root names every module; tests may use everything.
+        let counts = |file: &String| !is_root(file, root) && !file.ends_with("/tests.rs");
+        let files: Vec<String> = workspace::files(folder, "rs")?.into_iter().filter(counts).collect();
+        let known: BTreeSet<&str> = files.iter().map(String::as_str).collect();
+        let mut imports = Imports::new();
+        for file in &files {
+            let named = imported(&workspace::read(file)?, file, root, &known);
+            imports.insert(file.clone(), named);
+        }
+        let circles = groups(&imports).into_iter().filter(|files| files.len() > HELPED);
+        found.extend(circles.map(|files| format!("{} import each other in a circle", files.join(", "))));
+    }
+    Ok(found)
+}
+
+fn is_root(file: &str, root: &str) -> bool {
+    ["lib.rs", "main.rs"].iter().any(|name| file == format!("{root}/{name}"))
+}
+
+/// Files that a text names in paths from `crate`, `super` or `self`. A folder's `mod.rs` that declares a file does not import it.
+fn imported(text: &str, file: &str, root: &str, known: &BTreeSet<&str>) -> BTreeSet<String> {
+    // Tests at the end may use everything.
+    let code = text.split("\n#[cfg(test)]").next().unwrap_or_default();
+    let code: String = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let own = folder_of(file);
+    let mut found = BTreeSet::new();
+    for (start, base) in [("crate::", root.to_owned()), ("super::", parent(file)), ("self::", own)] {
+        for (at, _) in code.match_indices(start) {
+            let before = code[..at].chars().next_back();
+            if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == ':') {
+                continue;
+            }
+            for path in paths(&code[at + start.len()..]) {
+                let place = resolve(&base, &path, known);
+                found.extend(place.filter(|place| place != file));
+            }
+        }
+    }
+    found
+}
+
+/// The folder that holds the submodules of a file.
+fn folder_of(file: &str) -> String {
+    let stem = file.trim_end_matches(".rs");
+    stem.strip_suffix("/mod").unwrap_or(stem).to_owned()
+}
+
+/// The folder that holds the siblings of a file.
+fn parent(file: &str) -> String {
+    folder_of(file).rsplit_once('/').map_or_else(String::new, |(parent, _)| parent.to_owned())
+}
+
+/// Paths at the beginning of a text, those in braces written out: `a::{b, c::d}` is `a::b` and `a::c::d`.
+fn paths(text: &str) -> Vec<Vec<String>> {
+    let mut found = Vec::new();
+    expand(text.trim_start(), &mut Vec::new(), &mut found);
+    found
+}
+
+/// Reads one path and returns what follows it.
+fn expand<'t>(text: &'t str, before: &mut Vec<String>, found: &mut Vec<Vec<String>>) -> &'t str {
+    let depth = before.len();
+    let mut rest = text;
+    loop {
+        if let Some(list) = rest.strip_prefix('{') {
+            rest = list.trim_start();
+            while !rest.is_empty() && !rest.starts_with('}') {
+                rest = expand(rest, before, found).trim_start();
+                rest = rest.strip_prefix(',').unwrap_or(rest).trim_start();
+            }
+            before.truncate(depth);
+            return rest.strip_prefix('}').unwrap_or(rest);
+        }
+        let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        if end == 0 {
+            // `*` or something that is not a path.
+            found.push(before.clone());
+            before.truncate(depth);
+            let mut letters = rest.chars();
+            letters.next();
+            return letters.as_str();
+        }
+        before.push(rest[..end].to_owned());
+        rest = &rest[end..];
+        let Some(deeper) = rest.strip_prefix("::") else {
+            found.push(before.clone());
+            before.truncate(depth);
+            // A new name for it.
+            let renamed = rest
+                .strip_prefix(" as ")
+                .map(|rest| rest.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_'));
+            return renamed.unwrap_or(rest);
+        };
+        rest = deeper.trim_start();
+    }
+}
+
+/// The file that a path from a folder names: the deepest module on the way, which has what the rest of the path names.
+fn resolve(base: &str, path: &[String], known: &BTreeSet<&str>) -> Option<String> {
+    let mut folder = base.to_owned();
+    let mut place = None;
+    for name in path {
+        if name == "super" {
+            folder = folder.rsplit_once('/').map_or_else(String::new, |(parent, _)| parent.to_owned());
+            continue;
+        }
+        folder = format!("{folder}/{name}");
+        let file =
+            [format!("{folder}.rs"), format!("{folder}/mod.rs")].into_iter().find(|file| known.contains(file.as_str()));
+        match file {
+            Some(file) => place = Some(file),
+            None => break,
+        }
+    }
+    place
+}
+
+/// Files that reach each other, group by group.
+fn groups(imports: &Imports) -> Vec<Vec<String>> {
+    let reached: BTreeMap<&str, BTreeSet<&str>> =
+        imports.keys().map(|file| (file.as_str(), reach(imports, file))).collect();
+    let mut found: Vec<Vec<String>> = Vec::new();
+    for file in imports.keys() {
+        if found.iter().flatten().any(|known| known == file) {
+            continue;
+        }
+        let back = |other: &&&str| reached.get(**other).is_some_and(|from| from.contains(file.as_str()));
+        let circle: Vec<String> = reached[file.as_str()].iter().filter(back).map(ToString::to_string).collect();
+        if !circle.is_empty() {
+            found.push(circle);
+        }
+    }
+    found
+}
+
+/// Everything that a file needs, directly or through others.
+fn reach<'i>(imports: &'i Imports, file: &str) -> BTreeSet<&'i str> {
+    let mut found = BTreeSet::new();
+    let mut open: Vec<&str> = imports.get(file).into_iter().flatten().map(String::as_str).collect();
+    while let Some(next) = open.pop() {
+        if found.insert(next) {
+            open.extend(imports.get(next).into_iter().flatten().map(String::as_str));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_in_braces_are_written_out() {
+        let words = |text: &str| paths(text).iter().map(|path| path.join("::")).collect::<Vec<_>>();
+        assert_eq!(words("chain::Chain;"), ["chain::Chain"]);
+        assert_eq!(
+            words("{SourceFile, compile as c, emit::{self, labels::Labels}, own::*};"),
+            ["SourceFile", "compile", "emit::self", "emit::labels::Labels", "own"]
+        );
+        assert_eq!(words("lower::lower(p)"), ["lower::lower"]);
+    }
+
+    #[test]
+    fn circles_of_three_are_found_and_pairs_are_not() {
+        let known: BTreeSet<&str> = ["r/a.rs", "r/b/mod.rs", "r/b/c.rs", "r/d.rs"].into();
+        let of = |file: &str, text: &str| (file.to_owned(), imported(text, file, "r", &known));
+        let mut imports: Imports = [
+            of("r/a.rs", "use crate::{b::c::Name, d};\n"),
+            of("r/b/mod.rs", "mod c;\n"),
+            of("r/b/c.rs", "use super::super::d::Other;\n// crate::a\n"),
+            of("r/d.rs", "fn f() { super::a::g() }\n#[cfg(test)]\nuse crate::b;\n"),
+        ]
+        .into();
+        let circle = ["r/a.rs", "r/b/c.rs", "r/d.rs"].map(str::to_owned).to_vec();
+        assert_eq!(groups(&imports), [circle]);
+        imports.extend([of("r/b/c.rs", "use std::fmt;\n")]);
+        assert_eq!(groups(&imports), [["r/a.rs", "r/d.rs"].map(str::to_owned).to_vec()]);
+    }
+}
