@@ -11,3 +11,9 @@ pub mod registry;
 pub mod runtime;
 pub mod states;
 pub mod workspace;
+
+/// The small crane with exact kinematics of `tests/no-std`.
+#[allow(clippy::all, clippy::pedantic)]
+pub mod exact {
+    include!(concat!(env!("OUT_DIR"), "/exact.rs"));
+}

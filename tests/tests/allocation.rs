@@ -9,6 +9,7 @@ use crane_model::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector3};
 use crane_model::support::lanes::splat;
 use crane_model::{CraneModel, Ensemble, LaneDynamics, SectionModuli, Tension, TransformDerivatives, Wrench};
 use crane_specs as cranes;
+use crane_tests::exact;
 
 /// Calls every function of the traits at the guess; vectors and matrices stay on the stack, lists go into `places`.
 fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivatives<N>), places: &mut Places) {
@@ -122,6 +123,15 @@ every_crane! {
     loader_tipping
 }
 
+/// Exact kinematics, rotation vectors, a rigid drive, stops, cylinders, springs and ropes between points.
+#[test]
+fn exact() {
+    let mut crane = exact::Crane::default();
+    let mut places = Places::of::<{ exact::N }>(&crane);
+    let calls = allocation_counter::measure(|| every_function(&mut crane, &mut places));
+    assert_eq!(calls.count_total, 0);
+}
+
 /// Room is made once per run: a run four times as long allocates as often, whichever the method.
 #[test]
 fn steps_allocate_nothing() {
@@ -129,6 +139,10 @@ fn steps_allocate_nothing() {
         crane_model::dyn_crane::boxed::<{ cranes::eight_link_flexible::N }, cranes::eight_link_flexible::Crane>(),
         crane_model::dyn_crane::boxed::<{ cranes::cantilever::N }, cranes::cantilever::Crane>(),
         crane_model::dyn_crane::boxed::<{ cranes::double_pendulum::N }, cranes::double_pendulum::Crane>(),
+        crane_model::dyn_crane::boxed::<{ exact::N }, exact::Crane>(),
+        // Feet that lift; oil.
+        crane_model::dyn_crane::boxed::<{ cranes::loader_tipping::N }, cranes::loader_tipping::Crane>(),
+        crane_model::dyn_crane::boxed::<{ cranes::eight_link_hydraulic::N }, cranes::eight_link_hydraulic::Crane>(),
     ];
     for crane in &cranes {
         let crane: &dyn DynCrane = crane.as_ref();

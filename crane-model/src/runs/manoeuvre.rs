@@ -68,9 +68,13 @@ pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<
 
 fn modes_at(crane: &dyn DynCrane, q: &[f64]) -> Result<Vec<DampedMode>, Failed> {
     let modes = modes::damped(&crane.small_motions_at(q));
-    let mut modes = modes.map_err(|no_modes| Reason::Modes(no_modes).of(&crane.description().name))?;
-    modes.extend(hydraulics::decays(crane, q));
-    Ok(modes)
+    let modes = modes.map_err(|no_modes| Reason::Modes(no_modes).of(&crane.description().name))?;
+    Ok(limiting_modes(crane, q, &modes))
+}
+
+/// Modes about a pose that may limit a step: the damped ones, and the decays of oil, which are not among them.
+pub fn limiting_modes(crane: &dyn DynCrane, q: &[f64], damped: &[DampedMode]) -> Vec<DampedMode> {
+    [damped, &hydraulics::decays(crane, q)].concat()
 }
 
 /// The limit of the step of [`Method::Rk4`] during the manoeuvre; `None` if there is none or there are no modes.

@@ -7,6 +7,6 @@ mod recorded;
 mod start;
 
 pub use failed::{Failed, Reason};
-pub use manoeuvre::{Bound, POSES, Pose, SAFE, manoeuvre, step_limit};
+pub use manoeuvre::{Bound, POSES, Pose, SAFE, limiting_modes, manoeuvre, step_limit};
 pub use recorded::{Recorded, imbalance, record, record_checked};
 pub use start::{EQUILIBRIUM, GUESS, Start};

@@ -191,6 +191,12 @@ pub enum Output {
     Envelope,
     /// Two cranes.
     Compare,
+    /// Everything about a crane.
+    Run,
+    /// What a crane consists of.
+    Info,
+    /// The shipped cranes.
+    List,
 }
 
 /// A spec to check.

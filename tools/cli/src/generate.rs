@@ -73,6 +73,9 @@ impl Output {
             Output::Strength => include_str!("../schemas/strength.json"),
             Output::Envelope => include_str!("../schemas/envelope.json"),
             Output::Compare => include_str!("../schemas/compare.json"),
+            Output::Run => include_str!("../schemas/run.json"),
+            Output::Info => include_str!("../schemas/info.json"),
+            Output::List => include_str!("../schemas/list.json"),
         }
     }
 }

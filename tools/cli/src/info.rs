@@ -82,17 +82,16 @@ pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     let mut bodies = Grid::new(
         "bodies",
         "Bodies (mass with default parameters)",
-        &["name", "link", "mass [kg]", "length [m]", "moved by"],
+        &["name", "link", "mass [kg]", "length [m]", "degrees of freedom"],
     );
     for body in &description.bodies {
         let length = (body.length > 0.0).then_some(body.length);
-        let moved = format!("{} coordinates", body.degrees_of_freedom);
         bodies.row([
             body.name.as_str().into(),
             body.link.as_str().into(),
             body.mass.into(),
             length.into(),
-            moved.into(),
+            body.degrees_of_freedom.into(),
         ]);
     }
     report.grid(bodies);

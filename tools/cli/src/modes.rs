@@ -5,8 +5,8 @@ use std::io::Write;
 use crane_model::{
     Description,
     dynamics::Method,
-    hydraulics,
     modes::{DampedMode, damped, undamped},
+    runs::limiting_modes,
     stability::limit,
 };
 
@@ -37,8 +37,8 @@ pub fn modes(options: &Modes, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
     }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
-    let with_oil = [modes.clone(), hydraulics::decays(rig.as_ref(), &case.equilibrium.q)].concat();
-    let step = limit(&with_oil, &Method::Rk4.stability()).map(|limit| limit.step);
+    let limiting = limiting_modes(rig.as_ref(), &case.equilibrium.q, &modes);
+    let step = limit(&limiting, &Method::Rk4.stability()).map(|limit| limit.step);
     report.value("stable", true);
     report.fact("largest stable step", Cell::from(step), "s");
     let changes = refinement::changes(&case, fleet)?;

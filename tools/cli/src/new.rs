@@ -120,16 +120,26 @@ fn package(folder: &Path) -> Outcome<String> {
 
 /// A spec with another name of the crane, and all its comments; `None` if the name is not on a line of its own.
 fn renamed(spec: &str, from: &str, to: &str) -> Option<String> {
-    let mut found = false;
-    let lines = spec.split_inclusive('\n').map(|line| {
-        match line.strip_prefix("name:").filter(|rest| !found && rest.contains(from)) {
-            Some(rest) => {
-                found = true;
-                format!("name:{}", rest.replacen(from, to, 1))
-            }
-            None => line.to_owned(),
-        }
-    });
-    let renamed: String = lines.collect();
-    found.then_some(renamed)
+    let mut lines: Vec<String> = spec.split_inclusive('\n').map(str::to_owned).collect();
+    let name = |line: &String| {
+        line.strip_prefix("name:").filter(|rest| rest.contains(from)).map(|rest| rest.replacen(from, to, 1))
+    };
+    // The last one counts: those before are of specs that it extends.
+    let (line, rest) = lines.iter_mut().rev().find_map(|line| name(line).map(|rest| (line, rest)))?;
+    *line = format!("name:{rest}");
+    Some(lines.concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_that_counts_is_replaced() {
+        let base = SourceFile::new("base.yaml", "name: boom_long\nlinks: []\n");
+        let text = base.changed("name: boom   # short\n").text;
+        let expected = text.replace("name: boom   # short", "name: mine   # short");
+        assert_eq!(renamed(&text, "boom", "mine"), Some(expected));
+        assert_eq!(renamed("{name: boom}", "boom", "mine"), None);
+    }
 }

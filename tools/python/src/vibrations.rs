@@ -3,8 +3,8 @@
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynLineariseMotion, DynModel};
 use crane_model::dynamics::Method;
-use crane_model::hydraulics;
 use crane_model::modes::{DampedMode, Held, Mode, NoModes, damped, steady, undamped};
+use crane_model::runs::limiting_modes;
 use crane_model::stability::{cause, limit};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::exceptions::{PyArithmeticError, PyValueError};
@@ -21,7 +21,7 @@ use crate::parallel::map_rows;
 struct Modes {
     undamped: Vec<Mode>,
     damped: Vec<DampedMode>,
-    /// Those that may limit a step: the damped ones, and the decays of oil.
+    /// Those that may limit a step.
     limiting: Vec<DampedMode>,
 }
 
@@ -33,7 +33,7 @@ impl Modes {
         let crane: &dyn DynCrane = crane;
         let motions = crane.small_motions_at(q);
         let damped = damped(&motions)?;
-        let limiting = [damped.clone(), hydraulics::decays(crane, q)].concat();
+        let limiting = limiting_modes(crane, q, &damped);
         Ok(Self { undamped: undamped(&motions)?, damped, limiting })
     }
 }

@@ -115,6 +115,27 @@ def test_compare(output, tmp_path, pair):
     assert len(labels) == 2 and all(set(row["value"]) == labels for row in found["summary"])
 
 
+@pytest.mark.parametrize("crane_name", ["knuckle_boom", "eight_link_flexible", ROOT / "tests/no-std/exact.yaml"])
+def test_run(output, tmp_path, crane_name):
+    found = output("run", "run", crane_name, *SHORT, "--out", tmp_path)
+    labels = {of["label"] for of in found["cranes"]}
+    assert found["stable"] is True and all(set(row["value"]) == labels for row in found["summary"])
+    assert ("deflection" in found) == (len(labels) == 2) == (crane_name == "eight_link_flexible")
+
+
+@pytest.mark.parametrize("crane_name", [*CRANES, "eight_link_hydraulic", ROOT / "tests/no-std/exact.yaml"])
+def test_info(output, crane_name):
+    found = output("info", "info", crane_name)
+    assert [row["index"] for row in found["q"]] == list(range(found["coordinates"]))
+    assert found["bodies"][-1]["degrees_of_freedom"] == found["coordinates"]
+    assert ("inputs" in found) == (crane_name not in [*CRANES, "eight_link_hydraulic"])
+
+
+def test_list(output):
+    found = output("list", "list")
+    assert {row["name"]: row["coordinates"] for row in found["cranes"]}.items() >= {"double_pendulum": 2, "eight_link_rigid": 13}.items()
+
+
 def test_check(output):
     found = output("check", "check", "cantilever")
     assert found["valid"] is True and found["diagnostics"] == [] and found["crane"] == "cantilever"
