@@ -100,6 +100,8 @@ links:
 drives:
   - {coordinate: arm_theta, stiffness: 1e5, damping: 10, motion: {hold: 0}}
 damping: {hand_psi: 5}
+loads: [{name: wind, link: arm, at: [1, 0, 0], force: [0, 0, 9], scale: {cubic: {from: 0, to: 1, duration: 2}}}]
+connectors: [{name: guy, from: {at: [0, 0, 5]}, to: {link: arm, at: [1, 0, 0]}, law: {rope: {stiffness: 2e4, length: 40}}}]
 run: {duration: 3, output: 0.1}
 ";
     let middle = "
@@ -108,6 +110,8 @@ links:
   - {name: hand, joint: {prismatic: {axis: x}}, mass: 3}
 drives: [{coordinate: arm_theta, motion: {speed: {from: 0, rate: 0.1, ramp: 1}}}]
 damping: ~
+loads: [{name: wind, scale: {speed: {from: 0, rate: 0.1, ramp: 1}}}]
+connectors: [{name: guy, law: {spring: {stiffness: 2e4, length: 40}}}]
 run: {duration: 4}
 ";
     let last = "

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ruamel.yaml import YAML
 
-KINDS = ("joint", "motion", "placement", "section")
+KINDS = ("joint", "law", "motion", "opening", "placement", "scale", "section")
 IDENTITIES = ("name", "coordinate")
 
 

@@ -10,7 +10,7 @@ const EXTENDS: &str = "extends";
 /// Key that removes an entry of a list.
 const REMOVE: &str = "remove";
 /// Keys whose value is one of several kinds, a mapping of the kind's name: another kind replaces the value.
-const KINDS: [&str; 4] = ["joint", "motion", "placement", "section"];
+const KINDS: [&str; 7] = ["joint", "law", "motion", "opening", "placement", "scale", "section"];
 /// Keys by which entries of lists are known.
 const IDENTITIES: [&str; 2] = ["name", "coordinate"];
 
