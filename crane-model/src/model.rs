@@ -148,7 +148,9 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     fn prescribe(&self, _t: f64, _q: &mut SVector<f64, N>, _v: &mut SVector<f64, N>) {}
 
     /// Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one. `out`: one pair per drive.
-    fn valve_openings(&self, _t: f64, _out: &mut [[f64; 2]]) {}
+    fn valve_openings(&self, _t: f64, out: &mut [[f64; 2]]) {
+        out.fill([0.0; 2]);
+    }
 
     /// Begin and end of the intervals in which the drives' motions and valves' commands are smooth, s. `out`: one pair per interval, drive by drive;
     /// [`DriveInfo::pieces`](crate::DriveInfo::pieces) is their number.
