@@ -1,6 +1,6 @@
 //! Small motions about poses and steady motions, against textbook laws, differences and the function that is derived for poses at rest.
 
-use crane_codegen::SourceFile;
+use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
 use crane_model::modes::{Held, SmallMotions, damped, damped_with_shapes, steady};
@@ -13,7 +13,7 @@ fn crane(text: &str) -> LiveCrane {
 
 fn shipped(name: &str) -> LiveCrane {
     let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
-    LiveCrane::from_spec(&SourceFile::new(&path, std::fs::read_to_string(&path).unwrap())).unwrap()
+    LiveCrane::from_spec(&build::open(path.as_ref()).unwrap()).unwrap()
 }
 
 fn assert_close(what: &str, one: &DMatrix<f64>, other: &DMatrix<f64>, tolerance: f64) {
