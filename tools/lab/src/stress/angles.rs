@@ -2,10 +2,9 @@
 
 use std::{f64::consts::FRAC_PI_2, fmt::Write};
 
-use crane_codegen::SourceFile;
-
 use super::{
     case::{Case, expect},
+    spec::Spec,
     subject::{Subject, appended, balanced, cautions, timing},
 };
 use crane_model::{LARGE_TILT, NEAR_SINGULAR, dynamics::Method};
@@ -50,7 +49,7 @@ supports:
                 play[0], play[1], play[2]
             );
         }
-        let subject = Subject::new(&SourceFile::new("spec", text))?;
+        let subject = Subject::new(&Spec::new(text))?;
         let equilibrium = subject.equilibrium();
         let description = subject.rig.description();
         let finite = equilibrium.q.iter().all(|x| x.is_finite());
@@ -81,7 +80,7 @@ guess: {{block_theta: {angle:e}}}
 run: {{duration: 1}}
 "
         );
-        let subject = Subject::new(&SourceFile::new("spec", text))?;
+        let subject = Subject::new(&Spec::new(text))?;
         match subject.run(&timing(Method::RECOMMENDED, 1e-6, 1.0)) {
             Err(said) => expect(said.contains("block_theta"), said),
             Ok(recorded) => {
@@ -108,7 +107,7 @@ supports:
 analyses: [dynamics]
 run: {duration: 3}
 ";
-        let subject = Subject::new(&SourceFile::new("spec", text))?;
+        let subject = Subject::new(&Spec::new(text))?;
         match subject.run(&timing(Method::RECOMMENDED, 1e-6, 3.0)) {
             Err(said) => expect(said.contains("block_theta") && said.contains("90°"), said),
             Ok(recorded) => balanced(&recorded, 1e-3),

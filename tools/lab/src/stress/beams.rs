@@ -2,11 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use crane_codegen::SourceFile;
-
 use super::{
     GRAVITY, Specs,
     case::{Case, expect},
+    spec::Spec,
     subject::{Subject, balanced, timing},
     with_boom,
 };
@@ -30,7 +29,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
 }
 
 /// `δ = F l³/3EI (1 − 1/4n²) + μ g l⁴/8EI (1 − 1/2n²)`, exact for rigid elements of small deflection.
-fn deflection(spec: SourceFile, sections: usize) -> Case {
+fn deflection(spec: Spec, sections: usize) -> Case {
     const LENGTH: f64 = 2.0;
     const RIGIDITY: f64 = MODULUS * 0.06 * 0.04 * 0.04 * 0.04 / 12.0;
     let square = (sections * sections) as f64;
@@ -47,7 +46,7 @@ fn deflection(spec: SourceFile, sections: usize) -> Case {
     })
 }
 
-fn motion(spec: SourceFile, sections: usize) -> Case {
+fn motion(spec: Spec, sections: usize) -> Case {
     let expected = "1 s to the end, energy balanced to 0.1 %";
     let case =
         Case::new("number of sections", format!("eight_link_flexible of {sections}, motion"), expected, move || {
@@ -58,13 +57,11 @@ fn motion(spec: SourceFile, sections: usize) -> Case {
 }
 
 /// A column of `n` sections, EI = 1e4 N m² and 4 m long, of 4 g, with a load on its head.
-fn column(sections: usize, load: f64, lean: f64) -> SourceFile {
+fn column(sections: usize, load: f64, lean: f64) -> Spec {
     let guess =
         (1..=sections).map(|section| format!("column_{section}_theta: {lean:e}")).collect::<Vec<_>>().join(", ");
-    SourceFile::new(
-        "spec",
-        format!(
-            "format: 1
+    Spec::new(format!(
+        "format: 1
 name: column
 gravity: [0, 0, -9.81]
 links:
@@ -81,9 +78,8 @@ points:
   - {{name: head, link: head, at: [0, 0, 0]}}
 guess: {{{guess}}}
 ",
-            load / GRAVITY
-        ),
-    )
+        load / GRAVITY
+    ))
 }
 
 /// `P = 4 EI n²/l² sin²(π/4n)`: the chain's difference equation `α₊ − (2 − P d/s) α + α₋ = 0` with a clamped and a free end.

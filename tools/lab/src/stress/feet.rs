@@ -2,11 +2,10 @@
 
 use std::fmt::Write;
 
-use crane_codegen::SourceFile;
-
 use super::{
     GRAVITY,
     case::{Case, expect},
+    spec::Spec,
     subject::{Subject, balanced, timing},
 };
 use crane_model::{dynamics::Method, statics::Status};
@@ -37,7 +36,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 /// A truck on four corner feet: the near left one and on anticlockwise, and a live load to its right side.
-fn truck(kinematics: &str, stiffness: f64, damping: f64, gaps: [f64; 4]) -> SourceFile {
+fn truck(kinematics: &str, stiffness: f64, damping: f64, gaps: [f64; 4]) -> Spec {
     let mut text = format!(
         "format: 1
 name: truck
@@ -57,7 +56,7 @@ supports:
             -gap
         );
     }
-    SourceFile::new("spec", text)
+    Spec::new(text)
 }
 
 /// The load at which the moment about the near feet is nothing.

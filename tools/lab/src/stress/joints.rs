@@ -2,11 +2,10 @@
 
 use std::f64::consts::PI;
 
-use crane_codegen::SourceFile;
-
 use super::{
     GRAVITY,
     case::{Case, expect},
+    spec::Spec,
     subject::{Subject, balanced, imbalance, timing},
 };
 use crane_cli::toolbox::Timing;
@@ -37,19 +36,16 @@ pub fn cases() -> Vec<Case> {
 }
 
 /// A slide without weight, with more keys.
-fn slide(more: &str) -> SourceFile {
-    SourceFile::new(
-        "spec",
-        format!(
-            "format: 1
+fn slide(more: &str) -> Spec {
+    Spec::new(format!(
+        "format: 1
 name: slide
 gravity: [0, 0, 0]
 analyses: [dynamics]
 links: [{{name: slide, joint: {{prismatic: {{axis: x}}}}, mass: {MASS}, com: [0, 0, 0]}}]
 {more}
 "
-        ),
-    )
+    ))
 }
 
 /// A slide that moves from the start on.
@@ -86,19 +82,16 @@ fn rubbed(width: f64, method: Method) -> Case {
 
 /// An arm of 1 m and 100 kg on a drive that would hold it level, far too weak: it hangs where the spring's moment and the weight's
 /// balance, `s (π/2 − α) = m g sin α` for the angle α from hanging down.
-fn arm(stiffness: f64) -> SourceFile {
-    SourceFile::new(
-        "spec",
-        format!(
-            "format: 1
+fn arm(stiffness: f64) -> Spec {
+    Spec::new(format!(
+        "format: 1
 name: arm
 links: [{{name: arm, joint: {{revolute: {{axis: y}}}}, mass: 100, com: [1, 0, 0]}}]
 drives: [{{coordinate: arm_theta, stiffness: {stiffness:e}, damping: {:e}, motion: {{hold: 0}}}}]
 run: {{duration: 2}}
 ",
-            0.01 * stiffness
-        ),
-    )
+        0.01 * stiffness
+    ))
 }
 
 fn sagging(stiffness: f64) -> Case {

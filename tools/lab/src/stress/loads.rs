@@ -1,10 +1,9 @@
 //! Loads from nothing to a hundred tonnes, neighbours of very different mass, links of hardly any.
 
-use crane_codegen::SourceFile;
-
 use super::{
     GRAVITY, Specs,
     case::{Case, expect},
+    spec::Spec,
     subject::{Subject, balanced, timing},
 };
 use crane_model::{dynamics::Method, modes::undamped, statics::Status};
@@ -28,7 +27,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     cases
 }
 
-fn statics(spec: SourceFile, load: f64) -> Case {
+fn statics(spec: Spec, load: f64) -> Case {
     let weight = GRAVITY * (15000.0 + 515.5 + 408.1 + 335.0 + 224.0 + 346.0 + load);
     let expected = format!("stable; reactions carry {weight:.6e} N, the weight");
     Case::new("load", format!("eight_link_flexible with {load:e} kg, statics"), expected, move || {
@@ -41,7 +40,7 @@ fn statics(spec: SourceFile, load: f64) -> Case {
     })
 }
 
-fn motion(spec: SourceFile, load: f64) -> Case {
+fn motion(spec: Spec, load: f64) -> Case {
     let expected = "1 s to the end, energy balanced to 0.1 %";
     Case::new("load", format!("eight_link_flexible with {load:e} kg, motion"), expected, move || {
         let recorded = Subject::new(&spec)?.set("load_mass", load)?.run(&timing(Method::RECOMMENDED, 1e-4, 1.0))?;
@@ -50,7 +49,7 @@ fn motion(spec: SourceFile, load: f64) -> Case {
 }
 
 /// A mass that no crane has, as `--set` would take it.
-fn senseless(spec: SourceFile, mass: f64) -> Case {
+fn senseless(spec: Spec, mass: f64) -> Case {
     let expected = "refused with a reason; all numbers finite";
     Case::new("load", format!("eight_link_flexible with {mass:e} kg"), expected, move || {
         let subject = match Subject::new(&spec)?.set("load_mass", mass) {
@@ -65,11 +64,9 @@ fn senseless(spec: SourceFile, mass: f64) -> Case {
 }
 
 /// Two rods of 1 m, hinged about y, each with a point mass at its end.
-fn rods(upper: f64, lower: f64, guess: [f64; 2]) -> SourceFile {
-    SourceFile::new(
-        "spec",
-        format!(
-            "format: 1
+fn rods(upper: f64, lower: f64, guess: [f64; 2]) -> Spec {
+    Spec::new(format!(
+        "format: 1
 name: rods
 links:
   - {{name: upper, joint: {{revolute: {{axis: y}}}}, mass: {upper:e}, com: [0, 0, -1]}}
@@ -82,9 +79,8 @@ guess: {{upper_theta: {:e}, lower_theta: {:e}}}
 points: [{{name: end, link: lower, at: [0, 0, -1]}}]
 run: {{duration: 10, step: 1e-4}}
 ",
-            guess[0], guess[1]
-        ),
-    )
+        guess[0], guess[1]
+    ))
 }
 
 /// `ω² = g/l (1 + μ)(1 ± √(μ/(1 + μ)))`, μ = m₂/m₁, of the double pendulum of equal lengths (L. D. Landau, E. M. Lifshitz,
@@ -143,7 +139,7 @@ fn swing(upper: f64, lower: f64) -> Case {
 fn nearly_massless(mass: f64) -> Case {
     let expected = "stable; slowest ω within 1e-4 of the massless link's √(g/l), l = 2 m";
     Case::new("nearly massless links", format!("link of {mass:e} kg over 100 kg"), expected, move || {
-        let spec = SourceFile::new("spec", format!(
+        let spec = Spec::new(format!(
             "format: 1
 name: crank
 links:

@@ -9,6 +9,7 @@ mod loads;
 mod motions;
 mod numbers;
 mod poses;
+mod spec;
 mod stiffness;
 mod subject;
 mod supports;
@@ -21,7 +22,6 @@ use std::{
     thread,
 };
 
-use crane_codegen::SourceFile;
 use indicatif::ProgressBar;
 
 use crane_cli::{
@@ -31,6 +31,7 @@ use crane_cli::{
 
 use crate::arguments::Stress;
 use case::{Case, Verdict};
+use spec::Spec;
 
 /// Gravity of the shipped specs, m/s².
 const GRAVITY: f64 = 9.81;
@@ -45,18 +46,18 @@ struct Specs<'a> {
 }
 
 impl Specs<'_> {
-    fn shipped(&self, name: &str) -> SourceFile {
+    fn shipped(&self, name: &str) -> Spec {
         // Without the crane, its cases are refused: the spec is empty.
-        SourceFile::new(format!("{name}.yaml"), self.fleet.spec(name).unwrap_or_default())
+        Spec::new(self.fleet.spec(name).unwrap_or_default())
     }
 
     /// The reference crane.
-    fn reference(&self) -> SourceFile {
+    fn reference(&self) -> Spec {
         self.shipped("eight_link_flexible")
     }
 
     /// The cantilever, in so many sections.
-    fn cantilever(&self, sections: usize) -> SourceFile {
+    fn cantilever(&self, sections: usize) -> Spec {
         self.shipped("cantilever").changed(&format!("links: [{{name: beam, beam: {{sections: {sections}}}}}]"))
     }
 }
@@ -68,18 +69,18 @@ const DRIVES: [(&str, f64); 5] =
 const SUPPORT: [f64; 3] = [3e6, 3e6, 1e7];
 
 /// The reference crane with other keys of its boom's beam.
-fn with_boom(reference: &SourceFile, keys: &str) -> SourceFile {
+fn with_boom(reference: &Spec, keys: &str) -> Spec {
     reference.changed(&format!("links: [{{name: boom, beam: {{{keys}}}}}]"))
 }
 
 /// The reference crane with other keys of each drive, which depend on its stiffness.
-fn with_drives(reference: &SourceFile, keys: impl Fn(f64) -> String) -> SourceFile {
+fn with_drives(reference: &Spec, keys: impl Fn(f64) -> String) -> Spec {
     let drive = |(coordinate, stiffness)| format!("  - {{coordinate: {coordinate}, {}}}\n", keys(stiffness));
     reference.changed(&format!("drives:\n{}", DRIVES.map(drive).concat()))
 }
 
 /// The reference crane on supports of another stiffness.
-fn with_supports(reference: &SourceFile, stiffness: [f64; 3]) -> SourceFile {
+fn with_supports(reference: &Spec, stiffness: [f64; 3]) -> Spec {
     let support = |number| format!("  - {{name: s{number}, stiffness: {stiffness:?}}}\n");
     reference.changed(&format!("supports:\n{}", [1, 2, 3, 4, 5, 6, 7, 8].map(support).concat()))
 }

@@ -1,10 +1,9 @@
 //! Motions in no time, steps of a drive, and runs that take very long.
 
-use crane_codegen::SourceFile;
-
 use super::{
     Specs,
     case::{Case, expect},
+    spec::Spec,
     subject::{Subject, balanced, cautions, imbalance, timing},
     with_drives,
 };
@@ -52,7 +51,7 @@ fn step(method: Method, accuracy: f64, duration: f64) -> Case {
     };
     let name = format!("carriage moved by 1 m in {duration:e} s, {method}");
     Case::new("step in a drive", name, expected, move || {
-        let spec = SourceFile::new("spec", format!(
+        let spec = Spec::new(format!(
             "format: 1
 name: carriage
 links: [{{name: carriage, joint: {{prismatic: {{axis: x}}}}, mass: {mass}, com: [0, 0, 0]}}]
@@ -87,11 +86,9 @@ fn sagging() -> Case {
 }
 
 /// An undamped beam of one section with a weight at its end, of a modulus in Pa.
-fn soft_beam(modulus: f64) -> SourceFile {
-    SourceFile::new(
-        "spec",
-        format!(
-            "format: 1
+fn soft_beam(modulus: f64) -> Spec {
+    Spec::new(format!(
+        "format: 1
 name: soft_beam
 analyses: [dynamics]
 links:
@@ -105,13 +102,12 @@ links:
   - {{name: weight, mass: 20, com: [0, 0, 0], inertia: {{gyration: [0.1, 0.1, 0.1]}}}}
 guess: {{beam_1_psi: 0.1}}
 ",
-            0.4 * modulus
-        ),
-    )
+        0.4 * modulus
+    ))
 }
 
 /// The whole manoeuvre of the reference crane in a time.
-fn sudden(spec: SourceFile, duration: f64) -> Case {
+fn sudden(spec: Spec, duration: f64) -> Case {
     let expected = "1 s to the end, energy balanced to 1 %";
     Case::new("short motions", format!("eight_link_flexible, manoeuvre of {duration} s"), expected, move || {
         let spec = with_drives(&spec, |_| format!("motion: {{quintic: {{duration: {duration:e}}}}}"));
@@ -121,7 +117,7 @@ fn sudden(spec: SourceFile, duration: f64) -> Case {
 }
 
 /// A chain of two rods that tumbles for 600 s.
-fn tumble(spec: SourceFile, method: Method) -> Case {
+fn tumble(spec: Spec, method: Method) -> Case {
     let (accuracy, kept) = match method {
         Method::Rk4 => (1e-3, 1e-5),
         Method::DormandPrince => (1e-10, 1e-5),

@@ -1,10 +1,9 @@
 //! Numbers at the limits of double precision and of the spec language, in specs, parameters and options.
 
-use crane_codegen::SourceFile;
-
 use super::{
     Specs,
     case::{Case, expect},
+    spec::Spec,
     subject::{Subject, timing},
 };
 use crane_model::dynamics::Method;
@@ -60,7 +59,7 @@ const OPTIONS: [(&str, Set); 4] = [
 ];
 
 /// An option of a run that means nothing: refused at once, or harmless.
-fn option(spec: SourceFile, name: &'static str, set: Set, value: f64) -> Case {
+fn option(spec: Spec, name: &'static str, set: Set, value: f64) -> Case {
     let expected = "refused with its name or the reason, or a run with finite results; never endless";
     Case::new("limits of numbers", format!("knuckle_boom with --{name} {value:e}"), expected, move || {
         let mut timing = timing(Method::RECOMMENDED, 1e-4, 0.1);
@@ -73,18 +72,15 @@ fn option(spec: SourceFile, name: &'static str, set: Set, value: f64) -> Case {
 }
 
 /// A rod on a pin.
-fn rod(mass: &str, com: &str) -> SourceFile {
-    SourceFile::new(
-        "spec",
-        format!(
-            "format: 1
+fn rod(mass: &str, com: &str) -> Spec {
+    Spec::new(format!(
+        "format: 1
 name: rod
 links:
   - {{name: rod, joint: {{revolute: {{axis: y}}}}, mass: {mass}, com: [0, 0, {com}]}}
 run: {{duration: 0.1}}
 "
-        ),
-    )
+    ))
 }
 
 fn refused(number: &'static str, code: &'static str) -> Case {
@@ -120,7 +116,7 @@ fn heavy(mass: f64) -> Case {
 }
 
 /// A payload as `--set` takes it.
-fn parameter(spec: SourceFile, load: f64) -> Case {
+fn parameter(spec: Spec, load: f64) -> Case {
     let expected = "a stable pose and a run, or a clear message; all numbers finite";
     Case::new("limits of numbers", format!("knuckle_boom with payload={load:e}"), expected, move || {
         let subject = match Subject::new(&spec)?.set("payload", load) {

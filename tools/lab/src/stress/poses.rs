@@ -2,11 +2,10 @@
 
 use std::f64::consts::PI;
 
-use crane_codegen::SourceFile;
-
 use super::{
     GRAVITY, SUPPORT, Specs, WEIGHTLESS,
     case::{Case, Finding, expect},
+    spec::Spec,
     subject::{Subject, balanced, timing},
     with_supports,
 };
@@ -37,7 +36,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
         reference().changed("guess: {upper_hinge_psi: 0}"),
     ));
 
-    let weightless = |spec: SourceFile| spec.changed(WEIGHTLESS);
+    let weightless = |spec: Spec| spec.changed(WEIGHTLESS);
     cases.push(named("zero gravity", "cantilever", Expected::Stable, weightless(specs.cantilever(8))));
     cases.push(named("zero gravity", "eight_link_flexible", Expected::Loose(HINGES), weightless(reference())));
     cases.push(floating(weightless(reference())));
@@ -85,19 +84,16 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
 }
 
 /// A crane on the ground that slews about the vertical: gravity does nothing about it.
-fn slewing(drives: &str) -> SourceFile {
-    SourceFile::new(
-        "spec",
-        format!(
-            "format: 1
+fn slewing(drives: &str) -> Spec {
+    Spec::new(format!(
+        "format: 1
 name: slewing
 links:
   - {{name: column, joint: revolute, mass: 500, com: [0.1, 0, 1], inertia: {{Ixx: 200, Iyy: 200, Izz: 30}}}}
   - {{name: boom, placement: {{transform: {{translation: [0, 0, 2]}}}}, mass: 300, com: [2, 0, 0]}}
 {drives}
 "
-        ),
-    )
+    ))
 }
 
 /// What statics must say.
@@ -128,7 +124,7 @@ impl Expected {
     }
 }
 
-fn named(group: &'static str, name: &str, expected: Expected, spec: SourceFile) -> Case {
+fn named(group: &'static str, name: &str, expected: Expected, spec: Spec) -> Case {
     Case::new(group, name, expected.words(), move || {
         let equilibrium = Subject::new(&spec)?.equilibrium();
         expect(expected.meets(&equilibrium), equilibrium.to_string())
@@ -136,7 +132,7 @@ fn named(group: &'static str, name: &str, expected: Expected, spec: SourceFile) 
 }
 
 /// Without weight the hinges hang nowhere; the motion itself is well posed from the guess.
-fn floating(spec: SourceFile) -> Case {
+fn floating(spec: Spec) -> Case {
     let expected = "1 s from the guess, energy balanced to 0.1 %";
     Case::new("zero gravity", "eight_link_flexible, motion", expected, move || {
         let recorded =
@@ -146,7 +142,7 @@ fn floating(spec: SourceFile) -> Case {
 }
 
 /// Without stiffness in the boom's drive everything beyond its pin hangs below it.
-fn fallen(spec: SourceFile) -> Case {
+fn fallen(spec: Spec) -> Case {
     let expected = "stable: everything beyond the boom's pin hangs vertically below it, and its drive carries nothing";
     Case::new("nothing holds it", "eight_link_flexible, boom drive of zero stiffness", expected, move || -> Finding {
         let subject = Subject::new(&spec)?;

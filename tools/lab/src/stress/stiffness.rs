@@ -2,11 +2,10 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crane_codegen::SourceFile;
-
 use super::{
     DRIVES, GRAVITY, SUPPORT, Specs, WEIGHTLESS,
     case::{Case, expect},
+    spec::Spec,
     subject::{Subject, cautions, imbalance, timing},
     with_boom, with_drives, with_supports,
 };
@@ -55,21 +54,21 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     cases
 }
 
-fn stiffened_drives(spec: &SourceFile, factor: f64) -> SourceFile {
+fn stiffened_drives(spec: &Spec, factor: f64) -> Spec {
     with_drives(spec, |stiffness| format!("stiffness: {:e}", factor * stiffness))
 }
 
 /// A crane of another steel.
-fn stiffened_steel(spec: &SourceFile, factor: f64) -> SourceFile {
+fn stiffened_steel(spec: &Spec, factor: f64) -> Spec {
     spec.changed(&format!("materials: {{steel: {{E: {:e}, G: {:e}}}}}", factor * 2.1e11, factor * 8.1e10))
 }
 
-fn stiffened_supports(spec: &SourceFile, factor: f64) -> SourceFile {
+fn stiffened_supports(spec: &Spec, factor: f64) -> Spec {
     with_supports(spec, SUPPORT.map(|stiffness| factor * stiffness))
 }
 
 /// A run as the command does it by default.
-fn run(group: &'static str, spec: SourceFile, factor: f64) -> Case {
+fn run(group: &'static str, spec: Spec, factor: f64) -> Case {
     let what = if group.starts_with("damping") { "β = " } else { "× " };
     let expected = format!("{DURATION} s to the end, energy balanced to {:.1} %", BALANCE * 100.0);
     let case = Case::new(group, format!("eight_link_flexible {what}{factor:e}, motion"), expected, move || {
@@ -82,7 +81,7 @@ fn run(group: &'static str, spec: SourceFile, factor: f64) -> Case {
     if factor == 1e-4 || factor == 1e6 && group != OF_DRIVES { case } else { case.long() }
 }
 
-fn drives(spec: SourceFile, factor: f64) -> Case {
+fn drives(spec: Spec, factor: f64) -> Case {
     let stiff = factor >= 1.0;
     let expected = if stiff {
         format!("stable; boom drive carries {:.1} kN m ± 2 %, the moment of the horizontal boom", LEVEL_MOMENT / 1e3)
@@ -113,7 +112,7 @@ fn drives(spec: SourceFile, factor: f64) -> Case {
 }
 
 /// A cantilever of one section is a rod on one spring in its middle: `s θ = g cos θ (m l/2 + μ l²/8)`, s = EI/l.
-fn single_element(spec: SourceFile, factor: f64) -> Case {
+fn single_element(spec: Spec, factor: f64) -> Case {
     /// Steel of 60 × 40 mm, 2 m long, 20 kg at its end; weak axis.
     const LENGTH: f64 = 2.0;
     const LOAD: f64 = 20.0;
@@ -142,7 +141,7 @@ fn single_element(spec: SourceFile, factor: f64) -> Case {
     })
 }
 
-fn supports(spec: SourceFile, factor: f64) -> Case {
+fn supports(spec: Spec, factor: f64) -> Case {
     // The load's moment over the supports' stiffness against tilting about y, 1.5 m to either side.
     let tilt = LEVEL_MOMENT / (factor * GROUND * 1.5 * 1.5);
     let small = tilt < SMALL;
@@ -169,7 +168,7 @@ fn supports(spec: SourceFile, factor: f64) -> Case {
 }
 
 /// Damping in proportion to stiffness, `D = β K`: mode by mode `ζ = β ω/2`.
-fn damping(spec: &SourceFile, beta: f64) -> Case {
+fn damping(spec: &Spec, beta: f64) -> Case {
     // Gravity's stiffness is not damped.
     let changes = format!("links: [{{name: beam, beam: {{damping: {{beta: {beta:e}}}}}}}]\n");
     let spec = spec.changed(&(changes + WEIGHTLESS));

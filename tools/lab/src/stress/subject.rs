@@ -1,10 +1,12 @@
 //! A crane under test, used as the command uses it.
 
-use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use indicatif::ProgressBar;
 
-use super::case::{Finding, expect};
+use super::{
+    case::{Finding, expect},
+    spec::Spec,
+};
 use crane_model::{
     dyn_crane::DynCrane,
     dynamics::Method,
@@ -22,8 +24,8 @@ pub struct Subject {
 
 impl Subject {
     /// The crane of a spec, or the codes and titles of its mistakes.
-    pub fn new(spec: &SourceFile) -> Result<Self, String> {
-        let crane = LiveCrane::from_spec(spec).map_err(|mistakes| {
+    pub fn new(spec: &Spec) -> Result<Self, String> {
+        let crane = LiveCrane::from_spec(spec.source()).map_err(|mistakes| {
             let told = mistakes.mistakes().iter().map(|mistake| format!("{}: {}", mistake.code, mistake.title));
             format!("refused, {}", told.collect::<Vec<_>>().join("; "))
         })?;

@@ -2,11 +2,10 @@
 
 use std::fmt::Write;
 
-use crane_codegen::SourceFile;
-
 use super::{
     GRAVITY,
     case::{Case, expect},
+    spec::Spec,
     subject::{Subject, imbalance, timing},
 };
 use crane_model::dynamics::Method;
@@ -26,7 +25,7 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-fn block(kinematics: &str, plays: [f64; 4], damping: f64) -> SourceFile {
+fn block(kinematics: &str, plays: [f64; 4], damping: f64) -> Spec {
     let mut text = format!(
         "format: 1
 name: block
@@ -43,7 +42,7 @@ supports:
              [{damping}, {damping}, {damping}], free_play: [0, 0, {play:e}], kinematics: {kinematics}}}"
         );
     }
-    SourceFile::new("spec", text)
+    Spec::new(text)
 }
 
 /// All four springs at rest at the same height δ: the block sits at `δ − m g/4s` and each carries a quarter of it.
