@@ -372,7 +372,7 @@ pub trait InternalForces<const N: usize>: CraneModel<N> {
     /// Positions of the supports' attachment points in the world frame, m. `out`: one per support.
     fn support_positions(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
-    /// Section moduli for stresses of beams. `out`: one per beam, from the base to the tip.
+    /// Section moduli for stresses of beams. `out`: one per section where an element begins, from the base to the tip.
     fn section_moduli(&self, _out: &mut [SectionModuli]) {}
 }
 

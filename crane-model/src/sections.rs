@@ -30,19 +30,19 @@ impl StressedSection {
     }
 }
 
-/// All sections whose moduli are known; `moduli` one per beam, `wrenches` one per cut.
+/// All sections whose moduli are known; `moduli` one per section, as [`Description::sections`] lists them, `wrenches` one per cut.
 pub fn stressed_sections(
     description: &Description,
     moduli: &[SectionModuli],
     wrenches: &[Wrench],
 ) -> Vec<StressedSection> {
-    let beams = description.beams();
-    let at = |(cut, wrench): (Cut, &Wrench)| {
-        let Cut::Body { body, x: Some(x) } = cut else { return None };
-        let beam = description.bodies[body].link.as_str();
-        let moduli = &moduli[beams.iter().position(|name| *name == beam)?];
+    let of_sections = description.cuts().into_iter().zip(wrenches).filter_map(|(cut, wrench)| match cut {
+        Cut::Body { body, x: Some(x) } => Some((body, x, wrench)),
+        _ => None,
+    });
+    let at = |((body, x, wrench), moduli): ((usize, f64, &Wrench), &SectionModuli)| {
         let stress = moduli.stress(wrench)?;
         Some(StressedSection { body, x, stress, utilisation: moduli.utilisation(&stress) })
     };
-    description.cuts().into_iter().zip(wrenches).filter_map(at).collect()
+    of_sections.zip(moduli).filter_map(at).collect()
 }

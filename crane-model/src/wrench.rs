@@ -60,15 +60,6 @@ pub enum Cut {
 
 #[cfg(feature = "std")]
 impl crate::Description {
-    /// Names of the links that are beams, from the base to the tip.
-    pub fn beams(&self) -> Vec<&str> {
-        // Only elements of beams have a length.
-        let mut beams: Vec<&str> =
-            self.bodies.iter().filter(|body| body.length > 0.0).map(|body| body.link.as_str()).collect();
-        beams.dedup();
-        beams
-    }
-
     /// Cuts of the crane, in the order of [`InternalForces::internal_forces`](crate::InternalForces::internal_forces): the
     /// ground, then from base to tip the joint of every link and the bodies of that link.
     pub fn cuts(&self) -> Vec<Cut> {
@@ -84,5 +75,14 @@ impl crate::Description {
             x += info.length;
         }
         cuts
+    }
+    /// The sections of beams where their elements begin, from the base to the tip: the body that begins there, and the distance from the
+    /// beam's beginning with default parameters, m.
+    pub fn sections(&self) -> Vec<(usize, f64)> {
+        let of = |cut| match cut {
+            Cut::Body { body, x: Some(x) } => Some((body, x)),
+            _ => None,
+        };
+        self.cuts().into_iter().filter_map(of).collect()
     }
 }

@@ -93,7 +93,7 @@ impl Places {
             pieces: vec![[0.0; 2]; description.drives.iter().map(|drive| drive.pieces).sum()],
             impedances: vec![[0.0; 2]; N],
             wrenches: vec![Wrench::ZERO; description.cuts().len()],
-            moduli: vec![SectionModuli::ZERO; description.beams().len()],
+            moduli: vec![SectionModuli::ZERO; description.sections().len()],
         }
     }
 }

@@ -118,3 +118,37 @@ fn first_frequency_approaches_from_above_with_order_two() {
     let order = (excess(16) / excess(32)).log2();
     assert!((order - 2.0).abs() < 0.02, "order {order}");
 }
+
+/// Two halves, the outer one four times as flexible. Under a tip force Euler's and Bernoulli's beam sinks by
+/// `F ∫ (l − x)²/(E J) dx = F l³ (7 + 4)/(24 E J)`. A spring in the middle of a section misses d³/12 of `∫ (l − x)² dx`, which makes
+/// 1 − 5/(11n²) if the step lies between two sections; if it lies in the middle of one, that spring takes a moment that is 3ld²/8 too large
+/// for its softer half: 1 + 4/(11n²).
+#[test]
+fn a_stepped_cantilever_bends_as_euler_and_bernoulli_say() {
+    let section = |j: f64| format!("{{numbers: {{area: {AREA:?}, Jy: {j:?}, Jz: {j:?}, Jo: {j:?}}}}}");
+    let half = LENGTH / 2.0;
+    let (thick, thin) = (section(J), section(J / 4.0));
+    for sections in [1, 2, 4, 5, 32, 45] {
+        let spec = format!(
+            "format: 1
+name: beam
+gravity: [0, 0, 0]
+links:
+  - name: beam
+    beam:
+      length: {LENGTH:?}
+      sections: {sections}
+      material: {{E: {E:?}, G: {G:?}, density: {DENSITY:?}}}
+      parts: [{{length: {half:?}, section: {thick}}}, {{length: {half:?}, section: {thin}}}]
+points:
+  - {{name: tip, link: beam, at: [{LENGTH:?}, 0, 0]}}
+"
+        );
+        let crane = Interpreted::new(workspace::chain_of("beam", &spec));
+        let row = tip_row(&crane, 1);
+        let deflection = row.dot(&displacement(&crane, &row));
+        let square = f64::from(sections * sections);
+        let law = if sections % 2 == 0 { 1.0 - 5.0 / (11.0 * square) } else { 1.0 + 4.0 / (11.0 * square) };
+        assert_law(deflection / (LENGTH.powi(3) * 11.0 / (24.0 * E * J)), law, &format!("{sections} sections"));
+    }
+}

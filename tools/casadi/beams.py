@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import casadi as ca
+import numpy as np
 
 from inertias import pseudo_inertia, read_pseudo_inertia
 
@@ -59,14 +60,18 @@ def section_moduli(shape, size, section):
 
 @dataclass
 class Beam:
-    """n + 1 rigid elements along x; spring k joins elements k and k + 1, each with its three directions."""
+    """n + 1 rigid elements along x; spring k joins elements k and k + 1, each with its three directions.
+
+    moduli: those of the section where each element begins, or None. bend: angles between neighbours at rest, about z and y.
+    """
 
     lengths: list
     pseudo_inertias: list
     stiffness: list
     damping: list
-    moduli: list = None
+    moduli: list
     allowable_stress: object = 0
+    bend: tuple = (0, 0)
 
 
 def rectangle_torsion(one_side, other_side):
@@ -83,11 +88,22 @@ def rectangle_torsion(one_side, other_side):
 
 def read_section(spec, section):
     """A section from its shape; height is along y, width along z."""
+    shape, size = read_size(spec, section)
+    return section_of(shape, size)
+
+
+def read_size(spec, section):
+    """Name of a shape, and its numbers."""
     ((shape, written),) = section.items()
     size = {
         key: {name: spec.number(number) for name, number in value.items()} if key == "moduli" else spec.number(value)
         for key, value in written.items()
     }
+    return shape, size
+
+
+def section_of(shape, size):
+    """A section of these dimensions."""
     section = read_shape(shape, size)
     section.moduli = section_moduli(shape, size, section)
     return section
@@ -121,23 +137,84 @@ def read_beam(spec, beam):
     material = beam["material"]
     if isinstance(material, str):
         material = spec.keys["materials"][material]
-    section = read_section(spec, beam["section"])
     E, G, density = (spec.number(material[key]) for key in ("E", "G", "density"))
-    distributed_mass = density * section.area + spec.number(beam.get("extra_mass", 0))
+    extra = spec.number(beam.get("extra_mass", 0))
 
-    rigid = beam["sections"] == "rigid"
-    sections = 0 if rigid else int(beam["sections"])
-    part = length if rigid else length / sections
-    lengths = [length] if rigid else [part / 2] + [part] * (sections - 1) + [part / 2]
-    stiffness = dict(zip(DIRECTIONS, (E * section.Jz / part, E * section.Jy / part, G * section.Jo / part)))
+    sections = 0 if beam["sections"] == "rigid" else int(beam["sections"])
+    part = length / max(sections, 1)
+    lengths = [part / 2] + [part] * (sections - 1) + [part / 2] if sections else [length]
+    if "parts" in beam:
+        parts = Parts(spec, beam["parts"])
+        begins = [sum(lengths[:k], 0.0) for k in range(sections + 1)]
+        masses = [parts.inertia(begin, begin + l, density, extra) for begin, l in zip(begins, lengths)]
+        stiffness = [parts.stiffness(k * part, (k + 1) * part, E, G) for k in range(sections)]
+        moduli = [parts.section(begin).moduli for begin in begins]
+    else:
+        section = read_section(spec, beam["section"])
+        masses = [prism((density * section.area + extra) * l, l, section) for l in lengths]
+        stiffness = [dict(zip(DIRECTIONS, (E * section.Jz / part, E * section.Jy / part, G * section.Jo / part)))] * sections
+        moduli = [section.moduli] * (sections + 1)
+    bend = beam.get("bend") or {}
     return Beam(
         lengths=lengths,
-        pseudo_inertias=[prism(distributed_mass * l, l, section) for l in lengths],
-        stiffness=[stiffness] * sections,
-        damping=[read_damping(spec, beam.get("damping") or {}, stiffness)] * sections,
-        moduli=section.moduli,
+        pseudo_inertias=masses,
+        stiffness=stiffness,
+        damping=[read_damping(spec, beam.get("damping") or {}, each) for each in stiffness],
+        moduli=moduli,
         allowable_stress=spec.number(material.get("yield_stress", 0)) / spec.number(beam.get("safety_factor", 1.5)),
+        bend=tuple(spec.angle(bend.get(key, 0)) / max(sections, 1) for key in ("psi", "theta")),
     )
+
+
+class Parts:
+    """Parts of a beam end to end, each with a section that may change linearly along it; integrals by slices."""
+
+    def __init__(self, spec, written):
+        self.parts, end = [], 0.0
+        for part in written:
+            begin, end = end, end + float(spec.number(part["length"]))
+            self.parts.append((begin, end, read_size(spec, part["section"]), read_size(spec, part.get("to", part["section"]))))
+
+    def part(self, x):
+        """The part that begins at x or contains it; the last one at the tip."""
+        return next((part for part in self.parts if x < part[1] - 1e-9), self.parts[-1])
+
+    def section(self, x, part=None):
+        """The section at x."""
+        begin, end, (shape, first), (_, last) = part or self.part(x)
+        if shape == "numbers":
+            return section_of(shape, first)
+        share = (x - begin) / (end - begin)
+        return section_of(shape, {key: (1 - share) * first[key] + share * last[key] for key in first})
+
+    def slices(self, begin, end):
+        """Places, lengths and sections of thin slices between two places: Gauss's formula with 24 points in each part."""
+        places, weights = np.polynomial.legendre.leggauss(24)
+        for part in self.parts:
+            low, high = max(begin, part[0]), min(end, part[1])
+            if high - low > 1e-9:
+                for place, weight in zip(places, weights):
+                    x = (low + high) / 2 + (high - low) / 2 * place
+                    yield x, (high - low) / 2 * weight, self.section(x, part)
+
+    def inertia(self, begin, end, density, extra):
+        """H about the begin of what is between two places."""
+        total = ca.SX(4, 4)
+        for x, length, section in self.slices(begin, end):
+            mass = (density * section.area + extra) * length
+            slice_ = prism(mass, 0.0, section)
+            shift = ca.SX.eye(4)
+            shift[0, 3] = x - begin
+            total += shift @ slice_ @ shift.T
+        return total
+
+    def stiffness(self, begin, end, E, G):
+        """A section's springs in a row: each slice turns by M dx/(E J)."""
+        compliance = {direction: 0 for direction in DIRECTIONS}
+        for _, length, section in self.slices(begin, end):
+            for direction, rigidity in zip(DIRECTIONS, (E * section.Jz, E * section.Jy, G * section.Jo)):
+                compliance[direction] += length / rigidity
+        return {direction: 1 / value for direction, value in compliance.items()}
 
 
 def prism(mass, length, section):
@@ -174,4 +251,5 @@ def read_elements(spec, beam):
         pseudo_inertias=[read_pseudo_inertia(spec, element) for element in beam["elements"]],
         stiffness=[read_directions(spec, spring["stiffness"]) for spring in beam["springs"]],
         damping=[read_directions(spec, spring.get("damping")) for spring in beam["springs"]],
+        moduli=[None] * len(beam["elements"]),
     )

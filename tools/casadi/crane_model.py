@@ -278,6 +278,8 @@ def read_beam_bodies(crane, name, transform, written):
         if index > 0:
             motions = [crane.move(element, symbol, is_element=True) for symbol in DIRECTIONS]
             rotations = crane.coordinates[-3:]
+            about_z, about_y = beam.bend
+            transform = transform @ rotate("z", about_z) @ rotate("y", about_y)
             if written.get("section_joint", "symmetric") == "paper":
                 for motion in motions:
                     transform = transform @ motion

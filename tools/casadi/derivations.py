@@ -105,7 +105,9 @@ class Derivations:
     def section_moduli(self):
         """What stresses of beams follow from, and the allowable stress; zeros where the spec does not say."""
         rows = [
-            ca.vertcat(*beam.moduli, beam.allowable_stress) if beam.moduli else ca.SX.zeros(8) for beam in self.crane.beams
+            ca.vertcat(*moduli, beam.allowable_stress) if moduli else ca.SX.zeros(8)
+            for beam in self.crane.beams
+            for moduli in beam.moduli
         ]
         return {"section_moduli": ca.vertcat(ca.SX(0, 1), *rows)}
 

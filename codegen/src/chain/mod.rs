@@ -245,15 +245,16 @@ pub struct ElementSpring {
     pub damping: Value,
 }
 
-/// Data of a beam for its stresses.
+/// Data of a beam for pictures and for its stresses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beam {
     /// Name of the link.
     pub link: String,
-    /// Outline of its cross-section, for pictures; `None` if the spec does not give a shape.
-    pub outline: Option<Outline>,
-    /// Moduli of its cross-section; `None` if the spec does not give them.
-    pub moduli: Option<Moduli>,
+    /// Outlines of its cross-section along it: between two places they change linearly, at a step two places coincide; one
+    /// place if the section is the same everywhere, none if the spec does not give a shape.
+    pub outlines: Vec<(Value, Outline)>,
+    /// Moduli of the section where each of its elements begins; `None` if the spec does not give them.
+    pub moduli: Vec<Option<Moduli>>,
     /// Yield stress over the safety factor, Pa; `None` without a yield stress.
     pub allowable_stress: Option<Value>,
 }

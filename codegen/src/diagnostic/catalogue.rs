@@ -198,6 +198,18 @@ catalogue! {
     /// The sides of a solid rectangle are constants, since its torsion constant is a series.
     E065 live_side(place) "{place} cannot be a parameter", "the torsion constant of a solid rectangle needs constant sides",
         "write a number, or give `numbers: {{area, Jy, Jz, Jo}}` with parameters";
+    /// The parts of a beam add up to its length.
+    E066 parts_length(sum, length) "the parts do not add up to the beam", "{sum} m in all, the beam is {length} m long",
+        "make the lengths of the parts add up to `length`, in m";
+    /// The lengths of a beam with parts, and of its parts, are constants: they decide which parts an element consists of.
+    E067 live_part(place) "{place} cannot be a parameter", "it decides which part of the beam an element belongs to",
+        "write a number, in m; dimensions of sections may be parameters";
+    /// The sections at both ends of a tapered part are dimensions of the same shape.
+    E068 taper(from, to) "a part cannot taper from a `{from}` to a `{to}`", "its beginning is a `{from}`",
+        "give both ends the same shape, `box`, `tube`, `solid` or `circle`, or make parts without `to`";
+    /// A beam has one section or parts.
+    E069 section_and_parts() "the beam is given in two ways: `section` and `parts`", "`parts` is given, too",
+        "give one `section`, or `parts` with a section each";
 
     // Supports.
     /// Supports carry a base that can move.
@@ -281,6 +293,11 @@ catalogue! {
     /// A load has a force or a moment.
     E099 no_load(load) "load `{load}` has neither force nor moment", "pulls nowhere",
         "write `force: [x, y, z]` in N or `moment: [x, y, z]` in N m";
+
+    // Curved beams.
+    /// A curved beam has sections between which it is bent.
+    E100 bent_in_one_piece() "a rigid beam cannot be curved", "its one body is straight",
+        "leave `bend` out, or divide the beam into sections";
 
     // Inputs.
     /// An input has a value or follows a motion until it is set.

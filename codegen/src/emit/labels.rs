@@ -83,7 +83,9 @@ impl<'a> Labels<'a> {
             Shape::Rows { n, .. } => Some(chain.connectors[slot / n].name.clone()),
             Shape::Structs(Struct::Tension, _) => Some(chain.connectors[slot / Struct::Tension.len()].name.clone()),
             Shape::Structs(Struct::SectionModuli, _) => {
-                Some(chain.beams[slot / Struct::SectionModuli.len()].link.clone())
+                let mut elements =
+                    chain.bodies.iter().filter(|body| chain.beams.iter().any(|beam| beam.link == body.link));
+                elements.nth(slot / Struct::SectionModuli.len()).map(|body| format!("Before {}", body.name))
             }
             Shape::Structs(Struct::Wrench, _) => Some(match &chain.cuts()[slot / Struct::Wrench.len()] {
                 Cut::Ground => "Ground".to_owned(),

@@ -1,8 +1,8 @@
 //! Beams as rigid finite elements.
 
-use super::inertia::about_com;
-use super::section::CrossSection;
-use crate::chain::{Inertia, Value};
+use super::inertia::{about_com, sum};
+use super::section::{CrossSection, Shape};
+use crate::chain::{Axis, Inertia, Outline, Value};
 
 /// A rigid finite element.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub(crate) struct Joint {
     pub stiffness: [Value; 3],
     /// Damping, N m s/rad.
     pub damping: [Value; 3],
+    /// Rotations of a curved beam at rest, before those of the spring.
+    pub bend: Vec<(Axis, Value)>,
 }
 
 /// A beam of rigid elements with a joint between neighbours.
@@ -32,8 +34,11 @@ pub(crate) struct Elements {
 }
 
 /// Lengths of the elements of a beam of n equal sections, [Urbaś 2016, section 2.2]: a spring is in the middle of each
-/// section of length `d = l/n`, so that the elements are `d/2, d, …, d, d/2` long.
+/// section of length `d = l/n`, so that the elements are `d/2, d, …, d, d/2` long. Without sections it is one element.
 pub(crate) fn element_lengths(length: &Value, sections: usize) -> Vec<Value> {
+    if sections == 0 {
+        return vec![length.clone()];
+    }
     let section = length.clone() / (sections as f64).into();
     let half = 0.5 * section.clone();
     let mut lengths = vec![section; sections + 1];
@@ -67,6 +72,157 @@ pub(crate) fn prismatic(length: Value, line_density: &Value, section: &CrossSect
 pub(crate) fn stiffness(youngs: &Value, shear: &Value, section: &CrossSection, d: &Value) -> [Value; 3] {
     let spring = |modulus: &Value, moment: &Value| modulus.clone() * moment.clone() / d.clone();
     [spring(youngs, &section.jz), spring(youngs, &section.jy), spring(shear, &section.jo)]
+}
+
+/// A part of a beam, with a section of its own.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    /// Length, m.
+    pub length: f64,
+    /// The section at its beginning.
+    pub from: Shape,
+    /// That at its end, if it is tapered.
+    pub to: Option<Shape>,
+}
+
+/// Half of the places of Gauss's formula with ten points on (−1, 1), and their weights. The stiffness of a box that tapers to half of its
+/// size over one section is exact to 1e-12.
+const GAUSS: [(f64, f64); 5] = [
+    (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
+    (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
+    (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
+    (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
+    (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
+];
+
+/// Lengths that differ by less than this are the same, m: rounding of sums of decimals.
+const SAME: f64 = 1e-9;
+
+/// What lies between two places of a beam of parts.
+struct Piece<'a> {
+    part: &'a Part,
+    /// Begin and end, m from the beginning of the beam.
+    ends: [f64; 2],
+    /// Begin of the part, m.
+    begin: f64,
+}
+
+impl Piece<'_> {
+    fn length(&self) -> f64 {
+        self.ends[1] - self.ends[0]
+    }
+
+    /// The section at a place.
+    fn section(&self, x: f64) -> CrossSection {
+        let share = (x - self.begin) / self.part.length;
+        let tapered = self.part.to.as_ref().and_then(|to| self.part.from.between(to, share));
+        tapered.unwrap_or_else(|| self.part.from.clone()).section()
+    }
+
+    /// Places and lengths of thin slices that stand for it in integrals; of a prismatic piece its middle.
+    fn slices(&self) -> Vec<(f64, f64)> {
+        let (middle, half) = (0.5 * (self.ends[0] + self.ends[1]), 0.5 * self.length());
+        if self.part.to.is_none() {
+            return vec![(middle, self.length())];
+        }
+        let both = |(place, weight): (f64, f64)| [-place, place].map(|place| (middle + half * place, half * weight));
+        GAUSS.into_iter().flat_map(both).collect()
+    }
+}
+
+/// The pieces between two places, from parts end to end.
+fn pieces(parts: &[Part], [from, to]: [f64; 2]) -> Vec<Piece<'_>> {
+    let mut begin = 0.0;
+    let mut pieces = Vec::new();
+    for (index, part) in parts.iter().enumerate() {
+        // Rounding leaves nothing behind the last part.
+        let end = if index + 1 == parts.len() { f64::INFINITY } else { begin + part.length };
+        let ends = [f64::max(from, begin), f64::min(to, end)];
+        if ends[1] - ends[0] > SAME {
+            pieces.push(Piece { part, ends, begin });
+        }
+        begin += part.length;
+    }
+    pieces
+}
+
+/// The section of a beam of parts at a place; at a step that of the part that begins there.
+pub(crate) fn section_at(parts: &[Part], x: f64) -> Option<CrossSection> {
+    // The last place of a beam belongs to its last part.
+    pieces(parts, [x, x + 2.0 * SAME]).first().map(|piece| piece.section(x))
+}
+
+/// The element of a beam of parts between two places: mass `∫ μ dx`, and moments of inertia likewise.
+pub(crate) fn element_of_parts(parts: &[Part], ends: [f64; 2], density: &Value, extra: &Value) -> RigidElement {
+    let mut inertia: Option<Inertia> = None;
+    for piece in pieces(parts, ends) {
+        for (x, length) in piece.slices() {
+            let section = piece.section(x);
+            let line_density = density.clone() * section.area.clone() + extra.clone();
+            // Slices of a tapered piece are thin; a prismatic piece has its length.
+            let own = if piece.part.to.is_none() {
+                prismatic(length.into(), &line_density, &section).inertia
+            } else {
+                disc(line_density * length.into(), &section)
+            };
+            let at = if piece.part.to.is_none() { piece.ends[0] } else { x } - ends[0];
+            let own = moved(own, at);
+            inertia = Some(match inertia {
+                None => own,
+                Some(inertia) => sum(inertia, own),
+            });
+        }
+    }
+    let nothing =
+        || about_com(Value::ZERO, &[Value::ZERO, Value::ZERO, Value::ZERO], &std::array::from_fn(|_| Value::ZERO));
+    RigidElement { length: (ends[1] - ends[0]).into(), inertia: inertia.unwrap_or_else(nothing) }
+}
+
+/// A thin slice at the origin.
+fn disc(mass: Value, section: &CrossSection) -> Inertia {
+    let [about_y, about_z] =
+        [&section.jy, &section.jz].map(|second| mass.clone() * second.clone() / section.area.clone());
+    let tensor = [about_y.clone() + about_z.clone(), about_y, about_z, Value::ZERO, Value::ZERO, Value::ZERO];
+    about_com(mass, &[Value::ZERO, Value::ZERO, Value::ZERO], &tensor)
+}
+
+/// Pseudo-inertia of a body that is moved by `a` along x: `∫ (x + a)² dm` and so on.
+fn moved(inertia: Inertia, a: f64) -> Inertia {
+    if a == 0.0 {
+        return inertia;
+    }
+    let Inertia { mass, first: [x, y, z], second: [xx, yy, zz, xy, xz, yz] } = inertia;
+    let by = |moment: &Value| a * moment.clone();
+    let second = [xx + 2.0 * by(&x) + a * by(&mass), yy, zz, xy + by(&y), xz + by(&z), yz];
+    Inertia { first: [x + by(&mass), y, z], mass, second }
+}
+
+/// Stiffness of the spring of a section of a beam of parts: `1/s = ∫ dx/(E J)`, the angle by which a moment turns its ends against each
+/// other.
+pub(crate) fn stiffness_of_parts(parts: &[Part], ends: [f64; 2], youngs: &Value, shear: &Value) -> [Value; 3] {
+    let mut compliance = [Value::ZERO, Value::ZERO, Value::ZERO];
+    for piece in pieces(parts, ends) {
+        for (x, length) in piece.slices() {
+            let each = stiffness(youngs, shear, &piece.section(x), &length.into());
+            for (sum, stiffness) in compliance.iter_mut().zip(each) {
+                *sum = sum.clone() + Value::ONE / stiffness;
+            }
+        }
+    }
+    compliance.map(|compliance| Value::ONE / compliance)
+}
+
+/// Outlines along a beam of parts.
+pub(crate) fn outlines_of_parts(parts: &[Part]) -> Vec<(Value, Outline)> {
+    let mut begin = 0.0;
+    let mut outlines = Vec::new();
+    for part in parts {
+        let ends = [(begin, &part.from), (begin + part.length, part.to.as_ref().unwrap_or(&part.from))];
+        let outline = |(x, shape): (f64, &Shape)| Some((Value::from(x), shape.section().outline?));
+        outlines.extend(ends.into_iter().filter_map(outline));
+        begin += part.length;
+    }
+    outlines
 }
 
 #[cfg(test)]

@@ -21,6 +21,60 @@ pub(crate) struct CrossSection {
     pub outline: Option<Outline>,
 }
 
+/// What a cross-section is made from.
+#[derive(Clone, Debug)]
+pub(crate) enum Shape {
+    /// Height, width and thickness.
+    Box([Value; 3]),
+    /// Outer diameter and thickness.
+    Tube([Value; 2]),
+    /// Height and width.
+    Solid([f64; 2]),
+    /// Diameter.
+    Circle(Value),
+    /// Given by its numbers.
+    Numbers(Box<CrossSection>),
+}
+
+impl Shape {
+    /// What the spec calls it.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Shape::Box(_) => "box",
+            Shape::Tube(_) => "tube",
+            Shape::Solid(_) => "solid",
+            Shape::Circle(_) => "circle",
+            Shape::Numbers(_) => "numbers",
+        }
+    }
+
+    /// Its properties.
+    pub(crate) fn section(&self) -> CrossSection {
+        match self {
+            Shape::Box([height, width, thickness]) => hollow_rectangle(height, width, thickness),
+            Shape::Tube([diameter, thickness]) => tube(diameter, thickness),
+            Shape::Solid([height, width]) => solid_rectangle(*height, *width),
+            Shape::Circle(diameter) => circle(diameter),
+            Shape::Numbers(section) => (**section).clone(),
+        }
+    }
+
+    /// The shape at a part of the way to another one, whose dimensions change linearly; `None` unless both are dimensions of the
+    /// same shape.
+    pub(crate) fn between(&self, other: &Shape, share: f64) -> Option<Shape> {
+        let mix = |a: &Value, b: &Value| (1.0 - share) * a.clone() + share * b.clone();
+        Some(match (self, other) {
+            (Shape::Box(a), Shape::Box(b)) => Shape::Box(std::array::from_fn(|k| mix(&a[k], &b[k]))),
+            (Shape::Tube(a), Shape::Tube(b)) => Shape::Tube(std::array::from_fn(|k| mix(&a[k], &b[k]))),
+            (Shape::Solid(a), Shape::Solid(b)) => {
+                Shape::Solid(std::array::from_fn(|k| (1.0 - share) * a[k] + share * b[k]))
+            }
+            (Shape::Circle(a), Shape::Circle(b)) => Shape::Circle(mix(a, b)),
+            _ => return None,
+        })
+    }
+}
+
 fn power(base: &Value, exponent: usize) -> Value {
     std::iter::repeat_n(base.clone(), exponent).fold(Value::ONE, |product, factor| product * factor)
 }

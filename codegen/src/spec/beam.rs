@@ -7,7 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
-use super::{Either, Given, Inertia, Number, Vector};
+use super::{Angle, Either, Given, Inertia, Number, Vector};
 
 /// A beam along x of its link: `sections`, `material` and `section`, or `elements` and `springs` one by one.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -21,6 +21,10 @@ pub struct Beam {
     pub material: Option<Given<Either<String, Material>>>,
     /// Cross-section, exactly one shape.
     pub section: Option<Given<Section>>,
+    /// Instead of `section`: parts with different sections, from the beginning to the tip.
+    pub parts: Option<Given<Vec<Given<BeamPart>>>>,
+    /// Curvature at rest. Default straight.
+    pub bend: Option<Given<Bend>>,
     /// Additional distributed mass, kg/m, with the section's radii of gyration. Default 0.
     pub extra_mass: Option<Given<Number>>,
     /// Factor by which stresses must stay below the material's `yield_stress`. Default 1.5.
@@ -73,6 +77,28 @@ impl JsonSchema for Sections {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "anyOf": [{ "type": "integer", "minimum": 1, "maximum": 1000 }, { "const": "rigid" }] })
     }
+}
+
+/// A part of a beam with a section of its own.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `length`, `section` and `to`")]
+pub struct BeamPart {
+    /// Length, m.
+    pub length: Given<Number>,
+    /// Cross-section, of a tapered part that of its beginning.
+    pub section: Given<Section>,
+    /// Cross-section of a tapered part at its end, of the same shape. Default: the part is not tapered.
+    pub to: Option<Given<Section>>,
+}
+
+/// Angles between the beginning and the tip of a curved beam at rest, an arc.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `psi` and `theta`")]
+pub struct Bend {
+    /// About z: curved in the x–y plane, rad.
+    pub psi: Option<Given<Angle>>,
+    /// About y: curved in the x–z plane, rad.
+    pub theta: Option<Given<Angle>>,
 }
 
 /// Rotation between two rigid elements of a beam.

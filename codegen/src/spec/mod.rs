@@ -17,7 +17,9 @@ mod scalar;
 mod schema;
 mod support;
 
-pub use beam::{Beam, BeamDamping, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring};
+pub use beam::{
+    Beam, BeamDamping, BeamPart, Bend, Directions, Element, Material, Moduli, Section, SectionJoint, Sections, Spring,
+};
 pub use connector::{Attachment, Connector, ConnectorLaw, Coupling, GasSpring, PointSpring, Rope};
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side, Valve};
 pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};

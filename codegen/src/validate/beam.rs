@@ -1,13 +1,14 @@
 //! Beams: of equal sections, and how elements become bodies.
 
+use super::elements::WRITTEN;
 use super::limits::Limit;
 use super::section::Elastic;
 use super::{Check, Owner};
-use crate::chain::{self, Axis, CoordinateKind, ElementSpring, Step, Value};
+use crate::chain::{self, Axis, CoordinateKind, ElementSpring, Moduli, Outline, Step, Value};
 use crate::diagnostic::{Span, rule};
-use crate::expand::beam::{self, Elements, Joint, RigidElement};
+use crate::expand::beam::{self, Elements, Joint, Part, RigidElement};
 use crate::expand::placement::translate;
-use crate::spec::{Beam, BeamDamping, Directions, Either, Given, SectionJoint, Sections};
+use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Given, Number, SectionJoint, Sections};
 
 /// Maximum number of sections of a beam.
 const MOST_SECTIONS: f64 = 1000.0;
@@ -34,10 +35,11 @@ impl<'a> Check<'a> {
             let length = self.number(&inside.length, "`length`", "m", Limit::Positive);
             match &inside.elements {
                 Some(elements) => {
+                    let count = elements.value.as_ref().map_or(0, Vec::len);
                     self.beams.push(chain::Beam {
                         link: link.to_owned(),
-                        outline: None,
-                        moduli: None,
+                        outlines: Vec::new(),
+                        moduli: vec![None; count],
                         allowable_stress: None,
                     });
                     self.one_by_one(inside, &length, elements)
@@ -86,6 +88,10 @@ impl<'a> Check<'a> {
                     self.push_coordinate((link, &name), CoordinateKind::Rotation, axis, owner, span)
                 };
                 let ids = ROTATIONS.map(&mut rotation);
+                for (axis, angle) in &joint.bend {
+                    let (sin, cos) = angle.sin_cos();
+                    path.push(Step::Rotate { axis: *axis, sin, cos });
+                }
                 match section_joint {
                     SectionJoint::Symmetric => path.push(Step::RotationVector(ids)),
                     SectionJoint::Paper => path.extend(ids.map(Step::Move)),
@@ -110,7 +116,7 @@ impl<'a> Check<'a> {
         (starts, tip)
     }
 
-    /// A beam of equal sections of one material and cross-section.
+    /// A beam of equal sections of one material, with one cross-section or with parts.
     fn equal_sections(&mut self, beam: &'a Beam, (link, span): (&str, Span), length: &Value) -> Option<Elements> {
         if let Some(springs) = &beam.springs {
             self.report(rule::missing_key(springs.span, "elements", "a beam with `springs`"));
@@ -118,37 +124,125 @@ impl<'a> Check<'a> {
         let required = [
             ("sections", beam.sections.is_none()),
             ("material", beam.material.is_none()),
-            ("section", beam.section.is_none()),
+            ("section", beam.section.is_none() && beam.parts.is_none()),
         ];
         for (key, _) in required.iter().filter(|(_, missing)| *missing && beam.springs.is_none()) {
             self.report(rule::missing_key(span, key, "the beam"));
         }
+        if let (Some(_), Some(parts)) = (&beam.section, &beam.parts) {
+            self.report(rule::section_and_parts(parts.span));
+        }
         let sections = beam.sections.as_ref().and_then(|sections| self.sections(sections));
         let material = beam.material.as_ref().and_then(|material| self.material(material));
-        let section = beam.section.as_ref().and_then(|section| self.section(section));
+        let section = beam.section.as_ref().and_then(|section| self.shape(section)).map(|shape| shape.section());
+        let parts = beam.parts.as_ref().and_then(|parts| self.parts(parts, &beam.length, length));
         let extra = self.number_or(beam.extra_mass.as_ref(), 0.0, "`extra_mass`", "kg/m", Limit::NotNegative);
         let damping = self.beam_damping(beam.damping.as_ref());
         let safety = self.number_or(beam.safety_factor.as_ref(), SAFETY_FACTOR, "`safety_factor`", "", Limit::Positive);
-        let (Elastic { youngs, shear, density, yield_stress }, section, sections) = (material?, section?, sections?);
+        let bend = self.bend(beam.bend.as_ref(), sections);
+        let (Elastic { youngs, shear, density, yield_stress }, sections) = (material?, sections?);
+        let divided = match (section, parts) {
+            (Some(section), None) => {
+                let line_density = density * section.area.clone() + extra;
+                let element = |length| beam::prismatic(length, &line_density, &section);
+                let d = length.clone() / (sections.max(1) as f64).into();
+                Divided {
+                    outlines: section.outline.iter().map(|outline| (Value::ZERO, outline.clone())).collect(),
+                    moduli: vec![section.moduli.clone(); sections + 1],
+                    elements: beam::element_lengths(length, sections).into_iter().map(element).collect(),
+                    stiffness: vec![beam::stiffness(&youngs, &shear, &section, &d); sections],
+                }
+            }
+            (None, Some(parts)) => {
+                let whole = length.as_constant()?;
+                let lengths = beam::element_lengths(length, sections).into_iter().map(|length| self.now(&length));
+                let (mut begin, d) = (0.0, whole / sections.max(1) as f64);
+                let ends: Vec<[f64; 2]> = lengths
+                    .map(|length| {
+                        let ends = [begin, begin + length];
+                        begin += length;
+                        ends
+                    })
+                    .collect();
+                let element = |ends: &[f64; 2]| beam::element_of_parts(&parts, *ends, &density, &extra);
+                let moduli = |ends: &[f64; 2]| beam::section_at(&parts, ends[0])?.moduli;
+                let section = |k: usize| [k as f64 * d, (k + 1) as f64 * d];
+                let spring = |k: usize| beam::stiffness_of_parts(&parts, section(k), &youngs, &shear);
+                Divided {
+                    outlines: beam::outlines_of_parts(&parts),
+                    moduli: ends.iter().map(moduli).collect(),
+                    elements: ends.iter().map(element).collect(),
+                    stiffness: (0..sections).map(spring).collect(),
+                }
+            }
+            _ => return None,
+        };
         self.beams.push(chain::Beam {
             link: link.to_owned(),
-            outline: section.outline.clone(),
-            moduli: section.moduli.clone(),
+            outlines: divided.outlines,
+            moduli: divided.moduli,
             allowable_stress: yield_stress.map(|stress| stress / safety),
         });
+        let joint = |stiffness: [Value; 3]| Joint { damping: damping.of(&stiffness), stiffness, bend: bend.clone() };
+        Some(Elements { elements: divided.elements, joints: divided.stiffness.into_iter().map(joint).collect() })
+    }
 
-        let line_density = density * section.area.clone() + extra;
-        let element = |length| beam::prismatic(length, &line_density, &section);
-        if sections == 0 {
-            return Some(Elements { elements: vec![element(length.clone())], joints: Vec::new() });
+    /// Parts with sections of their own.
+    fn parts(
+        &mut self,
+        given: &'a Given<Vec<Given<BeamPart>>>,
+        written: &Given<Number>,
+        length: &Value,
+    ) -> Option<Vec<Part>> {
+        let whole = length.as_constant();
+        if whole.is_none() {
+            self.report(rule::live_part(written.span, "the length of a beam with `parts`"));
         }
-        let d = length.clone() / (sections as f64).into();
-        let stiffness = beam::stiffness(&youngs, &shear, &section, &d);
-        let damping = damping.of(&stiffness);
-        Some(Elements {
-            elements: beam::element_lengths(length, sections).into_iter().map(element).collect(),
-            joints: vec![Joint { stiffness, damping }; sections],
-        })
+        let parts: Vec<Option<Part>> =
+            given.value.as_ref()?.iter().map(|part| self.part(part.value.as_ref()?)).collect();
+        let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+        let sum: f64 = parts.iter().map(|part| part.length).sum();
+        let whole = whole?;
+        if (sum - whole).abs() > WRITTEN * whole || parts.is_empty() {
+            self.report(rule::parts_length(given.span, sum, whole));
+            return None;
+        }
+        Some(parts)
+    }
+
+    /// A part of a beam.
+    fn part(&mut self, part: &'a BeamPart) -> Option<Part> {
+        let length = self.number(&part.length, "`length`", "m", Limit::Positive);
+        if length.as_constant().is_none() {
+            self.report(rule::live_part(part.length.span, "the length of a part"));
+        }
+        let from = self.shape(&part.section);
+        let to = part.to.as_ref().map(|to| (to, self.shape(to)));
+        let from = from?;
+        let to = match to {
+            None => None,
+            Some((given, to)) => {
+                let to = to?;
+                if from.between(&to, 0.5).is_none() {
+                    self.report(rule::taper(given.span, from.name(), to.name()));
+                    return None;
+                }
+                Some(to)
+            }
+        };
+        Some(Part { length: length.as_constant()?, from, to })
+    }
+
+    /// Rotations of a curved beam at each of its springs.
+    fn bend(&mut self, given: Option<&'a Given<Bend>>, sections: Option<usize>) -> Vec<(Axis, Value)> {
+        let Some(bend) = given.and_then(|given| given.value.as_ref()) else { return Vec::new() };
+        let angles = [(Axis::Z, &bend.psi, "`psi`"), (Axis::Y, &bend.theta, "`theta`")];
+        let angles = angles.map(|(axis, angle, place)| (axis, angle.as_ref().map(|angle| self.angle(angle, place))));
+        if let (Some(given), Some(0)) = (given, sections) {
+            self.report(rule::bent_in_one_piece(given.span));
+        }
+        let count = sections.unwrap_or(1).max(1) as f64;
+        angles.into_iter().filter_map(|(axis, angle)| Some((axis, angle? / count.into()))).collect()
     }
 
     /// Number of sections; 0 for a rigid beam.
@@ -192,6 +286,17 @@ impl<'a> Check<'a> {
     }
 }
 
+/// A beam divided into elements.
+struct Divided {
+    /// Outlines along it.
+    outlines: Vec<(Value, Outline)>,
+    /// Moduli where each element begins.
+    moduli: Vec<Option<Moduli>>,
+    elements: Vec<RigidElement>,
+    /// Stiffness of the springs, N m/rad.
+    stiffness: Vec<[Value; 3]>,
+}
+
 /// Damping of a beam's springs.
 enum Damping {
     /// Proportional to stiffness, s.
@@ -202,13 +307,10 @@ enum Damping {
 
 impl Damping {
     /// Coefficients for springs of the given stiffness, `d = β s`.
-    fn of(self, stiffness: &[Value; 3]) -> [Value; 3] {
+    fn of(&self, stiffness: &[Value; 3]) -> [Value; 3] {
         match self {
-            Damping::Coefficients(coefficients) => coefficients,
-            Damping::Beta(beta) => {
-                let [psi, theta, phi] = beta;
-                [psi * stiffness[0].clone(), theta * stiffness[1].clone(), phi * stiffness[2].clone()]
-            }
+            Damping::Coefficients(coefficients) => coefficients.clone(),
+            Damping::Beta(beta) => std::array::from_fn(|k| beta[k].clone() * stiffness[k].clone()),
         }
     }
 }

@@ -7,8 +7,8 @@ use crate::diagnostic::rule;
 use crate::expand::beam::{Elements, Joint, RigidElement};
 use crate::spec::{Beam, Directions, Element, Given, Spring};
 
-/// The elements may differ from the length of their beam by this fraction, because lengths are decimal numbers.
-const WRITTEN: f64 = 1e-9;
+/// Elements and parts may differ from the length of their beam by this fraction, because lengths are decimal numbers.
+pub(super) const WRITTEN: f64 = 1e-9;
 
 impl<'a> Check<'a> {
     /// A beam of elements and springs given one by one.
@@ -22,6 +22,8 @@ impl<'a> Check<'a> {
             ("sections", beam.sections.as_ref().map(|given| given.span)),
             ("material", beam.material.as_ref().map(|given| given.span)),
             ("section", beam.section.as_ref().map(|given| given.span)),
+            ("parts", beam.parts.as_ref().map(|given| given.span)),
+            ("bend", beam.bend.as_ref().map(|given| given.span)),
             ("extra_mass", beam.extra_mass.as_ref().map(|given| given.span)),
             ("safety_factor", beam.safety_factor.as_ref().map(|given| given.span)),
             ("damping", beam.damping.as_ref().map(|given| given.span)),
@@ -70,6 +72,7 @@ impl<'a> Check<'a> {
         Joint {
             stiffness: each(Some(&spring.stiffness), "the stiffness", "N m/rad"),
             damping: each(spring.damping.as_ref(), "the damping", "N m s/rad"),
+            bend: Vec::new(),
         }
     }
 }

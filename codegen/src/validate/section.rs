@@ -4,7 +4,7 @@ use super::Check;
 use super::limits::Limit;
 use crate::chain::{Moduli, Value};
 use crate::diagnostic::{Span, rule, suggest};
-use crate::expand::section::{self, CrossSection};
+use crate::expand::section::{CrossSection, Shape};
 use crate::spec::{Either, Given, Material, Number, Section};
 
 /// An isotropic elastic material.
@@ -49,20 +49,21 @@ impl<'a> Check<'a> {
     }
 
     /// A cross-section by its shape or its numbers.
-    pub(super) fn section(&mut self, given: &Given<Section>) -> Option<CrossSection> {
+    pub(super) fn shape(&mut self, given: &Given<Section>) -> Option<Shape> {
         let mut positive = |number: &Given<Number>, place, unit| self.number(number, place, unit, Limit::Positive);
         Some(match given.value.as_ref()? {
             Section::Box { height, width, thickness } => {
                 let size = [positive(height, "`height`", "m"), positive(width, "`width`", "m")];
                 let wall = positive(thickness, "`thickness`", "m");
                 self.wall(thickness.span, &wall, size.iter());
-                section::hollow_rectangle(&size[0], &size[1], &wall)
+                let [height, width] = size;
+                Shape::Box([height, width, wall])
             }
             Section::Tube { diameter, thickness } => {
                 let size = positive(diameter, "`diameter`", "m");
                 let wall = positive(thickness, "`thickness`", "m");
                 self.wall(thickness.span, &wall, [&size].into_iter());
-                section::tube(&size, &wall)
+                Shape::Tube([size, wall])
             }
             Section::Solid { height, width } => {
                 let sides = [(height, "`height`"), (width, "`width`")].map(|(side, place)| {
@@ -72,9 +73,9 @@ impl<'a> Check<'a> {
                     }
                     value.as_constant().unwrap_or(f64::NAN)
                 });
-                section::solid_rectangle(sides[0], sides[1])
+                Shape::Solid(sides)
             }
-            Section::Circle { diameter } => section::circle(&positive(diameter, "`diameter`", "m")),
+            Section::Circle { diameter } => Shape::Circle(positive(diameter, "`diameter`", "m")),
             Section::Numbers { area, jy, jz, jo, moduli } => {
                 let area = positive(area, "`area`", "m²");
                 let moduli = moduli.as_ref().and_then(|given| given.value.as_ref()).map(|given| Moduli {
@@ -84,14 +85,14 @@ impl<'a> Check<'a> {
                     shear: [positive(&given.ay, "`Ay`", "m²"), positive(&given.az, "`Az`", "m²")],
                     has_corners: true,
                 });
-                CrossSection {
+                Shape::Numbers(Box::new(CrossSection {
                     area,
                     jy: positive(jy, "`Jy`", "m⁴"),
                     jz: positive(jz, "`Jz`", "m⁴"),
                     jo: positive(jo, "`Jo`", "m⁴"),
                     moduli,
                     outline: None,
-                }
+                }))
             }
         })
     }

@@ -243,7 +243,7 @@ pub trait DynInternalForces: DynModel {
     /// Positions of the supports' attachment points, m.
     fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]);
 
-    /// Section moduli for stresses of beams; one per beam, from the base to the tip.
+    /// Section moduli for stresses of beams; one per section, as [`Description::sections`] lists them.
     fn section_moduli(&self, out: &mut [SectionModuli]);
 }
 

@@ -229,9 +229,9 @@ impl dyn DynCrane + '_ {
         out
     }
 
-    /// Section moduli for stresses of beams, beam by beam as [`Description::beams`](crate::Description::beams) lists them.
+    /// Section moduli for stresses of beams, as [`Description::sections`](crate::Description::sections) lists the sections.
     pub fn section_moduli_at(&self) -> Vec<SectionModuli> {
-        let mut out = vec![SectionModuli::ZERO; self.description().beams().len()];
+        let mut out = vec![SectionModuli::ZERO; self.description().sections().len()];
         self.section_moduli(&mut out);
         out
     }

@@ -18,7 +18,6 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::{Argument, Joined};
 use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn_of_rows, warn_of_spec};
-use crate::strength::sections;
 
 /// A crane with its parameters: native part of `crane.Crane`.
 #[pyclass(frozen, subclass, module = "crane._native")]
@@ -231,7 +230,7 @@ impl Crane {
             rows.push(row);
         }
         all.set_item("cuts", list(std::mem::take(&mut rows))?)?;
-        for (body, x) in sections(description) {
+        for (body, x) in description.sections() {
             let row = PyDict::new(py);
             row.set_item("beam", &*description.bodies[body].link)?;
             row.set_item("x", x)?;

@@ -5,7 +5,7 @@ use crane_live::LiveCrane;
 use crane_live::rows::Quantity;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::sections::stressed_sections;
-use crane_model::{Cut, Description, Stress, tipping};
+use crane_model::{Stress, tipping};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
@@ -51,7 +51,7 @@ impl Crane {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let rest = self.rest(py);
         let state = State { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
-        let width = OF_SECTION * sections(self.live.description()).count() + OF_LINE;
+        let width = OF_SECTION * self.live.description().sections().len() + OF_LINE;
         self.one_by_one(py, state, &[width], invalid, write)
     }
 }
@@ -63,14 +63,6 @@ impl Crane {
     }
 }
 
-/// The sections of beams: the body that begins at each, and the distance from the beam's beginning, m.
-pub fn sections(description: &Description) -> impl Iterator<Item = (usize, f64)> {
-    description.cuts().into_iter().filter_map(|cut| match cut {
-        Cut::Body { body, x: Some(x) } => Some((body, x)),
-        _ => None,
-    })
-}
-
 /// Stresses and the governing tipping line of a crane; NaN where moduli or lines are unknown.
 fn write(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
     let crane: &dyn DynCrane = crane;
@@ -78,7 +70,7 @@ fn write(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
     out.fill(f64::NAN);
     let wrenches = crane.internal_forces_at(*t, q, v, a);
     let known = stressed_sections(description, &crane.section_moduli_at(), &wrenches);
-    for ((body, _), out) in sections(description).zip(out.chunks_mut(OF_SECTION)) {
+    for ((body, _), out) in description.sections().into_iter().zip(out.chunks_mut(OF_SECTION)) {
         if let Some(section) = known.iter().find(|section| section.body == body) {
             let Stress { normal, shear, torsion, equivalent } = section.stress;
             out.copy_from_slice(&[normal, shear, torsion, equivalent, section.utilisation.unwrap_or(f64::NAN)]);

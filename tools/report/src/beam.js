@@ -16,15 +16,35 @@ const ROUND = Array.from({ length: 24 }, (_, face) => {
   return { normal: towards(face), corners: [towards(face - 0.5), towards(face + 0.5)] };
 });
 
-/** Geometry of a beam over elements of these lengths. */
+/** Height and width at a place, from `[x, height, width]` along the beam: linear between places, and at a step what begins there. */
+export function sizeAt(along, x) {
+  const next = along.findIndex(([place]) => place > x);
+  if (next < 1) return along.at(next).slice(1);
+  const [a, b] = [along[next - 1], along[next]];
+  const share = (x - a[0]) / (b[0] - a[0]);
+  return [1, 2].map((side) => a[side] + share * (b[side] - a[side]));
+}
+
+/** Places of the rings along a beam, m: evenly from middle to middle of the elements, and to both ends. */
+function places(lengths) {
+  const total = lengths.reduce((sum, length) => sum + length, 0);
+  let end = 0;
+  const middles = lengths.map((length) => (end += length) - length / 2);
+  const evenly = (a, b, count) => Array.from({ length: count }, (_, s) => a + ((b - a) * s) / count);
+  const between = middles.slice(1).flatMap((middle, k) => evenly(middles[k], middle, 2 * STATIONS));
+  return [...evenly(0, middles[0], STATIONS), ...between, ...evenly(middles.at(-1), total, STATIONS), total];
+}
+
+/** Geometry of a beam over elements of these lengths, with its height and width along it. */
 export class BeamGeometry extends BufferGeometry {
-  constructor(lengths, height, width, round = false) {
+  constructor(lengths, along, round = false) {
     super();
     this.lengths = lengths;
-    this.half = [height / 2, width / 2];
+    this.along = along;
     this.faces = round ? ROUND : BOX;
+    this.places = places(lengths);
     const vertices = 2 * this.faces.length;
-    const rings = 2 * STATIONS * lengths.length + 1;
+    const rings = this.places.length;
     this.setAttribute("position", new BufferAttribute(new Float32Array(rings * 3 * vertices), 3));
     this.setAttribute("normal", new BufferAttribute(new Float32Array(rings * 3 * vertices), 3));
     const index = [];
@@ -43,10 +63,8 @@ export class BeamGeometry extends BufferGeometry {
     const vertices = 2 * this.faces.length;
     if (!this.attributes.color) this.setAttribute("color", new BufferAttribute(new Float32Array(this.attributes.position.count * 3), 3));
     const colours = this.attributes.color;
-    const total = this.lengths.reduce((sum, length) => sum + length, 0);
-    const rings = colours.count / vertices;
-    for (let ring = 0; ring < rings; ring += 1) {
-      const [r, g, b] = colour((total * ring) / (rings - 1));
+    for (const [ring, x] of this.places.entries()) {
+      const [r, g, b] = colour(x);
       for (let vertex = 0; vertex < vertices; vertex += 1) colours.setXYZ(ring * vertices + vertex, r, g, b);
     }
     colours.needsUpdate = true;
@@ -57,10 +75,13 @@ export class BeamGeometry extends BufferGeometry {
     const position = this.attributes.position;
     const normal = this.attributes.normal;
     let vertex = 0;
+    let rings = 0;
     const ring = (p, y, z) => {
+      const [height, width] = sizeAt(this.along, this.places[rings]);
+      rings += 1;
       for (const { normal: [ny, nz], corners } of this.faces) {
         for (const [cy, cz] of corners) {
-          const [h, w] = [cy * this.half[0], cz * this.half[1]];
+          const [h, w] = [(cy * height) / 2, (cz * width) / 2];
           position.setXYZ(vertex, p.x + y.x * h + z.x * w, p.y + y.y * h + z.y * w, p.z + y.z * h + z.z * w);
           normal.setXYZ(vertex, y.x * ny + z.x * nz, y.y * ny + z.y * nz, y.z * ny + z.z * nz);
           vertex += 1;

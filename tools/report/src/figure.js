@@ -2,7 +2,7 @@
 // flexible links bent, in the outline of their section where the spec gives one, pins where joints turn, legs where it stands, and
 // springs and ropes between their points.
 import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
-import { BeamGeometry } from "./beam.js";
+import { BeamGeometry, sizeAt } from "./beam.js";
 import { Kinematics, links } from "./kinematics.js";
 
 /** Mass per volume of what a link fills with its outline, kg/m³: about a third of steel's. */
@@ -102,15 +102,20 @@ export class Figure {
     const mass = elements.reduce((sum, p) => sum + bodies[p].mass, 0);
     const outline = this.crane.outlines[name];
     const likely = this.thickness(mass, total);
-    const [height, width] = outline?.size ?? [likely, 0.8 * likely];
+    const along = outline?.along ?? [[0, likely, 0.8 * likely]];
+    const [height, width] = outline?.size ?? along[0].slice(1);
     const side = Math.max(height, width);
-    const geometry = new BeamGeometry(lengths, height, width, outline?.round);
+    const geometry = new BeamGeometry(lengths, along, outline?.round);
     const mesh = this.mesh(geometry, COLOURS.flexible);
     mesh.frustumCulled = false;
     this.beams.push({ name, geometry, elements, mesh, plain: mesh.material });
     // Rings between the elements show where it bends.
-    elements.slice(1).forEach((p) => {
-      const ring = this.mesh(outline?.round ? new CylinderGeometry(0.56 * side, 0.56 * side, 0.12 * side, 32) : new BoxGeometry(0.12 * side, height + 0.12 * side, width + 0.12 * side), COLOURS.pin);
+    let begin = 0;
+    elements.slice(1).forEach((p, k) => {
+      begin += lengths[k];
+      const [h, w] = sizeAt(along, begin);
+      const s = Math.max(h, w);
+      const ring = this.mesh(outline?.round ? new CylinderGeometry(0.56 * s, 0.56 * s, 0.12 * s, 32) : new BoxGeometry(0.12 * s, h + 0.12 * s, w + 0.12 * s), COLOURS.pin);
       // A cylinder stands along y.
       this.part(p, ring, outline?.round ? new Matrix4().makeRotationZ(Math.PI / 2) : new Matrix4());
     });

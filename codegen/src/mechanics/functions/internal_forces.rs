@@ -34,13 +34,14 @@ impl Derivation<'_> {
                 supports::positions(model, &self.kinematics),
             ));
         }
-        if !model.chain.beams.is_empty() {
+        let sections: usize = model.chain.beams.iter().map(|beam| beam.moduli.len()).sum();
+        if sections > 0 {
             functions.push(function(
                 FunctionId::SectionModuli,
-                "What stresses of beams follow from, beam by beam: areas (m²), moduli (m³), the allowable stress (Pa); 0 where not known.",
+                "What stresses of beams follow from, section by section: areas (m²), moduli (m³), the allowable stress (Pa); 0 where not known.",
                 "A, W_y, W_z, W_t, A_y, A_z; yield stress over safety factor",
                 &[],
-                Shape::Structs(Struct::SectionModuli, model.chain.beams.len()),
+                Shape::Structs(Struct::SectionModuli, sections),
                 model.chain.beams.iter().flat_map(|beam| section_moduli(model, beam)).collect(),
             ));
         }
@@ -48,13 +49,16 @@ impl Derivation<'_> {
     }
 }
 
-/// The slots of [`Struct::SectionModuli`] of a beam.
-fn section_moduli<'g>(model: &Model<'g>, beam: &Beam) -> [Expr<'g>; 8] {
+/// The slots of [`Struct::SectionModuli`] of all sections of a beam.
+fn section_moduli<'g>(model: &Model<'g>, beam: &Beam) -> Vec<Expr<'g>> {
     let zero = model.zero();
-    let Some(Moduli { area, bending, torsion, shear, has_corners }) = &beam.moduli else { return [zero; 8] };
-    let [wy, wz] = bending.each_ref().map(|modulus| model.number(modulus));
-    let [ay, az] = shear.each_ref().map(|area| model.number(area));
-    let corners = model.graph.constant(if *has_corners { 1.0 } else { 0.0 });
     let allowable = beam.allowable_stress.as_ref().map_or(zero, |stress| model.number(stress));
-    [model.number(area), wy, wz, model.number(torsion), ay, az, corners, allowable]
+    let of_section = |moduli: &Option<Moduli>| {
+        let Some(Moduli { area, bending, torsion, shear, has_corners }) = moduli else { return [zero; 8] };
+        let [wy, wz] = bending.each_ref().map(|modulus| model.number(modulus));
+        let [ay, az] = shear.each_ref().map(|area| model.number(area));
+        let corners = model.graph.constant(if *has_corners { 1.0 } else { 0.0 });
+        [model.number(area), wy, wz, model.number(torsion), ay, az, corners, allowable]
+    };
+    beam.moduli.iter().flat_map(of_section).collect()
 }

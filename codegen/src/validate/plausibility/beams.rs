@@ -58,7 +58,9 @@ impl Look<'_> {
         if let Some(Either::Full(material)) = beam.material.as_ref().and_then(|material| material.value.as_ref()) {
             self.material(material, &place);
         }
-        if let Some(section) = beam.section.as_ref().and_then(|section| section.value.as_ref()) {
+        let of_parts = items(beam.parts.as_ref()).flat_map(|part| [Some(&part.section), part.to.as_ref()]);
+        let sections = std::iter::once(beam.section.as_ref()).chain(of_parts).flatten();
+        for section in sections.filter_map(|section| section.value.as_ref()) {
             self.section(section, &place, self.number(&beam.length).0);
         }
     }

@@ -1,6 +1,6 @@
 //! One crane of the page: what it is, how it is drawn, its run and its modes.
 
-use crane_codegen::chain::{Beam, Outline};
+use crane_codegen::chain::{Beam, Outline, Value as Number};
 use crane_live::LiveCrane;
 use crane_model::{CoordinateRole, modes::undamped, results::Table, runs::Recorded};
 use serde_json::{Value, json};
@@ -48,12 +48,18 @@ pub fn data(case: &Case<'_>, live: &LiveCrane, run: &Recorded) -> Outcome<Value>
     }))
 }
 
-/// Sections of the beams whose spec gives a shape, by the names of their links.
+/// Sections of the beams whose spec gives a shape, by the names of their links: height and width, m, of a stepped or tapered beam along it.
 fn outlines(live: &LiveCrane) -> Value {
+    let number = |number: &Number| number.at(live.parameters());
     let of = |beam: &Beam| {
-        let Outline { size, round } = beam.outline.as_ref()?;
-        let size = size.each_ref().map(|length| length.at(live.parameters()));
-        Some((beam.link.clone(), json!({"size": size, "round": round})))
+        let along: Vec<[f64; 3]> = beam
+            .outlines
+            .iter()
+            .map(|(x, Outline { size: [height, width], .. })| [x, height, width].map(number))
+            .collect();
+        let greatest = |side: usize| along.iter().map(|place| place[side]).fold(0.0, f64::max);
+        let round = beam.outlines.first()?.1.round;
+        Some((beam.link.clone(), json!({"size": [greatest(1), greatest(2)], "along": along, "round": round})))
     };
     live.chain().beams.iter().filter_map(of).collect()
 }
