@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crane_codegen::chain::Chain;
+use crane_codegen::chain::{Chain, Strain};
 use crane_codegen::{SourceFile, build, compile, exchange};
 
 /// Files of a folder of this package, in order.
@@ -85,6 +85,18 @@ fn friction_of_a_robots_joint_is_that_of_the_crane() {
     let crane = chain(&SourceFile::new("arm", spec));
     let coulomb: Vec<f64> = crane.frictions().map(|(_, friction)| friction.coulomb.at(&[])).collect();
     assert_eq!(coulomb, [2.5]);
+}
+
+#[test]
+fn a_joint_that_mimics_another_is_coupled_to_it() {
+    let urdf = std::fs::read_to_string("tests/bad_urdf/U010_mimic.urdf").expect("text");
+    let urdf = urdf.replace("sholder\" multiplier=\"2\"", "shoulder\" multiplier=\"2\" offset=\"0.3\"");
+    let crane = chain("arm", exchange::import(&SourceFile::new("arm.urdf", urdf), &[]).expect("a robot"));
+    let [connector] = crane.connectors.as_slice() else { panic!("one coupling") };
+    let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { panic!("{connector:?}") };
+    assert_eq!([coordinate.0, leader.0], [1, 0]);
+    assert_eq!(ratio.at(&[]), 2.0);
+    assert!(format!("{:?}", connector.law).contains("0.3"), "{:?}", connector.law);
 }
 
 #[test]

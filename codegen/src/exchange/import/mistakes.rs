@@ -24,9 +24,9 @@ catalogue! {
     /// Joints rotate about an axis, slide along it, or are fixed.
     U009 unsupported(joint, kind) "joint `{joint}` is {kind}, which is not supported", "supported: revolute, continuous, prismatic, fixed",
         "hold it at zero with `--fix {joint}`, or replace it by joints of one axis each; for a free base write `joint: free` in the spec";
-    /// A joint does not follow another one.
-    U010 mimic(joint, leader) "joint `{joint}` follows joint `{leader}`", "a coupling needs a stiffness, which URDF does not give",
-        "hold it at zero with `--fix {joint}`, or remove `mimic` and write the two under `couplings` in the spec";
+    /// A joint follows another one that moves.
+    U010 mimic(joint, leader) "joint `{joint}` follows joint `{leader}`, which does not move", "no moving joint of this name",
+        "hold it, too, with `--fix {joint}`, or remove `mimic`";
     /// Moving joints follow each other in a chain.
     U011 branches(link, first, second) "the chain branches after link `{link}`: joints `{first}` and `{second}` both move on it", "the second branch",
         "hold one of them at zero, with everything behind it: `--fix {second}` or `--fix {first}`";

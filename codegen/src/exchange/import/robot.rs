@@ -39,7 +39,15 @@ pub(super) struct Joint {
     /// Coulomb friction, N m or N.
     pub(super) friction: f64,
     /// The joint that it follows.
-    pub(super) follows: Option<Named>,
+    pub(super) follows: Option<Follows>,
+}
+
+/// A joint at `multiplier · leader + offset`.
+pub(super) struct Follows {
+    pub(super) leader: Named,
+    pub(super) multiplier: f64,
+    /// m or rad.
+    pub(super) offset: f64,
 }
 
 /// How a joint moves.
@@ -132,7 +140,10 @@ impl Reader {
         };
         let limits = number("limit", "lower").zip(number("limit", "upper")).map(|(lower, upper)| [lower, upper]);
         let (damping, friction) = (number("dynamics", "damping"), number("dynamics", "friction"));
-        let follows = child(node, "mimic").and_then(|mimic| self.required(mimic, "joint", "<mimic>"));
+        let [multiplier, offset] =
+            [number("mimic", "multiplier").unwrap_or(1.0), number("mimic", "offset").unwrap_or(0.0)];
+        let leader = child(node, "mimic").and_then(|mimic| self.required(mimic, "joint", "<mimic>"));
+        let follows = leader.map(|leader| Follows { leader, multiplier, offset });
         let kind = kind?;
         let motion = match kind.name.as_str() {
             "fixed" => Motion::Fixed,

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::mistakes::rule;
-use super::robot::{Joint, Link, Motion, Robot};
+use super::robot::{Follows, Joint, Link, Motion, Robot};
 use crate::chain::Frame;
 use crate::diagnostic::{Mistake, Span, suggest};
 
@@ -59,6 +59,7 @@ pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<
         next = moving.first().and_then(|(joint, frame)| Some((Some((*joint, *frame)), link(&joint.child.name)?)));
         groups.push(group);
     }
+    follow_in_vain(&groups, &mut mistakes);
     if groups.len() == 1 && mistakes.is_empty() {
         mistakes.push(rule::nothing_moves(Span::START));
     }
@@ -132,7 +133,15 @@ fn cannot_move(joint: &Joint, mistakes: &mut Vec<Mistake>) {
     if let Motion::Other(kind) = &joint.motion {
         mistakes.push(rule::unsupported(kind.span, &joint.name, &kind.name));
     }
-    if let Some(leader) = &joint.follows {
-        mistakes.push(rule::mimic(leader.span, &joint.name, &leader.name));
+}
+
+/// Notes joints that follow one which does not move.
+fn follow_in_vain(groups: &[Group], mistakes: &mut Vec<Mistake>) {
+    let moving = || groups.iter().filter_map(|group| group.joint.map(|(joint, _)| joint));
+    for joint in moving() {
+        let Some(Follows { leader, .. }) = &joint.follows else { continue };
+        if leader.name == joint.name || !moving().any(|other| other.name == leader.name) {
+            mistakes.push(rule::mimic(leader.span, &joint.name, &leader.name));
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::links::{SpecLink, SpecMotion, identifier};
-use super::robot::{Joint, Motion, Robot};
+use super::robot::{Follows, Joint, Motion, Robot};
 use crate::chain::{Axis, Frame, Vector};
 use crate::diagnostic::{SourceFile, printable};
 use crate::exchange::mass::{Lump, clean, without_rounding};
@@ -50,6 +50,7 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
         }
         text.push('\n');
     }
+    text += &couplings(links);
     let points: Vec<_> = links.iter().flat_map(|link| link.points.iter().map(move |point| (link, point))).collect();
     if !points.is_empty() {
         text += "points:                         # frames without mass\n";
@@ -67,6 +68,31 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
         );
     }
     text
+}
+
+/// Joints that follow others.
+fn couplings(links: &[SpecLink]) -> String {
+    let coordinate = |link: &SpecLink| link.motion.coordinates(&link.name).into_iter().next().unwrap_or_default();
+    let of_joint =
+        |name: &str| links.iter().find(|link| link.joint.is_some_and(|joint| joint.name == name)).map(coordinate);
+    let mut text = String::new();
+    for link in links {
+        let Some(Follows { leader, multiplier, offset }) = link.joint.and_then(|joint| joint.follows.as_ref()) else {
+            continue;
+        };
+        let (own, Some(leading)) = (coordinate(link), of_joint(&leader.name)) else { continue };
+        let offset = if *offset == 0.0 { String::new() } else { format!("offset: {}, ", decimal(*offset)) };
+        let _ = writeln!(
+            text,
+            "  - {{name: {own}_follows, coordinate: {own}, follows: {leading}, ratio: {}, {offset}stiffness: 1e6, damping: 1e4}}",
+            decimal(*multiplier)
+        );
+    }
+    if text.is_empty() {
+        return text;
+    }
+    let comment = "couplings:                      # joints that mimic others; URDF gives no stiffness and damping: these are guesses\n";
+    [comment, &text, "\n"].concat()
 }
 
 fn link_text(link: &SpecLink) -> String {

@@ -8,6 +8,7 @@ mod joints;
 mod loads;
 mod motions;
 mod numbers;
+mod oil;
 mod poses;
 mod spec;
 mod stiffness;
@@ -94,6 +95,7 @@ pub fn stress(options: &Stress, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
     cases.extend(supports::cases());
     cases.extend(feet::cases());
     cases.extend(joints::cases());
+    cases.extend(oil::cases());
     cases.extend(angles::cases());
     cases.extend(poses::cases(&specs));
     cases.extend(motions::cases(&specs));
