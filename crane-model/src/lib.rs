@@ -32,6 +32,8 @@ mod stress;
 mod wrench;
 
 #[cfg(feature = "std")]
+mod bristles;
+#[cfg(feature = "std")]
 pub mod dyn_crane;
 pub mod dynamics;
 #[cfg(feature = "std")]
@@ -40,6 +42,8 @@ pub mod envelope;
 pub mod hydraulics;
 #[cfg(feature = "std")]
 pub mod modes;
+#[cfg(feature = "std")]
+pub mod own_states;
 #[cfg(feature = "std")]
 pub mod results;
 #[cfg(feature = "std")]
@@ -55,9 +59,9 @@ pub mod support;
 pub mod tipping;
 
 pub use description::{
-    AttachmentInfo, BodyInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo, Description,
-    DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, PumpInfo, SupportInfo, TIPPED,
-    Text, ValveInfo,
+    AttachmentInfo, BodyInfo, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo,
+    Description, DriveInfo, InputInfo, LARGE_TILT, List, LoadInfo, NEAR_SINGULAR, ParameterInfo, PumpInfo, SupportInfo,
+    TIPPED, Text, ValveInfo,
 };
 pub use model::{
     CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise, OneByOne,

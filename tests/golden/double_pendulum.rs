@@ -93,6 +93,7 @@ pub const DESCRIPTION: Description = Description {
     drives: List::Static(&[]),
     stops: List::Static(&[]),
     frictions: List::Static(&[]),
+    bristles: List::Static(&[]),
     loads: List::Static(&[]),
     connectors: List::Static(&[]),
     inputs: List::Static(&[]),

@@ -149,6 +149,7 @@ pub const DESCRIPTION: Description = Description {
     ),
     stops: List::Static(&[]),
     frictions: List::Static(&[]),
+    bristles: List::Static(&[]),
     loads: List::Static(&[]),
     connectors: List::Static(&[]),
     inputs: List::Static(&[]),

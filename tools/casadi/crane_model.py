@@ -62,6 +62,8 @@ class Spring:
     moves_within: tuple = (0.0, 0.0)
     is_rigid: bool = False
     max_effort: object = None
+    max_rate: object = None
+    max_power: object = None
     by_oil: bool = False
     opening: object = 0
 
@@ -373,7 +375,8 @@ def read_drive(crane, written):
         motion += read_profile(spec, {"input": written["offset"]}, coordinate.is_rotation, crane.time)[0]
     stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
     limit = spec.number(written["max_effort"]) if "max_effort" in written else None
-    return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False), limit)
+    most = [spec.number(written[key]) if key in written else None for key in ("max_rate", "max_power")]
+    return Spring(coordinate, stiffness, damping, motion, interval, written.get("rigid", False), limit, *most)
 
 
 def read_opening(crane, valve):

@@ -282,7 +282,7 @@ class Derivations:
         # What is neither in the stops' energy nor at rest.
         lost = -ca.dot(stops + friction, v) - ca.jtimes(stop_energy, q, v)
         lost += sum((c.lost for c in self.contacts.values()), ca.SX(0))
-        drives, drive_energy, drive_lost, drive_damping = self.limited_drives()
+        drives, drive_energy, drive_lost, drive_damping, _ = self.limited_drives()
         by_part["drive"] += drives
         energies["drive"] += drive_energy
         step_damping = sum((c.step_damping for c in self.contacts.values()), damping)
@@ -310,19 +310,20 @@ class Derivations:
         }
 
     def limited_drives(self):
-        """Drives with a limit: their generalized forces, energy, lost power, damping at rest and t = 0."""
+        """Drives with a limit: their generalized forces, energy, lost power, damping at rest and t = 0, and
+        power that the motions put in beyond their efforts, which slips."""
         places = {coordinate.name: place for place, coordinate in enumerate(self.crane.coordinates)}
         forces, damping = (ca.SX.zeros(self.crane.q.shape) for _ in range(2))
-        energy, lost = ca.SX(0), ca.SX(0)
+        energy, lost, slipping = ca.SX(0), ca.SX(0), ca.SX(0)
         for drive in self.crane.drives:
             if drive.max_effort is None:
                 continue
-            effort, stored, own = limited_drive(drive, self.rate)
+            effort, stored, own, beyond = limited_drive(drive, self.rate)
             place = places[drive.coordinate.name]
             forces[place] += effort
             damping[place] += ca.substitute(drive.damping * slope_at_rest(drive), self.crane.time, 0)
-            energy, lost = energy + stored, lost + own
-        return forces, energy, lost, damping
+            energy, lost, slipping = energy + stored, lost + own, slipping + beyond
+        return forces, energy, lost, damping, slipping
 
     def contact_forces(self):
         """One-sided supports: their generalized forces, energy, damping at rest."""
@@ -410,7 +411,7 @@ class Derivations:
             "drive_limits": self.drive_limits(),
             "drive_motions": row_major(ca.horzcat(prescribed, rates)),
             "valve_openings": row_major(ca.horzcat(openings, self.rate(openings))),
-            "drive_power": ca.dot(self.driving_forces(), rates),
+            "drive_power": ca.dot(self.driving_forces(), rates) + self.limited_drives()[4],
         }
 
     def drive_limits(self):

@@ -27,13 +27,27 @@ def stored(stiffness, stretch, limit):
     return ca.if_else(size < low, size**2 / 2, ca.if_else(size < high, within, beyond)) / stiffness
 
 
+def delivered(drive, effort, speed):
+    """What a drive delivers of an effort at a speed of its joint: while it drives, no more than its power and its rate allow."""
+    driving = effort
+    if drive.max_power is not None:
+        driving = saturated(driving, drive.max_power / ca.fmax(ca.fabs(speed), drive.max_power / (2 * drive.max_effort)))
+    if drive.max_rate is not None:
+        left = ca.fmax(0, ca.fmin(1, 10 * (1 - ca.fabs(speed) / drive.max_rate)))
+        driving *= left**2 * (3 - 2 * left)
+    return ca.if_else(effort * speed > 0, driving, effort)
+
+
 def limited_drive(drive, rate):
-    """Effort, energy and lost power of a drive with a limit; `rate` takes the time derivative of its motion."""
+    """Effort, energy, lost power of a drive with a limit, and power that slips; `rate` takes the time derivative of its motion."""
     coordinate = drive.coordinate
     stretch, speed = drive.motion - coordinate.q, rate(ca.SX(drive.motion)) - coordinate.v
     spring = saturated(drive.stiffness * stretch, drive.max_effort)
     effort = saturated(drive.stiffness * stretch + drive.damping * speed, drive.max_effort)
-    return effort, stored(drive.stiffness, stretch, drive.max_effort), (effort - spring) * speed
+    own = delivered(drive, effort, coordinate.v)
+    # The far end of the transmission feels the whole effort, the joint what is delivered.
+    slipping = (effort - own) * speed
+    return own, stored(drive.stiffness, stretch, drive.max_effort), (effort - spring) * speed, slipping
 
 
 def slope_at_rest(drive):

@@ -57,4 +57,21 @@ pub struct Friction {
     pub width: Value,
     /// b, N m s/rad or N s/m.
     pub viscous: Value,
+    /// If the joint sticks.
+    pub bristle: Option<Bristle>,
+}
+
+/// Friction by bristles whose deflection is a state of the motion; only viscous friction is then part of the force element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bristle {
+    /// `F_c`, N m or N.
+    pub coulomb: f64,
+    /// `F_b`, N m or N.
+    pub breakaway: f64,
+    /// `v_s`, rad/s or m/s.
+    pub stribeck: f64,
+    /// σ₀, N m/rad or N/m.
+    pub stiffness: f64,
+    /// σ₁, N m s/rad or N s/m.
+    pub damping: f64,
 }

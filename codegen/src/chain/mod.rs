@@ -18,7 +18,7 @@ mod value;
 pub use connector::{Attachment, Connector, ConnectorLaw, Strain};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
-pub use force::{End, ForceElement, Friction, Law, Stop};
+pub use force::{Bristle, End, ForceElement, Friction, Law, Stop};
 pub use frame::{Frame, Vector};
 pub use input::{Input, InputId};
 pub use load::{Load, LoadAxes};
@@ -305,6 +305,10 @@ pub enum Transmission {
         damping: Value,
         /// The greatest effort of both together, N m or N.
         max_effort: Option<Value>,
+        /// The greatest rate at which it drives, rad/s or m/s.
+        max_rate: Option<f64>,
+        /// The greatest power with which it drives, W.
+        max_power: Option<f64>,
     },
     /// A rigid connection: the coordinate is prescribed.
     Rigid,
@@ -349,6 +353,24 @@ impl Drive {
     #[must_use]
     pub fn pieces(&self) -> Vec<[Value; 2]> {
         [Some(&self.profile), self.opening()].into_iter().flatten().flat_map(Profile::pieces).collect()
+    }
+
+    /// The greatest rate at which it drives, if it is limited.
+    #[must_use]
+    pub fn max_rate(&self) -> Option<f64> {
+        match self.transmission {
+            Transmission::Flexible { max_rate, .. } => max_rate,
+            Transmission::Rigid | Transmission::Oil { .. } => None,
+        }
+    }
+
+    /// The greatest power with which it drives, if it is limited.
+    #[must_use]
+    pub fn max_power(&self) -> Option<f64> {
+        match self.transmission {
+            Transmission::Flexible { max_power, .. } => max_power,
+            Transmission::Rigid | Transmission::Oil { .. } => None,
+        }
     }
 
     /// The greatest effort, if it is limited.
@@ -463,6 +485,17 @@ impl Chain {
             Law::Friction(friction) => Some((element.coordinate, friction)),
             Law::Stop(_) => None,
         })
+    }
+
+    /// Joints that stick.
+    pub fn bristles(&self) -> impl Iterator<Item = (CoordinateId, Bristle)> {
+        self.frictions().filter_map(|(coordinate, friction)| Some((coordinate, friction.bristle?)))
+    }
+
+    /// Whether forces have states besides pose and rates: oil, and bristles of joints that stick.
+    #[must_use]
+    pub fn has_own_states(&self) -> bool {
+        self.has_valves() || self.bristles().next().is_some()
     }
 
     /// Coordinates with end stops, each once.

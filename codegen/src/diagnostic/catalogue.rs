@@ -299,6 +299,22 @@ catalogue! {
     E100 bent_in_one_piece() "a rigid beam cannot be curved", "its one body is straight",
         "leave `bend` out, or divide the beam into sections";
 
+    // Joints that stick.
+    /// Friction by bristles has constants, since their deflection is a state of the motion.
+    E101 live_bristles(coordinate) "the friction of `{coordinate}` has bristles and a live parameter", "`coulomb`, `breakaway` or `stribeck` is a parameter",
+        "write numbers there, or remove `bristle`";
+    /// Bristles carry something.
+    E102 bristles_of_nothing(coordinate) "the bristles of `{coordinate}` carry nothing", "`coulomb` is 0", "give it a Coulomb friction above 0, or remove `bristle`";
+    /// A joint whose motion is prescribed does not stick.
+    E103 prescribed_bristles(coordinate) "the friction of `{coordinate}` has bristles, but its drive is rigid", "a joint that follows its motion exactly does not stick",
+        "remove `bristle`, or give the drive a `stiffness`";
+    /// A drive with a greatest rate or power has a greatest effort.
+    E104 limit_without_effort(coordinate, key) "the drive of `{coordinate}` has `{key}` but no `max_effort`", "a real drive has all of them",
+        "add `max_effort:`, the greatest torque or force of the drive, N m or N";
+    /// Bristles stick: their friction has no width.
+    E105 width_of_bristles(coordinate) "the friction of `{coordinate}` has a `width` and a `bristle`", "bristles stick without creeping",
+        "remove `width`, or `bristle`";
+
     // Inputs.
     /// An input has a value or follows a motion until it is set.
     E110 input_twice(input) "input `{input}` has a `value` and a `motion`", "one of the two",

@@ -7,8 +7,8 @@ use syn::{Item, parse_quote};
 use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{
-    Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Cylinder, Profile, Strain,
-    SupportKinematics, Value, Valve,
+    Attachment, BodyId, Bristle, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Cylinder, Profile,
+    Strain, SupportKinematics, Value, Valve,
 };
 
 /// Sizes and the `DESCRIPTION`.
@@ -81,10 +81,32 @@ fn description_constant(chain: &Chain) -> Item {
     let drives = chain.drives.iter().map(|drive| {
         let (coordinate, start) = (integer(drive.coordinate.0), literal(drive.profile.start(&defaults)));
         let pieces = integer(drive.pieces().len());
-        quote!(DriveInfo { coordinate: #coordinate, start: #start, pieces: #pieces })
+        let [max_rate, max_power] = [drive.max_rate(), drive.max_power()].map(optional);
+        quote!(DriveInfo {
+            coordinate: #coordinate,
+            start: #start,
+            pieces: #pieces,
+            max_rate: #max_rate,
+            max_power: #max_power
+        })
     });
     let stops = chain.stopped().into_iter().map(|id| integer(id.0));
     let frictions = chain.frictions().map(|(id, _)| integer(id.0));
+    let bristles = chain.bristles().map(|(id, bristle)| {
+        let coordinate = integer(id.0);
+        let Bristle { coulomb, breakaway, stribeck, stiffness, damping } = bristle;
+        let [coulomb, breakaway, stribeck] = [coulomb, breakaway, stribeck].map(literal);
+        let [stiffness, damping] = [stiffness, damping].map(literal);
+        quote!(BristleInfo {
+            coordinate: #coordinate,
+            coulomb: #coulomb,
+            breakaway: #breakaway,
+            stribeck: #stribeck,
+            stiffness: #stiffness,
+            damping: #damping
+        })
+    });
+    let bristles = list(bristles);
     let loads = chain.loads.iter().map(|load| {
         let (name, pieces) = (text(&load.name), integer(load.pieces()));
         quote!(LoadInfo { name: #name, pieces: #pieces })
@@ -128,6 +150,7 @@ fn description_constant(chain: &Chain) -> Item {
             drives: #drives,
             stops: #stops,
             frictions: #frictions,
+            bristles: #bristles,
             loads: #loads,
             connectors: #connectors,
             inputs: #inputs,

@@ -108,6 +108,7 @@ fn imports(items: &[syn::Item]) -> String {
                 "AttachmentInfo",
                 "BodyInfo",
                 "Bound",
+                "BristleInfo",
                 "ConnectorInfo",
                 "CoordinateInfo",
                 "CoordinateKind",

@@ -1,6 +1,7 @@
 //! Drives: a spring and a damper between a coordinate and its prescribed motion, or that motion itself. What oil moves has a spring at
 //! rest only: its force in motion follows from pressures, which are states of the run.
 
+use super::capability::delivered;
 use super::model::Model;
 use super::profile;
 use super::saturation::Saturation;
@@ -30,12 +31,13 @@ fn unlimited<'g>(
     model.number(stiffness) * stretch + model.number(damping) * rate
 }
 
-/// `t_dr = s (q_dr − q) + d (q̇_dr − q̇)` [Urbaś 2016, Eqs. (20)–(21)], up to the limit of the drive.
+/// `t_dr = s (q_dr − q) + d (q̇_dr − q̇)` [Urbaś 2016, Eqs. (20)–(21)], up to the limits of the drive.
 fn effort<'g>(model: &Model<'g>, flexible: (&Drive, &Value, &Value), t: Expr<'g>, v: &[Expr<'g>]) -> Expr<'g> {
-    named(model, flexible.0, limited(model, flexible.0, unlimited(model, flexible, t, v)))
+    let within = limited(model, flexible.0, unlimited(model, flexible, t, v));
+    named(model, flexible.0, delivered(model, flexible.0, within, v[flexible.0.coordinate.0]))
 }
 
-/// An effort up to the limit of its drive.
+/// An effort up to the greatest of its drive.
 fn limited<'g>(model: &Model<'g>, drive: &Drive, effort: Expr<'g>) -> Expr<'g> {
     drive.max_effort().map_or(effort, |limit| Saturation::new(effort, model.number(limit)).effort())
 }
@@ -119,8 +121,16 @@ pub fn impedances<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
     let mut impedances = vec![[model.zero(); 2]; model.size()];
     for drive in flexible(model) {
         let Some(limit) = drive.0.max_effort() else { continue };
+        let j = drive.0.coordinate.0;
+        if drive.0.max_rate().is_some() || drive.0.max_power().is_some() {
+            // A step needs no exact derivative but a positive resistance.
+            let effort = effort(model, drive, model.t, &model.v);
+            let falling = |by| (-model.graph.derivatives(&[effort], by)[0]).max(model.zero());
+            impedances[j] = [falling(model.q[j]), falling(model.v[j])];
+            continue;
+        }
         let slope = Saturation::new(unlimited(model, drive, model.t, &model.v), model.number(limit)).slope();
-        impedances[drive.0.coordinate.0] = [drive.1, drive.2].map(|of| slope * model.number(of));
+        impedances[j] = [drive.1, drive.2].map(|of| slope * model.number(of));
     }
     impedances
 }
@@ -154,6 +164,11 @@ pub fn limits<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
         let linear = model.number(stiffness);
         drive.max_effort().map_or([zero, linear], |limit| {
             let limit = model.number(limit);
+            let j = drive.coordinate.0;
+            if drive.max_rate().is_some() || drive.max_power().is_some() {
+                let effort = effort(model, (drive, stiffness, damping), model.t, &model.v);
+                return [limit, -model.graph.derivatives(&[effort], model.q[j])[0]];
+            }
             let effort = unlimited(model, (drive, stiffness, damping), model.t, &model.v);
             [limit, Saturation::new(effort, limit).slope() * linear]
         })
@@ -185,10 +200,13 @@ pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     pieces.flatten().map(|time| model.number(&time)).collect()
 }
 
-/// Power of the prescribed motions, `Σ t_dr q̇_dr`; for rigid drives, whose efforts are given, `τ q̇`.
+/// Power of the prescribed motions, `Σ t_dr q̇_dr`, without what slips in drives at their limits of power and rate; for rigid drives, whose efforts are given, `τ q̇`.
 pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
     let flexible = flexible(model).fold(model.zero(), |sum, drive| {
-        sum + effort(model, drive, model.t, &model.v) * profile::rate(model, &drive.0.profile, model.t)
+        let (motion, rate) = (profile::rate(model, &drive.0.profile, model.t), model.v[drive.0.coordinate.0]);
+        let within = limited(model, drive.0, unlimited(model, drive, model.t, &model.v));
+        let slipping = within - delivered(model, drive.0, within, rate);
+        sum + (within * motion - slipping * rate)
     });
     model.chain.rigid_drives().map(|drive| drive.coordinate.0).fold(flexible, |sum, j| sum + efforts[j] * model.v[j])
 }

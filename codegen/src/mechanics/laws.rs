@@ -41,8 +41,11 @@ pub fn stop_damping_at_rest<'g>(model: &Model<'g>, stop: &Stop, q: Expr<'g>) -> 
     model.number(&stop.stiffness) * model.number(&stop.damping) * depth
 }
 
-/// `F = (F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) + b q̇`
+/// `F = (F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) + b q̇`; of a joint that sticks `b q̇`, since the rest is a state's.
 pub fn friction_force<'g>(model: &Model<'g>, friction: &Friction, rate: Expr<'g>) -> Expr<'g> {
+    if friction.bristle.is_some() {
+        return model.number(&friction.viscous) * rate;
+    }
     let coulomb = model.number(&friction.coulomb);
     let size = friction.breakaway.as_ref().map_or(coulomb, |(breakaway, stribeck)| {
         let decline = (-(rate / model.number(stribeck)).squared()).exp();

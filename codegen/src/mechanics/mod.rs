@@ -5,6 +5,7 @@
 //! Mathematical Modelling, 2016; `docs/EQUATIONS.md` explains where we deviate from it.
 
 mod articulated;
+mod capability;
 mod columns;
 mod connectors;
 mod contact;

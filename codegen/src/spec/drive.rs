@@ -22,6 +22,10 @@ pub struct Drive {
     pub rigid: Option<Given<bool>>,
     /// Greatest torque or force that spring and damper deliver together, N m or N. Default: none.
     pub max_effort: Option<Given<Number>>,
+    /// Greatest rate at which it drives, rad/s or m/s: its effort falls to nothing over the last tenth. Needs `max_effort`. Default: none.
+    pub max_rate: Option<Given<Constant>>,
+    /// Greatest power with which it drives, W. Needs `max_effort`. Default: none.
+    pub max_power: Option<Given<Constant>>,
     /// Inertia of the drive's rotor, reflected to the joint by the square of the gear ratio, kg m² or kg. Default 0.
     pub armature: Option<Given<Number>>,
     /// Motion of the spring's far end, or of the joint of a rigid drive; exactly one.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Angle, Given, Number};
+use super::{Angle, Constant, Given, Number};
 
 /// End stops of a joint, which push when it is beyond its range and never pull.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -22,7 +22,10 @@ pub struct Stops {
 
 /// Friction of a joint: Coulomb friction, with a Stribeck decline from a larger breakaway friction.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `coulomb`, `breakaway`, `stribeck`, `width` and `viscous`")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a mapping of `coulomb`, `breakaway`, `stribeck`, `width`, `viscous` and `bristle`"
+)]
 pub struct Friction {
     /// Coulomb friction, N m or N.
     pub coulomb: Given<Number>,
@@ -34,4 +37,16 @@ pub struct Friction {
     pub width: Option<Given<Number>>,
     /// Viscous friction, N m s/rad or N s/m. Default 0.
     pub viscous: Option<Given<Number>>,
+    /// Bristles that bend before the joint slides, so that it sticks without creeping (LuGre), instead of `width`. Default: none.
+    pub bristle: Option<Given<Bristle>>,
+}
+
+/// The bristles of LuGre friction; their deflection is a state of the motion.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `stiffness` and `damping`")]
+pub struct Bristle {
+    /// Stiffness σ₀, N m/rad or N/m.
+    pub stiffness: Given<Constant>,
+    /// Damping σ₁, N m s/rad or N s/m.
+    pub damping: Given<Constant>,
 }

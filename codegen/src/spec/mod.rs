@@ -27,7 +27,7 @@ pub(crate) use given::{EITHER, GIVEN, MANY};
 pub use given::{Either, Entries, Given, Many};
 pub use inertia::{About, Inertia};
 pub use input::Input;
-pub use joint::{Friction, Stops};
+pub use joint::{Bristle, Friction, Stops};
 pub use link::{BaseCoordinate, Body, Joint, JointAxis, Link};
 pub use load::{Axes, Load};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};

@@ -85,6 +85,8 @@ impl<'a> Check<'a> {
                 ("stiffness", drive.stiffness.as_ref().map(|given| given.span)),
                 ("damping", drive.damping.as_ref().map(|given| given.span)),
                 ("max_effort", drive.max_effort.as_ref().map(|given| given.span)),
+                ("max_rate", drive.max_rate.as_ref().map(|given| given.span)),
+                ("max_power", drive.max_power.as_ref().map(|given| given.span)),
             ] {
                 if let Some(span) = span {
                     self.report(rule::rigid_spring(span, name, key));
@@ -110,7 +112,16 @@ impl<'a> Check<'a> {
             }
             self.keep_positive(stiffness.clone(), &broken);
         }
-        Transmission::Flexible { stiffness, damping: damping.unwrap_or(Value::ZERO), max_effort }
+        let rate = if kind == Some(CoordinateKind::Translation) { "m/s" } else { "rad/s" };
+        let [max_rate, max_power] =
+            [(&drive.max_rate, "rate", rate), (&drive.max_power, "power", "W")].map(|(given, what, unit)| {
+                let given = given.as_ref()?;
+                if max_effort.is_none() {
+                    self.report(rule::limit_without_effort(given.span, name, format!("max_{what}")));
+                }
+                Some(self.constant(given, &format!("the greatest {what} of drive `{name}`"), unit, Limit::Positive))
+            });
+        Transmission::Flexible { stiffness, damping: damping.unwrap_or(Value::ZERO), max_effort, max_rate, max_power }
     }
 
     pub(super) fn hinges(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Hinge> {

@@ -3,7 +3,9 @@
 use super::Check;
 use super::drives::units;
 use super::limits::Limit;
-use crate::chain::{CoordinateId, CoordinateKind, End, ForceElement, Friction, Law, Stop, Value};
+use crate::chain::{
+    Bristle, CoordinateId, CoordinateKind, Drive, End, ForceElement, Friction, Law, Stop, Transmission, Value,
+};
 use crate::diagnostic::rule;
 use crate::spec::{self, Crane, Given};
 
@@ -15,7 +17,7 @@ const STRIBECK: f64 = 1e-2;
 
 impl<'a> Check<'a> {
     /// The force elements of all joints: stops, then friction.
-    pub(super) fn joint_forces(&mut self, crane: &'a Crane) -> Vec<ForceElement> {
+    pub(super) fn joint_forces(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<ForceElement> {
         let mut forces = Vec::new();
         for (name, stops) in crane.stops.iter().filter_map(|given| given.value.as_ref()).flat_map(|given| &given.0) {
             let coordinate = self.joint_of(name, "stops");
@@ -30,6 +32,12 @@ impl<'a> Check<'a> {
             let coordinate = self.joint_of(name, "friction");
             if let Some(own) = &given.value {
                 let friction = self.friction(own, name.value.as_deref().unwrap_or_default(), coordinate);
+                let rigid = drives
+                    .iter()
+                    .find(|drive| Some(drive.coordinate) == coordinate && drive.transmission == Transmission::Rigid);
+                if let (Some(bristle), Some(_)) = (&own.bristle, rigid) {
+                    self.report(rule::prescribed_bristles(bristle.span, name.value.as_deref().unwrap_or_default()));
+                }
                 forces.extend(coordinate.map(|coordinate| ForceElement { coordinate, law: Law::Friction(friction) }));
             }
         }
@@ -104,7 +112,12 @@ impl<'a> Check<'a> {
         if let (Some(given), None) = (&own.stribeck, &own.breakaway) {
             self.report(rule::stribeck_alone(given.span, name));
         }
+        let bristle = own
+            .bristle
+            .as_ref()
+            .and_then(|given| self.bristle(given, own, name, (&coulomb, breakaway.as_ref()), &stribeck));
         Friction {
+            bristle,
             coulomb,
             breakaway,
             width: self.number_or(own.width.as_ref(), WIDTH, "`width`", rate, Limit::Positive),
@@ -116,6 +129,34 @@ impl<'a> Check<'a> {
                 Limit::NotNegative,
             ),
         }
+    }
+
+    /// The bristles of a joint that sticks.
+    fn bristle(
+        &mut self,
+        given: &Given<spec::Bristle>,
+        own: &spec::Friction,
+        name: &str,
+        (coulomb, breakaway): (&Value, Option<&(Value, Value)>),
+        stribeck: &Value,
+    ) -> Option<Bristle> {
+        if let Some(width) = &own.width {
+            self.report(rule::width_of_bristles(width.span, name));
+        }
+        let of = given.value.as_ref()?;
+        let place = |what: &str| format!("the {what} of the bristles of `{name}`");
+        let stiffness = self.constant(&of.stiffness, &place("stiffness"), "", Limit::Positive);
+        let damping = self.constant(&of.damping, &place("damping"), "", Limit::NotNegative);
+        let breakaway = breakaway.map_or(coulomb, |(breakaway, _)| breakaway);
+        let [Some(coulomb), Some(breakaway), Some(stribeck)] = [coulomb, breakaway, stribeck].map(Value::as_constant)
+        else {
+            self.report(rule::live_bristles(given.span, name));
+            return None;
+        };
+        if coulomb == 0.0 {
+            self.report(rule::bristles_of_nothing(given.span, name));
+        }
+        Some(Bristle { coulomb, breakaway, stribeck, stiffness, damping })
     }
 
     /// The kind of a coordinate.

@@ -167,7 +167,7 @@ impl<'a> Check<'a> {
         let supports = self.supports(crane);
         let (mut drives, mut rotors) = self.drives(crane);
         let hinges = self.hinges(crane, &drives);
-        let forces = self.joint_forces(crane);
+        let forces = self.joint_forces(crane, &drives);
         let loads = self.loads(crane);
         let cylinders = self.cylinders(crane, &drives);
         let pump = self.pump(crane);

@@ -29,6 +29,8 @@ pub struct Description {
     pub stops: List<usize>,
     /// Coordinates with friction, by their indices in `q`.
     pub frictions: List<usize>,
+    /// Those of them that stick: bristles whose deflections are states of the motion.
+    pub bristles: List<BristleInfo>,
     /// Loads applied from outside.
     pub loads: List<LoadInfo>,
     /// Springs, gas springs and ropes between two points, and couplings of coordinates.
@@ -62,9 +64,14 @@ pub const LARGE_TILT: f64 = 0.1;
 pub const TIPPED: f64 = 0.5;
 
 impl Description {
-    /// Whether oil moves a joint, through a cylinder with a valve: forces and accelerations then need its pressures, too.
+    /// Whether oil moves a joint, through a cylinder with a valve.
     pub fn has_valves(&self) -> bool {
         self.cylinders.iter().any(|cylinder| cylinder.valve.is_some())
+    }
+
+    /// Whether forces have states besides pose and rates: forces and accelerations then need those, too.
+    pub fn has_own_states(&self) -> bool {
+        self.has_valves() || !self.bristles.is_empty()
     }
 }
 
@@ -251,6 +258,10 @@ pub struct DriveInfo {
     pub start: f64,
     /// The number of intervals in which its motion is smooth.
     pub pieces: usize,
+    /// Greatest rate at which it drives, rad/s or m/s, if it is limited.
+    pub max_rate: Option<f64>,
+    /// Greatest power with which it drives, W, if it is limited.
+    pub max_power: Option<f64>,
 }
 
 /// The hydraulic cylinder of a driven joint.
@@ -297,6 +308,23 @@ pub struct ValveInfo {
     pub feed_forward: f64,
     /// Leakage past the piston, m³/(s Pa).
     pub leakage: f64,
+}
+
+/// Friction of a joint that sticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BristleInfo {
+    /// Its coordinate, by its index in `q`.
+    pub coordinate: usize,
+    /// Coulomb friction, N m or N.
+    pub coulomb: f64,
+    /// Breakaway friction, N m or N.
+    pub breakaway: f64,
+    /// Rate of the decline between the two, rad/s or m/s.
+    pub stribeck: f64,
+    /// Stiffness of the bristles, N m/rad or N/m.
+    pub stiffness: f64,
+    /// Their damping, N m s/rad or N s/m.
+    pub damping: f64,
 }
 
 /// What supplies the cylinders.

@@ -6,10 +6,12 @@ use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
 use crate::{
-    CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Tension, Wrench, dynamics,
+    CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Tension, Wrench, bristles,
+    dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
-    hydraulics::{self, Moment, Oil},
+    hydraulics::{self, Oil},
     modes::SmallMotions,
+    own_states::Moment,
     statics,
     statics::Equilibrium,
 };
@@ -304,10 +306,11 @@ impl dyn DynCrane + '_ {
         statics::solve_holding_dyn(self, positions, q, settings)
     }
 
-    /// Coefficients of small motions about a pose at rest, with shut valves.
+    /// Coefficients of small motions about a pose at rest, with shut valves and joints that stick.
     pub fn small_motions_at(&self, q: &[f64]) -> SmallMotions {
         let mut motions = SmallMotions::of(self, q);
         hydraulics::stiffen(self, q, &mut motions);
+        bristles::stiffen(self.description(), &mut motions);
         motions
     }
 

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     dyn_crane::{DynDynamics, DynImplicit, DynModel},
-    hydraulics::Hydraulics,
+    own_states::OwnStates,
 };
 
 /// A motion on its way. It stops wherever a result is wanted and goes on from there with the steps and the history that it has, so
@@ -75,9 +75,9 @@ impl<'a> Course<'a> {
             let place = Place { method, t: begin, h: settings.step, q: &start.q, description: crane.description() };
             place.stopped(Cause::MassMatrix, index)
         })?;
-        let mut hydraulics = Hydraulics::new(crane.description());
-        let states = if start.x.is_empty() { hydraulics.holding(crane, begin, &start.q) } else { start.x.clone() };
-        assert_eq!(states.len(), hydraulics.len(), "one number for each state of the oil");
+        let mut own = OwnStates::new(crane.description());
+        let states = if start.x.is_empty() { own.holding(crane, begin, &start.q) } else { start.x.clone() };
+        assert_eq!(states.len(), own.len(), "one number for each state of a force");
         let integrals: &[f64] = if settings.audit { &[0.0; INTEGRALS] } else { &[] };
         let mut motion = [start.q.as_slice(), &start.v, &states, integrals].concat();
         let (pose, rates) = motion[..2 * n].split_at_mut(n);
@@ -85,7 +85,7 @@ impl<'a> Course<'a> {
         stepper.start(begin, &motion)?;
         let end = begin + settings.duration;
         let stops = Stops::between([crane as &dyn DynModel], begin, end);
-        let states = hydraulics.len();
+        let states = own.len();
         Ok(Self { crane, states, stepper, settings: *settings, stops, begin, end, reached: begin, time: begin, motion })
     }
 

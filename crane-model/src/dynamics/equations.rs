@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     dyn_crane::DynDynamics,
-    hydraulics::{Hydraulics, Moment},
+    own_states::{Moment, OwnStates},
 };
 
 /// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.
@@ -24,8 +24,8 @@ pub(super) struct Equations<'a> {
     pub evaluations: usize,
     /// Pose and rates of the last evaluated motion.
     state: Vec<f64>,
-    oil: Hydraulics,
-    /// Rates of its states, for the powers.
+    own: OwnStates,
+    /// Rates of their states, for the powers.
     rates: Vec<f64>,
 }
 
@@ -33,17 +33,17 @@ impl<'a> Equations<'a> {
     /// For a crane, with or without integrals.
     pub fn new(crane: &'a dyn DynDynamics, guides: Guides, audit: bool) -> Self {
         let n = crane.size();
-        let oil = Hydraulics::new(crane.description());
-        let rates = vec![0.0; oil.len()];
-        Self { crane, n, audit, guides, evaluations: 0, state: vec![0.0; 2 * n], oil, rates }
+        let own = OwnStates::new(crane.description());
+        let rates = vec![0.0; own.len()];
+        Self { crane, n, audit, guides, evaluations: 0, state: vec![0.0; 2 * n], own, rates }
     }
 
-    /// The number of components of a motion: coordinates, rates, states of oil and integrals.
+    /// The number of components of a motion: coordinates, rates, own states of forces and integrals.
     pub fn len(&self) -> usize {
         self.integrals() + if self.audit { INTEGRALS } else { 0 }
     }
 
-    /// Number of states of oil.
+    /// Number of own states of forces.
     pub fn states(&self) -> usize {
         self.rates.len()
     }
@@ -53,8 +53,8 @@ impl<'a> Equations<'a> {
         2 * self.n + self.states()
     }
 
-    /// The states of oil in a motion.
-    pub fn oil<'m>(&self, motion: &'m [f64]) -> &'m [f64] {
+    /// The own states of forces in a motion.
+    pub fn own<'m>(&self, motion: &'m [f64]) -> &'m [f64] {
         &motion[2 * self.n..self.integrals()]
     }
 
@@ -105,10 +105,10 @@ impl<'a> Equations<'a> {
         let (_, rest) = out.split_at_mut(n);
         let (accelerations, rest) = rest.split_at_mut(n);
         self.crane.forward_dynamics(t, q, v, accelerations);
-        if !self.oil.is_empty() {
+        if !self.own.is_empty() {
             let rates = &mut rest[..self.rates.len()];
             let x = &motion[2 * n..2 * n + rates.len()];
-            self.oil.accelerate(self.crane, &Moment { t, q, v, x }, rates, accelerations);
+            self.own.accelerate(self.crane, &Moment { t, q, v, x }, rates, accelerations);
             finite(rates)?;
         }
         self.guides.take_accelerations(self.crane, t, accelerations);
@@ -122,10 +122,12 @@ impl<'a> Equations<'a> {
             let (q, v) = self.state.split_at(self.n);
             let mut powers = self.powers_at(t, q, v);
             let begin = self.integrals();
-            if !self.oil.is_empty() {
+            if !self.own.is_empty() {
                 let moment = Moment { t, q, v, x: &motion[2 * self.n..begin] };
-                self.oil.evaluate(self.crane, &moment, &mut self.rates, None);
-                powers[0] += self.oil.power();
+                self.own.evaluate(self.crane, &moment, &mut self.rates, None);
+                let [put_in, taken_out] = self.own.powers();
+                powers[0] += put_in;
+                powers[1] += taken_out;
             }
             slope[begin..].copy_from_slice(&powers);
         }

@@ -13,6 +13,8 @@ mod course;
 #[cfg(feature = "std")]
 pub mod dormand_prince;
 #[cfg(feature = "std")]
+mod eliminated;
+#[cfg(feature = "std")]
 pub mod ensemble;
 #[cfg(feature = "std")]
 mod equations;

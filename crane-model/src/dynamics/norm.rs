@@ -4,7 +4,7 @@ use super::equations::Equations;
 use crate::{
     CoordinateKind,
     dyn_crane::{DynImplicit, DynModel},
-    hydraulics::Hydraulics,
+    own_states::OwnStates,
 };
 
 /// Weight of an error of a rate relative to one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
@@ -67,7 +67,7 @@ impl Norm {
 
     /// For coordinates, rates and states of oil.
     pub fn with_states(crane: &dyn DynModel, tolerance: f64) -> Self {
-        let states = Hydraulics::new(crane.description()).scales();
+        let states = OwnStates::new(crane.description()).scales();
         Self { states, ..Self::new(crane.description().coordinates.len(), tolerance) }
     }
 

@@ -152,7 +152,7 @@ impl Formula for Stages<'_> {
     /// Integrals are included; J is zero for them.
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
         let h = step.length;
-        let x = equations.oil(&step.start);
+        let x = equations.own(&step.start);
         self.system.factorise(step.t, equations.state(step.t, &step.start), x, h * GAMMA);
         self.system.solve(&step.slopes[0], &mut self.u[0]);
         for i in 1..STAGES {

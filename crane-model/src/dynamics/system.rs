@@ -9,16 +9,16 @@
 //! (A + cD̂ + c²K̂) z = −c² ((D̂ + cK̂) G + K̂ P),     w = c G + z,     p = c (w + P)
 //! ```
 //!
-//! What connectors add, `Σ Jᵀ (c d + c² k) J`, is of low rank: [`Connected`]. So is what oil adds, whose states are eliminated:
-//! [`Eliminated`].
+//! What connectors add, `Σ Jᵀ (c d + c² k) J`, is of low rank: [`Connected`]. So is what forces with states of
+//! their own add, which are eliminated: [`Eliminated`].
 
 use nalgebra::Matrix6;
 
-use super::connected::Connected;
+use super::{connected::Connected, eliminated::Eliminated};
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
-    hydraulics::{Eliminated, Hydraulics, Moment},
+    own_states::{Moment, OwnStates},
 };
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.
@@ -36,8 +36,8 @@ pub(super) struct System<'a> {
     switches: bool,
     /// Stiffness and damping of connectors.
     connected: Connected,
-    /// The oil of cylinders, and the number of its states.
-    oil: Eliminated,
+    /// Forces with states, and the number of these.
+    own: Eliminated,
     states: usize,
     /// c, s.
     c: f64,
@@ -67,8 +67,8 @@ impl<'a> System<'a> {
             nonlinear: [vec![[0.0; 2]; n], vec![[0.0; 2]; n]],
             base: [Matrix6::zeros(); 2],
             connected: Connected::new(crane),
-            oil: Eliminated::new(crane),
-            states: Hydraulics::new(crane.description()).len(),
+            own: Eliminated::new(crane),
+            states: OwnStates::new(crane.description()).len(),
             c: f64::NAN,
             resistance: zeros(),
             right: zeros(),
@@ -77,7 +77,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Factorises at a state of the crane and its oil.
+    /// Factorises at a state of the crane and its forces.
     pub fn factorise(&mut self, t: f64, (q, v): (&[f64], &[f64]), x: &[f64], c: f64) {
         self.c = c;
         let [nonlinear, _] = &mut self.nonlinear;
@@ -93,7 +93,7 @@ impl<'a> System<'a> {
         self.factors.factorise(q, &self.resistance, &(damping * c + stiffness * (c * c)));
         self.connected.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
         let Self { factors, connected, .. } = self;
-        self.oil.factorise(self.crane, &Moment { t, q, v, x }, c, &mut |right, solution| {
+        self.own.factorise(self.crane, &Moment { t, q, v, x }, c, &mut |right, solution| {
             factors.solve(right, solution);
             connected.correct(solution);
         });
@@ -133,13 +133,13 @@ impl<'a> System<'a> {
         }
         self.connected.add_to((g, p), c, &mut self.right);
         let (r, of_integrals) = rhs[2 * n..].split_at(self.states);
-        self.oil.add_to((g, p), r, c, &mut self.right);
+        self.own.add_to((g, p), r, c, &mut self.right);
         for right in &mut self.right {
             *right *= -c * c;
         }
         self.factors.solve(&self.right, &mut self.solution);
         self.connected.correct(&mut self.solution);
-        self.oil.correct(&mut self.solution);
+        self.own.correct(&mut self.solution);
         let (of_q, rest) = u.split_at_mut(n);
         let (of_v, rest) = rest.split_at_mut(n);
         let (of_x, rest) = rest.split_at_mut(self.states);
@@ -147,7 +147,7 @@ impl<'a> System<'a> {
             of_v[i] = c * g[i] + self.solution[i];
             of_q[i] = c * (of_v[i] + p[i]);
         }
-        self.oil.states((of_q, of_v), r, of_x);
+        self.own.states((of_q, of_v), r, of_x);
         for (u, rhs) in rest.iter_mut().zip(of_integrals) {
             *u = c * rhs;
         }

@@ -22,7 +22,6 @@
 //!
 //! The states are, cylinder by cylinder, p, p′ and u, and `p_s` behind all of them. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
 
-mod eliminated;
 mod valve;
 
 use nalgebra::{Complex, DMatrix, Vector3};
@@ -31,13 +30,11 @@ use crate::{
     CylinderInfo, Description, PumpInfo, ValveInfo,
     dyn_crane::{DynCrane, DynDynamics, DynModel},
     modes::{DampedMode, SmallMotions},
+    own_states::{Moment, Pushed, STATES},
     results::{CylinderState, cylinders_at},
 };
-pub(crate) use eliminated::Eliminated;
 use valve::{flows, root};
 
-/// States of a cylinder.
-pub(crate) const STATES: usize = 3;
 /// Share of a pressure above it at which a relief valve passes the nominal flow of the valve, and of its own pressure below which the pump
 /// delivers all it can.
 const BAND: f64 = 0.05;
@@ -52,7 +49,7 @@ const STOP_DAMPING: f64 = 3.0;
 
 /// The oil of a crane.
 #[derive(Clone, Debug, Default)]
-pub struct Hydraulics {
+pub(crate) struct Hydraulics {
     cylinders: Vec<Moved>,
     pump: Option<Pump>,
     /// Every cylinder of the crane: length, rate, and derivative by its coordinate.
@@ -63,10 +60,6 @@ pub struct Hydraulics {
     /// Commands over time of the drives' valves.
     openings: Vec<[f64; 2]>,
     place: [Vec<f64>; 2],
-    /// The cylinders with a valve where they were evaluated last.
-    pushed: Vec<Pushed>,
-    /// Their generalized forces, and what those add to the accelerations.
-    efforts: [Vec<f64>; 2],
 }
 
 /// A cylinder with a valve.
@@ -97,35 +90,6 @@ struct Pump {
     bulk_modulus: f64,
 }
 
-/// A state of a crane and its oil.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment<'a> {
-    pub t: f64,
-    pub q: &'a [f64],
-    pub v: &'a [f64],
-    pub x: &'a [f64],
-}
-
-/// A cylinder at a state, with derivatives by what it depends on.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pushed {
-    /// Index of its coordinate, and `∂ℓ/∂q`.
-    pub coordinate: usize,
-    pub arm: f64,
-    /// F, N, and its derivatives by ℓ, ℓ̇ and its own states.
-    pub force: f64,
-    pub by_length: f64,
-    pub by_speed: f64,
-    pub by_states: [f64; STATES],
-    /// Derivatives of its own rates by ℓ and ℓ̇.
-    pub rates_by_length: [f64; STATES],
-    pub rates_by_speed: [f64; STATES],
-    /// ℓ̇, m/s.
-    speed: f64,
-    /// Flow from the pump, m³/s.
-    from_pump: f64,
-}
-
 impl Hydraulics {
     /// What the description of a crane says about it; nothing where no cylinder has a valve.
     pub fn new(description: &Description) -> Self {
@@ -152,8 +116,6 @@ impl Hydraulics {
             motions: vec![[0.0; 2]; description.drives.len()],
             openings: vec![[0.0; 2]; description.drives.len()],
             place: [vec![0.0; n], vec![0.0; n]],
-            pushed: vec![Pushed::default(); cylinders.len()],
-            efforts: [vec![0.0; n], vec![0.0; n]],
             cylinders,
         }
     }
@@ -174,7 +136,7 @@ impl Hydraulics {
     }
 
     /// Sizes by which errors of the states are measured: the pump's pressure, and the full way of a spool.
-    pub fn scales(&self) -> Vec<f64> {
+    pub(crate) fn scales(&self) -> Vec<f64> {
         let pressure = self.pump.map_or(1.0, |pump| pump.pressure);
         let of_cylinder = [pressure, pressure, 1.0];
         let all = self.cylinders.iter().flat_map(|_| of_cylinder);
@@ -182,7 +144,7 @@ impl Hydraulics {
     }
 
     /// The states that hold a pose at rest at a time: shut valves, and the side that does not carry at the pressure of the tank.
-    pub fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
+    pub(crate) fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
         if self.is_empty() {
             return Vec::new();
         }
@@ -208,14 +170,13 @@ impl Hydraulics {
         crane: &dyn DynModel,
         &Moment { t, q, v, x }: &Moment<'_>,
         rates: &mut [f64],
+        pushed: &mut [Pushed],
         mut by_states: Option<&mut DMatrix<f64>>,
     ) {
-        let Some((&p_s, _)) = x.split_last() else { return };
+        let Some(last) = self.len().checked_sub(1) else { return };
+        let p_s = x[last];
         self.measure(crane, t, q, v);
-        if let Some(matrix) = by_states.as_deref_mut() {
-            matrix.fill(0.0);
-        }
-        let (last, mut taken, mut taken_by_pump) = (x.len() - 1, 0.0, 0.0);
+        let (mut taken, mut taken_by_pump) = (0.0, 0.0);
         let pump = self.pump;
         let of_pump = pump.map_or(0.0, |pump| pump.bulk_modulus / pump.info.volume);
         for (place, moved) in self.cylinders.iter().enumerate() {
@@ -228,6 +189,7 @@ impl Hydraulics {
             taken_by_pump += flows.by_pump[fed];
             let mut own = moved.push(here, [x[first], x[first + 1]]);
             own.from_pump = flows.into[fed];
+            (own.first, own.count) = (first, STATES);
             let mut block = [[0.0; STATES]; STATES];
             for side in 0..2 {
                 let sign = [1.0, -1.0][side];
@@ -273,41 +235,13 @@ impl Hydraulics {
                 matrix[(last, first + 2)] = -of_pump * flows.by_spool[fed];
                 matrix[(first + 2, last)] = command.by_pump / lag;
             }
-            self.pushed[place] = own;
+            pushed[place] = own;
         }
         let (delivered, slope) = pump.map_or((0.0, 0.0), |pump| pump.flow(p_s));
         rates[last] = of_pump * (delivered - taken);
         if let Some(matrix) = by_states {
             matrix[(last, last)] = of_pump * (slope - taken_by_pump);
         }
-    }
-
-    /// Adds what the cylinders contribute to the accelerations, and writes the rates of the states.
-    pub(crate) fn accelerate(
-        &mut self,
-        crane: &dyn DynDynamics,
-        moment: &Moment<'_>,
-        rates: &mut [f64],
-        accelerations: &mut [f64],
-    ) {
-        self.evaluate(crane, moment, rates, None);
-        let [efforts, own] = &mut self.efforts;
-        efforts.fill(0.0);
-        for pushed in &self.pushed {
-            efforts[pushed.coordinate] += pushed.force * pushed.arm;
-        }
-        crane.solve_mass(moment.q, efforts, own);
-        accelerations.iter_mut().zip(own).for_each(|(all, own)| *all += *own);
-    }
-
-    /// The cylinders with a valve where they were evaluated last.
-    pub(crate) fn pushed(&self) -> &[Pushed] {
-        &self.pushed
-    }
-
-    /// Power that the cylinders put in where they were evaluated last, `Σ F ℓ̇`, W.
-    pub(crate) fn power(&self) -> f64 {
-        self.pushed.iter().map(|own| own.force * own.speed).sum()
     }
 
     /// Lengths of all cylinders here, and where the drives' motions are.
@@ -333,7 +267,9 @@ impl Hydraulics {
 
     /// The pump at its pressure: flow, m³/s, power, W, and that pressure, Pa.
     fn delivered(&self, x: &[f64]) -> [f64; 3] {
-        let (Some(pump), Some(&pressure)) = (self.pump, x.last()) else { return [0.0; 3] };
+        let (Some(pump), Some(pressure)) = (self.pump, self.len().checked_sub(1).map(|last| x[last])) else {
+            return [0.0; 3];
+        };
         let (flow, _) = pump.flow(pressure);
         [flow, flow * pressure, pressure]
     }
@@ -420,12 +356,13 @@ impl Oil {
     pub fn at(crane: &dyn DynModel, moment: &Moment<'_>) -> Option<Self> {
         let x = moment.x;
         let mut hydraulics = Hydraulics::new(crane.description());
-        if hydraulics.is_empty() || x.len() != hydraulics.len() {
+        if hydraulics.is_empty() || x.len() < hydraulics.len() {
             return None;
         }
-        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], None);
+        let mut pushed = vec![Pushed::default(); hydraulics.count()];
+        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut pushed, None);
         let cylinders =
-            hydraulics.cylinders.iter().zip(&hydraulics.pushed).zip(x.chunks_exact(STATES)).map(|((moved, own), x)| {
+            hydraulics.cylinders.iter().zip(&pushed).zip(x.chunks_exact(STATES)).map(|((moved, own), x)| {
                 let state = CylinderState {
                     length: hydraulics.here[moved.index].x,
                     speed: own.speed,
@@ -459,21 +396,6 @@ impl Oil {
     }
 }
 
-/// Accelerations at a state of a crane and its oil, m/s² and rad/s², and the rates of the states of the oil.
-///
-/// # Panics
-/// Where there is not one number for each state of the oil.
-pub fn accelerations(crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
-    crane.forward_dynamics(t, q, v, &mut accelerations);
-    let mut hydraulics = Hydraulics::new(crane.description());
-    assert_eq!(x.len(), hydraulics.len(), "one number for each state of the oil");
-    if !hydraulics.is_empty() {
-        hydraulics.accelerate(crane, &Moment { t, q, v, x }, &mut rates, &mut accelerations);
-    }
-    (accelerations, rates)
-}
-
 /// How fast the oil of each cylinder with a valve may decay at a pose, as a mode of its joint: while its suction valves let in oil, with edges
 /// near balance. Explicit methods are limited by it.
 pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
@@ -493,7 +415,7 @@ pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
 }
 
 /// Names of the columns of results with the states, in their order.
-pub fn columns(description: &Description) -> Vec<String> {
+pub(crate) fn columns(description: &Description) -> Vec<String> {
     let valves = description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
     let of_cylinder =
         |info: &CylinderInfo| ["piston_pressure", "rod_pressure", "valve"].map(|what| format!("{}_{what}", info.name));

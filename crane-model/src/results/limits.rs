@@ -28,6 +28,9 @@ pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = Str
     reached.collect::<Vec<_>>().into_iter()
 }
 
+/// Part of its greatest rate from which the effort of a drive is said to fade: it has fallen by a tenth.
+const FADED: f64 = 0.92;
+
 /// Drives that a run takes to their limits: when first, for how long, and how far the joints fall behind.
 pub(super) fn of_run(rig: &dyn DynCrane, table: &Table) -> Vec<String> {
     let description = rig.description();
@@ -37,19 +40,32 @@ pub(super) fn of_run(rig: &dyn DynCrane, table: &Table) -> Vec<String> {
         let place = |name: &str| table.columns.iter().position(|column| column.name == name);
         let effort = place(&drive_effort(&coordinate.name, coordinate.kind))?;
         let (own, prescribed) = (place(&coordinate.name)?, place(&format!("{}_prescribed", coordinate.name))?);
-        let reached = || table.rows.iter().filter(|row| row[effort].abs() >= REACHED * limit);
+        let rate = place(&format!("{}_rate", coordinate.name))?;
+        let at_power = |row: &[f64]| drive.max_power.is_some_and(|power| row[effort] * row[rate] >= REACHED * power);
+        let at_rate = |row: &[f64]| {
+            drive.max_rate.is_some_and(|most| row[effort] * row[rate] > 0.0 && row[rate].abs() >= FADED * most)
+        };
+        let at_effort = |row: &[f64]| row[effort].abs() >= REACHED * limit;
+        let unit = coordinate.kind.unit();
+        let limits: [(&dyn Fn(&[f64]) -> bool, String); 3] = [
+            (&at_effort, format!("{limit:.1} {}", coordinate.kind.force_unit())),
+            (&at_power, format!("{:.1} W", drive.max_power.unwrap_or(f64::NAN))),
+            (&at_rate, format!("{} {unit}/s", drive.max_rate.unwrap_or(f64::NAN))),
+        ];
+        let met = |(is_at, _): &&(&dyn Fn(&[f64]) -> bool, String)| table.rows.iter().any(|row| is_at(row));
+        let limit = limits.iter().filter(met).map(|(_, words)| words.as_str()).collect::<Vec<_>>().join(" and ");
+        let reached = || table.rows.iter().filter(|row| limits.iter().any(|(is_at, _)| is_at(row)));
         let first = reached().next()?[0];
         let duration = table.rows.last().map_or(0.0, |row| row[0]);
         let time = reached().count() as f64 * duration / (table.rows.len().max(2) - 1) as f64;
         let behind = |row: &Vec<f64>| (row[prescribed] - row[own]).abs();
         let worst = table.rows.iter().max_by(|a, b| behind(a).total_cmp(&behind(b)))?;
         Some(format!(
-            "the drive of {} is at its limit of {limit:.1} {} for {time:.2} s, first at {first:.2} s; the joint falls behind its motion by \
+            "the drive of {} is at its limit of {limit} for {time:.2} s, first at {first:.2} s; the joint falls behind its motion by \
              up to {:.4} {}, at {:.2} s",
             coordinate.name,
-            coordinate.kind.force_unit(),
             behind(worst),
-            coordinate.kind.unit(),
+            unit,
             worst[0]
         ))
     });

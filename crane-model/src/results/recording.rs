@@ -1,10 +1,11 @@
 //! Everything of a run that is worth a column.
 
 use crate::{
-    ConnectorInfo, CoordinateKind, Description,
+    ConnectorInfo, CoordinateKind, Description, bristles,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
-    hydraulics::{Moment, Oil},
+    hydraulics::Oil,
+    own_states::Moment,
     results::{Column, Table, cylinders},
 };
 
@@ -13,7 +14,7 @@ use crate::{
 /// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; of a drive `<coordinate>_prescribed` and
 /// `<coordinate>_drive_torque` or `_drive_force`; of a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`,
 /// `_rod_pressure` and `_flow`, of all `pump_flow` and `pump_power`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
-/// `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap` as well; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`; of a
+/// `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap` as well; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`, of joints that stick `<coordinate>_bristle`; of a
 /// connector `<connector>_length`, `<connector>_length_rate` and `<connector>_force`, of a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
 /// error of the run if it is audited.
 pub struct Recording<'a> {
@@ -99,7 +100,14 @@ fn push_quantities(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[
     row.extend(gaps.filter(|(_, support)| support.one_sided).map(|(gap, _)| gap));
     row.extend(crane.element_moments_at(q, v));
     row.extend(crane.stop_efforts_at(q, v));
-    row.extend(crane.friction_efforts_at(v));
+    let mut frictions = crane.friction_efforts_at(v);
+    for (coordinate, effort) in bristles::efforts(crane.description(), v, x) {
+        for (place, own) in frictions.iter_mut().enumerate() {
+            *own += if crane.description().frictions[place] == coordinate { effort } else { 0.0 };
+        }
+    }
+    row.extend(frictions);
+    row.extend(&x[x.len().saturating_sub(crane.description().bristles.len())..]);
     for (length, tension) in crane.connector_lengths_at(q, v).into_iter().zip(crane.connector_tensions_at(t, q, v)) {
         row.extend(length);
         row.push(tension.force);
@@ -166,6 +174,9 @@ pub fn quantities(description: &Description) -> Vec<Column> {
             let coordinate = &description.coordinates[coordinate];
             table.add(effort(&coordinate.name, what, coordinate.kind), coordinate.kind.force_unit());
         }
+    }
+    for (name, joint) in bristles::columns(description).into_iter().zip(&description.bristles) {
+        table.add(name, description.coordinates[joint.coordinate].kind.unit());
     }
     for connector in &description.connectors {
         let (what, unit) = (length_of(connector), connector.kind.unit());

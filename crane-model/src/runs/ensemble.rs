@@ -82,8 +82,8 @@ pub struct Conduct<'a> {
 /// Runs the crane with every row of parameters, all of them in the order of the description, each from its own [`Start`]. One outcome
 /// per row, in order.
 pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, conduct: &Conduct<'_>) -> Vec<Outcome> {
-    // Valves have no lanes.
-    let in_lanes = settings.method == Method::Rk4 && !crane.description().has_valves();
+    // States of forces have no lanes.
+    let in_lanes = settings.method == Method::Rk4 && !crane.description().has_own_states();
     let piece = if in_lanes { crane.lanes() } else { 1 };
     let waiting = Mutex::new(rows.chunks(piece).enumerate());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();

@@ -13,7 +13,7 @@ use super::{GRAVITY, coordinate, description};
 
 const COORDINATES: &[CoordinateInfo] = &[coordinate("lift_z", Translation, Driven)];
 static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
-    drives: List::Static(&[DriveInfo { coordinate: 0, start: 0.0, pieces: 1 }]),
+    drives: List::Static(&[DriveInfo { coordinate: 0, start: 0.0, pieces: 1, max_rate: None, max_power: None }]),
     parameters: List::Static(&[ParameterInfo {
         name: Text::Static("height"),
         unit: Text::Static("m"),

@@ -34,6 +34,7 @@ pub const fn description(
         drives: List::Static(&[]),
         stops: List::Static(&[]),
         frictions: List::Static(&[]),
+        bristles: List::Static(&[]),
         loads: List::Static(&[]),
         connectors: List::Static(&[]),
         inputs: List::Static(&[]),

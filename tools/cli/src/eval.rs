@@ -23,15 +23,15 @@ pub fn eval(options: &Eval, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let crane = fleet.live(options.crane.open(fleet)?.as_ref())?;
     let by_forces = [Quantity::Forces, Quantity::Accelerations, Quantity::DriveEfforts];
     if let Some(quantity) = options.quantities.iter().find(|quantity| by_forces.contains(quantity))
-        && crane.description().has_valves()
+        && crane.description().has_own_states()
     {
         return Err(Problem::usage(
             format!(
-                "`{}` of {} follows from the pressures of its cylinders",
+                "`{}` of {} follows from pressures or bristles, which are states of a run",
                 quantity.name(),
                 crane.description().name
             ),
-            "ask for other `--quantities`, or simulate: results have pressures and forces",
+            "ask for other `--quantities`, or simulate: results have these states and the forces",
         ));
     }
     let states = states(options, &crane)?;

@@ -57,11 +57,14 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
         Language::C => {
             let by_forces = ["forces", "forward_dynamics"];
             if let Some(name) = options.functions.iter().find(|name| by_forces.contains(&name.as_str()))
-                && chain.has_valves()
+                && chain.has_own_states()
             {
                 return Err(Problem::usage(
-                    format!("`{name}` of {} in C would lack what its cylinders push with", chain.name),
-                    "export `bias` and `solve_mass`, and add the cylinders' forces there; or remove `valve` from the cylinders",
+                    format!(
+                        "`{name}` of {} in C would lack its forces with states: of cylinders with valves, of joints that stick",
+                        chain.name
+                    ),
+                    "export `bias` and `solve_mass`, and add those forces there; or remove `valve` from the cylinders and `bristle` from the friction",
                 ));
             }
             let code = in_c(options, &chain, &parameters)?;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crane_model::{Description, dyn_crane::DynCrane, hydraulics, runs::Start};
+use crane_model::{Description, dyn_crane::DynCrane, own_states, runs::Start};
 
 use crate::{
     arguments::Timing,
@@ -28,7 +28,7 @@ impl Variable {
     fn of(name: &str, description: &Description) -> Option<Self> {
         let place = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
         let rate = || name.strip_suffix(RATE).and_then(place).map(Self::Rate);
-        let oil = || hydraulics::columns(description).iter().position(|column| column == name).map(Self::Oil);
+        let oil = || own_states::columns(description).iter().position(|column| column == name).map(Self::Oil);
         place(name).map(Self::Position).or_else(rate).or_else(oil)
     }
 
@@ -71,7 +71,7 @@ impl Timing {
             for (variable, value) in row(file, description, None)?.values {
                 variable.set(&mut start, value);
             }
-            let states = hydraulics::columns(description);
+            let states = own_states::columns(description);
             start.x.resize(if start.x.is_empty() { 0 } else { states.len() }, f64::NAN);
             if let Some(place) = start.x.iter().position(|x| x.is_nan()) {
                 let title = format!("{} has no column {}", file.display(), states[place]);

@@ -7,7 +7,7 @@ use std::path::Path;
 use crane_live::{LiveCrane, Motion};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Settings, Stopped};
-use crane_model::hydraulics::{self, Hydraulics};
+use crane_model::own_states::{self, OwnStates};
 use crane_model::results;
 use crane_model::runs::Start;
 use crane_model::statics;
@@ -57,7 +57,7 @@ pub struct State {
     moment: Option<Moment>,
 }
 
-/// Time, pose and rates, and the states of the oil.
+/// Time, pose and rates, and the states of forces.
 #[derive(Clone, Debug, PartialEq)]
 struct Moment {
     t: f64,
@@ -68,7 +68,7 @@ struct Moment {
 
 impl State {
     /// The state as numbers: parameters, inputs, NaN where they are not set, and where there are such time, pose, rates and
-    /// states of the oil.
+    /// states of forces.
     pub fn numbers(&self) -> Vec<f64> {
         let moment = self.moment.iter().flat_map(|Moment { t, q, v, x }| std::iter::once(t).chain(q).chain(v).chain(x));
         let inputs = self.inputs.iter().map(|value| value.unwrap_or(f64::NAN));
@@ -97,7 +97,7 @@ pub struct Instance {
     /// Steps of the crane's own, on their way.
     motion: Option<Motion>,
     quantities: Option<Vec<f64>>,
-    /// Accelerations, and the rates of the oil's states.
+    /// Accelerations, and the rates of the forces' states.
     accelerations: Option<(Vec<f64>, Vec<f64>)>,
     /// What is to be said, and what has been said once.
     said: Vec<String>,
@@ -184,9 +184,9 @@ impl Instance {
         self.forget();
     }
 
-    /// Number of continuous states: coordinates, rates and states of the oil.
+    /// Number of continuous states: coordinates, rates and states of forces.
     pub fn states(&self) -> usize {
-        2 * self.crane.size() + hydraulics::columns(self.crane.description()).len()
+        2 * self.crane.size() + own_states::columns(self.crane.description()).len()
     }
 
     /// The time, s.
@@ -216,14 +216,14 @@ impl Instance {
                 q = Start::at(crane, &equilibrium).map_err(Fault::error)?.q;
             }
             self.crane.prescribe(self.begin, &mut q, &mut v);
-            let x = Hydraulics::new(self.crane.description()).holding(&self.crane, self.begin, &q);
+            let x = OwnStates::new(self.crane.description()).holding(&self.crane, self.begin, &q);
             self.moment = Some(Moment { t: self.begin, q, v, x });
             self.forget();
         }
         Ok(())
     }
 
-    /// Time, pose and rates, and the states of the oil.
+    /// Time, pose and rates, and the states of forces.
     fn moment(&mut self) -> Result<&Moment, Fault> {
         self.settle()?;
         self.moment.as_ref().ok_or_else(Fault::nowhere)
@@ -259,8 +259,8 @@ impl Instance {
                 Source::Position(index) => self.moment()?.q[index],
                 Source::Rate(index) => self.moment()?.v[index],
                 Source::Acceleration(index) => self.accelerations()?.0[index],
-                Source::Oil(index) => self.moment()?.x[index],
-                Source::OilRate(index) => self.accelerations()?.1[index],
+                Source::Own(index) => self.moment()?.x[index],
+                Source::OwnRate(index) => self.accelerations()?.1[index],
                 Source::Quantity(index) => self.quantities()?[index],
             };
         }
@@ -285,7 +285,7 @@ impl Instance {
         let Self { crane, moment: Some(Moment { t, q, v, x }), accelerations, .. } = self else {
             return Err(Fault::nowhere());
         };
-        Ok(accelerations.get_or_insert_with(|| hydraulics::accelerations(crane, *t, (q, v), x)))
+        Ok(accelerations.get_or_insert_with(|| own_states::accelerations(crane, *t, (q, v), x)))
     }
 
     /// Sets variables by their references; parameters and inputs alone can be set. What several parameters must obey together is
@@ -356,7 +356,7 @@ impl Instance {
         self.change(|moment| moment.t = t)
     }
 
-    /// Sets coordinates, rates and states of the oil.
+    /// Sets coordinates, rates and states of forces.
     ///
     /// # Errors
     /// As [`Instance::get`]; the numbers are not as many as states.
@@ -376,7 +376,7 @@ impl Instance {
         if count == states { Ok(()) } else { Err(Fault::Error(format!("{count} numbers for {states} states"))) }
     }
 
-    /// Coordinates, rates and states of the oil.
+    /// Coordinates, rates and states of forces.
     ///
     /// # Errors
     /// As [`Instance::get`]; `out` is not as long as there are states.
@@ -387,7 +387,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Rates, accelerations and the rates of the oil's states.
+    /// Rates, accelerations and the rates of the forces' states.
     ///
     /// # Errors
     /// As [`Instance::get`]; `out` is not as long as there are states; one of them is not finite.
@@ -395,14 +395,14 @@ impl Instance {
         self.check_states(out.len())?;
         let (rates, rest) = out.split_at_mut(self.crane.size());
         rates.copy_from_slice(&self.moment()?.v);
-        let (accelerations, of_oil) = self.accelerations()?;
-        rest.iter_mut().zip(accelerations.iter().chain(of_oil)).for_each(|(place, value)| *place = *value);
+        let (accelerations, of_forces) = self.accelerations()?;
+        rest.iter_mut().zip(accelerations.iter().chain(of_forces)).for_each(|(place, value)| *place = *value);
         let name = match rest.iter().position(|rate| !rate.is_finite()) {
             Some(index) if index < rates.len() => {
                 format!("the acceleration of {}", self.crane.description().coordinates[index].name)
             }
             Some(index) => {
-                format!("the rate of {}", hydraulics::columns(self.crane.description())[index - rates.len()])
+                format!("the rate of {}", own_states::columns(self.crane.description())[index - rates.len()])
             }
             None => return Ok(()),
         };
@@ -418,7 +418,7 @@ impl Instance {
         times.into_iter().flatten().filter(|time| *time > t && time.is_finite()).min_by(f64::total_cmp)
     }
 
-    /// How some variables change with coordinates, rates, states of the oil and inputs along a direction, by central differences.
+    /// How some variables change with coordinates, rates, states of forces and inputs along a direction, by central differences.
     ///
     /// # Errors
     /// As [`Instance::get`]; a variable of the direction is neither a state nor an input, or it is an input that follows
@@ -432,10 +432,10 @@ impl Instance {
     ) -> Result<(), Fault> {
         /// The cube root of the accuracy of a number balances truncation and rounding of central differences.
         const RELATIVE: f64 = 6e-6;
-        let scales = Hydraulics::new(self.crane.description()).scales();
+        let scales = OwnStates::new(self.crane.description()).scales();
         let mut greatest = 0.0_f64;
         for (&reference, along) in knowns.iter().zip(direction) {
-            let scale = if let Source::Oil(index) = self.variable(reference)?.source { scales[index] } else { 1.0 };
+            let scale = if let Source::Own(index) = self.variable(reference)?.source { scales[index] } else { 1.0 };
             greatest = greatest.max(along.abs() / scale);
         }
         if greatest == 0.0 {
@@ -453,7 +453,7 @@ impl Instance {
                 match *source {
                     Source::Position(index) => q[index] += side * along,
                     Source::Rate(index) => v[index] += side * along,
-                    Source::Oil(index) => x[index] += side * along,
+                    Source::Own(index) => x[index] += side * along,
                     Source::Input(index) if inputs[index].is_none() && crane.description().inputs[index].moves => {
                         return Err(Fault::Error(format!("{name} follows the motion of the spec: set it first")));
                     }

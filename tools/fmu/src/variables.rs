@@ -1,7 +1,7 @@
 //! The variables of a crane.
 
 use crane_codegen::SourceFile;
-use crane_model::{CoordinateRole, Description, hydraulics, results};
+use crane_model::{CoordinateRole, Description, own_states, results};
 
 /// What a variable is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,10 +14,10 @@ pub enum Source {
     Rate(usize),
     /// The acceleration of a coordinate.
     Acceleration(usize),
-    /// A state of the oil of cylinders with a valve: a pressure, or where a spool is.
-    Oil(usize),
+    /// A state of a force: a pressure, where a spool is, the deflection of bristles.
+    Own(usize),
     /// Its rate.
-    OilRate(usize),
+    OwnRate(usize),
     /// What follows from a state, by its place in [`results::quantities`].
     Quantity(usize),
     /// A live parameter, by its place in the description.
@@ -41,8 +41,8 @@ pub struct Variable {
     pub is_output: bool,
 }
 
-/// The variables of a crane: time, coordinates, rates, what follows from them and states of oil, accelerations,
-/// rates of the oil's states, parameters, inputs.
+/// The variables of a crane: time, coordinates, rates, what follows from them and states of forces, accelerations,
+/// rates of the forces' states, parameters, inputs.
 ///
 /// Poses and rates of joints and of the base are outputs, and so are points, drives and reactions. Deformations of flexible links,
 /// their moments, energies and accelerations can be read as well, but are not offered for connections: they are many.
@@ -54,21 +54,21 @@ pub fn list(description: &Description) -> Vec<Variable> {
         .filter(|coordinate| coordinate.role.is_element())
         .map(|coordinate| format!("{}_moment", coordinate.name))
         .collect();
-    let states = hydraulics::columns(description);
+    let states = own_states::columns(description);
     let mut units = vec![String::new(); states.len()];
     let quantities = results::quantities(description).into_iter().enumerate().map(|(index, column)| {
         let source = match index {
             0 => Source::Time,
             _ if index <= n => Source::Position(index - 1),
             _ if index <= 2 * n => Source::Rate(index - 1 - n),
-            _ => states.iter().position(|state| *state == column.name).map_or(Source::Quantity(index), Source::Oil),
+            _ => states.iter().position(|state| *state == column.name).map_or(Source::Quantity(index), Source::Own),
         };
-        if let Source::Oil(place) = source {
+        if let Source::Own(place) = source {
             units[place].clone_from(&column.unit);
         }
         let is_output = match source {
             Source::Position(i) | Source::Rate(i) => !description.coordinates[i].role.is_element(),
-            Source::Oil(_) => true,
+            Source::Own(_) => true,
             Source::Quantity(_) => column.unit != "J" && !moments.contains(&column.name),
             _ => false,
         };
@@ -111,7 +111,7 @@ pub fn list(description: &Description) -> Vec<Variable> {
         name: format!("{state}_rate"),
         unit: format!("{}/s", if unit.is_empty() { "1" } else { &unit }),
         about: String::new(),
-        source: Source::OilRate(index),
+        source: Source::OwnRate(index),
         is_output: false,
     }));
     all.extend(parameters.chain(inputs));

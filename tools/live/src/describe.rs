@@ -4,8 +4,9 @@ use crane_codegen::chain::{
     self, BodyId, Chain, ConnectorLaw, CoordinateId, CoordinateKind as Kind, Profile, Strain, SupportKinematics, Value,
 };
 use crane_model::{
-    AttachmentInfo, BodyInfo, Bound, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CylinderInfo,
-    Description, DriveInfo, InputInfo, LoadInfo, ParameterInfo, PumpInfo, Refusal, SupportInfo, ValveInfo,
+    AttachmentInfo, BodyInfo, Bound, BristleInfo, ConnectorInfo, CoordinateInfo, CoordinateKind, CoordinateRole,
+    CylinderInfo, Description, DriveInfo, InputInfo, LoadInfo, ParameterInfo, PumpInfo, Refusal, SupportInfo,
+    ValveInfo,
 };
 
 /// The description of a chain, as the compiler writes it.
@@ -42,6 +43,8 @@ pub fn describe(chain: &Chain) -> Description {
         coordinate: drive.coordinate.0,
         start: drive.profile.start(&defaults),
         pieces: drive.pieces().len(),
+        max_rate: drive.max_rate(),
+        max_power: drive.max_power(),
     });
     let loads = chain.loads.iter().map(|load| LoadInfo { name: load.name.clone().into(), pieces: load.pieces() });
     let connectors = chain.connectors.iter().map(|connector| ConnectorInfo {
@@ -82,6 +85,7 @@ pub fn describe(chain: &Chain) -> Description {
         drives: drives.collect(),
         stops: chain.stopped().into_iter().map(|id| id.0).collect(),
         frictions: chain.frictions().map(|(id, _)| id.0).collect(),
+        bristles: chain.bristles().map(bristle_info).collect(),
         loads: loads.collect(),
         connectors: connectors.collect(),
         inputs: inputs.collect(),
@@ -127,6 +131,11 @@ fn kind_of(kind: Kind) -> CoordinateKind {
         Kind::Translation => CoordinateKind::Translation,
         Kind::Rotation => CoordinateKind::Rotation,
     }
+}
+
+fn bristle_info((id, bristle): (chain::CoordinateId, chain::Bristle)) -> BristleInfo {
+    let chain::Bristle { coulomb, breakaway, stribeck, stiffness, damping } = bristle;
+    BristleInfo { coordinate: id.0, coulomb, breakaway, stribeck, stiffness, damping }
 }
 
 fn cylinder_info(chain: &Chain, cylinder: &chain::Cylinder) -> CylinderInfo {

@@ -296,8 +296,8 @@ fn a_run_of_ten_seconds_agrees() {
 /// Members with parameters of their own, by blocks of eight.
 #[test]
 fn ensembles_agree() {
-    // Oil has no lanes.
-    for (compiled, live) in both().into_iter().filter(|(_, live)| !live.description().has_valves()) {
+    // States of forces have no lanes.
+    for (compiled, live) in both().into_iter().filter(|(_, live)| !live.description().has_own_states()) {
         let member = |factor: f64| {
             let parameters = compiled.description().parameters.iter().map(|info| info.default * factor).collect();
             Member { parameters, start: InitialState::at_rest(compiled.guess()) }

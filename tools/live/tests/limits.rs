@@ -41,6 +41,51 @@ fn a_drive_at_its_limit_accelerates_evenly() {
     }
 }
 
+/// A drive at its greatest power accelerates as `v² = v₀² + 2 P t/m`; one at its greatest rate does not pass it, and brakes with all that it has.
+/// The energy balances.
+#[test]
+fn power_and_rate_of_a_drive_are_limited() {
+    let (mass, limit, power, begin) = (20.0, 50.0, 100.0, 4.0);
+    let slide = |more: &str, motion: &str| {
+        crane(&format!(
+            "format: 1\nname: slide\ngravity: [0, 0, 0]\nlinks: [{{name: slide, joint: {{prismatic: {{axis: x}}}}, mass: {mass}, com: [0, 0, 0]}}]\n\
+             drives: [{{coordinate: slide_x, stiffness: 1e4, damping: 10, max_effort: {limit}, {more}, motion: {motion}}}]\n"
+        ))
+    };
+    let follow = |slide: &LiveCrane, v: f64, check: &mut dyn FnMut(&Sample<'_>, f64)| {
+        let slide: &dyn DynCrane = slide;
+        let start = InitialState { q: vec![0.0], v: vec![v], ..InitialState::default() };
+        let stored = slide.energies_at(0.0, &start.q, &start.v).total();
+        for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
+            let own = Settings::of(slide.description());
+            let settings =
+                Settings { method, tolerance: 1e-9, duration: 2.0, output: 0.01, step: 1e-4, audit: true, ..own };
+            let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
+                check(sample, slide.drive_efforts_at(sample.t, sample.q, sample.v)[0]);
+                let energy = slide.energies_at(sample.t, sample.q, sample.v).total();
+                let balance = energy + sample.dissipated - sample.work - stored;
+                // Of some kJ in the spring.
+                assert!(balance.abs() < 1e-4, "{method:?} at {}: {balance} J", sample.t);
+                ControlFlow::Continue(())
+            });
+            run.unwrap_or_else(|stopped| panic!("{method:?}: {stopped}"));
+        }
+    };
+    follow(&slide(&format!("max_power: {power}"), "{hold: 30}"), begin, &mut |sample, effort| {
+        let expected = (begin * begin + 2.0 * power * sample.t / mass).sqrt();
+        assert!((sample.v[0] - expected).abs() < 1e-7, "at {}: {}", sample.t, sample.v[0]);
+        assert!((effort * sample.v[0] / power - 1.0).abs() < 1e-12);
+    });
+    let fast = 3.0;
+    follow(&slide(&format!("max_rate: {fast}"), "{hold: 30}"), 0.0, &mut |sample, _| {
+        assert!(sample.v[0] < fast && (sample.t < 1.5 || sample.v[0] > 0.9 * fast), "at {}: {}", sample.t, sample.v[0]);
+    });
+    // Beyond its greatest rate it brakes in full.
+    follow(&slide(&format!("max_rate: {fast}, max_power: 1"), "{hold: -30}"), 20.0, &mut |sample, effort| {
+        assert!((effort + limit).abs() < 1e-12, "at {}: {effort}", sample.t);
+    });
+}
+
 /// An arm whose weight asks for more than the drive has sinks to where `m g l cos θ` is its limit, and statics say so.
 #[test]
 fn statics_say_that_a_drive_cannot_hold() {

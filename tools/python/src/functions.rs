@@ -589,9 +589,9 @@ impl Crane {
                     | FunctionId::Linearise
             )
         );
-        if by_forces && self.live.description().has_valves() {
+        if by_forces && self.live.description().has_own_states() {
             return Err(PyValueError::new_err(
-                "the cylinders' forces follow from their pressures, which are states of a run: use simulate, simulation or modes",
+                "forces of this crane follow from pressures or bristles, which are states of a run: use simulate, simulation or modes",
             ));
         }
         let arguments = self.read(state)?;

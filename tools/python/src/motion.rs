@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings, Statistics, Stopped};
-use crane_model::hydraulics::Hydraulics;
+use crane_model::own_states::OwnStates;
 use crane_model::results::{Column, Peaks, cautions};
 use crane_model::runs::ensemble::{self, Conduct};
 use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, record_checked, step_limit};
@@ -314,9 +314,12 @@ impl Crane {
         }
         let settings = Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..timing.settings(description)? };
         let start = InitialState { q: given("q", q, description)?, v: given("v", v, description)?, x };
-        let states = Hydraulics::new(description).len();
+        let states = OwnStates::new(description).len();
         if !start.x.is_empty() && start.x.len() != states {
-            return Err(PyValueError::new_err(format!("x has {} numbers: the oil has {states} states", start.x.len())));
+            return Err(PyValueError::new_err(format!(
+                "x has {} numbers: the crane has {states} such states",
+                start.x.len()
+            )));
         }
         let moving = py.detach(|| crane_live::Motion::new(self.live.clone(), t, &start, &settings));
         let name = description.name.clone();

@@ -48,7 +48,7 @@ impl<'a> Correction<'a> {
         self.t = history.t + history.h;
         self.c = history.h / GAMMAS[history.order];
         equations.guides.step_within(history.t, self.t);
-        let x = equations.oil(&self.end);
+        let x = equations.own(&self.end);
         self.system.factorise(self.t, equations.state(self.t, &self.end), x, self.c);
     }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use crane_codegen::exchange::xml::{Xml, number_text};
 use crane_model::dyn_crane::DynModel;
 use crane_model::dynamics::Settings;
-use crane_model::hydraulics;
+use crane_model::own_states;
 
 use crate::variables::{self, Source, Variable};
 
@@ -45,7 +45,7 @@ impl<'a> Subject<'a> {
         match source {
             Source::Rate(index) => Some(Source::Position(index)),
             Source::Acceleration(index) => Some(Source::Rate(index)),
-            Source::OilRate(index) => Some(Source::Oil(index)),
+            Source::OwnRate(index) => Some(Source::Own(index)),
             _ => None,
         }
     }
@@ -54,8 +54,8 @@ impl<'a> Subject<'a> {
     fn derivatives(&self) -> Vec<usize> {
         let n = self.crane.size();
         let (rates, accelerations) = ((0..n).map(Source::Rate), (0..n).map(Source::Acceleration));
-        let oil = (0..hydraulics::columns(self.crane.description()).len()).map(Source::OilRate);
-        rates.chain(accelerations).chain(oil).map(|source| self.reference(source)).collect()
+        let own = (0..own_states::columns(self.crane.description()).len()).map(Source::OwnRate);
+        rates.chain(accelerations).chain(own).map(|source| self.reference(source)).collect()
     }
 
     /// Value references of the outputs.

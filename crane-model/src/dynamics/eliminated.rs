@@ -1,6 +1,6 @@
-//! What oil adds to the linear system of an implicit step, once its states are eliminated.
+//! What forces with states of their own add to the linear system of an implicit step, once those states are eliminated.
 //!
-//! With `U` the rows ∂ℓ/∂q of the cylinders, c the length of the implicit part of the step, g the rates of the states x and
+//! With `U` the rows ∂ℓ/∂q of the forces, c the length of the implicit part of the step, g the rates of the states x and
 //! `W = (I/c − ∂g/∂x)⁻¹`:
 //!
 //! ```text
@@ -8,17 +8,19 @@
 //! (M + Uᵀ S U) z = … + c² Uᵀ (δ U G + κ U (c G + P) + F_x W R/c)
 //! ```
 //!
-//! with the right-hand side R of the states. By Woodbury's identity it takes one solution of M for each cylinder. Cylinders act on each other
+//! with the right-hand side R of the states. By Woodbury's identity it takes one solution of M for each force. Cylinders act on each other
 //! through the pump.
 
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use super::{Hydraulics, Moment, Pushed, STATES};
-use crate::dyn_crane::DynModel;
+use crate::{
+    dyn_crane::DynModel,
+    own_states::{Moment, OwnStates, Pushed},
+};
 
-/// The oil of a crane at a state, and its part in the system there.
+/// The forces of a crane with states at one of its states, and their part in the system there.
 pub(crate) struct Eliminated {
-    hydraulics: Hydraulics,
+    own: OwnStates,
     rates: Vec<f64>,
     by_states: DMatrix<f64>,
     /// W, as factors of its inverse.
@@ -26,7 +28,7 @@ pub(crate) struct Eliminated {
     kappa: DMatrix<f64>,
     delta: DMatrix<f64>,
     resistance: DMatrix<f64>,
-    /// M⁻¹ Uᵀ, cylinder by cylinder.
+    /// M⁻¹ Uᵀ, force by force.
     answers: Vec<Vec<f64>>,
     /// I + S U M⁻¹ Uᵀ.
     correction: Option<LU<f64, Dyn, Dyn>>,
@@ -34,11 +36,11 @@ pub(crate) struct Eliminated {
 }
 
 impl Eliminated {
-    /// Storage for the oil of a crane.
+    /// Storage for the forces of a crane.
     pub fn new(crane: &dyn DynModel) -> Self {
-        let hydraulics = Hydraulics::new(crane.description());
+        let own = OwnStates::new(crane.description());
         let n = crane.description().coordinates.len();
-        let (count, len) = (hydraulics.count(), hydraulics.len());
+        let (count, len) = (own.count(), own.len());
         let square = |size| DMatrix::zeros(size, size);
         Self {
             rates: vec![0.0; len],
@@ -50,11 +52,11 @@ impl Eliminated {
             answers: vec![vec![0.0; n]; count],
             correction: None,
             unit: vec![0.0; n],
-            hydraulics,
+            own,
         }
     }
 
-    /// Takes the oil at a state, and prepares solutions; `solve` solves the system without oil.
+    /// Takes the forces at a state, and prepares solutions; `solve` solves the system without them.
     pub fn factorise(
         &mut self,
         crane: &dyn DynModel,
@@ -62,23 +64,22 @@ impl Eliminated {
         c: f64,
         solve: &mut dyn FnMut(&[f64], &mut [f64]),
     ) {
-        let Self { hydraulics, rates, by_states, .. } = self;
-        if hydraulics.is_empty() {
+        let Self { own, rates, by_states, .. } = self;
+        if own.is_empty() {
             return;
         }
-        hydraulics.evaluate(crane, moment, rates, Some(by_states));
-        let pushed = hydraulics.pushed();
+        own.evaluate(crane, moment, rates, Some(by_states));
+        let pushed = own.pushed();
         let len = rates.len();
         let states = (DMatrix::identity(len, len) / c - &*by_states).lu();
         let count = pushed.len();
         for (column, own) in pushed.iter().enumerate() {
-            let first = STATES * column;
             for (matrix, rates) in [(&mut self.kappa, own.rates_by_length), (&mut self.delta, own.rates_by_speed)] {
                 let mut answer = DVector::zeros(len);
-                answer.rows_mut(first, STATES).copy_from_slice(&rates);
+                answer.rows_mut(own.first, own.count).copy_from_slice(&rates[..own.count]);
                 states.solve_mut(&mut answer);
                 for (row, other) in pushed.iter().enumerate() {
-                    matrix[(row, column)] = other.pull(answer.as_slice(), row);
+                    matrix[(row, column)] = other.pull(answer.as_slice());
                 }
             }
             self.kappa[(column, column)] += own.by_length;
@@ -100,24 +101,19 @@ impl Eliminated {
         let Some(states) = &self.states else { return };
         let mut of_states = DVector::from_column_slice(r);
         states.solve_mut(&mut of_states);
-        let of = |x: &[f64]| {
-            DVector::from_iterator(self.hydraulics.count(), self.hydraulics.pushed().iter().map(|own| own.along(x)))
-        };
+        let of = |x: &[f64]| DVector::from_iterator(self.own.count(), self.own.pushed().iter().map(|own| own.along(x)));
         let (g, p) = (of(g), of(p));
         let forces = &self.delta * &g + &self.kappa * (g * c + p);
-        for (place, (own, force)) in self.hydraulics.pushed().iter().zip(&forces).enumerate() {
-            let force = force + own.pull(of_states.as_slice(), place) / c;
+        for (own, force) in self.own.pushed().iter().zip(&forces) {
+            let force = force + own.pull(of_states.as_slice()) / c;
             right[own.coordinate] -= own.arm * force;
         }
     }
 
-    /// Turns the solution of the system without oil into that of the system with it.
+    /// Turns the solution of the system without these forces into that of the system with them.
     pub fn correct(&self, solution: &mut [f64]) {
         let Some(correction) = &self.correction else { return };
-        let along = DVector::from_iterator(
-            self.hydraulics.count(),
-            self.hydraulics.pushed().iter().map(|own| own.along(solution)),
-        );
+        let along = DVector::from_iterator(self.own.count(), self.own.pushed().iter().map(|own| own.along(solution)));
         let mut shares = &self.resistance * along;
         correction.solve_mut(&mut shares);
         for (answer, share) in self.answers.iter().zip(&shares) {
@@ -131,7 +127,8 @@ impl Eliminated {
     pub fn states(&self, (p, w): (&[f64], &[f64]), r: &[f64], out: &mut [f64]) {
         let Some(states) = &self.states else { return };
         let mut answer = DVector::from_column_slice(r);
-        for (own, part) in self.hydraulics.pushed().iter().zip(answer.as_mut_slice().chunks_exact_mut(STATES)) {
+        for own in self.own.pushed() {
+            let part = &mut answer.as_mut_slice()[own.first..own.first + own.count];
             let (p, w) = (own.along(p), own.along(w));
             for (i, x) in part.iter_mut().enumerate() {
                 *x += own.rates_by_length[i] * p + own.rates_by_speed[i] * w;
@@ -148,9 +145,9 @@ impl Pushed {
         self.arm * x[self.coordinate]
     }
 
-    /// `F_x x` of the cylinder at a place.
-    fn pull(&self, x: &[f64], place: usize) -> f64 {
-        let own = &x[STATES * place..STATES * (place + 1)];
+    /// `F_x x`
+    fn pull(&self, x: &[f64]) -> f64 {
+        let own = &x[self.first..self.first + self.count];
         self.by_states.iter().zip(own).map(|(slope, x)| slope * x).sum()
     }
 }

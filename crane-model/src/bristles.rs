@@ -1,0 +1,155 @@
+//! Friction of joints that stick: bristles between the surfaces bend before they slide.
+//!
+//! The mean deflection z of the bristles is a state; with the stiffness σ₀ and the damping σ₁
+//!
+//! ```text
+//! ż = q̇ − σ₀ |q̇| z/g(q̇)        g = F_c + (F_b − F_c) exp(−(q̇/v_s)²)        F = σ₀ z + σ₁ ż
+//! ```
+//!
+//! F resists the motion; viscous friction is part of the generated functions. At rest z holds a force up to the breakaway friction without
+//! creeping, in steady sliding `F = g`. C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky: A new model for control of systems with
+//! friction, IEEE Transactions on Automatic Control 40 (1995).
+
+use nalgebra::DMatrix;
+
+use crate::{
+    BristleInfo, Description,
+    modes::SmallMotions,
+    own_states::{Moment, Pushed},
+};
+
+/// The joints of a crane that stick.
+#[derive(Clone, Debug)]
+pub(crate) struct Bristles {
+    joints: Vec<BristleInfo>,
+    /// The first of their states among all.
+    first: usize,
+}
+
+impl Bristles {
+    /// What a description says about them; their states stand from `first` on.
+    pub fn new(description: &Description, first: usize) -> Self {
+        Self { joints: description.bristles.to_vec(), first }
+    }
+
+    /// Number of states, one per joint.
+    pub fn len(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Deflections at which bristles slide, m or rad.
+    pub fn scales(&self) -> impl Iterator<Item = f64> {
+        self.joints.iter().map(|joint| joint.breakaway / joint.stiffness)
+    }
+
+    /// Evaluates all joints, as [`OwnStates::evaluate`](crate::own_states::OwnStates).
+    pub fn evaluate(
+        &self,
+        moment: &Moment<'_>,
+        rates: &mut [f64],
+        pushed: &mut [Pushed],
+        mut by_states: Option<&mut DMatrix<f64>>,
+    ) {
+        for (place, (joint, own)) in self.joints.iter().zip(pushed).enumerate() {
+            let state = self.first + place;
+            let slope = joint.evaluate(state, moment.x[state], moment.v[joint.coordinate], own);
+            rates[state] = slope.rate;
+            if let Some(matrix) = by_states.as_deref_mut() {
+                matrix[(state, state)] = slope.by_deflection;
+            }
+        }
+    }
+}
+
+/// ż and its derivative by z.
+struct Slope {
+    rate: f64,
+    by_deflection: f64,
+}
+
+impl BristleInfo {
+    /// The friction at a deflection and a rate of the joint.
+    fn evaluate(&self, first: usize, z: f64, rate: f64, own: &mut Pushed) -> Slope {
+        let &Self { coordinate, coulomb, breakaway, stribeck, stiffness, damping } = self;
+        let decline = (breakaway - coulomb) * (-(rate / stribeck).powi(2)).exp();
+        let (level, level_by_rate) = (coulomb + decline, -2.0 * rate / (stribeck * stribeck) * decline);
+        let by_deflection = -stiffness * rate.abs() / level;
+        let by_rate = 1.0 - stiffness * z / level * (rate.signum() - rate.abs() * level_by_rate / level);
+        let slope = rate + by_deflection * z;
+        *own = Pushed {
+            coordinate,
+            arm: 1.0,
+            first,
+            count: 1,
+            force: -(stiffness * z + damping * slope),
+            by_speed: -damping * by_rate,
+            by_states: [-(stiffness + damping * by_deflection), 0.0, 0.0],
+            rates_by_speed: [by_rate, 0.0, 0.0],
+            speed: rate,
+            ..Pushed::default()
+        };
+        Slope { rate: slope, by_deflection }
+    }
+}
+
+/// Torques and forces of the bristles on their joints, by coordinate, N m and N.
+pub(crate) fn efforts(description: &Description, v: &[f64], x: &[f64]) -> Vec<(usize, f64)> {
+    let first = x.len().saturating_sub(description.bristles.len());
+    let effort = |(joint, z): (&BristleInfo, &f64)| {
+        let mut own = Pushed::default();
+        joint.evaluate(0, *z, v[joint.coordinate], &mut own);
+        (joint.coordinate, own.force)
+    };
+    description.bristles.iter().zip(&x[first..]).map(effort).collect()
+}
+
+/// Names of the columns of results with the states, in their order.
+pub(crate) fn columns(description: &Description) -> Vec<String> {
+    let name = |joint: &BristleInfo| format!("{}_bristle", description.coordinates[joint.coordinate].name);
+    description.bristles.iter().map(name).collect()
+}
+
+/// Adds stiffness and damping of bristles that stick to those of small motions about a pose at rest.
+pub(crate) fn stiffen(description: &Description, motions: &mut SmallMotions) {
+    for joint in &description.bristles {
+        let Some(place) = motions.unknowns.iter().position(|unknown| *unknown == joint.coordinate) else { continue };
+        motions.stiffness[(place, place)] += joint.stiffness;
+        motions.damping[(place, place)] += joint.damping;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Central differences over 1e-6 of each argument.
+    #[test]
+    fn friction_has_its_derivatives() {
+        let joint = BristleInfo {
+            coordinate: 0,
+            coulomb: 80.0,
+            breakaway: 120.0,
+            stribeck: 0.02,
+            stiffness: 1e5,
+            damping: 300.0,
+        };
+        let at = |z: f64, v: f64| {
+            let mut own = Pushed::default();
+            let slope = joint.evaluate(0, z, v, &mut own);
+            (slope, own)
+        };
+        for (z, v) in [(5e-4, 0.013), (-3e-4, 0.04), (8e-4, -0.002)] {
+            let (slope, own) = at(z, v);
+            let by = |of: &dyn Fn(f64) -> f64, h: f64| (of(h) - of(-h)) / (2.0 * h);
+            let differences = [
+                (slope.by_deflection, by(&|h| at(z + h, v).0.rate, 1e-9)),
+                (own.rates_by_speed[0], by(&|h| at(z, v + h).0.rate, 1e-7)),
+                (own.by_states[0], by(&|h| at(z + h, v).1.force, 1e-9)),
+                (own.by_speed, by(&|h| at(z, v + h).1.force, 1e-7)),
+            ];
+            for (place, (found, difference)) in differences.into_iter().enumerate() {
+                assert!((found / difference - 1.0).abs() < 1e-6, "{place}: {found} for {difference}");
+            }
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! States of forces besides pose and rates of a motion: pressures and spools of cylinders with a valve, bristles of joints that stick.
+//!
+//! A motion is `[q, v, x, integrals]`; x has the states of the oil, then one for each joint with bristles.
+
+use nalgebra::DMatrix;
+
+use crate::{
+    Description,
+    bristles::{self, Bristles},
+    dyn_crane::{DynDynamics, DynModel},
+    hydraulics::{self, Hydraulics},
+};
+
+/// A state of a crane, with the states of its forces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment<'a> {
+    pub t: f64,
+    pub q: &'a [f64],
+    pub v: &'a [f64],
+    pub x: &'a [f64],
+}
+
+/// Most states of a force of its own.
+pub(crate) const STATES: usize = 3;
+
+/// A force with states at a state of the crane, with derivatives by what it depends on. Its length is ℓ of a cylinder, the coordinate of a
+/// joint with bristles.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pushed {
+    /// Index of its coordinate, and `∂ℓ/∂q`.
+    pub coordinate: usize,
+    pub arm: f64,
+    /// The first of its states, and their number.
+    pub first: usize,
+    pub count: usize,
+    /// F, N or N m, and its derivatives by ℓ, ℓ̇ and its own states.
+    pub force: f64,
+    pub by_length: f64,
+    pub by_speed: f64,
+    pub by_states: [f64; STATES],
+    /// Derivatives of its own rates by ℓ and ℓ̇.
+    pub rates_by_length: [f64; STATES],
+    pub rates_by_speed: [f64; STATES],
+    /// ℓ̇, m/s or rad/s.
+    pub speed: f64,
+    /// Flow from the pump, m³/s.
+    pub from_pump: f64,
+}
+
+/// All forces of a crane that have states.
+#[derive(Clone, Debug)]
+pub struct OwnStates {
+    oil: Hydraulics,
+    bristles: Bristles,
+    /// The forces where they were evaluated last, those of the oil first.
+    pushed: Vec<Pushed>,
+    /// Their generalized forces, and what those add to the accelerations.
+    efforts: [Vec<f64>; 2],
+}
+
+impl OwnStates {
+    /// What the description of a crane says about them.
+    pub fn new(description: &Description) -> Self {
+        let (oil, n) = (Hydraulics::new(description), description.coordinates.len());
+        let bristles = Bristles::new(description, oil.len());
+        Self {
+            pushed: vec![Pushed::default(); oil.count() + bristles.len()],
+            efforts: [vec![0.0; n], vec![0.0; n]],
+            oil,
+            bristles,
+        }
+    }
+
+    /// Number of states.
+    pub fn len(&self) -> usize {
+        self.oil.len() + self.bristles.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.pushed.is_empty()
+    }
+
+    /// Sizes by which errors of the states are measured: the pump's pressure, the full way of a spool, the way on which bristles give in.
+    pub fn scales(&self) -> Vec<f64> {
+        self.oil.scales().into_iter().chain(self.bristles.scales()).collect()
+    }
+
+    /// The states that hold a pose at rest at a time: shut valves, the side that does not carry at the pressure of the tank, and
+    /// bristles that carry nothing.
+    pub fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
+        let mut states = self.oil.holding(crane, t, q);
+        states.resize(self.len(), 0.0);
+        states
+    }
+
+    /// Number of forces with states.
+    pub(crate) fn count(&self) -> usize {
+        self.pushed.len()
+    }
+
+    /// The forces where they were evaluated last.
+    pub(crate) fn pushed(&self) -> &[Pushed] {
+        &self.pushed
+    }
+
+    /// Evaluates all forces and the rates of their states, and where it is wanted the derivatives of the rates by the states.
+    pub(crate) fn evaluate(
+        &mut self,
+        crane: &dyn DynModel,
+        moment: &Moment<'_>,
+        rates: &mut [f64],
+        mut by_states: Option<&mut DMatrix<f64>>,
+    ) {
+        if let Some(matrix) = by_states.as_deref_mut() {
+            matrix.fill(0.0);
+        }
+        let (of_oil, of_bristles) = self.pushed.split_at_mut(self.oil.count());
+        self.oil.evaluate(crane, moment, rates, of_oil, by_states.as_deref_mut());
+        self.bristles.evaluate(moment, rates, of_bristles, by_states);
+    }
+
+    /// Adds what the forces contribute to the accelerations, and writes the rates of the states.
+    pub(crate) fn accelerate(
+        &mut self,
+        crane: &dyn DynDynamics,
+        moment: &Moment<'_>,
+        rates: &mut [f64],
+        accelerations: &mut [f64],
+    ) {
+        self.evaluate(crane, moment, rates, None);
+        let [efforts, own] = &mut self.efforts;
+        efforts.fill(0.0);
+        for pushed in &self.pushed {
+            efforts[pushed.coordinate] += pushed.force * pushed.arm;
+        }
+        crane.solve_mass(moment.q, efforts, own);
+        accelerations.iter_mut().zip(own).for_each(|(all, own)| *all += *own);
+    }
+
+    /// Where they were evaluated last: power that cylinders put in, and that bristles take out, `Σ F ℓ̇`, W.
+    pub(crate) fn powers(&self) -> [f64; 2] {
+        let (of_oil, of_bristles) = self.pushed.split_at(self.oil.count());
+        let power = |all: &[Pushed]| all.iter().map(|own| own.force * own.speed).sum::<f64>();
+        [power(of_oil), -power(of_bristles)]
+    }
+}
+
+/// Names of the columns of results with the states, in their order.
+pub fn columns(description: &Description) -> Vec<String> {
+    [hydraulics::columns(description), bristles::columns(description)].concat()
+}
+
+/// Accelerations at a state of a crane and its forces, m/s² and rad/s², and the rates of the states.
+///
+/// # Panics
+/// Where there is not one number for each state.
+pub fn accelerations(crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
+    crane.forward_dynamics(t, q, v, &mut accelerations);
+    let mut states = OwnStates::new(crane.description());
+    assert_eq!(x.len(), states.len(), "one number for each state of a force");
+    if !states.is_empty() {
+        states.accelerate(crane, &Moment { t, q, v, x }, &mut rates, &mut accelerations);
+    }
+    (accelerations, rates)
+}
