@@ -32,7 +32,7 @@
 //   forces                              85       105
 //   gravity_energy                      37       188
 //   drive_energy                        66        74
-//   drive_power                         89       101
+//   drive_power                         89       110
 //   dissipation                         51        63
 //   forward_dynamics                   244       965
 //   solve_mass                         101       849
@@ -134,16 +134,22 @@ pub const DESCRIPTION: Description = Description {
                 coordinate: 0,
                 start: -0.7853981633974483,
                 pieces: 1,
+                max_rate: None,
+                max_power: None,
             },
             DriveInfo {
                 coordinate: 1,
                 start: 1.3089969389957472,
                 pieces: 3,
+                max_rate: None,
+                max_power: None,
             },
             DriveInfo {
                 coordinate: 2,
                 start: 0.2,
                 pieces: 3,
+                max_rate: None,
+                max_power: None,
             },
         ],
     ),

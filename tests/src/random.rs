@@ -296,7 +296,11 @@ impl Writer {
             let armature = self.positive(4.0);
             let rotor = if k % 2 == 0 { format!("armature: {armature}, ") } else { String::new() };
             // The second drive of every other crane has a limit that far states exceed.
-            let limit = if seed.is_multiple_of(2) && k == 1 { ", max_effort: 300" } else { "" };
+            let limit = match (seed % 4, k) {
+                (0, 1) => ", max_effort: 300, max_rate: 1.5, max_power: 120",
+                (2, 1) => ", max_effort: 300",
+                _ => "",
+            };
             let spring = if rigid {
                 "rigid: true".to_owned()
             } else {

@@ -81,7 +81,7 @@ class Stop:
 
 @dataclass
 class Friction:
-    """Friction of a joint; `breakaway` is as `coulomb` where the spec says nothing."""
+    """Friction of a joint; `breakaway` is as `coulomb` where the spec says nothing, `bristle` stiffness and damping of bristles."""
 
     coordinate: Coordinate
     coulomb: object
@@ -89,6 +89,7 @@ class Friction:
     stribeck: object
     width: object
     viscous: object
+    bristle: object = None
 
 
 @dataclass
@@ -401,7 +402,9 @@ def read_friction(spec, written, coordinate):
     stribeck, width, viscous = (
         spec.number(written.get(key, default)) for key, default in (("stribeck", 1e-2), ("width", 1e-3), ("viscous", 0))
     )
-    return Friction(coordinate, coulomb, breakaway, stribeck, width, viscous)
+    bristle = written.get("bristle")
+    bristle = bristle and (float(bristle["stiffness"]), float(bristle["damping"]))
+    return Friction(coordinate, coulomb, breakaway, stribeck, width, viscous, bristle)
 
 
 def read_load(crane, written, span):

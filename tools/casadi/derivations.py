@@ -186,7 +186,9 @@ class Derivations:
         for friction in crane.frictions:
             place, rate = places[friction.coordinate.name], friction.coordinate.v
             more = (friction.breakaway - friction.coulomb) * ca.exp(-((rate / friction.stribeck) ** 2))
-            friction_forces[place] -= (friction.coulomb + more) * ca.tanh(rate / friction.width) + friction.viscous * rate
+            # That of bristles depends on a state besides.
+            dry = (friction.coulomb + more) * ca.tanh(rate / friction.width) if friction.bristle is None else 0
+            friction_forces[place] -= dry + friction.viscous * rate
             damping[place] += friction.viscous
         return stop_forces, friction_forces, energy, damping
 

@@ -38,7 +38,7 @@ class Motion:
     """A motion that goes on from result to result, with the history of its method."""
 
     def advance(self, dt: float) -> tuple[float, Array, Array, Array, tuple[float, float, float]]:
-        """Goes on by a while, s, to its time, pose, rates and states of the oil; work of the drives, energy that dampers dissipated and work of the loads
+        """Goes on by a while, s, to its time, pose, rates and own states of forces; work of the drives, energy that dampers dissipated and work of the loads
         since the start, J."""
     def statistics(self) -> dict[str, int]:
         """Steps, rejections, evaluations and factorisations so far."""
@@ -108,7 +108,7 @@ class Crane:
     ) -> dict[str, Any]:
         """Runs over parameters: `Crane.simulate_ensemble` makes an `Ensemble` of them."""
     def motion(self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike, x: ArrayLike) -> Motion:
-        """The crane on its way from a time, s, a pose, rates and states of the oil, with its parameters and inputs."""
+        """The crane on its way from a time, s, a pose, rates and own states of forces, with its parameters and inputs."""
     @property
     def inputs(self) -> dict[str, float]:
         """Inputs that are set, by name."""

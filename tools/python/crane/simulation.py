@@ -19,7 +19,7 @@ class State:
 
     t: s. q, v: (n), m and rad, m/s and rad/s. work, dissipated, load_work: J since the start. parameters: live parameters.
     inputs: those that are set. x: states of the oil of cylinders with a valve (pressures on the sides of piston and rod, Pa, and opening of
-    each, then the pump's pressure, Pa); empty before the first step, which begins with those that hold the pose.
+    each, then the pump's pressure, Pa), then deflections of bristles in joints that stick (rad or m); empty before the first step, which begins with those that hold the pose.
     """
 
     t: float

@@ -59,6 +59,8 @@ export function scaled(unit, values) {
   const [low, high] = range(values);
   const size = Math.max(Math.abs(low), Math.abs(high));
   if (["N", "N m", "J", "W"].includes(unit) && size >= 1e4) return { unit: `k${unit}`, factor: 1e-3 };
+  if (unit === "Pa") return { unit: "MPa", factor: 1e-6 };
+  if (unit === "m³/s") return { unit: "l/min", factor: 6e4 };
   if (unit === "m" && size > 0 && size < 0.5) return { unit: "mm", factor: 1e3 };
   return { unit, factor: 1 };
 }

@@ -45,18 +45,63 @@ export function panels(data, player) {
     const effort = unit === "N" ? "force" : "torque";
     overTime("drives", `drive_${name}`, `${spoken(name)}: ${effort} of the drive`, effort, unit, both(`${name}_drive_${effort}`));
   }
+  joints(overTime, crane);
+  hydraulics(overTime, crane);
   for (const axis of ["z", "x", "y"]) {
     const curves = crane.scene.supports.map(({ name }, colour) => ({
       label: name, colour, values: crane.run.column(`${name}_reaction_${axis}`).values, dashed: colour >= 4,
     }));
     if (curves.length) overTime("supports", `reaction_${axis}`, `Support reactions along ${axis}`, `F${axis}`, "N", curves, axis === "z" ? 300 : 230);
   }
+  const gaps = named(crane, "_gap");
+  if (gaps.length) overTime("supports", "gaps", "Feet above the ground", "gap", "m", gaps);
   const along = moments(add, overTime, crane, time);
   along.push(...strength(add, overTime, crane));
   stability(overTime, crane);
   energy(overTime, crane, both);
   explorer(add, crane, rigid, plots);
   return { plots, along };
+}
+
+/** Curves of all columns whose names end so. */
+function named(crane, ending) {
+  const found = crane.run.list.filter(({ name }) => name.endsWith(ending));
+  return found.map(({ name }, colour) => ({
+    label: spoken(name.slice(0, -ending.length)), colour, values: crane.run.column(name).values, dashed: colour >= 4,
+  }));
+}
+
+/** Friction and stops of joints. */
+function joints(overTime, crane) {
+  for (const [what, title] of [["friction", "Friction of the joints"], ["stop", "End stops"]]) {
+    for (const [effort, unit] of [["torque", "N m"], ["force", "N"]]) {
+      const curves = named(crane, `_${what}_${effort}`);
+      if (curves.length) overTime("drives", `${what}_${effort}`, title, effort, unit, curves);
+    }
+  }
+}
+
+/** Pressures, forces, flows and valves of the cylinders, and what the pump delivers. */
+function hydraulics(overTime, crane) {
+  const [pistons, rods] = ["_piston_pressure", "_rod_pressure"].map((ending) => named(crane, ending));
+  const pump = crane.run.column("pump_pressure");
+  pistons.forEach(({ label, values }, index) => {
+    const curves = [{ label: "at the piston", values }, { label: "at the rod", values: rods[index].values }];
+    if (pump) curves.push({ label: "of the pump", values: pump.values, dashed: true });
+    const coloured = curves.map((curve, colour) => ({ ...curve, colour }));
+    overTime("hydraulics", `pressures_${index}`, `${label}: pressures`, "pressure", "Pa", coloured);
+  });
+  if (!pistons.length) return;
+  const ending = (name) => crane.run.list.find((column) => column.name === `${name.replaceAll(" ", "_")}_force`);
+  const forces = pistons.filter(({ label }) => ending(label)).map(({ label }, colour) => ({
+    label, colour, values: crane.run.column(ending(label).name).values,
+  }));
+  if (forces.length) overTime("hydraulics", "cylinder_forces", "Forces of the cylinders, positive where they push", "force", "N", forces);
+  const valves = named(crane, "_valve");
+  if (valves.length) overTime("hydraulics", "valves", "Openings of the valves: 1 extends, −1 retracts", "opening", "1", valves);
+  const flows = named(crane, "_flow").map((curve) => ({ ...curve, dashed: curve.label === "pump" }));
+  overTime("hydraulics", "flows", "Flows of oil", "flow", "m³/s", flows);
+  overTime("hydraulics", "pump_power", "Power of the pump", "power", "W", [{ label: "pump", colour: 0, values: crane.run.column("pump_power").values }]);
 }
 
 /** Paths of the points of interest, in the plane in which they move most. */

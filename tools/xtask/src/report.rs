@@ -7,9 +7,13 @@ use crate::{step, workspace};
 
 const FOLDER: &str = "tools/report";
 /// Pages for the browser besides that of the default run: no elements and no supports; nothing that moves; more samples than a
-/// page holds.
-const OTHERS: [(&str, &[&str]); 3] =
-    [("knuckle_boom", &[]), ("cantilever", &[]), ("double_pendulum", &["--duration", "50", "--output", "0.01"])];
+/// page holds; cylinders with valves, feet that lift, friction.
+const OTHERS: [(&str, &[&str]); 4] = [
+    ("knuckle_boom", &[]),
+    ("cantilever", &[]),
+    ("double_pendulum", &["--duration", "50", "--output", "0.01"]),
+    ("eight_link_hydraulic", &["--duration", "3"]),
+];
 
 fn in_folder(program: &str) -> Command {
     let mut command = Command::new(program);
