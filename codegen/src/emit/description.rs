@@ -7,8 +7,8 @@ use syn::{Item, parse_quote};
 use super::arithmetic::{integer, literal};
 use super::print::constant;
 use crate::chain::{
-    Attachment, BodyId, Bristle, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Cylinder, Profile,
-    Strain, SupportKinematics, Value, Valve,
+    Attachment, BodyId, Bristle, Chain, Connector, ConnectorLaw, CoordinateId, CoordinateKind, Cylinder, Drive,
+    Profile, Strain, SupportKinematics, Value, Valve,
 };
 
 /// Sizes and the `DESCRIPTION`.
@@ -57,6 +57,34 @@ fn valve_info(valve: &Valve, commanded: bool) -> TokenStream {
     }))
 }
 
+fn drive_info(drive: &Drive, defaults: &[f64]) -> TokenStream {
+    let (coordinate, start) = (integer(drive.coordinate.0), literal(drive.profile.start(defaults)));
+    let pieces = integer(drive.pieces().len());
+    let [max_rate, max_power] = [drive.max_rate(), drive.max_power()].map(optional);
+    quote!(DriveInfo {
+        coordinate: #coordinate,
+        start: #start,
+        pieces: #pieces,
+        max_rate: #max_rate,
+        max_power: #max_power
+    })
+}
+
+fn bristle_info((id, bristle): (CoordinateId, Bristle)) -> TokenStream {
+    let coordinate = integer(id.0);
+    let Bristle { coulomb, breakaway, stribeck, stiffness, damping } = bristle;
+    let [coulomb, breakaway, stribeck] = [coulomb, breakaway, stribeck].map(literal);
+    let [stiffness, damping] = [stiffness, damping].map(literal);
+    quote!(BristleInfo {
+        coordinate: #coordinate,
+        coulomb: #coulomb,
+        breakaway: #breakaway,
+        stribeck: #stribeck,
+        stiffness: #stiffness,
+        damping: #damping
+    })
+}
+
 fn description_constant(chain: &Chain) -> Item {
     let defaults = chain.parameter_defaults();
     let at_defaults = |value: &Value| literal(value.at(&defaults));
@@ -78,35 +106,10 @@ fn description_constant(chain: &Chain) -> Item {
         let one_sided = support.full_hold.is_some();
         quote!(SupportInfo { name: #name, position: [#(#position),*], linear: #linear, one_sided: #one_sided })
     });
-    let drives = chain.drives.iter().map(|drive| {
-        let (coordinate, start) = (integer(drive.coordinate.0), literal(drive.profile.start(&defaults)));
-        let pieces = integer(drive.pieces().len());
-        let [max_rate, max_power] = [drive.max_rate(), drive.max_power()].map(optional);
-        quote!(DriveInfo {
-            coordinate: #coordinate,
-            start: #start,
-            pieces: #pieces,
-            max_rate: #max_rate,
-            max_power: #max_power
-        })
-    });
+    let drives = chain.drives.iter().map(|drive| drive_info(drive, &defaults));
     let stops = chain.stopped().into_iter().map(|id| integer(id.0));
     let frictions = chain.frictions().map(|(id, _)| integer(id.0));
-    let bristles = chain.bristles().map(|(id, bristle)| {
-        let coordinate = integer(id.0);
-        let Bristle { coulomb, breakaway, stribeck, stiffness, damping } = bristle;
-        let [coulomb, breakaway, stribeck] = [coulomb, breakaway, stribeck].map(literal);
-        let [stiffness, damping] = [stiffness, damping].map(literal);
-        quote!(BristleInfo {
-            coordinate: #coordinate,
-            coulomb: #coulomb,
-            breakaway: #breakaway,
-            stribeck: #stribeck,
-            stiffness: #stiffness,
-            damping: #damping
-        })
-    });
-    let bristles = list(bristles);
+    let bristles = list(chain.bristles().map(bristle_info));
     let loads = chain.loads.iter().map(|load| {
         let (name, pieces) = (text(&load.name), integer(load.pieces()));
         quote!(LoadInfo { name: #name, pieces: #pieces })

@@ -37,11 +37,11 @@ pub struct Friction {
     pub width: Option<Given<Number>>,
     /// Viscous friction, N m s/rad or N s/m. Default 0.
     pub viscous: Option<Given<Number>>,
-    /// Bristles that bend before the joint slides, so that it sticks without creeping (LuGre), instead of `width`. Default: none.
+    /// Bristles that bend before the joint slides, so that it sticks without creeping (the model of Canudas de Wit and others), instead of `width`. Default: none.
     pub bristle: Option<Given<Bristle>>,
 }
 
-/// The bristles of LuGre friction; their deflection is a state of the motion.
+/// The bristles of a joint that sticks; their deflection is a state of the motion.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `stiffness` and `damping`")]
 pub struct Bristle {

@@ -40,21 +40,25 @@ pub(super) fn of_run(rig: &dyn DynCrane, table: &Table) -> Vec<String> {
         let place = |name: &str| table.columns.iter().position(|column| column.name == name);
         let effort = place(&drive_effort(&coordinate.name, coordinate.kind))?;
         let (own, prescribed) = (place(&coordinate.name)?, place(&format!("{}_prescribed", coordinate.name))?);
-        let rate = place(&format!("{}_rate", coordinate.name))?;
-        let at_power = |row: &[f64]| drive.max_power.is_some_and(|power| row[effort] * row[rate] >= REACHED * power);
-        let at_rate = |row: &[f64]| {
-            drive.max_rate.is_some_and(|most| row[effort] * row[rate] > 0.0 && row[rate].abs() >= FADED * most)
+        let (rate, unit) = (place(&format!("{}_rate", coordinate.name))?, coordinate.kind.unit());
+        // Effort, power and rate, as in the words below.
+        let met = |row: &[f64]| {
+            let power = row[effort] * row[rate];
+            let at_rate = |most| power > 0.0 && row[rate].abs() >= FADED * most;
+            [
+                row[effort].abs() >= REACHED * limit,
+                drive.max_power.is_some_and(|most| power >= REACHED * most),
+                drive.max_rate.is_some_and(at_rate),
+            ]
         };
-        let at_effort = |row: &[f64]| row[effort].abs() >= REACHED * limit;
-        let unit = coordinate.kind.unit();
-        let limits: [(&dyn Fn(&[f64]) -> bool, String); 3] = [
-            (&at_effort, format!("{limit:.1} {}", coordinate.kind.force_unit())),
-            (&at_power, format!("{:.1} W", drive.max_power.unwrap_or(f64::NAN))),
-            (&at_rate, format!("{} {unit}/s", drive.max_rate.unwrap_or(f64::NAN))),
+        let words = [
+            format!("{limit:.1} {}", coordinate.kind.force_unit()),
+            format!("{:.1} W", drive.max_power.unwrap_or(f64::NAN)),
+            format!("{} {unit}/s", drive.max_rate.unwrap_or(f64::NAN)),
         ];
-        let met = |(is_at, _): &&(&dyn Fn(&[f64]) -> bool, String)| table.rows.iter().any(|row| is_at(row));
-        let limit = limits.iter().filter(met).map(|(_, words)| words.as_str()).collect::<Vec<_>>().join(" and ");
-        let reached = || table.rows.iter().filter(|row| limits.iter().any(|(is_at, _)| is_at(row)));
+        let some = (0..3).filter(|&kind| table.rows.iter().any(|row| met(row)[kind]));
+        let limit = some.map(|kind| words[kind].as_str()).collect::<Vec<_>>().join(" and ");
+        let reached = || table.rows.iter().filter(|row| met(row).contains(&true));
         let first = reached().next()?[0];
         let duration = table.rows.last().map_or(0.0, |row| row[0]);
         let time = reached().count() as f64 * duration / (table.rows.len().max(2) - 1) as f64;

@@ -29,12 +29,16 @@ pub fn cases() -> Vec<Case> {
         for bulk_modulus in [1e8, 1e10, 1e12] {
             cases.push(shut(
                 Lift { bulk_modulus, ..Lift::default() },
-                format!("oil of {bulk_modulus:e} Pa, {method}"),
+                &format!("oil of {bulk_modulus:e} Pa, {method}"),
                 method,
             ));
         }
         for hoses in [1e-5, 1e-7] {
-            cases.push(shut(Lift { hoses, ..Lift::default() }, format!("{hoses:e} m³ in each hose, {method}"), method));
+            cases.push(shut(
+                Lift { hoses, ..Lift::default() },
+                &format!("{hoses:e} m³ in each hose, {method}"),
+                method,
+            ));
         }
         for share in [1.2, 10.0] {
             cases.push(too_heavy(share, method));
@@ -42,15 +46,15 @@ pub fn cases() -> Vec<Case> {
         for max_flow in [1e-6, 1e-9] {
             cases.push(too_weak(
                 Lift { max_flow, ..Lift::default() },
-                format!("pump of {max_flow:e} m³/s, {method}"),
+                &format!("pump of {max_flow:e} m³/s, {method}"),
                 method,
             ));
         }
-        cases.push(too_weak(Lift { pump: 1e6, ..Lift::default() }, format!("pump of 1e6 Pa, {method}"), method));
+        cases.push(too_weak(Lift { pump: 1e6, ..Lift::default() }, &format!("pump of 1e6 Pa, {method}"), method));
         for lag in [1e-6, 1e-4, 1.0] {
             cases.push(lifted(
                 Lift { lag, ..Lift::default() },
-                format!("spool that lags by {lag:e} s, {method}"),
+                &format!("spool that lags by {lag:e} s, {method}"),
                 method,
             ));
         }
@@ -61,6 +65,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 /// A mass on a vertical cylinder.
+#[derive(Clone, Copy)]
 struct Lift {
     mass: f64,
     bulk_modulus: f64,
@@ -138,7 +143,7 @@ fn piston() -> f64 {
 }
 
 /// Nothing moves the oil.
-fn shut(lift: Lift, name: String, method: Method) -> Case {
+fn shut(lift: Lift, name: &str, method: Method) -> Case {
     Case::new(GROUP, format!("shut valve, {name}"), "holds to 1e-6 m for 2 s", move || {
         let (_, [begin, end], _) = lift.run(method, 2.0)?;
         expect((end - begin).abs() < 1e-6, format!("moves by {:.1e} m", (end - begin).abs()))
@@ -158,7 +163,7 @@ fn too_heavy(share: f64, method: Method) -> Case {
 }
 
 /// The valve opens, and nothing comes but what the oil between pump and valve expands to; check valves hold the load.
-fn too_weak(lift: Lift, name: String, method: Method) -> Case {
+fn too_weak(lift: Lift, name: &str, method: Method) -> Case {
     let lift = Lift { opening: "{table: {times: [0.1, 0.2], values: [0, 1]}}", ..lift };
     // 5 l, unless the spec says otherwise.
     let most = 5e-3 * lift.pump / lift.bulk_modulus / piston();
@@ -176,7 +181,7 @@ fn too_weak(lift: Lift, name: String, method: Method) -> Case {
 }
 
 /// The valve opens and shuts again.
-fn lifted(lift: Lift, name: String, method: Method) -> Case {
+fn lifted(lift: Lift, name: &str, method: Method) -> Case {
     let lift = Lift { opening: "{table: {times: [0.1, 0.2, 0.6, 0.7], values: [0, 0.3, 0.3, 0]}}", ..lift };
     Case::new(GROUP, name, "lifts by 10 to 200 mm, energy balanced to 0.1 %", move || {
         let (recorded, [begin, end], _) = lift.run(method, 2.0)?;
