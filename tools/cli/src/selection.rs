@@ -110,8 +110,10 @@ impl Fleet {
         self.crane(name)?;
         let found = self.spec(name).map_or(Ok(None), |text| variants::rigid(name, text)).map_err(|link| {
             Problem::usage(
-                format!("the beam of {link} is given element by element: what it is as a rigid body is not said"),
-                "give it `sections`, `material` and `section`, or write the rigid crane yourself",
+                format!(
+                    "the beam of {link} is curved or given element by element: what it is as a rigid body is not said"
+                ),
+                "give it `sections`, `material` and `section` without `bend`, or write the rigid crane yourself",
             )
         })?;
         let (rigid, text) = found.ok_or_else(|| {

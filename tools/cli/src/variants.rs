@@ -16,11 +16,11 @@ pub fn renamed(name: &str, text: &str) -> String {
 /// Name and spec of a crane whose beams do not bend, and nothing else is different; `None` for a crane without beams that bend.
 ///
 /// # Errors
-/// A beam is given element by element: the name of its link.
+/// A beam is curved or given element by element: the name of its link.
 pub fn rigid(crane: &str, text: &str) -> Result<Option<(String, String)>, String> {
     let Ok(spec) = read(&SourceFile::new(crane, text)) else { return Ok(None) };
     let spec = spec.crane;
-    if let Some((link, _)) = beams(&spec).find(|(_, beam)| beam.elements.is_some()) {
+    if let Some((link, _)) = beams(&spec).find(|(_, beam)| beam.elements.is_some() || beam.bend.is_some()) {
         return Err(link.to_owned());
     }
     let bends = |(_, beam): &(&str, &Beam)| {
@@ -75,6 +75,13 @@ links:
   - {name: load, joint: revolute, mass: 10, com: [0, -1, 0]}
 drives: [{coordinate: boom_psi, stiffness: 1e6, motion: {hold: 0}}]
 ";
+
+    #[test]
+    fn a_curved_beam_has_no_rigid_twin() {
+        let curved = BOOM.replace("sections: 2,", "sections: 2, bend: {theta: 10 deg},");
+        assert_eq!(rigid("boom", &curved), Err("boom".to_owned()));
+        assert!(rigid("boom", BOOM).is_ok());
+    }
 
     #[test]
     fn a_rigid_beam_has_no_elements_and_no_guess_of_them() {
