@@ -140,8 +140,9 @@ fn steps_allocate_nothing() {
         crane_model::dyn_crane::boxed::<{ cranes::cantilever::N }, cranes::cantilever::Crane>(),
         crane_model::dyn_crane::boxed::<{ cranes::double_pendulum::N }, cranes::double_pendulum::Crane>(),
         crane_model::dyn_crane::boxed::<{ exact::N }, exact::Crane>(),
-        // Feet that lift.
+        // Feet that lift; oil, and joints that stick.
         crane_model::dyn_crane::boxed::<{ cranes::loader_tipping::N }, cranes::loader_tipping::Crane>(),
+        crane_model::dyn_crane::boxed::<{ cranes::eight_link_hydraulic::N }, cranes::eight_link_hydraulic::Crane>(),
     ];
     for crane in &cranes {
         let crane: &dyn DynCrane = crane.as_ref();

@@ -11,7 +11,7 @@
 //! with the right-hand side R of the states. By Woodbury's identity it takes one solution of M for each force. Cylinders act on each other
 //! through the pump.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU};
+use nalgebra::{DMatrix, DVectorViewMut};
 
 use crate::{
     dyn_crane::DynModel,
@@ -24,15 +24,18 @@ pub(crate) struct Eliminated {
     rates: Vec<f64>,
     by_states: DMatrix<f64>,
     /// W, as factors of its inverse.
-    states: Option<LU<f64, Dyn, Dyn>>,
+    states: Factors,
     kappa: DMatrix<f64>,
     delta: DMatrix<f64>,
     resistance: DMatrix<f64>,
     /// M⁻¹ Uᵀ, force by force.
     answers: Vec<Vec<f64>>,
     /// I + S U M⁻¹ Uᵀ.
-    correction: Option<LU<f64, Dyn, Dyn>>,
+    correction: Factors,
     unit: Vec<f64>,
+    /// Room for one number per state and per force.
+    of_states: Vec<f64>,
+    shares: Vec<f64>,
 }
 
 impl Eliminated {
@@ -45,13 +48,15 @@ impl Eliminated {
         Self {
             rates: vec![0.0; len],
             by_states: square(len),
-            states: None,
+            states: Factors::new(len),
             kappa: square(count),
             delta: square(count),
             resistance: square(count),
             answers: vec![vec![0.0; n]; count],
-            correction: None,
+            correction: Factors::new(count),
             unit: vec![0.0; n],
+            of_states: vec![0.0; len],
+            shares: vec![0.0; count],
             own,
         }
     }
@@ -64,59 +69,63 @@ impl Eliminated {
         c: f64,
         solve: &mut dyn FnMut(&[f64], &mut [f64]),
     ) {
-        let Self { own, rates, by_states, .. } = self;
+        let Self { own, rates, by_states, states, kappa, delta, resistance, answers, .. } = self;
         if own.is_empty() {
             return;
         }
         own.evaluate(crane, moment, rates, Some(by_states));
         let pushed = own.pushed();
-        let len = rates.len();
-        let states = (DMatrix::identity(len, len) / c - &*by_states).lu();
-        let count = pushed.len();
+        states.factorise(|row, column| f64::from(row == column) / c - by_states[(row, column)]);
         for (column, own) in pushed.iter().enumerate() {
-            for (matrix, rates) in [(&mut self.kappa, own.rates_by_length), (&mut self.delta, own.rates_by_speed)] {
-                let mut answer = DVector::zeros(len);
-                answer.rows_mut(own.first, own.count).copy_from_slice(&rates[..own.count]);
-                states.solve_mut(&mut answer);
+            for (matrix, rates) in [(&mut *kappa, own.rates_by_length), (&mut *delta, own.rates_by_speed)] {
+                self.of_states.fill(0.0);
+                self.of_states[own.first..own.first + own.count].copy_from_slice(&rates[..own.count]);
+                states.solve(&mut self.of_states);
                 for (row, other) in pushed.iter().enumerate() {
-                    matrix[(row, column)] = other.pull(answer.as_slice());
+                    matrix[(row, column)] = other.pull(&self.of_states);
                 }
             }
-            self.kappa[(column, column)] += own.by_length;
-            self.delta[(column, column)] += own.by_speed;
+            kappa[(column, column)] += own.by_length;
+            delta[(column, column)] += own.by_speed;
         }
-        self.resistance = -(&self.delta * c + &self.kappa * (c * c));
-        for (own, answer) in pushed.iter().zip(&mut self.answers) {
+        for ((resistance, delta), kappa) in resistance.iter_mut().zip(delta.iter()).zip(kappa.iter()) {
+            *resistance = -(delta * c + kappa * (c * c));
+        }
+        for (own, answer) in pushed.iter().zip(&mut *answers) {
             self.unit.fill(0.0);
             self.unit[own.coordinate] = own.arm;
             solve(&self.unit, answer);
         }
-        let along = DMatrix::from_fn(count, count, |row, column| pushed[row].along(&self.answers[column]));
-        self.correction = Some((DMatrix::identity(count, count) + &self.resistance * along).lu());
-        self.states = Some(states);
+        self.correction.factorise(|row, column| {
+            let share = |(place, own): (usize, &Pushed)| resistance[(row, place)] * own.along(&answers[column]);
+            f64::from(row == column) + pushed.iter().enumerate().map(share).sum::<f64>()
+        });
     }
 
     /// Adds `−δ U G − κ U (c G + P) − F_x W R/c`.
-    pub fn add_to(&self, (g, p): (&[f64], &[f64]), r: &[f64], c: f64, right: &mut [f64]) {
-        let Some(states) = &self.states else { return };
-        let mut of_states = DVector::from_column_slice(r);
-        states.solve_mut(&mut of_states);
-        let of = |x: &[f64]| DVector::from_iterator(self.own.count(), self.own.pushed().iter().map(|own| own.along(x)));
-        let (g, p) = (of(g), of(p));
-        let forces = &self.delta * &g + &self.kappa * (g * c + p);
-        for (own, force) in self.own.pushed().iter().zip(&forces) {
-            let force = force + own.pull(of_states.as_slice()) / c;
+    pub fn add_to(&mut self, (g, p): (&[f64], &[f64]), r: &[f64], c: f64, right: &mut [f64]) {
+        let pushed = self.own.pushed();
+        self.of_states.copy_from_slice(r);
+        self.states.solve(&mut self.of_states);
+        for (row, own) in pushed.iter().enumerate() {
+            let of_force = |(column, other): (usize, &Pushed)| {
+                let (g, p) = (other.along(g), other.along(p));
+                self.delta[(row, column)] * g + self.kappa[(row, column)] * (g * c + p)
+            };
+            let force = pushed.iter().enumerate().map(of_force).sum::<f64>() + own.pull(&self.of_states) / c;
             right[own.coordinate] -= own.arm * force;
         }
     }
 
     /// Turns the solution of the system without these forces into that of the system with them.
-    pub fn correct(&self, solution: &mut [f64]) {
-        let Some(correction) = &self.correction else { return };
-        let along = DVector::from_iterator(self.own.count(), self.own.pushed().iter().map(|own| own.along(solution)));
-        let mut shares = &self.resistance * along;
-        correction.solve_mut(&mut shares);
-        for (answer, share) in self.answers.iter().zip(&shares) {
+    pub fn correct(&mut self, solution: &mut [f64]) {
+        let pushed = self.own.pushed();
+        for (row, share) in self.shares.iter_mut().enumerate() {
+            let of_force = |(column, own): (usize, &Pushed)| self.resistance[(row, column)] * own.along(solution);
+            *share = pushed.iter().enumerate().map(of_force).sum();
+        }
+        self.correction.solve(&mut self.shares);
+        for (answer, share) in self.answers.iter().zip(&self.shares) {
             for (x, answer) in solution.iter_mut().zip(answer) {
                 *x -= share * answer;
             }
@@ -125,17 +134,66 @@ impl Eliminated {
 
     /// The increments of the states, `W (R + g_ℓ U p + g_ℓ̇ U w)`, with those of pose and rates.
     pub fn states(&self, (p, w): (&[f64], &[f64]), r: &[f64], out: &mut [f64]) {
-        let Some(states) = &self.states else { return };
-        let mut answer = DVector::from_column_slice(r);
+        out.copy_from_slice(r);
         for own in self.own.pushed() {
-            let part = &mut answer.as_mut_slice()[own.first..own.first + own.count];
+            let part = &mut out[own.first..own.first + own.count];
             let (p, w) = (own.along(p), own.along(w));
             for (i, x) in part.iter_mut().enumerate() {
                 *x += own.rates_by_length[i] * p + own.rates_by_speed[i] * w;
             }
         }
-        states.solve_mut(&mut answer);
-        out.copy_from_slice(answer.as_slice());
+        self.states.solve(out);
+    }
+}
+
+/// L and U of a matrix, with rows exchanged, in storage that is used again: nalgebra's factors are allocated for each matrix.
+struct Factors {
+    matrix: DMatrix<f64>,
+    /// The row with which each row was exchanged.
+    exchanged: Vec<usize>,
+}
+
+impl Factors {
+    fn new(size: usize) -> Self {
+        Self { matrix: DMatrix::identity(size, size), exchanged: (0..size).collect() }
+    }
+
+    /// Gauss's elimination of the matrix with these entries, with the largest entry of a column as pivot.
+    fn factorise(&mut self, entry: impl Fn(usize, usize) -> f64) {
+        let Self { matrix, exchanged } = self;
+        let size = exchanged.len();
+        for column in 0..size {
+            for row in 0..size {
+                matrix[(row, column)] = entry(row, column);
+            }
+        }
+        for k in 0..size {
+            let pivot = (k..size).max_by(|&a, &b| matrix[(a, k)].abs().total_cmp(&matrix[(b, k)].abs())).unwrap_or(k);
+            exchanged[k] = pivot;
+            matrix.swap_rows(k, pivot);
+            for row in k + 1..size {
+                let factor = matrix[(row, k)] / matrix[(k, k)];
+                matrix[(row, k)] = factor;
+                for column in k + 1..size {
+                    matrix[(row, column)] -= factor * matrix[(k, column)];
+                }
+            }
+        }
+    }
+
+    /// The solution in place of the right-hand side; not finite if the matrix is singular.
+    fn solve(&self, x: &mut [f64]) {
+        for (row, &other) in self.exchanged.iter().enumerate() {
+            x.swap(row, other);
+        }
+        let size = x.len();
+        if size == 0 {
+            // There are no views of nothing.
+            return;
+        }
+        let mut x = DVectorViewMut::from_slice(x, size);
+        self.matrix.solve_lower_triangular_with_diag_mut(&mut x, 1.0);
+        self.matrix.solve_upper_triangular_unchecked_mut(&mut x);
     }
 }
 
@@ -149,5 +207,28 @@ impl Pushed {
     fn pull(&self, x: &[f64]) -> f64 {
         let own = &x[self.first..self.first + self.count];
         self.by_states.iter().zip(own).map(|(slope, x)| slope * x).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_solve_systems_that_need_exchanges_of_rows() {
+        let matrix =
+            DMatrix::from_row_slice(4, 4, &[0., 2., 1., 3., 4., -1., 0., 2., 1., 5., -2., 0., 3., 3., 3., -7.]);
+        let expected = [1.0, -2.0, 0.5, 4.0];
+        let mut factors = Factors::new(4);
+        // The storage of one matrix is that of the next.
+        for scale in [7.0, 1.0] {
+            factors.factorise(|row, column| scale * matrix[(row, column)]);
+            let mut x: Vec<f64> =
+                (0..4).map(|row| scale * (matrix.row(row) * DMatrix::from_column_slice(4, 1, &expected))[0]).collect();
+            factors.solve(&mut x);
+            // Some roundings of numbers below 10.
+            assert!(x.iter().zip(expected).all(|(x, expected)| (x - expected).abs() < 1e-14), "{x:?}");
+        }
+        Factors::new(0).solve(&mut []);
     }
 }
