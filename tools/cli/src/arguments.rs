@@ -471,6 +471,9 @@ pub struct New {
     /// Shipped crane or YAML file to start from
     #[arg(long, value_name = "CRANE", default_value = "knuckle_boom", value_hint = ValueHint::FilePath)]
     pub from: String,
+    /// Copy the crates that it depends on into it: it then builds anywhere, without the source of `crane`
+    #[arg(long)]
+    pub vendor: bool,
 }
 
 /// The Rust module of a crane.

@@ -1,6 +1,12 @@
 //! `crane new`: a crate for your own crane, starting from a shipped one.
 
-use std::{fs, io::Write, path::Path};
+mod vendored;
+
+use std::{
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 use crane_codegen::{SourceFile, compile};
 
@@ -57,21 +63,32 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
             "build `crane` again from its new location",
         ));
     }
-    let [model, codegen] = ["crane-model", "codegen"].map(|folder| own::root().join(folder));
+    let from_tree = |folder: &str| own::root().join(folder).to_string_lossy().into_owned();
+    let copied = |folder: &str| format!("{}/{folder}", vendored::FOLDER);
+    let [model, codegen] =
+        vendored::CRATES.map(|folder| if options.vendor { copied(folder) } else { from_tree(folder) });
     let values = [
         ("{{package}}", package.as_str()),
         ("{{name}}", &name),
         ("{{title}}", from.title.as_str()),
         ("{{from}}", &from.name),
-        ("{{model}}", &model.to_string_lossy()),
-        ("{{codegen}}", &codegen.to_string_lossy()),
+        ("{{model}}", &model),
+        ("{{codegen}}", &codegen),
     ];
     let filled =
         |template: &str| values.iter().fold(template.to_owned(), |text, (place, value)| text.replace(place, value));
-    let mut texts: Vec<(&str, String)> = FILES.iter().map(|(file, template)| (*file, filled(template))).collect();
-    texts.push((SPEC, spec));
-    texts.push((SCHEMA.0, SCHEMA.1.to_owned()));
-    texts.push(("Cargo.lock", own::LOCK.to_owned()));
+    let mut texts: Vec<(PathBuf, String)> =
+        FILES.iter().map(|(file, template)| (PathBuf::from(file), filled(template))).collect();
+    texts.push((SPEC.into(), spec));
+    texts.push((SCHEMA.0.into(), SCHEMA.1.to_owned()));
+    texts.push(("Cargo.lock".into(), own::LOCK.to_owned()));
+    if options.vendor {
+        let inherited = vendored::inherited()?;
+        for (_, manifest) in texts.iter_mut().filter(|(file, _)| file == Path::new("Cargo.toml")) {
+            *manifest = manifest.replace("[workspace]\n", &inherited);
+        }
+        texts.extend(vendored::sources()?);
+    }
     write(&options.folder, &texts)?;
     writeln!(
         out,
@@ -83,7 +100,7 @@ pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
 }
 
 /// Writes a folder with its files, whole or not at all.
-fn write(folder: &Path, texts: &[(&str, String)]) -> Outcome<()> {
+fn write(folder: &Path, texts: &[(PathBuf, String)]) -> Outcome<()> {
     let part = folder.with_extension("part");
     let written = (|| {
         for (file, text) in texts {

@@ -465,6 +465,27 @@ fn a_new_crane_is_a_crate_with_the_comments_of_its_spec() {
     refused(&["new", "other", "--from", "cantilver"], &["no crane `cantilver`", "`cantilever`"]);
 }
 
+/// With what it depends on, a crate names no path outside of its folder, and cargo can read all of its manifests.
+#[test]
+fn a_new_crate_can_have_what_it_depends_on() {
+    let folder = folder("new_vendored").join("mine");
+    let output = crane(&["new", folder.to_str().expect("a path"), "--vendor"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    for manifest in ["Cargo.toml", "crates/crane-model/Cargo.toml", "crates/codegen/Cargo.toml"] {
+        let written = fs::read_to_string(folder.join(manifest)).expect(manifest);
+        let paths = written.lines().filter_map(|line| line.split_once("path = \"")?.1.split('"').next());
+        for path in paths {
+            assert!(path.starts_with("crates/") && folder.join(path).join("Cargo.toml").exists(), "{manifest}: {path}");
+        }
+    }
+    let cargo = std::process::Command::new(env!("CARGO"))
+        .args(["metadata", "--offline", "--format-version", "1", "--no-deps"])
+        .current_dir(&folder)
+        .output()
+        .expect("cargo runs");
+    assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
+}
+
 #[test]
 fn a_new_crate_starts_from_a_spec_of_your_own() {
     let out = folder("new_from_file");

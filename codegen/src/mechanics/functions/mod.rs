@@ -374,7 +374,7 @@ fn function(
     shape: Shape,
     outputs: Vec<Expr<'_>>,
 ) -> Function {
-    debug_assert_eq!(shape.len(), outputs.len(), "{id:?}");
+    assert_eq!(shape.len(), outputs.len(), "{id:?}");
     let outputs = outputs.into_iter().map(Expr::id).collect();
     Function { id, doc, equation, arguments, shape, outputs, tape: Tape::default() }
 }
