@@ -91,7 +91,8 @@ fn friction_of_a_robots_joint_is_that_of_the_crane() {
 fn a_joint_that_mimics_another_is_coupled_to_it() {
     let urdf = std::fs::read_to_string("tests/bad_urdf/U010_mimic.urdf").expect("text");
     let urdf = urdf.replace("sholder\" multiplier=\"2\"", "shoulder\" multiplier=\"2\" offset=\"0.3\"");
-    let crane = chain("arm", exchange::import(&SourceFile::new("arm.urdf", urdf), &[]).expect("a robot"));
+    let spec = exchange::import(&SourceFile::new("arm.urdf", urdf), &[]).expect("a robot");
+    let crane = chain(&SourceFile::new("arm", spec));
     let [connector] = crane.connectors.as_slice() else { panic!("one coupling") };
     let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { panic!("{connector:?}") };
     assert_eq!([coordinate.0, leader.0], [1, 0]);
