@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crane_codegen::diagnostic::CATALOGUE;
-use crane_codegen::{Diagnostics, SourceFile, check, read};
+use crane_codegen::{Diagnostics, SourceFile, build, check, read};
 
 /// Warnings about a spec without mistakes.
 fn warnings(name: &str, text: &str) -> Diagnostics {
@@ -28,7 +28,8 @@ fn specs(folder: &str) -> Vec<(String, String)> {
         .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
         .map(|path| {
             let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-            (name, std::fs::read_to_string(&path).expect("a spec"))
+            // With what it extends.
+            (name, build::open(&path).unwrap_or_else(|failure| panic!("{failure}")).text)
         })
         .collect();
     specs.sort();
