@@ -169,7 +169,8 @@ function moments(add, overTime, crane, time) {
         if (column) joints.push({ x, values: column.values });
         x += bodies[p].length;
       }
-      if (!joints.length) continue;
+      // A single spring has no curve along the link; its moment over time follows below.
+      if (joints.length < 2) continue;
       const ranges = joints.map(({ values }) => range(values));
       const { unit, factor } = scaled("N m", ranges.flat());
       const plot = add("boom", {
