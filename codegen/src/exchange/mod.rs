@@ -55,7 +55,11 @@ pub fn approximations(chain: &Chain) -> Option<String> {
     let loads = (!chain.loads.is_empty()).then(|| "Loads applied from outside are left out.".to_owned());
     let connectors = (!chain.connectors.is_empty())
         .then(|| "Springs and ropes between points and couplings of coordinates are left out.".to_owned());
-    let lost: Vec<String> = hinges.into_iter().chain(joints).chain(loads).chain(connectors).collect();
+    let oil = chain.has_valves().then(|| {
+        "Cylinders with valves are left out: their joints have no drive and fall; write one there.".to_owned()
+    });
+    let limits = chain.has_limited_drives().then(|| "Limits of drives are left out.".to_owned());
+    let lost: Vec<String> = [hinges, joints, loads, connectors, oil, limits].into_iter().flatten().collect();
     (!lost.is_empty()).then(|| lost.join(" "))
 }
 

@@ -162,6 +162,7 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
     }
     if description.has_valves() {
         found.extend(short_of_oil(description, table));
+        found.extend(description.cylinders.iter().filter_map(|info| below_vacuum(info, table)));
         return found;
     }
     let Extremes { maximum: flow, time_of_maximum: time, .. } = Extremes::of(table, "pump_flow");
@@ -189,6 +190,20 @@ fn short_of_oil(description: &Description, table: &Table) -> Option<String> {
         "the pump delivers all it can, {:.1} l/min, for {time:.2} s, first at {:.2} s: cylinders lag behind their motions",
         limit / LITRE_PER_MINUTE,
         table.rows[first][0]
+    ))
+}
+
+/// A cylinder whose suction valves let in too little oil: pressures are above that of the surroundings, and none is less than that below.
+fn below_vacuum(info: &CylinderInfo, table: &Table) -> Option<String> {
+    const VACUUM: f64 = -1e5;
+    let [.., piston, rod, _] = columns(&info.name).map(|(column, _)| Extremes::of(table, &column));
+    let sides = [("piston", piston), ("rod", rod)];
+    let (side, least) = sides.into_iter().find(|(_, own)| own.minimum < VACUUM)?;
+    Some(format!(
+        "{} would need {:.2} bar on the side of its {side}, at {:.2} s, less than a vacuum: oil would cavitate there",
+        info.name,
+        least.minimum / 1e5,
+        least.time_of_minimum
     ))
 }
 

@@ -61,7 +61,7 @@ pub(super) fn of_run(rig: &dyn DynCrane, table: &Table) -> Vec<String> {
         let reached = || table.rows.iter().filter(|row| met(row).contains(&true));
         let first = reached().next()?[0];
         let duration = table.rows.last().map_or(0.0, |row| row[0]);
-        let time = reached().count() as f64 * duration / (table.rows.len().max(2) - 1) as f64;
+        let time = (reached().count() as f64 * duration / (table.rows.len().max(2) - 1) as f64).min(duration);
         let behind = |row: &Vec<f64>| (row[prescribed] - row[own]).abs();
         let worst = table.rows.iter().max_by(|a, b| behind(a).total_cmp(&behind(b)))?;
         Some(format!(

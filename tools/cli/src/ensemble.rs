@@ -39,6 +39,12 @@ const DONE: &str = "done";
 
 /// Runs all cranes of the table and writes a row for each.
 pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+    if options.timing.from.is_some() || !options.timing.start.is_empty() {
+        return Err(Problem::usage(
+            "`--from` and `--start` do not apply to `--ensemble`: each row starts where its crane rests",
+            "leave them out, or simulate the rows one by one",
+        ));
+    }
     let rig = options.analysis.crane.open(fleet)?;
     let rig = rig.as_ref();
     let description = rig.description();

@@ -2,7 +2,12 @@
 
 use std::path::Path;
 
-use crane_model::{Description, dyn_crane::DynCrane, own_states, runs::Start};
+use crane_model::{
+    Description,
+    dyn_crane::DynCrane,
+    own_states::{self, OwnStates},
+    runs::Start,
+};
 
 use crate::{
     arguments::Timing,
@@ -77,7 +82,7 @@ impl Timing {
                 let title = format!("{} has no column {}", file.display(), states[place]);
                 return Err(Problem::usage(
                     title,
-                    "a run that goes on needs all pressures and valves of the earlier run",
+                    "a run that goes on needs all pressures, valves and bristles of the earlier run",
                 ));
             }
             start.what = format!("end of {}", file.display());
@@ -100,6 +105,12 @@ impl Timing {
                 )
             })?;
             variable.set(&mut start, number);
+        }
+        if !start.x.is_empty() {
+            // States that are not named are those that hold the pose.
+            let held = OwnStates::new(description).holding(rig, 0.0, &start.q);
+            start.x.resize(held.len(), f64::NAN);
+            start.x.iter_mut().zip(held).filter(|(x, _)| x.is_nan()).for_each(|(x, held)| *x = held);
         }
         for given in &self.start {
             start.what += ", ";

@@ -440,6 +440,23 @@ fn every_crane_is_listed_described_and_analysed() {
     }
 }
 
+/// One of several states of forces: the others are those that hold the pose.
+#[test]
+fn a_start_may_name_one_state() {
+    let out = folder("one_state");
+    let out = out.to_str().expect("a path");
+    for state in ["boom_cylinder_valve=0.1", "rotator_psi_bristle=1e-5"] {
+        let run =
+            ["simulate", "eight_link_hydraulic", "--duration", "0.05", "--no-verify", "--out", out, "--start", state];
+        let output = crane(&run);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+    }
+    refused(
+        &["simulate", "knuckle_boom", "--ensemble", "rows.csv", "--start", "hook_theta=1"],
+        &["do not apply to `--ensemble`"],
+    );
+}
+
 #[test]
 fn a_new_crane_is_a_crate_with_the_comments_of_its_spec() {
     // The folder stands in one of the test's own; its name is the crane's.
