@@ -52,10 +52,13 @@ type Mode = (DampedMode, ComplexShape);
 pub fn linearise(options: &Linearise, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
     let crane = fleet.live(options.analysis.crane.open(fleet)?.as_ref())?;
     let description = crane.description();
-    if description.has_valves() {
+    if description.has_own_states() {
         return Err(Problem::usage(
-            format!("the forces of {} follow from the pressures of its cylinders", description.name),
-            "`crane modes` has the small motions about rest, with shut valves",
+            format!(
+                "the forces of {} follow from the pressures of its cylinders or bristles of its joints",
+                description.name
+            ),
+            "`crane modes` has the small motions about rest, with shut valves and joints that stick",
         ));
     }
     let motion = match &options.from {
@@ -108,7 +111,7 @@ fn of_results(crane: &LiveCrane, file: &Path, at: Option<f64>) -> Outcome<Motion
                 missing.retain(|name| **name != *rig.description().coordinates[index].name);
             }
             Variable::Rate(index) => v[index] = value,
-            Variable::Oil(_) => {}
+            Variable::Own(_) => {}
         }
     }
     if !missing.is_empty() {
@@ -183,7 +186,7 @@ fn read_held(given: &[String], description: &Description) -> Outcome<Vec<Held>> 
             Variable::Position(index) => (index, Some(value), None),
             Variable::Rate(index) => (index, None, Some(value)),
             // Cranes with oil were refused.
-            Variable::Oil(_) => continue,
+            Variable::Own(_) => continue,
         };
         match held.iter_mut().find(|held| held.coordinate == coordinate) {
             Some(held) => {

@@ -17,15 +17,15 @@ use crate::{
 /// What follows a coordinate's name in the name of its rate.
 const RATE: &str = "_rate";
 
-/// A coordinate, its rate, or a state of the oil, by its place.
+/// A coordinate, its rate, or a state of a force, by its place.
 #[derive(Clone, Copy)]
 pub enum Variable {
     /// A coordinate.
     Position(usize),
     /// The rate of a coordinate.
     Rate(usize),
-    /// A state of the oil.
-    Oil(usize),
+    /// A state of a force: of the oil, or the deflection of bristles.
+    Own(usize),
 }
 
 impl Variable {
@@ -33,8 +33,8 @@ impl Variable {
     fn of(name: &str, description: &Description) -> Option<Self> {
         let place = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
         let rate = || name.strip_suffix(RATE).and_then(place).map(Self::Rate);
-        let oil = || own_states::columns(description).iter().position(|column| column == name).map(Self::Oil);
-        place(name).map(Self::Position).or_else(rate).or_else(oil)
+        let own = || own_states::columns(description).iter().position(|column| column == name).map(Self::Own);
+        place(name).map(Self::Position).or_else(rate).or_else(own)
     }
 
     /// What an option that takes coordinates and rates means.
@@ -49,7 +49,7 @@ impl Variable {
         match self {
             Self::Position(place) => start.q[place] = value,
             Self::Rate(place) => start.v[place] = value,
-            Self::Oil(place) => {
+            Self::Own(place) => {
                 if start.x.len() <= place {
                     start.x.resize(place + 1, f64::NAN);
                 }

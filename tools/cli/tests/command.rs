@@ -369,6 +369,11 @@ fn a_moment_of_a_run_is_linearised() {
     refused(&["linearise", "double_pendulum", "--hold", "upper_theta=high"], &["`high` is not a valid value"]);
     refused(&["linearise", "double_pendulum", "-o", "a.json"], &["has not the ending .npz"]);
     refused(&["linearise", "eight_link_hydraulic"], &["pressures of its cylinders", "`crane modes`"]);
+    let sticking = std::path::Path::new(&folder).join("arm.yaml");
+    let spec = "format: 1\nname: arm\nlinks: [{name: arm, joint: {revolute: {axis: y}}, mass: 10, com: [0, 0, -1]}]\n\
+                friction: {arm_theta: {coulomb: 5, bristle: {stiffness: 1e4, damping: 30}}}\n";
+    fs::write(&sticking, spec).expect("a file");
+    refused(&["linearise", sticking.to_str().expect("a path")], &["bristles of its joints", "`crane modes`"]);
 }
 
 /// A run in two halves ends where one of the same length does, to the tolerance, where nothing is driven.

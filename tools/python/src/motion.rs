@@ -338,7 +338,7 @@ pub struct Motion {
 
 #[pymethods]
 impl Motion {
-    /// Goes on by a while, s, to its time, pose, rates, states of the oil; work of the drives, dissipated energy and work of the loads since the start.
+    /// Goes on by a while, s, to its time, pose, rates, own states of forces; work of the drives, dissipated energy and work of the loads since the start.
     fn advance<'py>(&self, py: Python<'py>, dt: f64) -> PyResult<Bound<'py, PyTuple>> {
         let (least, greatest) = Settings::TIMES;
         if !(least..=greatest).contains(&dt) {
