@@ -6,7 +6,7 @@ use crate::chain::{Analyses, Chain, Loops};
 use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::emit::{GeneratedCode, emit};
 use crate::emit_c::{CCode, Precision, emit_c};
-use crate::lower::{Blocks, lower};
+use crate::lower::{LoweredProgram, lower};
 use crate::mechanics::{derive, derive_verbatim, left_out};
 use crate::program::{Function, FunctionId, Shape};
 use crate::read::read;
@@ -63,8 +63,8 @@ pub fn check_with(source: &SourceFile, set: &[(&str, f64)]) -> Result<Checked, D
 #[must_use]
 pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> GeneratedCode {
     let program = derive(chain, analyses);
-    let blocks = lower(&program, chain.loops.least_rounds());
-    emit(chain, analyses, &blocks, report_on(&blocks, chain, analyses), spec_file)
+    let lowered = lower(&program, chain.loops.min_iterations());
+    emit(chain, analyses, &lowered, report_on(&lowered, chain, analyses), spec_file)
 }
 
 /// Compiles functions of a chain to C, by their names; `parameters` are the initial values of the live parameters.
@@ -89,7 +89,8 @@ pub fn generate_c(
     // Straight lines need no tables of numbers and no loops over columns.
     let chain = Chain { loops: Loops::Never, ..chain.clone() };
     let mut program = derive(&chain, analyses);
-    let is_straight = |function: &&Function| !matches!(function.shape, Shape::Columns { .. } | Shape::Turned { .. });
+    let is_straight =
+        |function: &&Function| !matches!(function.shape, Shape::Columns { .. } | Shape::TransformFactors { .. });
     let known: Vec<FunctionId> = program.functions.iter().filter(is_straight).map(|function| function.id).collect();
     let unknown = |name: &&str| !known.iter().any(|id| id.name() == *name);
     if let Some(name) = functions.iter().map(AsRef::as_ref).find(unknown) {
@@ -113,9 +114,9 @@ pub struct NoFunction {
 /// The cost of the functions of a chain and what is left out, without writing them.
 #[must_use]
 pub fn report(chain: &Chain, analyses: Analyses) -> Report {
-    report_on(&lower(&derive(chain, analyses), chain.loops.least_rounds()), chain, analyses)
+    report_on(&lower(&derive(chain, analyses), chain.loops.min_iterations()), chain, analyses)
 }
 
-fn report_on(blocks: &Blocks, chain: &Chain, analyses: Analyses) -> Report {
-    Report::new(blocks, &derive_verbatim(chain, analyses), chain.loops, left_out(chain, analyses))
+fn report_on(lowered: &LoweredProgram, chain: &Chain, analyses: Analyses) -> Report {
+    Report::new(lowered, &derive_verbatim(chain, analyses), chain.loops, left_out(chain, analyses))
 }

@@ -6,7 +6,7 @@ use crate::chain::{Analyses, Chain};
 use crate::compile;
 use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::explain::explain;
-use crate::lower::{Blocks, Loop, Statement, lower};
+use crate::lower::{Loop, LoweredProgram, Statement, lower};
 use crate::mechanics::derive;
 use crate::program::Program;
 use crate::read::read;
@@ -25,13 +25,13 @@ pub fn stages(source: &SourceFile, analyses: Option<Analyses>) -> Result<Vec<Sta
     let chain: Chain = compile::load(source)?;
     let analyses = analyses.unwrap_or(chain.analyses);
     let program = derive(&chain, analyses);
-    let blocks = lower(&program, chain.loops.least_rounds());
+    let lowered = lower(&program, chain.loops.min_iterations());
     let code = compile::compile(source, Some(analyses))?.code;
     Ok(vec![
         ("1_spec.txt", format!("{spec:#?}\n")),
         ("2_chain.txt", format!("{}\n{chain:#?}\n", explain(&chain, &code.report))),
         ("3_program.txt", expressions(&program)),
-        ("4_lines.txt", lines(&blocks)),
+        ("4_lines.txt", lines(&lowered)),
         ("5_module.rs", code.text),
     ])
 }
@@ -79,29 +79,29 @@ fn expressions(program: &Program) -> String {
 }
 
 /// The constants, then every function statement by statement, piece by piece.
-fn lines(blocks: &Blocks<'_>) -> String {
-    let program = &blocks.program;
+fn lines(lowered: &LoweredProgram<'_>) -> String {
+    let program = &lowered.program;
     let mut text = String::from("constants of the live parameters\n");
-    for id in &blocks.constants.stored {
+    for id in &lowered.constants.stored {
         let _ = writeln!(text, "  {}", definition(program, *id));
     }
-    for block in &blocks.functions {
-        let inlined = block.inlined.iter().filter(|inlined| **inlined).count();
-        let fused = block.fused.iter().flatten().count();
+    for code in &lowered.functions {
+        let inlined = code.inlined.iter().filter(|inlined| **inlined).count();
+        let fused = code.fused.iter().flatten().count();
         let _ = writeln!(
             text,
-            "\n{}: {} statements in {} pieces, {} values carried, {inlined} expressions within others, {fused} products fused",
-            block.function.id.name(),
-            block.statements(),
-            block.pieces.len(),
-            block.carried
+            "\n{}: {} statements in {} pieces, {} values kept, {inlined} expressions within others, {fused} products fused",
+            code.function.id.name(),
+            code.statements(),
+            code.pieces.len(),
+            code.kept
         );
-        for (number, piece) in block.pieces.iter().enumerate() {
-            if block.pieces.len() > 1 {
+        for (number, piece) in code.pieces.iter().enumerate() {
+            if code.pieces.len() > 1 {
                 let _ = writeln!(text, "  piece {number}");
             }
             for line in piece {
-                statement(&mut text, program, &block.rolled.loops, line, "  ");
+                statement(&mut text, program, &code.rerolled.loops, line, "  ");
             }
         }
     }
@@ -119,7 +119,7 @@ fn statement(text: &mut String, program: &Program, loops: &[Loop], line: &Statem
         Statement::Keep { place, value } => format!("carry[{place}] = {}", name(value)),
         Statement::Fetch { place, value } => format!("{} = carry[{place}]", name(value)),
         Statement::Loop { of, body } => {
-            let _ = writeln!(text, "{indent}loop {of}, {} rounds", loops[*of].rounds);
+            let _ = writeln!(text, "{indent}loop {of}, {} iterations", loops[*of].iterations);
             for line in body {
                 statement(text, program, loops, line, &format!("{indent}  "));
             }

@@ -1,7 +1,7 @@
 //! Compiler from a crane described in YAML to specialised, unrolled Rust for its statics and dynamics.
 //!
 //! ```text
-//! SourceFile ─read→ CraneSpec ─validate→ Chain ─derive→ Program ─lower→ Blocks ─emit→ GeneratedCode
+//! SourceFile ─read→ CraneSpec ─validate→ Chain ─derive→ Program ─lower→ LoweredProgram ─emit→ GeneratedCode
 //! text              as written           validated      named functions  straight line,  Rust text and
 //!                                                       over one graph   split, ordered  operation counts
 //! ```

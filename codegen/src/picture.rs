@@ -54,7 +54,8 @@ pub fn picture(chain: &Chain) -> String {
     }
     for point in &chain.points {
         let defaults = chain.parameter_defaults();
-        let at = sheet.project(frames[point.body.0].place([0, 1, 2].map(|i| point.position[i].at(&defaults))));
+        let at =
+            sheet.project(frames[point.body.0].transform_point([0, 1, 2].map(|i| point.position[i].at(&defaults))));
         let _ = writeln!(
             sheet.svg,
             "<path d='M{0:.1} {1:.1}l8 8m0 -8l-8 8' stroke='{INK}' fill='none'/>",
@@ -92,7 +93,7 @@ fn role(chain: &Chain, id: CoordinateId) -> &'static str {
         "prescribed"
     } else if chain.drives.iter().any(|drive| drive.coordinate == id) {
         "driven"
-    } else if chain.elements.iter().any(|element| element.coordinate == id) {
+    } else if chain.beam_springs.iter().any(|element| element.coordinate == id) {
         "element"
     } else {
         "passive"
@@ -106,7 +107,7 @@ fn is_inner(chain: &Chain, body: &Body) -> bool {
 
 /// The end of a body: its length along x.
 fn end(chain: &Chain, body: usize, frame: &Frame) -> Vector {
-    frame.place([chain.bodies[body].length.at(&chain.parameter_defaults()), 0.0, 0.0])
+    frame.transform_point([chain.bodies[body].length.at(&chain.parameter_defaults()), 0.0, 0.0])
 }
 
 /// Everything that must be in view.
@@ -117,10 +118,14 @@ fn places(chain: &Chain, frames: &[Frame]) -> Vec<Vector> {
         places.extend([frame.origin, end(chain, index, frame)]);
     }
     let base = frames.first().unwrap_or(&Frame::WORLD);
-    places
-        .extend(chain.supports.iter().map(|support| base.place([0, 1, 2].map(|i| support.position[i].at(&defaults)))));
     places.extend(
-        chain.points.iter().map(|point| frames[point.body.0].place([0, 1, 2].map(|i| point.position[i].at(&defaults)))),
+        chain.supports.iter().map(|support| base.transform_point([0, 1, 2].map(|i| support.position[i].at(&defaults)))),
+    );
+    places.extend(
+        chain
+            .points
+            .iter()
+            .map(|point| frames[point.body.0].transform_point([0, 1, 2].map(|i| point.position[i].at(&defaults)))),
     );
     places
 }
@@ -147,7 +152,7 @@ fn links(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
     let defaults = chain.parameter_defaults();
     for point in &chain.points {
         let frame = &frames[point.body.0];
-        sheet.line(frame.origin, frame.place([0, 1, 2].map(|i| point.position[i].at(&defaults))), GREY, 1.0);
+        sheet.line(frame.origin, frame.transform_point([0, 1, 2].map(|i| point.position[i].at(&defaults))), GREY, 1.0);
     }
 }
 
@@ -156,8 +161,8 @@ fn supports(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
     let defaults = chain.parameter_defaults();
     let Some(base) = frames.first() else { return };
     for support in &chain.supports {
-        let place = base.place([0, 1, 2].map(|i| support.position[i].at(&defaults)));
-        sheet.line(base.place([0.0, support.position[1].at(&defaults), 0.0]), place, GREY, 1.0);
+        let place = base.transform_point([0, 1, 2].map(|i| support.position[i].at(&defaults)));
+        sheet.line(base.transform_point([0.0, support.position[1].at(&defaults), 0.0]), place, GREY, 1.0);
         let at = sheet.project(place);
         let _ = writeln!(
             sheet.svg,
@@ -175,7 +180,7 @@ fn masses(sheet: &mut Sheet, chain: &Chain, frames: &[Frame]) {
         chain.bodies.iter().flat_map(|body| &body.parts).map(|part| part.mass.at(&defaults)).fold(0.0, f64::max);
     for (body, frame) in chain.bodies.iter().zip(frames).filter(|(body, _)| body.length.is_zero()) {
         for part in &body.parts {
-            let (x, y) = sheet.project(frame.place([0, 1, 2].map(|i| part.com[i].at(&defaults))));
+            let (x, y) = sheet.project(frame.transform_point([0, 1, 2].map(|i| part.com[i].at(&defaults))));
             let radius = 2.0 + 9.0 * (part.mass.at(&defaults) / heaviest).max(0.0).cbrt();
             let _ = writeln!(
                 sheet.svg,

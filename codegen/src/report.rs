@@ -1,7 +1,7 @@
 //! The cost of a crane's functions, and what the crane does not need.
 
 use crate::chain::Loops;
-use crate::lower::Blocks;
+use crate::lower::LoweredProgram;
 use crate::program::{FunctionId, OperationCount, Program, Shape};
 
 /// Costs and omissions of a generated module.
@@ -42,38 +42,43 @@ const COMPILE_BUDGET: f64 = 60.0;
 impl Report {
     /// Counts the operations of every function, as lowered and without simplification.
     #[must_use]
-    pub fn new(blocks: &Blocks, verbatim: &Program, loops: Loops, left_out: Vec<(&'static str, &'static str)>) -> Self {
-        let costs = blocks
+    pub fn new(
+        lowered: &LoweredProgram,
+        verbatim: &Program,
+        loops: Loops,
+        left_out: Vec<(&'static str, &'static str)>,
+    ) -> Self {
+        let costs = lowered
             .functions
             .iter()
-            .map(|block| FunctionCost {
-                function: block.function.id.name().to_owned(),
-                operations: block.count,
+            .map(|code| FunctionCost {
+                function: code.function.id.name().to_owned(),
+                operations: code.count,
                 verbatim: verbatim
-                    .function(block.function.id)
+                    .function(code.function.id)
                     .map(|f| {
                         let mut count = verbatim.count(&f.outputs, |_| false);
                         count += f.shape.closing_count();
                         count
                     })
                     .unwrap_or_default(),
-                statements: block.statements(),
+                statements: code.statements(),
             })
             .collect();
-        let in_a_loop = |shape: &&Shape| matches!(shape, Shape::Turned { .. });
-        let mut shapes = blocks.functions.iter().map(|block| &block.function.shape);
+        let in_a_loop = |shape: &&Shape| matches!(shape, Shape::TransformFactors { .. });
+        let mut shapes = lowered.functions.iter().map(|code| &code.function.shape);
         let second_derivative_pairs = shapes.find(in_a_loop).map(Shape::matrices);
-        let mass_matrix = blocks.functions.iter().find(|block| block.function.id == FunctionId::MassMatrix);
-        let mass_matrix_in_a_loop = mass_matrix.map(|block| matches!(block.function.shape, Shape::Columns { .. }));
-        let rolled = blocks.functions.iter().filter(|block| !block.rolled.loops.is_empty());
-        let rounds = rolled.map(|block| {
-            (block.function.id.name().to_owned(), block.rolled.loops.iter().map(|of| of.rounds).collect())
+        let mass_matrix = lowered.functions.iter().find(|code| code.function.id == FunctionId::MassMatrix);
+        let mass_matrix_in_a_loop = mass_matrix.map(|code| matches!(code.function.shape, Shape::Columns { .. }));
+        let rerolled = lowered.functions.iter().filter(|code| !code.rerolled.loops.is_empty());
+        let iterations = rerolled.map(|code| {
+            (code.function.id.name().to_owned(), code.rerolled.loops.iter().map(|of| of.iterations).collect())
         });
         let loops_because = loops.reason();
         Report {
             costs,
             second_derivative_pairs,
-            loops: rounds.collect(),
+            loops: iterations.collect(),
             loops_because,
             mass_matrix_in_a_loop,
             left_out,

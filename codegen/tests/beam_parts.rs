@@ -77,7 +77,7 @@ fn a_cone_has_its_integrals() {
     let first = a * a * l.powi(2) / 2.0 + 2.0 * a * b * l.powi(3) / 3.0 + b * b * l.powi(4) / 4.0;
     assert_close(x, DENSITY * area * first, "first moment");
     let radius = |x: f64| a + b * x;
-    for (k, springs) in chain.elements.chunks(3).enumerate() {
+    for (k, springs) in chain.beam_springs.chunks(3).enumerate() {
         let ends = [0.6 * k as f64, 0.6 * (k + 1) as f64];
         // ∫ dx/(E π r⁴/4) = 4/(3 E π b) (1/r₀³ − 1/r₁³)
         let compliance = 4.0 / (3.0 * E * area * b) * (radius(ends[0]).powi(-3) - radius(ends[1]).powi(-3));
@@ -113,7 +113,7 @@ fn one_part_is_the_beam_without_parts() {
                 assert!((a - b).abs() <= 1e-12 * a.abs(), "{a} {b}");
             }
         }
-        for (one, other) in plain.elements.iter().zip(&divided.elements) {
+        for (one, other) in plain.beam_springs.iter().zip(&divided.beam_springs) {
             assert_close(other.stiffness.at(&[]), one.stiffness.at(&[]), "spring");
         }
     }
@@ -128,7 +128,7 @@ fn tip(chain: &Chain) -> (Frame, Vector) {
         .flat_map(|body| &body.path)
         .fold(Frame::WORLD, |frame, step| frame.after(step, chain, &rest, &[]));
     let length = chain.bodies.last().expect("an element").length.at(&[]);
-    (frame, frame.place([length, 0.0, 0.0]))
+    (frame, frame.transform_point([length, 0.0, 0.0]))
 }
 
 /// A curved beam at rest is an arc of radius R = l/α: its tip is at `R (sin α, 1 − cos α)` and turned by α. Rigid elements are tangents

@@ -60,9 +60,9 @@ fn arguments(chain: &Chain, function: &Function) -> Vec<(Argument, Vec<f64>)> {
         Argument::Position => near.clone(),
         Argument::Velocity => numbers(n, 2.0),
         Argument::Acceleration => numbers(n, 3.0),
-        Argument::Right => numbers(n, 4.0).iter().map(|x| 1e4 * x).collect(),
-        Argument::Resistance => numbers(n, 6.0).iter().map(|x| 100.0 * (x + 1.0)).collect(),
-        Argument::BaseResistance => symmetric(10.0),
+        Argument::RightHandSide => numbers(n, 4.0).iter().map(|x| 1e4 * x).collect(),
+        Argument::AddedInertia => numbers(n, 6.0).iter().map(|x| 100.0 * (x + 1.0)).collect(),
+        Argument::BaseAddedInertia => symmetric(10.0),
         other => panic!("{other:?} is not given from outside"),
     };
     function.arguments.iter().filter(|a| **a != Argument::Factors).map(|a| (*a, of(a))).collect()

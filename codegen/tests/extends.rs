@@ -128,7 +128,7 @@ links:
     let middle = load("sub/middle.yaml");
     assert_eq!(names(&middle), ["arm_theta", "hand_x"]);
     assert_eq!((middle.run.duration, middle.run.output), (4.0, 0.1));
-    assert_eq!((middle.drives.len(), middle.hinges.len()), (1, 0));
+    assert_eq!((middle.drives.len(), middle.joint_dampers.len()), (1, 0));
     let last = load("last.yaml");
     assert_eq!((last.name.as_str(), names(&last)), ("mine", vec!["arm_theta".to_owned(), "tip_phi".to_owned()]));
 }

@@ -46,6 +46,7 @@ pub mod modes;
 pub mod own_states;
 #[cfg(feature = "std")]
 pub mod results;
+pub mod rt;
 #[cfg(feature = "std")]
 pub mod runs;
 #[cfg(feature = "std")]
@@ -54,7 +55,6 @@ pub mod sections;
 pub mod stability;
 #[cfg(feature = "std")]
 pub mod statics;
-pub mod support;
 #[cfg(feature = "std")]
 pub mod tipping;
 

@@ -9,7 +9,7 @@ use nalgebra::{
     Cholesky, Const, DefaultAllocator, Dim, Matrix4, OMatrix, SMatrix, SVector, Vector3, allocator::Allocator,
 };
 
-use crate::support::lanes::f64x8;
+use crate::rt::lanes::f64x8;
 use crate::{Description, ParameterError, SectionModuli, Tension, Wrench};
 
 /// Poses, forces and potential energy of a crane.
@@ -54,7 +54,7 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// Velocities of the points of interest in the world frame, m/s. `out`: one per point.
     fn point_velocities(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
-    /// Generalized forces of everything except inertia and gravity: supports, elements, drives, hinges. N and N m. What cylinders with a valve
+    /// Generalized forces of everything except inertia and gravity: supports, elements, drives, joint dampers. N and N m. What cylinders with a valve
     /// push with depends on their pressures and is not among them.
     fn forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::zeros()
@@ -76,7 +76,7 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     }
 
     /// Generalized forces of viscous damping in passive joints.
-    fn hinge_forces(&self, _v: &SVector<f64, N>) -> SVector<f64, N> {
+    fn joint_damper_forces(&self, _v: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::zeros()
     }
 
@@ -288,19 +288,30 @@ pub trait Implicit<const N: usize>: Dynamics<N> {
     type Factors: Send;
 
     /// Factors of `A(q) + D̂`, in O(n). D̂ is block-diagonal: `base` in the rows and columns of the base's coordinates that
-    /// the crane has, and `resistance` on the diagonal of all others. Positive semidefinite; kg and kg m².
-    fn factorise(&self, q: &SVector<f64, N>, resistance: &SVector<f64, N>, base: &SMatrix<f64, 6, 6>) -> Self::Factors;
+    /// the crane has, and `added_inertia` on the diagonal of all others. Positive semidefinite; kg and kg m².
+    fn factorise(
+        &self,
+        q: &SVector<f64, N>,
+        added_inertia: &SVector<f64, N>,
+        base: &SMatrix<f64, 6, 6>,
+    ) -> Self::Factors;
 
     /// x of `(A + D̂) x = r`.
     fn solve(&self, f: &Self::Factors, r: &SVector<f64, N>) -> SVector<f64, N>;
 
     /// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of elements, drives and joints on single coordinates; zero for
     /// the base's. `out`: one pair per coordinate.
-    fn joint_impedances(&self, out: &mut [[f64; 2]]);
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]);
 
     /// Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates at a state.
     /// `out`: one pair per coordinate.
-    fn nonlinear_impedances(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>, out: &mut [[f64; 2]]) {
+    fn nonlinear_stiffness_and_damping(
+        &self,
+        _t: f64,
+        _q: &SVector<f64, N>,
+        _v: &SVector<f64, N>,
+        out: &mut [[f64; 2]],
+    ) {
         out.fill([0.0; 2]);
     }
 

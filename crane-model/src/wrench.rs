@@ -33,7 +33,7 @@ impl Tension {
 
     /// Stiffness and damping for an implicit step, nowhere negative.
     #[cfg(feature = "std")]
-    pub(crate) fn impedance(&self) -> [f64; 2] {
+    pub(crate) fn stiffness_and_damping(&self) -> [f64; 2] {
         [self.stiffness.max(0.0), self.damping.max(0.0)]
     }
 }

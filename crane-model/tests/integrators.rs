@@ -21,7 +21,7 @@ use nalgebra::{Complex, Matrix4, SMatrix, SVector, Vector1, Vector2};
 #[derive(Clone)]
 struct Misled<C> {
     crane: C,
-    impedance: [f64; 2],
+    stiffness_and_damping: [f64; 2],
 }
 
 impl<const N: usize, C: CraneModel<N>> CraneModel<N> for Misled<C> {
@@ -59,14 +59,14 @@ impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Misled<C> {
 
 impl<const N: usize, C: Dynamics<N>> Implicit<N> for Misled<C> {
     type Factors = Factors<N>;
-    fn factorise(&self, q: &SVector<f64, N>, resistance: &SVector<f64, N>, _: &SMatrix<f64, 6, 6>) -> Factors<N> {
-        factorise(&self.crane, q, resistance)
+    fn factorise(&self, q: &SVector<f64, N>, added_inertia: &SVector<f64, N>, _: &SMatrix<f64, 6, 6>) -> Factors<N> {
+        factorise(&self.crane, q, added_inertia)
     }
     fn solve(&self, factors: &Factors<N>, r: &SVector<f64, N>) -> SVector<f64, N> {
         solve(factors, r)
     }
-    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
-        out.fill(self.impedance);
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        out.fill(self.stiffness_and_damping);
     }
 }
 
@@ -127,17 +127,17 @@ fn orders_on_swinging_double_pendulums() {
 #[test]
 fn the_implicit_method_keeps_its_orders_with_any_jacobian() {
     // None at all, and others that have nothing to do with the crane's; the lift's is [4000, 40].
-    for impedance in [[0.0, 0.0], [20.0, 0.0], [3.0, 7.0]] {
-        let pendulum = Misled { crane: DoublePendulum::hanging(), impedance };
+    for stiffness_and_damping in [[0.0, 0.0], [20.0, 0.0], [3.0, 7.0]] {
+        let pendulum = Misled { crane: DoublePendulum::hanging(), stiffness_and_damping };
         let measured = order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), false));
-        assert!((measured - 4.0).abs() < ORDER, "{impedance:?}: order {measured}");
+        assert!((measured - 4.0).abs() < ORDER, "{stiffness_and_damping:?}: order {measured}");
         let measured = order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), true));
-        assert!((measured - 3.0).abs() < ORDER, "{impedance:?}, embedded: order {measured}");
+        assert!((measured - 3.0).abs() < ORDER, "{stiffness_and_damping:?}, embedded: order {measured}");
         // A drive depends on time besides.
-        let lift = Misled { crane: Lift::default(), impedance };
+        let lift = Misled { crane: Lift::default(), stiffness_and_damping };
         let rest = [State::at_rest(Vector1::new(lift.crane.sag()))];
         let measured = order(160, &rest, |n, start| run(n, start, implicit(&lift), false));
-        assert!((measured - 4.0).abs() < ORDER, "{impedance:?}, driven: order {measured}");
+        assert!((measured - 4.0).abs() < ORDER, "{stiffness_and_damping:?}, driven: order {measured}");
     }
 }
 
@@ -207,12 +207,15 @@ fn differences<const N: usize, C: Implicit<N>>(crane: &C, order: usize, steps: i
 #[test]
 fn backward_differences_have_their_orders_with_any_jacobian() {
     // Both converge to the same state, so a Jacobian that slows the iteration down does not count.
-    for impedance in [[0.0, 0.0], [3.0, 7.0]] {
-        let pendulum = Misled { crane: DoublePendulum::hanging(), impedance };
+    for stiffness_and_damping in [[0.0, 0.0], [3.0, 7.0]] {
+        let pendulum = Misled { crane: DoublePendulum::hanging(), stiffness_and_damping };
         for expected in 1..=bdf::ORDER {
             let measured = order(320, &starts(), |n, start| differences(&pendulum, expected, n, start));
-            println!("{impedance:?} bdf{expected}: {measured:.3}");
-            assert!((measured - expected as f64).abs() < ORDER, "{impedance:?}, order {expected}: {measured}");
+            println!("{stiffness_and_damping:?} bdf{expected}: {measured:.3}");
+            assert!(
+                (measured - expected as f64).abs() < ORDER,
+                "{stiffness_and_damping:?}, order {expected}: {measured}"
+            );
         }
     }
 }
@@ -368,7 +371,7 @@ fn what_rounding_leaves_of_an_effort_is_said() {
 fn backward_differences_keep_their_orders_where_a_stiff_spring_is_forced() {
     // Of a crane that does not say what its drive prescribes; rates are differences of positions that follow it, and lose nothing.
     let lift = stiff_lift();
-    let blind = Misled { crane: lift, impedance: [lift.stiffness, lift.damping] };
+    let blind = Misled { crane: lift, stiffness_and_damping: [lift.stiffness, lift.damping] };
     let forced = |t: f64| {
         let (sin, cos) = (lift.frequency * t).sin_cos();
         let rate = lift.amplitude * lift.frequency * cos;
@@ -499,15 +502,15 @@ impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Counted<C> {
 
 impl<const N: usize, C: Implicit<N>> Implicit<N> for Counted<C> {
     type Factors = C::Factors;
-    fn factorise(&self, q: &SVector<f64, N>, resistance: &SVector<f64, N>, base: &SMatrix<f64, 6, 6>) -> C::Factors {
+    fn factorise(&self, q: &SVector<f64, N>, added_inertia: &SVector<f64, N>, base: &SMatrix<f64, 6, 6>) -> C::Factors {
         self.factorisations.fetch_add(1, Ordering::Relaxed);
-        self.crane.factorise(q, resistance, base)
+        self.crane.factorise(q, added_inertia, base)
     }
     fn solve(&self, factors: &C::Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
         self.crane.solve(factors, r)
     }
-    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
-        self.crane.joint_impedances(out);
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        self.crane.joint_stiffness_and_damping(out);
     }
 }
 

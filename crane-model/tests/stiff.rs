@@ -65,13 +65,13 @@ impl Dynamics<2> for ElasticPendulum {
 
 impl Implicit<2> for ElasticPendulum {
     type Factors = Factors<2>;
-    fn factorise(&self, q: &Vector2<f64>, resistance: &Vector2<f64>, _: &SMatrix<f64, 6, 6>) -> Factors<2> {
-        factorise(self, q, resistance)
+    fn factorise(&self, q: &Vector2<f64>, added_inertia: &Vector2<f64>, _: &SMatrix<f64, 6, 6>) -> Factors<2> {
+        factorise(self, q, added_inertia)
     }
     fn solve(&self, factors: &Factors<2>, r: &Vector2<f64>) -> Vector2<f64> {
         solve(factors, r)
     }
-    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
         out.copy_from_slice(&[[self.stiffness, self.damping], [0.0; 2]]);
     }
 }

@@ -39,10 +39,10 @@
 //   kinetic_energy                      65       381
 //   factorise                           21       275
 //   solve                               13        51
-//   joint_impedances                     0         0
+//   joint_stiffness_and_damping          0         0
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use ::crane_model::support::{MassAndBias, fill, fma, sin_cos, symmetric};
+use ::crane_model::rt::{MassAndBias, fill, fma, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description,
     Dynamics, Ensemble, Implicit, List, OneByOne, ParameterError, Text,
@@ -626,38 +626,38 @@ pub fn kinetic_energy(q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
 /// The factors that [`factorise`] computes for [`solve`].
 pub type Factors = [f64; 6];
 
-/// Factors of `A + D̂` for [`solve`]: D̂ has `resistance` on its diagonal, but `base` in the base's rows and columns.
+/// Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, but `base` in the base's rows and columns.
 ///
 /// `A + D̂, by articulated bodies at rest`
 ///
 /// 21 operations: 9 add, 9 mul, 2 div, 1 sin_cos.
 pub fn factorise(
     q: &SVector<f64, N>,
-    resistance: &SVector<f64, N>,
+    added_inertia: &SVector<f64, N>,
     _base: &SMatrix<f64, 6, 6>,
 ) -> Factors {
     let q = &q.data.0[0];
-    let resistance = &resistance.data.0[0];
+    let added_inertia = &added_inertia.data.0[0];
     let mut out: Factors = [0.0; 6];
     let lower_theta = q[1];
     // Sines and cosines
     let ([sin_lower_theta], [cos_lower_theta]) = sin_cos([lower_theta]);
     // Inward: lower
-    let lower_theta_resistance = resistance[1];
-    let t001 = 1.0 / (lower_theta_resistance + 0.21300000000000002);
+    let lower_theta_added_inertia = added_inertia[1];
+    let t001 = 1.0 / (lower_theta_added_inertia + 0.21300000000000002);
     out[2] = t001;
     out[3] = 0.21300000000000002 * t001;
     out[4] = 0.4 * t001;
-    let t002 = lower_theta_resistance * t001;
+    let t002 = lower_theta_added_inertia * t001;
     let t003 = fma(-0.16000000000000003, t001, 1.0);
     let t004 = cos_lower_theta * (0.4 * t002);
     // Inward: upper
     let rotational_upper_yy = 0.667
         + (t004 + fma(sin_lower_theta * sin_lower_theta, 1.0 - t003, t003)
             + fma(0.21300000000000002, t002, t004));
-    let upper_theta_resistance = resistance[0];
-    out[5] = 1.0 / (upper_theta_resistance + rotational_upper_yy);
-    out[0] = lower_theta_resistance;
+    let upper_theta_added_inertia = added_inertia[0];
+    out[5] = 1.0 / (upper_theta_added_inertia + rotational_upper_yy);
+    out[0] = lower_theta_added_inertia;
     out[1] = cos_lower_theta;
     out
 }
@@ -696,7 +696,7 @@ pub fn solve(f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
 /// [Urbaś 2016, Eqs. (14), (19)]
 ///
 /// 0 operations: 0 add, 0 mul, 0 div, 0 sin_cos.
-pub fn joint_impedances() -> [[f64; 2]; 2] {
+pub fn joint_stiffness_and_damping() -> [[f64; 2]; 2] {
     let out: [[f64; 2]; 2] = [[0.0; 2]; 2];
     out
 }
@@ -780,16 +780,16 @@ impl Implicit<N> for Crane {
     fn factorise(
         &self,
         q: &SVector<f64, N>,
-        resistance: &SVector<f64, N>,
+        added_inertia: &SVector<f64, N>,
         base: &SMatrix<f64, 6, 6>,
     ) -> Factors {
-        factorise(q, resistance, base)
+        factorise(q, added_inertia, base)
     }
     fn solve(&self, f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
         solve(f, r)
     }
-    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
-        fill(out, &joint_impedances());
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        fill(out, &joint_stiffness_and_damping());
     }
 }
 

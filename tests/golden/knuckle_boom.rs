@@ -28,7 +28,7 @@
 //   drive_forces                        84        95
 //   drive_motions                       69        80
 //   drive_pieces                         0         0
-//   hinge_forces                         1         2
+//   joint_damper_forces                  1         2
 //   forces                              85       105
 //   gravity_energy                      37       188
 //   drive_energy                        66        74
@@ -42,13 +42,13 @@
 //   kinetic_energy                     216       837
 //   factorise                           95       711
 //   solve                               61       138
-//   joint_impedances                     0         7
+//   joint_stiffness_and_damping          0         7
 //   static_residual                     53       364
 //   tangent_stiffness                   51       338
 //   linearise                          165       793
 
 use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use ::crane_model::support::{MassAndBias, fill, fma, sin_cos, symmetric};
+use ::crane_model::rt::{MassAndBias, fill, fma, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel,
     Description, DriveInfo, Dynamics, Ensemble, Implicit, Linearisation, Linearise, List,
@@ -752,7 +752,7 @@ pub fn drive_pieces() -> [[f64; 2]; 7] {
 /// `−d q̇`
 ///
 /// 1 operations: 0 add, 1 mul, 0 div, 0 sin_cos.
-pub fn hinge_forces(v: &SVector<f64, N>) -> SVector<f64, N> {
+pub fn joint_damper_forces(v: &SVector<f64, N>) -> SVector<f64, N> {
     let v = &v.data.0[0];
     let mut out: [f64; N] = [0.0; N];
     // hook_theta
@@ -2126,19 +2126,19 @@ pub fn kinetic_energy(q: &SVector<f64, N>, v: &SVector<f64, N>, c: &Constants) -
 /// The factors that [`factorise`] computes for [`solve`].
 pub type Factors = [f64; 25];
 
-/// Factors of `A + D̂` for [`solve`]: D̂ has `resistance` on its diagonal, but `base` in the base's rows and columns.
+/// Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, but `base` in the base's rows and columns.
 ///
 /// `A + D̂, by articulated bodies at rest`
 ///
 /// 95 operations: 39 add, 50 mul, 4 div, 2 sin_cos.
 pub fn factorise(
     q: &SVector<f64, N>,
-    resistance: &SVector<f64, N>,
+    added_inertia: &SVector<f64, N>,
     _base: &SMatrix<f64, 6, 6>,
     c: &Constants,
 ) -> Factors {
     let q = &q.data.0[0];
-    let resistance = &resistance.data.0[0];
+    let added_inertia = &added_inertia.data.0[0];
     let mut out: Factors = [0.0; 25];
     let knuckle_theta = q[1];
     let hook_theta = q[3];
@@ -2149,13 +2149,13 @@ pub fn factorise(
     ]);
     // Inward: hook
     out[8] = c.c002;
-    let hook_theta_resistance = resistance[3];
-    let t001 = 1.0 / (hook_theta_resistance + c.c008);
+    let hook_theta_added_inertia = added_inertia[3];
+    let t001 = 1.0 / (hook_theta_added_inertia + c.c008);
     out[9] = t001;
     out[10] = c.c008 * t001;
     let t002 = c.c002 * t001;
     out[11] = t002;
-    let t003 = hook_theta_resistance * t001;
+    let t003 = hook_theta_added_inertia * t001;
     let t004 = c.c002 * t003;
     let t005 = fma(-c.c002, t002, c.c001);
     let t006 = sin_hook_theta * sin_hook_theta;
@@ -2169,15 +2169,15 @@ pub fn factorise(
     let coupling_extension_y_z = fma(-sin_hook_theta, t004, 150.0);
     let translational_extension_xx = 150.0 + fma(t006, t007, t005);
     let translational_extension_zz = 150.0 + fma(-t006, t007, c.c001);
-    let extension_x_resistance = resistance[2];
-    let t008 = 1.0 / (extension_x_resistance + translational_extension_xx);
+    let extension_x_added_inertia = added_inertia[2];
+    let t008 = 1.0 / (extension_x_added_inertia + translational_extension_xx);
     out[14] = t008;
     let t009 = coupling_extension_y_x * t008;
     out[15] = t009;
     out[16] = translational_extension_xx * t008;
     let t010 = translational_extension_xz * t008;
     out[17] = t010;
-    let t011 = extension_x_resistance * t008;
+    let t011 = extension_x_added_inertia * t008;
     let t012 = fma(-translational_extension_xz, t010, translational_extension_zz);
     let translational_knuckle_xz = translational_extension_xz * t011;
     let t013 = fma(-translational_extension_xz, t009, coupling_extension_y_z);
@@ -2214,15 +2214,15 @@ pub fn factorise(
     out[19] = coupling_knuckle_y_z;
     let translational_knuckle_xx = fma(translational_extension_xx, t011, 310.0);
     let translational_knuckle_zz = 310.0 + t012;
-    let knuckle_theta_resistance = resistance[1];
-    let t016 = 1.0 / (knuckle_theta_resistance + rotational_knuckle_yy);
+    let knuckle_theta_added_inertia = added_inertia[1];
+    let t016 = 1.0 / (knuckle_theta_added_inertia + rotational_knuckle_yy);
     out[20] = t016;
     out[21] = rotational_knuckle_yy * t016;
     let t017 = coupling_knuckle_y_x * t016;
     out[22] = t017;
     let t018 = coupling_knuckle_y_z * t016;
     out[23] = t018;
-    let t019 = knuckle_theta_resistance * t016;
+    let t019 = knuckle_theta_added_inertia * t016;
     let t020 = fma(-coupling_knuckle_y_z, t018, translational_knuckle_zz);
     let t021 = fma(
         -sin_knuckle_theta,
@@ -2248,12 +2248,12 @@ pub fn factorise(
     );
     // Inward: main_boom
     let rotational_main_boom_yy = 1326.05 + t024;
-    let main_boom_theta_resistance = resistance[0];
-    out[24] = 1.0 / (main_boom_theta_resistance + rotational_main_boom_yy);
+    let main_boom_theta_added_inertia = added_inertia[0];
+    out[24] = 1.0 / (main_boom_theta_added_inertia + rotational_main_boom_yy);
     out[0] = extension_x;
-    out[1] = knuckle_theta_resistance;
-    out[2] = extension_x_resistance;
-    out[3] = hook_theta_resistance;
+    out[1] = knuckle_theta_added_inertia;
+    out[2] = extension_x_added_inertia;
+    out[3] = hook_theta_added_inertia;
     out[4] = sin_knuckle_theta;
     out[5] = cos_knuckle_theta;
     out[6] = sin_hook_theta;
@@ -2346,7 +2346,7 @@ pub fn solve(f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
 /// [Urbaś 2016, Eqs. (14), (19)]
 ///
 /// 0 operations: 0 add, 0 mul, 0 div, 0 sin_cos.
-pub fn joint_impedances() -> [[f64; 2]; 4] {
+pub fn joint_stiffness_and_damping() -> [[f64; 2]; 4] {
     let mut out: [[f64; 2]; 4] = [[0.0; 2]; 4];
     // main_boom_theta
     out[0][0] = 4000000.0;
@@ -2779,8 +2779,8 @@ impl CraneModel<N> for Crane {
     ) -> SVector<f64, N> {
         drive_forces(t, q, v)
     }
-    fn hinge_forces(&self, v: &SVector<f64, N>) -> SVector<f64, N> {
-        hinge_forces(v)
+    fn joint_damper_forces(&self, v: &SVector<f64, N>) -> SVector<f64, N> {
+        joint_damper_forces(v)
     }
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
         fill(out, &drive_motions(t));
@@ -2838,16 +2838,16 @@ impl Implicit<N> for Crane {
     fn factorise(
         &self,
         q: &SVector<f64, N>,
-        resistance: &SVector<f64, N>,
+        added_inertia: &SVector<f64, N>,
         base: &SMatrix<f64, 6, 6>,
     ) -> Factors {
-        factorise(q, resistance, base, &self.constants)
+        factorise(q, added_inertia, base, &self.constants)
     }
     fn solve(&self, f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
         solve(f, r)
     }
-    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
-        fill(out, &joint_impedances());
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        fill(out, &joint_stiffness_and_damping());
     }
 }
 
@@ -2869,7 +2869,7 @@ impl Linearise<N> for Crane {
 /// Eight cranes per call.
 pub mod lanes {
     use ::crane_model::nalgebra::SVector;
-    use ::crane_model::support::lanes::{f64x8, fma, sin_cos, splat};
+    use ::crane_model::rt::lanes::{f64x8, fma, sin_cos, splat};
     use ::crane_model::LaneDynamics;
     use super::N;
     /// Values that stay live at run time.

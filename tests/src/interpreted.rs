@@ -122,7 +122,7 @@ fn expand<S: Scalar>(shape: &Shape, slots: Vec<S>) -> Vec<S> {
         Shape::Symmetric(n) | Shape::Columns { n, bias: false, .. } => symmetric(*n, &slots),
         Shape::Base => symmetric(6, &slots),
         Shape::Transforms { corner, .. } => homogeneous(&slots, *corner),
-        Shape::Turned { .. } => homogeneous(&slots, 0),
+        Shape::TransformFactors { .. } => homogeneous(&slots, 0),
         Shape::Record(_, fields) => {
             let mut rest = slots.as_slice();
             let mut out = Vec::new();

@@ -2,7 +2,7 @@
 
 use crane_model::dyn_crane::Crane;
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use crane_model::support::lanes::f64x8;
+use crane_model::rt::lanes::f64x8;
 use crane_model::{Description, LaneDynamics, Linearisation, SectionModuli, Tension, TransformDerivatives, Wrench};
 
 /// A quantity: its name and the shape of its numbers, row-major.
@@ -47,7 +47,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("support_forces", vec![n]),
         ("element_forces", vec![n]),
         ("drive_forces", vec![n]),
-        ("hinge_forces", vec![n]),
+        ("joint_damper_forces", vec![n]),
         ("stop_forces", vec![n]),
         ("friction_forces", vec![n]),
         ("load_forces", vec![n]),
@@ -78,7 +78,7 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("drive_power", vec![1]),
         ("dissipation", vec![1]),
         ("prescribed", vec![2, n]),
-        ("nonlinear_impedances", vec![n, 2]),
+        ("nonlinear_stiffness_and_damping", vec![n, 2]),
         ("internal_forces", vec![crane.cuts().len(), 6]),
         ("support_positions", vec![supports, 3]),
         ("section_moduli", vec![crane.sections().len(), 8]),
@@ -142,7 +142,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
         crane.support_forces(q, v),
         crane.element_forces(q, v),
         crane.drive_forces(t, q, v),
-        crane.hinge_forces(v),
+        crane.joint_damper_forces(v),
         crane.stop_forces(q, v),
         crane.friction_forces(v),
         crane.load_forces(t, q),
@@ -198,7 +198,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     let mut moduli = vec![SectionModuli::ZERO; info.sections().len()];
     crane.section_moduli(&mut moduli);
     let mut tangents = vec![[0.0; 2]; info.coordinates.len()];
-    crane.nonlinear_impedances(t, q, v, &mut tangents);
+    crane.nonlinear_stiffness_and_damping(t, q, v, &mut tangents);
     let load_power = crane.load_power(t, q, v);
     let connectors = of_connectors(crane, t, q, v);
     let (mut q, mut v) = (*q, *v);
@@ -246,10 +246,10 @@ fn implicit_solution<const N: usize, C: Crane<N>>(
 ) -> SVector<f64, N> {
     let h = IMPLICIT_STEP;
     let mut joints = [[0.0; 2]; N];
-    crane.joint_impedances(&mut joints);
-    let resistance = SVector::from_fn(|i, _| h * joints[i][1] + h * h * joints[i][0]);
+    crane.joint_stiffness_and_damping(&mut joints);
+    let added_inertia = SVector::from_fn(|i, _| h * joints[i][1] + h * h * joints[i][0]);
     let base = crane.base_damping(q, v) * h + crane.base_stiffness(q, v) * (h * h);
-    crane.solve(&crane.factorise(q, &resistance, &base), v)
+    crane.solve(&crane.factorise(q, &added_inertia, &base), v)
 }
 
 /// Accelerations of the crane in the third lane of eight, the others in states of their own.

@@ -1,7 +1,7 @@
 //! Numbers of 64 bits with the runtime's sine and cosine, so that the interpreter rounds as generated code does.
 
 use crane_codegen::symbolic::Scalar;
-use crane_model::support;
+use crane_model::rt;
 
 /// A number as generated code has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,11 +35,11 @@ impl Scalar for Runtime {
         Runtime(value)
     }
     fn sin_cos(&self) -> (Self, Self) {
-        let ([sin], [cos]) = support::sin_cos([self.0]);
+        let ([sin], [cos]) = rt::sin_cos([self.0]);
         (Runtime(sin), Runtime(cos))
     }
     fn stumpff(&self, k: u8) -> Self {
-        Runtime(support::stumpff([self.0])[usize::from(k)][0])
+        Runtime(rt::stumpff([self.0])[usize::from(k)][0])
     }
     fn min(self, other: Self) -> Self {
         Runtime(self.0.min(other.0))
@@ -48,12 +48,12 @@ impl Scalar for Runtime {
         Runtime(self.0.max(other.0))
     }
     fn sqrt(&self) -> Self {
-        Runtime(support::sqrt(self.0))
+        Runtime(rt::sqrt(self.0))
     }
     fn exp(&self) -> Self {
-        Runtime(support::exp(self.0))
+        Runtime(rt::exp(self.0))
     }
     fn select(&self, positive: Self, other: Self) -> Self {
-        Runtime(support::select(self.0, positive.0, other.0))
+        Runtime(rt::select(self.0, positive.0, other.0))
     }
 }

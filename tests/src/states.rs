@@ -17,7 +17,7 @@ pub fn far(chain: &Chain, count: usize, seed: u64) -> Vec<State> {
                 .iter()
                 .enumerate()
                 .map(|(i, coordinate)| {
-                    let soft = chain.elements.iter().any(|e| e.coordinate.0 == i)
+                    let soft = chain.beam_springs.iter().any(|e| e.coordinate.0 == i)
                         || chain.base.iter().flatten().any(|b| b.0 == i);
                     match coordinate.kind {
                         CoordinateKind::Rotation if soft => symmetric(0.5),

@@ -170,27 +170,27 @@ fn structured_solves() {
         (Crane::new(workspace::reference_symmetric(4)), 1e-3),
     ] {
         for state in states::far(&crane.chain, 2, 11) {
-            let inputs = crane.inputs(&state).with(Argument::Right, state.v.clone());
+            let inputs = crane.inputs(&state).with(Argument::RightHandSide, state.v.clone());
             let right: Vec<Precise> = state.v.iter().map(|x| Precise::from_f64(*x)).collect();
             let exact = precise::solve(crane.mass_matrix(&state), right.clone());
             let own = error(&crane.evaluate("solve_mass", &inputs), &exact);
             assert!(own < TOLERANCE, "{}: A x = r to {own:.1e}", crane.chain.name);
 
-            let (resistance, base) = resistance(&crane, &inputs, h);
+            let (added_inertia, base) = added_inertia(&crane, &inputs, h);
             let mut matrix = crane.mass_matrix(&state);
             let held = crane.chain.base.iter().flatten().count();
             for i in 0..crane.size() {
                 for j in 0..crane.size() {
                     let added = match (i < held && j < held, i == j) {
                         (true, _) => base[i.min(j) + 6 * i.max(j)],
-                        (false, true) => resistance[i],
+                        (false, true) => added_inertia[i],
                         (false, false) => 0.0,
                     };
                     matrix[i][j] = matrix[i][j].clone() + Precise::from_f64(added);
                 }
             }
             let exact = precise::solve(matrix, right);
-            let inputs = inputs.with(Argument::Resistance, resistance).with(Argument::BaseResistance, base);
+            let inputs = inputs.with(Argument::AddedInertia, added_inertia).with(Argument::BaseAddedInertia, base);
             let factors = crane.evaluate("factorise", &inputs);
             let own = error(&crane.evaluate("solve", &inputs.with(Argument::Factors, factors)), &exact);
             // Springs stiffer than h⁻² times the inertias share their digits with these.
@@ -200,9 +200,9 @@ fn structured_solves() {
 }
 
 /// `h D + h² K`: its diagonal, and the base's block column by column.
-fn resistance(crane: &Crane, inputs: &Inputs<f64>, h: f64) -> (Vec<f64>, Vec<f64>) {
+fn added_inertia(crane: &Crane, inputs: &Inputs<f64>, h: f64) -> (Vec<f64>, Vec<f64>) {
     let step = |stiffness: f64, damping: f64| h * damping + h * h * stiffness;
-    let joints = crane.evaluate("joint_impedances", inputs);
+    let joints = crane.evaluate("joint_stiffness_and_damping", inputs);
     let diagonal = joints.chunks(2).map(|pair| step(pair[0], pair[1])).collect();
     let mut base = vec![0.0; 36];
     if crane.simple.function(FunctionId::BaseStiffness).is_some() {

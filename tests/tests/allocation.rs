@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crane_model::dyn_crane::{Crane, DynCrane};
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector3};
-use crane_model::support::lanes::splat;
+use crane_model::rt::lanes::splat;
 use crane_model::{CraneModel, Ensemble, LaneDynamics, SectionModuli, Tension, TransformDerivatives, Wrench};
 use crane_specs as cranes;
 use crane_tests::exact;
@@ -39,7 +39,7 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.winch_pieces(&mut places.pieces);
     black_box((crane.connector_forces(t, q, v), crane.connector_forces_at_rest(t, q)));
     black_box((crane.connector_energy(t, q), crane.winch_power(t, q, v)));
-    crane.joint_impedances(&mut places.impedances);
+    crane.joint_stiffness_and_damping(&mut places.stiffness_and_damping);
     let (mut prescribed_q, mut prescribed_v, mut mass) = (*q, *v, SMatrix::zeros());
     crane.prescribe(t, &mut prescribed_q, &mut prescribed_v);
     black_box(crane.mass_matrix_and_bias(q, v, &mut mass));
@@ -54,7 +54,7 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
         crane.support_forces(q, v),
         crane.element_forces(q, v),
         crane.drive_forces(t, q, v),
-        crane.hinge_forces(v),
+        crane.joint_damper_forces(v),
         crane.stop_forces(q, v),
         crane.friction_forces(v),
         crane.load_forces(t, q),
@@ -63,7 +63,7 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     black_box((crane.static_residual(q), crane.tangent_stiffness(q)));
     black_box((crane.gravity_energy(q), crane.support_energy(q), crane.element_energy(q), crane.drive_energy(t, q)));
     black_box((crane.stop_energy(q), crane.load_power(t, q, v)));
-    crane.nonlinear_impedances(t, q, v, &mut places.motions);
+    crane.nonlinear_stiffness_and_damping(t, q, v, &mut places.motions);
     black_box((crane.potential_energy(t, q), crane.kinetic_energy(q, v)));
     black_box((crane.drive_power(t, q, v), crane.dissipation(t, q, v)));
 }
@@ -74,7 +74,7 @@ struct Places {
     vectors: Vec<Vector3<f64>>,
     motions: Vec<[f64; 2]>,
     pieces: Vec<[f64; 2]>,
-    impedances: Vec<[f64; 2]>,
+    stiffness_and_damping: Vec<[f64; 2]>,
     wrenches: Vec<Wrench>,
     moduli: Vec<SectionModuli>,
 }
@@ -91,7 +91,7 @@ impl Places {
             vectors: vec![Vector3::zeros(); description.points.len().max(description.supports.len())],
             motions: vec![[0.0; 2]; description.drives.len()],
             pieces: vec![[0.0; 2]; description.drives.iter().map(|drive| drive.pieces).sum()],
-            impedances: vec![[0.0; 2]; N],
+            stiffness_and_damping: vec![[0.0; 2]; N],
             wrenches: vec![Wrench::ZERO; description.cuts().len()],
             moduli: vec![SectionModuli::ZERO; description.sections().len()],
         }

@@ -154,7 +154,7 @@ fn cantilever() -> (Vec<f64>, f64) {
         Some(*end)
     });
     // Three springs at the beginning of every element but the first.
-    let joints = chain.elements.len() / 3;
+    let joints = chain.beam_springs.len() / 3;
     (ends.take(joints).collect(), 1.0 / joints as f64)
 }
 
@@ -185,7 +185,8 @@ fn eqs_11_14_15_with_one_spring_too_many_are_too_soft() {
 fn eq_14_with_positions_in_the_dissipation_dissipates_at_rest() {
     let crane = Interpreted::new(workspace::chain("eight_link_flexible"));
     let state = crane_tests::quantities::State { t: 100.0, ..crane.equilibrium() };
-    let printed: f64 = crane.chain.elements.iter().map(|e| e.damping.at(&[]) * state.q[e.coordinate.0].powi(2)).sum();
+    let printed: f64 =
+        crane.chain.beam_springs.iter().map(|e| e.damping.at(&[]) * state.q[e.coordinate.0].powi(2)).sum();
     let mut at_rest = state.clone();
     at_rest.v.fill(0.0);
     assert_eq!(crane.scalar("dissipation", &at_rest), 0.0);

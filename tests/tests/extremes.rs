@@ -49,7 +49,7 @@ impl Extreme {
                 scaled(stiffness, drives);
             }
         }
-        chain.elements.iter_mut().for_each(|element| scaled(&mut element.stiffness, elements));
+        chain.beam_springs.iter_mut().for_each(|element| scaled(&mut element.stiffness, elements));
         for stiffness in chain.supports.iter_mut().flat_map(|support| &mut support.stiffness) {
             scaled(stiffness, supports);
         }
@@ -88,10 +88,10 @@ fn cancelled(matrix: &DMatrix<f64>, x: &DVector<f64>, terms: &[&DVector<f64>]) -
 }
 
 /// `h² K + h D` of joints and base for a step h.
-fn resistances(crane: &Crane, h: f64) -> (Vec<f64>, Vec<f64>, DMatrix<f64>) {
+fn added_inertias(crane: &Crane, h: f64) -> (Vec<f64>, Vec<f64>, DMatrix<f64>) {
     let (n, inputs) = (crane.interpreted.size(), crane.interpreted.inputs(&crane.state));
     let step = |stiffness: f64, damping: f64| h * h * stiffness + h * damping;
-    let joints = crane.interpreted.get("joint_impedances", &inputs, 2 * n);
+    let joints = crane.interpreted.get("joint_stiffness_and_damping", &inputs, 2 * n);
     let diagonal: Vec<f64> = joints.chunks(2).map(|pair| step(pair[0], pair[1])).collect();
     let blocks = ["base_stiffness", "base_damping"].map(|name| crane.interpreted.get(name, &inputs, 36));
     let base: Vec<f64> = blocks[0].iter().zip(&blocks[1]).map(|(s, d)| step(*s, *d)).collect();
@@ -149,13 +149,13 @@ proptest! {
     fn implicit_systems_are_solved(extreme in extreme(), power in -6..0_i32) {
         let crane = Crane::new(&extreme);
         let mass = crane.interpreted.matrix("mass_matrix", &crane.state);
-        let (resistance, base, added) = resistances(&crane, 10_f64.powi(power));
+        let (added_inertia, base, added) = added_inertias(&crane, 10_f64.powi(power));
         // Forces as they act.
         let right = crane.vector("bias") + crane.vector("forces");
         let inputs: Inputs<f64> = crane.interpreted.inputs(&crane.state)
-            .with(Argument::Right, right.as_slice().to_vec())
-            .with(Argument::Resistance, resistance)
-            .with(Argument::BaseResistance, base);
+            .with(Argument::RightHandSide, right.as_slice().to_vec())
+            .with(Argument::AddedInertia, added_inertia)
+            .with(Argument::BaseAddedInertia, base);
         let factors = crane.interpreted.get("factorise", &inputs, 0);
         let x = crane.interpreted.get("solve", &inputs.with(Argument::Factors, factors), right.len());
         let (matrix, right) = crane.interpreted.unknowns(mass + added, right);

@@ -109,7 +109,7 @@ fn a_rotor_adds_to_the_diagonal_and_to_nothing_else() {
                 "bias",
                 "support_forces",
                 "element_forces",
-                "hinge_forces",
+                "joint_damper_forces",
                 "stop_forces",
                 "friction_forces",
                 "load_forces",
@@ -289,7 +289,7 @@ fn prescribed_coordinates_are_no_unknowns() {
                 "support_forces",
                 "element_forces",
                 "drive_forces",
-                "hinge_forces",
+                "joint_damper_forces",
                 "stop_forces",
                 "friction_forces",
                 "load_forces",
@@ -311,7 +311,7 @@ fn prescribed_coordinates_are_no_unknowns() {
             }
 
             let right = DVector::from_column_slice(&state.v);
-            let inputs = crane.inputs(&state).with(Argument::Right, state.v.clone());
+            let inputs = crane.inputs(&state).with(Argument::RightHandSide, state.v.clone());
             let x = DVector::from_vec(crane.get("solve_mass", &inputs, n));
             let (unknowns, right) = crane.unknowns(mass, right);
             assert!(prescribed.iter().all(|j| x[*j] == 0.0), "seed {seed}: prescribed coordinates are not solved for");

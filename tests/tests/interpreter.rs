@@ -23,7 +23,7 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
         "linearised_stiffness" => linearised(1),
         "linearised_damping" => linearised(2),
         "mass_solution" => {
-            crane.get("solve_mass", &inputs.clone().with(Argument::Right, inputs.get(Argument::Velocity)), n)
+            crane.get("solve_mass", &inputs.clone().with(Argument::RightHandSide, inputs.get(Argument::Velocity)), n)
         }
         "mass_matrix_lower" => {
             let both = crane.get("mass_matrix_and_bias", inputs, 0);
@@ -63,15 +63,15 @@ fn prescribed(crane: &Interpreted, inputs: &Inputs<Runtime>) -> Vec<Runtime> {
 /// As `quantities` computes it.
 fn implicit_solution(crane: &Interpreted, inputs: &Inputs<Runtime>) -> Vec<Runtime> {
     let h = Runtime(IMPLICIT_STEP);
-    let joints = crane.get("joint_impedances", inputs, 2 * crane.size());
-    let resistance = joints.chunks(2).map(|pair| h * pair[1] + h * h * pair[0]).collect();
+    let joints = crane.get("joint_stiffness_and_damping", inputs, 2 * crane.size());
+    let added_inertia = joints.chunks(2).map(|pair| h * pair[1] + h * h * pair[0]).collect();
     let (damping, stiffness) = (crane.get("base_damping", inputs, 36), crane.get("base_stiffness", inputs, 36));
     let base = damping.into_iter().zip(stiffness).map(|(d, s)| d * h + s * (h * h)).collect();
-    let system = inputs.clone().with(Argument::Resistance, resistance).with(Argument::BaseResistance, base);
+    let system = inputs.clone().with(Argument::AddedInertia, added_inertia).with(Argument::BaseAddedInertia, base);
     let factors = crane.get("factorise", &system, 0);
     crane.get(
         "solve",
-        &system.with(Argument::Factors, factors).with(Argument::Right, inputs.get(Argument::Velocity)),
+        &system.with(Argument::Factors, factors).with(Argument::RightHandSide, inputs.get(Argument::Velocity)),
         0,
     )
 }
@@ -116,10 +116,10 @@ fn simplification_changes_nothing_but_rounding() {
         for state in states::far(&crane.chain, 2, seed) {
             // Some system with damping, and factors of it: those of the two programs differ in number and order.
             let diagonal = (0..36).map(|i| if i % 7 == 0 { 10.0 } else { 0.0 }).collect();
-            let inputs = (crane.inputs(&state).with(Argument::Right, state.v.clone()))
+            let inputs = (crane.inputs(&state).with(Argument::RightHandSide, state.v.clone()))
                 .with(Argument::Acceleration, state.v.clone())
-                .with(Argument::Resistance, vec![1.0; crane.size()])
-                .with(Argument::BaseResistance, diagonal);
+                .with(Argument::AddedInertia, vec![1.0; crane.size()])
+                .with(Argument::BaseAddedInertia, diagonal);
             let evaluate = |program: &Program, id: FunctionId| {
                 let factors = program.evaluate(program.function(FunctionId::Factorise).unwrap(), &inputs);
                 program.evaluate(program.function(id).unwrap(), &inputs.clone().with(Argument::Factors, factors))

@@ -1,7 +1,7 @@
 //! Sines and cosines of generated code against those of 192 bits.
 
 use crane_codegen::symbolic::Scalar;
-use crane_model::support::{lanes, sin_cos};
+use crane_model::rt::{lanes, sin_cos};
 use crane_tests::precise::Precise;
 use fastrand::Rng;
 

@@ -1,7 +1,7 @@
 //! Stumpff's functions of generated code and of the interpreter against those of 192 bits.
 
 use crane_codegen::symbolic::Scalar;
-use crane_model::support::{lanes, stumpff};
+use crane_model::rt::{lanes, stumpff};
 use crane_tests::precise::Precise;
 use fastrand::Rng;
 

@@ -37,7 +37,7 @@ def contact(support, q, v):
     force = ca.vertcat(total[:2], ca.if_else(presses, total[2], 0))
     # What is not the spring's: of the damper, and of the spring where both together would pull.
     lost = -ca.dot(ca.vertcat(damper[:2], ca.if_else(presses, damper[2], -spring[2])), rate)
-    # Positive resistances: along z as the force grows, sideways as the share is.
+    # Nowhere negative: along z as the force grows, sideways as the share is.
     normal = ca.if_else(presses, ca.fmax(0, -ca.jacobian(total[2], e[2])), 0)
     stiffness = ca.vertcat(share * support.stiffness[:2], normal)
     damping = share * support.damping

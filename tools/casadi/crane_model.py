@@ -152,7 +152,7 @@ class Crane:
     elements: list = field(default_factory=list)
     beams: list = field(default_factory=list)
     drives: list = field(default_factory=list)
-    hinges: list = field(default_factory=list)
+    joint_dampers: list = field(default_factory=list)
     rotors: list = field(default_factory=list)
     stops: list = field(default_factory=list)
     frictions: list = field(default_factory=list)
@@ -222,7 +222,7 @@ def read_crane(path):
         crane.drives.append(read_drive(crane, written))
         crane.rotors.append((crane.drives[-1].coordinate, spec.number(written.get("armature", 0))))
     for name, damping in spec.get("damping", {}).items():
-        crane.hinges.append(Spring(crane.coordinate(name), 0, spec.number(damping)))
+        crane.joint_dampers.append(Spring(crane.coordinate(name), 0, spec.number(damping)))
     for name, armature in spec.get("armature", {}).items():
         crane.rotors.append((crane.coordinate(name), spec.number(armature)))
     for name, written in spec.get("stops", {}).items():

@@ -162,7 +162,7 @@ class Derivations:
             ),
             "element": (stored(crane.elements), lost(crane.elements)),
             "drive": (stored(unlimited), lost(unlimited)),
-            "hinge": (ca.SX(0), lost(crane.hinges)),
+            "joint_damper": (ca.SX(0), lost(crane.joint_dampers)),
         }
 
     def joint_forces(self):
@@ -299,7 +299,7 @@ class Derivations:
             "load_power": ca.dot(loads, v),
             **connectors,
             "stop_energy": stop_energy,
-            "nonlinear_impedances": row_major(ca.densify(tangents)),
+            "nonlinear_stiffness_and_damping": row_major(ca.densify(tangents)),
             LINEAR_DAMPING: row_major(ca.densify(step_damping)),
             **{f"{part}_forces": force for part, force in by_part.items()},
             "forces": linear + contacts + drives + stops + friction + loads + connectors["connector_forces"],
@@ -458,11 +458,11 @@ IMPLICIT_STEP = 0.01
 # Found from the other quantities at each state.
 SOLUTIONS = ["forward_dynamics", "lane_forward_dynamics", "mass_solution", "implicit_solution"]
 # The stiffness of all springs that implicit steps take, for these alone: nothing generated has it by itself.
-SPRINGS = "impedance_stiffness"
+SPRINGS = "linear_stiffness"
 # The accelerations of coordinates that rigid drives prescribe, likewise.
 PRESCRIBED = "prescribed_acceleration"
 # The damping that implicit steps take, likewise.
-LINEAR_DAMPING = "impedance_damping"
+LINEAR_DAMPING = "linear_damping"
 INTERNAL = [SPRINGS, PRESCRIBED, LINEAR_DAMPING]
 
 

@@ -54,7 +54,7 @@ def relative(left, right, size=None):
 
 def parts_of(derived):
     """The sum of the generalized forces by part."""
-    return sum(derived[f"{part}_forces"] for part in ("support", "element", "drive", "hinge", "stop", "friction", "load", "connector"))
+    return sum(derived[f"{part}_forces"] for part in ("support", "element", "drive", "joint_damper", "stop", "friction", "load", "connector"))
 
 
 def evaluate(derivations, expression, states):

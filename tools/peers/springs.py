@@ -49,7 +49,7 @@ def read_springs(crane, time):
     q, size = crane.q, len(crane.coordinates)
     stiffness, damping, rest = np.zeros((3, size))
     elongations = ca.vertcat(*[support.elongation for support in crane.supports])
-    springs = crane.elements + crane.drives + crane.hinges
+    springs = crane.elements + crane.drives + crane.joint_dampers
     numbers_of = [ca.vertcat(*map(ca.SX, (s.motion, s.stiffness, s.damping))) for s in springs]
     function = ca.Function(
         "springs",

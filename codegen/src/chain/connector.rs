@@ -116,7 +116,7 @@ impl Chain {
         }
         let place = |end: &Attachment| {
             let frame = end.body.map_or(Frame::WORLD, |BodyId(body)| frames[body]);
-            frame.place(end.position.each_ref().map(|x| x.at(parameters)))
+            frame.transform_point(end.position.each_ref().map(|x| x.at(parameters)))
         };
         let [one, other] = ends.each_ref().map(place);
         (0..3).map(|i| (other[i] - one[i]).powi(2)).sum::<f64>().sqrt()

@@ -26,7 +26,7 @@ impl Frame {
 
     /// A point given in this frame, expressed in the outer frame.
     #[must_use]
-    pub fn place(&self, local: Vector) -> Vector {
+    pub fn transform_point(&self, local: Vector) -> Vector {
         let along = self.direction(local);
         [0, 1, 2].map(|row| self.origin[row] + along[row])
     }
@@ -47,12 +47,12 @@ impl Frame {
     /// A frame given in this frame, expressed in the outer frame.
     #[must_use]
     pub fn outer(&self, local: &Frame) -> Frame {
-        Frame { axes: local.axes.map(|axis| self.direction(axis)), origin: self.place(local.origin) }
+        Frame { axes: local.axes.map(|axis| self.direction(axis)), origin: self.transform_point(local.origin) }
     }
 
     /// This frame rotated about one of its axes.
     #[must_use]
-    pub fn turned(mut self, axis: Axis, sin: f64, cos: f64) -> Frame {
+    pub fn rotated(mut self, axis: Axis, sin: f64, cos: f64) -> Frame {
         let (a, b) = ((axis.index() + 1) % 3, (axis.index() + 2) % 3);
         let (u, v) = (self.axes[a], self.axes[b]);
         self.axes[a] = [0, 1, 2].map(|i| cos * u[i] + sin * v[i]);
@@ -67,16 +67,18 @@ impl Frame {
     #[must_use]
     pub fn after(self, step: &Step, chain: &Chain, q: &[f64], parameters: &[f64]) -> Frame {
         match step {
-            Step::Translate(by) => Frame { origin: self.place(by.each_ref().map(|v| v.at(parameters))), ..self },
-            Step::Rotate { axis, sin, cos } => self.turned(*axis, sin.at(parameters), cos.at(parameters)),
+            Step::Translate(by) => {
+                Frame { origin: self.transform_point(by.each_ref().map(|v| v.at(parameters))), ..self }
+            }
+            Step::Rotate { axis, sin, cos } => self.rotated(*axis, sin.at(parameters), cos.at(parameters)),
             Step::Move(id) => {
                 let coordinate = &chain.coordinates[id.0];
                 match coordinate.kind {
-                    CoordinateKind::Rotation => self.turned(coordinate.axis, libm::sin(q[id.0]), libm::cos(q[id.0])),
+                    CoordinateKind::Rotation => self.rotated(coordinate.axis, libm::sin(q[id.0]), libm::cos(q[id.0])),
                     CoordinateKind::Translation => {
                         let mut way = [0.0; 3];
                         way[coordinate.axis.index()] = q[id.0];
-                        Frame { origin: self.place(way), ..self }
+                        Frame { origin: self.transform_point(way), ..self }
                     }
                 }
             }
@@ -85,13 +87,13 @@ impl Frame {
                 for id in ids {
                     rho[chain.coordinates[id.0].axis.index()] = q[id.0];
                 }
-                self.turned_by(rho)
+                self.rotated_by(rho)
             }
         }
     }
 
     /// This frame rotated by a rotation vector given in it.
-    fn turned_by(self, rho: Vector) -> Frame {
+    fn rotated_by(self, rho: Vector) -> Frame {
         let angle = libm::sqrt(rho.iter().map(|x| x * x).sum());
         if angle == 0.0 {
             return self;
@@ -115,26 +117,26 @@ mod tests {
     #[test]
     fn a_rotation_vector_along_one_axis_is_a_turn_about_it() {
         for (axis, rho) in [(Axis::X, [0.7, 0.0, 0.0]), (Axis::Y, [0.0, 0.7, 0.0]), (Axis::Z, [0.0, 0.0, 0.7])] {
-            let (vector, turned) =
-                (Frame::WORLD.turned_by(rho), Frame::WORLD.turned(axis, 0.7_f64.sin(), 0.7_f64.cos()));
-            for (a, b) in vector.axes.iter().flatten().zip(turned.axes.iter().flatten()) {
+            let (vector, rotated) =
+                (Frame::WORLD.rotated_by(rho), Frame::WORLD.rotated(axis, 0.7_f64.sin(), 0.7_f64.cos()));
+            for (a, b) in vector.axes.iter().flatten().zip(rotated.axes.iter().flatten()) {
                 assert!((a - b).abs() < 1e-15, "{axis:?}: {vector:?}");
             }
         }
         // A third of a turn about (1, 1, 1) maps x to y, y to z, z to x.
         let third = std::f64::consts::TAU / 3.0 / 3.0_f64.sqrt();
-        let axes = Frame::WORLD.turned_by([third; 3]).axes;
+        let axes = Frame::WORLD.rotated_by([third; 3]).axes;
         for (k, axis) in axes.iter().enumerate() {
             assert!((axis[(k + 1) % 3] - 1.0).abs() < 1e-15, "{axes:?}");
         }
-        assert_eq!(Frame::WORLD.turned_by([0.0; 3]), Frame::WORLD);
+        assert_eq!(Frame::WORLD.rotated_by([0.0; 3]), Frame::WORLD);
     }
 
     #[test]
     fn a_frame_seen_from_itself_is_the_world() {
         let (sin, cos) = (0.6, 0.8);
         let frame =
-            Frame { origin: [1.0, -2.0, 3.0], ..Frame::WORLD }.turned(Axis::Y, sin, cos).turned(Axis::X, 0.8, 0.6);
+            Frame { origin: [1.0, -2.0, 3.0], ..Frame::WORLD }.rotated(Axis::Y, sin, cos).rotated(Axis::X, 0.8, 0.6);
         let own = frame.local(&frame);
         let back = frame.outer(&Frame { origin: [4.0, 5.0, 6.0], ..Frame::WORLD });
         for (i, k) in (0..3).flat_map(|i| (0..3).map(move |k| (i, k))) {
@@ -143,6 +145,6 @@ mod tests {
             assert!((frame.local(&back).origin[k] - [4.0, 5.0, 6.0][k]).abs() < 1e-14);
         }
         // About y from z to x.
-        assert_eq!(Frame::WORLD.turned(Axis::Y, 1.0, 0.0).axes[2], [1.0, 0.0, 0.0]);
+        assert_eq!(Frame::WORLD.rotated(Axis::Y, 1.0, 0.0).axes[2], [1.0, 0.0, 0.0]);
     }
 }

@@ -15,7 +15,7 @@ pub enum Loops {
 /// Equal work at this many consecutive bodies is a loop. Forward dynamics written out and in loops: 0.45 and 0.46 µs with 4
 /// sections, of which 3 are equal, eight at once 0.98 and 1.10; 0.72 and 0.67 with 8; 4.07 and 2.44 with 30, whose code no
 /// longer fits into the first-level cache.
-const LEAST_ROUNDS: usize = 5;
+const MIN_ITERATIONS: usize = 5;
 
 /// The mass matrix of more coordinates is filled in a loop over rows and columns: written out it grows with the square, and so
 /// does rustc's time. A and e written out and in a loop: 0.47 and 0.59 µs at 13 coordinates, 0.53 and 0.56 at 16, 1.07 and
@@ -25,9 +25,9 @@ const LARGEST_WRITTEN_OUT: usize = 16;
 impl Loops {
     /// The number of consecutive bodies that make a loop, if any do.
     #[must_use]
-    pub fn least_rounds(self) -> Option<usize> {
+    pub fn min_iterations(self) -> Option<usize> {
         match self {
-            Loops::Auto => Some(LEAST_ROUNDS),
+            Loops::Auto => Some(MIN_ITERATIONS),
             Loops::Always => Some(2),
             Loops::Never => None,
         }

@@ -61,11 +61,11 @@ pub struct Chain {
     /// Data for the stresses of beams, beam by beam from the base to the tip.
     pub beams: Vec<Beam>,
     /// Springs and dampers between the rigid elements of flexible links, Eqs. (14)–(15).
-    pub elements: Vec<ElementSpring>,
+    pub beam_springs: Vec<BeamSpring>,
     /// Drives, Eqs. (19)–(21).
     pub drives: Vec<Drive>,
     /// Viscous damping of passive joints.
-    pub hinges: Vec<Hinge>,
+    pub joint_dampers: Vec<JointDamper>,
     /// End stops and friction of joints.
     pub forces: Vec<ForceElement>,
     /// Forces and moments applied from outside.
@@ -236,7 +236,7 @@ pub enum SupportKinematics {
 
 /// Spring and damper of a rigid element on one coordinate, Eqs. (14)–(15).
 #[derive(Clone, Debug, PartialEq)]
-pub struct ElementSpring {
+pub struct BeamSpring {
     /// The coordinate.
     pub coordinate: CoordinateId,
     /// Stiffness, N m/rad.
@@ -385,7 +385,7 @@ impl Drive {
 
 /// Viscous damping of a coordinate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Hinge {
+pub struct JointDamper {
     /// The coordinate.
     pub coordinate: CoordinateId,
     /// Damping, N m s/rad or N s/m.

@@ -10,11 +10,11 @@ use super::number::Number;
 use super::print::plain;
 use super::shape::{Storage, struct_name};
 use crate::chain::{Chain, Input};
-use crate::lower::{Block, Blocks};
+use crate::lower::{LoweredFunction, LoweredProgram};
 use crate::program::{Argument, FunctionId, Seam, Shape};
 
 /// `Crane` and its traits.
-pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
+pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
     let live = !chain.parameters.is_empty();
     let title = format!(" {}: the generated functions behind the traits of the runtime.", plain(&chain.title));
     let has_inputs = !chain.inputs.is_empty();
@@ -72,10 +72,10 @@ pub fn crane(chain: &Chain, blocks: &Blocks) -> Vec<Item> {
     for seam in Seam::ALL {
         let methods: Vec<_> = seam
             .functions()
-            .filter_map(|id| blocks.functions.iter().find(|block| block.function.id == id))
-            .map(|block| match block.function.id {
-                FunctionId::PrescribedMotions => prescribe(chain, block),
-                _ => method(block),
+            .filter_map(|id| lowered.functions.iter().find(|code| code.function.id == id))
+            .map(|code| match code.function.id {
+                FunctionId::PrescribedMotions => prescribe(chain, code),
+                _ => method(code),
             })
             .collect();
         if methods.is_empty() {
@@ -205,14 +205,14 @@ fn input_methods(chain: &Chain) -> Option<TokenStream> {
 }
 
 /// The method that sets prescribed coordinates and their rates.
-fn prescribe(chain: &Chain, block: &Block) -> TokenStream {
+fn prescribe(chain: &Chain, code: &LoweredFunction) -> TokenStream {
     let coordinates: Vec<_> = chain.rigid_drives().map(|drive| integer(drive.coordinate.0)).collect();
     let (positions, rates): (Vec<_>, Vec<_>) = chain
         .rigid_drives()
         .map(|drive| &chain.coordinates[drive.coordinate.0].name)
         .map(|name| (format_ident!("{name}_position"), format_ident!("{name}_rate")))
         .unzip();
-    let constants = block.reads_parameters.then(|| quote!(, &self.constants));
+    let constants = code.reads_parameters.then(|| quote!(, &self.constants));
     quote! {
         fn prescribe(&self, t: f64, q: &mut SVector<f64, N>, v: &mut SVector<f64, N>) {
             let [#([#positions, #rates]),*] = prescribed_motions(t #constants);
@@ -224,16 +224,16 @@ fn prescribe(chain: &Chain, block: &Block) -> TokenStream {
 }
 
 /// A method that calls the function of the same name.
-fn method(block: &Block) -> TokenStream {
-    let function = block.function;
+fn method(code: &LoweredFunction) -> TokenStream {
+    let function = code.function;
     let name = format_ident!("{}", function.id.name());
     let of = |argument: &Argument| {
         let (name, of) = argument_name(*argument, Number::Single);
         (format_ident!("{name}"), of)
     };
     let (names, types): (Vec<_>, Vec<_>) = function.arguments.iter().map(of).unzip();
-    let constants = block.reads_parameters.then(|| quote!(&self.constants));
-    let inputs = block.reads_inputs.then(|| quote!(&self.inputs));
+    let constants = code.reads_parameters.then(|| quote!(&self.constants));
+    let inputs = code.reads_inputs.then(|| quote!(&self.inputs));
     let arguments: Vec<_> = names.iter().map(|name| quote!(#name)).chain(constants).chain(inputs).collect();
     match &function.shape {
         Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => {
@@ -268,7 +268,7 @@ fn method(block: &Block) -> TokenStream {
                 }
             }
         }
-        Shape::Transforms { .. } | Shape::Turned { .. } => {
+        Shape::Transforms { .. } | Shape::TransformFactors { .. } => {
             let total = integer(function.shape.matrices());
             quote! {
                 fn #name(&self, #(#names: #types,)* out: &mut [Matrix4<f64>]) {

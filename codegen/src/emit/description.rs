@@ -201,7 +201,7 @@ fn role(chain: &Chain, coordinate: usize) -> TokenStream {
         "Driven"
     } else if chain.turns_by_vector(CoordinateId(coordinate)) {
         "ElementVector"
-    } else if chain.elements.iter().any(|e| e.coordinate.0 == coordinate) {
+    } else if chain.beam_springs.iter().any(|e| e.coordinate.0 == coordinate) {
         "Element"
     } else {
         "Passive"

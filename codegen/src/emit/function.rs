@@ -1,4 +1,4 @@
-//! A block as a Rust function.
+//! A lowered function as a Rust function.
 
 use std::collections::BTreeSet;
 
@@ -10,25 +10,25 @@ use super::arithmetic::{
     borrow_mut, call, difference, element, field, integer, method, negative, product, quotient, sum, variable,
 };
 use super::labels::Labels;
+use super::loops;
 use super::names::Names;
 use super::number::Number;
 use super::print::comment;
-use super::rounds;
 use super::shape::{Handover, Storage};
-use crate::lower::{Block, Blocks, Statement};
+use crate::lower::{LoweredFunction, LoweredProgram, Statement};
 use crate::program::Argument;
 use crate::symbolic::{ExprId, Op};
 
 /// The items of one function: itself, and its pieces if it is long.
-pub fn function(blocks: &Blocks, block: &Block, labels: &Labels, number: Number) -> Vec<syn::Item> {
-    let writer = Writer { blocks, block, storage: Storage::of(block.function, number), labels, number };
-    if block.pieces.len() == 1 { vec![writer.whole()] } else { writer.in_pieces() }
+pub fn function(lowered: &LoweredProgram, code: &LoweredFunction, labels: &Labels, number: Number) -> Vec<syn::Item> {
+    let writer = Writer { lowered, code, storage: Storage::of(code.function, number), labels, number };
+    if code.pieces.len() == 1 { vec![writer.whole()] } else { writer.in_pieces() }
 }
 
 /// Writes one function.
 pub struct Writer<'a> {
-    pub(super) blocks: &'a Blocks<'a>,
-    pub(super) block: &'a Block<'a>,
+    pub(super) lowered: &'a LoweredProgram<'a>,
+    pub(super) code: &'a LoweredFunction<'a>,
     pub(super) storage: Storage<'a>,
     pub(super) labels: &'a Labels<'a>,
     pub(super) number: Number,
@@ -37,7 +37,7 @@ pub struct Writer<'a> {
 impl Writer<'_> {
     fn whole(&self) -> syn::Item {
         let mut item = self.shell();
-        let (mut body, used) = self.piece(&self.block.pieces[0]);
+        let (mut body, used) = self.piece(&self.code.pieces[0]);
         let mut statements = Self::unpack(&used);
         // A single number needs no storage.
         if !self.is_scalar() {
@@ -52,7 +52,7 @@ impl Writer<'_> {
     }
 
     fn is_scalar(&self) -> bool {
-        matches!(self.block.function.shape, crate::program::Shape::Scalar)
+        matches!(self.code.function.shape, crate::program::Shape::Scalar)
     }
 
     /// The storage, with its blank values.
@@ -63,7 +63,7 @@ impl Writer<'_> {
         let name = format_ident!("{}", self.storage.storage_name());
         let (storage, blank) = (self.storage.storage_type(), self.storage.blank());
         // Every slot may be zero.
-        let written = self.block.pieces.iter().flatten().any(|s| matches!(s, Statement::Output { .. }));
+        let written = self.code.pieces.iter().flatten().any(|s| matches!(s, Statement::Output { .. }));
         let mutable = written.then(|| quote!(mut));
         parse_quote!(let #mutable #name: #storage = #blank;)
     }
@@ -81,16 +81,16 @@ impl Writer<'_> {
     fn in_pieces(&self) -> Vec<syn::Item> {
         let mut item = self.shell();
         let storage = self.storage.storage_type();
-        let carried = integer(self.block.carried);
+        let kept = integer(self.code.kept);
         let (number, zero) = (self.number.of(), self.number.literal(0.0));
         let mut statements: Vec<Stmt> = vec![self.begin()];
-        if self.block.carried > 0 {
-            statements.push(parse_quote!(let mut kept = [#zero; #carried];));
+        if self.code.kept > 0 {
+            statements.push(parse_quote!(let mut kept = [#zero; #kept];));
         }
         let mut items = Vec::new();
-        let total = self.block.pieces.len();
-        for (index, piece) in self.block.pieces.iter().enumerate() {
-            let name = format_ident!("{}_{}", self.block.function.id.name(), index + 1);
+        let total = self.code.pieces.len();
+        for (index, piece) in self.code.pieces.iter().enumerate() {
+            let name = format_ident!("{}_{}", self.code.function.id.name(), index + 1);
             let (body, used) = self.piece(piece);
             let unpack = Self::unpack(&used);
             let keeps = piece.iter().any(|s| matches!(s, Statement::Keep { .. } | Statement::Fetch { .. }));
@@ -98,7 +98,7 @@ impl Writer<'_> {
             let mut parameters: Vec<TokenStream> = self.inputs(&used);
             let mut arguments: Vec<Expr> = self.input_names(&used).iter().map(|n| variable(n)).collect();
             if keeps {
-                parameters.push(quote!(kept: &mut [#number; #carried]));
+                parameters.push(quote!(kept: &mut [#number; #kept]));
                 arguments.push(borrow_mut(variable("kept")));
             }
             if outputs {
@@ -112,7 +112,7 @@ impl Writer<'_> {
             }
             let called = call(&name.to_string(), arguments);
             statements.push(parse_quote!(#called;));
-            let doc = format!(" Part {} of {total} of [`{}`].", index + 1, self.block.function.id.name());
+            let doc = format!(" Part {} of {total} of [`{}`].", index + 1, self.code.function.id.name());
             let mut part: syn::ItemFn = parse_quote! {
                 #[doc = #doc]
                 #[inline(never)]
@@ -129,7 +129,7 @@ impl Writer<'_> {
 
     /// Signature and documentation.
     fn shell(&self) -> syn::ItemFn {
-        let function = self.block.function;
+        let function = self.code.function;
         let name = format_ident!("{}", function.id.name());
         let docs = [
             format!(" {}", function.doc),
@@ -137,7 +137,7 @@ impl Writer<'_> {
             format!(" `{}`", function.equation.split(" [").next().unwrap_or_default()),
             function.equation.find(" [").map(|at| function.equation[at..].to_owned()).unwrap_or_default(),
             String::new(),
-            format!(" {} operations: {}.", self.block.count.total(), self.block.count),
+            format!(" {} operations: {}.", self.code.count.total(), self.code.count),
         ];
         let docs = docs.iter().enumerate().filter(|(i, line)| *i != 3 || !line.is_empty()).map(|(_, line)| line);
         let mut parameters = self.all_inputs();
@@ -162,17 +162,17 @@ impl Writer<'_> {
     /// Arguments of the function itself: always the same for a function, used or not.
     fn all_inputs(&self) -> Vec<TokenStream> {
         let mut used = Used::new();
-        self.block.pieces.iter().for_each(|piece| self.use_inputs(piece, &mut used));
+        self.code.pieces.iter().for_each(|piece| self.use_inputs(piece, &mut used));
         let mut inputs: Vec<TokenStream> = Vec::new();
-        for argument in self.block.function.arguments {
+        for argument in self.code.function.arguments {
             let (name, of) = argument_name(*argument, self.number);
             let name = if used.contains(argument) { format_ident!("{name}") } else { format_ident!("_{name}") };
             inputs.push(quote!(#name: #of));
         }
-        if self.block.reads_parameters {
+        if self.code.reads_parameters {
             inputs.push(quote!(c: &Constants));
         }
-        if self.block.reads_inputs {
+        if self.code.reads_inputs {
             inputs.push(quote!(u: &Inputs));
         }
         inputs
@@ -192,7 +192,7 @@ impl Writer<'_> {
     /// Arguments of a piece: those that it uses.
     fn inputs(&self, used: &Used) -> Vec<TokenStream> {
         let mut inputs: Vec<TokenStream> = Vec::new();
-        for argument in self.block.function.arguments.iter().filter(|a| used.contains(a)) {
+        for argument in self.code.function.arguments.iter().filter(|a| used.contains(a)) {
             let (name, of) = argument_name(*argument, self.number);
             let name = format_ident!("{name}");
             inputs.push(quote!(#name: #of));
@@ -207,7 +207,7 @@ impl Writer<'_> {
     }
 
     fn input_names(&self, used: &Used) -> Vec<&'static str> {
-        let arguments = self.block.function.arguments.iter().filter(|a| used.contains(a));
+        let arguments = self.code.function.arguments.iter().filter(|a| used.contains(a));
         arguments
             .map(|a| argument_name(*a, self.number).0)
             .chain(used.contains(&Argument::Parameters).then_some("c"))
@@ -229,11 +229,11 @@ impl Writer<'_> {
 
     /// Statements of a piece, and what they use.
     fn piece(&self, piece: &[Statement]) -> (Vec<Stmt>, Used) {
-        let mut names = Names::new(&self.blocks.program, self.block.rolled.loops.len());
+        let mut names = Names::new(&self.lowered.program, self.code.rerolled.loops.len());
         let mut used = Used::new();
         let mut statements = self.statements(piece, &mut names, &mut used);
         if self.is_scalar()
-            && self.block.pieces.len() == 1
+            && self.code.pieces.len() == 1
             && !piece.iter().any(|s| matches!(s, Statement::Output { .. }))
         {
             statements.push(Stmt::Expr(self.number.literal(0.0), None));
@@ -261,14 +261,14 @@ impl Writer<'_> {
                     let (sines, cosines): (Vec<_>, Vec<_>) = angles.iter().map(|known| (known.sin, known.cos)).unzip();
                     let angles = angles.iter().map(|known| self.expression(known.angle, names, used));
                     let angles: Vec<Expr> = angles.collect();
-                    if self.block.rolled.loops.is_empty() {
+                    if self.code.rerolled.loops.is_empty() {
                         let sines: Vec<_> = sines.into_iter().map(|sin| pattern(sin, names)).collect();
                         let cosines: Vec<_> = cosines.into_iter().map(|cos| pattern(cos, names)).collect();
                         statements.push(parse_quote!(let ([#(#sines),*], [#(#cosines),*]) = sin_cos([#(#angles),*]);));
                     } else {
                         statements.push(parse_quote!(let (sines, cosines) = sin_cos([#(#angles),*]);));
-                        statements.extend(rounds::patterns("sines", &sines, names));
-                        statements.extend(rounds::patterns("cosines", &cosines, names));
+                        statements.extend(loops::patterns("sines", &sines, names));
+                        statements.extend(loops::patterns("cosines", &cosines, names));
                     }
                 }
                 Statement::Stumpff(arguments) => {
@@ -279,7 +279,7 @@ impl Writer<'_> {
                     let orders =
                         (0..Op::STUMPFF_ORDERS).map(|k| arguments.iter().map(|known| known.values[k]).collect());
                     let orders: Vec<Vec<Option<ExprId>>> = orders.collect();
-                    if self.block.rolled.loops.is_empty() {
+                    if self.code.rerolled.loops.is_empty() {
                         let patterns = orders.iter().map(|values| row_pattern(values, names));
                         let patterns: Vec<_> = patterns.collect();
                         statements.push(parse_quote!(let [#(#patterns),*] = stumpff([#(#of),*]);));
@@ -295,13 +295,13 @@ impl Writer<'_> {
                 Statement::Loop { of, body } => {
                     statements.append(&mut pending);
                     group = None;
-                    statements.extend(self.rounds(*of, body, names, used));
+                    statements.extend(self.loop_statements(*of, body, names, used));
                 }
                 Statement::At(place) => {
                     statements.append(&mut pending);
                     group = None;
                     sweeping = place.is_some();
-                    statements.extend(place.as_ref().map(|place| comment(&rounds::way(place))));
+                    statements.extend(place.as_ref().map(|place| comment(&loops::position_of(place))));
                 }
                 &Statement::Let(id) => {
                     let value = self.operation(id, names, used);
@@ -310,12 +310,12 @@ impl Writer<'_> {
                 &Statement::Output { slot, value } => {
                     if !sweeping && group != Some(self.storage.group(slot)) {
                         group = Some(self.storage.group(slot));
-                        if let Some(label) = self.labels.of(self.block.function, slot) {
+                        if let Some(label) = self.labels.of(self.code.function, slot) {
                             statements.push(comment(&label));
                         }
                     }
                     let value = self.expression(value, names, used);
-                    let alone = self.is_scalar() && self.block.pieces.len() == 1;
+                    let alone = self.is_scalar() && self.code.pieces.len() == 1;
                     if alone {
                         pending.push(Stmt::Expr(value, None));
                     } else {
@@ -342,8 +342,8 @@ impl Writer<'_> {
 
     /// An argument of a statement: a variable, a number, a constant, or an inlined operation.
     pub(super) fn expression(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
-        let program = &self.blocks.program;
-        if self.blocks.constants.is_stored(id) {
+        let program = &self.lowered.program;
+        if self.lowered.constants.is_stored(id) {
             used.insert(Argument::Parameters);
             return field(variable("c"), &self.labels.constant(id));
         }
@@ -353,22 +353,22 @@ impl Writer<'_> {
                 used.insert(Argument::Parameters);
                 field(field(variable("c"), "params"), &program.symbol(symbol).name)
             }
-            _ if self.block.inlined[id.index()] => self.operation(id, names, used),
+            _ if self.code.inlined[id.index()] => self.operation(id, names, used),
             _ => variable(&names.of(id)),
         }
     }
 
     /// An operation on its arguments. Recursion ends within the bound of one statement.
     fn operation(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
-        if let Some(product) = self.block.fused[id.index()] {
+        if let Some(product) = self.code.fused[id.index()] {
             return self.fused(id, product, names, used);
         }
-        operation(self.blocks.program.op(id), self.number, &mut |operand| self.expression(operand, names, used))
+        operation(self.lowered.program.op(id), self.number, &mut |operand| self.expression(operand, names, used))
     }
 
     /// A sum or difference with a product in it: `fma(a, b, c)`.
     fn fused(&self, id: ExprId, product: ExprId, names: &mut Names, used: &mut Used) -> Expr {
-        let program = &self.blocks.program;
+        let program = &self.lowered.program;
         let Op::Mul(a, b) = program.op(product) else { unreachable!("only products are fused") };
         let mut of = |operand: ExprId| self.expression(operand, names, used);
         let (a, b) = (of(a), of(b));
@@ -382,16 +382,16 @@ impl Writer<'_> {
     }
 
     fn input(&self, id: ExprId, used: &mut Used) -> Expr {
-        let Op::Symbol(symbol) = self.blocks.program.op(id) else { unreachable!("inputs are symbols") };
-        let symbol = self.blocks.program.symbol(symbol);
+        let Op::Symbol(symbol) = self.lowered.program.op(id) else { unreachable!("inputs are symbols") };
+        let symbol = self.lowered.program.symbol(symbol);
         match symbol.argument {
-            Argument::Round => return self.source(symbol.index, used),
-            Argument::Loop => return self.taking(symbol.index),
+            Argument::LoopVarying => return self.source(symbol.index, used),
+            Argument::LiveOut => return self.live_out(symbol.index),
             _ => used.insert(symbol.argument),
         };
         match symbol.argument {
             Argument::Time => variable("t"),
-            Argument::BaseResistance => {
+            Argument::BaseAddedInertia => {
                 let columns = field(field(variable("base"), "data"), "0");
                 element(element(columns, symbol.index / 6), symbol.index % 6)
             }
@@ -469,8 +469,8 @@ const VECTORS: [(Argument, &str); 5] = [
     (Argument::Position, "q"),
     (Argument::Velocity, "v"),
     (Argument::Acceleration, "a"),
-    (Argument::Right, "r"),
-    (Argument::Resistance, "resistance"),
+    (Argument::RightHandSide, "r"),
+    (Argument::AddedInertia, "added_inertia"),
 ];
 
 /// Name and type of an argument, in functions and in the methods that call them.
@@ -481,12 +481,12 @@ pub fn argument_name(argument: Argument, number: Number) -> (&'static str, Token
         Argument::Position => ("q", quote!(&SVector<#number, N>)),
         Argument::Velocity => ("v", quote!(&SVector<#number, N>)),
         Argument::Acceleration => ("a", quote!(&SVector<#number, N>)),
-        Argument::Right => ("r", quote!(&SVector<#number, N>)),
-        Argument::Resistance => ("resistance", quote!(&SVector<#number, N>)),
-        Argument::BaseResistance => ("base", quote!(&SMatrix<#number, 6, 6>)),
+        Argument::RightHandSide => ("r", quote!(&SVector<#number, N>)),
+        Argument::AddedInertia => ("added_inertia", quote!(&SVector<#number, N>)),
+        Argument::BaseAddedInertia => ("base", quote!(&SMatrix<#number, 6, 6>)),
         Argument::Factors => ("f", quote!(&Factors)),
         Argument::Parameters => ("c", quote!(&Constants)),
         Argument::Inputs => ("u", quote!(&Inputs)),
-        Argument::Round | Argument::Loop => unreachable!("loops take from themselves"),
+        Argument::LoopVarying | Argument::LiveOut => unreachable!("loops take from themselves"),
     }
 }

@@ -17,7 +17,7 @@ pub fn header(chain: &Chain, report: &Report, spec_file: &str) -> String {
             chain.coordinates.len(),
             chain.bodies.len(),
             chain.supports.len(),
-            chain.elements.len(),
+            chain.beam_springs.len(),
             chain.drives.len(),
         ),
         "SI units, angles in rad; the world's z axis points up.".into(),
@@ -40,9 +40,9 @@ pub fn header(chain: &Chain, report: &Report, spec_file: &str) -> String {
             "Loops over bodies with equal work, {}; number of bodies of each loop:",
             report.loops_because
         ));
-        for (function, rounds) in &report.loops {
-            let rounds: Vec<String> = rounds.iter().map(ToString::to_string).collect();
-            lines.push(format!("  {function:<30} {}", rounds.join(", ")));
+        for (function, iterations) in &report.loops {
+            let iterations: Vec<String> = iterations.iter().map(ToString::to_string).collect();
+            lines.push(format!("  {function:<30} {}", iterations.join(", ")));
         }
     }
     if let Some(pairs) = report.second_derivative_pairs {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::chain::{BodyId, Chain, Connector, Cut, Drive, Load};
-use crate::lower::Blocks;
+use crate::lower::LoweredProgram;
 use crate::program::{Function, FunctionId, Shape, Struct};
 use crate::symbolic::ExprId;
 
@@ -16,9 +16,9 @@ pub struct Labels<'a> {
 }
 
 impl<'a> Labels<'a> {
-    pub fn new(chain: &'a Chain, blocks: &Blocks) -> Self {
+    pub fn new(chain: &'a Chain, lowered: &LoweredProgram) -> Self {
         let mut constants: HashMap<ExprId, String> = HashMap::new();
-        for (index, &id) in blocks.constants.stored.iter().enumerate() {
+        for (index, &id) in lowered.constants.stored.iter().enumerate() {
             constants.insert(id, format!("c{:03}", index + 1));
         }
         Labels { chain, constants }
@@ -57,7 +57,12 @@ impl<'a> Labels<'a> {
                 Some(chain.cylinders[slot / 3].name.clone())
             }
             Shape::Vectors(_) => Some(chain.points[slot / 3].name.clone()),
-            Shape::Pairs(_) if matches!(function.id, FunctionId::JointImpedances | FunctionId::NonlinearImpedances) => {
+            Shape::Pairs(_)
+                if matches!(
+                    function.id,
+                    FunctionId::JointStiffnessAndDamping | FunctionId::NonlinearStiffnessAndDamping
+                ) =>
+            {
                 Some(coordinate(slot / 2).to_owned())
             }
             Shape::Pairs(_) if function.id == FunctionId::SupportGaps => Some(chain.supports[slot / 2].name.clone()),
@@ -93,7 +98,7 @@ impl<'a> Labels<'a> {
                 Cut::Body(body) => format!("Before {}", chain.bodies[body.0].name),
             }),
             Shape::Transforms { counts, .. } => Some(self.transform(function.id, counts, slot / 12)),
-            Shape::Turned { degrees, rotations, .. } => {
+            Shape::TransformFactors { degrees, rotations, .. } => {
                 let axes = 3 * rotations.len();
                 if slot < axes {
                     return Some("Axes of rotation".into());

@@ -11,7 +11,7 @@ use super::labels::Labels;
 use super::number::Number;
 use super::parameters;
 use crate::chain::{Chain, Input};
-use crate::lower::{Block, Blocks, Statement};
+use crate::lower::{LoweredFunction, LoweredProgram, Statement};
 use crate::program::FunctionId;
 
 /// Functions that a simulation of many cranes calls in every step.
@@ -31,10 +31,10 @@ pub fn one_by_one() -> Item {
 }
 
 /// The module `lanes`, and the function that makes eight cranes from one.
-pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
-    let mut items = parameters::parameters(chain, blocks, labels, Number::Lanes);
-    for block in blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.id)) {
-        items.extend(function::function(blocks, block, labels, Number::Lanes));
+pub fn lanes(chain: &Chain, lowered: &LoweredProgram, labels: &Labels) -> Vec<Item> {
+    let mut items = parameters::parameters(chain, lowered, labels, Number::Lanes);
+    for code in lowered.functions.iter().filter(|code| FUNCTIONS.contains(&code.function.id)) {
+        items.extend(function::function(lowered, code, labels, Number::Lanes));
     }
     let live = !chain.parameters.is_empty();
     let has_inputs = !chain.inputs.is_empty();
@@ -47,13 +47,15 @@ pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
             pub type Inputs = [f64x8; #slots];
         ));
     }
-    let constants = blocks.functions.iter().any(|b| b.function.id == FunctionId::ForwardDynamics && b.reads_parameters);
+    let constants =
+        lowered.functions.iter().any(|b| b.function.id == FunctionId::ForwardDynamics && b.reads_parameters);
     let constants = constants.then(|| quote!(, &self.constants));
-    let reads_inputs = blocks.functions.iter().any(|b| b.function.id == FunctionId::ForwardDynamics && b.reads_inputs);
+    let reads_inputs = lowered.functions.iter().any(|b| b.function.id == FunctionId::ForwardDynamics && b.reads_inputs);
     let inputs = reads_inputs.then(|| quote!(, &self.inputs));
-    let takes_stumpff =
-        |block: &Block| block.pieces.iter().flatten().any(|statement| matches!(statement, Statement::Stumpff(_)));
-    let in_lanes = || blocks.functions.iter().filter(|block| FUNCTIONS.contains(&block.function.id));
+    let takes_stumpff = |code: &LoweredFunction| {
+        code.pieces.iter().flatten().any(|statement| matches!(statement, Statement::Stumpff(_)))
+    };
+    let in_lanes = || lowered.functions.iter().filter(|code| FUNCTIONS.contains(&code.function.id));
     let stumpff = in_lanes().any(takes_stumpff).then(|| quote!(, stumpff));
     let words = identifiers(&items);
     let functions = ["exp", "select", "sqrt"].into_iter().filter(|name| words.contains(*name)).map(variable);
@@ -62,7 +64,7 @@ pub fn lanes(chain: &Chain, blocks: &Blocks, labels: &Labels) -> Vec<Item> {
         #[doc = " Eight cranes per call."]
         pub mod lanes {
             use ::crane_model::nalgebra::SVector;
-            use ::crane_model::support::lanes::{f64x8, fma, sin_cos, splat #stumpff #(, #functions)*};
+            use ::crane_model::rt::lanes::{f64x8, fma, sin_cos, splat #stumpff #(, #functions)*};
             use ::crane_model::LaneDynamics;
             use super::N;
         }

@@ -8,11 +8,11 @@ mod header;
 mod labels;
 mod lanes;
 mod limits;
+mod loops;
 mod names;
 mod number;
 mod parameters;
 mod print;
-mod rounds;
 mod shape;
 
 use std::collections::HashSet;
@@ -24,7 +24,7 @@ use quote::ToTokens;
 use syn::parse_quote;
 
 use crate::chain::{Analyses, Chain};
-use crate::lower::Blocks;
+use crate::lower::LoweredProgram;
 use crate::program::Shape;
 use crate::report::Report;
 use arithmetic::integer;
@@ -47,29 +47,35 @@ pub struct GeneratedCode {
 
 /// Writes the module. `spec_file` is the name of the YAML file.
 #[must_use]
-pub fn emit(chain: &Chain, analyses: Analyses, blocks: &Blocks, report: Report, spec_file: &str) -> GeneratedCode {
-    let labels = Labels::new(chain, blocks);
+pub fn emit(
+    chain: &Chain,
+    analyses: Analyses,
+    lowered: &LoweredProgram,
+    report: Report,
+    spec_file: &str,
+) -> GeneratedCode {
+    let labels = Labels::new(chain, lowered);
     let mut items = Vec::new();
     items.extend(description::description(chain));
-    items.extend(parameters::parameters(chain, blocks, &labels, Number::Single));
+    items.extend(parameters::parameters(chain, lowered, &labels, Number::Single));
     items.extend(limits::limits(chain));
     items.push(parse_quote!(
         const BLANK: Matrix4<f64> =
             Matrix4::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     ));
-    for block in &blocks.functions {
-        if let Shape::Factors(count) = block.function.shape {
+    for code in &lowered.functions {
+        if let Shape::Factors(count) = code.function.shape {
             let count = integer(count);
             items.push(parse_quote!(
                 #[doc = " The factors that [`factorise`] computes for [`solve`]."]
                 pub type Factors = [f64; #count];
             ));
         }
-        items.extend(function::function(blocks, block, &labels, Number::Single));
+        items.extend(function::function(lowered, code, &labels, Number::Single));
     }
-    items.extend(crane::crane(chain, blocks));
+    items.extend(crane::crane(chain, lowered));
     if analyses.ensemble {
-        items.extend(lanes::lanes(chain, blocks, &labels));
+        items.extend(lanes::lanes(chain, lowered, &labels));
     } else if analyses.dynamics {
         items.push(lanes::one_by_one());
     }
@@ -86,11 +92,11 @@ fn imports(items: &[syn::Item]) -> String {
     const SOURCES: [(&str, &[&str]); 3] = [
         ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),
         (
-            "::crane_model::support",
+            "::crane_model::rt",
             &[
                 "MassAndBias",
                 "MassColumns",
-                "Point",
+                "ConcurrentAxes",
                 "TransformFactors",
                 "exp",
                 "fill",

@@ -18,7 +18,7 @@ const TAKEN: &[&str] = &[
     "r",
     "f",
     "base",
-    "resistance",
+    "added_inertia",
     "c",
     "u",
     "out",
@@ -40,7 +40,7 @@ const TAKEN: &[&str] = &[
 ];
 
 /// Variables of a loop.
-pub const OF_LOOPS: [&str; 4] = ["numbers", "gathered", "carried", "kept"];
+pub const OF_LOOPS: [&str; 4] = ["numbers", "gathered", "carried", "saved"];
 
 /// `kept_1`, a variable of the first loop.
 pub fn of_loop(name: &str, of: usize) -> String {

@@ -9,20 +9,20 @@ use super::labels::Labels;
 use super::number::Number;
 use super::print::plain;
 use crate::chain::{Chain, Parameter};
-use crate::lower::Blocks;
+use crate::lower::LoweredProgram;
 use crate::program::Argument;
 use crate::symbolic::{ExprId, Op};
 
 /// `Params` with defaults and units, and `Constants`, what functions read; nothing if all numbers are compiled in.
-pub fn parameters(chain: &Chain, blocks: &Blocks, labels: &Labels, number: Number) -> Vec<Item> {
+pub fn parameters(chain: &Chain, lowered: &LoweredProgram, labels: &Labels, number: Number) -> Vec<Item> {
     if chain.parameters.is_empty() {
         return vec![];
     }
     let names: Vec<_> = chain.parameters.iter().map(|p| format_ident!("{}", p.name)).collect();
     let docs: Vec<String> = chain.parameters.iter().map(documentation).collect();
     let defaults = chain.parameters.iter().map(|p| number.literal(p.default));
-    let stored: Vec<_> = blocks.constants.stored.iter().map(|id| format_ident!("{}", labels.constant(*id))).collect();
-    let body = constants_body(blocks, labels, number);
+    let stored: Vec<_> = lowered.constants.stored.iter().map(|id| format_ident!("{}", labels.constant(*id))).collect();
+    let body = constants_body(lowered, labels, number);
     let number = number.of();
     vec![
         parse_quote! {
@@ -66,11 +66,11 @@ fn documentation(parameter: &Parameter) -> String {
 }
 
 /// One `let` for each value on the way to the stored constants.
-fn constants_body(blocks: &Blocks, labels: &Labels, number: Number) -> Vec<Stmt> {
-    let program = &blocks.program;
-    let needed = program.needed(blocks.constants.stored.iter().copied());
+fn constants_body(lowered: &LoweredProgram, labels: &Labels, number: Number) -> Vec<Stmt> {
+    let program = &lowered.program;
+    let needed = program.needed(lowered.constants.stored.iter().copied());
     let name = |id: ExprId| {
-        if blocks.constants.is_stored(id) { labels.constant(id) } else { format!("t{:03}", id.index()) }
+        if lowered.constants.is_stored(id) { labels.constant(id) } else { format!("t{:03}", id.index()) }
     };
     let argument = |id: ExprId| match program.op(id) {
         Op::Constant(c) => number.literal(c.value()),

@@ -7,7 +7,7 @@ use syn::{Expr, parse_quote};
 use super::arithmetic::{at, element, field, integer, place, variable};
 use super::number::Number;
 use crate::lower::Progression;
-use crate::program::{Function, Point, Shape, Struct};
+use crate::program::{ConcurrentAxes, Function, Shape, Struct};
 
 /// How a function returns its result.
 pub enum Handover {
@@ -35,7 +35,7 @@ impl<'f> Storage<'f> {
     pub fn handover(&self) -> Handover {
         match self.shape {
             Shape::Transforms { corner: 0, .. } => Handover::OutArgument,
-            Shape::Turned { .. } => Handover::FromFactors,
+            Shape::TransformFactors { .. } => Handover::FromFactors,
             Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => Handover::Both,
             _ => Handover::Return,
         }
@@ -54,7 +54,9 @@ impl<'f> Storage<'f> {
             Shape::Pairs(n) => array(&quote!([f64; 2]), *n),
             Shape::Rows { count, .. } => array(&quote!([f64; N]), *count),
             Shape::Structs(of, n) => array(&struct_name(*of), *n),
-            Shape::Transforms { .. } | Shape::Turned { .. } => array(&quote!(Matrix4<f64>), self.shape.matrices()),
+            Shape::Transforms { .. } | Shape::TransformFactors { .. } => {
+                array(&quote!(Matrix4<f64>), self.shape.matrices())
+            }
             Shape::Record(name, _) => {
                 let name = format_ident!("{name}");
                 quote!(#name<N>)
@@ -65,7 +67,7 @@ impl<'f> Storage<'f> {
     /// Name of the variable that collects the result.
     pub fn storage_name(&self) -> &'static str {
         match self.shape {
-            Shape::Turned { .. } => "factors",
+            Shape::TransformFactors { .. } => "factors",
             Shape::Columns { .. } => "columns",
             _ => "out",
         }
@@ -84,7 +86,7 @@ impl<'f> Storage<'f> {
             }
             Shape::MassAndBias(_) => quote!(MassAndBias<N>),
             Shape::Record(_, fields) => array(&quote!([[f64; N]; N]), fields.len()),
-            Shape::Turned { degrees, vectors, .. } => {
+            Shape::TransformFactors { degrees, vectors, .. } => {
                 let total = integer(degrees.iter().sum());
                 // Without rotation vectors the parameter keeps its default.
                 let vectors = (!vectors.is_empty()).then(|| integer(vectors.len())).map(|count| quote!(, #count));
@@ -116,7 +118,7 @@ impl<'f> Storage<'f> {
                 let blank = if *corner == 1 { quote!(BLANK) } else { quote!(Matrix4::zeros()) };
                 array(&blank, counts.iter().sum())
             }
-            Shape::Turned { .. } => quote!(TransformFactors::zeros()),
+            Shape::TransformFactors { .. } => quote!(TransformFactors::zeros()),
             Shape::Record(_, fields) => array(&quote!([[0.0; N]; N]), fields.len()),
         }
     }
@@ -127,11 +129,11 @@ impl<'f> Storage<'f> {
             Shape::Vector(_) => quote!(SVector::from(out)),
             Shape::Symmetric(_) | Shape::Base => quote!(symmetric(out)),
             Shape::Columns { points, bias: false, .. } => {
-                let points = points.iter().map(point);
+                let points = points.iter().map(concurrent_axes);
                 quote!(columns.mass_matrix(&[#(#points),*]))
             }
             Shape::Columns { points, bias: true, .. } => {
-                let points = points.iter().map(point);
+                let points = points.iter().map(concurrent_axes);
                 quote! {
                     columns.fill(&[#(#points),*], &mut mass.data.0);
                     SVector::from(columns.bias)
@@ -149,7 +151,7 @@ impl<'f> Storage<'f> {
                     #name { #(#names),* }
                 }
             }
-            Shape::Turned { degrees, vectors, .. } => {
+            Shape::TransformFactors { degrees, vectors, .. } => {
                 let degrees = degrees.iter().map(|n| integer(*n));
                 let set = (!vectors.is_empty()).then(|| {
                     let vectors = vectors.iter().map(|first| integer(*first));
@@ -183,7 +185,7 @@ impl<'f> Storage<'f> {
         let j = at(Progression { first: first % (3 * n) / 3, step: step / 3 });
         match kind {
             0 => element(place(field(out, "axes"), &j), component),
-            3 => element(place(field(out, "ways"), &j), component),
+            3 => element(place(field(out, "offsets"), &j), component),
             _ => {
                 let eight: Expr = parse_quote!(#out.eights[(#j) / 8]);
                 let momenta = element(field(eight, if kind == 1 { "linear" } else { "angular" }), component);
@@ -207,7 +209,7 @@ impl<'f> Storage<'f> {
             Shape::Rows { n, .. } => slot / n,
             Shape::Structs(of, _) => slot / of.len(),
             Shape::Transforms { .. } => slot / 12,
-            Shape::Turned { rotations, degrees, .. } => {
+            Shape::TransformFactors { rotations, degrees, .. } => {
                 let axes = 3 * rotations.len();
                 let matrices = degrees.iter().sum::<usize>();
                 if slot < axes { 0 } else { (1 + (slot - axes) / 12).min(1 + matrices) }
@@ -221,10 +223,10 @@ impl<'f> Storage<'f> {
     }
 }
 
-/// `Point { coordinates: 3, turns: true }`
-fn point(point: &Point) -> TokenStream {
-    let (coordinates, turns) = (integer(point.coordinates), point.turns);
-    quote!(Point { coordinates: #coordinates, turns: #turns })
+/// `ConcurrentAxes { coordinates: 3, rotate: true }`
+fn concurrent_axes(point: &ConcurrentAxes) -> TokenStream {
+    let (coordinates, rotate) = (integer(point.coordinates), point.rotate);
+    quote!(ConcurrentAxes { coordinates: #coordinates, rotate: #rotate })
 }
 
 /// The runtime's name of a type; the type has a constant `ZERO`.
@@ -284,7 +286,7 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
                 0 => element(element(field(out, "axes"), j), k),
                 1 => eights("linear"),
                 2 => eights("angular"),
-                3 => element(element(field(out, "ways"), j), k),
+                3 => element(element(field(out, "offsets"), j), k),
                 _ => element(field(out, "bias"), slot - 12 * n),
             }
         }
@@ -297,7 +299,7 @@ fn slot_of(shape: &Shape, slot: usize, out: Expr) -> Expr {
         Shape::Rows { n, .. } => element(element(out, slot / n), slot % n),
         Shape::Structs(of, _) => struct_slot(*of, element(out, slot / of.len()), slot % of.len()),
         Shape::Transforms { .. } => matrix_slot(out, slot),
-        Shape::Turned { rotations, degrees, .. } => {
+        Shape::TransformFactors { rotations, degrees, .. } => {
             let axes = 3 * rotations.len();
             let shares = axes + 12 * degrees.iter().sum::<usize>();
             if let Some(slot) = slot.checked_sub(shares) {

@@ -1,4 +1,4 @@
-//! A block as a function in C.
+//! A lowered function as a function in C.
 
 use std::collections::{BTreeSet, HashSet};
 use std::fmt::Write;
@@ -7,7 +7,7 @@ use super::Precision;
 use super::arithmetic::Expression;
 use crate::chain::{Chain, Input};
 use crate::emit::{Labels, Names, field_of, row_of_triangle};
-use crate::lower::{Block, Blocks, Statement};
+use crate::lower::{LoweredFunction, LoweredProgram, Statement};
 use crate::program::{Argument, Function, Shape};
 use crate::symbolic::{ExprId, Op};
 
@@ -21,7 +21,7 @@ const TAKEN: [&str; 24] = [
 /// Writes functions.
 pub struct Writer<'a> {
     pub chain: &'a Chain,
-    pub blocks: &'a Blocks<'a>,
+    pub lowered: &'a LoweredProgram<'a>,
     pub labels: &'a Labels<'a>,
     /// Values of the live parameters to begin with.
     pub parameters: &'a [f64],
@@ -33,41 +33,41 @@ type Used = BTreeSet<Argument>;
 
 impl Writer<'_> {
     /// The definition of a function, after those of its pieces.
-    pub fn function(&self, block: &Block) -> String {
-        let (signature, numbers) = (self.signature(block.function), numbers(&block.function.shape));
+    pub fn function(&self, code: &LoweredFunction) -> String {
+        let (signature, numbers) = (self.signature(code.function), numbers(&code.function.shape));
         let number = self.precision.name();
-        let scalar = block.function.shape == Shape::Scalar;
+        let scalar = code.function.shape == Shape::Scalar;
         let blank = if scalar {
             format!("    {number} out[1] = {{0}};\n")
         } else {
             format!("    for (int k = 0; k < {numbers}; k++) {{\n        out[k] = 0;\n    }}\n")
         };
         let end = if scalar { "    return out[0];\n" } else { "" };
-        let [piece] = block.pieces.as_slice() else { return self.in_pieces(block, &blank, end) };
-        let (body, used) = self.piece(block, piece);
-        let ignored = self.ignored(block.function, &used);
+        let [piece] = code.pieces.as_slice() else { return self.in_pieces(code, &blank, end) };
+        let (body, used) = self.piece(code, piece);
+        let ignored = self.ignored(code.function, &used);
         format!("{signature}\n{{\n{ignored}{blank}{body}{end}}}\n\n")
     }
 
     /// A long function: pieces that hand on values in an array of their caller's.
-    fn in_pieces(&self, block: &Block, blank: &str, end: &str) -> String {
-        let (function, number) = (block.function, self.precision.name());
-        let (name, count, carried) = (self.name(function.id.name()), numbers(&function.shape), block.carried.max(1));
+    fn in_pieces(&self, code: &LoweredFunction, blank: &str, end: &str) -> String {
+        let (function, number) = (code.function, self.precision.name());
+        let (name, count, kept) = (self.name(function.id.name()), numbers(&function.shape), code.kept.max(1));
         let arguments = self.arguments(function);
         let (mut pieces, mut calls) = (String::new(), String::new());
-        for (index, piece) in block.pieces.iter().enumerate() {
+        for (index, piece) in code.pieces.iter().enumerate() {
             let part = format!("{name}_{}", index + 1);
-            let (body, used) = self.piece(block, piece);
+            let (body, used) = self.piece(code, piece);
             let ignored = self.ignored(function, &used);
             let declared: Vec<&str> = arguments.iter().map(|(_, declared)| declared.as_str()).collect();
-            let declared = [declared.join(", "), format!("{number} kept[{carried}], {number} out[{count}]")].join(", ");
+            let declared = [declared.join(", "), format!("{number} kept[{kept}], {number} out[{count}]")].join(", ");
             let unused = "    (void)kept;\n    (void)out;\n";
             let _ = write!(pieces, "static void {part}({declared})\n{{\n{ignored}{unused}{body}}}\n\n");
             let names: Vec<&str> = arguments.iter().map(|(name, _)| *name).collect();
             let _ = writeln!(calls, "    {part}({}, kept, out);", names.join(", "));
         }
         let signature = self.signature(function);
-        format!("{pieces}{signature}\n{{\n    {number} kept[{carried}];\n{blank}{calls}{end}}}\n\n")
+        format!("{pieces}{signature}\n{{\n    {number} kept[{kept}];\n{blank}{calls}{end}}}\n\n")
     }
 
     /// A name of the crane's own.
@@ -96,7 +96,7 @@ impl Writer<'_> {
         let constants = format!("const {} *c", self.name("constants"));
         let of = |argument: &Argument| match argument {
             Argument::Time => ("t", format!("{number} t")),
-            Argument::BaseResistance => array("base", 36),
+            Argument::BaseAddedInertia => array("base", 36),
             Argument::Factors => array("f", self.factors()),
             vector => array(argument_name(*vector), n),
         };
@@ -107,12 +107,12 @@ impl Writer<'_> {
 
     /// Whether a function depends on inputs.
     fn reads_inputs(&self, function: &Function) -> bool {
-        self.blocks.functions.iter().any(|block| block.function.id == function.id && block.reads_inputs)
+        self.lowered.functions.iter().any(|code| code.function.id == function.id && code.reads_inputs)
     }
 
     /// How many factors `solve` takes from `factorise`.
     fn factors(&self) -> usize {
-        let shapes = self.blocks.program.functions.iter().map(|function| &function.shape);
+        let shapes = self.lowered.program.functions.iter().map(|function| &function.shape);
         shapes.filter_map(|shape| if let Shape::Factors(count) = shape { Some(*count) } else { None }).sum()
     }
 
@@ -124,9 +124,9 @@ impl Writer<'_> {
     }
 
     /// Statements of a piece, and what they read.
-    fn piece(&self, block: &Block, piece: &[Statement]) -> (String, Used) {
-        let names = Names::new(&self.blocks.program, 0).avoiding(&TAKEN);
-        let mut body = Body { writer: self, block, names, used: Used::new(), text: String::new() };
+    fn piece(&self, code: &LoweredFunction, piece: &[Statement]) -> (String, Used) {
+        let names = Names::new(&self.lowered.program, 0).avoiding(&TAKEN);
+        let mut body = Body { writer: self, code, names, used: Used::new(), text: String::new() };
         for statement in piece {
             body.statement(statement);
         }
@@ -165,7 +165,7 @@ impl Writer<'_> {
         if self.chain.parameters.is_empty() {
             return String::new();
         }
-        let (program, stored) = (&self.blocks.program, &self.blocks.constants.stored);
+        let (program, stored) = (&self.lowered.program, &self.lowered.constants.stored);
         let number = self.precision.name();
         let kept: HashSet<ExprId> = stored.iter().copied().collect();
         let needed = program.needed(stored.iter().copied());
@@ -194,7 +194,7 @@ impl Writer<'_> {
 /// The body of a piece while it is written.
 struct Body<'a> {
     writer: &'a Writer<'a>,
-    block: &'a Block<'a>,
+    code: &'a LoweredFunction<'a>,
     names: Names<'a>,
     used: Used,
     text: String,
@@ -249,7 +249,7 @@ impl Body<'_> {
             }
             &Statement::Output { slot, value } => {
                 let value = self.expression(value);
-                let places = places(&self.block.function.shape, slot);
+                let places = places(&self.code.function.shape, slot);
                 let written = places.iter().map(|place| format!("out[{place}] = ")).collect::<Vec<_>>().concat();
                 self.line(&format!("{written}{};", value.text()));
             }
@@ -276,7 +276,7 @@ impl Body<'_> {
 
     /// An argument of a statement: a variable, a number, a constant, or an operation that stands within.
     fn expression(&mut self, id: ExprId) -> Expression {
-        let (program, constants) = (&self.writer.blocks.program, &self.writer.blocks.constants);
+        let (program, constants) = (&self.writer.lowered.program, &self.writer.lowered.constants);
         if constants.is_stored(id) {
             self.used.insert(Argument::Parameters);
             return Expression::atom(format!("c->{}", self.writer.labels.constant(id)));
@@ -287,15 +287,15 @@ impl Body<'_> {
                 self.used.insert(Argument::Parameters);
                 Expression::atom(format!("c->params.{}", program.symbol(symbol).name))
             }
-            _ if self.block.inlined[id.index()] => self.operation(id),
+            _ if self.code.inlined[id.index()] => self.operation(id),
             _ => Expression::atom(self.names.of(id)),
         }
     }
 
     /// An operation on its arguments. Recursion ends within the bound of one statement.
     fn operation(&mut self, id: ExprId) -> Expression {
-        let program = &self.writer.blocks.program;
-        match (self.block.fused[id.index()], program.op(id)) {
+        let program = &self.writer.lowered.program;
+        match (self.code.fused[id.index()], program.op(id)) {
             // A product in a sum is a product in a sum: whether it is rounded is for the compiler of C to say.
             (Some(product), Op::Add(x, y)) if x == product => self.operation(x).plus(self.expression(y)),
             (Some(product), Op::Add(x, _)) => self.expression(x).plus(self.operation(product)),
@@ -310,8 +310,8 @@ impl Body<'_> {
 
     /// Where an input is read.
     fn input(&mut self, id: ExprId) -> String {
-        let Op::Symbol(symbol) = self.writer.blocks.program.op(id) else { unreachable!("inputs are symbols") };
-        let symbol = self.writer.blocks.program.symbol(symbol);
+        let Op::Symbol(symbol) = self.writer.lowered.program.op(id) else { unreachable!("inputs are symbols") };
+        let symbol = self.writer.lowered.program.symbol(symbol);
         self.used.insert(symbol.argument);
         let name = argument_name(symbol.argument);
         match symbol.argument {
@@ -351,13 +351,13 @@ fn argument_name(argument: Argument) -> &'static str {
         Argument::Position => "q",
         Argument::Velocity => "v",
         Argument::Acceleration => "a",
-        Argument::Right => "r",
-        Argument::Resistance => "resistance",
-        Argument::BaseResistance => "base",
+        Argument::RightHandSide => "r",
+        Argument::AddedInertia => "added_inertia",
+        Argument::BaseAddedInertia => "base",
         Argument::Factors => "f",
         Argument::Parameters => "c",
         Argument::Inputs => "u",
-        Argument::Round | Argument::Loop => unreachable!("chains without loops have none"),
+        Argument::LoopVarying | Argument::LiveOut => unreachable!("chains without loops have none"),
     }
 }
 

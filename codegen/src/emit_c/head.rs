@@ -21,7 +21,7 @@ fn origin(chain: &Chain) -> String {
 
 /// The text of the header.
 pub fn header(writer: &Writer) -> String {
-    let Writer { chain, blocks, precision, .. } = writer;
+    let Writer { chain, lowered, precision, .. } = writer;
     let guard = format!("{}_H", chain.name.to_uppercase());
     let mut text = format!("/* {} */\n\n", origin(chain));
     let _ = write!(text, "{}\n\n#ifndef {guard}\n#define {guard}\n\n", about(*precision));
@@ -29,9 +29,9 @@ pub fn header(writer: &Writer) -> String {
     text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     text += &parameters(writer);
     text += &inputs(writer);
-    for block in &blocks.functions {
-        text += &documentation(writer, block.function, block.count.total());
-        let _ = write!(text, "{};\n\n", writer.signature(block.function));
+    for code in &lowered.functions {
+        text += &documentation(writer, code.function, code.count.total());
+        let _ = write!(text, "{};\n\n", writer.signature(code.function));
     }
     text + &format!("#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n")
 }
@@ -71,7 +71,7 @@ fn coordinates(chain: &Chain) -> String {
 
 /// Live parameters, and what is made of them once; nothing without such.
 fn parameters(writer: &Writer) -> String {
-    let Writer { chain, blocks, precision, .. } = writer;
+    let Writer { chain, lowered, precision, .. } = writer;
     if chain.parameters.is_empty() {
         return String::new();
     }
@@ -95,7 +95,7 @@ fn parameters(writer: &Writer) -> String {
         "\n/* Live parameters, and what depends on them alone; made by {}. */\ntypedef struct {{\n    {params} params;\n",
         writer.name("set_params")
     );
-    for id in &blocks.constants.stored {
+    for id in &lowered.constants.stored {
         let _ = writeln!(text, "    {number} {};", writer.labels.constant(*id));
     }
     let _ = write!(
@@ -162,11 +162,11 @@ fn of_argument(argument: Argument) -> &'static str {
         Argument::Position => "q: coordinates, m and rad",
         Argument::Velocity => "v: their rates, m/s and rad/s",
         Argument::Acceleration => "a: their accelerations, m/s2 and rad/s2",
-        Argument::Right => "r: generalized forces, N and N m",
-        Argument::Resistance => "resistance: added to the diagonal of the mass matrix, one number per coordinate",
-        Argument::BaseResistance => "base: added to the mass matrix over the base's coordinates, symmetric, 6 x 6",
+        Argument::RightHandSide => "r: generalized forces, N and N m",
+        Argument::AddedInertia => "added_inertia: added to the diagonal of the mass matrix, one number per coordinate",
+        Argument::BaseAddedInertia => "base: added to the mass matrix over the base's coordinates, symmetric, 6 x 6",
         Argument::Factors => "f: what factorise has left",
-        Argument::Parameters | Argument::Inputs | Argument::Round | Argument::Loop => "",
+        Argument::Parameters | Argument::Inputs | Argument::LoopVarying | Argument::LiveOut => "",
     }
 }
 
@@ -220,6 +220,6 @@ fn result(chain: &Chain, shape: &Shape) -> String {
             let fields = fields.iter().map(|(name, shape)| format!("{name} ({} numbers)", numbers(shape)));
             format!("out: {}, one after the other", fields.collect::<Vec<_>>().join(", "))
         }
-        Shape::Columns { .. } | Shape::Turned { .. } => "out: factors".to_owned(),
+        Shape::Columns { .. } | Shape::TransformFactors { .. } => "out: factors".to_owned(),
     }
 }

@@ -6,11 +6,11 @@
 mod arithmetic;
 mod function;
 mod head;
-mod support;
+mod rt;
 
 use crate::chain::Chain;
 use crate::emit::Labels;
-use crate::lower::Blocks;
+use crate::lower::LoweredProgram;
 use function::Writer;
 
 /// The type of all numbers.
@@ -52,17 +52,17 @@ pub struct CCode {
     pub source: String,
 }
 
-/// Writes functions of a crane, all that the blocks have; `parameters` are the initial values of the live parameters.
+/// Writes functions of a crane, all of the lowered program; `parameters` are the initial values of the live parameters.
 ///
 /// # Panics
 /// If a function has loops, or a result that is left as factors: chains with [`Loops::Never`](crate::chain::Loops) have neither.
 #[must_use]
-pub fn emit_c(chain: &Chain, blocks: &Blocks, parameters: &[f64], precision: Precision) -> CCode {
-    let labels = Labels::new(chain, blocks);
-    let writer = Writer { chain, blocks, labels: &labels, parameters, precision };
-    let functions: String = blocks.functions.iter().map(|block| writer.function(block)).collect();
+pub fn emit_c(chain: &Chain, lowered: &LoweredProgram, parameters: &[f64], precision: Precision) -> CCode {
+    let labels = Labels::new(chain, lowered);
+    let writer = Writer { chain, lowered, labels: &labels, parameters, precision };
+    let functions: String = lowered.functions.iter().map(|code| writer.function(code)).collect();
     let (constants, inputs) = (writer.constants(), writer.inputs());
     let body = format!("{constants}{inputs}{functions}");
-    let source = format!("{}{}{body}", head::source(chain), support::used(&body, precision));
+    let source = format!("{}{}{body}", head::source(chain), rt::used(&body, precision));
     CCode { name: chain.name.clone(), header: head::header(&writer), source }
 }

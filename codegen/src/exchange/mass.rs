@@ -45,7 +45,7 @@ impl Lump {
         };
         let size = xx.abs() + yy.abs() + zz.abs();
         let tensor = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j)| without_rounding(entry(i, j), size));
-        Lump { mass: self.mass, com: clean(frame.place(self.com)), tensor }
+        Lump { mass: self.mass, com: clean(frame.transform_point(self.com)), tensor }
     }
 }
 
@@ -78,9 +78,9 @@ mod tests {
     #[test]
     fn a_quarter_turn_swaps_moments_and_signs_of_products() {
         let lump = Lump { mass: 2.0, com: [1.0, 2.0, 3.0], tensor: [10.0, 20.0, 25.0, 1.0, 2.0, 3.0] };
-        let turned = lump.seen_through(&Frame { origin: [0.0, 0.0, 5.0], ..Frame::WORLD }.turned(Axis::Z, 1.0, 0.0));
+        let rotated = lump.seen_through(&Frame { origin: [0.0, 0.0, 5.0], ..Frame::WORLD }.rotated(Axis::Z, 1.0, 0.0));
         // x' = −y, y' = x, z' = z: products with one factor x' change their sign.
-        assert_eq!(turned.com, [-2.0, 1.0, 8.0]);
-        assert_eq!(turned.tensor, [20.0, 10.0, 25.0, -1.0, -3.0, 2.0]);
+        assert_eq!(rotated.com, [-2.0, 1.0, 8.0]);
+        assert_eq!(rotated.tensor, [20.0, 10.0, 25.0, -1.0, -3.0, 2.0]);
     }
 }

@@ -60,8 +60,8 @@ mod tests {
     use crate::chain::Axis;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    fn turned(rpy: Vector) -> Frame {
-        let turn = |frame: Frame, axis, angle: f64| frame.turned(axis, angle.sin(), angle.cos());
+    fn rotated(rpy: Vector) -> Frame {
+        let turn = |frame: Frame, axis, angle: f64| frame.rotated(axis, angle.sin(), angle.cos());
         turn(turn(turn(Frame::WORLD, Axis::Z, rpy[2]), Axis::Y, rpy[1]), Axis::X, rpy[0])
     }
 
@@ -73,9 +73,9 @@ mod tests {
     fn angles_and_quaternions_describe_the_same_frame() {
         let angles = [-PI, -2.0, -FRAC_PI_2, -1e-9, 0.0, 0.3, FRAC_PI_2 - 1e-9, FRAC_PI_2, 3.0];
         for rpy in angles.iter().flat_map(|&r| angles.iter().flat_map(move |&p| angles.map(|y| [r, p, y]))) {
-            let frame = turned(rpy);
+            let frame = rotated(rpy);
             // Round-off of entries of order 1; quaternions are exact to the same.
-            assert!(apart(&turned(roll_pitch_yaw(&frame)), &frame) < 2e-15, "{rpy:?}");
+            assert!(apart(&rotated(roll_pitch_yaw(&frame)), &frame) < 2e-15, "{rpy:?}");
             let [w, x, y, z] = quaternion(&frame);
             let from_quaternion = Frame {
                 axes: [

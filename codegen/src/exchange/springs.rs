@@ -21,14 +21,14 @@ pub(super) struct JointSpring {
 /// The language allows at most one of these per coordinate.
 pub(super) fn on(chain: &Chain, id: CoordinateId, parameters: &[f64]) -> JointSpring {
     let number = |value: &crate::chain::Value| value.at(parameters);
-    if let Some(spring) = chain.elements.iter().find(|spring| spring.coordinate == id) {
+    if let Some(spring) = chain.beam_springs.iter().find(|spring| spring.coordinate == id) {
         JointSpring { stiffness: number(&spring.stiffness), damping: number(&spring.damping), rest: 0.0 }
     } else if let Some(drive) = chain.drives.iter().find(|drive| drive.coordinate == id) {
         let rest = drive.profile.start(parameters);
         let (stiffness, damping) = drive.spring().map_or((0.0, 0.0), |(s, d)| (number(s), number(d)));
         JointSpring { stiffness, damping, rest }
-    } else if let Some(hinge) = chain.hinges.iter().find(|hinge| hinge.coordinate == id) {
-        JointSpring { damping: number(&hinge.damping), ..JointSpring::default() }
+    } else if let Some(damper) = chain.joint_dampers.iter().find(|damper| damper.coordinate == id) {
+        JointSpring { damping: number(&damper.damping), ..JointSpring::default() }
     } else {
         JointSpring::default()
     }

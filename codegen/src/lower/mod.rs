@@ -3,12 +3,12 @@
 //!
 //! | pass | file | after it |
 //! |---|---|---|
-//! | roll, loops, matching | `roll` | repeated work of consecutive bodies is a loop over the operations of one |
+//! | reroll, loops, matching | `reroll` | repeated work of consecutive bodies is a loop over the operations of one |
 //! | constants | `constants` | values that depend only on live parameters are computed once, outside of all functions |
 //! | fuse | `fuse` | a product that only sums use is part of them, `a b + c` |
 //! | bundle | `bundle` | a value used once is inlined where it is used, as long as the expression stays bounded |
 //! | order | `order` | angles first, then each value just before its use, each output as soon as it is known |
-//! | split | `split` | no piece is too long for rustc; only values that cross a cut are carried |
+//! | split | `split` | no piece is too long for rustc; only values that cross a cut are kept |
 //!
 //! No pass recurses over the depth of the graph.
 
@@ -18,7 +18,7 @@ mod fuse;
 mod loops;
 mod matching;
 mod order;
-mod roll;
+mod reroll;
 mod split;
 #[cfg(test)]
 mod tests;
@@ -29,22 +29,22 @@ use crate::symbolic::{ExprId, Op, Visit};
 
 pub use constants::Constants;
 pub use fuse::fuse;
-pub use loops::{Loop, Progression, Rolled, Source, Taking};
+pub use loops::{LiveOut, Loop, Progression, Rerolled, Source};
 
 /// A program as straight-line code.
 #[derive(Debug)]
-pub struct Blocks<'p> {
+pub struct LoweredProgram<'p> {
     /// The program it came from, and the bodies of loops.
     pub program: Program,
     /// Values that depend only on live parameters, and the statements that compute them.
     pub constants: Constants,
-    /// One block per function, in the program's order.
-    pub functions: Vec<Block<'p>>,
+    /// One per function, in the program's order.
+    pub functions: Vec<LoweredFunction<'p>>,
 }
 
 /// A function as straight-line pieces that run one after the other.
 #[derive(Debug)]
-pub struct Block<'p> {
+pub struct LoweredFunction<'p> {
     /// The function that it computes.
     pub function: &'p Function,
     /// Whether it reads live parameters or constants computed from them.
@@ -53,10 +53,10 @@ pub struct Block<'p> {
     pub reads_inputs: bool,
     /// The pieces: one, unless the function is long.
     pub pieces: Vec<Vec<Statement>>,
-    /// The number of values carried from piece to piece.
-    pub carried: usize,
+    /// The number of values kept from piece to piece.
+    pub kept: usize,
     /// Its loops; their statements are in the pieces.
-    pub rolled: Rolled,
+    pub rerolled: Rerolled,
     /// Its operations, without those of the constants.
     pub count: OperationCount,
     /// For every node of the graph, whether it is inlined into the expressions that use it.
@@ -65,7 +65,7 @@ pub struct Block<'p> {
     pub fused: Vec<Option<ExprId>>,
 }
 
-impl Block<'_> {
+impl LoweredFunction<'_> {
     /// The number of its statements; those of a loop count once.
     #[must_use]
     pub fn statements(&self) -> usize {
@@ -89,8 +89,8 @@ pub enum Statement {
     /// Computes a value: `let t017 = …;`
     Let(ExprId),
     /// A sweep reaches a body: `// Outward: boom_1`. `None` when all sweeps are done.
-    At(Option<Place>),
-    /// A loop and the statements of a round.
+    At(Option<SweepPosition>),
+    /// A loop and the statements of an iteration.
     Loop {
         /// Which loop.
         of: usize,
@@ -106,14 +106,14 @@ pub enum Statement {
     },
     /// Keeps a value for a later piece.
     Keep {
-        /// Place among the carried values.
+        /// Place among the kept values.
         place: usize,
         /// The value.
         value: ExprId,
     },
     /// Fetches a value from an earlier piece.
     Fetch {
-        /// Place among the carried values.
+        /// Place among the kept values.
         place: usize,
         /// The value.
         value: ExprId,
@@ -122,16 +122,16 @@ pub enum Statement {
 
 /// Position of a sweep.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct SweepPosition {
     /// Name of the body.
     pub body: String,
     /// Whether the sweep goes from base to tip.
     pub outward: bool,
 }
 
-impl From<&Visit> for Place {
+impl From<&Visit> for SweepPosition {
     fn from(visit: &Visit) -> Self {
-        Place { body: visit.body.clone(), outward: visit.outward }
+        SweepPosition { body: visit.body.clone(), outward: visit.outward }
     }
 }
 
@@ -155,32 +155,32 @@ pub struct StumpffArgument {
     pub values: [Option<ExprId>; Op::STUMPFF_ORDERS],
 }
 
-/// Lowers a program; equal work at `least_rounds` or more consecutive bodies becomes a loop.
+/// Lowers a program; equal work at `min_iterations` or more consecutive bodies becomes a loop.
 #[must_use]
-pub fn lower(program: &Program, least_rounds: Option<usize>) -> Blocks<'_> {
+pub fn lower(program: &Program, min_iterations: Option<usize>) -> LoweredProgram<'_> {
     let constants = Constants::of(program);
     let mut extended = program.clone();
-    let mut block = |function| block(&mut extended, &constants, function, least_rounds);
-    let functions = program.functions.iter().map(&mut block).collect();
+    let mut lower_one = |function| lower_function(&mut extended, &constants, function, min_iterations);
+    let functions = program.functions.iter().map(&mut lower_one).collect();
     // AFTER THIS POINT: every statement is bounded, every value is computed before it is used, in its own piece.
-    Blocks { program: extended, constants, functions }
+    LoweredProgram { program: extended, constants, functions }
 }
 
-fn block<'p>(
+fn lower_function<'p>(
     program: &mut Program,
     constants: &Constants,
     function: &'p Function,
-    least_rounds: Option<usize>,
-) -> Block<'p> {
-    let rolled = least_rounds.and_then(|least| roll::roll(program, constants, function, least));
-    let in_line = || Rolled::in_line(function);
-    let (line, rolled, inlined, fused) = match rolled.map(|rolled| line(program, constants, function, rolled)) {
+    min_iterations: Option<usize>,
+) -> LoweredFunction<'p> {
+    let rerolled = min_iterations.and_then(|least| reroll::reroll(program, constants, function, least));
+    let in_line = || Rerolled::in_line(function);
+    let (line, rerolled, inlined, fused) = match rerolled.map(|rerolled| line(program, constants, function, rerolled)) {
         // Loops and the values that they leave stay in one piece.
         Some(loops) if !split::is_long(&loops.0) => loops,
         _ => line(program, constants, function, in_line()),
     };
     let program = &*program;
-    let (pieces, carried) = split::split(program, constants, &inlined, line);
+    let (pieces, kept) = split::split(program, constants, &inlined, line);
     let mut count = program.count(&function.outputs, |id| constants.is_stored(id));
     count += function.shape.closing_count();
     // −(2 · b) is written as −2 · b.
@@ -196,19 +196,19 @@ fn block<'p>(
     let reads_parameters = constants.read_by(program, &function.outputs);
     let is_input = |op: Op| matches!(op, Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Inputs);
     let reads_inputs = program.ids().filter(|id| needed[id.index()]).any(|id| is_input(program.op(id)));
-    Block { function, reads_parameters, reads_inputs, pieces, carried, rolled, count, inlined, fused }
+    LoweredFunction { function, reads_parameters, reads_inputs, pieces, kept, rerolled, count, inlined, fused }
 }
 
 /// Statements in order, with inlined expressions and fused products.
-fn line(program: &Program, constants: &Constants, function: &Function, rolled: Rolled) -> Line {
-    let roots = rolled.roots();
+fn line(program: &Program, constants: &Constants, function: &Function, rerolled: Rerolled) -> Line {
+    let roots = rerolled.roots();
     let fused = fuse::fuse(program, constants, &roots);
     let inlined = bundle::bundle(program, constants, &fused, &roots);
-    let line = order::order(program, constants, &inlined, function, &rolled);
-    (line, rolled, inlined, fused)
+    let line = order::order(program, constants, &inlined, function, &rerolled);
+    (line, rerolled, inlined, fused)
 }
 
-type Line = (Vec<Statement>, Rolled, Vec<bool>, Vec<Option<ExprId>>);
+type Line = (Vec<Statement>, Rerolled, Vec<bool>, Vec<Option<ExprId>>);
 
 /// The values that need variables before `id` can be written: its operands, or, for an inlined operand, the values that it
 /// needs in turn.

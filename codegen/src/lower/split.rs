@@ -14,14 +14,14 @@ const LONGEST_PIECE: usize = 1500;
 
 /// Whether the code has to be split: by the maximum number of open scopes, where those of a loop are inside those before it.
 pub(super) fn is_long(line: &[Statement]) -> bool {
-    let round = |statement: &Statement| match statement {
+    let body_length = |statement: &Statement| match statement {
         Statement::Loop { body, .. } => body.len(),
         _ => 0,
     };
-    line.len() + line.iter().map(round).max().unwrap_or(0) > LONGEST_PIECE
+    line.len() + line.iter().map(body_length).max().unwrap_or(0) > LONGEST_PIECE
 }
 
-/// The pieces, and how many values are carried between them.
+/// The pieces, and how many values are kept between them.
 pub(super) fn split(
     program: &Program,
     constants: &Constants,

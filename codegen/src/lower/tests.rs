@@ -16,7 +16,7 @@ const INPUTS: [(&str, Argument, usize); 5] = [
 /// A program of one function with the outputs that `build` derives from a, b, c, d and p.
 fn program(build: impl for<'g> FnOnce(&'g Graph, [Expr<'g>; 5]) -> Vec<Expr<'g>>) -> Program {
     let graph = Graph::simplifying();
-    let (outputs, tape) = graph.recorded(|| {
+    let (outputs, trace) = graph.recorded(|| {
         let inputs = [0, 1, 2, 3, 4].map(|index| graph.symbol(SymbolId(index)));
         build(&graph, inputs).iter().map(|output| output.id()).collect::<Vec<ExprId>>()
     });
@@ -27,7 +27,7 @@ fn program(build: impl for<'g> FnOnce(&'g Graph, [Expr<'g>; 5]) -> Vec<Expr<'g>>
         arguments: &[Argument::Position],
         shape: Shape::Vector(outputs.len()),
         outputs,
-        tape,
+        trace,
     };
     let symbols = INPUTS.map(|(name, argument, index)| Symbol { name: name.into(), argument, index });
     Program::new(graph, symbols.to_vec(), vec![function])
@@ -107,9 +107,9 @@ fn a_value_used_once_stands_where_it_is_used_and_one_used_twice_does_not() {
 #[test]
 fn expressions_stay_bounded() {
     let program = program(|_, [a, b, c, ..]| vec![(0..40).fold(a, |sum, _| (sum + b) / c)]);
-    let block = &lower(&program, None).functions[0];
+    let code = &lower(&program, None).functions[0];
     // 80 operations, at most seven per statement.
-    assert!(block.statements() >= 80 / 7, "{}", block.statements());
+    assert!(code.statements() >= 80 / 7, "{}", code.statements());
 }
 
 #[test]
@@ -120,8 +120,8 @@ fn angles_come_first_and_operands_before_their_users() {
         vec![y * y * x, c.cos() * y]
     });
     let constants = Constants::of(&program);
-    let blocks = lower(&program, None);
-    let [line] = blocks.functions[0].pieces.as_slice() else { panic!("one piece") };
+    let lowered = lower(&program, None);
+    let [line] = lowered.functions[0].pieces.as_slice() else { panic!("one piece") };
     let sines = line.iter().position(|statement| matches!(statement, Statement::SinCos(_))).expect("sines");
     let angle = only(&program, |op| matches!(op, Op::Add(x, y) if program.op(x).is_leaf() && program.op(y).is_leaf()));
     // Only inputs and the angle that is a sum precede the sines.
@@ -132,7 +132,7 @@ fn angles_come_first_and_operands_before_their_users() {
             Statement::SinCos(angles) => known.extend(angles.iter().flat_map(|of| [of.sin, of.cos]).flatten()),
             Statement::Input(id) => known.push(*id),
             Statement::Let(id) => {
-                let needs = super::variables_of(&program, &constants, &blocks.functions[0].inlined, *id);
+                let needs = super::variables_of(&program, &constants, &lowered.functions[0].inlined, *id);
                 assert!(needs.iter().all(|need| known.contains(need)), "{id:?} before {needs:?}");
                 known.push(*id);
             }
@@ -160,8 +160,8 @@ fn a_long_line_is_cut_and_what_crosses_a_cut_is_carried() {
         .chain(roots(&program).iter().enumerate().map(|(slot, value)| Statement::Output { slot, value: *value }))
         .collect();
     assert!(split::is_long(&line));
-    let (pieces, carried) = split::split(&program, &constants, &inlined, line.clone());
-    assert!(pieces.len() > 2 && carried >= pieces.len() - 1);
+    let (pieces, kept) = split::split(&program, &constants, &inlined, line.clone());
+    assert!(pieces.len() > 2 && kept >= pieces.len() - 1);
     assert_eq!(pieces.iter().flat_map(|piece| computed(piece)).collect::<Vec<_>>(), computed(&line));
     for piece in &pieces {
         assert!(piece.len() <= 1600, "{}", piece.len());
@@ -202,13 +202,14 @@ fn swept(bodies: u8) -> Program {
 fn what_repeats_from_body_to_body_becomes_a_loop_that_computes_the_same() {
     const BODIES: u8 = 60;
     let program = swept(BODIES);
-    let rounds = |least| lower(&program, least).functions[0].rolled.loops.iter().map(|of| of.rounds).sum::<usize>();
-    assert_eq!(rounds(None), 0);
-    assert!(rounds(Some(4)) >= usize::from(BODIES) - 2, "{}", rounds(Some(4)));
+    let iterations =
+        |least| lower(&program, least).functions[0].rerolled.loops.iter().map(|of| of.iterations).sum::<usize>();
+    assert_eq!(iterations(None), 0);
+    assert!(iterations(Some(4)) >= usize::from(BODIES) - 2, "{}", iterations(Some(4)));
     let statements = |least| lower(&program, least).functions[0].statements();
     assert!(statements(Some(4)) < statements(None) / 2);
     // Too few bodies for a loop.
-    assert!(lower(&swept(3), Some(4)).functions[0].rolled.loops.is_empty());
+    assert!(lower(&swept(3), Some(4)).functions[0].rerolled.loops.is_empty());
     // The graph itself is unchanged.
     let inputs = Inputs::state(0.0, vec![0.3, 0.7, -0.2, 1.1], vec![], vec![1.0]);
     let mut x = 0.3;

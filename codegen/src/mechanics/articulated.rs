@@ -6,11 +6,11 @@
 //!   `H = [s]×`, `M = m 1`.
 //!
 //! R. Featherstone, *Rigid Body Dynamics Algorithms*, Springer 2008, chapter 7; here in classical accelerations, with three
-//! rotations through a point as one joint, and with resistances D̂.
+//! rotations through a point as one joint, and with added inertias D̂.
 
 use std::ops::Add;
 
-use super::turn::Turn;
+use super::axis_rotation::AxisRotation;
 use super::vector::{Matrix3, Rotation, Symmetric3, Vec3};
 use crate::chain::Axis;
 use crate::symbolic::{Expr, Graph};
@@ -30,11 +30,11 @@ pub struct Articulated<'g> {
     pub force: Vec3<'g>,
 }
 
-/// Effort τ on a coordinate and its resistance d̂: `τ − d̂ q̈` acts on the joint.
+/// Effort τ on a coordinate and its added inertia d̂: `τ − d̂ q̈` acts on the joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort<'g> {
     pub applied: Expr<'g>,
-    pub resistance: Expr<'g>,
+    pub added_inertia: Expr<'g>,
 }
 
 /// q̈ of a single joint from the accelerations before it: `q̈ = rest − ⟨angular, α⟩ − ⟨linear, a⟩`.
@@ -53,7 +53,7 @@ pub struct Reaction<'g> {
     pub linear: Vec3<'g>,
 }
 
-/// The acceleration of a ball joint from those before it: `α' − α = rest − B α − G a`, with B only if there is resistance;
+/// The acceleration of a ball joint from those before it: `α' − α = rest − B α − G a`, with B only if there is added inertia;
 /// without it, α' itself.
 #[derive(Clone, Copy, Debug)]
 pub struct BallResponse<'g> {
@@ -105,13 +105,13 @@ impl<'g> Articulated<'g> {
     }
 
     /// Components in the frame before a rotation.
-    pub fn turn(&mut self, turn: &Turn<'g>) {
+    pub fn rotate_about_axis(&mut self, rotation: &AxisRotation<'g>) {
         *self = Articulated {
-            rotational: turn.outward_symmetric(&self.rotational),
-            coupling: turn.outward_matrix(&self.coupling),
-            translational: turn.outward_symmetric(&self.translational),
-            moment: turn.outward(self.moment),
-            force: turn.outward(self.force),
+            rotational: rotation.outward_symmetric(&self.rotational),
+            coupling: rotation.outward_matrix(&self.coupling),
+            translational: rotation.outward_symmetric(&self.translational),
+            moment: rotation.outward(self.moment),
+            force: rotation.outward(self.force),
         };
     }
 
@@ -136,16 +136,16 @@ impl<'g> Articulated<'g> {
     /// Releases the rotation about an axis, in the frame after it; `gyration` is `ω × e q̇`.
     ///
     /// `D = J_kk + d̂`, `q̈ = (τ − n₀_k − J_k α − H_k a) / D`. Row k of J, H and n₀ is what the joint transmits: d̂/D of the
-    /// previous value, and only τ without resistance. This is computed directly instead of as a difference that should be zero.
+    /// previous value, and only τ without added inertia. This is computed directly instead of as a difference that should be zero.
     pub fn free_rotation(&mut self, axis: Axis, effort: Effort<'g>, gyration: Vec3<'g>) -> Response<'g> {
         let k = axis.index();
         self.moment = self.moment + self.rotational.apply(gyration);
         self.force = self.force + self.coupling.apply_transposed(gyration);
-        let reciprocal = 1.0 / (self.rotational.at(k, k) + effort.resistance);
+        let reciprocal = 1.0 / (self.rotational.at(k, k) + effort.added_inertia);
         let (angular, linear) = (self.rotational.row(k), self.coupling.row(k));
         let (scaled_angular, scaled_linear) = (reciprocal * angular, reciprocal * linear);
         let free = reciprocal * (effort.applied - self.moment[k]);
-        let kept = effort.resistance * reciprocal;
+        let kept = effort.added_inertia * reciprocal;
 
         let own = self.rotational;
         self.rotational = Symmetric3::from_entries(|i, j| {
@@ -159,11 +159,9 @@ impl<'g> Articulated<'g> {
         self.translational = Symmetric3::from_entries(|i, j| own.at(i, j) - scaled_linear[i] * linear[j]);
         let own = self.moment;
         self.moment =
-            Vec3(
-                [0, 1, 2].map(|i| {
-                    if i == k { effort.applied - effort.resistance * free } else { own[i] + angular[i] * free }
-                }),
-            );
+            Vec3([0, 1, 2].map(|i| {
+                if i == k { effort.applied - effort.added_inertia * free } else { own[i] + angular[i] * free }
+            }));
         self.force = self.force + free * linear;
         // α of the response does not include the gyration: its moment is already in n₀.
         Response { rest: free, angular: scaled_angular, linear: scaled_linear }
@@ -172,11 +170,11 @@ impl<'g> Articulated<'g> {
     /// Releases the translation along an axis. `D = M_kk + d̂`, `q̈ = (τ − f₀_k − H_kᵀ α − M_k a) / D`.
     pub fn free_translation(&mut self, axis: Axis, effort: Effort<'g>) -> Response<'g> {
         let k = axis.index();
-        let reciprocal = 1.0 / (self.translational.at(k, k) + effort.resistance);
+        let reciprocal = 1.0 / (self.translational.at(k, k) + effort.added_inertia);
         let (angular, linear) = (self.coupling.column(k), self.translational.row(k));
         let (scaled_angular, scaled_linear) = (reciprocal * angular, reciprocal * linear);
         let free = reciprocal * (effort.applied - self.force[k]);
-        let kept = effort.resistance * reciprocal;
+        let kept = effort.added_inertia * reciprocal;
 
         let own = self.translational;
         self.translational = Symmetric3::from_entries(|i, j| {
@@ -190,11 +188,9 @@ impl<'g> Articulated<'g> {
         self.rotational = Symmetric3::from_entries(|i, j| own.at(i, j) - scaled_angular[i] * angular[j]);
         let own = self.force;
         self.force =
-            Vec3(
-                [0, 1, 2].map(|i| {
-                    if i == k { effort.applied - effort.resistance * free } else { own[i] + linear[i] * free }
-                }),
-            );
+            Vec3([0, 1, 2].map(|i| {
+                if i == k { effort.applied - effort.added_inertia * free } else { own[i] + linear[i] * free }
+            }));
         self.moment = self.moment + free * angular;
         Response { rest: free, angular: scaled_angular, linear: scaled_linear }
     }
@@ -207,34 +203,39 @@ impl<'g> Articulated<'g> {
         &mut self,
         axis: Axis,
         acceleration: Expr<'g>,
-        resistance: Expr<'g>,
+        added_inertia: Expr<'g>,
         gyration: Vec3<'g>,
     ) -> Reaction<'g> {
         let k = axis.index();
         let own = Vec3::along(axis, acceleration) + gyration;
         self.moment = self.moment + self.rotational.apply(own);
         self.force = self.force + self.coupling.apply_transposed(own);
-        let rest = self.moment[k] + resistance * acceleration;
+        let rest = self.moment[k] + added_inertia * acceleration;
         Reaction { rest, angular: self.rotational.row(k), linear: self.coupling.row(k) }
     }
 
     /// Prescribes `q̈` of a translation along an axis. `τ = f₀_k + H_kᵀ α + M_k a + d̂ q̈`.
-    pub fn prescribe_translation(&mut self, axis: Axis, acceleration: Expr<'g>, resistance: Expr<'g>) -> Reaction<'g> {
+    pub fn prescribe_translation(
+        &mut self,
+        axis: Axis,
+        acceleration: Expr<'g>,
+        added_inertia: Expr<'g>,
+    ) -> Reaction<'g> {
         let k = axis.index();
         let own = Vec3::along(axis, acceleration);
         self.moment = self.moment + self.coupling.apply(own);
         self.force = self.force + self.translational.apply(own);
-        let rest = self.force[k] + resistance * acceleration;
+        let rest = self.force[k] + added_inertia * acceleration;
         Reaction { rest, angular: self.coupling.column(k), linear: self.translational.row(k) }
     }
 
     /// Releases all rotations about the origin, against the moment `n_τ − D' (α' − α)`; everything in one frame.
     ///
     /// With `K = J + D'`: `α' − α = K⁻¹ (n_τ − n₀ − H a − J α)`. What is transmitted,
-    /// `J ← D' K⁻¹ J`, `H ← D' K⁻¹ H`, `M ← M − Hᵀ K⁻¹ H`, is a pure force without resistance: J and H then cannot lose
+    /// `J ← D' K⁻¹ J`, `H ← D' K⁻¹ H`, `M ← M − Hᵀ K⁻¹ H`, is a pure force without added inertia: J and H then cannot lose
     /// digits.
-    pub fn free_ball(&mut self, moment: Vec3<'g>, resistance: Option<Symmetric3<'g>>) -> BallResponse<'g> {
-        let blocks = resistance.map_or(self.rotational, |d| self.rotational + d).inverse();
+    pub fn free_ball(&mut self, moment: Vec3<'g>, added_inertia: Option<Symmetric3<'g>>) -> BallResponse<'g> {
+        let blocks = added_inertia.map_or(self.rotational, |d| self.rotational + d).inverse();
         let graph = moment[0].graph();
         let coupling = self.coupling;
         let missing = moment - self.moment;
@@ -248,7 +249,7 @@ impl<'g> Articulated<'g> {
             rest = rest + *reciprocal * cofactors.apply(missing);
         }
         self.force = self.force + coupling.apply_transposed(rest);
-        let Some(resistance) = resistance else {
+        let Some(added_inertia) = added_inertia else {
             (self.rotational, self.coupling) = (Symmetric3::zero(graph), Matrix3::zero(graph));
             self.moment = moment;
             return BallResponse { rest, angular: None, linear };
@@ -258,9 +259,9 @@ impl<'g> Articulated<'g> {
             parts.fold(Vec3::zero(graph), Vec3::add)
         };
         let angular = self.rotational.full().map_columns(solve);
-        self.rotational = Symmetric3::from_entries(|i, j| resistance.row(i).dot(angular.column(j)));
-        self.coupling = linear.map_columns(|column| resistance.apply(column));
-        self.moment = moment - resistance.apply(rest);
+        self.rotational = Symmetric3::from_entries(|i, j| added_inertia.row(i).dot(angular.column(j)));
+        self.coupling = linear.map_columns(|column| added_inertia.apply(column));
+        self.moment = moment - added_inertia.apply(rest);
         BallResponse { rest, angular: Some(angular), linear }
     }
 }

@@ -14,13 +14,13 @@
 //! from joint to joint. About local points nothing large is subtracted, so the torsional inertia of a slender element keeps
 //! its digits; about the world's origin it would be small beside the inertia of the whole crane.
 
+use super::axis_rotation::AxisRotation;
 use super::factors::Factor;
 use super::model::Model;
 use super::rotors;
-use super::turn::Turn;
 use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};
 use crate::chain::{Axis, CoordinateKind, Inertia};
-use crate::program::Point;
+use crate::program::ConcurrentAxes;
 use crate::symbolic::Expr;
 
 /// The factors of the mass matrix: for each coordinate its axis, its momenta, and the offset from its point to that of the
@@ -29,7 +29,7 @@ pub struct Columns<'g> {
     pub axes: Vec<Vec3<'g>>,
     pub linear: Vec<Vec3<'g>>,
     pub angular: Vec<Vec3<'g>>,
-    pub shifts: Vec<Vec3<'g>>,
+    pub offsets: Vec<Vec3<'g>>,
 }
 
 /// Axes, momenta and offsets of all coordinates, in the world's axes.
@@ -38,9 +38,9 @@ pub fn columns<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Columns<'g> {
     let mut frame_before = || frames.pop().expect("as many as outward");
     let zero = Vec3::zero(model.graph);
     let empty = vec![zero; model.size()];
-    let mut columns = Columns { axes: empty.clone(), linear: empty.clone(), angular: empty.clone(), shifts: empty };
+    let mut columns = Columns { axes: empty.clone(), linear: empty.clone(), angular: empty.clone(), offsets: empty };
     let mut composite = Composite::nothing(model);
-    let mut way = zero;
+    let mut offset = zero;
     let sweep = model.graph.sweep();
     for factor in factors.iter().rev() {
         match factor {
@@ -54,13 +54,13 @@ pub fn columns<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Columns<'g> {
             }
             Factor::Translate(by) => {
                 composite.shift(*by);
-                way = way + frame_before().apply(*by);
+                offset = offset + frame_before().apply(*by);
             }
             Factor::Prismatic { j, axis } => {
                 let (frame, by) = (frame_before(), Vec3::along(*axis, model.q[*j]));
-                columns.set(model, *j, (&frame, frame.axis(*axis)), composite.sliding(*axis), way);
+                columns.set(model, *j, (&frame, frame.axis(*axis)), composite.sliding(*axis), offset);
                 composite.shift(by);
-                way = frame.apply(by);
+                offset = frame.apply(by);
             }
             Factor::RotationVector { j, vector } => {
                 let frame = frame_before();
@@ -68,17 +68,23 @@ pub fn columns<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Columns<'g> {
                 let jacobian = vector.jacobian();
                 let axes = vector.by_coordinates([0, 1, 2].map(|k| jacobian.column(k)));
                 for (k, axis) in axes.into_iter().enumerate().rev() {
-                    columns.set(model, j + k, (&frame, frame.apply(axis)), composite.turning_about(axis), way);
-                    way = zero;
+                    columns.set(model, j + k, (&frame, frame.apply(axis)), composite.turning_about(axis), offset);
+                    offset = zero;
                 }
             }
-            Factor::Turn(_) | Factor::Revolute { .. } | Factor::Ball { .. } => {
-                for (j, turn) in factor.turns().into_iter().rev() {
+            Factor::Rotation(_) | Factor::Revolute { .. } | Factor::Ball { .. } => {
+                for (j, rotation) in factor.rotations().into_iter().rev() {
                     let frame = frame_before();
-                    composite.turn(&turn);
+                    composite.rotate_about_axis(&rotation);
                     if let Some(j) = j {
-                        columns.set(model, j, (&frame, frame.axis(turn.axis)), composite.turning(turn.axis), way);
-                        way = zero;
+                        columns.set(
+                            model,
+                            j,
+                            (&frame, frame.axis(rotation.axis)),
+                            composite.turning(rotation.axis),
+                            offset,
+                        );
+                        offset = zero;
                     }
                 }
             }
@@ -100,10 +106,10 @@ fn frames<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Rotation<'g>> {
                 frames.push(frame);
                 frame = frame.times(vector.rotation());
             }
-            Factor::Turn(_) | Factor::Revolute { .. } | Factor::Ball { .. } => {
-                for (_, turn) in factor.turns() {
+            Factor::Rotation(_) | Factor::Revolute { .. } | Factor::Ball { .. } => {
+                for (_, rotation) in factor.rotations() {
                     frames.push(frame);
-                    frame = frame.turned(turn.axis, turn.sin, turn.cos);
+                    frame = frame.rotated(rotation.axis, rotation.sin, rotation.cos);
                 }
             }
         }
@@ -136,9 +142,9 @@ impl<'g> Composite<'g> {
     }
 
     /// Components in the frame before a rotation.
-    fn turn(&mut self, turn: &Turn<'g>) {
-        self.first = turn.outward(self.first);
-        self.second = turn.outward_symmetric(&self.second);
+    fn rotate_about_axis(&mut self, rotation: &AxisRotation<'g>) {
+        self.first = rotation.outward(self.first);
+        self.second = rotation.outward_symmetric(&self.second);
     }
 
     /// The same before a rotation by its matrix.
@@ -179,11 +185,11 @@ impl<'g> Columns<'g> {
         j: usize,
         (frame, axis): (&Rotation<'g>, Vec3<'g>),
         momenta: [Vec3<'g>; 2],
-        way: Vec3<'g>,
+        offset: Vec3<'g>,
     ) {
         self.axes[j] = axis.named(&format!("axis_{}", model.chain.coordinates[j].name));
         [self.linear[j], self.angular[j]] = momenta.map(|momentum| frame.apply(momentum));
-        self.shifts[j] = way;
+        self.offsets[j] = offset;
     }
 
     /// The mass matrix, written out, including rotors.
@@ -192,7 +198,7 @@ impl<'g> Columns<'g> {
         let mut angular = self.angular.clone();
         for i in (0..model.size()).rev() {
             for j in i + 1..model.size() {
-                angular[j] = angular[j] + self.shifts[i].cross(self.linear[j]);
+                angular[j] = angular[j] + self.offsets[i].cross(self.linear[j]);
             }
             for j in i..model.size() {
                 let momentum = match model.chain.coordinates[i].kind {
@@ -209,24 +215,24 @@ impl<'g> Columns<'g> {
     }
 
     /// The points at which the coordinates act, in order.
-    pub fn points(&self, model: &Model<'g>) -> Vec<Point> {
-        let mut points: Vec<Point> = Vec::new();
+    pub fn points(&self, model: &Model<'g>) -> Vec<ConcurrentAxes> {
+        let mut points: Vec<ConcurrentAxes> = Vec::new();
         // The offset from the previous coordinate; the first has none.
         let mut apart = true;
-        for (coordinate, way) in model.chain.coordinates.iter().zip(&self.shifts) {
-            let turns = coordinate.kind == CoordinateKind::Rotation;
+        for (coordinate, offset) in model.chain.coordinates.iter().zip(&self.offsets) {
+            let rotate = coordinate.kind == CoordinateKind::Rotation;
             match points.last_mut() {
-                Some(point) if !apart && point.turns == turns && point.coordinates < 3 => point.coordinates += 1,
-                _ => points.push(Point { coordinates: 1, turns }),
+                Some(point) if !apart && point.rotate == rotate && point.coordinates < 3 => point.coordinates += 1,
+                _ => points.push(ConcurrentAxes { coordinates: 1, rotate }),
             }
-            apart = !way.0.iter().all(|x| x.is_zero());
+            apart = !offset.0.iter().all(|x| x.is_zero());
         }
         points
     }
 
     /// All numbers for a loop: axes, P, L and offsets, coordinate by coordinate.
     pub fn slots(&self) -> Vec<Expr<'g>> {
-        let vectors = [&self.axes, &self.linear, &self.angular, &self.shifts];
+        let vectors = [&self.axes, &self.linear, &self.angular, &self.offsets];
         vectors.into_iter().flatten().flat_map(|vector| vector.0).collect()
     }
 }

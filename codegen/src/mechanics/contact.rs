@@ -126,9 +126,9 @@ impl<'g> Contact<'g> {
         Vec3(self.damping.0.map(|damping| share.value * damping))
     }
 
-    /// Stiffness and damping along the axes for an implicit step, which needs no exact derivative but a positive resistance:
+    /// Stiffness and damping along the axes for an implicit step, which does not need the exact derivative, but must keep `A + D̂` positive definite:
     /// `w s_x, w s_y, max(0, ∂f_z/∂δ)` and `w d`; along z nothing where the support does not press.
-    pub fn impedances(&self) -> [Vec3<'g>; 2] {
+    pub fn stiffness_and_damping(&self) -> [Vec3<'g>; 2] {
         let share = self.share();
         let presses = self.spring(&share) + self.damper(&share);
         let where_pressing = |number: Expr<'g>| presses.select(number, self.zero());

@@ -98,15 +98,15 @@ impl<'g> Geometry<'g> {
     }
 }
 
-fn place<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, pin: &Pin) -> Vec3<'g> {
+fn pin_position<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, pin: &Pin) -> Vec3<'g> {
     let pose = &kinematics.poses[pin.body.0];
     pose.origin + pose.rotation.apply(model.vector(&pin.position))
 }
 
 fn geometry<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Geometry<'g> {
-    let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| place(model, kinematics, pin));
+    let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| pin_position(model, kinematics, pin));
     let linkage = cylinder.linkage.as_ref().map(|Linkage { pivot, rocker, link, left }| {
-        let pivot = place(model, kinematics, &Pin { position: pivot.clone(), ..cylinder.foot.clone() });
+        let pivot = pin_position(model, kinematics, &Pin { position: pivot.clone(), ..cylinder.foot.clone() });
         let lengths = [rocker, link].map(|length| model.number(length));
         let axis = kinematics.generators[cylinder.coordinate.0].omega;
         (pivot, Assembled::new(axis, head - pivot, lengths, *left))
@@ -140,8 +140,8 @@ pub fn states<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twis
             twist.omega.cross(head) + twist.upsilon
         });
         let axis = kinematics.generators[joint].omega;
-        let turned = spin_of_axis(model, kinematics, joint, foot).cross(axis);
-        let rate = geometry.rate(at_head - at_foot, turned);
+        let rotated = spin_of_axis(model, kinematics, joint, foot).cross(axis);
+        let rate = geometry.rate(at_head - at_foot, rotated);
         let arm = geometry.rate(kinematics.generators[joint].velocity(head), Vec3::zero(model.graph));
         // The joint moves the body with the greater index.
         let arm = if cylinder.head.body > cylinder.foot.body { arm } else { -arm };

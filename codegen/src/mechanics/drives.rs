@@ -117,22 +117,22 @@ pub fn energy<'g>(model: &Model<'g>) -> Expr<'g> {
 }
 
 /// `−∂t_dr/∂q` and `−∂t_dr/∂q̇` of drives with a limit, coordinate by coordinate.
-pub fn impedances<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
-    let mut impedances = vec![[model.zero(); 2]; model.size()];
+pub fn stiffness_and_damping<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
+    let mut stiffness_and_damping = vec![[model.zero(); 2]; model.size()];
     for drive in flexible(model) {
         let Some(limit) = drive.0.max_effort() else { continue };
         let j = drive.0.coordinate.0;
         if drive.0.max_rate().is_some() || drive.0.max_power().is_some() {
-            // A step needs no exact derivative but a positive resistance.
+            // A step does not need the exact derivative, but `A + D̂` must stay positive definite.
             let effort = effort(model, drive, model.t, &model.v);
             let falling = |by| (-model.graph.derivatives(&[effort], by)[0]).max(model.zero());
-            impedances[j] = [falling(model.q[j]), falling(model.v[j])];
+            stiffness_and_damping[j] = [falling(model.q[j]), falling(model.v[j])];
             continue;
         }
         let slope = Saturation::new(unlimited(model, drive, model.t, &model.v), model.number(limit)).slope();
-        impedances[j] = [drive.1, drive.2].map(|of| slope * model.number(of));
+        stiffness_and_damping[j] = [drive.1, drive.2].map(|of| slope * model.number(of));
     }
-    impedances
+    stiffness_and_damping
 }
 
 /// Stiffness of drives with a limit at rest and t = 0, on the diagonal.

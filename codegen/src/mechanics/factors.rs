@@ -2,9 +2,9 @@
 
 use crate::chain::{Axis, CoordinateKind, Step};
 
+use super::axis_rotation::AxisRotation;
 use super::model::Model;
 use super::rotation_vector::RotationVector;
-use super::turn::Turn;
 use super::vector::Vec3;
 
 /// One factor of the chain from the base to the tip.
@@ -13,13 +13,13 @@ pub enum Factor<'g> {
     /// Constant translation.
     Translate(Vec3<'g>),
     /// Constant rotation.
-    Turn(Turn<'g>),
+    Rotation(AxisRotation<'g>),
     /// Rotation by coordinate `j`.
-    Revolute { j: usize, turn: Turn<'g> },
+    Revolute { j: usize, rotation: AxisRotation<'g> },
     /// Translation by coordinate `j` along an axis.
     Prismatic { j: usize, axis: Axis },
     /// Three rotations through one point about three different axes, by coordinates `j`, `j + 1`, `j + 2`: a ball joint.
-    Ball { j: usize, turns: [Turn<'g>; 3] },
+    Ball { j: usize, rotations: [AxisRotation<'g>; 3] },
     /// Rotation by the vector of coordinates `j`, `j + 1`, `j + 2`.
     RotationVector { j: usize, vector: Box<RotationVector<'g>> },
     /// The frame reached is that of a body.
@@ -29,15 +29,17 @@ pub enum Factor<'g> {
 impl<'g> Factor<'g> {
     /// Whether it depends on coordinates.
     pub fn moves(&self) -> bool {
-        !matches!(self, Factor::Translate(_) | Factor::Turn(_) | Factor::Body(_))
+        !matches!(self, Factor::Translate(_) | Factor::Rotation(_) | Factor::Body(_))
     }
 
     /// Its elementary rotations, from the base to the tip, with their coordinates.
-    pub fn turns(&self) -> Vec<(Option<usize>, Turn<'g>)> {
+    pub fn rotations(&self) -> Vec<(Option<usize>, AxisRotation<'g>)> {
         match self {
-            Factor::Turn(turn) => vec![(None, *turn)],
-            Factor::Revolute { j, turn } => vec![(Some(*j), *turn)],
-            Factor::Ball { j, turns } => turns.iter().enumerate().map(|(k, turn)| (Some(j + k), *turn)).collect(),
+            Factor::Rotation(rotation) => vec![(None, *rotation)],
+            Factor::Revolute { j, rotation } => vec![(Some(*j), *rotation)],
+            Factor::Ball { j, rotations } => {
+                rotations.iter().enumerate().map(|(k, rotation)| (Some(j + k), *rotation)).collect()
+            }
             Factor::Translate(_) | Factor::Prismatic { .. } | Factor::RotationVector { .. } | Factor::Body(_) => vec![],
         }
     }
@@ -53,7 +55,7 @@ pub fn factors<'g>(model: &Model<'g>) -> Vec<Factor<'g>> {
             factors.push(match step {
                 Step::Translate(by) => Factor::Translate(model.vector(by)),
                 Step::Rotate { axis, sin, cos } => {
-                    Factor::Turn(Turn { axis: *axis, sin: model.number(sin), cos: model.number(cos) })
+                    Factor::Rotation(AxisRotation { axis: *axis, sin: model.number(sin), cos: model.number(cos) })
                 }
                 Step::RotationVector(ids) => {
                     Factor::RotationVector { j: ids[0].0, vector: Box::new(RotationVector::new(model, ids)) }
@@ -62,10 +64,10 @@ pub fn factors<'g>(model: &Model<'g>) -> Vec<Factor<'g>> {
                     let j = id.0;
                     let joint = joint(model, j);
                     match (&joint, path) {
-                        (Factor::Revolute { turn, .. }, [Step::Move(_), Step::Move(_), rest @ ..]) => {
-                            if let Some(turns) = ball(model, j, *turn) {
+                        (Factor::Revolute { rotation, .. }, [Step::Move(_), Step::Move(_), rest @ ..]) => {
+                            if let Some(rotations) = ball(model, j, *rotation) {
                                 path = rest;
-                                Factor::Ball { j, turns }
+                                Factor::Ball { j, rotations }
                             } else {
                                 joint
                             }
@@ -85,14 +87,14 @@ fn joint<'g>(model: &Model<'g>, j: usize) -> Factor<'g> {
     let coordinate = &model.chain.coordinates[j];
     match coordinate.kind {
         CoordinateKind::Translation => Factor::Prismatic { j, axis: coordinate.axis },
-        CoordinateKind::Rotation => Factor::Revolute { j, turn: model.turn(j) },
+        CoordinateKind::Rotation => Factor::Revolute { j, rotation: model.axis_rotation(j) },
     }
 }
 
 /// The rotations of coordinates j, j + 1, j + 2, all elementary motions without a placement between them, if they form a ball
 /// joint.
-fn ball<'g>(model: &Model<'g>, j: usize, first: Turn<'g>) -> Option<[Turn<'g>; 3]> {
-    let (Factor::Revolute { turn: second, .. }, Factor::Revolute { turn: third, .. }) =
+fn ball<'g>(model: &Model<'g>, j: usize, first: AxisRotation<'g>) -> Option<[AxisRotation<'g>; 3]> {
+    let (Factor::Revolute { rotation: second, .. }, Factor::Revolute { rotation: third, .. }) =
         (joint(model, j + 1), joint(model, j + 2))
     else {
         return None;

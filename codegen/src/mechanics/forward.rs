@@ -4,15 +4,15 @@
 //! The mass matrix is never formed, and nothing is lost to its condition number.
 //!
 //! With velocities and gravity: `q̈` of `A q̈ = e + f` [Urbaś 2016, Eq. (23)]. At rest without gravity: `A x = r`, and with
-//! resistances D̂, block-diagonal, `(A + D̂) x = r`. If a coordinate's acceleration is prescribed, its joint is not released, and
+//! added inertias D̂, block-diagonal, `(A + D̂) x = r`. If a coordinate's acceleration is prescribed, its joint is not released, and
 //! the outward sweep computes its effort (hybrid dynamics).
 
 use super::articulated::{Articulated, BallResponse, Effort, Reaction, Response};
+use super::axis_rotation::AxisRotation;
 use super::factors::Factor;
 use super::model::Model;
 use super::outward::{Velocities, velocities};
 use super::rotation_vector::RotationVector;
-use super::turn::Turn;
 use super::vector::{Rotation, Symmetric3, Vec3, plane};
 use crate::chain::Axis;
 use crate::symbolic::Expr;
@@ -80,8 +80,8 @@ pub(super) fn inward<'g>(
                 }
                 Joint::None
             }
-            (Factor::Turn(turn), _) => {
-                articulated.turn(turn);
+            (Factor::Rotation(rotation), _) => {
+                articulated.rotate_about_axis(rotation);
                 Joint::None
             }
             (Factor::Translate(_), Velocities::Translation { by, acceleration }) => {
@@ -91,27 +91,30 @@ pub(super) fn inward<'g>(
             (Factor::Prismatic { j, axis }, Velocities::Translation { by, acceleration }) => {
                 let joint = match prescribed[*j] {
                     Some(q) => {
-                        Joint::Prescribed(q, articulated.prescribe_translation(*axis, q, efforts[*j].resistance))
+                        Joint::Prescribed(q, articulated.prescribe_translation(*axis, q, efforts[*j].added_inertia))
                     }
                     None => Joint::Single(articulated.free_translation(*axis, efforts[*j])),
                 };
                 articulated.shift(*by, *acceleration);
                 joint
             }
-            (Factor::Revolute { j, turn }, Velocities::Revolute { gyration }) => {
-                let axis = turn.axis;
+            (Factor::Revolute { j, rotation }, Velocities::Revolute { gyration }) => {
+                let axis = rotation.axis;
                 let joint = match prescribed[*j] {
                     Some(q) => {
-                        let resistance = efforts[*j].resistance;
-                        Joint::Prescribed(q, articulated.prescribe_rotation(axis, q, resistance, *gyration))
+                        let added_inertia = efforts[*j].added_inertia;
+                        Joint::Prescribed(q, articulated.prescribe_rotation(axis, q, added_inertia, *gyration))
                     }
                     None => Joint::Single(articulated.free_rotation(axis, efforts[*j], *gyration)),
                 };
-                articulated.turn(turn);
+                articulated.rotate_about_axis(rotation);
                 joint
             }
-            (Factor::Ball { j, turns }, Velocities::Ball { .. }) => {
-                let ball = Ball { turns: *turns, resists: efforts[*j..j + 3].iter().any(|e| !e.resistance.is_zero()) };
+            (Factor::Ball { j, rotations }, Velocities::Ball { .. }) => {
+                let ball = Ball {
+                    rotations: *rotations,
+                    has_added_inertia: efforts[*j..j + 3].iter().any(|e| !e.added_inertia.is_zero()),
+                };
                 let response = ball.free(&mut articulated, [efforts[*j], efforts[j + 1], efforts[j + 2]]);
                 Joint::Ball(ball, Box::new(response))
             }
@@ -142,11 +145,11 @@ pub(super) fn outward<'g>(
             linear = linear + angular.cross(*by) + *acceleration;
         }
         match (factor, velocity, joint) {
-            (Factor::Turn(turn), ..) => (angular, linear) = (turn.inward(angular), turn.inward(linear)),
-            (Factor::Revolute { j, turn }, Velocities::Revolute { gyration }, joint) => {
-                (angular, linear) = (turn.inward(angular), turn.inward(linear));
+            (Factor::Rotation(rotation), ..) => (angular, linear) = (rotation.inward(angular), rotation.inward(linear)),
+            (Factor::Revolute { j, rotation }, Velocities::Revolute { gyration }, joint) => {
+                (angular, linear) = (rotation.inward(angular), rotation.inward(linear));
                 joint.move_on(&mut accelerations[*j], &mut efforts[*j], angular, linear);
-                angular = angular + Vec3::along(turn.axis, accelerations[*j]) + *gyration;
+                angular = angular + Vec3::along(rotation.axis, accelerations[*j]) + *gyration;
             }
             (Factor::Prismatic { j, axis }, _, joint) => {
                 joint.move_on(&mut accelerations[*j], &mut efforts[*j], angular, linear);
@@ -209,13 +212,13 @@ fn free_rotation_vector<'g>(
 ) -> BallResponse<'g> {
     let along_axes = |of: fn(Effort<'g>) -> Expr<'g>| Vec3(vector.along_axes(efforts.map(of)));
     let [before, after] = vector.moments(along_axes(|effort| effort.applied));
-    if efforts.iter().all(|effort| effort.resistance.is_zero()) {
+    if efforts.iter().all(|effort| effort.added_inertia.is_zero()) {
         let response = articulated.free_ball(after, None);
         articulated.rotate_force(vector.rotation(), before);
         return response;
     }
-    let resistance = vector.resistance(along_axes(|effort| effort.resistance));
-    let response = articulated.free_ball(after, Some(resistance));
+    let added_inertia = vector.added_inertia(along_axes(|effort| effort.added_inertia));
+    let response = articulated.free_ball(after, Some(added_inertia));
     articulated.rotate(vector.rotation());
     response
 }
@@ -244,15 +247,15 @@ fn move_by_vector<'g>(
 /// `w = (cos θ ψ̈) e_a + θ̈ e_b + (φ̈ − σ sin θ ψ̈) e_c`: unless θ is ±90°, every w corresponds to a q̈, and the three
 /// behave as a ball joint.
 pub(super) struct Ball<'g> {
-    turns: [Turn<'g>; 3],
-    resists: bool,
+    rotations: [AxisRotation<'g>; 3],
+    has_added_inertia: bool,
 }
 
 impl<'g> Ball<'g> {
     /// Indices of the axes a, b, c, and `σ tan θ`, `1 / cos θ`.
     fn geometry(&self) -> ([usize; 3], Expr<'g>, Expr<'g>) {
-        let [a, b, c] = self.turns.map(|turn| turn.axis.index());
-        let Turn { sin, cos, .. } = self.turns[1];
+        let [a, b, c] = self.rotations.map(|rotation| rotation.axis.index());
+        let AxisRotation { sin, cos, .. } = self.rotations[1];
         let secant = 1.0 / cos;
         let tangent = sin * secant;
         let cyclic = plane([Axis::X, Axis::Y, Axis::Z][c]) == (b, a);
@@ -261,27 +264,27 @@ impl<'g> Ball<'g> {
 
     /// Releases the joint and transforms the articulated inertia to the frame before it.
     ///
-    /// Without resistance it is released in the body's own frame, where its inertia has most zeros; with resistance in the
+    /// Without added inertia it is released in the body's own frame, where its inertia has most zeros; with added inertia in the
     /// frame after the second rotation, where D' has most zeros.
     fn free(&self, articulated: &mut Articulated<'g>, efforts: [Effort<'g>; 3]) -> BallResponse<'g> {
         let ([a, b, c], tangent, secant) = self.geometry();
-        let [first, second, third] = &self.turns;
+        let [first, second, third] = &self.rotations;
         // n · (∂w/∂ψ̇, ∂w/∂θ̇, ∂w/∂φ̇) = τ
         let mut moment = Vec3::zero(secant.graph());
         moment.0[a] = secant * efforts[0].applied + tangent * efforts[2].applied;
         moment.0[b] = efforts[1].applied;
         moment.0[c] = efforts[2].applied;
-        if self.resists {
-            articulated.turn(third);
-            let [psi, theta, phi] = efforts.map(|effort| effort.resistance);
-            let mut resistance = Symmetric3::zero(secant.graph());
-            *resistance.at_mut(a, a) = psi * secant.squared() + phi * tangent.squared();
-            *resistance.at_mut(b, b) = theta;
-            *resistance.at_mut(c, c) = phi;
-            *resistance.at_mut(a, c) = phi * tangent;
-            let response = articulated.free_ball(moment, Some(resistance));
-            articulated.turn(second);
-            articulated.turn(first);
+        if self.has_added_inertia {
+            articulated.rotate_about_axis(third);
+            let [psi, theta, phi] = efforts.map(|effort| effort.added_inertia);
+            let mut added_inertia = Symmetric3::zero(secant.graph());
+            *added_inertia.at_mut(a, a) = psi * secant.squared() + phi * tangent.squared();
+            *added_inertia.at_mut(b, b) = theta;
+            *added_inertia.at_mut(c, c) = phi;
+            *added_inertia.at_mut(a, c) = phi * tangent;
+            let response = articulated.free_ball(moment, Some(added_inertia));
+            articulated.rotate_about_axis(second);
+            articulated.rotate_about_axis(first);
             response
         } else {
             let response = articulated.free_ball(third.inward(moment), None);
@@ -293,9 +296,9 @@ impl<'g> Ball<'g> {
     /// `R_a(ψ) R_b(θ) R_c(φ)` as a matrix, which is known long before the inertias: the chain of dependent operations is shorter
     /// than with plane rotations.
     fn rotation(&self) -> Rotation<'g> {
-        let graph = self.turns[0].sin.graph();
-        let rotate = |rotation: Rotation<'g>, turn: &Turn<'g>| rotation.turned(turn.axis, turn.sin, turn.cos);
-        self.turns.iter().fold(Rotation::identity(graph), rotate)
+        let graph = self.rotations[0].sin.graph();
+        let rotate = |frame: Rotation<'g>, by: &AxisRotation<'g>| frame.rotated(by.axis, by.sin, by.cos);
+        self.rotations.iter().fold(Rotation::identity(graph), rotate)
     }
 
     /// The accelerations of the joint, and α and a after it.
@@ -306,7 +309,7 @@ impl<'g> Ball<'g> {
         mut angular: Vec3<'g>,
         mut linear: Vec3<'g>,
     ) -> ([Expr<'g>; 3], Vec3<'g>, Vec3<'g>) {
-        let [first, second, third] = &self.turns;
+        let [first, second, third] = &self.rotations;
         let before = second.inward(first.inward(angular) + gyrations[0]) + gyrations[1];
         let relative;
         if let Some(own) = &response.angular {

@@ -47,10 +47,10 @@ pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
 }
 
 /// `∂F/∂q_j` and `∂F/∂q̇_j` of all laws on each coordinate at the present state, for implicit steps: where friction declines
-/// with the rate 0, since a step needs no exact derivative but a positive resistance.
-pub fn impedances<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
+/// with the rate 0: a step does not need the exact derivative, but `A + D̂` must stay positive definite.
+pub fn stiffness_and_damping<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
     let (stops, frictions) = (stop_forces(model, &model.v), friction_forces(model, &model.v));
-    let drives = drives::impedances(model);
+    let drives = drives::stiffness_and_damping(model);
     let of = |force: Expr<'g>, by: Expr<'g>| -model.graph.derivatives(&[force], by)[0];
     (0..model.size())
         .map(|j| {

@@ -16,9 +16,9 @@
 use crate::chain::{CoordinateId, CoordinateKind, Step};
 use crate::symbolic::Expr;
 
+use super::axis_rotation::AxisRotation;
 use super::model::Model;
 use super::rotation_vector::RotationVector;
-use super::turn::Turn;
 use super::vector::{Rotation, Vec3};
 
 /// A frame in the world.
@@ -57,7 +57,7 @@ impl<'g> Generator<'g> {
     }
 
     /// `Ω_j u` for a direction u: its rate at unit rate.
-    pub fn turn(&self, u: Vec3<'g>) -> Vec3<'g> {
+    pub fn rotate(&self, u: Vec3<'g>) -> Vec3<'g> {
         self.omega.cross(u)
     }
 }
@@ -121,7 +121,7 @@ impl<'g> Kinematics<'g> {
                 match step {
                     Step::Translate(by) => pose.origin = pose.origin + pose.rotation.apply(model.vector(by)),
                     Step::Rotate { axis, sin, cos } => {
-                        pose.rotation = pose.rotation.turned(*axis, model.number(sin), model.number(cos));
+                        pose.rotation = pose.rotation.rotated(*axis, model.number(sin), model.number(cos));
                     }
                     Step::Move(id) => {
                         generators.push(generator(model, pose, *id, index));
@@ -181,8 +181,8 @@ fn moved<'g>(model: &Model<'g>, pose: Pose<'g>, id: CoordinateId) -> Pose<'g> {
     let coordinate = &model.chain.coordinates[id.0];
     match coordinate.kind {
         CoordinateKind::Rotation => {
-            let Turn { axis, sin, cos } = model.turn(id.0);
-            Pose { rotation: pose.rotation.turned(axis, sin, cos), ..pose }
+            let AxisRotation { axis, sin, cos } = model.axis_rotation(id.0);
+            Pose { rotation: pose.rotation.rotated(axis, sin, cos), ..pose }
         }
         CoordinateKind::Translation => {
             let along: Vec3<'g> = model.q[id.0] * pose.rotation.axis(coordinate.axis);

@@ -62,11 +62,11 @@ pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Opti
         let scale = scale(model, load, model.t);
         let along_own_axes = |vector: &[Value; 3]| {
             let vector = model.vector(vector);
-            let turned = match load.axes {
+            let rotated = match load.axes {
                 LoadAxes::World => kinematics.poses[body].rotation.apply_transposed(vector),
                 LoadAxes::Link => vector,
             };
-            scale.map_or(turned, |scale| scale * turned)
+            scale.map_or(rotated, |scale| scale * rotated)
         };
         let force = along_own_axes(&load.force);
         let moment = along_own_axes(&load.moment) + model.vector(&load.position).cross(force);

@@ -5,12 +5,14 @@
 //! Mathematical Modelling, 2016; `docs/EQUATIONS.md` explains where we deviate from it.
 
 mod articulated;
+mod axis_rotation;
 mod capability;
 mod columns;
 mod connectors;
 mod contact;
 mod cylinders;
 mod drives;
+mod effective_mass;
 mod energy;
 mod factors;
 mod forward;
@@ -27,7 +29,6 @@ mod omissions;
 mod outward;
 mod points;
 mod profile;
-mod resisted;
 mod rotation_vector;
 mod rotors;
 mod saturation;
@@ -36,7 +37,6 @@ mod supports;
 #[cfg(test)]
 mod tests;
 mod transforms;
-mod turn;
 mod twist;
 mod vector;
 

@@ -4,7 +4,7 @@ use crate::chain::{Chain, Inertia, Input, InputId, ParameterId, Value};
 use crate::program::{Argument, Symbol};
 use crate::symbolic::{Expr, Graph, SymbolId};
 
-use super::turn::Turn;
+use super::axis_rotation::AxisRotation;
 use super::vector::{Symmetric3, Vec3};
 
 /// A chain whose inputs and numbers are expressions of one graph.
@@ -20,11 +20,11 @@ pub struct Model<'g> {
     /// Accelerations.
     pub a: Vec<Expr<'g>>,
     /// Right-hand side of a linear system.
-    pub right: Vec<Expr<'g>>,
-    /// Resistances of the coordinates.
-    pub resistance: Vec<Expr<'g>>,
-    /// Resistance of the base, row by row from the diagonal.
-    pub base_resistance: Vec<Expr<'g>>,
+    pub right_hand_side: Vec<Expr<'g>>,
+    /// Added inertias of the coordinates.
+    pub added_inertia: Vec<Expr<'g>>,
+    /// Added inertia of the base, row by row from the diagonal.
+    pub base_added_inertia: Vec<Expr<'g>>,
     parameters: Vec<Expr<'g>>,
     inputs: Vec<Expr<'g>>,
 }
@@ -43,9 +43,9 @@ impl<'g> Model<'g> {
             q: of(Argument::Position),
             v: of(Argument::Velocity),
             a: of(Argument::Acceleration),
-            right: of(Argument::Right),
-            resistance: of(Argument::Resistance),
-            base_resistance: of(Argument::BaseResistance),
+            right_hand_side: of(Argument::RightHandSide),
+            added_inertia: of(Argument::AddedInertia),
+            base_added_inertia: of(Argument::BaseAddedInertia),
             parameters: of(Argument::Parameters),
             inputs: of(Argument::Inputs),
         }
@@ -61,7 +61,7 @@ impl<'g> Model<'g> {
         // Upper triangle of a matrix stored column by column.
         let base = (0..6).flat_map(|row| (row..6).map(move |column| (row, column)));
         let base = base.map(|(row, column)| {
-            symbol(format!("base_{}_{}", row + 1, column + 1), Argument::BaseResistance, row + 6 * column)
+            symbol(format!("base_{}_{}", row + 1, column + 1), Argument::BaseAddedInertia, row + 6 * column)
         });
         let parameters = chain.parameters.iter().enumerate();
         let inputs = chain.inputs.iter().flat_map(|Input { name, .. }| [name.clone(), format!("{name}_is_free")]);
@@ -70,8 +70,8 @@ impl<'g> Model<'g> {
             each(Argument::Position, ""),
             each(Argument::Velocity, "_dot"),
             each(Argument::Acceleration, "_ddot"),
-            each(Argument::Right, "_force"),
-            each(Argument::Resistance, "_resistance"),
+            each(Argument::RightHandSide, "_force"),
+            each(Argument::AddedInertia, "_added_inertia"),
             base.collect(),
             parameters.map(|(i, parameter)| symbol(parameter.name.clone(), Argument::Parameters, i)).collect(),
             inputs.enumerate().map(|(i, name)| symbol(name, Argument::Inputs, i)).collect(),
@@ -94,12 +94,12 @@ impl<'g> Model<'g> {
     }
 
     /// The rotation by coordinate j.
-    pub fn turn(&self, j: usize) -> Turn<'g> {
+    pub fn axis_rotation(&self, j: usize) -> AxisRotation<'g> {
         let (coordinate, q) = (&self.chain.coordinates[j], self.q[j]);
         let (sin, cos) = (q.sin(), q.cos());
         self.graph.name(sin, format!("sin_{}", coordinate.name));
         self.graph.name(cos, format!("cos_{}", coordinate.name));
-        Turn { axis: coordinate.axis, sin, cos }
+        AxisRotation { axis: coordinate.axis, sin, cos }
     }
 
     /// A number of the chain.

@@ -54,15 +54,15 @@ fn outward<'g>(model: &Model<'g>, factors: &[Factor<'g>], accelerations: Option<
     for factor in factors {
         let velocities = along(model, &mut omega, factor, &model.v);
         match (factor, &velocities) {
-            (Factor::Turn(turn), _) => (alpha, a) = (turn.inward(alpha), turn.inward(a)),
-            (Factor::Revolute { j, turn }, Velocities::Revolute { gyration }) => {
-                alpha = own(turn.inward(alpha) + *gyration, &|q| Vec3::along(turn.axis, q[*j]));
-                a = turn.inward(a);
+            (Factor::Rotation(rotation), _) => (alpha, a) = (rotation.inward(alpha), rotation.inward(a)),
+            (Factor::Revolute { j, rotation }, Velocities::Revolute { gyration }) => {
+                alpha = own(rotation.inward(alpha) + *gyration, &|q| Vec3::along(rotation.axis, q[*j]));
+                a = rotation.inward(a);
             }
-            (Factor::Ball { j, turns }, Velocities::Ball { gyrations }) => {
-                for (k, (turn, gyration)) in turns.iter().zip(gyrations).enumerate() {
-                    alpha = own(turn.inward(alpha) + *gyration, &|q| Vec3::along(turn.axis, q[j + k]));
-                    a = turn.inward(a);
+            (Factor::Ball { j, rotations }, Velocities::Ball { gyrations }) => {
+                for (k, (rotation, gyration)) in rotations.iter().zip(gyrations).enumerate() {
+                    alpha = own(rotation.inward(alpha) + *gyration, &|q| Vec3::along(rotation.axis, q[j + k]));
+                    a = rotation.inward(a);
                 }
             }
             (Factor::RotationVector { j, vector }, Velocities::RotationVector { rates, gyration }) => {
@@ -139,12 +139,12 @@ fn inward<'g>(
                 on = *index;
                 bodies[on] = note(force, moment);
             }
-            (Factor::Turn(_) | Factor::Revolute { .. } | Factor::Ball { .. }, _) => {
-                for (j, turn) in factor.turns().into_iter().rev() {
+            (Factor::Rotation(_) | Factor::Revolute { .. } | Factor::Ball { .. }, _) => {
+                for (j, rotation) in factor.rotations().into_iter().rev() {
                     if let Some(j) = j {
-                        bias[j] = -moment[turn.axis.index()];
+                        bias[j] = -moment[rotation.axis.index()];
                     }
-                    (force, moment) = (turn.outward(force), turn.outward(moment));
+                    (force, moment) = (rotation.outward(force), rotation.outward(moment));
                 }
             }
             (Factor::RotationVector { j, vector }, _) => {

@@ -19,9 +19,9 @@ pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'stati
     let absent = chain.base.iter().filter(|c| c.is_none()).count();
     out((1..6).contains(&absent), "some coordinates of the base", "the base moves only as the spec says");
     out(chain.supports.is_empty(), "supports", "the spec has none");
-    out(chain.elements.is_empty(), "springs and dampers of rigid elements", "no link is flexible");
+    out(chain.beam_springs.is_empty(), "springs and dampers of rigid elements", "no link is flexible");
     out(chain.drives.is_empty(), "drives", "the spec has none");
-    out(chain.hinges.is_empty(), "viscous damping of joints", "the spec has none");
+    out(chain.joint_dampers.is_empty(), "viscous damping of joints", "the spec has none");
     out(chain.stops().next().is_none(), "end stops", "the spec has none");
     out(chain.frictions().next().is_none(), "friction of joints", "the spec has none");
     out(chain.loads.is_empty(), "loads applied from outside", "the spec has none");

@@ -9,9 +9,9 @@
 //!   `α = Rᵀ α₋ + e q̈ + ω × e q̇` at a rotation, `a = a₋ + α × d + ω × (ω × d)` at a translation by d, and
 //!   `e q̈ + 2 ω × e q̇` in addition where d changes.
 
+use super::axis_rotation::AxisRotation;
 use super::factors::Factor;
 use super::model::Model;
-use super::turn::Turn;
 use super::vector::Vec3;
 use crate::symbolic::Expr;
 
@@ -27,7 +27,7 @@ pub enum Velocities<'g> {
     /// The displacement d of a translation, and `ω × (ω × d)` with the Coriolis acceleration.
     Translation { by: Vec3<'g>, acceleration: Vec3<'g> },
     /// A constant rotation changes only components.
-    Turn,
+    Rotation,
     /// The frame of a body, with its angular velocity.
     Body { omega: Vec3<'g> },
 }
@@ -50,25 +50,25 @@ pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>])
 
 /// Transforms ω across one factor.
 pub fn along<'g>(model: &Model<'g>, omega: &mut Vec3<'g>, factor: &Factor<'g>, v: &[Expr<'g>]) -> Velocities<'g> {
-    let mut rotate = |turn: &Turn<'g>, rate: Expr<'g>| {
-        let spin = Vec3::along(turn.axis, rate);
-        *omega = turn.inward(*omega) + spin;
+    let mut rotate = |rotation: &AxisRotation<'g>, rate: Expr<'g>| {
+        let spin = Vec3::along(rotation.axis, rate);
+        *omega = rotation.inward(*omega) + spin;
         omega.cross(spin)
     };
     match factor {
         Factor::Translate(by) => Velocities::Translation { by: *by, acceleration: centripetal(*omega, *by) },
-        Factor::Turn(turn) => {
-            *omega = turn.inward(*omega);
-            Velocities::Turn
+        Factor::Rotation(rotation) => {
+            *omega = rotation.inward(*omega);
+            Velocities::Rotation
         }
-        Factor::Revolute { j, turn } => Velocities::Revolute { gyration: rotate(turn, v[*j]) },
+        Factor::Revolute { j, rotation } => Velocities::Revolute { gyration: rotate(rotation, v[*j]) },
         Factor::Prismatic { j, axis } => {
             let by = Vec3::along(*axis, model.q[*j]);
             let coriolis = omega.cross(Vec3::along(*axis, 2.0 * v[*j]));
             Velocities::Translation { by, acceleration: centripetal(*omega, by) + coriolis }
         }
-        Factor::Ball { j, turns } => {
-            let mut gyration = |k: usize| rotate(&turns[k], v[j + k]);
+        Factor::Ball { j, rotations } => {
+            let mut gyration = |k: usize| rotate(&rotations[k], v[j + k]);
             Velocities::Ball { gyrations: [gyration(0), gyration(1), gyration(2)] }
         }
         Factor::RotationVector { j, vector } => {

@@ -107,13 +107,13 @@ impl<'g> RotationVector<'g> {
         [even + odd, even - odd]
     }
 
-    /// `J⁻ᵀ D̂ J⁻¹`, in components after the joint: the effect of resistances D̂ of the coordinates on the relative angular
+    /// `J⁻ᵀ D̂ J⁻¹`, in components after the joint: the effect of added inertias D̂ of the coordinates on the relative angular
     /// acceleration.
-    pub fn resistance(&self, resistances: Vec3<'g>) -> Symmetric3<'g> {
+    pub fn added_inertia(&self, added_inertias: Vec3<'g>) -> Symmetric3<'g> {
         let [f, g] = self.inverse_functions();
         // ρ̈ = M w with M = J⁻ᵀ.
         let inverse = dyadic(self.rho, [f, self.rho[0].graph().constant(0.5), g]);
-        let scaled = [0, 1, 2].map(|k| resistances[k] * inverse.row(k));
+        let scaled = [0, 1, 2].map(|k| added_inertias[k] * inverse.row(k));
         Symmetric3::from_entries(|i, j| {
             scaled[0][i] * inverse.0[0][j] + scaled[1][i] * inverse.0[1][j] + scaled[2][i] * inverse.0[2][j]
         })

@@ -1,6 +1,6 @@
 //! Rotors: additional inertia I of a joint, reflected from the motor by the square of the gear ratio.
 //!
-//! It adds `I` to the diagonal of A and `½ I q̇²` to the kinetic energy. When the joint is released, it is a resistance: `τ − I q̈` acts on
+//! It adds `I` to the diagonal of A and `½ I q̇²` to the kinetic energy. When the joint is released, it is an added inertia: `τ − I q̈` acts on
 //! the part beyond the joint ([`super::articulated`]).
 
 use super::model::Model;

@@ -119,8 +119,8 @@ impl<'g> Stretched<'g> {
     }
 
     /// Stiffness and damping for an implicit step, N/m and N s/m.
-    fn impedances(&self) -> [Vec3<'g>; 2] {
-        self.contact().map_or([self.stiffness, self.damping], |contact| contact.impedances())
+    fn stiffness_and_damping(&self) -> [Vec3<'g>; 2] {
+        self.contact().map_or([self.stiffness, self.damping], |contact| contact.stiffness_and_damping())
     }
 }
 
@@ -136,7 +136,7 @@ fn at_rest<'g>(model: &Model<'g>, r: Vec3<'g>) -> Vec3<'g> {
         Step::Translate(by) => point + model.vector(by),
         Step::Rotate { axis, sin, cos } => {
             let (sin, cos) = (model.number(sin), model.number(cos));
-            Rotation::identity(model.graph).turned(*axis, sin, cos).apply(point)
+            Rotation::identity(model.graph).rotated(*axis, sin, cos).apply(point)
         }
         Step::Move(_) | Step::RotationVector(_) => point,
     })
@@ -275,7 +275,7 @@ pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mu
 
 /// The same for an implicit step at the present state: the law's stiffness along the axes, nowhere negative.
 pub fn step_stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    add_stiffness(model, kinematics, &model.v, |stretched| diagonal(stretched.impedances()[0]), matrix);
+    add_stiffness(model, kinematics, &model.v, |stretched| diagonal(stretched.stiffness_and_damping()[0]), matrix);
 }
 
 fn add_stiffness<'g>(
@@ -292,7 +292,8 @@ fn add_stiffness<'g>(
         for (&(i, u), &(j, w)) in pairs(stretched.jacobian.iter()) {
             let first_order = tangent.apply(u).dot(w);
             // J_j is Ω_j T r_E, a direction that Ω_i turns.
-            let second_order = if stretched.exact { pull.dot(kinematics.generators[i].turn(w)) } else { model.zero() };
+            let second_order =
+                if stretched.exact { pull.dot(kinematics.generators[i].rotate(w)) } else { model.zero() };
             matrix.add(i, j, first_order + second_order);
         }
     }
@@ -307,7 +308,7 @@ pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut 
 
 /// The same for an implicit step at the present state.
 pub fn step_damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    add_damping(model, kinematics, &model.v, |stretched| stretched.impedances()[1], matrix);
+    add_damping(model, kinematics, &model.v, |stretched| stretched.stiffness_and_damping()[1], matrix);
 }
 
 fn add_damping<'g>(

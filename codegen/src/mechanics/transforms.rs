@@ -30,7 +30,7 @@ fn derivative<'g>(kinematics: &Kinematics<'g>, body: usize, j: usize) -> [Vec3<'
 /// `Ω T`
 fn moved<'g>(generator: &Generator<'g>, pose: &Pose<'g>) -> [Vec3<'g>; 4] {
     let [x, y, z, origin] = columns(pose);
-    [generator.turn(x), generator.turn(y), generator.turn(z), generator.velocity(origin)]
+    [generator.rotate(x), generator.rotate(y), generator.rotate(z), generator.velocity(origin)]
 }
 
 /// `∂T(p)/∂q_j` for every body and every coordinate before it.
@@ -64,7 +64,7 @@ pub fn second_derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) ->
         factors.extend(Curvature::PAIRS.into_iter().flat_map(|pair| curvature.shares(pair)));
     }
     let vectors = kinematics.curvatures.iter().map(|curvature| curvature.first).collect();
-    (Shape::Turned { degrees, rotations, vectors }, factors)
+    (Shape::TransformFactors { degrees, rotations, vectors }, factors)
 }
 
 fn written_out<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
@@ -74,15 +74,15 @@ fn written_out<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'
         for m in 0..count {
             for n in m..count {
                 // The columns of Ω_n T are directions, so Ω_m only rotates them.
-                let turned = first[n].map(|column| kinematics.generators[m].turn(column));
+                let rotated = first[n].map(|column| kinematics.generators[m].rotate(column));
                 let within = |curvature: &&Curvature<'g>| curvature.first <= m && n < curvature.first + 3;
                 outputs.extend(rows(match kinematics.curvatures.iter().find(within) {
                     Some(curvature) => {
                         let generator = curvature.generator((m - curvature.first, n - curvature.first));
                         let own = moved(&generator, &kinematics.poses[body]);
-                        [0, 1, 2, 3].map(|k| turned[k] + own[k])
+                        [0, 1, 2, 3].map(|k| rotated[k] + own[k])
                     }
-                    None => turned,
+                    None => rotated,
                 }));
             }
         }

@@ -110,7 +110,7 @@ impl<'g> Rotation<'g> {
     }
 
     /// `R · R_axis(angle)`: a plane rotation of two columns; the third is unchanged.
-    pub fn turned(self, axis: Axis, sin: Expr<'g>, cos: Expr<'g>) -> Self {
+    pub fn rotated(self, axis: Axis, sin: Expr<'g>, cos: Expr<'g>) -> Self {
         let (first, second) = plane(axis);
         let (a, b) = (self.0[first], self.0[second]);
         let mut columns = self.0;

@@ -1,14 +1,16 @@
 //! The completion of results that are left as factors, because there are too many of them to write out.
 
 use super::OperationCount;
-use super::shape::{Point, Shape};
+use super::shape::{ConcurrentAxes, Shape};
 use crate::symbolic::Scalar;
 
 impl Shape {
     /// The result from its slots: the slots themselves, unless they are factors.
     pub fn close<S: Scalar>(&self, slots: Vec<S>) -> Vec<S> {
         match self {
-            Shape::Turned { degrees, rotations, vectors } => turned_pairs(degrees, rotations.len(), vectors, &slots),
+            Shape::TransformFactors { degrees, rotations, vectors } => {
+                second_derivatives(degrees, rotations.len(), vectors, &slots)
+            }
             Shape::Columns { n, points, .. } => {
                 let (columns, bias) = slots.split_at(12 * n);
                 let mut closed = mass_matrix(points, columns);
@@ -23,7 +25,7 @@ impl Shape {
     #[must_use]
     pub fn closing_count(&self) -> OperationCount {
         match self {
-            Shape::Turned { degrees, rotations, vectors } => {
+            Shape::TransformFactors { degrees, rotations, vectors } => {
                 let of = |&count: &usize| (0..count).filter(|&m| rotations[m]).map(|m| count - m).sum::<usize>();
                 let pairs: usize = degrees.iter().map(of).sum();
                 // Three products in each of twelve entries of six pairs.
@@ -38,7 +40,7 @@ impl Shape {
             Shape::Columns { n, points, .. } => {
                 // An inner product per entry, a cross product per column after a point.
                 let entries = n * (n + 1) / 2;
-                let after = |left: &mut usize, point: &Point| {
+                let after = |left: &mut usize, point: &ConcurrentAxes| {
                     *left -= point.coordinates;
                     Some(*left)
                 };
@@ -55,7 +57,7 @@ impl Shape {
 }
 
 /// Pairs of second derivatives, body by body, from axes and first derivatives.
-fn turned_pairs<S: Scalar>(degrees: &[usize], coordinates: usize, vectors: &[usize], slots: &[S]) -> Vec<S> {
+fn second_derivatives<S: Scalar>(degrees: &[usize], coordinates: usize, vectors: &[usize], slots: &[S]) -> Vec<S> {
     let (axes, derivatives) = slots.split_at(3 * coordinates);
     let (derivatives, shares) = derivatives.split_at(derivatives.len() - 18 * vectors.len());
     let derivative = |at: usize| &derivatives[12 * at..12 * at + 12];
@@ -66,7 +68,7 @@ fn turned_pairs<S: Scalar>(degrees: &[usize], coordinates: usize, vectors: &[usi
             let axis = &axes[3 * m..3 * m + 3];
             for n in m..count {
                 let vector = vectors.iter().position(|&first| first <= m && n < first + 3);
-                let mut pair: Vec<S> = turned(axis, derivative(start + n)).collect();
+                let mut pair: Vec<S> = rotated(axis, derivative(start + n)).collect();
                 if let Some(vector) = vector {
                     let first = vectors[vector];
                     let row = m - first;
@@ -86,25 +88,25 @@ fn turned_pairs<S: Scalar>(degrees: &[usize], coordinates: usize, vectors: &[usi
 }
 
 /// Upper triangle of a mass matrix, row by row: `a_ij = n_i · L_j` or `n_i · P_j`, with L_j taken about the point of i.
-fn mass_matrix<S: Scalar>(points: &[Point], slots: &[S]) -> Vec<S> {
-    let turns: Vec<bool> =
-        points.iter().flat_map(|point| std::iter::repeat_n(point.turns, point.coordinates)).collect();
-    let n = turns.len();
+fn mass_matrix<S: Scalar>(points: &[ConcurrentAxes], slots: &[S]) -> Vec<S> {
+    let rotate: Vec<bool> =
+        points.iter().flat_map(|point| std::iter::repeat_n(point.rotate, point.coordinates)).collect();
+    let n = rotate.len();
     let vector = |kind: usize, j: usize| -> [S; 3] { std::array::from_fn(|k| slots[3 * (kind * n + j) + k].clone()) };
     let mut angular: Vec<[S; 3]> = (0..n).map(|j| vector(2, j)).collect();
     let mut rows = Vec::new();
     for i in (0..n).rev() {
-        let (axis, way) = (vector(0, i), vector(3, i));
+        let (axis, offset) = (vector(0, i), vector(3, i));
         for (j, angular) in angular.iter_mut().enumerate().skip(i + 1) {
             let linear = vector(1, j);
             let moved = |k: usize| {
                 let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-                way[a].clone() * linear[b].clone() + (angular[k].clone() - way[b].clone() * linear[a].clone())
+                offset[a].clone() * linear[b].clone() + (angular[k].clone() - offset[b].clone() * linear[a].clone())
             };
             *angular = [moved(0), moved(1), moved(2)];
         }
         let entry = |j: usize| {
-            let momentum = if turns[i] { angular[j].clone() } else { vector(1, j) };
+            let momentum = if rotate[i] { angular[j].clone() } else { vector(1, j) };
             let [x, y, z] = [0, 1, 2].map(|k| axis[k].clone() * momentum[k].clone());
             x + (y + z)
         };
@@ -114,7 +116,7 @@ fn mass_matrix<S: Scalar>(points: &[Point], slots: &[S]) -> Vec<S> {
 }
 
 /// `ω × column` of the four columns of a 3×4 matrix stored row by row.
-fn turned<S: Scalar>(axis: &[S], rows: &[S]) -> impl Iterator<Item = S> {
+fn rotated<S: Scalar>(axis: &[S], rows: &[S]) -> impl Iterator<Item = S> {
     let at = |row: usize, column: usize| rows[4 * row + column].clone();
     let entry = move |row: usize, column: usize| {
         let (a, b) = ((row + 1) % 3, (row + 2) % 3);

@@ -68,7 +68,7 @@ functions! {
         SupportForces = "support_forces",
         ElementForces = "element_forces",
         DriveForces = "drive_forces",
-        HingeForces = "hinge_forces",
+        JointDamperForces = "joint_damper_forces",
         StopForces = "stop_forces",
         FrictionForces = "friction_forces",
         LoadForces = "load_forces",
@@ -109,8 +109,8 @@ functions! {
     Implicit {
         Factorise = "factorise",
         Solve = "solve",
-        JointImpedances = "joint_impedances",
-        NonlinearImpedances = "nonlinear_impedances",
+        JointStiffnessAndDamping = "joint_stiffness_and_damping",
+        NonlinearStiffnessAndDamping = "nonlinear_stiffness_and_damping",
         BaseStiffness = "base_stiffness",
         BaseDamping = "base_damping",
     }

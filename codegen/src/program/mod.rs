@@ -8,12 +8,12 @@ mod shape;
 
 use std::collections::HashMap;
 
-use crate::symbolic::{ExprId, Graph, Nodes, Op, SymbolId, Tape};
+use crate::symbolic::{ExprId, Graph, Nodes, Op, SweepTrace, SymbolId};
 
 pub use count::OperationCount;
 pub use id::{FunctionId, Seam};
 pub use interpret::Inputs;
-pub use shape::{Point, Shape, Struct};
+pub use shape::{ConcurrentAxes, Shape, Struct};
 
 /// Functions that share one graph of expressions.
 #[derive(Clone, Debug, Default)]
@@ -53,17 +53,17 @@ pub enum Argument {
     /// A vector, `a`: accelerations of the coordinates.
     Acceleration,
     /// A generalized force, the right-hand side `r` of a linear system.
-    Right,
-    /// Resistances of single coordinates, a diagonal.
-    Resistance,
-    /// Resistance of the base, a symmetric 6×6 matrix.
-    BaseResistance,
+    RightHandSide,
+    /// Added inertias of single coordinates, a diagonal.
+    AddedInertia,
+    /// Added inertia of the base, a symmetric 6×6 matrix.
+    BaseAddedInertia,
     /// Results of an earlier function for this one.
     Factors,
-    /// Values that differ from one round of a loop to the next, in order of the loop's sources.
-    Round,
-    /// Values that a loop leaves, in order of the function's takings.
-    Loop,
+    /// Values that differ from one iteration of a loop to the next, in order of the loop's sources.
+    LoopVarying,
+    /// Values that a loop leaves, in order of the function's live-outs.
+    LiveOut,
     /// Live parameters.
     Parameters,
     /// Inputs that are set between steps, two numbers each: the value while it is set, else 0; and 0 while it is set, else 1.
@@ -86,14 +86,14 @@ pub struct Function {
     /// Expressions of the result's slots, as many as [`Shape::len`], in its order.
     pub outputs: Vec<ExprId>,
     /// The sweeps over the bodies that derived them, if any.
-    pub tape: Tape,
+    pub trace: SweepTrace,
 }
 
 impl Function {
     /// The function with the sweeps that derived it.
     #[must_use]
-    pub fn by(self, tape: Tape) -> Self {
-        Function { tape, ..self }
+    pub fn by(self, trace: SweepTrace) -> Self {
+        Function { trace, ..self }
     }
 }
 
@@ -185,7 +185,7 @@ impl Program {
             moved[id.index()] = Some(alone.append(op));
         }
         let outputs = function.outputs.iter().filter_map(|id| moved[id.index()]).collect();
-        alone.functions = vec![Function { outputs, tape: Tape::default(), ..function.clone() }];
+        alone.functions = vec![Function { outputs, trace: SweepTrace::default(), ..function.clone() }];
         alone
     }
 }

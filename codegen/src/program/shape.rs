@@ -2,11 +2,11 @@
 
 /// Consecutive coordinates that act at one point: at most three, and either all rotate or all translate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Point {
+pub struct ConcurrentAxes {
     /// Their number.
     pub coordinates: usize,
     /// Whether they rotate.
-    pub turns: bool,
+    pub rotate: bool,
 }
 
 /// A type of the runtime whose fields are numbers.
@@ -68,7 +68,7 @@ pub enum Shape {
     /// body, each as in [`Shape::Transforms`]. The result is `T_mn = ω_m × T_n` for m ≤ n. Three coordinates of one rotation
     /// vector have an additional `Σ_k share_k T_k`, with k over the three; the shares come last, six times three per vector, row by
     /// row of a triangle.
-    Turned {
+    TransformFactors {
         /// The number of coordinates that move each body.
         degrees: Vec<usize>,
         /// Whether each coordinate is a rotation.
@@ -82,7 +82,7 @@ pub enum Shape {
         /// The number of coordinates.
         n: usize,
         /// The points at which the coordinates act, in order.
-        points: Vec<Point>,
+        points: Vec<ConcurrentAxes>,
         /// Whether the bias is included.
         bias: bool,
     },
@@ -112,7 +112,7 @@ impl Shape {
             Shape::Rows { count, n } => count * n,
             Shape::Structs(of, n) => of.len() * n,
             Shape::Transforms { counts, .. } => 12 * counts.iter().sum::<usize>(),
-            Shape::Turned { degrees, rotations, vectors } => {
+            Shape::TransformFactors { degrees, rotations, vectors } => {
                 3 * rotations.len() + 12 * degrees.iter().sum::<usize>() + 18 * vectors.len()
             }
             Shape::Record(_, fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
@@ -124,7 +124,7 @@ impl Shape {
     pub fn matrices(&self) -> usize {
         match self {
             Shape::Transforms { counts, .. } => counts.iter().sum(),
-            Shape::Turned { degrees, .. } => degrees.iter().map(|n| n * (n + 1) / 2).sum(),
+            Shape::TransformFactors { degrees, .. } => degrees.iter().map(|n| n * (n + 1) / 2).sum(),
             _ => 0,
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor};
 
-use super::deserializer::{Place, Reader, Unread};
+use super::deserializer::{Reader, Subject, Unread};
 use super::tree::{Content, Node};
 use crate::diagnostic::{Span, rule, suggest};
 
@@ -34,7 +34,7 @@ fn name_of(item: &Node) -> Option<&str> {
     })
 }
 
-/// Start, end and value of a node, for [`Given`](crate::spec::Given).
+/// Start, end and value of a node, for [`Spanned`](crate::spec::Spanned).
 pub(super) struct Parts<'a> {
     reader: Reader<'a>,
     next: usize,
@@ -80,8 +80,8 @@ impl<'a> SeqAccess<'a> for Items<'a> {
     type Error = Unread;
     fn next_element_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<Option<T::Value>, Unread> {
         let Some(item) = self.items.next() else { return Ok(None) };
-        let place = Place::Entry(self.reader.place.key(), name_of(item));
-        seed.deserialize(Reader { node: Some(item), span: shown_item(item), place, ..self.reader }).map(Some)
+        let subject = Subject::Entry(self.reader.subject.key(), name_of(item));
+        seed.deserialize(Reader { node: Some(item), span: shown_item(item), subject, ..self.reader }).map(Some)
     }
 }
 
@@ -124,8 +124,8 @@ impl<'a> MapAccess<'a> for Entries<'a> {
     fn next_value_seed<V: DeserializeSeed<'a>>(&mut self, seed: V) -> Result<V::Value, Unread> {
         let (key, value) = &self.pairs[self.next - 1];
         let reader = self.reader;
-        let (span, place) = (shown(key.span, value), Place::Key(borrowed(key)));
-        seed.deserialize(Reader { node: Some(value), span, place, owner: reader.place, ..reader })
+        let (span, subject) = (shown(key.span, value), Subject::Key(borrowed(key)));
+        seed.deserialize(Reader { node: Some(value), span, subject, owner: reader.subject, ..reader })
     }
 }
 
@@ -188,8 +188,8 @@ impl<'a> MapAccess<'a> for Fields<'a> {
             Some((span, node)) => (span, Some(node)),
             None => (self.reader.span, None),
         };
-        let (place, owner) = (Place::Key(self.names[field]), self.reader.place);
-        seed.deserialize(Reader { node, span, place, owner, ..self.reader })
+        let (subject, owner) = (Subject::Key(self.names[field]), self.reader.subject);
+        seed.deserialize(Reader { node, span, subject, owner, ..self.reader })
     }
 }
 
@@ -204,7 +204,7 @@ impl<'a> Choice<'a> {
     /// Reader of the variant's content.
     fn content(&self) -> Reader<'a> {
         let span = self.node.map_or(self.reader.span, |node| shown(self.reader.span, node));
-        Reader { node: self.node, span, place: Place::Key(self.variant), owner: self.reader.place, ..self.reader }
+        Reader { node: self.node, span, subject: Subject::Key(self.variant), owner: self.reader.subject, ..self.reader }
     }
 
     /// Reports what the content cannot report itself, because it has no location.

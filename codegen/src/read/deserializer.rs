@@ -9,7 +9,7 @@ use serde::forward_to_deserialize_any;
 use super::access::{Choice, Entries, Fields, Items, Parts};
 use super::tree::{Content, Node};
 use crate::diagnostic::{Mistake, Span, list, rule, suggest};
-use crate::spec::{EITHER, GIVEN, MANY};
+use crate::spec::{EITHER, MANY, SPANNED};
 
 /// Why a value could not be read.
 #[derive(Debug)]
@@ -53,7 +53,7 @@ fn with_decimal_point(content: &Content) -> Option<String> {
 
 /// The description of a node in messages.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Place<'a> {
+pub(super) enum Subject<'a> {
     /// The whole file.
     Whole,
     /// The value of a key.
@@ -62,23 +62,23 @@ pub(super) enum Place<'a> {
     Entry(&'a str, Option<&'a str>),
 }
 
-impl<'a> Place<'a> {
+impl<'a> Subject<'a> {
     /// The key that contains it.
     pub fn key(self) -> &'a str {
         match self {
-            Place::Whole => "",
-            Place::Key(key) | Place::Entry(key, _) => key,
+            Subject::Whole => "",
+            Subject::Key(key) | Subject::Entry(key, _) => key,
         }
     }
 }
 
-impl Display for Place<'_> {
+impl Display for Subject<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
-            Place::Whole => f.write_str("the crane"),
-            Place::Key(key) => write!(f, "`{key}`"),
-            Place::Entry(key, Some(name)) => write!(f, "`{name}` of `{key}`"),
-            Place::Entry(key, None) => write!(f, "an entry of `{key}`"),
+            Subject::Whole => f.write_str("the crane"),
+            Subject::Key(key) => write!(f, "`{key}`"),
+            Subject::Entry(key, Some(name)) => write!(f, "`{name}` of `{key}`"),
+            Subject::Entry(key, None) => write!(f, "an entry of `{key}`"),
         }
     }
 }
@@ -91,9 +91,9 @@ pub(super) struct Reader<'a> {
     /// Its location, or the location where it is missing.
     pub span: Span,
     /// Its description in messages.
-    pub place: Place<'a>,
+    pub subject: Subject<'a>,
     /// The description of its owner.
-    pub owner: Place<'a>,
+    pub owner: Subject<'a>,
     /// The mistakes so far.
     pub mistakes: &'a RefCell<Vec<Mistake>>,
 }
@@ -101,7 +101,7 @@ pub(super) struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// A reader of the whole file.
     pub fn root(node: &'a Node, mistakes: &'a RefCell<Vec<Mistake>>) -> Self {
-        Reader { node: Some(node), span: node.span, place: Place::Whole, owner: Place::Whole, mistakes }
+        Reader { node: Some(node), span: node.span, subject: Subject::Whole, owner: Subject::Whole, mistakes }
     }
 
     /// Notes a mistake; the value is then [`Unread::Reported`].
@@ -118,7 +118,7 @@ impl<'a> Reader<'a> {
             }
             self.report(rule::wrong_value(
                 self.span,
-                self.place,
+                self.subject,
                 node.content.describe(),
                 node.content.kind(),
                 if expected == "a boolean" { "`true` or `false`" } else { expected.as_str() },
@@ -130,7 +130,7 @@ impl<'a> Reader<'a> {
     fn content(&self) -> Result<&'a Content, Unread> {
         match self.node {
             Some(node) => Ok(&node.content),
-            None => Err(self.report(rule::missing_key(self.span, self.place.key(), self.owner))),
+            None => Err(self.report(rule::missing_key(self.span, self.subject.key(), self.owner))),
         }
     }
 
@@ -138,7 +138,7 @@ impl<'a> Reader<'a> {
     fn variant(&self, name: &str, span: Span, variants: &[&'static str]) -> Result<&'static str, Unread> {
         variants.iter().copied().find(|variant| *variant == name).ok_or_else(|| {
             let help = suggest(name, variants.iter().copied());
-            self.report(rule::unknown_choice(span, self.place, name, help))
+            self.report(rule::unknown_choice(span, self.subject, name, help))
         })
     }
 
@@ -171,7 +171,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
     }
 
     fn deserialize_newtype_struct<V: Visitor<'de>>(self, name: &'static str, visitor: V) -> Result<V::Value, Unread> {
-        if name == GIVEN {
+        if name == SPANNED {
             return visitor.visit_seq(Parts::new(self));
         }
         match (name, self.content()?) {
@@ -193,7 +193,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         match self.content()? {
             Content::Sequence(items) if items.len() == length => visitor.visit_seq(Items::new(self, items)),
             Content::Sequence(items) => {
-                Err(self.report(rule::wrong_length(self.span, self.place, length, items.len())))
+                Err(self.report(rule::wrong_length(self.span, self.subject, length, items.len())))
             }
             _ => Err(Unread::Expected(format!("a list of {length} numbers"))),
         }
@@ -237,7 +237,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                     return visitor.visit_enum(Choice { reader: Reader { span, ..self }, variant, node: Some(node) });
                 }
                 let span = choices.get(1).map_or(self.span, |(span, ..)| *span);
-                Err(self.report(rule::not_one_choice(span, self.place, choices.len(), list(variants))))
+                Err(self.report(rule::not_one_choice(span, self.subject, choices.len(), list(variants))))
             }
             _ => Err(Unread::Expected(format!("one of {}", list(variants)))),
         }

@@ -7,36 +7,36 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
-use super::{Angle, Either, Given, Inertia, Number, Vector};
+use super::{Angle, Either, Inertia, Number, Spanned, Vector};
 
 /// A beam along x of its link: `sections`, `material` and `section`, or `elements` and `springs` one by one.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `length`, `sections`, `material`, `section`")]
 pub struct Beam {
     /// Length, m.
-    pub length: Given<Number>,
+    pub length: Spanned<Number>,
     /// Number of equal sections, an integer from 1 to 1000 (n springs between n + 1 rigid elements), or `rigid`.
-    pub sections: Option<Given<Sections>>,
+    pub sections: Option<Spanned<Sections>>,
     /// Material: the name of an entry of `materials`, or a mapping of its properties.
-    pub material: Option<Given<Either<String, Material>>>,
+    pub material: Option<Spanned<Either<String, Material>>>,
     /// Cross-section, exactly one shape.
-    pub section: Option<Given<Section>>,
+    pub section: Option<Spanned<Section>>,
     /// Instead of `section`: parts with different sections, from the beginning to the tip.
-    pub parts: Option<Given<Vec<Given<BeamPart>>>>,
+    pub parts: Option<Spanned<Vec<Spanned<BeamPart>>>>,
     /// Curvature at rest. Default straight.
-    pub bend: Option<Given<Bend>>,
+    pub bend: Option<Spanned<Bend>>,
     /// Additional distributed mass, kg/m, with the section's radii of gyration. Default 0.
-    pub extra_mass: Option<Given<Number>>,
+    pub extra_mass: Option<Spanned<Number>>,
     /// Factor by which stresses must stay below the material's `yield_stress`. Default 1.5.
-    pub safety_factor: Option<Given<Number>>,
+    pub safety_factor: Option<Spanned<Number>>,
     /// Damping of the springs. Default none.
-    pub damping: Option<Given<BeamDamping>>,
+    pub damping: Option<Spanned<BeamDamping>>,
     /// Rotation between two elements. Default `symmetric`.
-    pub section_joint: Option<Given<SectionJoint>>,
+    pub section_joint: Option<Spanned<SectionJoint>>,
     /// Rigid elements one by one, n + 1 of them.
-    pub elements: Option<Given<Vec<Given<Element>>>>,
+    pub elements: Option<Spanned<Vec<Spanned<Element>>>>,
     /// Springs between the elements, n of them.
-    pub springs: Option<Given<Vec<Given<Spring>>>>,
+    pub springs: Option<Spanned<Vec<Spanned<Spring>>>>,
 }
 
 /// Number of sections of a beam.
@@ -84,11 +84,11 @@ impl JsonSchema for Sections {
 #[serde(deny_unknown_fields, expecting = "a mapping of `length`, `section` and `to`")]
 pub struct BeamPart {
     /// Length, m.
-    pub length: Given<Number>,
+    pub length: Spanned<Number>,
     /// Cross-section, of a tapered part that of its beginning.
-    pub section: Given<Section>,
+    pub section: Spanned<Section>,
     /// Cross-section of a tapered part at its end, of the same shape. Default: the part is not tapered.
-    pub to: Option<Given<Section>>,
+    pub to: Option<Spanned<Section>>,
 }
 
 /// Angles between the beginning and the tip of a curved beam at rest, an arc.
@@ -96,9 +96,9 @@ pub struct BeamPart {
 #[serde(deny_unknown_fields, expecting = "a mapping of `psi` and `theta`")]
 pub struct Bend {
     /// About z: curved in the x–y plane, rad.
-    pub psi: Option<Given<Angle>>,
+    pub psi: Option<Spanned<Angle>>,
     /// About y: curved in the x–z plane, rad.
-    pub theta: Option<Given<Angle>>,
+    pub theta: Option<Spanned<Angle>>,
 }
 
 /// Rotation between two rigid elements of a beam.
@@ -117,14 +117,14 @@ pub enum SectionJoint {
 pub struct Material {
     /// Young's modulus, Pa.
     #[serde(rename = "E")]
-    pub youngs_modulus: Given<Number>,
+    pub youngs_modulus: Spanned<Number>,
     /// Shear modulus, Pa.
     #[serde(rename = "G")]
-    pub shear_modulus: Given<Number>,
+    pub shear_modulus: Spanned<Number>,
     /// Density, kg/m³.
-    pub density: Given<Number>,
+    pub density: Spanned<Number>,
     /// Yield stress, Pa. Default none: no utilisation is computed.
-    pub yield_stress: Option<Given<Number>>,
+    pub yield_stress: Option<Spanned<Number>>,
 }
 
 /// Cross-section of a beam: height along y, width along z.
@@ -134,46 +134,46 @@ pub enum Section {
     /// Hollow rectangle with walls of one thickness.
     Box {
         /// Outer height along y, m.
-        height: Given<Number>,
+        height: Spanned<Number>,
         /// Outer width along z, m.
-        width: Given<Number>,
+        width: Spanned<Number>,
         /// Thickness of the walls, m.
-        thickness: Given<Number>,
+        thickness: Spanned<Number>,
     },
     /// Hollow circle.
     Tube {
         /// Outer diameter, m.
-        diameter: Given<Number>,
+        diameter: Spanned<Number>,
         /// Thickness of the wall, m.
-        thickness: Given<Number>,
+        thickness: Spanned<Number>,
     },
     /// Solid rectangle.
     Solid {
         /// Height along y, m.
-        height: Given<Number>,
+        height: Spanned<Number>,
         /// Width along z, m.
-        width: Given<Number>,
+        width: Spanned<Number>,
     },
     /// Solid circle.
     Circle {
         /// Diameter, m.
-        diameter: Given<Number>,
+        diameter: Spanned<Number>,
     },
     /// Any section, given by its numbers.
     Numbers {
         /// Area, m².
-        area: Given<Number>,
+        area: Spanned<Number>,
         /// Second moment of area ∫ z² dA, for bending in the x–z plane, m⁴.
         #[serde(rename = "Jy")]
-        jy: Given<Number>,
+        jy: Spanned<Number>,
         /// Second moment of area ∫ y² dA, for bending in the x–y plane, m⁴.
         #[serde(rename = "Jz")]
-        jz: Given<Number>,
+        jz: Spanned<Number>,
         /// Torsion constant, m⁴.
         #[serde(rename = "Jo")]
-        jo: Given<Number>,
+        jo: Spanned<Number>,
         /// Moduli for stresses. Default none: no stresses are computed.
-        moduli: Option<Box<Given<Moduli>>>,
+        moduli: Option<Box<Spanned<Moduli>>>,
     },
 }
 
@@ -183,19 +183,19 @@ pub enum Section {
 pub struct Moduli {
     /// Modulus of bending about y, m³.
     #[serde(rename = "Wy")]
-    pub wy: Given<Number>,
+    pub wy: Spanned<Number>,
     /// Modulus of bending about z, m³.
     #[serde(rename = "Wz")]
-    pub wz: Given<Number>,
+    pub wz: Spanned<Number>,
     /// Modulus of torsion, m³.
     #[serde(rename = "Wt")]
-    pub wt: Given<Number>,
+    pub wt: Spanned<Number>,
     /// Shear area along y, m²: the force over the largest shear stress.
     #[serde(rename = "Ay")]
-    pub ay: Given<Number>,
+    pub ay: Spanned<Number>,
     /// Shear area along z, m².
     #[serde(rename = "Az")]
-    pub az: Given<Number>,
+    pub az: Spanned<Number>,
 }
 
 /// Damping of the springs of a beam, exactly one of these.
@@ -203,7 +203,7 @@ pub struct Moduli {
 #[serde(rename_all = "snake_case")]
 pub enum BeamDamping {
     /// Kelvin–Voigt: damping = beta × stiffness, s; one number, or one per direction.
-    Beta(Given<Either<Number, Directions>>),
+    Beta(Spanned<Either<Number, Directions>>),
     /// Damping of each spring, N m s/rad.
     Coefficients(Directions),
 }
@@ -213,11 +213,11 @@ pub enum BeamDamping {
 #[serde(deny_unknown_fields, expecting = "a mapping of `psi`, `theta`, `phi`")]
 pub struct Directions {
     /// Bending in the x–y plane, about z.
-    pub psi: Given<Number>,
+    pub psi: Spanned<Number>,
     /// Bending in the x–z plane, about y.
-    pub theta: Given<Number>,
+    pub theta: Spanned<Number>,
     /// Torsion, about x.
-    pub phi: Given<Number>,
+    pub phi: Spanned<Number>,
 }
 
 /// A rigid element of a beam.
@@ -225,13 +225,13 @@ pub struct Directions {
 #[serde(deny_unknown_fields, expecting = "a mapping of `length`, `mass`, `com` and `inertia`")]
 pub struct Element {
     /// Length along x, m.
-    pub length: Given<Number>,
+    pub length: Spanned<Number>,
     /// Mass, kg.
-    pub mass: Given<Number>,
+    pub mass: Spanned<Number>,
     /// Centre of mass in the element's frame, whose origin is at its start, m.
-    pub com: Given<Vector>,
+    pub com: Spanned<Vector>,
     /// Inertia.
-    pub inertia: Given<Inertia>,
+    pub inertia: Spanned<Inertia>,
 }
 
 /// A spring between two rigid elements.
@@ -239,7 +239,7 @@ pub struct Element {
 #[serde(deny_unknown_fields, expecting = "a mapping of `stiffness` and `damping`")]
 pub struct Spring {
     /// Stiffness, N m/rad.
-    pub stiffness: Given<Directions>,
+    pub stiffness: Spanned<Directions>,
     /// Damping, N m s/rad. Default none.
-    pub damping: Option<Given<Directions>>,
+    pub damping: Option<Spanned<Directions>>,
 }

@@ -3,20 +3,20 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Angle, Given, Motion, Number, Vector};
+use super::{Angle, Motion, Number, Spanned, Vector};
 
 /// A spring, gas spring or rope between two points, which pulls or pushes them along the line between them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `from`, `to` and `law`")]
 pub struct Connector {
     /// Name, a `snake_case` identifier.
-    pub name: Given<String>,
+    pub name: Spanned<String>,
     /// One of its points.
-    pub from: Given<Attachment>,
+    pub from: Spanned<Attachment>,
     /// The other.
-    pub to: Given<Attachment>,
+    pub to: Spanned<Attachment>,
     /// The law of its force; exactly one.
-    pub law: Given<ConnectorLaw>,
+    pub law: Spanned<ConnectorLaw>,
 }
 
 /// A point of a link, or of the world.
@@ -24,9 +24,9 @@ pub struct Connector {
 #[serde(deny_unknown_fields, expecting = "a mapping of `link` and `at`")]
 pub struct Attachment {
     /// The link. Default: the world.
-    pub link: Option<Given<String>>,
+    pub link: Option<Spanned<String>>,
     /// Position in the frame of the link (of a beam: undeformed) or of the world, m.
-    pub at: Given<Vector>,
+    pub at: Spanned<Vector>,
 }
 
 /// A coupling: one coordinate follows another through a spring and a damper.
@@ -34,19 +34,19 @@ pub struct Attachment {
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `coordinate`, `follows`, `ratio` and `stiffness`")]
 pub struct Coupling {
     /// Name, a `snake_case` identifier.
-    pub name: Given<String>,
+    pub name: Spanned<String>,
     /// The coordinate that follows.
-    pub coordinate: Given<String>,
+    pub coordinate: Spanned<String>,
     /// The coordinate that leads.
-    pub follows: Given<String>,
+    pub follows: Spanned<String>,
     /// How far the one moves per unit of the other: m, rad, m/rad or rad/m.
-    pub ratio: Given<Number>,
+    pub ratio: Spanned<Number>,
     /// Where the one is while the other is at 0, m or rad. Default 0.
-    pub offset: Option<Given<Angle>>,
+    pub offset: Option<Spanned<Angle>>,
     /// Stiffness, N/m or N m/rad, of the coordinate that follows.
-    pub stiffness: Given<Number>,
+    pub stiffness: Spanned<Number>,
     /// Damping, N s/m or N m s/rad. Default 0.
-    pub damping: Option<Given<Number>>,
+    pub damping: Option<Spanned<Number>>,
 }
 
 /// How the force of a connector depends on its length.
@@ -66,11 +66,11 @@ pub enum ConnectorLaw {
 #[serde(deny_unknown_fields, expecting = "a mapping of `stiffness`, `damping` and `length`")]
 pub struct PointSpring {
     /// Stiffness, N/m.
-    pub stiffness: Given<Number>,
+    pub stiffness: Spanned<Number>,
     /// Damping, N s/m. Default 0.
-    pub damping: Option<Given<Number>>,
+    pub damping: Option<Spanned<Number>>,
     /// Length without force, m.
-    pub length: Given<Number>,
+    pub length: Spanned<Number>,
 }
 
 /// A gas spring between two points.
@@ -78,13 +78,13 @@ pub struct PointSpring {
 #[serde(deny_unknown_fields, expecting = "a mapping of `force`, `length`, `stiffness` and `damping`")]
 pub struct GasSpring {
     /// The force with which it pushes at `length`, N.
-    pub force: Given<Number>,
+    pub force: Spanned<Number>,
     /// Length of the extended spring, m.
-    pub length: Given<Number>,
+    pub length: Spanned<Number>,
     /// How much more it pushes per metre of compression, N/m. Default 0.
-    pub stiffness: Option<Given<Number>>,
+    pub stiffness: Option<Spanned<Number>>,
     /// Damping, N s/m. Default 0.
-    pub damping: Option<Given<Number>>,
+    pub damping: Option<Spanned<Number>>,
 }
 
 /// A rope between two points.
@@ -92,11 +92,11 @@ pub struct GasSpring {
 #[serde(deny_unknown_fields, expecting = "a mapping of `stiffness`, `damping` and `length` or `motion`")]
 pub struct Rope {
     /// Stiffness EA/ℓ₀, N/m.
-    pub stiffness: Given<Number>,
+    pub stiffness: Spanned<Number>,
     /// Growth of the force with the rate of stretch, as a fraction per m/s. Default 0.
-    pub damping: Option<Given<Number>>,
+    pub damping: Option<Spanned<Number>>,
     /// Length without force, m.
-    pub length: Option<Given<Number>>,
+    pub length: Option<Spanned<Number>>,
     /// Length without force over time, m, instead of `length`: a winch.
-    pub motion: Option<Given<Motion>>,
+    pub motion: Option<Spanned<Motion>>,
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Constant, Given, Motion, Number, Vector};
+use super::{Constant, Motion, Number, Spanned, Vector};
 
 /// The hydraulic cylinder of a driven joint, by its pins: its length, its force and its pressures follow from the drive.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -13,34 +13,34 @@ use super::{Constant, Given, Motion, Number, Vector};
 )]
 pub struct Cylinder {
     /// Name, a `snake_case` identifier.
-    pub name: Given<String>,
+    pub name: Spanned<String>,
     /// The driven coordinate that it moves, such as `boom_psi`.
-    pub coordinate: Given<String>,
+    pub coordinate: Spanned<String>,
     /// The pin of its barrel.
-    pub foot: Given<Pin>,
+    pub foot: Spanned<Pin>,
     /// The pin of its rod, on the other side of the joint; with a linkage the pin of the linkage's link there.
-    pub head: Given<Pin>,
+    pub head: Spanned<Pin>,
     /// Rocker and link between its rod and `head`. Default: none.
-    pub linkage: Option<Given<Linkage>>,
+    pub linkage: Option<Spanned<Linkage>>,
     /// Diameter of the piston, m.
-    pub bore: Given<Constant>,
+    pub bore: Spanned<Constant>,
     /// Diameter of the rod, m.
-    pub rod: Given<Constant>,
+    pub rod: Spanned<Constant>,
     /// Distance of its pins when it is retracted, m.
-    pub retracted: Given<Constant>,
+    pub retracted: Spanned<Constant>,
     /// Stroke, m.
-    pub stroke: Given<Constant>,
+    pub stroke: Spanned<Constant>,
     /// Greatest pressure, at which its relief valves open, Pa. Default: none.
-    pub max_pressure: Option<Given<Constant>>,
+    pub max_pressure: Option<Spanned<Constant>>,
     /// Pressure on the side that does not carry, Pa. Default 0.
-    pub back_pressure: Option<Given<Constant>>,
+    pub back_pressure: Option<Spanned<Constant>>,
     /// Bulk modulus of the oil with its hoses, Pa, for the stiffness of the trapped oil. Default: none.
-    pub bulk_modulus: Option<Given<Constant>>,
+    pub bulk_modulus: Option<Spanned<Constant>>,
     /// Oil in hoses and valves on the piston's side and on the rod's, m³. Default `[0, 0]`.
-    pub hose_volumes: Option<Given<HoseVolumes>>,
+    pub hose_volumes: Option<Spanned<HoseVolumes>>,
     /// The valve that moves it: its pressures and the valve's opening become states of the motion. Default: none, the
     /// drive moves the joint.
-    pub valve: Option<Given<Valve>>,
+    pub valve: Option<Spanned<Valve>>,
 }
 
 /// A proportional directional valve, and what commands it: a servo that makes the cylinder follow the drive's motion, or an opening over time.
@@ -48,35 +48,35 @@ pub struct Cylinder {
 #[serde(deny_unknown_fields, expecting = "a mapping of `flow`, `pressure_drop`, `lag` and `gain` or `opening`")]
 pub struct Valve {
     /// Flow through an edge of the fully open valve at `pressure_drop`, m³/s; 60 l/min are 1e-3.
-    pub flow: Given<Constant>,
+    pub flow: Spanned<Constant>,
     /// Pressure drop over that edge, Pa.
-    pub pressure_drop: Given<Constant>,
+    pub pressure_drop: Spanned<Constant>,
     /// Share of the spool's way from the middle that is covered: below it no oil flows. Default 0.
-    pub overlap: Option<Given<Constant>>,
+    pub overlap: Option<Spanned<Constant>>,
     /// Time constant of the spool, s.
-    pub lag: Given<Constant>,
+    pub lag: Spanned<Constant>,
     /// Opening of the servo for an error of the cylinder's length, 1/m; 1 is fully open.
-    pub gain: Option<Given<Constant>>,
+    pub gain: Option<Spanned<Constant>>,
     /// The spool's command over time instead of the servo, from −1 (fully open, retracts) to 1 (fully open, extends): a motion, a table or an
     /// input. The drive's motion must then `hold` where the crane stands before the run.
-    pub opening: Option<Given<Motion>>,
+    pub opening: Option<Spanned<Motion>>,
     /// Share of the opening for the speed of the motion, at the pressures measured, that the servo sets ahead of any error. Default 1.
-    pub feed_forward: Option<Given<Constant>>,
+    pub feed_forward: Option<Spanned<Constant>>,
     /// Leakage past the piston, m³/s per Pa. Default 0.
-    pub leakage: Option<Given<Constant>>,
+    pub leakage: Option<Spanned<Constant>>,
 }
 
 /// Volumes on the two sides of a piston.
-pub type HoseVolumes = [Given<Constant>; 2];
+pub type HoseVolumes = [Spanned<Constant>; 2];
 
 /// A pin: a point of a link.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `link` and `at`")]
 pub struct Pin {
     /// The link that carries it.
-    pub link: Given<String>,
+    pub link: Spanned<String>,
     /// Its position in the frame of the link (for a beam: undeformed), m.
-    pub at: Given<Vector>,
+    pub at: Spanned<Vector>,
 }
 
 /// Rocker and link: the rocker turns about `pivot` on the link that carries the cylinder's foot, the link ends at the cylinder's `head`, and
@@ -85,13 +85,13 @@ pub struct Pin {
 #[serde(deny_unknown_fields, expecting = "a mapping of `pivot`, `rocker`, `link` and `side`")]
 pub struct Linkage {
     /// The rocker's pivot in the frame of the link that carries the cylinder's foot, m.
-    pub pivot: Given<Vector>,
+    pub pivot: Spanned<Vector>,
     /// Length of the rocker, m.
-    pub rocker: Given<Number>,
+    pub rocker: Spanned<Number>,
     /// Length of the link, m.
-    pub link: Given<Number>,
+    pub link: Spanned<Number>,
     /// The side of the line from `pivot` to `head` on which the rod's pin is, with the joint's axis towards the viewer.
-    pub side: Given<Side>,
+    pub side: Spanned<Side>,
 }
 
 /// A side of a directed line.
@@ -109,9 +109,9 @@ pub enum Side {
 #[serde(deny_unknown_fields, expecting = "a mapping of `max_flow` and, for cylinders with a valve, `pressure`")]
 pub struct Pump {
     /// Greatest flow to all cylinders together, m³/s; 60 l/min are 1e-3.
-    pub max_flow: Given<Constant>,
+    pub max_flow: Spanned<Constant>,
     /// Pressure that it keeps up until its flow is at its limit, Pa; cylinders with a valve need it. Default: none.
-    pub pressure: Option<Given<Constant>>,
+    pub pressure: Option<Spanned<Constant>>,
     /// Oil between the pump and the valves, m³. Default 0.005.
-    pub volume: Option<Given<Constant>>,
+    pub volume: Option<Spanned<Constant>>,
 }

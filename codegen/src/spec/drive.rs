@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Angle, Constant, FixedAngle, Given, Number};
+use super::{Angle, Constant, FixedAngle, Number, Spanned};
 
 /// A drive: a spring and a damper between a joint and a prescribed motion, or the motion itself.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -13,25 +13,25 @@ use super::{Angle, Constant, FixedAngle, Given, Number};
 )]
 pub struct Drive {
     /// The coordinate it drives, such as `boom_psi`.
-    pub coordinate: Given<String>,
+    pub coordinate: Spanned<String>,
     /// Stiffness, N m/rad or N/m; required unless the drive is rigid.
-    pub stiffness: Option<Given<Number>>,
+    pub stiffness: Option<Spanned<Number>>,
     /// Damping, N m s/rad or N s/m. Default 0.
-    pub damping: Option<Given<Number>>,
+    pub damping: Option<Spanned<Number>>,
     /// Whether the coordinate follows the motion exactly. Default false.
-    pub rigid: Option<Given<bool>>,
+    pub rigid: Option<Spanned<bool>>,
     /// Greatest torque or force that spring and damper deliver together, N m or N. Default: none.
-    pub max_effort: Option<Given<Number>>,
+    pub max_effort: Option<Spanned<Number>>,
     /// Greatest rate at which it drives, rad/s or m/s: its effort falls to nothing over the last tenth. Needs `max_effort`. Default: none.
-    pub max_rate: Option<Given<Constant>>,
+    pub max_rate: Option<Spanned<Constant>>,
     /// Greatest power with which it drives, W. Needs `max_effort`. Default: none.
-    pub max_power: Option<Given<Constant>>,
+    pub max_power: Option<Spanned<Constant>>,
     /// Inertia of the drive's rotor, reflected to the joint by the square of the gear ratio, kg m² or kg. Default 0.
-    pub armature: Option<Given<Number>>,
+    pub armature: Option<Spanned<Number>>,
     /// Motion of the spring's far end, or of the joint of a rigid drive; exactly one.
-    pub motion: Given<Motion>,
+    pub motion: Spanned<Motion>,
     /// The input that is added to the motion, rad or m. Default: none.
-    pub offset: Option<Given<String>>,
+    pub offset: Option<Spanned<String>>,
 }
 
 /// Motion of a drive; before it begins and, unless it is a speed, after it ends, the drive holds its position.
@@ -39,7 +39,7 @@ pub struct Drive {
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
     /// Held at one position, rad or m.
-    Hold(Given<Angle>),
+    Hold(Spanned<Angle>),
     /// `10τ³ − 15τ⁴ + 6τ⁵`: at rest without acceleration at both ends.
     Quintic(Ramp),
     /// `3τ² − 2τ³`: at rest at both ends.
@@ -53,7 +53,7 @@ pub enum Motion {
     /// Cubic spline through given positions, at rest at both ends.
     Table(Table),
     /// An input, by its name.
-    Input(Given<String>),
+    Input(Spanned<String>),
 }
 
 /// Start, end and time of a motion.
@@ -61,13 +61,13 @@ pub enum Motion {
 #[serde(deny_unknown_fields, expecting = "a mapping of `from`, `to`, `begin`, `duration`")]
 pub struct Ramp {
     /// Position before, rad or m.
-    pub from: Given<Angle>,
+    pub from: Spanned<Angle>,
     /// Position after, rad or m.
-    pub to: Given<Angle>,
+    pub to: Spanned<Angle>,
     /// Time at which it begins, s. Default 0.
-    pub begin: Option<Given<Number>>,
+    pub begin: Option<Spanned<Number>>,
     /// Duration, s.
-    pub duration: Given<Number>,
+    pub duration: Spanned<Number>,
 }
 
 /// A trapezoidal velocity.
@@ -75,15 +75,15 @@ pub struct Ramp {
 #[serde(deny_unknown_fields, expecting = "a mapping of `from`, `to`, `begin`, `duration`, `blend`")]
 pub struct Trapezoid {
     /// Position before, rad or m.
-    pub from: Given<Angle>,
+    pub from: Spanned<Angle>,
     /// Position after, rad or m.
-    pub to: Given<Angle>,
+    pub to: Spanned<Angle>,
     /// Time at which it begins, s. Default 0.
-    pub begin: Option<Given<Number>>,
+    pub begin: Option<Spanned<Number>>,
     /// Duration, s.
-    pub duration: Given<Number>,
+    pub duration: Spanned<Number>,
     /// Fraction of the duration spent accelerating, and equally decelerating, above 0 and at most 0.5. Default 0.25.
-    pub blend: Option<Given<Constant>>,
+    pub blend: Option<Spanned<Constant>>,
 }
 
 /// A constant speed.
@@ -91,13 +91,13 @@ pub struct Trapezoid {
 #[serde(deny_unknown_fields, expecting = "a mapping of `rate`, `from`, `begin`, `ramp`")]
 pub struct Speed {
     /// Speed, rad/s or m/s.
-    pub rate: Given<Angle>,
+    pub rate: Spanned<Angle>,
     /// Position before, rad or m. Default 0.
-    pub from: Option<Given<Angle>>,
+    pub from: Option<Spanned<Angle>>,
     /// Time at which it begins, s. Default 0.
-    pub begin: Option<Given<Number>>,
+    pub begin: Option<Spanned<Number>>,
     /// Time to reach the speed smoothly, s. Default: the speed jumps.
-    pub ramp: Option<Given<Number>>,
+    pub ramp: Option<Spanned<Number>>,
 }
 
 /// Positions at given times.
@@ -105,7 +105,7 @@ pub struct Speed {
 #[serde(deny_unknown_fields, expecting = "a mapping of `times` and `values`")]
 pub struct Table {
     /// Times, strictly increasing, s.
-    pub times: Given<Vec<Given<Constant>>>,
+    pub times: Spanned<Vec<Spanned<Constant>>>,
     /// Positions, rad or m.
-    pub values: Given<Vec<Given<FixedAngle>>>,
+    pub values: Spanned<Vec<Spanned<FixedAngle>>>,
 }

@@ -3,34 +3,34 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Given, Number, Vector};
+use super::{Number, Spanned, Vector};
 
 /// Inertia of a body: the elements of its tensor as in URDF and `MuJoCo`, or radii of gyration.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `Ixx`, `Iyy`, `Izz`, or of `gyration`")]
 pub struct Inertia {
     /// Reference point. Default `com`.
-    pub about: Option<Given<About>>,
+    pub about: Option<Spanned<About>>,
     /// Moment about x, ∫ (y² + z²) dm, kg m².
     #[serde(rename = "Ixx")]
-    pub xx: Option<Given<Number>>,
+    pub xx: Option<Spanned<Number>>,
     /// Moment about y, ∫ (x² + z²) dm, kg m².
     #[serde(rename = "Iyy")]
-    pub yy: Option<Given<Number>>,
+    pub yy: Option<Spanned<Number>>,
     /// Moment about z, ∫ (x² + y²) dm, kg m².
     #[serde(rename = "Izz")]
-    pub zz: Option<Given<Number>>,
+    pub zz: Option<Spanned<Number>>,
     /// Element of the tensor, −∫ x y dm, kg m². Default 0.
     #[serde(rename = "Ixy")]
-    pub xy: Option<Given<Number>>,
+    pub xy: Option<Spanned<Number>>,
     /// Element of the tensor, −∫ x z dm, kg m². Default 0.
     #[serde(rename = "Ixz")]
-    pub xz: Option<Given<Number>>,
+    pub xz: Option<Spanned<Number>>,
     /// Element of the tensor, −∫ y z dm, kg m². Default 0.
     #[serde(rename = "Iyz")]
-    pub yz: Option<Given<Number>>,
+    pub yz: Option<Spanned<Number>>,
     /// Radii of gyration about the centre of mass, m: I = m k², so that the inertia is proportional to a live mass.
-    pub gyration: Option<Given<Vector>>,
+    pub gyration: Option<Spanned<Vector>>,
 }
 
 /// The reference point of an inertia; the axes are those of the link's frame.

@@ -3,7 +3,7 @@
 use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 
-use super::{AxisName, Beam, Given, Inertia, Number, Placement, Vector};
+use super::{AxisName, Beam, Inertia, Number, Placement, Spanned, Vector};
 
 /// A link: its placement, its joint, and its mass: `mass`, `com` and `inertia`, or several `bodies`, or a `beam`, or
 /// nothing (a massless frame).
@@ -11,21 +11,21 @@ use super::{AxisName, Beam, Given, Inertia, Number, Placement, Vector};
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `placement`, `joint` and what the link carries")]
 pub struct Link {
     /// Name, a `snake_case` identifier; coordinates are named after it, such as `boom_psi`.
-    pub name: Given<String>,
+    pub name: Spanned<String>,
     /// Its pose on the previous link. Default: the same frame.
-    pub placement: Option<Given<Placement>>,
+    pub placement: Option<Spanned<Placement>>,
     /// Its joint. Default `fixed`.
-    pub joint: Option<Given<Joint>>,
+    pub joint: Option<Spanned<Joint>>,
     /// Mass, kg.
-    pub mass: Option<Given<Number>>,
+    pub mass: Option<Spanned<Number>>,
     /// Centre of mass in the link's frame, m. Required with `mass`.
-    pub com: Option<Given<Vector>>,
+    pub com: Option<Spanned<Vector>>,
     /// Inertia. Default none: a point mass.
-    pub inertia: Option<Given<Inertia>>,
+    pub inertia: Option<Spanned<Inertia>>,
     /// Several bodies combined into the link.
-    pub bodies: Option<Given<Vec<Given<Body>>>>,
+    pub bodies: Option<Spanned<Vec<Spanned<Body>>>>,
     /// A beam along x, of rigid finite elements; the next link is attached to its tip.
-    pub beam: Option<Given<Beam>>,
+    pub beam: Option<Spanned<Beam>>,
 }
 
 /// One of several bodies combined into a link.
@@ -33,13 +33,13 @@ pub struct Link {
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `mass`, `com` and `inertia`")]
 pub struct Body {
     /// Name, a `snake_case` identifier, unique in its link.
-    pub name: Given<String>,
+    pub name: Spanned<String>,
     /// Mass, kg.
-    pub mass: Given<Number>,
+    pub mass: Spanned<Number>,
     /// Centre of mass in the link's frame, m.
-    pub com: Given<Vector>,
+    pub com: Spanned<Vector>,
     /// Inertia. Default none: a point mass.
-    pub inertia: Option<Given<Inertia>>,
+    pub inertia: Option<Spanned<Inertia>>,
 }
 
 /// How a link moves relative to its placement: `fixed`, `revolute`, `prismatic`, or for the first link `free`.
@@ -54,7 +54,7 @@ pub enum Joint {
     /// Slides along its axis; the coordinate is `<link>_x`, `_y` or `_z`, m.
     Prismatic(Option<JointAxis>),
     /// Base only: translates along x, y, z, then rotates by psi about z, theta about y, phi about x; or a subset of these six.
-    Free(Option<Vec<Given<BaseCoordinate>>>),
+    Free(Option<Vec<Spanned<BaseCoordinate>>>),
 }
 
 /// Axis of a joint.
@@ -62,7 +62,7 @@ pub enum Joint {
 #[serde(deny_unknown_fields, expecting = "a mapping of `axis`")]
 pub struct JointAxis {
     /// Axis of the placed frame. Default z.
-    pub axis: Option<Given<AxisName>>,
+    pub axis: Option<Spanned<AxisName>>,
 }
 
 /// A coordinate of a free base.

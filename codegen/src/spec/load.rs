@@ -3,26 +3,26 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Given, Motion, Vector};
+use super::{Motion, Spanned, Vector};
 
 /// A force and a moment at a point of a link.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `link`, `at`, `force`, `moment`, `axes` and `scale`")]
 pub struct Load {
     /// Name, a `snake_case` identifier.
-    pub name: Given<String>,
+    pub name: Spanned<String>,
     /// The link it acts on.
-    pub link: Given<String>,
+    pub link: Spanned<String>,
     /// Where, in the frame of the link (of a beam: undeformed), m. Default `[0, 0, 0]`.
-    pub at: Option<Given<Vector>>,
+    pub at: Option<Spanned<Vector>>,
     /// Force along x, y, z, N. Default `[0, 0, 0]`.
-    pub force: Option<Given<Vector>>,
+    pub force: Option<Spanned<Vector>>,
     /// Moment about x, y, z, N m. Default `[0, 0, 0]`.
-    pub moment: Option<Given<Vector>>,
+    pub moment: Option<Spanned<Vector>>,
     /// Whether x, y, z are the axes of the world or those of the link, with which the load turns. Default `world`.
-    pub axes: Option<Given<Axes>>,
+    pub axes: Option<Spanned<Axes>>,
     /// What force and moment are multiplied by over time, as a motion of a drive. Default 1.
-    pub scale: Option<Given<Motion>>,
+    pub scale: Option<Spanned<Motion>>,
 }
 
 /// Axes along which a load is given.

@@ -1,12 +1,11 @@
 //! The spec language as written: one type per mapping, whose doc comments are its documentation and its JSON Schema.
 //!
-//! The type of a key defines its allowed values; [`Given`] holds its location. An optional key is an `Option`.
+//! The type of a key defines its allowed values; [`Spanned`] holds its location. An optional key is an `Option`.
 
 mod beam;
 mod connector;
 mod cylinder;
 mod drive;
-mod given;
 mod inertia;
 mod input;
 mod joint;
@@ -15,6 +14,7 @@ mod load;
 mod placement;
 mod scalar;
 mod schema;
+mod spanned;
 mod support;
 
 pub use beam::{
@@ -23,8 +23,6 @@ pub use beam::{
 pub use connector::{Attachment, Connector, ConnectorLaw, Coupling, GasSpring, PointSpring, Rope};
 pub use cylinder::{Cylinder, HoseVolumes, Linkage, Pin, Pump, Side, Valve};
 pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
-pub(crate) use given::{EITHER, GIVEN, MANY};
-pub use given::{Either, Entries, Given, Many};
 pub use inertia::{About, Inertia};
 pub use input::Input;
 pub use joint::{Bristle, Friction, Stops};
@@ -33,6 +31,8 @@ pub use load::{Axes, Load};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector, parse_angle};
 pub use schema::json_schema;
+pub(crate) use spanned::{EITHER, MANY, SPANNED};
+pub use spanned::{Either, Entries, Many, Spanned};
 pub use support::{Kinematics, Point, Support};
 
 use schemars::JsonSchema;
@@ -58,56 +58,56 @@ pub struct Crane {
     /// Another spec to start from: a file, relative to this one, or a shipped crane. This file then says only what differs: mappings
     /// are merged key by key, lists of links, supports, drives and points entry by entry, by `name` or `coordinate`; everything
     /// else is replaced. A key without a value removes what it names, and so does `remove: true` in an entry of a list.
-    pub extends: Option<Given<String>>,
+    pub extends: Option<Spanned<String>>,
     /// Version of the spec language: 1.
-    pub format: Given<Constant>,
+    pub format: Spanned<Constant>,
     /// Name of the crane, a `snake_case` identifier; names the generated module.
-    pub name: Given<String>,
+    pub name: Spanned<String>,
     /// One line for people. Default: the name.
-    pub title: Option<Given<String>>,
+    pub title: Option<Spanned<String>>,
     /// Acceleration of gravity in the world frame, m/s². Default `[0, 0, -9.81]`.
-    pub gravity: Option<Given<Vector>>,
+    pub gravity: Option<Spanned<Vector>>,
     /// Quantities to compute; the rest is left out of the generated code. Default `[statics, dynamics, modes]`.
-    pub analyses: Option<Given<Vec<Given<Analysis>>>>,
+    pub analyses: Option<Spanned<Vec<Spanned<Analysis>>>>,
     /// Whether generated code loops over equal elements or is written out. Default `auto`.
-    pub loops: Option<Given<Loops>>,
+    pub loops: Option<Spanned<Loops>>,
     /// Values that stay live at run time, by name.
-    pub parameters: Option<Given<Entries<Parameter>>>,
+    pub parameters: Option<Spanned<Entries<Parameter>>>,
     /// Numbers that are set between steps, by name.
-    pub inputs: Option<Given<Entries<Input>>>,
+    pub inputs: Option<Spanned<Entries<Input>>>,
     /// Materials of beams, by name.
-    pub materials: Option<Given<Entries<Material>>>,
+    pub materials: Option<Spanned<Entries<Material>>>,
     /// The links in order from the base to the tip; each is attached to the previous one.
-    pub links: Given<Vec<Given<Link>>>,
+    pub links: Spanned<Vec<Spanned<Link>>>,
     /// Springs and dampers between a free base and the ground.
-    pub supports: Option<Given<Vec<Given<Support>>>>,
+    pub supports: Option<Spanned<Vec<Spanned<Support>>>>,
     /// Drives of joints.
-    pub drives: Option<Given<Vec<Given<Drive>>>>,
+    pub drives: Option<Spanned<Vec<Spanned<Drive>>>>,
     /// Viscous damping of passive joints by coordinate, N m s/rad or N s/m.
-    pub damping: Option<Given<Entries<Number>>>,
+    pub damping: Option<Spanned<Entries<Number>>>,
     /// Rotor inertia of joints without a drive by coordinate, reflected by the square of the gear ratio, kg m² or kg.
-    pub armature: Option<Given<Entries<Number>>>,
+    pub armature: Option<Spanned<Entries<Number>>>,
     /// End stops of joints by coordinate.
-    pub stops: Option<Given<Entries<Stops>>>,
+    pub stops: Option<Spanned<Entries<Stops>>>,
     /// Friction of joints by coordinate.
-    pub friction: Option<Given<Entries<Friction>>>,
+    pub friction: Option<Spanned<Entries<Friction>>>,
     /// Forces and moments applied from outside.
-    pub loads: Option<Given<Vec<Given<Load>>>>,
+    pub loads: Option<Spanned<Vec<Spanned<Load>>>>,
     /// Springs, gas springs and ropes between two points.
-    pub connectors: Option<Given<Vec<Given<Connector>>>>,
+    pub connectors: Option<Spanned<Vec<Spanned<Connector>>>>,
     /// Coordinates that follow others: stages of telescopes, gears.
-    pub couplings: Option<Given<Vec<Given<Coupling>>>>,
+    pub couplings: Option<Spanned<Vec<Spanned<Coupling>>>>,
     /// Hydraulic cylinders of driven joints, by their pins.
-    pub cylinders: Option<Given<Vec<Given<Cylinder>>>>,
+    pub cylinders: Option<Spanned<Vec<Spanned<Cylinder>>>>,
     /// What supplies the cylinders.
-    pub pump: Option<Given<Pump>>,
+    pub pump: Option<Spanned<Pump>>,
     /// Points of interest, whose motion is reported.
-    pub points: Option<Given<Vec<Given<Point>>>>,
+    pub points: Option<Spanned<Vec<Spanned<Point>>>>,
     /// Start of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at
     /// t = 0, all others at 0.
-    pub guess: Option<Given<Entries<FixedAngle>>>,
+    pub guess: Option<Spanned<Entries<FixedAngle>>>,
     /// Settings of a run.
-    pub run: Option<Given<Run>>,
+    pub run: Option<Spanned<Run>>,
 }
 
 /// A kind of computation.
@@ -160,11 +160,11 @@ pub enum Loops {
 #[serde(deny_unknown_fields, expecting = "a mapping of `value`, `unit` and `about`")]
 pub struct Parameter {
     /// Default value, in SI units.
-    pub value: Given<FixedAngle>,
+    pub value: Spanned<FixedAngle>,
     /// Unit shown in tables, such as `kg`. Default: none.
-    pub unit: Option<Given<String>>,
+    pub unit: Option<Spanned<String>>,
     /// Description. Default: empty.
-    pub about: Option<Given<String>>,
+    pub about: Option<Spanned<String>>,
 }
 
 /// Settings of a run.
@@ -172,9 +172,9 @@ pub struct Parameter {
 #[serde(deny_unknown_fields, expecting = "a mapping of `duration`, `step` and `output`")]
 pub struct Run {
     /// Simulated time, s. Default 10.
-    pub duration: Option<Given<Constant>>,
+    pub duration: Option<Spanned<Constant>>,
     /// Step of the integrator, s. Default 1e-4.
-    pub step: Option<Given<Constant>>,
+    pub step: Option<Spanned<Constant>>,
     /// Interval of the recorded results, s. Default 0.01.
-    pub output: Option<Given<Constant>>,
+    pub output: Option<Spanned<Constant>>,
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Angle, Given, Many, Number, Vector};
+use super::{Angle, Many, Number, Spanned, Vector};
 
 /// Pose of a link on the previous one (after a beam: on its tip), exactly one of these.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -23,13 +23,13 @@ pub enum Placement {
 #[serde(deny_unknown_fields, expecting = "a mapping of `a`, `alpha`, `d`, `theta`")]
 pub struct ModifiedDh {
     /// Link length, along x of the previous frame, m. Default 0.
-    pub a: Option<Given<Number>>,
+    pub a: Option<Spanned<Number>>,
     /// Link twist, about x of the previous frame, rad. Default 0.
-    pub alpha: Option<Given<Angle>>,
+    pub alpha: Option<Spanned<Angle>>,
     /// Offset along z, m; the zero position of a prismatic joint. Default 0.
-    pub d: Option<Given<Number>>,
+    pub d: Option<Spanned<Number>>,
     /// Angle about z, rad; the zero position of a revolute joint. Default 0.
-    pub theta: Option<Given<Angle>>,
+    pub theta: Option<Spanned<Angle>>,
 }
 
 /// Classic D-H parameters.
@@ -37,13 +37,13 @@ pub struct ModifiedDh {
 #[serde(deny_unknown_fields, expecting = "a mapping of `a`, `alpha`, `d`, `theta`")]
 pub struct ClassicDh {
     /// Link length, along x of this frame, m. Default 0.
-    pub a: Option<Given<Number>>,
+    pub a: Option<Spanned<Number>>,
     /// Link twist, about x of this frame, rad. Default 0.
-    pub alpha: Option<Given<Angle>>,
+    pub alpha: Option<Spanned<Angle>>,
     /// Offset along z of the previous frame, m; the zero position of a prismatic joint. Default 0.
-    pub d: Option<Given<Number>>,
+    pub d: Option<Spanned<Number>>,
     /// Angle about z of the previous frame, rad; the zero position of a revolute joint. Default 0.
-    pub theta: Option<Given<Angle>>,
+    pub theta: Option<Spanned<Angle>>,
 }
 
 /// A constant transformation.
@@ -51,10 +51,10 @@ pub struct ClassicDh {
 #[serde(deny_unknown_fields, expecting = "a mapping of `translation` and `rotation`")]
 pub struct Transform {
     /// Translation in the previous frame, m. Default `[0, 0, 0]`.
-    pub translation: Option<Given<Vector>>,
+    pub translation: Option<Spanned<Vector>>,
     /// Rotation `{x: angle}`, `{y: angle}` or `{z: angle}`, or a list of these, each about the axes as rotated by the
     /// previous ones. Default none.
-    pub rotation: Option<Given<Many<Turn>>>,
+    pub rotation: Option<Spanned<Many<Turn>>>,
 }
 
 /// A rotation about one axis.
@@ -62,11 +62,11 @@ pub struct Transform {
 #[serde(rename_all = "snake_case")]
 pub enum Turn {
     /// About x, rad.
-    X(Given<Angle>),
+    X(Spanned<Angle>),
     /// About y, rad.
-    Y(Given<Angle>),
+    Y(Spanned<Angle>),
     /// About z, rad.
-    Z(Given<Angle>),
+    Z(Spanned<Angle>),
 }
 
 /// Name of an axis.

@@ -7,10 +7,10 @@ use std::fmt;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 
-use super::Given;
+use super::Spanned;
 
 /// Three numbers along x, y, z.
-pub type Vector = [Given<Number>; 3];
+pub type Vector = [Spanned<Number>; 3];
 
 /// The forms of a number.
 #[derive(Clone, Debug, PartialEq)]

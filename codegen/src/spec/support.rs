@@ -3,28 +3,28 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Given, Number, Vector};
+use super::{Number, Spanned, Vector};
 
 /// A support of a free base: three springs and dampers along the axes of the world.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `at`, `stiffness`, `damping`")]
 pub struct Support {
     /// Name, a `snake_case` identifier.
-    pub name: Given<String>,
+    pub name: Spanned<String>,
     /// Its attachment point in the base's frame, m.
-    pub at: Given<Vector>,
+    pub at: Spanned<Vector>,
     /// Stiffness along x, y, z, N/m.
-    pub stiffness: Given<Vector>,
+    pub stiffness: Spanned<Vector>,
     /// Damping along x, y, z, N s/m. Default `[0, 0, 0]`.
-    pub damping: Option<Given<Vector>>,
+    pub damping: Option<Spanned<Vector>>,
     /// Elongation at which the springs are unstressed, along x, y, z, m. Default `[0, 0, 0]`.
-    pub free_play: Option<Given<Vector>>,
+    pub free_play: Option<Spanned<Vector>>,
     /// How the elongation depends on the base's coordinates. Default `linear`.
-    pub kinematics: Option<Given<Kinematics>>,
+    pub kinematics: Option<Spanned<Kinematics>>,
     /// Whether it presses only, along z, and lifts off instead of pulling. Free play along z is then a gap. Default `false`.
-    pub one_sided: Option<Given<bool>>,
+    pub one_sided: Option<Spanned<bool>>,
     /// Pressing force from which a one-sided support holds sideways and damps in full, N. Default 1000.
-    pub full_hold: Option<Given<Number>>,
+    pub full_hold: Option<Spanned<Number>>,
 }
 
 /// How the elongation of a support depends on the base's coordinates.
@@ -42,9 +42,9 @@ pub enum Kinematics {
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `link`, `at`")]
 pub struct Point {
     /// Name, a `snake_case` identifier.
-    pub name: Given<String>,
+    pub name: Spanned<String>,
     /// The link that carries it.
-    pub link: Given<String>,
+    pub link: Spanned<String>,
     /// Its position in the frame of the link (for a beam: undeformed), m.
-    pub at: Given<Vector>,
+    pub at: Spanned<Vector>,
 }

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 
 use super::op::{Constant, ExprId, Op, SymbolId};
-use super::tape::Recorder;
+use super::trace::Recorder;
 use super::{Expr, rules};
 
 /// A growing graph of expressions. Equal expressions are the same node.

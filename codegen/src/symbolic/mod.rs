@@ -8,13 +8,13 @@ mod rules;
 mod scalar;
 mod stage;
 mod stumpff;
-mod tape;
 #[cfg(test)]
 mod tests;
+mod trace;
 
 pub use expr::Expr;
 pub use graph::{Graph, Nodes};
 pub use op::{Constant, ExprId, Op, SymbolId};
 pub use scalar::Scalar;
 pub use stage::Stages;
-pub use tape::{Sweep, Tape, Visit};
+pub use trace::{Sweep, SweepTrace, Visit};

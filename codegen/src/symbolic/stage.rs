@@ -3,7 +3,7 @@
 use super::Expr;
 use super::graph::Graph;
 use super::op::{ExprId, Op, SymbolId};
-use super::tape::{Tape, Visit};
+use super::trace::{SweepTrace, Visit};
 
 /// A computation split in two.
 #[derive(Debug)]
@@ -13,16 +13,16 @@ pub struct Stages<'g> {
     /// The results, in terms of only the factors' symbols and the late inputs.
     pub results: Vec<Expr<'g>>,
     /// The part of the sweeps that remains for the second stage.
-    pub tape: Tape,
+    pub trace: SweepTrace,
 }
 
 impl Graph {
-    /// Splits the computation of `results` by the sweeps of `tape` where it first uses a `late` symbol. The factors get the
+    /// Splits the computation of `results` by the sweeps of `trace` where it first uses a `late` symbol. The factors get the
     /// symbols from `first` on.
     pub fn stages<'g>(
         &'g self,
         results: &[Expr<'g>],
-        tape: &Tape,
+        trace: &SweepTrace,
         late: impl Fn(SymbolId) -> bool,
         first: SymbolId,
     ) -> Stages<'g> {
@@ -56,11 +56,11 @@ impl Graph {
             }
         }
         let is_moved = |id: &&ExprId| is_late.get(id.index()).is_some_and(|late| *late) && needed[id.index()];
-        let visits = tape.visits.iter().map(|visit| Visit {
+        let visits = trace.visits.iter().map(|visit| Visit {
             nodes: visit.nodes.iter().filter(is_moved).map(|id| moved[id.index()]).collect(),
             ..visit.clone()
         });
-        let tape = Tape { visits: visits.collect() };
-        Stages { factors, results: results.iter().map(|result| self.expr(moved[result.id().index()])).collect(), tape }
+        let trace = SweepTrace { visits: visits.collect() };
+        Stages { factors, results: results.iter().map(|result| self.expr(moved[result.id().index()])).collect(), trace }
     }
 }

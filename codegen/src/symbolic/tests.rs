@@ -1,6 +1,6 @@
 //! Every rule keeps the value and has its intended effect.
 
-use super::{Expr, Graph, Op, SymbolId, Tape};
+use super::{Expr, Graph, Op, SweepTrace, SymbolId};
 use crate::program::{Argument, Function, FunctionId, Inputs, Program, Shape, Symbol};
 
 fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>>, graph: Graph) -> Program {
@@ -17,7 +17,7 @@ fn program(build: impl for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Vec<Expr<'g>
         arguments: &[Argument::Position],
         shape,
         outputs,
-        tape: Tape::default(),
+        trace: SweepTrace::default(),
     };
     Program::new(graph, vec![symbol("x", 0), symbol("y", 1)], vec![function])
 }

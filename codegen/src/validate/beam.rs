@@ -4,11 +4,11 @@ use super::elements::WRITTEN;
 use super::limits::Limit;
 use super::section::Elastic;
 use super::{Check, Owner};
-use crate::chain::{self, Axis, CoordinateKind, ElementSpring, Moduli, Outline, Step, Value};
+use crate::chain::{self, Axis, BeamSpring, CoordinateKind, Moduli, Outline, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::beam::{self, Elements, Joint, Part, RigidElement};
 use crate::expand::placement::translate;
-use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Given, Number, SectionJoint, Sections};
+use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Number, SectionJoint, Sections, Spanned};
 
 /// Maximum number of sections of a beam.
 const MOST_SECTIONS: f64 = 1000.0;
@@ -26,7 +26,7 @@ impl<'a> Check<'a> {
     /// Appends the elements of a beam; returns their starts along x, and the position of the next link.
     pub(super) fn beam(
         &mut self,
-        given: &'a Given<Beam>,
+        given: &'a Spanned<Beam>,
         link: &str,
         span: Span,
         path: Vec<Step>,
@@ -97,7 +97,7 @@ impl<'a> Check<'a> {
                     SectionJoint::Paper => path.extend(ids.map(Step::Move)),
                 }
                 for (id, (stiffness, damping)) in ids.into_iter().zip(joint.stiffness.into_iter().zip(joint.damping)) {
-                    self.elements.push(ElementSpring { coordinate: id, stiffness, damping });
+                    self.beam_springs.push(BeamSpring { coordinate: id, stiffness, damping });
                 }
             }
             let body = chain::Body {
@@ -190,8 +190,8 @@ impl<'a> Check<'a> {
     /// Parts with sections of their own.
     fn parts(
         &mut self,
-        given: &'a Given<Vec<Given<BeamPart>>>,
-        written: &Given<Number>,
+        given: &'a Spanned<Vec<Spanned<BeamPart>>>,
+        written: &Spanned<Number>,
         length: &Value,
     ) -> Option<Vec<Part>> {
         let whole = length.as_constant();
@@ -234,7 +234,7 @@ impl<'a> Check<'a> {
     }
 
     /// Rotations of a curved beam at each of its springs.
-    fn bend(&mut self, given: Option<&'a Given<Bend>>, sections: Option<usize>) -> Vec<(Axis, Value)> {
+    fn bend(&mut self, given: Option<&'a Spanned<Bend>>, sections: Option<usize>) -> Vec<(Axis, Value)> {
         let Some(bend) = given.and_then(|given| given.value.as_ref()) else { return Vec::new() };
         let angles = [(Axis::Z, &bend.psi, "`psi`"), (Axis::Y, &bend.theta, "`theta`")];
         let angles = angles.map(|(axis, angle, place)| (axis, angle.as_ref().map(|angle| self.angle(angle, place))));
@@ -246,7 +246,7 @@ impl<'a> Check<'a> {
     }
 
     /// Number of sections; 0 for a rigid beam.
-    fn sections(&mut self, given: &Given<Sections>) -> Option<usize> {
+    fn sections(&mut self, given: &Spanned<Sections>) -> Option<usize> {
         match given.value? {
             Sections::Rigid => Some(0),
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an integer from 1 to 1000
@@ -261,7 +261,7 @@ impl<'a> Check<'a> {
     }
 
     /// Damping of equal sections.
-    fn beam_damping(&mut self, given: Option<&Given<BeamDamping>>) -> Damping {
+    fn beam_damping(&mut self, given: Option<&Spanned<BeamDamping>>) -> Damping {
         let none = || [Value::ZERO; 3];
         match given.and_then(|given| given.value.as_ref()) {
             None => Damping::Coefficients(none()),
@@ -272,7 +272,7 @@ impl<'a> Check<'a> {
                 None => none(),
                 Some(Either::Full(each)) => self.directions(each, "`beta`", "s", Limit::NotNegative),
                 Some(Either::Short(number)) => {
-                    let beta = Given { value: Some(number.clone()), span: beta.span };
+                    let beta = Spanned { value: Some(number.clone()), span: beta.span };
                     let beta = self.number(&beta, "`beta`", "s", Limit::NotNegative);
                     [beta.clone(), beta.clone(), beta]
                 }

@@ -7,7 +7,7 @@ use crate::chain::{
     Attachment, BodyId, Chain, Connector, ConnectorLaw, CoordinateKind, Cylinder, Profile, Strain, Value,
 };
 use crate::diagnostic::{Span, rule};
-use crate::spec::{self, Crane, Given, Number, Rope};
+use crate::spec::{self, Crane, Number, Rope, Spanned};
 
 impl<'a> Check<'a> {
     pub(super) fn connectors(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Connector> {
@@ -80,7 +80,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn attachment(&mut self, given: &Given<spec::Attachment>, name: &str) -> Option<Attachment> {
+    fn attachment(&mut self, given: &Spanned<spec::Attachment>, name: &str) -> Option<Attachment> {
         let end = given.value.as_ref()?;
         let at = self.vector(&end.at, &format!("an end of connector `{name}`"), "m", Limit::Any);
         let Some(link) = &end.link else { return Some(Attachment { body: None, position: at }) };
@@ -97,7 +97,7 @@ impl<'a> Check<'a> {
     }
 
     fn connector_law(&mut self, law: &spec::ConnectorLaw, span: Span, name: &str) -> ConnectorLaw {
-        let mut number = |given: &Given<Number>, what: &str, unit, limit| {
+        let mut number = |given: &Spanned<Number>, what: &str, unit, limit| {
             self.number(given, &format!("the {what} of connector `{name}`"), unit, limit)
         };
         match law {
@@ -143,8 +143,8 @@ impl<'a> Check<'a> {
 
 /// A number that may be left out, and is then zero.
 fn optional(
-    number: &mut impl FnMut(&Given<Number>, &str, &'static str, Limit) -> Value,
-    given: Option<&Given<Number>>,
+    number: &mut impl FnMut(&Spanned<Number>, &str, &'static str, Limit) -> Value,
+    given: Option<&Spanned<Number>>,
     what: &str,
     unit: &'static str,
 ) -> Value {

@@ -7,7 +7,7 @@ use crate::chain::{
     Valve,
 };
 use crate::diagnostic::{Span, rule};
-use crate::spec::{self, Constant, Crane, Given, Side};
+use crate::spec::{self, Constant, Crane, Side, Spanned};
 
 /// Oil between pump and valves unless given, m³.
 const VOLUME: f64 = 5e-3;
@@ -116,7 +116,7 @@ impl<'a> Check<'a> {
         let place = |what: &str| format!("the {what} of the valve of cylinder `{name}`");
         let flow = self.constant(&given.flow, &place("flow"), "m³/s", Limit::Positive);
         let drop = self.constant(&given.pressure_drop, &place("pressure drop"), "Pa", Limit::Positive);
-        let mut optional = |given: Option<&Given<Constant>>, what: &str, unit, limit, default| {
+        let mut optional = |given: Option<&Spanned<Constant>>, what: &str, unit, limit, default| {
             given.map_or(default, |given| self.constant(given, &place(what), unit, limit))
         };
         let overlap = optional(given.overlap.as_ref(), "overlap", "", Limit::NotNegative, 0.0);
@@ -148,7 +148,7 @@ impl<'a> Check<'a> {
         }
         let retracted = self.constant(&given.retracted, &place("retracted length"), "m", Limit::Positive);
         let stroke = self.constant(&given.stroke, &place("stroke"), "m", Limit::Positive);
-        let mut pressure = |given: Option<&Given<Constant>>, what: &str, limit| {
+        let mut pressure = |given: Option<&Spanned<Constant>>, what: &str, limit| {
             given.map(|given| self.constant(given, &place(what), "Pa", limit))
         };
         let max_pressure = pressure(given.max_pressure.as_ref(), "greatest pressure", Limit::Positive);

@@ -2,10 +2,10 @@
 
 use super::limits::Limit;
 use super::{Check, Owner};
-use crate::chain::{self, CoordinateId, CoordinateKind, Drive, Hinge, Profile, Rotor, Transmission, Value};
+use crate::chain::{self, CoordinateId, CoordinateKind, Drive, JointDamper, Profile, Rotor, Transmission, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::spline;
-use crate::spec::{self, Angle, Crane, Given, Motion, Number, Table};
+use crate::spec::{self, Angle, Crane, Motion, Number, Spanned, Table};
 
 /// Units for a coordinate.
 pub(super) struct Units {
@@ -75,7 +75,7 @@ impl<'a> Check<'a> {
         kind: Option<CoordinateKind>,
     ) -> Transmission {
         let units = units(kind);
-        let mut number = |given: &Given<Number>, what, unit| {
+        let mut number = |given: &Spanned<Number>, what, unit| {
             self.number(given, &format!("the {what} of drive `{name}`"), unit, Limit::NotNegative)
         };
         let stiffness = drive.stiffness.as_ref().map(|given| number(given, "stiffness", units.stiffness));
@@ -124,9 +124,11 @@ impl<'a> Check<'a> {
         Transmission::Flexible { stiffness, damping: damping.unwrap_or(Value::ZERO), max_effort, max_rate, max_power }
     }
 
-    pub(super) fn hinges(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<Hinge> {
-        let mut hinges = Vec::new();
-        let Some(entries) = crane.damping.as_ref().and_then(|damping| damping.value.as_ref()) else { return hinges };
+    pub(super) fn joint_dampers(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<JointDamper> {
+        let mut joint_dampers = Vec::new();
+        let Some(entries) = crane.damping.as_ref().and_then(|damping| damping.value.as_ref()) else {
+            return joint_dampers;
+        };
         for (name, damping) in &entries.0 {
             let coordinate = self.coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
@@ -141,9 +143,9 @@ impl<'a> Check<'a> {
             if let Some(owner) = owner {
                 self.report(rule::not_passive(name.span, &self.coordinates[id.0].name, owner));
             }
-            hinges.push(Hinge { coordinate: id, damping });
+            joint_dampers.push(JointDamper { coordinate: id, damping });
         }
-        hinges
+        joint_dampers
     }
 
     /// Rotors of joints without a drive.
@@ -212,10 +214,10 @@ impl<'a> Check<'a> {
     fn ramp(
         &mut self,
         kind: Option<CoordinateKind>,
-        from: &Given<Angle>,
-        to: &Given<Angle>,
-        begin: Option<&Given<Number>>,
-        duration: &Given<Number>,
+        from: &Spanned<Angle>,
+        to: &Spanned<Angle>,
+        begin: Option<&Spanned<Number>>,
+        duration: &Spanned<Number>,
     ) -> chain::Ramp {
         chain::Ramp {
             from: self.position(from, kind, "`from`"),

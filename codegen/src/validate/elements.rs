@@ -5,7 +5,7 @@ use super::limits::Limit;
 use crate::chain::Value;
 use crate::diagnostic::rule;
 use crate::expand::beam::{Elements, Joint, RigidElement};
-use crate::spec::{Beam, Directions, Element, Given, Spring};
+use crate::spec::{Beam, Directions, Element, Spanned, Spring};
 
 /// Elements and parts may differ from the length of their beam by this fraction, because lengths are decimal numbers.
 pub(super) const WRITTEN: f64 = 1e-9;
@@ -16,7 +16,7 @@ impl<'a> Check<'a> {
         &mut self,
         beam: &'a Beam,
         length: &Value,
-        elements: &Given<Vec<Given<Element>>>,
+        elements: &Spanned<Vec<Spanned<Element>>>,
     ) -> Option<Elements> {
         let beside = [
             ("sections", beam.sections.as_ref().map(|given| given.span)),
@@ -65,7 +65,8 @@ impl<'a> Check<'a> {
 
     /// A spring as given.
     fn spring(&mut self, spring: &Spring) -> Joint {
-        let mut each = |given: Option<&Given<Directions>>, place, unit| match given.map(|given| given.value.as_ref()) {
+        let mut each = |given: Option<&Spanned<Directions>>, place, unit| match given.map(|given| given.value.as_ref())
+        {
             Some(Some(each)) => self.directions(each, place, unit, Limit::NotNegative),
             _ => [Value::ZERO; 3],
         };

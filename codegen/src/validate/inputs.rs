@@ -3,7 +3,7 @@
 use super::Check;
 use crate::chain::{Input, InputId, Profile};
 use crate::diagnostic::{Span, rule, suggest};
-use crate::spec::{self, Crane, Given, Motion};
+use crate::spec::{self, Crane, Motion, Spanned};
 
 impl<'a> Check<'a> {
     pub(super) fn take_inputs(&mut self, crane: &'a Crane) {
@@ -45,7 +45,7 @@ impl<'a> Check<'a> {
     }
 
     /// The input of that name.
-    pub(super) fn input(&mut self, given: &Given<String>) -> Option<Profile> {
+    pub(super) fn input(&mut self, given: &Spanned<String>) -> Option<Profile> {
         let name = given.value.as_deref()?;
         if let Some(index) = self.inputs.iter().position(|input| input.name == name) {
             self.used_inputs[index] = true;

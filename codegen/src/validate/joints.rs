@@ -7,7 +7,7 @@ use crate::chain::{
     Bristle, CoordinateId, CoordinateKind, Drive, End, ForceElement, Friction, Law, Stop, Transmission, Value,
 };
 use crate::diagnostic::rule;
-use crate::spec::{self, Crane, Given};
+use crate::spec::{self, Crane, Spanned};
 
 /// Default rate at which friction reaches three quarters of its full value, rad/s or m/s: a hundredth of the rates of crane
 /// drives.
@@ -45,7 +45,7 @@ impl<'a> Check<'a> {
     }
 
     /// The coordinate of a joint by its name.
-    pub(super) fn joint_of(&mut self, name: &Given<String>, what: &str) -> Option<CoordinateId> {
+    pub(super) fn joint_of(&mut self, name: &Spanned<String>, what: &str) -> Option<CoordinateId> {
         let id = self.coordinate(name)?;
         if let Some(owner) = self.not_a_joint(id) {
             let coordinate = self.coordinates[id.0].name.clone();
@@ -57,7 +57,7 @@ impl<'a> Check<'a> {
     fn stops(
         &mut self,
         own: &spec::Stops,
-        given: &Given<spec::Stops>,
+        given: &Spanned<spec::Stops>,
         name: &str,
         coordinate: Option<CoordinateId>,
     ) -> Vec<Stop> {
@@ -134,7 +134,7 @@ impl<'a> Check<'a> {
     /// The bristles of a joint that sticks.
     fn bristle(
         &mut self,
-        given: &Given<spec::Bristle>,
+        given: &Spanned<spec::Bristle>,
         own: &spec::Friction,
         name: &str,
         (coulomb, breakaway): (&Value, Option<&(Value, Value)>),

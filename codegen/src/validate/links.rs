@@ -2,11 +2,11 @@
 
 use super::beam::MOST_COORDINATES;
 use super::limits::Limit;
-use super::{Check, Owner, Place};
+use super::{Check, LinkBodies, Owner};
 use crate::chain::{Axis, Body, BodyId, Coordinate, CoordinateId, CoordinateKind, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::placement;
-use crate::spec::{Angle, AxisName, BaseCoordinate, Given, Joint, JointAxis, Link, Number, Placement, Turn};
+use crate::spec::{Angle, AxisName, BaseCoordinate, Joint, JointAxis, Link, Number, Placement, Spanned, Turn};
 
 impl From<AxisName> for Axis {
     fn from(name: AxisName) -> Self {
@@ -37,7 +37,7 @@ const BASE_MOTIONS: [(BaseCoordinate, CoordinateKind, Axis); 6] = [
 ];
 
 impl<'a> Check<'a> {
-    pub(super) fn links(&mut self, given: &'a Given<Vec<Given<Link>>>) {
+    pub(super) fn links(&mut self, given: &'a Spanned<Vec<Spanned<Link>>>) {
         let Some(links) = &given.value else {
             self.unknown.links = true;
             return;
@@ -76,7 +76,7 @@ impl<'a> Check<'a> {
 
         let first = self.bodies.len();
         let (starts, tip) = self.carried(link, name, path);
-        if !name.is_empty() && self.links.insert(name, Place { first, starts }).is_some() {
+        if !name.is_empty() && self.links.insert(name, LinkBodies { first, starts }).is_some() {
             self.report(rule::duplicate_name(link.name.span, "links", name, "an earlier link"));
         }
         tip
@@ -143,7 +143,7 @@ impl<'a> Check<'a> {
         vec![Step::Move(self.push_coordinate((name, name), kind, axis, Owner::Joint, span))]
     }
 
-    fn free(&mut self, name: &str, some: Option<&[Given<BaseCoordinate>]>, span: Span) -> Vec<Step> {
+    fn free(&mut self, name: &str, some: Option<&[Spanned<BaseCoordinate>]>, span: Span) -> Vec<Step> {
         let chosen = |motion| some.is_none_or(|some| some.iter().filter(|c| c.value == Some(motion)).count() > 0);
         if let Some(some) = some {
             let mut twice = some.iter().enumerate().filter(|(i, c)| some[..*i].iter().any(|b| b.value == c.value));
@@ -200,10 +200,10 @@ impl<'a> Check<'a> {
 
     fn row(
         &mut self,
-        a: Option<&Given<Number>>,
-        alpha: Option<&Given<Angle>>,
-        d: Option<&Given<Number>>,
-        theta: Option<&Given<Angle>>,
+        a: Option<&Spanned<Number>>,
+        alpha: Option<&Spanned<Angle>>,
+        d: Option<&Spanned<Number>>,
+        theta: Option<&Spanned<Angle>>,
     ) -> (Value, Value, Value, Value) {
         let a = self.number_or(a, 0.0, "`a`", "m", Limit::Any);
         let alpha = alpha.map_or(Value::ZERO, |alpha| self.angle(alpha, "`alpha`"));

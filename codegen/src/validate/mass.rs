@@ -5,7 +5,7 @@ use super::limits::Limit;
 use crate::chain::{self, Part, Step, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::inertia::{self, Tensor};
-use crate::spec::{About, Body, Given, Inertia, Link, Number, Vector};
+use crate::spec::{About, Body, Inertia, Link, Number, Spanned, Vector};
 
 /// Published inertias are measured or rounded: they may violate the triangle inequality by this fraction.
 const SLIGHT: f64 = 0.25;
@@ -66,7 +66,7 @@ impl<'a> Check<'a> {
     }
 
     /// Several bodies combined into one.
-    fn lumped(&mut self, bodies: &[Given<Body>]) -> (Option<chain::Inertia>, Vec<Part>) {
+    fn lumped(&mut self, bodies: &[Spanned<Body>]) -> (Option<chain::Inertia>, Vec<Part>) {
         let mut parts: Vec<Part> = Vec::new();
         let mut whole = None;
         for (body, span) in bodies.iter().filter_map(|body| Some((body.value.as_ref()?, body.span))) {
@@ -89,9 +89,9 @@ impl<'a> Check<'a> {
     /// Mass, centre of mass and inertia as a pseudo-inertia about the origin of the frame; and the centre of mass.
     pub(super) fn inertia(
         &mut self,
-        mass: &Given<Number>,
-        com: Option<&Given<Vector>>,
-        inertia: Option<&Given<Inertia>>,
+        mass: &Spanned<Number>,
+        com: Option<&Spanned<Vector>>,
+        inertia: Option<&Spanned<Inertia>>,
         place: &str,
     ) -> Option<(chain::Inertia, [Value; 3])> {
         let m = self.number(mass, &format!("the mass of {place}"), "kg", Limit::Mass);

@@ -25,11 +25,11 @@ mod section;
 use std::collections::BTreeMap;
 
 use crate::chain::{
-    self, Analyses, Body, Bound, Chain, Coordinate, CoordinateId, ElementSpring, Input, Loops, Parameter, ParameterId,
+    self, Analyses, BeamSpring, Body, Bound, Chain, Coordinate, CoordinateId, Input, Loops, Parameter, ParameterId,
     Relation, Value,
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
-use crate::spec::{self, Analysis, Crane, CraneSpec, Given};
+use crate::spec::{self, Analysis, Crane, CraneSpec, Spanned};
 use limits::Limit;
 use names::Names;
 use section::Elastic;
@@ -97,7 +97,7 @@ enum Owner {
 
 /// The position of a link in the chain.
 #[derive(Clone, Debug)]
-struct Place {
+struct LinkBodies {
     /// Index of its first body.
     first: usize,
     /// The starts of its bodies along x when undeformed, m.
@@ -129,10 +129,10 @@ struct Check<'a> {
     /// The owner of each coordinate.
     owners: Vec<Owner>,
     bodies: Vec<Body>,
-    elements: Vec<ElementSpring>,
+    beam_springs: Vec<BeamSpring>,
     beams: Vec<chain::Beam>,
     base: [Option<CoordinateId>; 6],
-    links: BTreeMap<&'a str, Place>,
+    links: BTreeMap<&'a str, LinkBodies>,
     /// Names of bodies and coordinates after expansion.
     expanded: Names,
     /// Kinds of names that could not be read, so that references to them may be correct.
@@ -166,7 +166,7 @@ impl<'a> Check<'a> {
         self.links(&crane.links);
         let supports = self.supports(crane);
         let (mut drives, mut rotors) = self.drives(crane);
-        let hinges = self.hinges(crane, &drives);
+        let joint_dampers = self.joint_dampers(crane, &drives);
         let forces = self.joint_forces(crane, &drives);
         let loads = self.loads(crane);
         let cylinders = self.cylinders(crane, &drives);
@@ -193,9 +193,9 @@ impl<'a> Check<'a> {
             base: self.base,
             supports,
             beams: std::mem::take(&mut self.beams),
-            elements: std::mem::take(&mut self.elements),
+            beam_springs: std::mem::take(&mut self.beam_springs),
             drives,
-            hinges,
+            joint_dampers,
             forces,
             loads,
             cylinders,
@@ -240,7 +240,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn analyses(&mut self, given: Option<&Given<Vec<Given<Analysis>>>>) -> Analyses {
+    fn analyses(&mut self, given: Option<&Spanned<Vec<Spanned<Analysis>>>>) -> Analyses {
         let default = Analyses { internal_forces: false, derivatives: false, ..Analyses::ALL };
         let Some((list, span)) = given.and_then(|given| Some((given.value.as_ref()?, given.span))) else {
             return default;
@@ -260,7 +260,7 @@ impl<'a> Check<'a> {
     }
 }
 
-fn loops(given: Option<&Given<spec::Loops>>) -> Loops {
+fn loops(given: Option<&Spanned<spec::Loops>>) -> Loops {
     match given.and_then(|given| given.value) {
         None | Some(spec::Loops::Auto) => Loops::Auto,
         Some(spec::Loops::Always) => Loops::Always,

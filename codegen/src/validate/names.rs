@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::Check;
 use crate::chain::CoordinateId;
 use crate::diagnostic::{Span, rule, suggest};
-use crate::spec::Given;
+use crate::spec::Spanned;
 
 /// Maximum length of a name, characters: it is part of file names and of lines of generated code.
 const LONGEST: usize = 64;
@@ -42,7 +42,7 @@ impl Names {
 
 impl Check<'_> {
     /// A name that is a `snake_case` identifier and not a keyword.
-    pub(super) fn name<'n>(&mut self, given: &'n Given<String>) -> Option<&'n str> {
+    pub(super) fn name<'n>(&mut self, given: &'n Spanned<String>) -> Option<&'n str> {
         let name = given.value.as_deref()?;
         let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
         let identifier = name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(letters);
@@ -60,7 +60,7 @@ impl Check<'_> {
     }
 
     /// The name of the crane, which becomes a module at the root of a program.
-    pub(super) fn crane_name<'n>(&mut self, given: &'n Given<String>) -> Option<&'n str> {
+    pub(super) fn crane_name<'n>(&mut self, given: &'n Spanned<String>) -> Option<&'n str> {
         let name = self.name(given)?;
         if CRATES.contains(&name) {
             self.report(rule::keyword(given.span, name, "the crane's program uses a crate of this name"));
@@ -70,7 +70,7 @@ impl Check<'_> {
     }
 
     /// A text for people that comments of the generated code repeat: one line without characters that break or reverse it.
-    pub(super) fn text(&mut self, given: Option<&Given<String>>, place: &str) -> Option<String> {
+    pub(super) fn text(&mut self, given: Option<&Spanned<String>>, place: &str) -> Option<String> {
         let given = given?;
         let text = given.value.as_ref()?;
         let turns = |c| matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
@@ -95,7 +95,7 @@ impl Check<'_> {
     }
 
     /// The coordinate with that name.
-    pub(super) fn coordinate(&mut self, given: &Given<String>) -> Option<CoordinateId> {
+    pub(super) fn coordinate(&mut self, given: &Spanned<String>) -> Option<CoordinateId> {
         let name = given.value.as_deref()?;
         let found = self.coordinates.iter().position(|coordinate| coordinate.name == name);
         if found.is_none() && !self.unknown.links {

@@ -4,7 +4,7 @@ use super::Check;
 use super::limits::Limit;
 use crate::chain::{CoordinateKind, Parameter, ParameterId, Value};
 use crate::diagnostic::{Span, rule, suggest};
-use crate::spec::{Angle, Constant, Crane, FixedAngle, Given, Number, Scalar, Vector};
+use crate::spec::{Angle, Constant, Crane, FixedAngle, Number, Scalar, Spanned, Vector};
 
 /// Magnitudes outside of this range, except zero, come from a slip in an exponent. Inside, no product or quotient in the
 /// expansion leaves the range of a double.
@@ -63,7 +63,7 @@ impl<'a> Check<'a> {
     }
 
     /// A number, checked against its limit.
-    pub(super) fn number(&mut self, given: &Given<Number>, place: &str, unit: &str, limit: Limit) -> Value {
+    pub(super) fn number(&mut self, given: &Spanned<Number>, place: &str, unit: &str, limit: Limit) -> Value {
         let value = self.resolve(given.value.as_ref().map(|number| &number.0), given.span, place, false);
         self.keep_limit(&value, given.span, place, unit, limit);
         value
@@ -72,7 +72,7 @@ impl<'a> Check<'a> {
     /// An optional number.
     pub(super) fn number_or(
         &mut self,
-        given: Option<&Given<Number>>,
+        given: Option<&Spanned<Number>>,
         default: f64,
         place: &str,
         unit: &str,
@@ -82,7 +82,7 @@ impl<'a> Check<'a> {
     }
 
     /// Three numbers along x, y, z.
-    pub(super) fn vector(&mut self, given: &Given<Vector>, place: &str, unit: &str, limit: Limit) -> [Value; 3] {
+    pub(super) fn vector(&mut self, given: &Spanned<Vector>, place: &str, unit: &str, limit: Limit) -> [Value; 3] {
         match &given.value {
             Some(vector) => vector.each_ref().map(|number| self.number(number, place, unit, limit)),
             None => [f64::NAN; 3].map(Value::from),
@@ -92,7 +92,7 @@ impl<'a> Check<'a> {
     /// Three optional numbers, zero by default.
     pub(super) fn vector_or_zero(
         &mut self,
-        given: Option<&Given<Vector>>,
+        given: Option<&Spanned<Vector>>,
         place: &str,
         unit: &str,
         limit: Limit,
@@ -101,25 +101,25 @@ impl<'a> Check<'a> {
     }
 
     /// An angle, rad.
-    pub(super) fn angle(&mut self, given: &Given<Angle>, place: &str) -> Value {
+    pub(super) fn angle(&mut self, given: &Spanned<Angle>, place: &str) -> Value {
         self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, true)
     }
 
     /// A position of a coordinate, rad or m; either if the kind is unknown.
-    pub(super) fn position(&mut self, given: &Given<Angle>, kind: Option<CoordinateKind>, place: &str) -> Value {
+    pub(super) fn position(&mut self, given: &Spanned<Angle>, kind: Option<CoordinateKind>, place: &str) -> Value {
         let turns = kind != Some(CoordinateKind::Translation);
         self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, turns)
     }
 
     /// A position that no parameter can replace.
-    pub(super) fn fixed(&mut self, given: &Given<FixedAngle>, place: &str, kind: Option<CoordinateKind>) -> f64 {
+    pub(super) fn fixed(&mut self, given: &Spanned<FixedAngle>, place: &str, kind: Option<CoordinateKind>) -> f64 {
         let turns = kind != Some(CoordinateKind::Translation);
         let value = self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, turns);
         value.as_constant().unwrap_or(f64::NAN)
     }
 
     /// A number that no parameter can replace.
-    pub(super) fn constant(&mut self, given: &Given<Constant>, place: &str, unit: &str, limit: Limit) -> f64 {
+    pub(super) fn constant(&mut self, given: &Spanned<Constant>, place: &str, unit: &str, limit: Limit) -> f64 {
         let value = self.resolve(given.value.as_ref().map(|constant| &constant.0), given.span, place, false);
         self.keep_limit(&value, given.span, place, unit, limit);
         value.as_constant().unwrap_or(f64::NAN)

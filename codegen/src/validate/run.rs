@@ -4,7 +4,7 @@ use super::Check;
 use super::limits::Limit;
 use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Support, Transmission, Value};
 use crate::diagnostic::{Span, rule, suggest};
-use crate::spec::{self, Constant, Crane, Given};
+use crate::spec::{self, Constant, Crane, Spanned};
 
 /// A point belongs to the element that starts at its x, with this fraction of the beam's length as tolerance, because both
 /// are rounded numbers.
@@ -40,7 +40,7 @@ impl<'a> Check<'a> {
     }
 
     /// The body of a link that carries a point, and the position on it: for a beam, the element that contains the point's x.
-    pub(super) fn attach(&mut self, link: &Given<String>, at: [Value; 3]) -> Option<(BodyId, [Value; 3])> {
+    pub(super) fn attach(&mut self, link: &Spanned<String>, at: [Value; 3]) -> Option<(BodyId, [Value; 3])> {
         let name = link.value.as_deref()?;
         let Some(place) = self.links.get(name) else {
             if !self.unknown.links {
@@ -76,15 +76,15 @@ impl<'a> Check<'a> {
         guess
     }
 
-    pub(super) fn run(&mut self, given: Option<&Given<spec::Run>>) -> Run {
+    pub(super) fn run(&mut self, given: Option<&Spanned<spec::Run>>) -> Run {
         let run = given.and_then(|given| given.value.clone()).unwrap_or_default();
-        let mut seconds = |given: Option<&Given<Constant>>, default, place| {
+        let mut seconds = |given: Option<&Spanned<Constant>>, default, place| {
             given.map_or(default, |given| self.constant(given, place, "s", Limit::Positive))
         };
         let duration = seconds(run.duration.as_ref(), 10.0, "`duration`");
         let step = seconds(run.step.as_ref(), 1e-4, "`step`");
         let output = seconds(run.output.as_ref(), 0.01, "`output`");
-        let span = |own: &Option<Given<Constant>>| {
+        let span = |own: &Option<Spanned<Constant>>| {
             own.as_ref().map_or(given.map(|given| given.span).unwrap_or_default(), |own| own.span)
         };
         if step > output {

@@ -5,7 +5,7 @@ use super::limits::Limit;
 use crate::chain::{Moduli, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::expand::section::{CrossSection, Shape};
-use crate::spec::{Either, Given, Material, Number, Section};
+use crate::spec::{Either, Material, Number, Section, Spanned};
 
 /// An isotropic elastic material.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ pub(super) struct Elastic {
 
 impl<'a> Check<'a> {
     /// A material given in place, or by its name.
-    pub(super) fn material(&mut self, given: &'a Given<Either<String, Material>>) -> Option<Elastic> {
+    pub(super) fn material(&mut self, given: &'a Spanned<Either<String, Material>>) -> Option<Elastic> {
         let name = match given.value.as_ref()? {
             Either::Full(material) => return Some(self.elastic(material)),
             Either::Short(name) => name,
@@ -49,8 +49,8 @@ impl<'a> Check<'a> {
     }
 
     /// A cross-section by its shape or its numbers.
-    pub(super) fn shape(&mut self, given: &Given<Section>) -> Option<Shape> {
-        let mut positive = |number: &Given<Number>, place, unit| self.number(number, place, unit, Limit::Positive);
+    pub(super) fn shape(&mut self, given: &Spanned<Section>) -> Option<Shape> {
+        let mut positive = |number: &Spanned<Number>, place, unit| self.number(number, place, unit, Limit::Positive);
         Some(match given.value.as_ref()? {
             Section::Box { height, width, thickness } => {
                 let size = [positive(height, "`height`", "m"), positive(width, "`width`", "m")];

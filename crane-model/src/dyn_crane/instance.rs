@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     CraneModel, Description, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-    ParameterError, SectionModuli, Statics, Tension, TransformDerivatives, Wrench, support::lanes::f64x8,
+    ParameterError, SectionModuli, Statics, Tension, TransformDerivatives, Wrench, rt::lanes::f64x8,
 };
 
 /// A crane compiled with every analysis except derivatives.
@@ -242,12 +242,12 @@ impl<const N: usize, H: Deref<Target: Implicit<N> + Sized> + Send + Sync> DynImp
         Box::new(System::<N, H::Target> { crane: &self.0, factors: None })
     }
 
-    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
-        self.0.joint_impedances(out);
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        self.0.joint_stiffness_and_damping(out);
     }
 
-    fn nonlinear_impedances(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
-        self.0.nonlinear_impedances(t, &vector(q), &vector(v), out);
+    fn nonlinear_stiffness_and_damping(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.0.nonlinear_stiffness_and_damping(t, &vector(q), &vector(v), out);
     }
 
     fn base_stiffness(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
@@ -266,8 +266,8 @@ struct System<'a, const N: usize, C: Implicit<N>> {
 }
 
 impl<const N: usize, C: Implicit<N>> DynSystem for System<'_, N, C> {
-    fn factorise(&mut self, q: &[f64], resistance: &[f64], base: &Matrix6<f64>) {
-        self.factors = Some(self.crane.factorise(&vector(q), &vector(resistance), base));
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &Matrix6<f64>) {
+        self.factors = Some(self.crane.factorise(&vector(q), &vector(added_inertia), base));
     }
 
     fn solve(&mut self, r: &[f64], out: &mut [f64]) {

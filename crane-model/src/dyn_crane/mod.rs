@@ -32,7 +32,7 @@ pub(crate) use instance::Block;
 pub use instance::{Crane, Instance, boxed};
 pub use quantities::{Energies, Member};
 
-use crate::{Description, ParameterError, SectionModuli, Tension, Wrench, support::lanes::f64x8};
+use crate::{Description, ParameterError, SectionModuli, Tension, Wrench, rt::lanes::f64x8};
 
 /// Poses, forces and potential energy of a crane: [`CraneModel`](crate::CraneModel) on slices.
 pub trait DynModel: Send + Sync {
@@ -193,10 +193,10 @@ pub trait DynImplicit: DynDynamics {
 
     /// Stiffness and damping of elements, drives and joints on single coordinates; zero for the base's. `out`: one pair per
     /// coordinate.
-    fn joint_impedances(&self, out: &mut [[f64; 2]]);
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]);
 
     /// Stiffness and damping of end stops and friction on single coordinates at a state. `out`: one pair per coordinate.
-    fn nonlinear_impedances(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
+    fn nonlinear_stiffness_and_damping(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
 
     /// Stiffness over the base's coordinates at a state.
     fn base_stiffness(&self, q: &[f64], v: &[f64]) -> Matrix6<f64>;
@@ -208,7 +208,7 @@ pub trait DynImplicit: DynDynamics {
 /// Systems `(A(q) + D̂) x = r` of a crane, one after the other.
 pub trait DynSystem: Send {
     /// Factorises `A(q) + D̂`, like [`Implicit::factorise`](crate::Implicit::factorise).
-    fn factorise(&mut self, q: &[f64], resistance: &[f64], base: &Matrix6<f64>);
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &Matrix6<f64>);
 
     /// x of the system that was factorised last; NaN before the first.
     fn solve(&mut self, r: &[f64], out: &mut [f64]);

@@ -63,7 +63,7 @@ impl dyn DynImplicit + '_ {
     pub(crate) fn drive_stiffness(&self, q: &[f64]) -> Vec<f64> {
         let drives = &self.description().drives;
         let (mut linear, mut limits) = (vec![[0.0; 2]; q.len()], vec![[0.0; 2]; drives.len()]);
-        self.joint_impedances(&mut linear);
+        self.joint_stiffness_and_damping(&mut linear);
         self.drive_limits(0.0, q, &vec![0.0; q.len()], &mut limits);
         // A drive with a limit is not among the linear ones.
         drives.iter().zip(limits).map(|(drive, [_, limited])| linear[drive.coordinate][0].max(limited)).collect()

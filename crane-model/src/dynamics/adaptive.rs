@@ -2,7 +2,7 @@
 
 use super::{
     Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped, equations::Equations, norm::Norm,
-    state::NotFinite, step::Step, stopped::Place,
+    state::NotFinite, step::Step, stopped::StepContext,
 };
 
 /// First step tried, s: a crane starts smoothly, and steps may grow by a factor of three.
@@ -55,7 +55,7 @@ impl<'a, F: Formula> Adaptive<'a, F> {
     fn stuck(&self, t: f64, h: f64) -> Stopped {
         let Equations { crane, n, .. } = self.equations;
         let q = &self.motion[..n];
-        Place { method: F::METHOD, t, h, q, description: crane.description() }.failed(Cause::Tolerance, crane)
+        StepContext { method: F::METHOD, t, h, q, description: crane.description() }.failed(Cause::Tolerance, crane)
     }
 
     /// Whether a tried step meets the tolerance, and the length to try next.

@@ -39,9 +39,9 @@ struct Row {
     /// M⁻¹ Jᵀ.
     answer: Vec<f64>,
     /// k, N/m, and d, N s/m.
-    impedance: [f64; 2],
+    stiffness_and_damping: [f64; 2],
     /// `c d + c² k`
-    resistance: f64,
+    added_inertia: f64,
 }
 
 impl Connected {
@@ -53,8 +53,8 @@ impl Connected {
             spanned,
             jacobian: vec![0.0; end - first],
             answer: vec![0.0; n],
-            impedance: [0.0; 2],
-            resistance: 0.0,
+            stiffness_and_damping: [0.0; 2],
+            added_inertia: 0.0,
         };
         Self {
             rows: connectors.iter().map(|connector| row(connector.spanned)).collect(),
@@ -81,10 +81,10 @@ impl Connected {
         crane.connector_tensions(t, q, v, &mut self.tensions);
         crane.connector_jacobians(q, &mut self.jacobians);
         for ((row, tension), jacobian) in self.rows.iter_mut().zip(&self.tensions).zip(self.jacobians.chunks_exact(n)) {
-            row.impedance = tension.impedance();
-            let [stiffness, damping] = row.impedance;
-            row.resistance = damping * c + stiffness * (c * c);
-            if row.resistance > 0.0 {
+            row.stiffness_and_damping = tension.stiffness_and_damping();
+            let [stiffness, damping] = row.stiffness_and_damping;
+            row.added_inertia = damping * c + stiffness * (c * c);
+            if row.added_inertia > 0.0 {
                 let [first, end] = row.spanned;
                 row.jacobian.copy_from_slice(&jacobian[first..end]);
                 factors.solve(jacobian, &mut row.answer);
@@ -103,7 +103,7 @@ impl Connected {
             for (j, other) in self.rows.iter().enumerate() {
                 schur[(i, j)] = one.along(&other.answer);
             }
-            schur[(i, i)] += if one.resistance > 0.0 { 1.0 / one.resistance } else { 1.0 };
+            schur[(i, i)] += if one.added_inertia > 0.0 { 1.0 / one.added_inertia } else { 1.0 };
         }
         schur
     }
@@ -114,14 +114,18 @@ impl Connected {
             return false;
         }
         crane.connector_tensions(t, q, v, &mut self.tensions);
-        let mut pairs = self.rows.iter().zip(&self.tensions).map(|(row, now)| (row.impedance, now.impedance()));
+        let mut pairs = self
+            .rows
+            .iter()
+            .zip(&self.tensions)
+            .map(|(row, now)| (row.stiffness_and_damping, now.stiffness_and_damping()));
         pairs.any(|(before, now)| before.iter().zip(now).any(|(before, now)| differs(*before, now)))
     }
 
     /// Adds `D̂ G + K̂ (c G + P)` of the connectors.
     pub fn add_to(&self, (g, p): (&[f64], &[f64]), c: f64, right: &mut [f64]) {
         for row in &self.rows {
-            let [stiffness, damping] = row.impedance;
+            let [stiffness, damping] = row.stiffness_and_damping;
             let (g, p) = (row.along(g), row.along(p));
             let force = damping * g + stiffness * (c * g + p);
             for (right, column) in right[row.spanned[0]..].iter_mut().zip(&row.jacobian) {

@@ -11,7 +11,7 @@ use super::{
     roughness::Roughness,
     settings::divided,
     state::NotFinite,
-    stopped::Place,
+    stopped::StepContext,
 };
 use crate::dyn_crane::DynDynamics;
 
@@ -71,15 +71,15 @@ impl<'a> Rk4<'a> {
         }
     }
 
-    fn place(&self, t: f64, h: f64) -> Place<'_> {
+    fn context(&self, t: f64, h: f64) -> StepContext<'_> {
         let q = &self.motion[..self.equations.n];
-        Place { method: Method::Rk4, t, h, q, description: self.equations.crane.description() }
+        StepContext { method: Method::Rk4, t, h, q, description: self.equations.crane.description() }
     }
 
     /// The cause is growth from step to step if there is some, otherwise the given cause.
-    fn rough(&self, place: &Place<'_>, otherwise: impl FnOnce(&Place<'_>) -> Stopped) -> Stopped {
-        let rough = self.roughness.roughest().map(|coordinate| place.stopped(Cause::Step, coordinate));
-        rough.unwrap_or_else(|| otherwise(place))
+    fn rough(&self, context: &StepContext<'_>, otherwise: impl FnOnce(&StepContext<'_>) -> Stopped) -> Stopped {
+        let rough = self.roughness.roughest().map(|coordinate| context.stopped(Cause::Step, coordinate));
+        rough.unwrap_or_else(|| otherwise(context))
     }
 }
 
@@ -178,13 +178,13 @@ impl Stepper for Rk4<'_> {
             equations.crane.prescribe(t + h, pose, &mut rest[..n]);
         }
         if let Err(NotFinite) = advanced {
-            let place = self.place(t, h);
-            return Err(self.rough(&place, |place| place.failed(Cause::Growth, self.equations.crane)));
+            let context = self.context(t, h);
+            return Err(self.rough(&context, |context| context.failed(Cause::Growth, self.equations.crane)));
         }
         let grows = self.roughness.grows(h, before, &room[..n], &motion[n..2 * n]);
         if grows || !equations.crane.description().bounded(&motion[..n], self.settings.bound) {
-            let place = self.place(t, h);
-            return Err(self.rough(&place, |place| place.furthest(Cause::Growth)));
+            let context = self.context(t, h);
+            return Err(self.rough(&context, |context| context.furthest(Cause::Growth)));
         }
         self.steps.done += 1;
         self.done += 1;

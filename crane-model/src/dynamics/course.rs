@@ -11,7 +11,7 @@ use super::{
     dormand_prince::DormandPrince,
     equations::INTEGRALS,
     rosenbrock::Rosenbrock,
-    stopped::{Place, without_inertia},
+    stopped::{StepContext, without_inertia},
     stops::Stops,
 };
 use crate::{
@@ -72,8 +72,9 @@ impl<'a> Course<'a> {
     ) -> Result<Self, Stopped> {
         let (n, method) = (crane.size(), settings.method);
         check_inertia(crane, &start.q).map_err(|index| {
-            let place = Place { method, t: begin, h: settings.step, q: &start.q, description: crane.description() };
-            place.stopped(Cause::MassMatrix, index)
+            let context =
+                StepContext { method, t: begin, h: settings.step, q: &start.q, description: crane.description() };
+            context.stopped(Cause::MassMatrix, index)
         })?;
         let mut own = OwnStates::new(crane.description());
         let states = if start.x.is_empty() { own.holding(crane, begin, &start.q) } else { start.x.clone() };
@@ -105,12 +106,12 @@ impl<'a> Course<'a> {
             let steps = self.stepper.statistics().steps;
             let q = &self.stepper.motion()[..n];
             let (t, h) = (self.reached, self.reached - before);
-            let place = Place { method: self.settings.method, t, h, q, description };
+            let context = StepContext { method: self.settings.method, t, h, q, description };
             if !description.bounded(q, self.settings.bound) {
-                return Err(place.furthest(Cause::Growth));
+                return Err(context.furthest(Cause::Growth));
             }
             if steps >= self.settings.most_steps && self.reached < self.end {
-                return Err(place.furthest(Cause::Steps));
+                return Err(context.furthest(Cause::Steps));
             }
             if step(self.reached).is_break() {
                 return Ok(ControlFlow::Break(()));

@@ -27,7 +27,7 @@ pub(crate) struct Eliminated {
     states: Factors,
     kappa: DMatrix<f64>,
     delta: DMatrix<f64>,
-    resistance: DMatrix<f64>,
+    added_inertia: DMatrix<f64>,
     /// M⁻¹ Uᵀ, force by force.
     answers: Vec<Vec<f64>>,
     /// I + S U M⁻¹ Uᵀ.
@@ -51,7 +51,7 @@ impl Eliminated {
             states: Factors::new(len),
             kappa: square(count),
             delta: square(count),
-            resistance: square(count),
+            added_inertia: square(count),
             answers: vec![vec![0.0; n]; count],
             correction: Factors::new(count),
             unit: vec![0.0; n],
@@ -69,7 +69,7 @@ impl Eliminated {
         c: f64,
         solve: &mut dyn FnMut(&[f64], &mut [f64]),
     ) {
-        let Self { own, rates, by_states, states, kappa, delta, resistance, answers, .. } = self;
+        let Self { own, rates, by_states, states, kappa, delta, added_inertia, answers, .. } = self;
         if own.is_empty() {
             return;
         }
@@ -88,8 +88,8 @@ impl Eliminated {
             kappa[(column, column)] += own.by_length;
             delta[(column, column)] += own.by_speed;
         }
-        for ((resistance, delta), kappa) in resistance.iter_mut().zip(delta.iter()).zip(kappa.iter()) {
-            *resistance = -(delta * c + kappa * (c * c));
+        for ((added_inertia, delta), kappa) in added_inertia.iter_mut().zip(delta.iter()).zip(kappa.iter()) {
+            *added_inertia = -(delta * c + kappa * (c * c));
         }
         for (own, answer) in pushed.iter().zip(&mut *answers) {
             self.unit.fill(0.0);
@@ -97,7 +97,7 @@ impl Eliminated {
             solve(&self.unit, answer);
         }
         self.correction.factorise(|row, column| {
-            let share = |(place, own): (usize, &Pushed)| resistance[(row, place)] * own.along(&answers[column]);
+            let share = |(place, own): (usize, &Pushed)| added_inertia[(row, place)] * own.along(&answers[column]);
             f64::from(row == column) + pushed.iter().enumerate().map(share).sum::<f64>()
         });
     }
@@ -121,7 +121,7 @@ impl Eliminated {
     pub fn correct(&mut self, solution: &mut [f64]) {
         let pushed = self.own.pushed();
         for (row, share) in self.shares.iter_mut().enumerate() {
-            let of_force = |(column, own): (usize, &Pushed)| self.resistance[(row, column)] * own.along(solution);
+            let of_force = |(column, own): (usize, &Pushed)| self.added_inertia[(row, column)] * own.along(solution);
             *share = pushed.iter().enumerate().map(of_force).sum();
         }
         self.correction.solve(&mut self.shares);

@@ -9,12 +9,12 @@ use nalgebra::SVector;
 
 use super::{
     Cause, InitialState, Method, Run, Sample, Settings, State, Statistics, Stopped, rk4, settings::divided,
-    stopped::Place, stops::Stops,
+    stopped::StepContext, stops::Stops,
 };
 use crate::{
     CoordinateRole, Description, Ensemble, LaneDynamics, ParameterError,
     dyn_crane::{Block, DynBlock, DynCrane, DynModel, Instance, Member},
-    support::lanes::f64x8,
+    rt::lanes::f64x8,
 };
 
 /// Cranes per vector.
@@ -270,8 +270,8 @@ impl<'a> Batch<'a> {
             if let Some(result @ Ok(_)) = results.get_mut(lane) {
                 let mut q = vec![0.0; self.description.coordinates.len()];
                 self.lane(lane, &self.q, &mut q);
-                let place = Place { method: Method::Rk4, t, h, q: &q, description: self.description };
-                *result = Err(place.furthest(Cause::Growth));
+                let context = StepContext { method: Method::Rk4, t, h, q: &q, description: self.description };
+                *result = Err(context.furthest(Cause::Growth));
             }
             self.reset(lane);
         }

@@ -74,12 +74,12 @@ impl Norm {
     /// Also for the drives' efforts, for a motion relative to the drives' motions.
     pub fn with_efforts(crane: &dyn DynImplicit, tolerance: f64) -> Self {
         let n = crane.size();
-        let mut impedances = vec![[0.0; 2]; n];
-        crane.joint_impedances(&mut impedances);
+        let mut stiffness_and_damping = vec![[0.0; 2]; n];
+        crane.joint_stiffness_and_damping(&mut stiffness_and_damping);
         // At the guess drives with a limit are far from it.
         let stiffness = crane.drive_stiffness(&crane.description().guess);
         let effort = |(coordinate, stiffness): (usize, f64)| {
-            let [_, damping] = impedances[coordinate];
+            let [_, damping] = stiffness_and_damping[coordinate];
             Effort { coordinate, stiffness, damping, scale: 0.0, peak: 0.0, error: 0.0, rounding: 0.0 }
         };
         let coordinates = crane.description().drives.iter().map(|drive| drive.coordinate);

@@ -21,7 +21,7 @@ use nalgebra::SVector;
 
 use super::state::acceleration;
 pub use super::state::{NotFinite, State};
-use crate::{Dynamics, support::lanes::f64x8};
+use crate::{Dynamics, rt::lanes::f64x8};
 
 /// End of the stability region on the imaginary axis, 2√2.
 pub const IMAGINARY_LIMIT: f64 = 2.0 * core::f64::consts::SQRT_2;

@@ -43,7 +43,7 @@ pub struct Stopped {
 
 /// Where a run stopped.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'a> {
+pub(super) struct StepContext<'a> {
     pub method: Method,
     /// Time and step, s.
     pub t: f64,
@@ -52,7 +52,7 @@ pub(super) struct Place<'a> {
     pub description: &'a Description,
 }
 
-impl Place<'_> {
+impl StepContext<'_> {
     /// A run that stopped because of a coordinate.
     pub fn stopped(&self, cause: Cause, coordinate: usize) -> Stopped {
         let info = self.description.coordinates.get(coordinate);

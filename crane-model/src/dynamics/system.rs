@@ -41,7 +41,7 @@ pub(super) struct System<'a> {
     states: usize,
     /// c, s.
     c: f64,
-    resistance: Vec<f64>,
+    added_inertia: Vec<f64>,
     right: Vec<f64>,
     solution: Vec<f64>,
     /// Factorisations so far.
@@ -53,7 +53,7 @@ impl<'a> System<'a> {
     pub fn new(crane: &'a dyn DynImplicit) -> Self {
         let n = crane.size();
         let mut linear = vec![[0.0; 2]; n];
-        crane.joint_impedances(&mut linear);
+        crane.joint_stiffness_and_damping(&mut linear);
         let zeros = || vec![0.0; n];
         let Description { stops, frictions, supports, connectors, .. } = crane.description();
         let one_sided = supports.iter().any(|support| support.one_sided);
@@ -70,7 +70,7 @@ impl<'a> System<'a> {
             own: Eliminated::new(crane),
             states: OwnStates::new(crane.description()).len(),
             c: f64::NAN,
-            resistance: zeros(),
+            added_inertia: zeros(),
             right: zeros(),
             solution: zeros(),
             factorisations: 0,
@@ -81,16 +81,16 @@ impl<'a> System<'a> {
     pub fn factorise(&mut self, t: f64, (q, v): (&[f64], &[f64]), x: &[f64], c: f64) {
         self.c = c;
         let [nonlinear, _] = &mut self.nonlinear;
-        self.crane.nonlinear_impedances(t, q, v, nonlinear);
+        self.crane.nonlinear_stiffness_and_damping(t, q, v, nonlinear);
         for ((joint, linear), nonlinear) in self.joints.iter_mut().zip(&self.linear).zip(nonlinear) {
             *joint = [linear[0] + nonlinear[0], linear[1] + nonlinear[1]];
         }
         self.base = [self.crane.base_stiffness(q, v), self.crane.base_damping(q, v)];
-        for (resistance, [stiffness, damping]) in self.resistance.iter_mut().zip(&self.joints) {
-            *resistance = damping * c + stiffness * (c * c);
+        for (added_inertia, [stiffness, damping]) in self.added_inertia.iter_mut().zip(&self.joints) {
+            *added_inertia = damping * c + stiffness * (c * c);
         }
         let [stiffness, damping] = &self.base;
-        self.factors.factorise(q, &self.resistance, &(damping * c + stiffness * (c * c)));
+        self.factors.factorise(q, &self.added_inertia, &(damping * c + stiffness * (c * c)));
         self.connected.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
         let Self { factors, connected, .. } = self;
         self.own.factorise(self.crane, &Moment { t, q, v, x }, c, &mut |right, solution| {
@@ -107,7 +107,7 @@ impl<'a> System<'a> {
             return false;
         }
         let [before, now] = &mut self.nonlinear;
-        self.crane.nonlinear_impedances(t, q, v, now);
+        self.crane.nonlinear_stiffness_and_damping(t, q, v, now);
         let mut of_joints = before.as_flattened().iter().zip(now.as_flattened());
         let base = [self.crane.base_stiffness(q, v), self.crane.base_damping(q, v)];
         let diagonal = |matrix: &Matrix6<f64>| matrix.diagonal();

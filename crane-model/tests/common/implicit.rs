@@ -8,13 +8,13 @@ use super::{DoublePendulum, Fixed, Lift, Sledge};
 /// Factors of `A + D̂`.
 pub type Factors<const N: usize> = Option<Cholesky<f64, Const<N>>>;
 
-/// Factors of `A + D̂` for resistances of single coordinates.
+/// Factors of `A + D̂` for added inertias of single coordinates.
 pub fn factorise<const N: usize, C: Dynamics<N>>(
     crane: &C,
     q: &SVector<f64, N>,
-    resistance: &SVector<f64, N>,
+    added_inertia: &SVector<f64, N>,
 ) -> Factors<N> {
-    Cholesky::new(crane.mass_matrix(q) + SMatrix::from_diagonal(resistance))
+    Cholesky::new(crane.mass_matrix(q) + SMatrix::from_diagonal(added_inertia))
 }
 
 /// x of `(A + D̂) x = r`; no number where A is not positive definite.
@@ -23,26 +23,26 @@ pub fn solve<const N: usize>(factors: &Factors<N>, r: &SVector<f64, N>) -> SVect
 }
 
 macro_rules! implicit {
-    ($crane:ty, $size:literal, $impedances:expr) => {
+    ($crane:ty, $size:literal, $stiffness_and_damping:expr) => {
         impl Implicit<$size> for $crane {
             type Factors = Factors<$size>;
 
             fn factorise(
                 &self,
                 q: &SVector<f64, $size>,
-                resistance: &SVector<f64, $size>,
+                added_inertia: &SVector<f64, $size>,
                 _: &SMatrix<f64, 6, 6>,
             ) -> Self::Factors {
-                factorise(self, q, resistance)
+                factorise(self, q, added_inertia)
             }
 
             fn solve(&self, factors: &Self::Factors, r: &SVector<f64, $size>) -> SVector<f64, $size> {
                 solve(factors, r)
             }
 
-            fn joint_impedances(&self, out: &mut [[f64; 2]]) {
-                let impedances: fn(&Self) -> [[f64; 2]; $size] = $impedances;
-                out.copy_from_slice(&impedances(self));
+            fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+                let stiffness_and_damping: fn(&Self) -> [[f64; 2]; $size] = $stiffness_and_damping;
+                out.copy_from_slice(&stiffness_and_damping(self));
             }
         }
 

@@ -21,7 +21,7 @@ macro_rules! crane {
         pub mod $name {
             use crane_model::dynamics::rk4::{self, State};
             use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-            use crane_model::support::lanes::f64x8;
+            use crane_model::rt::lanes::f64x8;
             use crane_model::{
                 CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
                 ParameterError, SectionModuli, Statics, Tension, TransformDerivatives, Wrench,
@@ -57,7 +57,7 @@ macro_rules! crane {
                 support_forces(q: &Vector, v: &Vector) -> Vector;
                 element_forces(q: &Vector, v: &Vector) -> Vector;
                 drive_forces(t: f64, q: &Vector, v: &Vector) -> Vector;
-                hinge_forces(v: &Vector) -> Vector;
+                joint_damper_forces(v: &Vector) -> Vector;
                 stop_forces(q: &Vector, v: &Vector) -> Vector;
                 friction_forces(v: &Vector) -> Vector;
                 load_forces(t: f64, q: &Vector) -> Vector;
@@ -93,10 +93,10 @@ macro_rules! crane {
                 forward_dynamics(t: f64, q: &Vector, v: &Vector) -> Vector;
                 solve_mass(q: &Vector, r: &Vector) -> Vector;
                 kinetic_energy(q: &Vector, v: &Vector) -> f64;
-                factorise(q: &Vector, resistance: &Vector, base: &BaseMatrix) -> Factors;
+                factorise(q: &Vector, added_inertia: &Vector, base: &BaseMatrix) -> Factors;
                 solve(factors: &Factors, r: &Vector) -> Vector;
-                joint_impedances(out: &mut [[f64; 2]]);
-                nonlinear_impedances(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
+                joint_stiffness_and_damping(out: &mut [[f64; 2]]);
+                nonlinear_stiffness_and_damping(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 base_stiffness(q: &Vector, v: &Vector) -> BaseMatrix;
                 base_damping(q: &Vector, v: &Vector) -> BaseMatrix;
                 static_residual(q: &Vector) -> Vector;

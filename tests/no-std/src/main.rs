@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use crane_model::dynamics::rk4::State;
 use crane_model::nalgebra::{Matrix4, Vector3};
-use crane_model::support::lanes::splat;
+use crane_model::rt::lanes::splat;
 use crane_model::{Ensemble, Implicit, SectionModuli, Tension, Wrench};
 
 /// Calls every function of a crane.
@@ -22,7 +22,7 @@ macro_rules! call_all {
         let mut motions = vec![[0.0; 2]; black_box(DESCRIPTION.drives.len())];
         let pieces = DESCRIPTION.drives.iter().map(|drive| drive.pieces).sum();
         let mut pieces = vec![[0.0; 2]; black_box(pieces)];
-        let mut impedances = vec![[0.0; 2]; black_box(q.len())];
+        let mut stiffness_and_damping = vec![[0.0; 2]; black_box(q.len())];
         let connectors = black_box(DESCRIPTION.connectors.len());
         let (mut tensions, mut rows) = (vec![Tension::ZERO; connectors], vec![[0.0; of::N]; connectors]);
         let mut gaps = vec![[0.0; 2]; black_box(DESCRIPTION.supports.len())];
@@ -36,7 +36,7 @@ macro_rules! call_all {
         black_box(of::support_forces(&crane, &q, &v));
         black_box(of::element_forces(&crane, &q, &v));
         black_box(of::drive_forces(&crane, t, &q, &v));
-        black_box(of::hinge_forces(&crane, &v));
+        black_box(of::joint_damper_forces(&crane, &v));
         black_box(of::stop_forces(&crane, &q, &v));
         black_box(of::friction_forces(&crane, &v));
         black_box(of::load_forces(&crane, t, &q));
@@ -74,8 +74,8 @@ macro_rules! call_all {
         black_box(of::kinetic_energy(&crane, &q, &v));
         let factors: <Crane as Implicit<{ of::N }>>::Factors = of::factorise(&crane, &q, &v, &BaseMatrix::zeros());
         black_box(of::solve(&crane, &factors, &v));
-        of::joint_impedances(&crane, &mut impedances);
-        of::nonlinear_impedances(&crane, t, &q, &v, &mut impedances);
+        of::joint_stiffness_and_damping(&crane, &mut stiffness_and_damping);
+        of::nonlinear_stiffness_and_damping(&crane, t, &q, &v, &mut stiffness_and_damping);
         black_box(of::base_stiffness(&crane, &q, &v));
         black_box(of::base_damping(&crane, &q, &v));
         black_box(of::static_residual(&crane, &q));
@@ -93,7 +93,7 @@ macro_rules! call_all {
         black_box(of::lane_forward_dynamics(&lanes, splat(t), &lane_q, &lane_v));
         let mut state = State { q, v };
         black_box(of::step(&crane, t, black_box(1e-4), &mut state));
-        black_box((state, matrices, vectors, motions, pieces, impedances, gaps, mass, wrenches, moduli));
+        black_box((state, matrices, vectors, motions, pieces, stiffness_and_damping, gaps, mass, wrenches, moduli));
     }};
 }
 

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use crane_model::nalgebra::{Dim, Matrix, Matrix4, RawStorage, SMatrix, SVector};
-use crane_model::support::lanes::f64x8;
+use crane_model::rt::lanes::f64x8;
 
 /// A function of a state with the states that it is called on, one after the other: nothing is known when it is compiled,
 /// and nothing is left over from the call before.

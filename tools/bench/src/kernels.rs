@@ -2,7 +2,7 @@
 
 use crane_model::dynamics::rk4;
 use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
-use crane_model::support::lanes::f64x8;
+use crane_model::rt::lanes::f64x8;
 use crane_model::{Ensemble, Implicit, LaneDynamics, TransformDerivatives};
 
 use crate::kernel::{Kernel, Lower};

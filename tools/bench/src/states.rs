@@ -1,7 +1,7 @@
 //! The states at which everything is timed and compared.
 
 use crane_model::nalgebra::SVector;
-use crane_model::support::lanes::f64x8;
+use crane_model::rt::lanes::f64x8;
 use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Description};
 use fastrand::Rng;
 

@@ -4,7 +4,7 @@ use crane_codegen::chain::{Chain, Inertia};
 use crane_codegen::{SourceFile, compile};
 use crane_model::TransformDerivatives;
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
-use crane_model::support::fma;
+use crane_model::rt::fma;
 
 use crate::kernel::Numbers;
 

@@ -6,7 +6,7 @@ use crane_codegen::{Checked, Diagnostics, Located, chain::Chain, compile};
 use serde_json::{Value, json};
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Check, Format},
     own,
     problem::{FAILED, Outcome, Problem},
@@ -14,17 +14,17 @@ use crate::{
 };
 
 /// Checks a spec: confirms that it is valid, or reports what is wrong.
-pub fn check(options: &Check, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn check(options: &Check, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let Check { spec, strict, format } = options;
     match format {
         Format::Table => {
-            let Chain { name, bodies, coordinates, spec_hash, .. } = own::load_named(spec, *strict, fleet)?.0;
+            let Chain { name, bodies, coordinates, spec_hash, .. } = own::load_named(spec, *strict, registry)?.0;
             let (bodies, coordinates) = (bodies.len(), coordinates.len());
             Ok(writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates, spec hash {spec_hash}")?)
         }
         Format::Json => {
             let checked =
-                own::source(spec, fleet).and_then(|source| compile::check(&source).map_err(Problem::mistakes));
+                own::source(spec, registry).and_then(|source| compile::check(&source).map_err(Problem::mistakes));
             let (chain, found) = match checked {
                 Ok(Checked { chain, warnings }) => (Some(chain), warnings),
                 Err(Problem::Mistakes(mistakes)) => (None, *mistakes),

@@ -6,7 +6,7 @@ use std::{io::Write, mem, time::Instant};
 use crane_model::{Description, dyn_crane::DynCrane, dynamics::Method, results::Table};
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Compare, ComparePair, Format, Parameters, spec_file},
     extremes::extremes,
     figures::{Curve, Mark, PALETTE, Panel},
@@ -22,21 +22,21 @@ use crate::{
 pub const CRANES: [&str; 2] = ["eight_link_rigid", "eight_link_flexible"];
 
 /// The eight-link cranes: statics and motion, figures and data.
-pub fn compare(options: &Compare, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let [rigid, flexible] = CRANES.map(|name| options.parameters.crane(name, false, fleet));
-    side_by_side(options, [(RIGID, rigid?), (FLEXIBLE, flexible?)], Method::Rk4, fleet, out)
+pub fn compare(options: &Compare, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let [rigid, flexible] = CRANES.map(|name| options.parameters.crane(name, false, registry));
+    side_by_side(options, [(RIGID, rigid?), (FLEXIBLE, flexible?)], Method::Rk4, registry, out)
 }
 
-/// Takes the cranes of YAML files, or the rigid one, into the fleet; their names stand in place of the files then.
-pub fn load(options: &mut ComparePair, fleet: &mut Fleet) -> Outcome<()> {
+/// Takes the cranes of YAML files, or the rigid one, into the registry; their names stand in place of the files then.
+pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
     let ComparePair { first, second, strict, .. } = options;
     if let Some(file) = spec_file(first) {
         let (chain, text) = own::load(file, *strict)?;
-        *first = fleet.add_read(chain, text)?;
+        *first = registry.add_read(chain, text)?;
     }
     let Some(name) = second else {
         // The first stands for the rigid crane, as in the comparison of the eight-link cranes.
-        let rigid = fleet.add_rigid(first)?;
+        let rigid = registry.add_rigid(first)?;
         *second = Some(mem::replace(first, rigid));
         return Ok(());
     };
@@ -45,21 +45,21 @@ pub fn load(options: &mut ComparePair, fleet: &mut Fleet) -> Outcome<()> {
         if chain.name == *first {
             // Two versions of a crane have one name.
             *name = format!("{first}_other");
-            fleet.add(name, renamed(name, &text));
+            registry.add(name, renamed(name, &text));
         } else {
-            *name = fleet.add_read(chain, text)?;
+            *name = registry.add_read(chain, text)?;
         }
     }
     Ok(())
 }
 
 /// Statics and motion of two cranes, figures and data.
-pub fn compare_pair(options: &ComparePair, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn compare_pair(options: &ComparePair, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let ComparePair { first, second, strict, compare } = options;
     let Some(second) = second else {
         return Err(Problem::failed("the second crane is missing", "please report this as a bug"));
     };
-    let known = |name: &str| Ok::<_, Problem>(compare.parameters.known_to(fleet.crane(name)?.description()));
+    let known = |name: &str| Ok::<_, Problem>(compare.parameters.known_to(registry.crane(name)?.description()));
     let [mut one, other] = [known(first)?, known(second)?];
     if compare
         .parameters
@@ -70,11 +70,11 @@ pub fn compare_pair(options: &ComparePair, fleet: &Fleet, out: &mut dyn Write) -
         // What neither has is a mistake, which the first one tells.
         one = Parameters { settings: compare.parameters.settings.clone() };
     }
-    let cranes = [one.crane(first, *strict, fleet)?, other.crane(second, *strict, fleet)?];
+    let cranes = [one.crane(first, *strict, registry)?, other.crane(second, *strict, registry)?];
     let twins = *first == format!("{second}_rigid");
     let labels = if twins { [RIGID, FLEXIBLE] } else { [first.as_str(), second.as_str()] };
     let [one, other] = cranes;
-    side_by_side(compare, [(labels[0], one), (labels[1], other)], Method::RECOMMENDED, fleet, out)
+    side_by_side(compare, [(labels[0], one), (labels[1], other)], Method::RECOMMENDED, registry, out)
 }
 
 /// Statics and motion of two labelled cranes, figures and data; `default`: the method unless one is asked for.
@@ -82,7 +82,7 @@ fn side_by_side(
     options: &Compare,
     [(first, one), (second, other)]: [(&str, Box<dyn DynCrane>); 2],
     default: Method,
-    fleet: &Fleet,
+    registry: &Registry,
     out: &mut dyn Write,
 ) -> Outcome<()> {
     let begin = Instant::now();
@@ -126,7 +126,7 @@ fn side_by_side(
     }
 
     let page = "report.html";
-    page::write(&folder.join(page), fleet, (&cases, options.limits), &settings, &runs)?;
+    page::write(&folder.join(page), registry, (&cases, options.limits), &settings, &runs)?;
     written.push(page.to_owned());
 
     let labelled = [(first, one_run), (second, other_run)];

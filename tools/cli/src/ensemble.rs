@@ -23,7 +23,7 @@ use crane_model::{
 use serde_json::Value;
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Ensemble, Simulate, Step, Timing},
     files,
     journal::{self, Journal, Request},
@@ -38,14 +38,14 @@ use crate::{
 const DONE: &str = "done";
 
 /// Runs all cranes of the table and writes a row for each.
-pub fn simulate(options: &Simulate, table: &Path, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     if options.timing.from.is_some() || !options.timing.start.is_empty() {
         return Err(Problem::usage(
             "`--from` and `--start` do not apply to `--ensemble`: each row starts where its crane rests",
             "leave them out, or simulate the rows one by one",
         ));
     }
-    let rig = options.analysis.crane.open(fleet)?;
+    let rig = options.analysis.crane.open(registry)?;
     let rig = rig.as_ref();
     let description = rig.description();
     let table = ParameterTable::read(table, description)?;

@@ -11,7 +11,7 @@ use nalgebra::{Matrix4, Vector3};
 use serde_json::{Map, Value};
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Eval, EvalFormat, Quantity},
     files,
     npz::{Array, npz},
@@ -19,8 +19,8 @@ use crate::{
 };
 
 /// Evaluates and prints or writes.
-pub fn eval(options: &Eval, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let crane = fleet.live(options.crane.open(fleet)?.as_ref())?;
+pub fn eval(options: &Eval, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let crane = registry.live(options.crane.open(registry)?.as_ref())?;
     let by_forces = [Quantity::Forces, Quantity::Accelerations, Quantity::DriveEfforts];
     if let Some(quantity) = options.quantities.iter().find(|quantity| by_forces.contains(quantity))
         && crane.description().has_own_states()

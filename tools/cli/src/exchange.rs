@@ -14,11 +14,11 @@ use crate::{
     arguments::{CNumber, Export, Import, Language},
     files, fmu, own,
     problem::{Outcome, Problem},
-    selection::Fleet,
+    selection::Registry,
 };
 
 /// Writes a crane as URDF, with its springs beside it, as MJCF, in C, or as a functional mock-up unit.
-pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     if options.crane.rigid {
         return Err(Problem::usage(
             "`--rigid` is not available with `export`",
@@ -31,7 +31,7 @@ pub fn export(options: &Export, fleet: &Fleet, out: &mut dyn Write) -> Outcome<(
             "set the input where the exported crane runs, or change its `value` in the spec",
         ));
     }
-    let (chain, spec) = own::load_named(&options.crane.name, options.crane.strict, fleet)?;
+    let (chain, spec) = own::load_named(&options.crane.name, options.crane.strict, registry)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();
     for (index, value) in options.crane.parameters.read(&chain.name, &known)? {

@@ -9,7 +9,7 @@ use crane_codegen::{
 };
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Generate, Output},
     files,
     own::{self, load},
@@ -17,8 +17,8 @@ use crate::{
 };
 
 /// Writes the Rust module of a crane.
-pub fn generate(options: &Generate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let source = own::source(&options.spec, fleet)?;
+pub fn generate(options: &Generate, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let source = own::source(&options.spec, registry)?;
     let analyses = options.all.then_some(Analyses::ALL);
     if let Some(folder) = &options.dump {
         files::folder(folder)?;

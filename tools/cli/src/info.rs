@@ -5,16 +5,16 @@ use std::io::Write;
 use crane_model::runs::{EQUILIBRIUM, GUESS};
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Analysis, Format},
     problem::Outcome,
     report::{Cell, Grid, Report},
 };
 
 /// Prints the available cranes.
-pub fn list(format: Format, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn list(format: Format, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let mut grid = Grid::new("cranes", "Cranes", &["name", "coordinates", "title"]);
-    for rig in fleet.all() {
+    for rig in registry.all() {
         let rig = rig?;
         let description = rig.description();
         grid.row([
@@ -29,8 +29,8 @@ pub fn list(format: Format, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
 }
 
 /// Prints the parts of a crane.
-pub fn info(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open(fleet)?;
+pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(registry)?;
     let description = rig.description();
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");

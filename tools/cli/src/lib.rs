@@ -7,7 +7,7 @@
 //!
 //! fn main() -> std::process::ExitCode {
 //!     let specs = &[("my_crane", include_str!("../crane.yaml"))];
-//!     crane_cli::main(crane_cli::Fleet::new(specs, all()))
+//!     crane_cli::main(crane_cli::Registry::new(specs, all()))
 //! }
 //! ```
 
@@ -54,7 +54,7 @@ use clap_complete::Shell;
 
 use arguments::{Action, Arguments};
 use problem::Outcome;
-pub use selection::Fleet;
+pub use selection::Registry;
 
 /// Parts for other commands that work with cranes, with [`files`] and [`refinement`].
 pub mod toolbox {
@@ -67,9 +67,9 @@ pub mod toolbox {
     pub use crate::simulate::{file_list, write_figure};
 }
 
-/// Does what the arguments of the process ask for, with the cranes of a fleet or of a YAML file that the arguments name.
-pub fn main(fleet: Fleet) -> ExitCode {
-    with_arguments(help::grouped(Arguments::command()), |arguments, out| act(arguments, fleet, out))
+/// Does what the arguments of the process ask for, with the cranes of a registry or of a YAML file that the arguments name.
+pub fn main(registry: Registry) -> ExitCode {
+    with_arguments(help::grouped(Arguments::command()), |arguments, out| act(arguments, registry, out))
 }
 
 /// Reads the arguments of the process, as `command` describes them, and acts on them; returns the exit code.
@@ -94,56 +94,56 @@ pub fn with_arguments<A: FromArgMatches>(
     }
 }
 
-fn act(mut arguments: Arguments, mut fleet: Fleet, out: &mut dyn Write) -> Outcome<()> {
+fn act(mut arguments: Arguments, mut registry: Registry, out: &mut dyn Write) -> Outcome<()> {
     if let Some(choice) = arguments.action.as_mut().and_then(Action::choice) {
         if choice.compile {
-            return own::compiled(choice, &fleet);
+            return own::compiled(choice, &registry);
         }
         if let Some(file) = choice.file() {
             let (chain, spec) = own::load(file, choice.strict)?;
-            choice.name = fleet.add_read(chain, spec)?;
+            choice.name = registry.add_read(chain, spec)?;
         }
         if choice.rigid {
-            choice.name = fleet.add_rigid(&choice.name)?;
+            choice.name = registry.add_rigid(&choice.name)?;
         }
     }
     if let Some(Action::Compare(options)) = &mut arguments.action {
-        compare::load(options, &mut fleet)?;
+        compare::load(options, &mut registry)?;
     }
-    let fleet = &fleet;
+    let registry = &registry;
     match &arguments.action {
-        None if fleet.has(compare::CRANES) => compare::compare(&arguments.compare, fleet, out),
+        None if registry.has(compare::CRANES) => compare::compare(&arguments.compare, registry, out),
         None => Ok(help::grouped(Arguments::command()).print_help()?),
-        Some(Action::Compare(options)) => compare::compare_pair(options, fleet, out),
-        Some(Action::Run(options)) => overall::run(options, fleet, out),
-        Some(Action::Statics(options)) => statics::statics(options, fleet, out),
+        Some(Action::Compare(options)) => compare::compare_pair(options, registry, out),
+        Some(Action::Run(options)) => overall::run(options, registry, out),
+        Some(Action::Statics(options)) => statics::statics(options, registry, out),
         Some(Action::Simulate(options)) => match &options.ensemble.table {
-            Some(table) => ensemble::simulate(options, table, fleet, out),
-            None => simulate::simulate(options, fleet, out),
+            Some(table) => ensemble::simulate(options, table, registry, out),
+            None => simulate::simulate(options, registry, out),
         },
-        Some(Action::Modes(options)) => modes::modes(options, fleet, out),
-        Some(Action::Linearise(options)) => linearise::linearise(options, fleet, out),
-        Some(Action::Stability(options)) => stability::stability(options, fleet, out),
-        Some(Action::Strength(options)) => strength::strength(options, fleet, out),
-        Some(Action::Envelope(options)) => envelope::envelope(options, fleet, out),
-        Some(Action::Report(options)) => page::report(options, fleet, out),
-        Some(Action::Info(options)) => info::info(options, fleet, out),
-        Some(Action::Eval(options)) => eval::eval(options, fleet, out),
-        Some(Action::New(options)) => new::new(options, fleet, out),
-        Some(Action::Check(options)) => check::check(options, fleet, out),
-        Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), fleet, out),
-        Some(Action::Generate(options)) => generate::generate(options, fleet, out),
+        Some(Action::Modes(options)) => modes::modes(options, registry, out),
+        Some(Action::Linearise(options)) => linearise::linearise(options, registry, out),
+        Some(Action::Stability(options)) => stability::stability(options, registry, out),
+        Some(Action::Strength(options)) => strength::strength(options, registry, out),
+        Some(Action::Envelope(options)) => envelope::envelope(options, registry, out),
+        Some(Action::Report(options)) => page::report(options, registry, out),
+        Some(Action::Info(options)) => info::info(options, registry, out),
+        Some(Action::Eval(options)) => eval::eval(options, registry, out),
+        Some(Action::New(options)) => new::new(options, registry, out),
+        Some(Action::Check(options)) => check::check(options, registry, out),
+        Some(Action::Explain { spec, svg }) => own::explain(spec, svg.as_deref(), registry, out),
+        Some(Action::Generate(options)) => generate::generate(options, registry, out),
         Some(Action::Operations { specs }) => generate::operations(specs, out),
         Some(Action::Schema { of }) => generate::schema(*of, out),
-        Some(Action::Export(options)) => exchange::export(options, fleet, out),
+        Some(Action::Export(options)) => exchange::export(options, registry, out),
         Some(Action::Import(options)) => exchange::import(options, out),
-        Some(Action::List(options)) => info::list(options.format, fleet, out),
+        Some(Action::List(options)) => info::list(options.format, registry, out),
         Some(Action::Completions { shell }) => {
             // Into memory first: the generator panics where the other end of a pipe is gone.
             let mut script = Vec::new();
             let mut command = Arguments::command();
             if *shell == Shell::Bash {
-                command = help::with_cranes(command, fleet.shipped());
+                command = help::with_cranes(command, registry.shipped());
             }
             clap_complete::generate(*shell, &mut command, "crane", &mut script);
             Ok(out.write_all(&script)?)

@@ -13,7 +13,7 @@ use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::Linearise,
     envelope::number,
     files, modes,
@@ -49,8 +49,8 @@ struct Motion {
 type Mode = (DampedMode, ComplexShape);
 
 /// Prints the motion, its modes and, for programs, the matrices; writes an archive if asked to.
-pub fn linearise(options: &Linearise, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let crane = fleet.live(options.analysis.crane.open(fleet)?.as_ref())?;
+pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let crane = registry.live(options.analysis.crane.open(registry)?.as_ref())?;
     let description = crane.description();
     if description.has_own_states() {
         return Err(Problem::usage(

@@ -2,10 +2,10 @@
 
 use std::process::ExitCode;
 
-use crane_cli::Fleet;
+use crane_cli::Registry;
 
 crane_model::cranes! { eight_link_flexible, eight_link_rigid }
 
 fn main() -> ExitCode {
-    crane_cli::main(Fleet::new(crane_specs::SPECS, all()))
+    crane_cli::main(Registry::new(crane_specs::SPECS, all()))
 }

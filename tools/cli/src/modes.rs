@@ -11,7 +11,7 @@ use crane_model::{
 };
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::Modes,
     linearisation,
     problem::Outcome,
@@ -24,9 +24,9 @@ use crate::{
 const LOWEST: usize = 10;
 
 /// Prints undamped and damped modes and the largest stable step.
-pub fn modes(options: &Modes, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let Modes { analysis: options, matrices } = options;
-    let rig = options.crane.open(fleet)?;
+    let rig = options.crane.open(registry)?;
     let description = rig.description();
     let case = Case::new(&description.name, rig.as_ref());
     case.stable()?;
@@ -41,7 +41,7 @@ pub fn modes(options: &Modes, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()>
     let step = limit(&limiting, &Method::Rk4.stability()).map(|limit| limit.step);
     report.value("stable", true);
     report.fact("largest stable step", Cell::from(step), "s");
-    let changes = refinement::changes(&case, fleet)?;
+    let changes = refinement::changes(&case, registry)?;
     report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
     report.excerpt(undamped_modes(&case, changes.as_deref())?, LOWEST);
     report.excerpt(damped_modes(description, &modes), 0);

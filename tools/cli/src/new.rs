@@ -11,7 +11,7 @@ use std::{
 use crane_codegen::{SourceFile, compile};
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::New,
     files, own,
     problem::{Outcome, Problem},
@@ -30,13 +30,13 @@ const SPEC: &str = "crane.yaml";
 const SCHEMA: (&str, &str) = ("crane.schema.json", include_str!("../../../specs/crane.schema.json"));
 
 /// Writes the crate.
-pub fn new(options: &New, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let package = package(&options.folder)?;
     let name = package.replace('-', "_");
     // The name of a shipped crane may be written like that of a crate.
     let shipped = options.from.replace('-', "_");
-    let from = if fleet.spec(&shipped).is_some() { &shipped } else { &options.from };
-    let (from, text) = own::load_named(from, false, fleet)?;
+    let from = if registry.spec(&shipped).is_some() { &shipped } else { &options.from };
+    let (from, text) = own::load_named(from, false, registry)?;
     let spec = renamed(&text, &from.name, &name).ok_or_else(|| {
         Problem::failed(
             format!("cannot rename the crane {} in its spec", from.name),

@@ -5,7 +5,7 @@ use std::io::Write;
 use crane_model::dynamics::Method;
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::Simulate,
     extremes::extremes,
     files,
@@ -17,12 +17,12 @@ use crate::{
 };
 
 /// Statics and motion of a crane, beside its rigid twin where there is one; results, figures and the report.
-pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn run(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     if options.ensemble.table.is_some() {
         return Err(Problem::usage("`crane run` does not support `--ensemble`", "use `crane simulate` instead"));
     }
-    let rig = options.analysis.crane.open(fleet)?;
-    let (rig, twin) = (rig.as_ref(), twin::rigid(rig.as_ref(), fleet));
+    let rig = options.analysis.crane.open(registry)?;
+    let (rig, twin) = (rig.as_ref(), twin::rigid(rig.as_ref(), registry));
     let cases = cases(rig, twin.as_deref());
     let mut report = tables(&cases, options.analysis.crane.limits);
     if let [rigid, flexible] = cases.as_slice() {
@@ -45,7 +45,7 @@ pub fn run(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()
     let description = rig.description();
     written.extend(write_figures(folder, &format!("{}_", description.name), description, &traces)?);
     let page = format!("{}.html", description.name);
-    write(&folder.join(&page), fleet, (&cases, options.analysis.crane.limits), &settings, &runs)?;
+    write(&folder.join(&page), registry, (&cases, options.analysis.crane.limits), &settings, &runs)?;
     written.push(page);
 
     let labelled: Vec<_> = labels.zip(&runs).collect();

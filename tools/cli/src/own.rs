@@ -12,7 +12,7 @@ use std::{
 use crane_codegen::{Checked, Diagnostics, SourceFile, build, chain::Chain, compile, explain, picture::picture};
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Choice, STANDARD_INPUT},
     files,
     problem::{FAILED, Outcome, Problem},
@@ -22,7 +22,7 @@ use crate::{
 const CLI: &str = env!("CARGO_MANIFEST_DIR");
 /// The versions of everything that this program was built with.
 pub const LOCK: &str = include_str!("../../../Cargo.lock");
-/// The library of a program of compiled cranes: a crate with a function `main` over a fleet.
+/// The library of a program of compiled cranes: a crate with a function `main` over a registry.
 pub struct Library {
     /// The crate's name.
     pub name: &'static str,
@@ -46,27 +46,27 @@ pub fn root() -> &'static Path {
 }
 
 /// The spec of a shipped crane, or of a YAML file.
-pub(super) fn source(given: &str, fleet: &Fleet) -> Outcome<SourceFile> {
+pub(super) fn source(given: &str, registry: &Registry) -> Outcome<SourceFile> {
     let file = Path::new(given);
-    match fleet.spec(given) {
+    match registry.spec(given) {
         Some(text) => Ok(SourceFile::new(format!("{given}.yaml"), text)),
         None if given == STANDARD_INPUT => open(file, SPEC),
         None if file.extension().is_some() || file.exists() => open(file, SPEC),
         // Neither: the message names the most similar crane.
-        None => {
-            fleet.crane(given).and_then(|_| Err(Problem::failed(format!("the spec of {given} is not available"), "")))
-        }
+        None => registry
+            .crane(given)
+            .and_then(|_| Err(Problem::failed(format!("the spec of {given} is not available"), ""))),
     }
 }
 
 /// The chain of a shipped crane or of a YAML file, and its text; warnings are shown, and are mistakes if `strict`.
-pub(super) fn load_named(given: &str, strict: bool, fleet: &Fleet) -> Outcome<(Chain, String)> {
-    parse(source(given, fleet)?, strict)
+pub(super) fn load_named(given: &str, strict: bool, registry: &Registry) -> Outcome<(Chain, String)> {
+    parse(source(given, registry)?, strict)
 }
 
 /// Prints the chain of a spec, and draws it on request.
-pub fn explain(spec: &str, svg: Option<&Path>, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let (chain, _) = load_named(spec, false, fleet)?;
+pub fn explain(spec: &str, svg: Option<&Path>, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let (chain, _) = load_named(spec, false, registry)?;
     if let Some(file) = svg {
         files::write_text(file, &picture(&chain))?;
     }
@@ -75,10 +75,10 @@ pub fn explain(spec: &str, svg: Option<&Path>, fleet: &Fleet, out: &mut dyn Writ
 }
 
 /// Does what the arguments of this process ask for, with the chosen crane as machine code.
-pub fn compiled(choice: &Choice, fleet: &Fleet) -> Outcome<()> {
-    let (Chain { name, spec_hash, .. }, text) = match (choice.file(), fleet.spec(&choice.name)) {
+pub fn compiled(choice: &Choice, registry: &Registry) -> Outcome<()> {
+    let (Chain { name, spec_hash, .. }, text) = match (choice.file(), registry.spec(&choice.name)) {
         (None, Some(spec)) => parse(SourceFile::new(format!("{}.yaml", choice.name), spec.to_owned()), choice.strict)?,
-        (None, None) => return fleet.crane(&choice.name).map(|_| ()),
+        (None, None) => return registry.crane(&choice.name).map(|_| ()),
         (Some(file), _) => load(file, choice.strict)?,
     };
     let package = format!("crane-{name}-{spec_hash}");

@@ -37,7 +37,7 @@ impl ParameterTable {
         let mut csv = csv.map_err(unreadable)?;
         let mut columns = Vec::new();
         for (place, header) in csv.headers().map_err(unreadable)?.iter().enumerate() {
-            let at = Place { path, line: 1, column: place + 1 };
+            let at = Cell { path, line: 1, column: place + 1 };
             let index = at.parameter(header, description)?;
             if columns.contains(&index) {
                 return Err(at.problem(&format!("`{header}` occurs twice"), "give each parameter one column"));
@@ -49,7 +49,7 @@ impl ParameterTable {
             let record = record.map_err(unreadable)?;
             let line = record.position().map_or(0, csv::Position::line);
             let value = |(place, (text, &index)): (usize, (&str, &usize))| {
-                let (info, at) = (&description.parameters[index], Place { path, line, column: place + 1 });
+                let (info, at) = (&description.parameters[index], Cell { path, line, column: place + 1 });
                 let number = text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                     let help = format!("write a finite number, in {}, such as {}", info.unit, info.default);
                     at.problem(&format!("`{text}` is not a valid value for {}", info.name), help)
@@ -94,13 +94,13 @@ impl ParameterTable {
 }
 
 /// A field of a table.
-struct Place<'a> {
+struct Cell<'a> {
     path: &'a Path,
     line: u64,
     column: usize,
 }
 
-impl Place<'_> {
+impl Cell<'_> {
     fn problem(&self, what: &str, help: impl Into<String>) -> Problem {
         let Self { path, line, column } = self;
         Problem::usage(format!("{}, line {line}, column {column}: {what}", path.display()), help)

@@ -2,12 +2,12 @@
 
 use crane_codegen::{
     SourceFile, read,
-    spec::{Analysis, Given, Link, Sections},
+    spec::{Analysis, Link, Sections, Spanned},
 };
 use crane_live::LiveCrane;
 use crane_model::{dyn_crane::DynCrane, modes::undamped};
 
-use crate::{Fleet, problem::Outcome, statics::Case};
+use crate::{Registry, problem::Outcome, statics::Case};
 
 /// Most coordinates of a crane whose frequencies are computed with twice the sections too: more take seconds.
 const MOST_COORDINATES: usize = 60;
@@ -21,9 +21,9 @@ const CAUTION: f64 = 0.01;
 ///
 /// # Errors
 /// The modes of one of the cranes cannot be computed.
-pub fn changes(case: &Case<'_>, fleet: &Fleet) -> Outcome<Option<Vec<f64>>> {
+pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>> {
     let description = case.rig.description();
-    let text = fleet.spec(&description.name).filter(|_| description.coordinates.len() <= MOST_COORDINATES);
+    let text = registry.spec(&description.name).filter(|_| description.coordinates.len() <= MOST_COORDINATES);
     let Some(text) = text.and_then(|text| with(&description.name, text, |count| 2.0 * count)) else { return Ok(None) };
     let Ok(mut finer) = LiveCrane::from_spec(&SourceFile::new(description.name.to_string(), text)) else {
         return Ok(None);
@@ -70,7 +70,7 @@ pub fn spec(crane: &str, text: &str, sections: usize) -> Option<String> {
 fn with(name: &str, text: &str, sections: impl Fn(f64) -> f64) -> Option<String> {
     let base = SourceFile::new(name, text);
     let spec = read(&base).ok()?.crane;
-    let count = |given: &Given<Link>| {
+    let count = |given: &Spanned<Link>| {
         let link = given.value.as_ref()?;
         match link.beam.as_ref()?.value.as_ref()?.sections.as_ref()?.value? {
             Sections::Count(count) => Some((link.name.value.as_ref()?.clone(), sections(count))),

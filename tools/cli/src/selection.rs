@@ -18,13 +18,13 @@ use crate::{
 
 /// Cranes that the command can choose from: shipped ones, compiled or live, and one of a YAML file.
 #[derive(Default)]
-pub struct Fleet {
+pub struct Registry {
     entries: Vec<Entry>,
     /// Names of the shipped cranes.
     shipped: Vec<&'static str>,
 }
 
-/// A crane of the fleet.
+/// A crane of the registry.
 struct Entry {
     name: String,
     /// Its spec, YAML.
@@ -67,7 +67,7 @@ impl Entry {
     }
 }
 
-impl Fleet {
+impl Registry {
     /// Cranes by names and specs (YAML), those of `compiled` as machine code.
     pub fn new(specs: &'static [(&'static str, &'static str)], mut compiled: Vec<Box<dyn DynCrane>>) -> Self {
         let entry = |&(name, spec): &(&'static str, &'static str)| {
@@ -188,8 +188,8 @@ impl Choice {
     ///
     /// # Errors
     /// There is no such crane or input, or its parameters cannot have these values.
-    pub fn open(&self, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
-        let mut rig = self.parameters.crane(&self.name, self.strict, fleet)?;
+    pub fn open(&self, registry: &Registry) -> Outcome<Box<dyn DynCrane>> {
+        let mut rig = self.parameters.crane(&self.name, self.strict, registry)?;
         for setting in &self.inputs {
             let (index, value) = input(setting, rig.description())?;
             rig.set_input(index, Some(value));
@@ -232,8 +232,8 @@ impl Parameters {
     ///
     /// # Errors
     /// There is no such crane, or its parameters cannot have these values.
-    pub fn crane(&self, name: &str, strict: bool, fleet: &Fleet) -> Outcome<Box<dyn DynCrane>> {
-        let mut rig = fleet.crane(name)?;
+    pub fn crane(&self, name: &str, strict: bool, registry: &Registry) -> Outcome<Box<dyn DynCrane>> {
+        let mut rig = registry.crane(name)?;
         let description = rig.description();
         let settings = self.read(&description.name, &known(description))?;
         if settings.is_empty() {
@@ -242,7 +242,7 @@ impl Parameters {
         let values: Vec<(String, f64)> =
             settings.iter().map(|&(index, value)| (description.parameters[index].name.to_string(), value)).collect();
         set(rig.as_mut(), &settings)?;
-        if let Some(spec) = fleet.spec(name) {
+        if let Some(spec) = registry.spec(name) {
             let warned = own::warn_of(&SourceFile::new(format!("{name}.yaml"), spec), &values);
             if let (true, Some(problem)) = (strict, warned) {
                 return Err(problem);

@@ -13,7 +13,7 @@ use crane_model::{
 use serde_json::Value;
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::Simulate,
     extremes::extremes,
     figures::{Curve, Mark, PALETTE, Panel, svg},
@@ -34,8 +34,8 @@ pub struct Trace<'a> {
 }
 
 /// Runs a crane and writes its results.
-pub fn simulate(options: &Simulate, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.analysis.crane.open(fleet)?;
+pub fn simulate(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.open(registry)?;
     let rig = rig.as_ref();
     let name = &rig.description().name;
     let start = options.timing.start(rig, false)?;

@@ -11,7 +11,7 @@ use crane_model::{
 };
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::Stability,
     figures::{BLUE, Curve, Mark, Panel, VERMILLION},
     files,
@@ -22,8 +22,8 @@ use crate::{
 };
 
 /// Prints limits and modes, and draws the regions.
-pub fn stability(options: &Stability, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.analysis.crane.open(fleet)?;
+pub fn stability(options: &Stability, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.analysis.crane.open(registry)?;
     let rig = rig.as_ref();
     let description = rig.description();
     let start = Start::of(rig)?;

@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 use serde_json::json;
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Analysis, Format, Limits},
     problem::Outcome,
     report::{Cell, Grid, Heading, Report, VALUE},
@@ -66,8 +66,8 @@ impl<'a> Case<'a> {
 }
 
 /// Prints the equilibrium of a crane.
-pub fn statics(options: &Analysis, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open(fleet)?;
+pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(registry)?;
     let case = Case::new(VALUE, rig.as_ref());
     let mut report = tables(std::slice::from_ref(&case), options.crane.limits);
     if options.format == Format::Json {

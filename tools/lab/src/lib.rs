@@ -11,12 +11,12 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 
 use arguments::{Action, Arguments};
-pub use crane_cli::Fleet;
+pub use crane_cli::Registry;
 
-/// Does what the arguments of the process ask for, with the cranes of a fleet or of a YAML file that the arguments name.
-pub fn main(fleet: Fleet) -> ExitCode {
+/// Does what the arguments of the process ask for, with the cranes of a registry or of a YAML file that the arguments name.
+pub fn main(registry: Registry) -> ExitCode {
     crane_cli::with_arguments(Arguments::command(), move |arguments: Arguments, out| match &arguments.action {
-        Action::WorkPrecision(options) => work_precision::work_precision(options, &fleet, out),
-        Action::Stress(options) => stress::stress(options, &fleet, out),
+        Action::WorkPrecision(options) => work_precision::work_precision(options, &registry, out),
+        Action::Stress(options) => stress::stress(options, &registry, out),
     })
 }

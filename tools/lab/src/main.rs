@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-use crane_lab::Fleet;
+use crane_lab::Registry;
 
 fn main() -> ExitCode {
-    crane_lab::main(Fleet::new(crane_specs::SPECS, Vec::new()))
+    crane_lab::main(Registry::new(crane_specs::SPECS, Vec::new()))
 }

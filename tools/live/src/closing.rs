@@ -2,20 +2,24 @@
 
 use std::ops::{Mul, Neg};
 
-use crane_codegen::program::Point;
+use crane_codegen::program::ConcurrentAxes;
 use crane_model::nalgebra::{Matrix4, Vector3};
-use crane_model::support::fma;
-use crane_model::support::lanes::Fused;
+use crane_model::rt::fma;
+use crane_model::rt::lanes::Fused;
 
 /// A full mass matrix from axes, linear and angular momenta and offsets to the next point of all coordinates, with the order of
 /// operations of compiled cranes: `a_ij = n_i · L_j` if coordinate i rotates, `n_i · P_j` if it translates, L_j about the point
 /// of i. The angular momenta are shifted from point to point.
-pub fn mass_matrix<T: Fused + Neg<Output = T> + Mul<Output = T>>(points: &[Point], columns: &mut [T], out: &mut [T]) {
+pub fn mass_matrix<T: Fused + Neg<Output = T> + Mul<Output = T>>(
+    points: &[ConcurrentAxes],
+    columns: &mut [T],
+    out: &mut [T],
+) {
     let n: usize = points.iter().map(|point| point.coordinates).sum();
     let (axes, rest) = columns.split_at_mut(3 * n);
     let (linear, rest) = rest.split_at_mut(3 * n);
-    let (angular, ways) = rest.split_at_mut(3 * n);
-    let (axes, linear, ways) = (axes.as_chunks::<3>().0, linear.as_chunks::<3>().0, ways.as_chunks::<3>().0);
+    let (angular, offsets) = rest.split_at_mut(3 * n);
+    let (axes, linear, offsets) = (axes.as_chunks::<3>().0, linear.as_chunks::<3>().0, offsets.as_chunks::<3>().0);
     let angular = angular.as_chunks_mut::<3>().0;
     let mut end = n;
     for point in points.iter().rev() {
@@ -23,9 +27,9 @@ pub fn mass_matrix<T: Fused + Neg<Output = T> + Mul<Output = T>>(points: &[Point
         for i in (begin..end).rev() {
             for j in i..n {
                 if j > i {
-                    angular[j] = moved(ways[i], linear[j], angular[j]);
+                    angular[j] = moved(offsets[i], linear[j], angular[j]);
                 }
-                let entry = along(axes[i], if point.turns { angular[j] } else { linear[j] });
+                let entry = along(axes[i], if point.rotate { angular[j] } else { linear[j] });
                 out[i + n * j] = entry;
                 out[j + n * i] = entry;
             }

@@ -11,7 +11,7 @@ use crane_model::dyn_crane::{
     DynModel, DynStatics, DynSystem,
 };
 use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
-use crane_model::support::lanes::f64x8;
+use crane_model::rt::lanes::f64x8;
 use crane_model::{Description, ParameterError, SectionModuli, Tension, Wrench};
 
 use crate::closing::{mass_matrix, second_derivatives};
@@ -457,12 +457,12 @@ impl DynImplicit for LiveCrane {
         })
     }
 
-    fn joint_impedances(&self, out: &mut [[f64; 2]]) {
-        self.pairs(FunctionId::JointImpedances, &Arguments::none(), out);
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::JointStiffnessAndDamping, &Arguments::none(), out);
     }
 
-    fn nonlinear_impedances(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
-        self.pairs(FunctionId::NonlinearImpedances, &state(t, q, v), out);
+    fn nonlinear_stiffness_and_damping(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::NonlinearStiffnessAndDamping, &state(t, q, v), out);
     }
 
     fn base_stiffness(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
@@ -485,9 +485,9 @@ struct System<'a> {
 }
 
 impl DynSystem for System<'_> {
-    fn factorise(&mut self, q: &[f64], resistance: &[f64], base: &Matrix6<f64>) {
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &Matrix6<f64>) {
         if let Some((routine, machine)) = &mut self.factorise {
-            let arguments = Arguments { resistance, base: base.as_slice(), ..at(q) };
+            let arguments = Arguments { added_inertia, base: base.as_slice(), ..at(q) };
             routine.run(machine, &arguments, &mut self.factors);
         }
     }
@@ -575,7 +575,7 @@ impl DynDerivatives for LiveCrane {
 
     fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]) {
         self.call(FunctionId::TransformSecondDerivatives, &at(q), |routine, results| match routine.shape() {
-            Shape::Turned { degrees, rotations, vectors } => {
+            Shape::TransformFactors { degrees, rotations, vectors } => {
                 second_derivatives(degrees, rotations.len(), vectors, results, out);
             }
             _ => copy_as(results.as_chunks::<16>().0, |matrix| Matrix4::from_column_slice(matrix), out),

@@ -119,7 +119,7 @@ fn role(chain: &Chain, index: usize) -> CoordinateRole {
         CoordinateRole::Driven
     } else if chain.turns_by_vector(CoordinateId(index)) {
         CoordinateRole::ElementVector
-    } else if chain.elements.iter().any(|element| element.coordinate.0 == index) {
+    } else if chain.beam_springs.iter().any(|element| element.coordinate.0 == index) {
         CoordinateRole::Element
     } else {
         CoordinateRole::Passive

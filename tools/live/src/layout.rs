@@ -47,7 +47,7 @@ fn append(shape: &Shape, first: usize, entries: &mut Vec<Entry>) {
         | Shape::Pairs(_)
         | Shape::Rows { .. }
         | Shape::Structs(..)
-        | Shape::Turned { .. }
+        | Shape::TransformFactors { .. }
         | Shape::Columns { .. }
         | Shape::Factors(_) => entries.extend(slots(shape.len())),
     }

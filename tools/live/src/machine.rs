@@ -3,8 +3,8 @@
 use std::ops::{Div, Mul, Neg};
 
 use crane_codegen::program::Argument;
-use crane_model::support::lanes::{Function, Fused, f64x8};
-use crane_model::support::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
+use crane_model::rt::lanes::{Function, Fused, f64x8};
+use crane_model::rt::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
 
 use crate::bytecode::{Code, Fixed, Instruction, Kind};
 
@@ -108,9 +108,9 @@ pub struct Arguments<'a, T> {
     pub a: &'a [T],
     /// Right-hand side of a linear system.
     pub right: &'a [T],
-    /// Resistances of single coordinates.
-    pub resistance: &'a [T],
-    /// Resistance of the base, 6×6, column by column.
+    /// Added inertias of single coordinates.
+    pub added_inertia: &'a [T],
+    /// Added inertia of the base, 6×6, column by column.
     pub base: &'a [T],
     /// Results of an earlier function.
     pub factors: &'a [T],
@@ -131,7 +131,7 @@ impl<T: Number> Arguments<'_, T> {
             v: &[],
             a: &[],
             right: &[],
-            resistance: &[],
+            added_inertia: &[],
             base: &[],
             factors: &[],
             parameters: &[],
@@ -146,14 +146,14 @@ impl<T: Number> Arguments<'_, T> {
             Argument::Position => self.q,
             Argument::Velocity => self.v,
             Argument::Acceleration => self.a,
-            Argument::Right => self.right,
-            Argument::Resistance => self.resistance,
-            Argument::BaseResistance => self.base,
+            Argument::RightHandSide => self.right,
+            Argument::AddedInertia => self.added_inertia,
+            Argument::BaseAddedInertia => self.base,
             Argument::Factors => self.factors,
             Argument::Parameters => self.parameters,
             Argument::Inputs => self.inputs,
             // Only loops of compiled code have these.
-            Argument::Round | Argument::Loop => &[],
+            Argument::LoopVarying | Argument::LiveOut => &[],
         }
     }
 }

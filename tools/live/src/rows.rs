@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crane_codegen::program::{FunctionId, Shape};
 use crane_model::Description;
 use crane_model::dyn_crane::DynModel;
-use crane_model::support::fma;
+use crane_model::rt::fma;
 
 use crate::LiveCrane;
 use crate::closing::mass_matrix;
@@ -260,7 +260,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::Linearise => 3 * n * n,
             FunctionId::Forces
             | FunctionId::SupportForces
-            | FunctionId::HingeForces
+            | FunctionId::JointDamperForces
             | FunctionId::ElementForces
             | FunctionId::DriveForces
             | FunctionId::ConnectorForces
@@ -279,7 +279,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::WinchPieces => {
                 2 * description.connectors.iter().map(|connector| connector.pieces).sum::<usize>()
             }
-            FunctionId::JointImpedances | FunctionId::NonlinearImpedances => 2 * n,
+            FunctionId::JointStiffnessAndDamping | FunctionId::NonlinearStiffnessAndDamping => 2 * n,
             FunctionId::BaseStiffness | FunctionId::BaseDamping => 36,
             FunctionId::DrivePieces => 2 * description.drives.iter().map(|drive| drive.pieces).sum::<usize>(),
             FunctionId::LoadPieces => 2 * description.loads.iter().map(|load| load.pieces).sum::<usize>(),

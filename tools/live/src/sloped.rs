@@ -5,8 +5,8 @@
 use std::ops::{Div, Mul, Neg};
 
 use crane_codegen::symbolic::Scalar;
-use crane_model::support::lanes::{Function, Fused, f64x8};
-use crane_model::support::{exp, fma, select, sin_cos, sqrt, stumpff};
+use crane_model::rt::lanes::{Function, Fused, f64x8};
+use crane_model::rt::{exp, fma, select, sin_cos, sqrt, stumpff};
 
 use crate::machine::{ANGLES, Number};
 

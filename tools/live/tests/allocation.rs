@@ -4,7 +4,7 @@ use crane_codegen::build;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynDynamics, DynEnsemble, DynImplicit, DynModel, DynStatics};
 use crane_model::nalgebra::{Matrix6, Vector3};
-use crane_model::support::lanes::f64x8;
+use crane_model::rt::lanes::f64x8;
 
 fn crane() -> LiveCrane {
     let path = format!("{}/../../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));

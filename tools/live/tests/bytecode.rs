@@ -3,12 +3,12 @@
 use crane_codegen::build;
 use crane_codegen::chain::{Analyses, Chain};
 use crane_codegen::program::{Argument, Function, FunctionId, Inputs, Program, Shape, Symbol};
-use crane_codegen::symbolic::{Expr, Graph, SymbolId, Tape};
+use crane_codegen::symbolic::{Expr, Graph, SweepTrace, SymbolId};
 use crane_codegen::{compile, mechanics};
 use crane_live::Routine;
 use crane_live::layout::{Entry, layout};
 use crane_live::machine::Arguments;
-use crane_model::support::lanes::f64x8;
+use crane_model::rt::lanes::f64x8;
 
 /// Specs with everything that functions can have: supports, beams, drives, hinges, live parameters, prismatic joints.
 const SPECS: [&str; 4] = ["eight_link_flexible", "eight_link_identified", "knuckle_boom", "double_pendulum"];
@@ -28,7 +28,7 @@ struct State {
     q: Vec<f64>,
     v: Vec<f64>,
     right: Vec<f64>,
-    resistance: Vec<f64>,
+    added_inertia: Vec<f64>,
     base: Vec<f64>,
     factors: Vec<f64>,
     parameters: Vec<f64>,
@@ -49,7 +49,7 @@ impl State {
             q: near(&chain.guess, wave(n, 0.05, 1.3)),
             v: wave(n, 0.4, 0.7),
             right: wave(n, 100.0, 2.1),
-            resistance: vec![2.0 + seed; n],
+            added_inertia: vec![2.0 + seed; n],
             base,
             factors: wave(factors, 1.0, 0.37),
             parameters: chain.parameter_defaults().iter().map(|p| p * (1.0 + 0.01 * seed)).collect(),
@@ -58,10 +58,10 @@ impl State {
 
     fn inputs(&self) -> Inputs<f64> {
         Inputs::state(self.t, self.q.clone(), self.v.clone(), self.parameters.clone())
-            .with(Argument::Right, self.right.clone())
+            .with(Argument::RightHandSide, self.right.clone())
             .with(Argument::Acceleration, self.right.clone())
-            .with(Argument::Resistance, self.resistance.clone())
-            .with(Argument::BaseResistance, self.base.clone())
+            .with(Argument::AddedInertia, self.added_inertia.clone())
+            .with(Argument::BaseAddedInertia, self.base.clone())
             .with(Argument::Factors, self.factors.clone())
     }
 
@@ -72,7 +72,7 @@ impl State {
             v: &self.v,
             a: &self.right,
             right: &self.right,
-            resistance: &self.resistance,
+            added_inertia: &self.added_inertia,
             base: &self.base,
             factors: &self.factors,
             parameters: &[],
@@ -124,7 +124,7 @@ fn a_lane_computes_what_one_state_does() {
         let states: Vec<State> = (0..8).map(|lane| State::new(&chain, &program, f64::from(lane))).collect();
         let lanes = |of: fn(&State) -> &Vec<f64>| lanes_of(&states, of);
         let (q, v, right) = (lanes(|s| &s.q), lanes(|s| &s.v), lanes(|s| &s.right));
-        let (resistance, base) = (lanes(|s| &s.resistance), lanes(|s| &s.base));
+        let (added_inertia, base) = (lanes(|s| &s.added_inertia), lanes(|s| &s.base));
         let (factors, parameters) = (lanes(|s| &s.factors), lanes(|s| &s.parameters));
         let t = f64x8::new(std::array::from_fn(|lane| states[lane].t));
         let arguments = Arguments {
@@ -133,7 +133,7 @@ fn a_lane_computes_what_one_state_does() {
             v: &v,
             a: &right,
             right: &right,
-            resistance: &resistance,
+            added_inertia: &added_inertia,
             base: &base,
             factors: &factors,
             parameters: &[],
@@ -175,7 +175,7 @@ fn functions_of_one_number_and_choices_are_the_interpreters() {
         arguments: &[Argument::Position],
         shape: Shape::Vector(outputs.len()),
         outputs,
-        tape: Tape::default(),
+        trace: SweepTrace::default(),
     };
     let program = Program::new(graph, vec![symbol("x", 0), symbol("y", 1)], vec![function]);
     let routine = Routine::new(&program, &program.functions[0]).unwrap();

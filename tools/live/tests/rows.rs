@@ -5,7 +5,7 @@ use crane_live::rows::{Evaluation, Quantity, Rows};
 use crane_live::{FunctionId, LiveCrane};
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
 use crane_model::nalgebra::{Matrix4, Vector3};
-use crane_model::support::lanes::f64x8;
+use crane_model::rt::lanes::f64x8;
 
 /// Eight and three more.
 const COUNT: usize = 11;

@@ -151,7 +151,7 @@ class Crane:
     def bias(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m."""
     def forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces f of supports, elements, drives and hinges, N and N m. t: s, 0 unless given."""
+        """(..., n): generalized forces f of supports, elements, drives and joint dampers, N and N m. t: s, 0 unless given."""
     def element_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): generalized forces of the springs and dampers between rigid elements, N m."""
     def drive_forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:

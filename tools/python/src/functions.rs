@@ -3,7 +3,7 @@
 use crane_live::FunctionId;
 use crane_live::rows::{Evaluation, Quantity, Rows};
 use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, DynStatics};
-use crane_model::support::lanes::f64x8;
+use crane_model::rt::lanes::f64x8;
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -141,7 +141,7 @@ impl Crane {
         )
     }
 
-    /// (..., n): generalized forces f of supports, elements, drives and hinges, N and N m. t: s, 0 unless given.
+    /// (..., n): generalized forces f of supports, elements, drives and joint dampers, N and N m. t: s, 0 unless given.
     #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
     fn forces<'py>(
         &self,

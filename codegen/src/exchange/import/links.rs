@@ -54,16 +54,16 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
     let mut names = Names::default();
     let mut links: Vec<SpecLink> = Vec::new();
     // The frame of the spec's link in that of the robot's.
-    let mut turned = Frame::WORLD;
+    let mut rotated = Frame::WORLD;
     for group in groups {
         let Some((carrier, _)) = group.links.first() else { continue };
-        let before = turned;
+        let before = rotated;
         let (mut placement, mut motion) = (Frame::WORLD, SpecMotion::Fixed);
-        turned = Frame::WORLD;
+        rotated = Frame::WORLD;
         if let Some((joint, at)) = &group.joint {
             let (axis, frame) = onto_an_axis(joint.axis);
-            turned = frame;
-            placement = before.local(&at.outer(&turned));
+            rotated = frame;
+            placement = before.local(&at.outer(&rotated));
             motion = if matches!(joint.motion, Motion::Revolute) {
                 SpecMotion::Revolute(axis)
             } else {
@@ -83,7 +83,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
         let mut bodies = Names::default();
         let ends = group.links.len() > 1 && link.joint.is_some();
         for (index, (member, frame)) in group.links.iter().enumerate() {
-            let own = turned.local(frame);
+            let own = rotated.local(frame);
             match &member.lump {
                 Some(lump) => link.bodies.push((bodies.unique(&member.name), lump.seen_through(&own))),
                 None if ends && index > 0 => link.points.push((member.name.clone(), clean(own.origin))),
@@ -148,7 +148,7 @@ fn onto_an_axis(direction: Vector) -> (Axis, Frame) {
         if direction[index] == 1.0 {
             return (axis, Frame::WORLD);
         } else if direction[index] == -1.0 {
-            return (axis, Frame::WORLD.turned(other, 0.0, -1.0));
+            return (axis, Frame::WORLD.rotated(other, 0.0, -1.0));
         }
     }
     (Axis::Z, along_z(direction))

@@ -201,7 +201,7 @@ impl Reader {
         turns.iter().fold(Frame { origin: at, ..Frame::WORLD }, |frame, (axis, angle)| {
             // Quarter turns as the spec language reads them: exact.
             let (sin, cos) = Value::Constant(*angle).sin_cos();
-            frame.turned(*axis, sin.at(&[]), cos.at(&[]))
+            frame.rotated(*axis, sin.at(&[]), cos.at(&[]))
         })
     }
 

@@ -4,7 +4,7 @@ use super::{Derivation, function, sum};
 use crate::mechanics::{connectors, drives, gravity, joints, loads, springs, supports};
 use crate::program::Argument::{Position, Time, Velocity};
 use crate::program::{Argument, Function, FunctionId, Shape, Struct};
-use crate::symbolic::{Expr, Tape};
+use crate::symbolic::{Expr, SweepTrace};
 
 /// A part of the forces: which, documentation, equation and arguments of its function, and its expressions.
 type Part<'g> = (FunctionId, &'static str, &'static str, &'static [Argument], Vec<Expr<'g>>);
@@ -51,7 +51,7 @@ impl<'g> Derivation<'g> {
             ));
         }
         functions.extend(self.support_gaps());
-        if !chain.elements.is_empty() {
+        if !chain.beam_springs.is_empty() {
             let forces = springs::element_forces(model, &model.q, &model.v);
             parts.push(forces.clone());
             functions.push(function(
@@ -64,15 +64,15 @@ impl<'g> Derivation<'g> {
             ));
         }
         if !chain.drives.is_empty() {
-            let (forces, tape) = self.recorded_if_rigid(|| self.drive_forces());
+            let (forces, trace) = self.recorded_if_rigid(|| self.drive_forces());
             parts.push(forces.clone());
-            functions.extend(self.drives(forces, tape));
+            functions.extend(self.drives(forces, trace));
         }
-        if !chain.hinges.is_empty() {
-            let forces = springs::hinge_forces(model, &model.v);
+        if !chain.joint_dampers.is_empty() {
+            let forces = springs::joint_damper_forces(model, &model.v);
             parts.push(forces.clone());
             functions.push(function(
-                FunctionId::HingeForces,
+                FunctionId::JointDamperForces,
                 "Generalized forces of viscous damping in passive joints, N and N m.",
                 "−d q̇",
                 &[Velocity],
@@ -213,7 +213,7 @@ impl<'g> Derivation<'g> {
     }
 
     /// Efforts, powers and motions of drives, from their generalized forces.
-    fn drives(&self, forces: Vec<Expr<'g>>, tape: Tape) -> Vec<Function> {
+    fn drives(&self, forces: Vec<Expr<'g>>, trace: SweepTrace) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
         let equation = if self.rigid {
             "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]; of rigid drives (A q̈ − e)_j"
@@ -229,7 +229,7 @@ impl<'g> Derivation<'g> {
                 Shape::Vector(model.size()),
                 forces,
             )
-            .by(tape),
+            .by(trace),
             function(
                 FunctionId::DriveMotions,
                 "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
@@ -305,8 +305,8 @@ impl<'g> Derivation<'g> {
     }
 
     /// Operations for efforts of rigid drives are in the order of the recursion that computes them.
-    fn recorded_if_rigid<T>(&self, derive: impl FnOnce() -> T) -> (T, Tape) {
-        if self.rigid { self.model.graph.recorded(derive) } else { (derive(), Tape::default()) }
+    fn recorded_if_rigid<T>(&self, derive: impl FnOnce() -> T) -> (T, SweepTrace) {
+        if self.rigid { self.model.graph.recorded(derive) } else { (derive(), SweepTrace::default()) }
     }
 
     /// Generalized forces of everything except inertia, gravity and rigid drives.
@@ -316,7 +316,7 @@ impl<'g> Derivation<'g> {
             supports::forces(model, &self.kinematics, v),
             springs::element_forces(model, &model.q, v),
             drives::forces(model, t, v),
-            springs::hinge_forces(model, v),
+            springs::joint_damper_forces(model, v),
         ];
         if !model.chain.forces.is_empty() {
             parts.extend([joints::stop_forces(model, v), joints::friction_forces(model, v)]);
@@ -377,7 +377,7 @@ impl<'g> Derivation<'g> {
                 supports::energy(model, &self.kinematics),
             ));
         }
-        if !chain.elements.is_empty() {
+        if !chain.beam_springs.is_empty() {
             functions.push(scalar(
                 FunctionId::ElementEnergy,
                 "Energy of the springs between rigid elements, J.",
@@ -396,7 +396,7 @@ impl<'g> Derivation<'g> {
                     drives::energy(model),
                 ));
             }
-            let (power, tape) = self.recorded_if_rigid(|| {
+            let (power, trace) = self.recorded_if_rigid(|| {
                 let efforts = if self.rigid { self.rigid_efforts() } else { vec![] };
                 drives::power(model, &efforts)
             });
@@ -408,7 +408,7 @@ impl<'g> Derivation<'g> {
                     &[Time, Position, Velocity],
                     power,
                 )
-                .by(tape),
+                .by(trace),
             );
         }
         if !chain.loads.is_empty() {

@@ -11,7 +11,7 @@ use crate::symbolic::Expr;
 impl Derivation<'_> {
     pub(super) fn internal_forces(&self) -> Vec<Function> {
         let model = &self.model;
-        let (wrenches, tape) =
+        let (wrenches, trace) =
             model.graph.recorded(|| newton_euler::internal_forces(model, &self.kinematics, &self.factors));
         let mut functions = vec![
             function(
@@ -22,7 +22,7 @@ impl Derivation<'_> {
                 Shape::Structs(Struct::Wrench, model.chain.cuts().len()),
                 wrenches,
             )
-            .by(tape),
+            .by(trace),
         ];
         if !model.chain.supports.is_empty() {
             functions.push(function(

@@ -5,9 +5,11 @@ mod internal_forces;
 mod statics;
 
 use crate::chain::{Analyses, BodyId, Chain};
-use crate::program::Argument::{self, BaseResistance, Factors, Position, Resistance, Right, Time, Velocity};
+use crate::program::Argument::{
+    self, AddedInertia, BaseAddedInertia, Factors, Position, RightHandSide, Time, Velocity,
+};
 use crate::program::{Function, FunctionId, Program, Shape, Symbol};
-use crate::symbolic::{Expr, Graph, Stages, SymbolId, Tape};
+use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 
 use super::articulated::Effort;
 use super::columns::columns;
@@ -18,7 +20,9 @@ use super::kinematics::Kinematics;
 use super::model::Model;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
-use super::{cylinders, drives, energy, joints, newton_euler, points, resisted, rotors, springs, supports, transforms};
+use super::{
+    cylinders, drives, effective_mass, energy, joints, newton_euler, points, rotors, springs, supports, transforms,
+};
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
@@ -129,9 +133,10 @@ impl<'g> Derivation<'g> {
         let forces = self.given_forces(model.t, &model.v);
         let prescribed = drives::accelerations(model);
         let of_motion = Load { v: &model.v, forces: &forces, prescribed: &prescribed, gravity };
-        let (accelerations, tape) = model.graph.recorded(|| self.hybrid_dynamics(&of_motion).accelerations);
+        let (accelerations, trace) = model.graph.recorded(|| self.hybrid_dynamics(&of_motion).accelerations);
         let (rest, still) = (model.zeros(), drives::at_rest(model));
-        let at_rest = Load { v: &rest, forces: &model.right, prescribed: &still, gravity: Vec3::zero(model.graph) };
+        let at_rest =
+            Load { v: &rest, forces: &model.right_hand_side, prescribed: &still, gravity: Vec3::zero(model.graph) };
         let (solution, solution_tape) = model.graph.recorded(|| self.hybrid_dynamics(&at_rest).accelerations);
         let (columns, mass_tape) = model.graph.recorded(|| columns(model, &self.factors));
         let (bias, bias_tape) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
@@ -155,12 +160,12 @@ impl<'g> Derivation<'g> {
                 Shape::Vector(model.size()),
                 accelerations,
             )
-            .by(tape),
+            .by(trace),
             function(
                 FunctionId::SolveMass,
                 "Solution x of `A x = r`; r in N and N m, x in m/s² and rad/s².",
                 "A x = r, by articulated bodies at rest",
-                &[Position, Right],
+                &[Position, RightHandSide],
                 Shape::Vector(model.size()),
                 solution,
             )
@@ -216,7 +221,7 @@ impl<'g> Derivation<'g> {
     fn hybrid_dynamics(&self, load: &Load<'_, 'g>) -> Motion<'g> {
         let Load { v, forces, prescribed, gravity } = *load;
         let armatures = rotors::armatures(&self.model);
-        let efforts = forces.iter().zip(armatures).map(|(&applied, resistance)| Effort { applied, resistance });
+        let efforts = forces.iter().zip(armatures).map(|(&applied, added_inertia)| Effort { applied, added_inertia });
         let efforts: Vec<_> = efforts.collect();
         forward::hybrid_dynamics(&self.model, &self.factors, &Loads { v, efforts: &efforts, prescribed, gravity })
     }
@@ -224,11 +229,12 @@ impl<'g> Derivation<'g> {
     /// Functions for implicit integration: structured stiffness and damping, and systems with them.
     fn implicit(&self, symbols: &mut Vec<Symbol>) -> Vec<Function> {
         let model = &self.model;
-        let solve = || resisted::solution(model, &self.kinematics, &self.factors);
-        let (solution, tape) = model.graph.recorded(solve);
+        let solve = || effective_mass::solution(model, &self.kinematics, &self.factors);
+        let (solution, trace) = model.graph.recorded(solve);
         let first = SymbolId(u32::try_from(symbols.len()).expect("fewer than 2^32 inputs"));
-        let late = |SymbolId(id): SymbolId| symbols.get(id as usize).is_some_and(|symbol| symbol.argument == Right);
-        let Stages { factors, results, tape: late_tape } = model.graph.stages(&solution, &tape, late, first);
+        let late =
+            |SymbolId(id): SymbolId| symbols.get(id as usize).is_some_and(|symbol| symbol.argument == RightHandSide);
+        let Stages { factors, results, trace: late_trace } = model.graph.stages(&solution, &trace, late, first);
         symbols.extend((0..factors.len()).map(|index| Symbol {
             name: format!("f{index:03}"),
             argument: Factors,
@@ -237,29 +243,29 @@ impl<'g> Derivation<'g> {
         let mut functions = vec![
             function(
                 FunctionId::Factorise,
-                "Factors of `A + D̂` for [`solve`]: D̂ has `resistance` on its diagonal, but `base` in the base's rows and columns.",
+                "Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, but `base` in the base's rows and columns.",
                 "A + D̂, by articulated bodies at rest",
-                &[Position, Resistance, BaseResistance],
+                &[Position, AddedInertia, BaseAddedInertia],
                 Shape::Factors(factors.len()),
                 factors,
             )
-            .by(tape),
+            .by(trace),
             function(
                 FunctionId::Solve,
                 "Solution x of `(A + D̂) x = r` from the factors of `A + D̂`.",
                 "(A + D̂) x = r",
-                &[Factors, Right],
+                &[Factors, RightHandSide],
                 Shape::Vector(model.size()),
                 results,
             )
-            .by(late_tape),
+            .by(late_trace),
         ];
-        let (stiffness, damping) = self.step_impedances();
+        let (stiffness, damping) = self.step_stiffness_and_damping();
         let base: Vec<usize> = model.chain.base.iter().flatten().map(|id| id.0).collect();
         let diagonal =
             |j: usize| [&stiffness, &damping].map(|m| if base.contains(&j) { model.zero() } else { m.at(j, j) });
         functions.push(function(
-            FunctionId::JointImpedances,
+            FunctionId::JointStiffnessAndDamping,
             "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, without those of the base.",
             "s, d [Urbaś 2016, Eqs. (14), (19)]",
             &[],
@@ -268,12 +274,12 @@ impl<'g> Derivation<'g> {
         ));
         if !model.chain.forces.is_empty() || model.chain.has_limited_drives() {
             functions.push(function(
-                FunctionId::NonlinearImpedances,
+                FunctionId::NonlinearStiffnessAndDamping,
                 "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) of end stops and friction on single coordinates.",
                 "∂F/∂q, max(0, ∂F/∂q̇)",
                 &[Time, Position, Velocity],
                 Shape::Pairs(model.size()),
-                joints::impedances(model).into_iter().flatten().collect(),
+                joints::stiffness_and_damping(model).into_iter().flatten().collect(),
             ));
         }
         if !base.is_empty() {
@@ -310,7 +316,7 @@ impl<'g> Derivation<'g> {
     }
 
     /// Stiffness and damping of supports, elements, drives and joints, without the stiffness of gravity.
-    fn impedances(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
+    fn stiffness_and_damping(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
         let model = &self.model;
         let zero = || SymmetricMatrix::zero(model.graph, model.size());
         let (mut stiffness, mut damping) = (zero(), zero());
@@ -322,10 +328,10 @@ impl<'g> Derivation<'g> {
     }
 
     /// The same for implicit steps: of one-sided supports at the present state, nowhere negative.
-    fn step_impedances(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
+    fn step_stiffness_and_damping(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
         let model = &self.model;
         if !model.chain.has_one_sided_supports() {
-            return self.impedances();
+            return self.stiffness_and_damping();
         }
         let zero = || SymmetricMatrix::zero(model.graph, model.size());
         let (mut stiffness, mut damping) = (zero(), zero());
@@ -376,5 +382,5 @@ fn function(
 ) -> Function {
     assert_eq!(shape.len(), outputs.len(), "{id:?}");
     let outputs = outputs.into_iter().map(Expr::id).collect();
-    Function { id, doc, equation, arguments, shape, outputs, tape: Tape::default() }
+    Function { id, doc, equation, arguments, shape, outputs, trace: SweepTrace::default() }
 }

@@ -114,7 +114,7 @@ impl<'g> Derivation<'g> {
     /// Without what oil moves, whose stiffness follows from its volumes.
     fn stiffness(&self) -> SymmetricMatrix<'g> {
         let model = &self.model;
-        let mut matrix = self.impedances().0;
+        let mut matrix = self.stiffness_and_damping().0;
         joints::stiffness(model, &mut matrix);
         loads::stiffness(model, &self.kinematics, &mut matrix);
         drives::stiffness(model, &mut matrix);
@@ -125,7 +125,7 @@ impl<'g> Derivation<'g> {
 
     pub(super) fn linearise(&self) -> Function {
         let model = &self.model;
-        let mut damping = self.impedances().1;
+        let mut damping = self.stiffness_and_damping().1;
         joints::damping(model, &mut damping);
         drives::damping(model, &mut damping);
         connectors::damping(model, &self.kinematics, &mut damping);

@@ -6,7 +6,7 @@ use super::lengths::is_far;
 use super::{Look, items, rounded};
 use crate::chain::{Coordinate, CoordinateKind};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Angle, Given, Input, Link, Motion, Placement, Scalar, Turn};
+use crate::spec::{Angle, Input, Link, Motion, Placement, Scalar, Spanned, Turn};
 
 /// Bare angles beyond a full turn look like degrees; with four ulp of tolerance, because `6.283185307179586` is 2π.
 const FULL_TURN: f64 = TAU * (1.0 + 4.0 * f64::EPSILON);
@@ -33,7 +33,8 @@ impl Look<'_> {
 
     fn rotations(&mut self, link: &Link) {
         let name = link.name.value.as_deref().unwrap_or_default();
-        let angles: Vec<&Given<Angle>> = match link.placement.as_ref().and_then(|placement| placement.value.as_ref()) {
+        let angles: Vec<&Spanned<Angle>> = match link.placement.as_ref().and_then(|placement| placement.value.as_ref())
+        {
             Some(Placement::ModifiedDh(row)) => [&row.alpha, &row.theta].into_iter().flatten().collect(),
             Some(Placement::ClassicDh(row)) => [&row.alpha, &row.theta].into_iter().flatten().collect(),
             Some(Placement::Transform(transform)) => {
@@ -77,9 +78,9 @@ impl Look<'_> {
     }
 
     /// An input that is the motion of a coordinate.
-    fn input(&mut self, name: &Given<String>, coordinate: &str) {
+    fn input(&mut self, name: &Spanned<String>, coordinate: &str) {
         let entries = self.crane.inputs.as_ref().and_then(|inputs| inputs.value.as_ref());
-        let named = |(known, _): &&(Given<String>, Given<Input>)| known.value == name.value;
+        let named = |(known, _): &&(Spanned<String>, Spanned<Input>)| known.value == name.value;
         let Some(input) =
             entries.and_then(|entries| entries.0.iter().find(named)).and_then(|(_, input)| input.value.as_ref())
         else {
@@ -95,7 +96,7 @@ impl Look<'_> {
     }
 
     /// A speed of rotation.
-    fn speed(&mut self, rate: &Given<Angle>, coordinate: &str) {
+    fn speed(&mut self, rate: &Spanned<Angle>, coordinate: &str) {
         let turns = |known: &&Coordinate| known.name == coordinate && known.kind == CoordinateKind::Rotation;
         let (scalar, at) = written(rate);
         if let (Some(_), Some(rate)) = (self.chain.coordinates.iter().find(turns), self.bare(scalar))
@@ -150,6 +151,6 @@ impl Look<'_> {
 }
 
 /// The text of an angle, and its location.
-fn written(angle: &Given<Angle>) -> (Option<&Scalar>, Span) {
+fn written(angle: &Spanned<Angle>) -> (Option<&Scalar>, Span) {
     (angle.value.as_ref().map(|angle| &angle.0), angle.span)
 }

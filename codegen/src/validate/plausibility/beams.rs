@@ -3,7 +3,7 @@
 use super::{Look, items, rounded};
 use crate::chain::CoordinateKind;
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Beam, Either, Given, Link, Material, Number, Section};
+use crate::spec::{Beam, Either, Link, Material, Number, Section, Spanned};
 
 /// Moduli of beam materials, from plastics (2e9 Pa) to tungsten (4e11 Pa), with room to spare. Pa.
 const YOUNGS_MODULUS: std::ops::RangeInclusive<f64> = 1e9..=1e12;
@@ -107,7 +107,7 @@ impl Look<'_> {
     }
 
     fn section(&mut self, section: &Section, place: &str, length: f64) {
-        let sides: Vec<(&str, &Given<Number>)> = match section {
+        let sides: Vec<(&str, &Spanned<Number>)> = match section {
             Section::Box { height, width, .. } | Section::Solid { height, width } => {
                 vec![("height", height), ("width", width)]
             }
@@ -126,7 +126,7 @@ impl Look<'_> {
         }
     }
 
-    fn section_numbers(&mut self, [area, jy, jz, jo]: [&Given<Number>; 4], place: &str) {
+    fn section_numbers(&mut self, [area, jy, jz, jo]: [&Spanned<Number>; 4], place: &str) {
         let (a, at) = self.number(area);
         if a > LARGEST_AREA {
             let help = "write it in m²: 1 mm² is 1e-6, 1 cm² is 1e-4";
@@ -152,14 +152,14 @@ impl Look<'_> {
         let now = |value: &crate::chain::Value| value.at(&self.values);
         let length: f64 = bodies.iter().map(|body| now(&body.length)).sum();
         let mass: f64 = bodies.iter().filter_map(|body| body.inertia.as_ref()).map(|inertia| now(&inertia.mass)).sum();
-        let springs = self.chain.elements.iter().filter(|spring| {
+        let springs = self.chain.beam_springs.iter().filter(|spring| {
             let coordinate = &self.chain.coordinates[spring.coordinate.0];
             // Torsion is about x; its frequencies are higher.
             coordinate.kind == CoordinateKind::Rotation
                 && coordinate.axis != crate::chain::Axis::X
                 && self.chain.bodies[coordinate.body.0].link == link
         });
-        let of = |spring: &crate::chain::ElementSpring| {
+        let of = |spring: &crate::chain::BeamSpring| {
             let (stiffness, damping) = (now(&spring.stiffness), now(&spring.damping));
             // n springs of stiffness s correspond to EJ = s l/n.
             let frequency = LOWEST_BENDING * (stiffness / (mass * (bodies.len() - 1) as f64)).sqrt() / length;

@@ -3,7 +3,7 @@
 use super::beams::in_metres;
 use super::{Look, items, rounded};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Given, Link, Number, Placement, Vector};
+use crate::spec::{Link, Number, Placement, Spanned, Vector};
 
 /// Upper limit of lengths and distances in a crane, m.
 const LONGEST: f64 = 200.0;
@@ -62,7 +62,7 @@ impl Look<'_> {
     }
 
     /// Three lengths; the first that is too long is reported for all.
-    fn place(&mut self, given: Option<&Given<Vector>>, what: &str) {
+    fn place(&mut self, given: Option<&Spanned<Vector>>, what: &str) {
         let Some(numbers) = given.and_then(|given| given.value.as_ref()) else { return };
         let far = numbers.each_ref().map(|number| self.number(number)).into_iter().find(|(number, _)| is_far(*number));
         if let Some((number, at)) = far {
@@ -70,7 +70,7 @@ impl Look<'_> {
         }
     }
 
-    fn length(&mut self, given: &Given<Number>, what: &str) {
+    fn length(&mut self, given: &Spanned<Number>, what: &str) {
         let (number, at) = self.number(given);
         if is_far(number) {
             self.far(number, at, what);

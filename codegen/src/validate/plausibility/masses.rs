@@ -2,7 +2,7 @@
 
 use super::{Look, items, rounded};
 use crate::diagnostic::{Span, rule};
-use crate::spec::{Given, Number, Scalar};
+use crate::spec::{Number, Scalar, Spanned};
 
 /// A live mass, probably the payload, below this fraction of the mass that carries it is in tonnes.
 const LIGHTEST_LIVE: f64 = 1.0 / 300.0;
@@ -14,7 +14,7 @@ const HEAVIEST: f64 = 100.0;
 impl Look<'_> {
     pub(super) fn masses(&mut self) {
         let crane = self.crane;
-        let mut masses: Vec<(String, &Given<Number>)> = Vec::new();
+        let mut masses: Vec<(String, &Spanned<Number>)> = Vec::new();
         for link in items(Some(&crane.links)) {
             let name = link.name.value.as_deref().unwrap_or_default();
             masses.extend(link.mass.as_ref().map(|mass| (format!("link `{name}`"), mass)));

@@ -12,7 +12,7 @@ mod masses;
 
 use crate::chain::Chain;
 use crate::diagnostic::{Mistake, Span};
-use crate::spec::{Crane, Given, Number, Parameter, Scalar};
+use crate::spec::{Crane, Number, Parameter, Scalar, Spanned};
 
 /// Warnings about a crane without mistakes, with these values of its parameters.
 pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mistake> {
@@ -45,7 +45,7 @@ impl<'a> Look<'a> {
     }
 
     /// A number, and its location.
-    fn number(&self, given: &Given<Number>) -> (f64, Span) {
+    fn number(&self, given: &Spanned<Number>) -> (f64, Span) {
         (given.value.as_ref().map_or(f64::NAN, |number| self.scalar(&number.0)), given.span)
     }
 
@@ -83,6 +83,6 @@ fn rounded(number: f64) -> f64 {
 }
 
 /// Items of a list that may be missing.
-fn items<T>(given: Option<&Given<Vec<Given<T>>>>) -> impl Iterator<Item = &T> {
+fn items<T>(given: Option<&Spanned<Vec<Spanned<T>>>>) -> impl Iterator<Item = &T> {
     given.and_then(|given| given.value.as_ref()).into_iter().flatten().filter_map(|item| item.value.as_ref())
 }

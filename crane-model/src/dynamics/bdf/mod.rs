@@ -26,7 +26,7 @@ use super::{
     guides::Guides,
     norm::Norm,
     state::{NotFinite, State},
-    stopped::Place,
+    stopped::StepContext,
     typed::{motion_of, state_of},
 };
 use crate::{
@@ -174,8 +174,8 @@ impl<'a> Bdf<'a> {
     fn stuck(&self) -> Stopped {
         let History { t, h, .. } = &self.history;
         let q = &self.motion[..self.equations.n];
-        let place = Place { method: Method::Bdf, t: *t, h: *h, q, description: self.crane.description() };
-        place.failed(Cause::Tolerance, self.crane)
+        let context = StepContext { method: Method::Bdf, t: *t, h: *h, q, description: self.crane.description() };
+        context.failed(Cause::Tolerance, self.crane)
     }
 
     /// Shortens the interval of the states so that a whole number of steps ends at `stop`, if it is close.

@@ -23,7 +23,7 @@ use crane_model::{
 };
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Envelope, Format},
     files,
     journal::{self, Journal, Request},
@@ -41,9 +41,9 @@ use rows::{Layout, Row};
 const MOST_POSES: usize = 10_000_000;
 
 /// Rates all poses and writes what follows from them.
-pub fn envelope(options: &Envelope, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let begin = Instant::now();
-    let rig = options.analysis.crane.open(fleet)?;
+    let rig = options.analysis.crane.open(registry)?;
     let (asked, layout) = ask(options, rig.as_ref())?;
     let description = rig.description();
     files::folder(&options.folder.out)?;

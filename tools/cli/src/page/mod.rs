@@ -18,7 +18,7 @@ use crane_model::{
 use serde_json::{Value, json};
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::{Limits, Page},
     extremes::extremes,
     files, modes, own,
@@ -39,13 +39,13 @@ const AFFORDABLE: usize = 100;
 const PLACE: &str = "{\"data\":\"here\"}";
 
 /// Computes a crane, and its rigid twin where there is one, and writes the page.
-pub fn report(options: &Page, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open(fleet)?;
-    let twin = twin::rigid(rig.as_ref(), fleet);
+pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let rig = options.crane.open(registry)?;
+    let twin = twin::rigid(rig.as_ref(), registry);
     let cases = cases(rig.as_ref(), twin.as_deref());
     let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, Method::RECOMMENDED)?;
     let chart = options.envelope.as_deref().map(chart::figures).transpose()?;
-    write_with(&options.file, fleet, (&cases, options.crane.limits), &settings, &runs, chart)?;
+    write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, chart)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())
 }
@@ -61,24 +61,24 @@ pub fn cases<'a>(rig: &'a dyn DynCrane, twin: Option<&'a dyn DynCrane>) -> Vec<C
 /// Writes the page of cranes side by side; the last is the one it is about.
 pub fn write(
     file: &Path,
-    fleet: &Fleet,
+    registry: &Registry,
     cases: (&[Case<'_>], Limits),
     settings: &[Settings],
     runs: &[Recorded],
 ) -> Outcome<()> {
-    write_with(file, fleet, cases, settings, runs, None)
+    write_with(file, registry, cases, settings, runs, None)
 }
 
 /// As [`write`], with load charts.
 fn write_with(
     file: &Path,
-    fleet: &Fleet,
+    registry: &Registry,
     cases: (&[Case<'_>], Limits),
     settings: &[Settings],
     runs: &[Recorded],
     chart: Option<Value>,
 ) -> Outcome<()> {
-    let mut data = data(fleet, cases, settings, runs)?;
+    let mut data = data(registry, cases, settings, runs)?;
     data["chart"] = chart.unwrap_or(Value::Null);
     let data = data.to_string();
     // No text of a spec ends the script element that holds the data.
@@ -89,26 +89,26 @@ fn write_with(
 }
 
 fn data(
-    fleet: &Fleet,
+    registry: &Registry,
     (cases, limits): (&[Case<'_>], Limits),
     settings: &[Settings],
     runs: &[Recorded],
 ) -> Outcome<Value> {
     let mut cranes = Vec::new();
     for ((case, settings), run) in cases.iter().zip(settings).zip(runs) {
-        let mut crane = crane::data(case, &fleet.live(case.rig)?, run)?;
+        let mut crane = crane::data(case, &registry.live(case.rig)?, run)?;
         crane["record"] = files::record(case.rig, settings, run);
         cranes.push(crane);
     }
     Ok(json!({
         "cranes": cranes,
-        "tables": all_tables(fleet, cases, limits, runs)?.page(),
+        "tables": all_tables(registry, cases, limits, runs)?.page(),
         "command": own::typed(),
-        "spec": cases.last().and_then(|case| fleet.spec(&case.rig.description().name)),
+        "spec": cases.last().and_then(|case| registry.spec(&case.rig.description().name)),
     }))
 }
 
-fn all_tables(fleet: &Fleet, cases: &[Case<'_>], limits: Limits, runs: &[Recorded]) -> Outcome<Report> {
+fn all_tables(registry: &Registry, cases: &[Case<'_>], limits: Limits, runs: &[Recorded]) -> Outcome<Report> {
     let mut report = tables(cases, limits);
     caution_of_runs(&mut report, cases.iter().map(|case| case.label).zip(runs));
     if let [rigid, flexible] = cases {
@@ -119,7 +119,7 @@ fn all_tables(fleet: &Fleet, cases: &[Case<'_>], limits: Limits, runs: &[Recorde
         report.grid(extremes(case.rig.description(), &labelled));
         report.grid(summary(&labelled));
         if case.equilibrium.is_stable() {
-            let changes = refinement::changes(case, fleet)?;
+            let changes = refinement::changes(case, registry)?;
             report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
             report.grid(modes::undamped_modes(case, changes.as_deref())?);
             let poses = manoeuvre(case.rig, &Start::of(case.rig)?, affordable_poses(case.rig.size()))?;

@@ -2,12 +2,12 @@
 
 use crane_model::{ParameterInfo, dyn_crane::DynCrane};
 
-use crate::Fleet;
+use crate::Registry;
 
-/// The crane of the fleet that equals `rig` except for its elements, with the same parameters.
-pub fn rigid(rig: &dyn DynCrane, fleet: &Fleet) -> Option<Box<dyn DynCrane>> {
+/// The crane of the registry that equals `rig` except for its elements, with the same parameters.
+pub fn rigid(rig: &dyn DynCrane, registry: &Registry) -> Option<Box<dyn DynCrane>> {
     let parameters = &rig.description().parameters;
-    fleet.all().flatten().find_map(|mut other| {
+    registry.all().flatten().find_map(|mut other| {
         let own = |(index, parameter): (usize, &ParameterInfo)| match parameters
             .iter()
             .position(|own| own.name == parameter.name)

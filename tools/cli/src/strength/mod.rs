@@ -12,7 +12,7 @@ use serde_json::Value;
 use crane_model::{dyn_crane::DynCrane, dynamics::Method, results::cautions, tipping::governing};
 
 use crate::{
-    Fleet,
+    Registry,
     arguments::Strength,
     files,
     problem::{Outcome, Problem},
@@ -26,8 +26,8 @@ pub use history::{Instant, of as history};
 pub use loads::parameter as load_parameter;
 
 /// Prints loads and stability at rest, and along the manoeuvre if asked for.
-pub fn strength(options: &Strength, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let mut rig = options.analysis.crane.open(fleet)?;
+pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let mut rig = options.analysis.crane.open(registry)?;
     let load = loads::parameter(rig.as_ref(), options.load.as_deref())?;
     let case = Case::new(VALUE, rig.as_ref());
     let q = case.equilibrium.q.clone();

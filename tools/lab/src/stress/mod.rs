@@ -26,7 +26,7 @@ use std::{
 use indicatif::ProgressBar;
 
 use crane_cli::{
-    Fleet, files,
+    Registry, files,
     toolbox::{Grid, Outcome, Problem, Report, styled},
 };
 
@@ -43,13 +43,13 @@ const VERDICTS: [&str; 2] = ["FAILED", "ok"];
 
 /// The shipped specs that cases are derived from.
 struct Specs<'a> {
-    fleet: &'a Fleet,
+    registry: &'a Registry,
 }
 
 impl Specs<'_> {
     fn shipped(&self, name: &str) -> Spec {
         // Without the crane, its cases are refused: the spec is empty.
-        Spec::new(self.fleet.spec(name).unwrap_or_default())
+        Spec::new(self.registry.spec(name).unwrap_or_default())
     }
 
     /// The reference crane.
@@ -87,8 +87,8 @@ fn with_supports(reference: &Spec, stiffness: [f64; 3]) -> Spec {
 }
 
 /// Runs the suite, prints it and writes it.
-pub fn stress(options: &Stress, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let specs = Specs { fleet };
+pub fn stress(options: &Stress, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let specs = Specs { registry };
     let mut cases = stiffness::cases(&specs);
     cases.extend(beams::cases(&specs));
     cases.extend(loads::cases(&specs));

@@ -4,7 +4,7 @@ pub use crane_cli::toolbox::Panel;
 use crane_model::dynamics::Method;
 
 use super::{
-    methods::Point,
+    methods::Measurement,
     sections::{Limit, Variant},
 };
 use crane_cli::toolbox::{Curve, Mark, PALETTE};
@@ -19,10 +19,10 @@ fn curves(labelled: impl Iterator<Item = (String, Vec<(f64, f64)>)>) -> Vec<Curv
 }
 
 /// Errors of the methods over time, evaluations and steps.
-pub fn methods(points: &[Point]) -> Vec<Panel> {
+pub fn methods(points: &[Measurement]) -> Vec<Panel> {
     let mut names: Vec<&str> = points.iter().map(|point| point.method).collect();
     names.dedup();
-    let over = |x: &str, y: &str, of: &dyn Fn(&Point) -> (f64, f64)| {
+    let over = |x: &str, y: &str, of: &dyn Fn(&Measurement) -> (f64, f64)| {
         let curve =
             |name: &&str| (name.to_string(), points.iter().filter(|point| point.method == *name).map(of).collect());
         panel(x, y, curves(names.iter().map(curve)))

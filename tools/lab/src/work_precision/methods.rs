@@ -20,7 +20,7 @@ pub const REPEATS: usize = 5;
 
 /// A run of a method with one setting.
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct Measurement {
     /// Name of the method.
     pub method: &'static str,
     /// Its step, s, or its tolerance, m and rad.
@@ -93,7 +93,7 @@ pub fn series(
     safe: f64,
     quick: bool,
     bar: &ProgressBar,
-) -> Vec<Point> {
+) -> Vec<Measurement> {
     let repeats = if quick { 1 } else { REPEATS };
     let mut points = Vec::new();
     for method in Method::ALL {
@@ -106,7 +106,7 @@ pub fn series(
                 continue;
             };
             let errors = reference.errors(&trace);
-            points.push(Point { method: method.name(), setting, wall, statistics, errors });
+            points.push(Measurement { method: method.name(), setting, wall, statistics, errors });
             bar.tick();
             if wall > LONG || errors.path < EXACT || quick && !method.is_adaptive() {
                 break;
@@ -117,7 +117,7 @@ pub fn series(
 }
 
 /// All runs as a table.
-pub fn table(points: &[Point]) -> Grid {
+pub fn table(points: &[Measurement]) -> Grid {
     let headers = [
         "method",
         "step s",
@@ -133,7 +133,7 @@ pub fn table(points: &[Point]) -> Grid {
     ];
     let title = "Errors relative to the size of the motion, and what the runs took";
     let mut grid = Grid::new("methods", title, &headers);
-    for Point { method, setting, wall, statistics, errors } in points {
+    for Measurement { method, setting, wall, statistics, errors } in points {
         grid.row([
             (*method).into(),
             setting.step().into(),
@@ -155,7 +155,7 @@ pub fn table(points: &[Point]) -> Grid {
 pub const TARGETS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
 /// The least time in which each method meets each error that users ask for.
-pub fn least(points: &[Point], duration: f64) -> Grid {
+pub fn least(points: &[Measurement], duration: f64) -> Grid {
     let headers = ["load path", "method", "step s", "tolerance", "wall ms", "times real time", "times rk4"];
     let mut grid = Grid::new("least", "Least time for an error of the load path, relative to its size", &headers);
     for target in TARGETS {

@@ -21,7 +21,7 @@ use crane_model::{
 };
 
 use crane_cli::{
-    Fleet, files, refinement,
+    Registry, files, refinement,
     toolbox::{Grid, Library, Outcome, Problem, Report, file_list, load, progress, run_with, write_figure},
 };
 
@@ -38,27 +38,27 @@ const LIBRARY: Library = Library {
 };
 
 /// Finds a reference, times every method and every number of sections, and writes tables and figures.
-pub fn work_precision(options: &WorkPrecision, fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
+pub fn work_precision(options: &WorkPrecision, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let choice = &options.analysis.crane;
     let (crane, text) = if let Some(file) = choice.file() {
         let (Chain { name, .. }, text) = load(file, options.analysis.crane.strict)?;
         (name, text)
     } else {
-        let name = fleet.crane(&choice.name)?.description().name.to_string();
-        let text = fleet.spec(&name).unwrap_or_default().to_owned();
+        let name = registry.crane(&choice.name)?.description().name.to_string();
+        let text = registry.spec(&name).unwrap_or_default().to_owned();
         (name, text)
     };
     let counts = options.sections.0.as_slice();
-    let known = fleet.names();
+    let known = registry.names();
     let missing = counts.iter().any(|&count| !known.contains(&refinement::name(&crane, count).as_str()));
     let flexible = if missing { others(&crane, &text, counts) } else { Vec::new() };
     // Times are those of machine code, except with `--quick`.
-    if flexible.is_empty() && choice.file().is_none() && fleet.is_compiled(&crane) {
-        return study(options, &crane, if missing { &[] } else { counts }, fleet, out);
+    if flexible.is_empty() && choice.file().is_none() && registry.is_compiled(&crane) {
+        return study(options, &crane, if missing { &[] } else { counts }, registry, out);
     }
     if options.quick {
         let counts = if missing && flexible.is_empty() { &[] } else { counts };
-        let mut live = Fleet::default();
+        let mut live = Registry::default();
         for (name, text) in [vec![(crane.clone(), text)], flexible].concat() {
             live.add(&name, text);
         }
@@ -88,9 +88,15 @@ struct Found<'a> {
     figures: Vec<(&'a str, Vec<figures::Panel>)>,
 }
 
-/// The study itself, with the cranes of a fleet.
-fn study(options: &WorkPrecision, crane: &str, counts: &[usize], fleet: &Fleet, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.analysis.crane.parameters.crane(crane, options.analysis.crane.strict, fleet)?;
+/// The study itself, with the cranes of a registry.
+fn study(
+    options: &WorkPrecision,
+    crane: &str,
+    counts: &[usize],
+    registry: &Registry,
+    out: &mut dyn Write,
+) -> Outcome<()> {
+    let rig = options.analysis.crane.parameters.crane(crane, options.analysis.crane.strict, registry)?;
     let rig = rig.as_ref();
     let description = rig.description();
     let start = start(rig)?;
@@ -107,7 +113,7 @@ fn study(options: &WorkPrecision, crane: &str, counts: &[usize], fleet: &Fleet, 
 
     let mut facts = Report::default();
     facts.fact("crane", description.name.as_str(), "");
-    facts.fact("code", if fleet.is_compiled(crane) { "compiled" } else { "interpreted" }, "");
+    facts.fact("code", if registry.is_compiled(crane) { "compiled" } else { "interpreted" }, "");
     facts.fact("start", start.what.as_str(), "");
     facts.fact("duration", base.duration, "s");
     facts.fact("longest way of a point", reference.solution.trace.size(), "m");
@@ -124,8 +130,11 @@ fn study(options: &WorkPrecision, crane: &str, counts: &[usize], fleet: &Fleet, 
     if !counts.is_empty() {
         let variants = counts.iter().map(|&count| {
             announce(&bar, count);
-            let rig =
-                options.analysis.crane.parameters.crane(&refinement::name(&description.name, count), false, fleet)?;
+            let rig = options.analysis.crane.parameters.crane(
+                &refinement::name(&description.name, count),
+                false,
+                registry,
+            )?;
             variant(rig.as_ref(), &self::start(rig.as_ref())?, &base, count, repeats)
         });
         let variants: Vec<Variant> = variants.collect::<Outcome<_>>()?;

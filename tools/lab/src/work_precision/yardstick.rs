@@ -15,7 +15,7 @@ use crane_model::{
 };
 
 use super::{
-    methods::{Point, Setting},
+    methods::{Measurement, Setting},
     trace::Trace,
 };
 
@@ -96,7 +96,13 @@ fn run(
 }
 
 /// Runs of the library's methods with every tolerance, as far as they end.
-pub fn series(rig: &dyn DynCrane, start: &[f64], base: &Settings, reference: &Trace, repeats: usize) -> Vec<Point> {
+pub fn series(
+    rig: &dyn DynCrane,
+    start: &[f64],
+    base: &Settings,
+    reference: &Trace,
+    repeats: usize,
+) -> Vec<Measurement> {
     let mut points = Vec::new();
     for method in METHODS {
         for tolerance in TOLERANCES {
@@ -107,7 +113,7 @@ pub fn series(rig: &dyn DynCrane, start: &[f64], base: &Settings, reference: &Tr
             }
             let (trace, wall, statistics) = runs.swap_remove(runs.len() / 2);
             let errors = reference.errors(&trace);
-            points.push(Point { method, setting: Setting::Tolerance(tolerance), wall, statistics, errors });
+            points.push(Measurement { method, setting: Setting::Tolerance(tolerance), wall, statistics, errors });
             if wall > LONG {
                 break;
             }

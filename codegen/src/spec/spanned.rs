@@ -11,8 +11,8 @@ use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use crate::diagnostic::Span;
 
-/// Newtype name with which [`Given`] requests a span: a sequence of start, end and value follows.
-pub(crate) const GIVEN: &str = "Given";
+/// Newtype name with which [`Spanned`] requests a span: a sequence of start, end and value follows.
+pub(crate) const SPANNED: &str = "Spanned";
 /// Newtype name with which [`Either`] requests the form: `visit_some` is a mapping, `visit_newtype_struct` is not.
 pub(crate) const EITHER: &str = "Either";
 /// Newtype name with which [`Many`] requests a sequence; a single item is a sequence of one.
@@ -21,32 +21,32 @@ pub(crate) const MANY: &str = "Many";
 /// A value and its location. Reading it never fails, so that its neighbours are read as well: a value that is missing or
 /// wrong is reported while reading, and is `None` here.
 #[derive(Clone, Debug)]
-pub struct Given<T> {
+pub struct Spanned<T> {
     /// The value, unless a mistake was reported.
     pub value: Option<T>,
     /// Its location, or the location where it should be.
     pub span: Span,
 }
 
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Given<T> {
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Spanned<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Parts<T>(PhantomData<T>);
         impl<'de, T: Deserialize<'de>> Visitor<'de> for Parts<T> {
-            type Value = Given<T>;
+            type Value = Spanned<T>;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 f.write_str("a value")
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> Result<Given<T>, A::Error> {
+            fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> Result<Spanned<T>, A::Error> {
                 let start = parts.next_element()?.unwrap_or_default();
                 let end = parts.next_element()?.unwrap_or_default();
-                Ok(Given { value: parts.next_element().ok().flatten(), span: Span { start, end } })
+                Ok(Spanned { value: parts.next_element().ok().flatten(), span: Span { start, end } })
             }
         }
-        deserializer.deserialize_newtype_struct(GIVEN, Parts(PhantomData))
+        deserializer.deserialize_newtype_struct(SPANNED, Parts(PhantomData))
     }
 }
 
-impl<T: JsonSchema> JsonSchema for Given<T> {
+impl<T: JsonSchema> JsonSchema for Spanned<T> {
     fn inline_schema() -> bool {
         T::inline_schema()
     }
@@ -63,7 +63,7 @@ impl<T: JsonSchema> JsonSchema for Given<T> {
 
 /// A mapping from user-defined names, in the order of the file.
 #[derive(Clone, Debug)]
-pub struct Entries<T>(pub Vec<(Given<String>, Given<T>)>);
+pub struct Entries<T>(pub Vec<(Spanned<String>, Spanned<T>)>);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Entries<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -139,7 +139,7 @@ impl<A: JsonSchema, B: JsonSchema> JsonSchema for Either<A, B> {
 
 /// One item, or a list of them.
 #[derive(Clone, Debug)]
-pub struct Many<T>(pub Vec<Given<T>>);
+pub struct Many<T>(pub Vec<Spanned<T>>);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Many<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

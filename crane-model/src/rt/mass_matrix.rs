@@ -14,7 +14,7 @@ pub struct MassColumns<const N: usize, const E: usize> {
     /// Axes n.
     pub axes: [[f64; 3]; N],
     /// Offsets from the coordinate's point to that of the next.
-    pub ways: [[f64; 3]; N],
+    pub offsets: [[f64; 3]; N],
     /// Bias e, if it is computed together with the matrix.
     pub bias: [f64; N],
 }
@@ -31,11 +31,11 @@ pub struct Momenta {
 
 /// Consecutive coordinates that act at one point: at most three, and either all rotate or all translate.
 #[derive(Clone, Copy, Debug)]
-pub struct Point {
+pub struct ConcurrentAxes {
     /// Their number.
     pub coordinates: usize,
     /// Whether they rotate.
-    pub turns: bool,
+    pub rotate: bool,
 }
 
 impl<const N: usize, const E: usize> MassColumns<N, E> {
@@ -45,14 +45,14 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
         MassColumns {
             eights: [Momenta { linear: [[0.0; 8]; 3], angular: [[0.0; 8]; 3] }; E],
             axes: [[0.0; 3]; N],
-            ways: [[0.0; 3]; N],
+            offsets: [[0.0; 3]; N],
             bias: [0.0; N],
         }
     }
 
     /// The matrix.
     #[inline]
-    pub fn mass_matrix(mut self, points: &[Point]) -> SMatrix<f64, N, N> {
+    pub fn mass_matrix(mut self, points: &[ConcurrentAxes]) -> SMatrix<f64, N, N> {
         let mut matrix = SMatrix::zeros();
         let columns: &mut [[f64; N]; N] = &mut matrix.data.0;
         self.fill(points, columns);
@@ -67,14 +67,14 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
     /// The lower triangle, column by column: row i of the upper triangle is column i of the lower one. The entries above
     /// the diagonal are not results.
     #[inline]
-    pub fn fill(&mut self, points: &[Point], lower: &mut [[f64; N]; N]) {
+    pub fn fill(&mut self, points: &[ConcurrentAxes], lower: &mut [[f64; N]; N]) {
         let eights = &mut self.eights;
-        let mut rows = Rows { axes: &self.axes, ways: &self.ways, lower };
+        let mut rows = Rows { axes: &self.axes, offsets: &self.offsets, lower };
         for point in points.iter().rev() {
             match point.coordinates {
-                1 => rows.last::<1>(point.turns, eights),
-                2 => rows.last::<2>(point.turns, eights),
-                _ => rows.last::<3>(point.turns, eights),
+                1 => rows.last::<1>(point.rotate, eights),
+                2 => rows.last::<2>(point.rotate, eights),
+                _ => rows.last::<3>(point.rotate, eights),
             }
         }
     }
@@ -83,25 +83,26 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
 /// Rows not yet filled.
 struct Rows<'a, const N: usize> {
     axes: &'a [[f64; 3]],
-    ways: &'a [[f64; 3]],
+    offsets: &'a [[f64; 3]],
     lower: &'a mut [[f64; N]],
 }
 
 impl<const N: usize> Rows<'_, N> {
     /// Fills the last `K` rows, whose coordinates act at one point.
     #[inline]
-    fn last<const K: usize>(&mut self, turns: bool, eights: &mut [Momenta]) {
+    fn last<const K: usize>(&mut self, rotate: bool, eights: &mut [Momenta]) {
         let lower = core::mem::take(&mut self.lower);
-        let last = (self.axes.split_last_chunk::<K>(), self.ways.split_last_chunk::<K>(), lower.split_last_chunk_mut());
-        let (Some((axes, own)), Some((ways, after)), Some((lower, rows))) = last else { return };
-        let way = after.last().unwrap_or(&[0.0; 3]);
+        let last =
+            (self.axes.split_last_chunk::<K>(), self.offsets.split_last_chunk::<K>(), lower.split_last_chunk_mut());
+        let (Some((axes, own)), Some((offsets, after)), Some((lower, rows))) = last else { return };
+        let offset = after.last().unwrap_or(&[0.0; 3]);
         let first = axes.len();
-        (self.axes, self.ways, self.lower) = (axes, ways, lower);
+        (self.axes, self.offsets, self.lower) = (axes, offsets, lower);
         let axes = own.map(|axis| axis.map(f64x8::splat));
-        if turns {
-            fill(first, way, rows, eights, |_, l| axes.map(|n| along(n, l)));
+        if rotate {
+            fill(first, offset, rows, eights, |_, l| axes.map(|n| along(n, l)));
         } else {
-            fill(first, way, rows, eights, |p, _| axes.map(|n| along(n, p)));
+            fill(first, offset, rows, eights, |p, _| axes.map(|n| along(n, p)));
         }
     }
 }
@@ -109,24 +110,24 @@ impl<const N: usize> Rows<'_, N> {
 /// The lanes of eight columns.
 const LANES: f64x8 = f64x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
-/// Rows from `first` on: `entries` of the momenta of eight columns at a time, those after the rows shifted by `way` first.
+/// Rows from `first` on: `entries` of the momenta of eight columns at a time, those after the rows shifted by `offset` first.
 #[inline]
 fn fill<const K: usize, const N: usize>(
     first: usize,
-    way: &[f64; 3],
+    offset: &[f64; 3],
     rows: &mut [[f64; N]; K],
     eights: &mut [Momenta],
     entries: impl Fn([f64x8; 3], [f64x8; 3]) -> [f64x8; K],
 ) {
-    let way = way.map(f64x8::splat);
+    let offset = offset.map(f64x8::splat);
     for (eight, momenta) in eights.iter_mut().enumerate().skip(first / 8) {
         let p = momenta.linear.map(f64x8::new);
-        let mut way = way;
+        let mut offset = offset;
         if 8 * eight < first + K {
             let after = (LANES + number(8 * eight)).simd_ge(number(first + K));
-            way = way.map(|w| w & after);
+            offset = offset.map(|w| w & after);
         }
-        let l = moved(way, p, momenta.angular.map(f64x8::new));
+        let l = moved(offset, p, momenta.angular.map(f64x8::new));
         momenta.angular = l.map(f64x8::to_array);
         for (row, entries) in rows.iter_mut().zip(entries(p, l)) {
             let (eights, rest) = row.as_chunks_mut::<8>();
@@ -145,7 +146,7 @@ fn number(index: usize) -> f64x8 {
     f64x8::splat(index as f64)
 }
 
-/// `L + way × P`
+/// `L + offset × P`
 #[inline]
 fn moved([wx, wy, wz]: [f64x8; 3], [px, py, pz]: [f64x8; 3], [lx, ly, lz]: [f64x8; 3]) -> [f64x8; 3] {
     [fma(wy, pz, fma(-wz, py, lx)), fma(wz, px, fma(-wx, pz, ly)), fma(wx, py, fma(-wy, px, lz))]

@@ -6,7 +6,7 @@ mod sin_cos;
 mod stumpff;
 
 pub use lanes::{exp, fma, select, sqrt};
-pub use mass_matrix::{MassAndBias, MassColumns, Point};
+pub use mass_matrix::{ConcurrentAxes, MassAndBias, MassColumns};
 pub use sin_cos::{sin_cos, sin_cos_lanes};
 pub use stumpff::{stumpff, stumpff_lanes};
 

@@ -4,6 +4,7 @@
 //! that an implicit step adds to A have this structure, and cost nothing beyond the solution with A.
 
 use super::articulated::{Articulated, Effort};
+use super::axis_rotation::AxisRotation;
 use super::drives;
 use super::factors::Factor;
 use super::forward::{inward, outward};
@@ -11,7 +12,6 @@ use super::kinematics::Kinematics;
 use super::model::Model;
 use super::outward::velocities;
 use super::rotors;
-use super::turn::Turn;
 use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::CoordinateId;
 use crate::symbolic::Expr;
@@ -23,11 +23,11 @@ use crate::symbolic::Expr;
 pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
     let base: Vec<usize> = model.chain.base.iter().flatten().map(|CoordinateId(j)| *j).collect();
     let zero = Vec3::zero(model.graph);
-    let mut efforts: Vec<Effort<'g>> = (model.right.iter().zip(&model.resistance))
-        .map(|(&applied, &resistance)| Effort { applied, resistance })
+    let mut efforts: Vec<Effort<'g>> = (model.right_hand_side.iter().zip(&model.added_inertia))
+        .map(|(&applied, &added_inertia)| Effort { applied, added_inertia })
         .collect();
     for (j, armature) in rotors::by_coordinate(model) {
-        efforts[j].resistance = efforts[j].resistance + armature;
+        efforts[j].added_inertia = efforts[j].added_inertia + armature;
     }
     let velocities = velocities(model, factors, &model.zeros());
     let split = if base.is_empty() { 0 } else { first_body(factors) };
@@ -35,8 +35,9 @@ pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[F
     let prescribed = drives::at_rest(model);
     let (joints, mut articulated) = inward(model, &factors[split..], &velocities[split..], &efforts, &prescribed);
     let path = &factors[..split];
-    let turns: Vec<Turn<'g>> = path.iter().flat_map(Factor::turns).map(|(_, turn)| turn).collect();
-    turns.iter().rev().for_each(|turn| articulated.turn(turn));
+    let rotations: Vec<AxisRotation<'g>> =
+        path.iter().flat_map(Factor::rotations).map(|(_, rotation)| rotation).collect();
+    rotations.iter().rev().for_each(|rotation| articulated.rotate_about_axis(rotation));
     let columns: Vec<(Vec3<'g>, Vec3<'g>)> = base
         .iter()
         .map(|&j| {
@@ -46,18 +47,20 @@ pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[F
         .collect();
     let mut own = base_system(model, &articulated, &columns);
     let right: Vec<Expr<'g>> = (columns.iter().zip(&base))
-        .map(|((omega, upsilon), &j)| model.right[j] - (omega.dot(articulated.moment) + upsilon.dot(articulated.force)))
+        .map(|((omega, upsilon), &j)| {
+            model.right_hand_side[j] - (omega.dot(articulated.moment) + upsilon.dot(articulated.force))
+        })
         .collect();
     for (i, j) in (0..base.len()).flat_map(|i| (i..base.len()).map(move |j| (i, j))) {
-        own.add(i, j, model.base_resistance[6 * i - i * i.saturating_sub(1) / 2 + j - i]);
+        own.add(i, j, model.base_added_inertia[6 * i - i * i.saturating_sub(1) / 2 + j - i]);
     }
     let motion = own.solve(&right);
 
     let sum = |pick: fn(&(Vec3<'g>, Vec3<'g>)) -> Vec3<'g>| {
         columns.iter().zip(&motion).fold(zero, |sum, (column, &x)| sum + x * pick(column))
     };
-    let start = turns.iter().fold((sum(|column| column.0), sum(|column| column.1)), |(alpha, a), turn| {
-        (turn.inward(alpha), turn.inward(a))
+    let start = rotations.iter().fold((sum(|column| column.0), sum(|column| column.1)), |(alpha, a), rotation| {
+        (rotation.inward(alpha), rotation.inward(a))
     });
     let mut x = outward(model, &factors[split..], &velocities[split..], &joints, start).accelerations;
     for (&j, value) in base.iter().zip(motion) {

@@ -7,15 +7,15 @@ use super::op::ExprId;
 
 /// The visits of all sweeps of a function, in order.
 #[derive(Clone, Debug, Default)]
-pub struct Tape {
+pub struct SweepTrace {
     /// Bodies visited, sweep by sweep.
     pub visits: Vec<Visit>,
 }
 
-impl Tape {
-    /// Appends the sweeps of another tape.
+impl SweepTrace {
+    /// Appends the sweeps of another trace.
     #[must_use]
-    pub fn then(mut self, other: Tape) -> Tape {
+    pub fn then(mut self, other: SweepTrace) -> SweepTrace {
         let first = self.visits.last().map_or(0, |visit| visit.sweep + 1);
         self.visits.extend(other.visits.into_iter().map(|visit| Visit { sweep: first + visit.sweep, ..visit }));
         self
@@ -35,10 +35,10 @@ pub struct Visit {
     pub nodes: Vec<ExprId>,
 }
 
-/// A tape while it is recorded.
+/// A trace while it is recorded.
 #[derive(Debug, Default)]
 pub(super) struct Recorder {
-    tape: Tape,
+    trace: SweepTrace,
     seen: HashSet<ExprId>,
     sweeps: usize,
     at_a_body: bool,
@@ -49,7 +49,7 @@ impl Recorder {
     pub fn ask(&mut self, id: ExprId) {
         if self.at_a_body
             && self.seen.insert(id)
-            && let Some(visit) = self.tape.visits.last_mut()
+            && let Some(visit) = self.trace.visits.last_mut()
         {
             visit.nodes.push(id);
         }
@@ -72,10 +72,10 @@ impl Graph {
     }
 
     /// The result of `derive`, and its sweeps.
-    pub fn recorded<T>(&self, derive: impl FnOnce() -> T) -> (T, Tape) {
+    pub fn recorded<T>(&self, derive: impl FnOnce() -> T) -> (T, SweepTrace) {
         *self.recorder.borrow_mut() = Recorder::default();
         let derived = derive();
-        (derived, std::mem::take(&mut *self.recorder.borrow_mut()).tape)
+        (derived, std::mem::take(&mut *self.recorder.borrow_mut()).trace)
     }
 }
 
@@ -85,12 +85,12 @@ impl Sweep<'_> {
         let mut recorder = self.graph.recorder.borrow_mut();
         let sweep = recorder.sweeps;
         recorder.at_a_body = true;
-        recorder.tape.visits.push(Visit { sweep, body: body.to_owned(), outward: false, nodes: vec![] });
+        recorder.trace.visits.push(Visit { sweep, body: body.to_owned(), outward: false, nodes: vec![] });
     }
 
     /// The sweep has passed the joints of a body and continues from the body.
     pub fn leave(&self, body: &str) {
-        if let Some(visit) = self.graph.recorder.borrow_mut().tape.visits.last_mut() {
+        if let Some(visit) = self.graph.recorder.borrow_mut().trace.visits.last_mut() {
             body.clone_into(&mut visit.body);
             visit.outward = true;
         }

@@ -9,25 +9,25 @@ use crate::symbolic::Expr;
 
 /// An elementary rotation by its sine and cosine.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn<'g> {
+pub struct AxisRotation<'g> {
     pub axis: Axis,
     pub sin: Expr<'g>,
     pub cos: Expr<'g>,
 }
 
-impl<'g> Turn<'g> {
+impl<'g> AxisRotation<'g> {
     /// `Rᵀ x`
     pub fn inward(&self, x: Vec3<'g>) -> Vec3<'g> {
         let (a, b) = plane(self.axis);
-        let mut turned = x;
-        turned.0[a] = self.cos * x[a] + self.sin * x[b];
-        turned.0[b] = self.cos * x[b] - self.sin * x[a];
-        turned
+        let mut rotated = x;
+        rotated.0[a] = self.cos * x[a] + self.sin * x[b];
+        rotated.0[b] = self.cos * x[b] - self.sin * x[a];
+        rotated
     }
 
     /// `R x`
     pub fn outward(&self, x: Vec3<'g>) -> Vec3<'g> {
-        Turn { sin: -self.sin, ..*self }.inward(x)
+        AxisRotation { sin: -self.sin, ..*self }.inward(x)
     }
 
     /// `R S Rᵀ`
@@ -37,15 +37,15 @@ impl<'g> Turn<'g> {
     pub fn outward_symmetric(&self, s: &Symmetric3<'g>) -> Symmetric3<'g> {
         let (a, b) = plane(self.axis);
         let k = self.axis.index();
-        let mut turned = *s;
+        let mut rotated = *s;
         let (difference, twice) = (s.at(a, a) - s.at(b, b), s.at(a, b) + s.at(a, b));
         let (w, t) = self.exchange(difference, twice);
-        *turned.at_mut(a, a) = self.diagonal(s.at(a, a), s.at(b, b), -w);
-        *turned.at_mut(b, b) = self.diagonal(s.at(b, b), s.at(a, a), w);
-        *turned.at_mut(a, b) = self.off_diagonal(s.at(a, b), -s.at(a, b), t);
-        *turned.at_mut(k, a) = self.cos * s.at(k, a) - self.sin * s.at(k, b);
-        *turned.at_mut(k, b) = self.sin * s.at(k, a) + self.cos * s.at(k, b);
-        turned
+        *rotated.at_mut(a, a) = self.diagonal(s.at(a, a), s.at(b, b), -w);
+        *rotated.at_mut(b, b) = self.diagonal(s.at(b, b), s.at(a, a), w);
+        *rotated.at_mut(a, b) = self.off_diagonal(s.at(a, b), -s.at(a, b), t);
+        *rotated.at_mut(k, a) = self.cos * s.at(k, a) - self.sin * s.at(k, b);
+        *rotated.at_mut(k, b) = self.sin * s.at(k, a) + self.cos * s.at(k, b);
+        rotated
     }
 
     /// `R M Rᵀ`
@@ -53,17 +53,17 @@ impl<'g> Turn<'g> {
         let (a, b) = plane(self.axis);
         let k = self.axis.index();
         let m = m.0;
-        let mut turned = m;
+        let mut rotated = m;
         let (w, t) = self.exchange(m[a][a] - m[b][b], m[a][b] + m[b][a]);
-        turned[a][a] = self.diagonal(m[a][a], m[b][b], -w);
-        turned[b][b] = self.diagonal(m[b][b], m[a][a], w);
-        turned[a][b] = self.off_diagonal(m[a][b], -m[b][a], t);
-        turned[b][a] = self.off_diagonal(m[b][a], -m[a][b], t);
-        turned[k][a] = self.cos * m[k][a] - self.sin * m[k][b];
-        turned[k][b] = self.sin * m[k][a] + self.cos * m[k][b];
-        turned[a][k] = self.cos * m[a][k] - self.sin * m[b][k];
-        turned[b][k] = self.sin * m[a][k] + self.cos * m[b][k];
-        Matrix3(turned)
+        rotated[a][a] = self.diagonal(m[a][a], m[b][b], -w);
+        rotated[b][b] = self.diagonal(m[b][b], m[a][a], w);
+        rotated[a][b] = self.off_diagonal(m[a][b], -m[b][a], t);
+        rotated[b][a] = self.off_diagonal(m[b][a], -m[a][b], t);
+        rotated[k][a] = self.cos * m[k][a] - self.sin * m[k][b];
+        rotated[k][b] = self.sin * m[k][a] + self.cos * m[k][b];
+        rotated[a][k] = self.cos * m[a][k] - self.sin * m[b][k];
+        rotated[b][k] = self.sin * m[a][k] + self.cos * m[b][k];
+        Matrix3(rotated)
     }
 
     /// The amounts that a rotation moves between the entries of a 2×2 block `[[p, q], [r, s]]`, from `p − s` and `q + r`:

@@ -2,25 +2,25 @@
 //!
 //! The sweeps of a recursion do the same at every rigid element of a flexible link. Consecutive visits of one sweep with
 //! identical operations become a loop over the operations of the first. [`Source`] describes how its operands from outside
-//! differ from round to round; values needed outside of the loop are kept, round by round.
+//! differ from iteration to iteration; values needed outside of the loop are saved, iteration by iteration.
 
 use std::collections::HashMap;
 
-use super::loops::{Loop, Progression, Rolled, Source, Taking};
+use super::loops::{LiveOut, Loop, Progression, Rerolled, Source};
 use super::matching::{Match, matched};
-use super::{Angle, Constants, Place, StumpffArgument, order};
+use super::{Angle, Constants, StumpffArgument, SweepPosition, order};
 use crate::program::{Argument, Function, Program, Shape, Symbol};
 use crate::symbolic::{ExprId, Op, Visit};
 
-/// The source of one operand in all rounds.
+/// The source of one operand in all iterations.
 #[derive(Clone, Debug)]
 enum Operands {
-    /// They are the same in every round.
-    Same,
+    /// They are the same in every iteration.
+    Invariant,
     /// From this source.
     From(Source),
-    /// Another loop can keep them.
-    Kept { of: usize, template: ExprId, round: Progression },
+    /// Another loop can save them.
+    Saved { of: usize, template: ExprId, iteration: Progression },
 }
 
 /// A loop before it is written out.
@@ -28,21 +28,26 @@ enum Operands {
 struct Plan {
     /// The expressions of the first visit, operands before their users.
     own: Vec<ExprId>,
-    /// Its rounds, and the requirements of their operands.
+    /// Its iterations, and the requirements of their operands.
     making: Loop,
-    /// Sources of operands, by their expressions in each round.
+    /// Sources of operands, by their expressions in each iteration.
     sources: HashMap<Vec<ExprId>, Operands>,
     /// Operands from outside, by the expression that uses them and their index.
     sites: Vec<((ExprId, usize), Vec<ExprId>)>,
 }
 
-/// Loops of at least `least` rounds, if the function has any.
-pub(super) fn roll(program: &mut Program, constants: &Constants, function: &Function, least: usize) -> Option<Rolled> {
+/// Loops of at least `least` iterations, if the function has any.
+pub(super) fn reroll(
+    program: &mut Program,
+    constants: &Constants,
+    function: &Function,
+    least: usize,
+) -> Option<Rerolled> {
     let needed = order::needed_here(program, constants, &function.outputs);
     let rank = ranks(program, function, &needed);
     let angles = order::angles(program, &needed);
     let stumpff = order::stumpff_arguments(program, &needed);
-    let mut rolling = Rolling {
+    let mut rerolling = Rerolling {
         program,
         constants,
         rank,
@@ -50,40 +55,43 @@ pub(super) fn roll(program: &mut Program, constants: &Constants, function: &Func
         stumpff,
         places: HashMap::new(),
         moved: HashMap::new(),
-        rolled: Rolled::default(),
+        rerolled: Rerolled::default(),
     };
-    let visits = &function.tape.visits;
+    let visits = &function.trace.visits;
     let mut start = 0;
     while start < visits.len() {
-        let matches = rolling.run(visits, start);
-        // One more round may require gathering values, because another loop has one round less.
+        let matches = rerolling.run(visits, start);
+        // One more iteration may require gathering values, because another loop has one iteration less.
         let shorter = matches.split_last().map_or(&[][..], |(_, rest)| rest);
-        let later = if shorter.len() >= least { rolling.run(visits, start + 1) } else { vec![] };
+        let later = if shorter.len() >= least { rerolling.run(visits, start + 1) } else { vec![] };
         let candidates = [(0, &matches[..]), (0, shorter), (1, &later)];
-        let plans = candidates.into_iter().filter(|(_, rounds)| rounds.len() >= least).filter_map(|(skip, rounds)| {
-            let plan = rolling.plan(rounds)?;
-            Some((plan.making.gathered.len(), skip, rounds, plan))
-        });
-        let best = plans.min_by_key(|(gathered, skip, rounds, _)| (*gathered, *skip, std::cmp::Reverse(rounds.len())));
+        let plans = candidates.into_iter().filter(|(_, iterations)| iterations.len() >= least).filter_map(
+            |(skip, iterations)| {
+                let plan = rerolling.plan(iterations)?;
+                Some((plan.making.gathered.len(), skip, iterations, plan))
+            },
+        );
+        let best =
+            plans.min_by_key(|(gathered, skip, iterations, _)| (*gathered, *skip, std::cmp::Reverse(iterations.len())));
         start += match best {
-            Some((_, skip, rounds, plan)) => {
-                rolling.write(plan, &visits[start + skip..][..rounds.len()], rounds);
-                skip + rounds.len()
+            Some((_, skip, iterations, plan)) => {
+                rerolling.write(plan, &visits[start + skip..][..iterations.len()], iterations);
+                skip + iterations.len()
             }
             None => 1,
         };
     }
-    if rolling.rolled.loops.is_empty() {
+    if rerolling.rerolled.loops.is_empty() {
         return None;
     }
-    rolling.hand_over(function);
-    Some(rolling.rolled)
+    rerolling.hand_over(function);
+    Some(rerolling.rerolled)
 }
 
 /// The visit in which each expression is computed: the first that requests or needs it.
 fn ranks(program: &Program, function: &Function, needed: &[bool]) -> Vec<usize> {
     let mut rank = vec![usize::MAX; needed.len()];
-    for (visit, id) in function.tape.visits.iter().enumerate().flat_map(|(i, v)| v.nodes.iter().map(move |id| (i, id)))
+    for (visit, id) in function.trace.visits.iter().enumerate().flat_map(|(i, v)| v.nodes.iter().map(move |id| (i, id)))
     {
         rank[id.index()] = rank[id.index()].min(visit);
     }
@@ -102,20 +110,20 @@ fn ranks(program: &Program, function: &Function, needed: &[bool]) -> Vec<usize> 
 }
 
 /// Loops under construction.
-struct Rolling<'a> {
+struct Rerolling<'a> {
     program: &'a mut Program,
     constants: &'a Constants,
     rank: Vec<usize>,
     angles: Vec<Angle>,
     stumpff: Vec<StumpffArgument>,
-    /// Expressions that loops compute: the loop, the expression of its first visit, and the round.
+    /// Expressions that loops compute: the loop, the expression of its first visit, and the iteration.
     places: HashMap<ExprId, (usize, ExprId, usize)>,
     /// Expressions outside of loops in terms of the values that loops leave.
     moved: HashMap<ExprId, ExprId>,
-    rolled: Rolled,
+    rerolled: Rerolled,
 }
 
-impl Rolling<'_> {
+impl Rerolling<'_> {
     /// The expressions that a visit requested itself.
     fn anchors(&self, visit: &Visit, at: usize) -> Vec<ExprId> {
         visit.nodes.iter().copied().filter(|id| self.rank[id.index()] == at).collect()
@@ -129,17 +137,17 @@ impl Rolling<'_> {
             return vec![];
         }
         let others = visits.iter().enumerate().skip(start).take_while(|(_, other)| other.sweep == visit.sweep);
-        let rounds = others.map_while(|(at, other)| {
+        let iterations = others.map_while(|(at, other)| {
             matched(self.program, &self.rank, (start, &first), (at, &self.anchors(other, at)))
         });
-        rounds.collect()
+        iterations.collect()
     }
 
-    /// The loop of these rounds, if all its operands from outside have a source.
+    /// The loop of these iterations, if all its operands from outside have a source.
     fn plan(&self, matches: &[Match]) -> Option<Plan> {
         let mut own: Vec<ExprId> = matches[0].nodes.keys().copied().collect();
         own.sort();
-        let mut plan = Plan { own, making: Loop { rounds: matches.len(), ..Loop::default() }, ..Plan::default() };
+        let mut plan = Plan { own, making: Loop { iterations: matches.len(), ..Loop::default() }, ..Plan::default() };
         for &id in &plan.own {
             for (place, _) in self.program.op(id).operands().enumerate() {
                 if matches[0].outside.contains_key(&(id, place)) {
@@ -160,7 +168,7 @@ impl Rolling<'_> {
         let program = &*self.program;
         let first = operands[0];
         if operands.iter().all(|id| *id == first) {
-            return Some(Operands::Same);
+            return Some(Operands::Invariant);
         }
         let ops: Vec<Op> = operands.iter().map(|id| program.op(*id)).collect();
         if let Some(numbers) = ops.iter().map(|op| number(*op)).collect::<Option<Vec<f64>>>() {
@@ -178,8 +186,8 @@ impl Rolling<'_> {
                 Argument::Position
                     | Argument::Velocity
                     | Argument::Acceleration
-                    | Argument::Right
-                    | Argument::Resistance
+                    | Argument::RightHandSide
+                    | Argument::AddedInertia
                     | Argument::Factors
             );
             if let Some(places) = progression(ops.iter().map(index)).filter(|_| in_order) {
@@ -201,20 +209,20 @@ impl Rolling<'_> {
                 return Some(Operands::From(Source::Stumpff(k, places)));
             }
         }
-        // The same expression in the previous round; in the first round, any value from before the loop.
+        // The same expression in the previous iteration; in the first iteration, any value from before the loop.
         let before = |k: usize| matches[k - 1].template_of(operands[k]);
         if let Some(next) = before(1)
             && (1..operands.len()).all(|k| before(k) == Some(next))
         {
-            making.carried.push((first, next));
-            return Some(Operands::From(Source::Carried(making.carried.len() - 1)));
+            making.loop_carried.push((first, next));
+            return Some(Operands::From(Source::LoopCarried(making.loop_carried.len() - 1)));
         }
         if let Some(&(of, template, _)) = self.places.get(&first) {
-            let round = |id: &ExprId| {
-                self.places.get(id).filter(|(l, t, _)| (*l, *t) == (of, template)).map(|(_, _, round)| *round)
+            let iteration = |id: &ExprId| {
+                self.places.get(id).filter(|(l, t, _)| (*l, *t) == (of, template)).map(|(_, _, iteration)| *iteration)
             };
-            if let Some(round) = progression(operands.iter().map(round)) {
-                return Some(Operands::Kept { of, template, round });
+            if let Some(iteration) = progression(operands.iter().map(iteration)) {
+                return Some(Operands::Saved { of, template, iteration });
             }
         }
         let is_within = |id: &ExprId| matches.iter().any(|m| m.template_of(*id).is_some());
@@ -227,32 +235,32 @@ impl Rolling<'_> {
 
     /// Writes the loop's body as separate expressions.
     fn write(&mut self, Plan { own, mut making, sources, sites }: Plan, visits: &[Visit], matches: &[Match]) {
-        making.places = [&visits[0], &visits[visits.len() - 1]].map(Place::from);
-        let number = self.rolled.loops.len();
+        making.ends = [&visits[0], &visits[visits.len() - 1]].map(SweepPosition::from);
+        let number = self.rerolled.loops.len();
         let mut symbols: HashMap<&[ExprId], ExprId> = HashMap::new();
         let mut outside: HashMap<(ExprId, usize), ExprId> = HashMap::new();
         for (site, operands) in &sites {
             let id = match (symbols.get(operands.as_slice()), &sources[operands]) {
                 (Some(known), _) => *known,
-                (None, Operands::Same) => {
+                (None, Operands::Invariant) => {
                     let same = self.straight(operands[0]);
                     if !self.constants.is_free(self.program, same) {
-                        making.same.push(same);
+                        making.invariants.push(same);
                     }
                     same
                 }
                 (None, found) => {
                     let source = match found {
                         Operands::From(source) => source.clone(),
-                        Operands::Kept { of, template, round } => {
-                            Source::Kept { of: *of, slot: self.keep(*of, *template), round: *round }
+                        Operands::Saved { of, template, iteration } => {
+                            Source::Saved { of: *of, slot: self.save(*of, *template), iteration: *iteration }
                         }
-                        Operands::Same => unreachable!("matched above"),
+                        Operands::Invariant => unreachable!("matched above"),
                     };
                     let name = self.name_of(operands, &source);
-                    let index = self.rolled.sources.len();
-                    self.rolled.sources.push((number, source));
-                    self.program.append_symbol(Symbol { name, argument: Argument::Round, index })
+                    let index = self.rerolled.sources.len();
+                    self.rerolled.sources.push((number, source));
+                    self.program.append_symbol(Symbol { name, argument: Argument::LoopVarying, index })
                 }
             };
             symbols.insert(operands, id);
@@ -271,10 +279,10 @@ impl Rolling<'_> {
                 self.program.names.insert(inside, name);
             }
         }
-        for (round, m) in matches.iter().enumerate() {
+        for (iteration, m) in matches.iter().enumerate() {
             #[expect(clippy::iter_over_hash_type, reason = "each goes to a place of its own, in any order")]
             for (template, id) in &m.nodes {
-                self.places.insert(*id, (number, *template, round));
+                self.places.insert(*id, (number, *template, iteration));
             }
         }
         for gathered in &mut making.gathered {
@@ -282,14 +290,14 @@ impl Rolling<'_> {
                 *id = self.straight(*id);
             }
         }
-        for (initial, next) in &mut making.carried {
+        for (initial, next) in &mut making.loop_carried {
             *initial = self.straight(*initial);
             *next = making.body[next];
         }
-        self.rolled.loops.push(making);
+        self.rerolled.loops.push(making);
     }
 
-    /// The model's name for a value in all rounds.
+    /// The model's name for a value in all iterations.
     fn name_of(&self, operands: &[ExprId], source: &Source) -> String {
         let of = |id: &ExprId| match self.program.op(*id) {
             Op::Symbol(symbol) => Some(self.program.symbol(symbol).name.clone()),
@@ -300,21 +308,21 @@ impl Rolling<'_> {
         let common = common_name(&names.iter().map(Option::as_ref).collect::<Vec<_>>());
         match source {
             Source::Number(_) => "number".into(),
-            Source::Carried(_) => {
-                let rounds: Vec<Option<&String>> = names.iter().skip(1).map(Option::as_ref).collect();
-                common.or_else(|| common_name(&rounds)).map_or("before".into(), |name| format!("{name}_before"))
+            Source::LoopCarried(_) => {
+                let iterations: Vec<Option<&String>> = names.iter().skip(1).map(Option::as_ref).collect();
+                common.or_else(|| common_name(&iterations)).map_or("before".into(), |name| format!("{name}_before"))
             }
             _ => common.unwrap_or("taken".into()),
         }
     }
 
-    /// The slot in which a loop keeps the values of an expression of its first visit.
-    fn keep(&mut self, of: usize, template: ExprId) -> usize {
-        let Loop { kept, body, .. } = &mut self.rolled.loops[of];
+    /// The slot in which a loop saves the values of an expression of its first visit.
+    fn save(&mut self, of: usize, template: ExprId) -> usize {
+        let Loop { saved, body, .. } = &mut self.rerolled.loops[of];
         let value = body[&template];
-        kept.iter().position(|known| *known == value).unwrap_or_else(|| {
-            kept.push(value);
-            kept.len() - 1
+        saved.iter().position(|known| *known == value).unwrap_or_else(|| {
+            saved.push(value);
+            saved.len() - 1
         })
     }
 
@@ -325,8 +333,8 @@ impl Rolling<'_> {
             let op = self.program.op(id);
             let moved = if self.moved.contains_key(&id) {
                 None
-            } else if let Some(&(of, template, round)) = self.places.get(&id) {
-                Some(self.taken(id, of, template, round))
+            } else if let Some(&(of, template, iteration)) = self.places.get(&id) {
+                Some(self.live_out(id, of, template, iteration))
             } else if self.constants.is_free(self.program, id) || op.is_leaf() || op.is_elementary() {
                 Some(id)
             } else {
@@ -355,18 +363,19 @@ impl Rolling<'_> {
     }
 
     /// The symbol of a value that a loop leaves.
-    fn taken(&mut self, id: ExprId, of: usize, template: ExprId, round: usize) -> ExprId {
-        let Loop { rounds, carried, body, .. } = &self.rolled.loops[of];
+    fn live_out(&mut self, id: ExprId, of: usize, template: ExprId, iteration: usize) -> ExprId {
+        let Loop { iterations, loop_carried, body, .. } = &self.rerolled.loops[of];
         let value = body[&template];
-        let carried = carried.iter().position(|(_, next)| *next == value).filter(|_| round + 1 == *rounds);
-        let taking = match carried {
-            Some(place) => Taking::Carried { of, place },
-            None => Taking::Kept { of, slot: self.keep(of, template), round },
+        let loop_carried =
+            loop_carried.iter().position(|(_, next)| *next == value).filter(|_| iteration + 1 == *iterations);
+        let live_out = match loop_carried {
+            Some(place) => LiveOut::LoopCarried { of, place },
+            None => LiveOut::Saved { of, slot: self.save(of, template), iteration },
         };
-        let index = self.rolled.takings.len();
-        self.rolled.takings.push(taking);
+        let index = self.rerolled.live_outs.len();
+        self.rerolled.live_outs.push(live_out);
         let name = self.program.names.get(&id).cloned().unwrap_or("taken".into());
-        self.program.append_symbol(Symbol { name, argument: Argument::Loop, index })
+        self.program.append_symbol(Symbol { name, argument: Argument::LiveOut, index })
     }
 
     /// The slots of the result: written in a loop if they are consecutive, otherwise outside.
@@ -374,8 +383,8 @@ impl Rolling<'_> {
         let mut rows: HashMap<(usize, ExprId), Vec<(usize, usize)>> = HashMap::new();
         if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. }) {
             for (slot, value) in function.outputs.iter().enumerate() {
-                if let Some(&(of, template, round)) = self.places.get(value) {
-                    rows.entry((of, template)).or_default().push((round, slot));
+                if let Some(&(of, template, iteration)) = self.places.get(value) {
+                    rows.entry((of, template)).or_default().push((iteration, slot));
                 }
             }
         }
@@ -384,25 +393,25 @@ impl Rolling<'_> {
         rows.sort();
         for ((of, template), mut slots) in rows {
             slots.sort_unstable();
-            let rounds = self.rolled.loops[of].rounds;
-            let complete = slots.iter().map(|(round, _)| *round).eq(0..rounds);
+            let iterations = self.rerolled.loops[of].iterations;
+            let complete = slots.iter().map(|(iteration, _)| *iteration).eq(0..iterations);
             if let Some(places) = progression(slots.iter().map(|(_, slot)| Some(*slot))).filter(|_| complete) {
                 for (_, slot) in &slots {
                     in_loops[*slot] = true;
                 }
-                let value = self.rolled.loops[of].body[&template];
-                self.rolled.loops[of].results.push((places, value));
+                let value = self.rerolled.loops[of].body[&template];
+                self.rerolled.loops[of].results.push((places, value));
             }
         }
-        self.rolled.outputs = function
+        self.rerolled.outputs = function
             .outputs
             .iter()
             .zip(in_loops)
             .map(|(value, in_loop)| (!in_loop).then(|| self.straight(*value)))
             .collect();
         let moved = |visit: &Visit| visit.nodes.iter().filter_map(|id| self.moved.get(id)).copied().collect();
-        let visits = function.tape.visits.iter();
-        self.rolled.visits = visits.map(|visit| Visit { nodes: moved(visit), ..visit.clone() }).collect();
+        let visits = function.trace.visits.iter();
+        self.rerolled.visits = visits.map(|visit| Visit { nodes: moved(visit), ..visit.clone() }).collect();
     }
 }
 
