@@ -4,7 +4,7 @@ import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
 import { build } from "esbuild";
 
-const TARGET = new URL("../../tools/cli/src/page/report.html", import.meta.url);
+const TARGET = new URL("../page/src/report.html", import.meta.url);
 
 const { outputFiles } = await build({
   absWorkingDir: new URL(".", import.meta.url).pathname,

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { readFile, stat } from "node:fs/promises";
 import { basename, resolve } from "node:path";
 import { chromium } from "playwright-core";
+import { FLAGS, PATIENCE, executablePath } from "./browser.js";
 
 /** Rounding to 32 bits, and once more to the shortest text that reads back as the same. */
 const ROUNDING = 2 * 2 ** -24;
@@ -13,24 +14,15 @@ const LEAST = 2 ** -126;
 const SHOWN = 0.5e-5;
 /** Most bytes of a page, so that it can be mailed. */
 const MOST_BYTES = 6e6;
-/** Software for what no graphics card does here; nothing of the browser's own that talks to a network. */
-const FLAGS = [
-  "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
-  "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-];
 
 const [file, ...csvFiles] = process.argv.slice(2).map((path) => resolve(path));
 const picture = (name) => file.replace(/\.html$/, `_${name}.png`);
-const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
 
 /** Columns of a CSV text by their header. */
 function columns(text) {
   const [header, ...rows] = text.trim().split("\n").map((line) => line.split(","));
   return new Map(header.map((name, i) => [name, rows.map((row) => Number(row[i]))]));
 }
-
-/** Longest wait for anything, ms. */
-const PATIENCE = 180_000;
 
 /** Longest wait for something to be drawn, ms. */
 const MOMENT = 20_000;

@@ -8,15 +8,13 @@ use std::{
     time::Duration,
 };
 
-use crane_model::{
-    dyn_crane::DynCrane,
-    dynamics,
-    results::{Table, Verification},
-    runs::Recorded,
-};
-use serde_json::{Map, Value, json};
+use crane_model::results::Table;
+use crane_page::Program;
 
 use crate::problem::{Outcome, Problem};
+
+/// This program, in records of runs.
+pub const PROGRAM: Program = Program { name: env!("CARGO_PKG_NAME"), version: env!("CARGO_PKG_VERSION") };
 
 /// Makes a folder where it is missing.
 ///
@@ -120,47 +118,6 @@ pub fn write_fields(
             csv.write_record(row)?;
         }
         csv.flush()
-    })
-}
-
-/// Greatest difference of every column from a finer run, by name.
-fn differences(recorded: &Recorded, verification: &Verification) -> Map<String, Value> {
-    let columns = recorded.table.columns.iter().map(|column| column.name.clone());
-    columns.zip(verification.differences.iter().map(|difference| json!(difference))).collect()
-}
-
-/// What a run was: enough to repeat it.
-pub fn record(rig: &dyn DynCrane, settings: &dynamics::Settings, recorded: &Recorded) -> Value {
-    let description = rig.description();
-    let parameters: Map<String, Value> = description
-        .parameters
-        .iter()
-        .enumerate()
-        .map(|(index, parameter)| {
-            (parameter.name.to_string(), json!({"value": rig.parameter(index), "unit": parameter.unit.as_str()}))
-        })
-        .collect();
-    json!({
-        "crane": description.name.as_str(),
-        "title": description.title.as_str(),
-        "spec_hash": description.spec_hash.as_str(),
-        "program": env!("CARGO_PKG_NAME"),
-        "version": env!("CARGO_PKG_VERSION"),
-        "method": settings.method.title(),
-        "start": recorded.start,
-        "step_s": recorded.run.step,
-        "tolerance": settings.method.is_adaptive().then_some(settings.tolerance),
-        "steps": recorded.run.statistics.steps,
-        "rejected_steps": recorded.run.statistics.rejections,
-        "evaluations": recorded.run.statistics.evaluations,
-        "factorisations": recorded.run.statistics.factorisations,
-        "duration_s": settings.duration,
-        "output_s": settings.output,
-        "parameters": parameters,
-        "cautions": recorded.cautions,
-        "differences_from_a_finer_run": recorded.verification.as_ref().map(|verification| differences(recorded, verification)),
-        "wall_time_s": recorded.wall.as_secs_f64(),
-        "real_time_factor": recorded.real_time_factor(),
     })
 }
 

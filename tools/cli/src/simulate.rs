@@ -10,6 +10,7 @@ use crane_model::{
     results::{Table, drive_effort},
     runs::Recorded,
 };
+use crane_page::record;
 use serde_json::Value;
 
 use crate::{
@@ -99,7 +100,7 @@ pub fn write_run(
     let name = &rig.description().name;
     let (csv, json) = (format!("{name}.csv"), format!("{name}.json"));
     files::write_csv(&folder.join(&csv), &recorded.table)?;
-    files::write_text(&folder.join(&json), &format!("{:#}\n", files::record(rig, settings, recorded)))?;
+    files::write_text(&folder.join(&json), &format!("{:#}\n", record(rig, settings, recorded, files::PROGRAM)))?;
     Ok(vec![csv, json])
 }
 

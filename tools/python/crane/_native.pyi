@@ -77,6 +77,8 @@ class Crane:
         """Coordinates, bodies, drives, supports, points and parameters."""
     def picture(self) -> str:
         """A picture of the chain: its bodies and coordinates at the guess, SVG."""
+    def page_with(self, run: dict[str, Any] | None = None) -> str:
+        """The crane in 3-D as an HTML page: at rest, or with a run of it."""
     def export(self, format: str) -> str:
         """The crane for other programs: "urdf", "springs" (what URDF does not hold, YAML) or "mjcf", with the present parameters."""
     def parameter_rows(self, index: int) -> Any:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from . import _native
 from ._native import NoEquilibrium
+from .notebook import embed
 from .results import (
     Array,
     Energies,
@@ -76,8 +77,15 @@ class Crane(_native.Crane):
         batch = f", shape={self.shape}" if self.shape else ""
         return f"<crane {self.name}: {self.n} coordinates{', ' if values else ''}{values}{batch}>"
 
+    def page(self) -> str:
+        """The crane in 3-D at rest, with its modes: an HTML page that needs no network, to be written to a file.
+
+        Of a crane whose parameters are arrays, the page shows the first row.
+        """
+        return self.page_with()
+
     def _repr_html_(self) -> str:
-        """A picture with a table of parameters and inputs, for notebooks."""
+        """The page with a table of parameters and inputs, for notebooks."""
         info = self.info
         rows = [(of["name"], self.parameters[of["name"]], of["unit"], of["about"]) for of in info["parameters"]]
         rows += [(of["name"], self.inputs.get(of["name"], "as the spec says"), of["unit"], of["about"]) for of in info["inputs"]]
@@ -86,7 +94,12 @@ class Crane(_native.Crane):
         body = "".join(f"<tr>{''.join(f'<td>{html.escape(cell)}</td>' for cell in row)}</tr>" for row in cells)
         table = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>" if cells else ""
         title = html.escape(f"{self.name}: {self.title}" if self.title else self.name)
-        return f"<div><p><b>{title}</b><br>{self.n} coordinates, {len(info['bodies'])} bodies</p>{self.picture()}{table}</div>"
+        try:
+            view = embed(self.page(), f"{self.name} in 3-D")
+        except ArithmeticError:
+            view = self.picture()
+        first = "<br>in 3-D: the first row of the parameters" if self.shape else ""
+        return f"<div><p><b>{title}</b><br>{self.n} coordinates, {len(info['bodies'])} bodies{first}</p>{view}{table}</div>"
 
     def replace(
         self, *, invalid: str = "raise", inputs: dict[str, float | None] | None = None, **parameters: ArrayLike
@@ -352,7 +365,7 @@ class Crane(_native.Crane):
         units = dict(found.pop("columns"))
         differences = found.pop("differences")
         errors = None if differences is None else dict(zip(units, differences, strict=True))
-        return Run(units=units, errors=errors, **found)
+        return Run(units=units, errors=errors, crane=crane, **found)
 
     def simulate_ensemble(
         self,

@@ -1,11 +1,17 @@
 """Results of the functions of a crane."""
 
+import html
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .notebook import embed
+
+if TYPE_CHECKING:
+    from .model import Crane
 
 Array = NDArray[np.float64]
 
@@ -216,6 +222,7 @@ class Run(Mapping[str, Array]):
     errors: greatest difference of every column from a finer run, in the column's unit; None where that was not asked for.
     divergence: time in which small differences grow by a factor e, s, where the motion is chaotic.
     cautions: what the run did that the model or the method does not hold for.
+    crane: the crane with the parameters and inputs of the run.
     """
 
     units: dict[str, str]
@@ -229,6 +236,7 @@ class Run(Mapping[str, Array]):
     divergence: float | None
     cautions: list[str]
     wall_time: float
+    crane: "Crane" = field(repr=False)
 
     def __getitem__(self, name: str) -> Array:
         return self.table[:, _place(self.units, name)]
@@ -254,6 +262,35 @@ class Run(Mapping[str, Array]):
             "maximum": float(column[greatest]),
             "time_of_maximum": float(t[greatest]),
         }
+
+    def page(self) -> str:
+        """The run in 3-D and in plots: an HTML page that needs no network, to be written to a file."""
+        counts = ("steps", "rejections", "evaluations", "factorisations")
+        return self.crane.page_with(
+            {
+                "table": self.table,
+                "start": self.start,
+                "method": self.method,
+                "tolerance": self.tolerance,
+                "step": self.step,
+                "statistics": [self.statistics[count] for count in counts],
+                "differences": None if self.errors is None else list(self.errors.values()),
+                "divergence": self.divergence,
+                "cautions": self.cautions,
+                "wall_time": self.wall_time,
+            }
+        )
+
+    def _repr_html_(self) -> str:
+        """The page, for notebooks."""
+        facts = f"{self.t[-1]:g} s from the {self.start}; {self.method}, {self.statistics['steps']} steps"
+        cautions = "".join(f"<br>caution: {html.escape(caution)}" for caution in self.cautions)
+        title = f"<b>{html.escape(self.crane.name)}</b>: {html.escape(facts)}{cautions}"
+        try:
+            view = embed(self.page(), f"a run of {self.crane.name} in 3-D")
+        except ArithmeticError:
+            view = ""
+        return f"<div><p>{title}</p>{view}</div>"
 
     def to_pandas(self) -> Any:
         """The columns as a pandas DataFrame over time."""

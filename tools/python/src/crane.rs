@@ -24,7 +24,8 @@ use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn_of
 pub struct Crane {
     /// The crane, with the parameters of the first row.
     pub live: LiveCrane,
-    source: SourceFile,
+    /// The spec.
+    pub source: SourceFile,
     /// Live parameters of all rows.
     pub parameters: Argument,
     /// Rows whose parameters break a rule.

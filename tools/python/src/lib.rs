@@ -6,6 +6,7 @@
 //! | `functions` | transforms, points, mass matrix, forces, dynamics, energies: arrays in, arrays out |
 //! | `equilibria`, `vibrations` | statics, modes and stability, row by row |
 //! | `motion` | runs: of one crane, of many, step by step |
+//! | `page` | the crane in 3-D, as HTML |
 //! | `arrays` | arguments as rows, and results as arrays |
 //! | `parallel` | rows on threads, while Python's signals are looked at |
 //! | `mistakes` | exceptions and warnings |
@@ -17,6 +18,7 @@ mod equilibria;
 mod functions;
 mod mistakes;
 mod motion;
+mod page;
 mod parallel;
 mod strength;
 mod vibrations;

@@ -1,4 +1,4 @@
-// Poses of a crane from its coordinates, by the product of exponentials (see `page/scene.rs` of the command).
+// Poses of a crane from its coordinates, by the product of exponentials (see `tools/page/src/scene.rs`).
 import { Matrix4, Vector3 } from "three";
 
 /** exp(ξ̂ q) of a screw `[ω, v]` whose ω is a unit vector or zero. */

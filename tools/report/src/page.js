@@ -14,13 +14,18 @@ import { Viewer } from "./viewer.js";
 
 /** Width of a plot on paper: that of A4 without its margins, CSS pixels. */
 const PAPER = 660;
+/** Time in which a crane at rest shows a mode, s. */
+const REST = 10;
 /** Way of the arrow keys in time, s. */
 const STEP = 0.1;
 
 const $ = (selector) => document.querySelector(selector);
 const data = read();
 const { crane, rigid } = data;
-const player = new Player(crane.run.t.at(-1) ?? 0);
+/** Without a record of a run, the crane is at rest. */
+const atRest = !crane.record;
+document.documentElement.classList.toggle("at_rest", atRest);
+const player = new Player(atRest ? REST : (crane.run.t.at(-1) ?? 0));
 
 document.title = `${crane.title} · report`;
 $("h1").textContent = crane.title;
@@ -28,16 +33,20 @@ $("#name").textContent = crane.name;
 thinned();
 tables(data);
 tiles(data);
-sign(data);
+if (!atRest) sign(data);
 chart(data);
 document.documentElement.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 const shown = [];
-const { plots, along } = panels(data, player);
+const { plots, along } = atRest ? { plots: [], along: [] } : panels(data, player);
 // What this crane does not have.
-for (const section of document.querySelectorAll("section:has(> .panels:empty)")) {
-  document.querySelector(`nav [href="#${section.id}"]`).remove();
+const missing = [...document.querySelectorAll("section:has(> .panels:empty)")];
+if (!data.tables) missing.push($("#tables"));
+if (atRest) missing.push($("#repeat"), $("#sign"));
+for (const section of missing) {
+  $(`nav [href="#${section.id}"]`).remove();
   section.remove();
 }
+navigation();
 const viewer = threeD();
 controls();
 now();
@@ -63,7 +72,17 @@ addEventListener("scroll", plotsFollow, { passive: true });
 // For the console of the browser, and for the test.
 globalThis.report = { data, player, plots, viewer };
 document.documentElement.dataset.ready = "yes";
-if (!matchMedia("(prefers-reduced-motion: reduce)").matches && viewer) player.play(true);
+if (!matchMedia("(prefers-reduced-motion: reduce)").matches && viewer && !atRest) player.play(true);
+
+/** Sections by script: in the frame of a notebook, a fragment would open the notebook itself. */
+function navigation() {
+  for (const link of document.querySelectorAll("nav a")) {
+    link.addEventListener("click", (event) => {
+      event.preventDefault();
+      $(link.getAttribute("href")).scrollIntoView();
+    });
+  }
+}
 
 /** Says so where a run has more samples than the page. */
 function thinned() {
@@ -109,9 +128,9 @@ function controls() {
   $("#time").addEventListener("input", ({ target }) => player.seek(Number(target.value)));
   $("#speed").addEventListener("change", ({ target }) => (player.speed = Number(target.value)));
   $("#theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
-  $("#all").addEventListener("click", () => save(`${crane.name}.csv`, table(crane.run.list), "text/csv"));
-  if (rigid) $("#all_rigid").addEventListener("click", () => save(`${rigid.name}.csv`, table(rigid.run.list), "text/csv"));
-  else $("#all_rigid").remove();
+  $("#all")?.addEventListener("click", () => save(`${crane.name}.csv`, table(crane.run.list), "text/csv"));
+  if (rigid) $("#all_rigid")?.addEventListener("click", () => save(`${rigid.name}.csv`, table(rigid.run.list), "text/csv"));
+  else $("#all_rigid")?.remove();
   if (!viewer) return;
   const flexible = crane.scene.bodies.some((body) => body.length > 0);
   const factor = $("#factor");
@@ -130,7 +149,7 @@ function controls() {
     return $(id).addEventListener("change", ({ target }) => viewer.set({ [key]: target.checked }));
   };
   check("#ghost", "ghost", rigid);
-  check("#trace", "trace", crane.scene.points.length);
+  check("#trace", "trace", !atRest && crane.scene.points.length);
   check("#arrows", "arrows", crane.scene.supports.length);
   check("#used", "use", viewer.used.beams.length);
   $("#used")?.addEventListener("change", ({ target }) => ($("#use_scale").hidden = !target.checked));
@@ -140,6 +159,8 @@ function controls() {
   document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => viewer.look(button.dataset.view)));
   const mode = $("#mode");
   crane.modes.forEach((one, index) => mode.append(new Option(modeText(one, index), index)));
+  // Of what is at rest, only a mode moves.
+  if (atRest) mode.options[0].textContent = "at rest";
   mode.addEventListener("change", () => {
     viewer.vibrate(mode.value === "" ? null : crane.modes[Number(mode.value)]);
     $("#mode_note").hidden = mode.value === "";
@@ -175,7 +196,7 @@ function now() {
     const { name, force_unit: unit } = crane.coordinates[j];
     value(spoken(name), `${name}_drive_${unit === "N" ? "force" : "torque"}`);
   }
-  value("kinetic energy", "kinetic_energy");
+  if (!atRest) value("kinetic energy", "kinetic_energy");
 }
 
 function readings(here) {

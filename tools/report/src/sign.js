@@ -42,7 +42,7 @@ export function sign({ crane, command }) {
       row("cautions", record.cautions.join("; ") || "none"),
       row("program", `${spoken(record.program)} ${record.version}`),
       row("hash of the spec", record.spec_hash),
-      row("command", command),
+      ...(command ? [row("command", command)] : []),
     )),
     element("div", { className: "signatures" }, ...["computed by", "checked by", "place and date"].map((who) => element("p", { textContent: who }))),
   );

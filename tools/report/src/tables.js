@@ -52,16 +52,23 @@ function entries(record) {
 
 /** Fills the tables. */
 export function tables(data) {
-  const host = document.querySelector("#tables .tables");
-  if (data.tables.facts.length) {
-    host.append(pairs("Outcome", data.tables.facts.map(([name, value, unit]) => [spoken(name), `${value} ${unit}`.trim()]), "facts"));
-  }
-  host.append(...data.tables.grids.map(grid));
+  if (data.tables) results(data.tables);
   const again = document.querySelector("#repeat .tables");
-  for (const { name, record } of data.cranes) again.append(pairs(spoken(name), entries(record), `record_${name}`));
-  document.querySelector("#command").textContent = data.command;
+  for (const { name, record } of data.cranes) if (record) again.append(pairs(spoken(name), entries(record), `record_${name}`));
+  const command = document.querySelector("#command");
+  if (data.command) command.textContent = data.command;
+  else command.closest(".card").remove();
   if (data.spec) document.querySelector("#spec pre").textContent = data.spec;
   else document.querySelector("#spec").remove();
+}
+
+/** Outcome and results. */
+function results({ facts, grids }) {
+  const host = document.querySelector("#tables .tables");
+  if (facts.length) {
+    host.append(pairs("Outcome", facts.map(([name, value, unit]) => [spoken(name), `${value} ${unit}`.trim()]), "facts"));
+  }
+  host.append(...grids.map(grid));
 }
 
 /** A mode in words. */

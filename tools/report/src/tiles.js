@@ -17,13 +17,12 @@ const text = (value, unit) => {
   const { unit: shown, factor } = scaled(unit, [value]);
   return `${Number((value * factor).toPrecision(4))} ${shown}`;
 };
-const when = (t) => `at ${Number(t.toPrecision(3))} s`;
-
 /** Fills the tiles. */
 export function tiles({ crane, rigid }) {
   const host = document.querySelector("#tiles");
   const { run, scene, coordinates, drives, modes } = crane;
   const { t } = run;
+  const when = (time) => (crane.record ? `at ${Number(time.toPrecision(3))} s` : "at rest");
   const add = (title, value, note) => {
     const tile = document.createElement("div");
     const lines = [["span", title], ["strong", value], ["span", note]];
@@ -73,6 +72,7 @@ export function tiles({ crane, rigid }) {
   if (modes.length && modes[0].frequency !== null) {
     add("lowest frequency", `${readable(Number(modes[0].frequency.toPrecision(4)))} Hz`, modes[0].moves.slice(0, 2).map(spoken).join(", "));
   }
+  if (!crane.record) return;
   const error = greatest([{ values: run.column("energy_balance").values }], t);
   add("error of the energy balance", `${readable(Number(error.size.toPrecision(2)))} J`, `largest, ${when(error.t)}`);
 }

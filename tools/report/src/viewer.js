@@ -107,7 +107,9 @@ export class Viewer {
   /** The way of each point of interest: whole, and as far as it has come. */
   traces() {
     const { crane } = this;
-    this.paths = crane.scene.points.map(({ name }, index) => {
+    // A crane at rest has none.
+    const points = crane.run.rows > 1 ? crane.scene.points : [];
+    this.paths = points.map(({ name }, index) => {
       const [x, y, z] = ["x", "y", "z"].map((axis) => crane.run.column(`${name}_${axis}`).values);
       const places = [];
       for (let row = 0; row < crane.run.rows; row += 1) places.push(x[row], y[row], z[row]);

@@ -20,7 +20,7 @@ const MAY_IMPORT: [(&str, &[&str]); 13] = [
 ];
 
 /// Words that a folder may not contain, and why.
-const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 8] = [
+const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 9] = [
     ("crane-model/src", "rs", &["crane_codegen"], "the runtime does not depend on the compiler"),
     (
         "tests/golden",
@@ -36,6 +36,12 @@ const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 8] = [
         "rs",
         &["crane_codegen::emit", "crane_codegen::build", "std::fs", "std::env", "std::process", "leak("],
         "a live crane is made of text in memory and gone when it is dropped: no Rust is written, no file touched, nothing leaks",
+    ),
+    (
+        "tools/page/src",
+        "rs",
+        &["crane_cli", "crane_codegen::emit", "crane_codegen::mechanics", "std::fs", "std::env", "std::process"],
+        "a page is text; files and notebooks are for others",
     ),
     (
         "tools/python/src",

@@ -161,6 +161,7 @@ fn tests() -> Vec<Step> {
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
         Step::check("the Python package", package::check),
+        Step::check("pages of the Python package in a browser", report::in_notebook),
         Step::check("functional mock-up units", outside::units),
         Step::check("what the command prints as JSON", outside::output),
         // A static library with its own panic handler: no crate beneath it may link std or a heap.

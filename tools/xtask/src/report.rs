@@ -3,6 +3,7 @@
 use std::fs;
 use std::process::Command;
 
+use crate::python::CHECKS;
 use crate::{step, workspace};
 
 const FOLDER: &str = "tools/report";
@@ -39,12 +40,29 @@ pub fn is_current() -> Result<(), String> {
     step::finish(in_folder("node").args(["build.js", "--check"]))
 }
 
+/// What a notebook shows of a crane and of a run, in headless Chromium.
+pub fn in_notebook() -> Result<(), String> {
+    browser()?;
+    let file = workspace::root().join("out/notebook.html");
+    fs::create_dir_all(workspace::root().join("out")).map_err(|error| format!("out: {error}"))?;
+    step::finish(
+        Command::new(CHECKS.python()).arg("notebook.py").arg(&file).current_dir(workspace::root().join(FOLDER)),
+    )?;
+    step::finish(in_folder("node").arg("notebook.js").arg(file))
+}
+
+/// Whether there is a browser.
+fn browser() -> Result<(), String> {
+    let chromium = std::env::var("CHROMIUM").unwrap_or_else(|_| "/usr/bin/chromium".to_owned());
+    if std::path::Path::new(&chromium).exists() {
+        return Ok(());
+    }
+    Err(format!("{chromium} is missing (Debian: apt-get install chromium; elsewhere set CHROMIUM)"))
+}
+
 /// Pages of several cranes in headless Chromium; that of the default run is compared with its CSV files.
 pub fn in_browser() -> Result<(), String> {
-    let chromium = std::env::var("CHROMIUM").unwrap_or_else(|_| "/usr/bin/chromium".to_owned());
-    if !std::path::Path::new(&chromium).exists() {
-        return Err(format!("{chromium} is missing (Debian: apt-get install chromium; elsewhere set CHROMIUM)"));
-    }
+    browser()?;
     let out = workspace::root().join("out");
     let files = ["report.html", "eight_link_flexible.csv", "eight_link_rigid.csv"].map(|name| out.join(name));
     step::finish(in_folder("node").arg("test.js").args(files))?;

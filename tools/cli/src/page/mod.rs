@@ -1,11 +1,8 @@
 //! `crane report`: statics, motion and modes of a crane as one HTML page, which needs no network.
 //!
-//! The page itself is built from `tools/report` and committed; here its data are put in.
+//! `crane-page` makes the page; here it gets tables, load charts and the rigid crane beside a flexible one.
 
 mod chart;
-mod crane;
-mod scene;
-mod strength;
 pub mod twin;
 
 use std::{io::Write, path::Path};
@@ -15,7 +12,8 @@ use crane_model::{
     dynamics::{Method, Settings},
     runs::{POSES, Recorded, Start, manoeuvre},
 };
-use serde_json::{Value, json};
+use crane_page::{Subject, Texts, page};
+use serde_json::Value;
 
 use crate::{
     Registry,
@@ -31,12 +29,8 @@ use crate::{
     statics::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, tables},
 };
 
-/// The page without data: script, style and licences in one file.
-const PAGE: &str = include_str!("report.html");
 /// Coordinates of the largest crane whose modes are computed at all [`POSES`] along the manoeuvre.
 const AFFORDABLE: usize = 100;
-/// Where the data go.
-const PLACE: &str = "{\"data\":\"here\"}";
 
 /// Computes a crane, and its rigid twin where there is one, and writes the page.
 pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
@@ -78,34 +72,30 @@ fn write_with(
     runs: &[Recorded],
     chart: Option<Value>,
 ) -> Outcome<()> {
-    let mut data = data(registry, cases, settings, runs)?;
-    data["chart"] = chart.unwrap_or(Value::Null);
-    let data = data.to_string();
-    // No text of a spec ends the script element that holds the data.
+    let (cases, limits) = cases;
+    let lives = cases.iter().map(|case| registry.live(case.rig)).collect::<Outcome<Vec<_>>>()?;
+    let subjects: Vec<Subject<'_>> = cases
+        .iter()
+        .zip(&lives)
+        .zip(settings.iter().zip(runs))
+        .map(|((case, live), run)| Subject {
+            label: case.label,
+            rig: case.rig,
+            live,
+            equilibrium: &case.equilibrium,
+            run: Some(run),
+        })
+        .collect();
+    let texts = Texts {
+        tables: all_tables(registry, cases, limits, runs)?.page(),
+        chart: chart.unwrap_or_default(),
+        command: Some(own::typed()),
+        spec: cases.last().and_then(|case| registry.spec(&case.rig.description().name)),
+    };
     if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         files::folder(folder)?;
     }
-    files::write_text(file, &PAGE.replacen(PLACE, &data.replace('<', "\\u003c"), 1))
-}
-
-fn data(
-    registry: &Registry,
-    (cases, limits): (&[Case<'_>], Limits),
-    settings: &[Settings],
-    runs: &[Recorded],
-) -> Outcome<Value> {
-    let mut cranes = Vec::new();
-    for ((case, settings), run) in cases.iter().zip(settings).zip(runs) {
-        let mut crane = crane::data(case, &registry.live(case.rig)?, run)?;
-        crane["record"] = files::record(case.rig, settings, run);
-        cranes.push(crane);
-    }
-    Ok(json!({
-        "cranes": cranes,
-        "tables": all_tables(registry, cases, limits, runs)?.page(),
-        "command": own::typed(),
-        "spec": cases.last().and_then(|case| registry.spec(&case.rig.description().name)),
-    }))
+    files::write_text(file, &page(&subjects, texts, files::PROGRAM)?)
 }
 
 fn all_tables(registry: &Registry, cases: &[Case<'_>], limits: Limits, runs: &[Recorded]) -> Outcome<Report> {

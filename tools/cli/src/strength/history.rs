@@ -2,11 +2,10 @@
 
 use crane_model::{
     Cut, Description, Wrench,
-    dyn_crane::DynCrane,
-    own_states,
-    results::{self, Table},
-    tipping::{TippingLine, governing, lines},
+    results::Table,
+    tipping::{TippingLine, governing},
 };
+use crane_page::history::Instant;
 
 /// Components of what a joint carries.
 pub const OF_JOINTS: [&str; 6] = ["Fx", "Fy", "Fz", "Mx", "My", "Mz"];
@@ -14,44 +13,6 @@ pub const OF_JOINTS: [&str; 6] = ["Fx", "Fy", "Fz", "Mx", "My", "Mz"];
 pub const OF_SECTIONS: [&str; 6] = ["N", "Qy", "Qz", "Mx", "My", "Mz"];
 /// Their units.
 pub const UNITS: [&str; 6] = ["N", "N", "N", "N m", "N m", "N m"];
-
-/// What a crane carries at a moment.
-pub struct Instant {
-    /// Time, s.
-    pub t: f64,
-    /// Tipping lines.
-    pub lines: Vec<TippingLine>,
-    /// What every cut transmits.
-    pub wrenches: Vec<Wrench>,
-}
-
-impl Instant {
-    /// At rest.
-    pub fn at_rest(rig: &dyn DynCrane, q: &[f64]) -> Self {
-        let rest = vec![0.0; q.len()];
-        Self { t: 0.0, lines: lines(rig, 0.0, q, &rest, &rest), wrenches: rig.internal_forces_at(0.0, q, &rest, &rest) }
-    }
-
-    /// In motion.
-    fn moving(rig: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Self {
-        let (a, _) = own_states::accelerations(rig, t, (q, v), x);
-        Self { t, lines: lines(rig, t, q, v, &a), wrenches: rig.internal_forces_at(t, q, v, &a) }
-    }
-}
-
-/// At results of a run.
-pub fn of<'a>(rig: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64>>) -> Vec<Instant> {
-    let n = rig.size();
-    // Time, coordinates and rates come first.
-    let columns = results::quantities(rig.description());
-    let place = |name: String| columns.iter().position(|column| column.name == name);
-    let oil: Vec<usize> = own_states::columns(rig.description()).into_iter().filter_map(place).collect();
-    rows.map(|row| {
-        let x: Vec<f64> = oil.iter().map(|&place| row[place]).collect();
-        Instant::moving(rig, row[0], (&row[1..=n], &row[n + 1..=2 * n]), &x)
-    })
-    .collect()
-}
 
 /// The moment nearest to tipping, or the first.
 pub fn least_margin(history: &[Instant]) -> Option<&Instant> {

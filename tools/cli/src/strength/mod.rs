@@ -10,6 +10,7 @@ use std::io::Write;
 use serde_json::Value;
 
 use crane_model::{dyn_crane::DynCrane, dynamics::Method, results::cautions, tipping::governing};
+use crane_page::history::{Instant, instants};
 
 use crate::{
     Registry,
@@ -22,7 +23,6 @@ use crate::{
 };
 
 use history::least_margin;
-pub use history::{Instant, of as history};
 pub use loads::parameter as load_parameter;
 
 /// Prints loads and stability at rest, and along the manoeuvre if asked for.
@@ -76,7 +76,7 @@ fn along(options: &Strength, rig: &dyn DynCrane, report: &mut Report) -> Outcome
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));
     }
-    let history = history::of(rig, recorded.table.rows.iter());
+    let history = instants(rig, recorded.table.rows.iter());
     let worst = least_margin(&history).ok_or_else(|| Problem::failed("the run has no results", ""))?;
     verdict(report, rig, worst, " of the run");
     stresses::verdict(report, rig.description(), &rig.section_moduli_at(), &history, " of the run");

@@ -4,10 +4,9 @@ use crane_model::{
     Description, SectionModuli, Stress, Wrench,
     sections::{StressedSection, stressed_sections},
 };
+use crane_page::history::Instant;
 
 use crate::report::{Cell, Grid, Report};
-
-use super::history::Instant;
 
 /// Pascals in a newton per square millimetre.
 const MEGA: f64 = 1e6;

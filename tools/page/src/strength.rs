@@ -1,23 +1,23 @@
 //! How far a run uses the beams, and how far the crane is from tipping over.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
-use crane_model::{Description, SectionModuli, dyn_crane::DynCrane, runs::Recorded, sections::stressed_sections};
+use crane_model::{Description, SectionModuli, dyn_crane::DynCrane, results::Table, sections::stressed_sections};
 use serde_json::{Value, json};
 
-use crate::strength::{Instant, history};
+use crate::history::{Instant, instants};
 
 /// Pascals in a newton per square millimetre.
 const MEGA: f64 = 1e6;
 
 /// Utilisation of all sections whose moduli are known, in megapascals where no beam has a yield stress, and margins about all tipping lines,
 /// of every `every`-th result.
-pub fn data(rig: &dyn DynCrane, run: &Recorded, every: usize) -> Value {
+pub fn data(rig: &dyn DynCrane, run: &Table, every: usize) -> Value {
     let description = rig.description();
     let moduli = rig.section_moduli_at();
     if description.supports.is_empty() && moduli.iter().all(|moduli| moduli.area <= 0.0) {
         return Value::Null;
     }
-    let history = history(rig, run.table.rows.iter().step_by(every));
+    let history = instants(rig, run.rows.iter().step_by(every));
     json!({"sections": sections(description, &moduli, &history), "stability": stability(description, &history)})
 }
 

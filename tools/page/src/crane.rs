@@ -2,21 +2,38 @@
 
 use crane_codegen::chain::{Beam, Outline, Value as Number};
 use crane_live::LiveCrane;
-use crane_model::{CoordinateRole, modes::undamped, results::Table, runs::Recorded};
+use crane_model::{
+    CoordinateRole,
+    dyn_crane::DynCrane,
+    dynamics::Sample,
+    modes::{NoModes, undamped},
+    own_states::OwnStates,
+    results::{Recording, Table},
+};
 use serde_json::{Value, json};
 
-use super::{
+use crate::{
+    Program, Subject, record,
     scene::scene,
     strength::{self, packed},
 };
-use crate::{problem::Outcome, statics::Case};
 
 /// Most rows of a run that a page holds; a longer one is thinned, so that the page stays small enough to mail.
 const MOST_ROWS: usize = 4000;
 
-/// Everything of one crane; `live`: the same crane with derivatives of its transforms.
-pub fn data(case: &Case<'_>, live: &LiveCrane, run: &Recorded) -> Outcome<Value> {
-    let rig = case.rig;
+/// Everything of one crane.
+pub fn data(subject: &Subject<'_>, program: Program) -> Result<Value, NoModes> {
+    let &Subject { label, rig, live, equilibrium, run } = subject;
+    // Without an equilibrium there is at least a pose to look at.
+    let found = equilibrium.q.iter().all(|q| q.is_finite());
+    let pose = if found { equilibrium.q.clone() } else { rig.guess() };
+    let at_rest;
+    let table = if let Some((_, recorded)) = run {
+        &recorded.table
+    } else {
+        at_rest = rest(rig, &pose);
+        &at_rest
+    };
     let description = rig.description();
     let coordinates: Vec<Value> = description
         .coordinates
@@ -33,19 +50,28 @@ pub fn data(case: &Case<'_>, live: &LiveCrane, run: &Recorded) -> Outcome<Value>
             })
         })
         .collect();
-    let every = run.table.rows.len().div_ceil(MOST_ROWS).max(1);
+    let every = table.rows.len().div_ceil(MOST_ROWS).max(1);
     Ok(json!({
         "name": description.name.as_str(),
         "title": description.title.as_str(),
-        "label": case.label,
+        "label": label,
         "coordinates": coordinates,
         "drives": description.drives.iter().map(|drive| drive.coordinate).collect::<Vec<_>>(),
-        "scene": scene(live, &case.equilibrium.q),
+        "scene": scene(live, &pose),
         "outlines": outlines(live),
-        "modes": modes(case)?,
-        "run": columns(&run.table, every),
-        "strength": strength::data(rig, run, every),
+        "modes": modes(subject)?,
+        "run": columns(table, every),
+        "record": run.map(|(settings, recorded)| record(rig, settings, recorded, program)),
+        "strength": strength::data(rig, table, every),
     }))
+}
+
+/// The one result of a crane that stays where it is with its drives at their starts.
+fn rest(rig: &dyn DynCrane, q: &[f64]) -> Table {
+    let (v, x) = (vec![0.0; q.len()], OwnStates::new(rig.description()).holding(rig, 0.0, q));
+    let mut recording = Recording::new(rig);
+    recording.push(&Sample { t: 0.0, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0 });
+    recording.into_table()
 }
 
 /// Sections of the beams whose spec gives a shape, by the names of their links: height and width, m, of a stepped or tapered beam along it.
@@ -65,12 +91,12 @@ fn outlines(live: &LiveCrane) -> Value {
 }
 
 /// Frequencies, Hz, and shapes in generalized coordinates, lowest first; none unless the pose is a stable equilibrium.
-fn modes(case: &Case<'_>) -> Outcome<Vec<Value>> {
-    if !case.equilibrium.is_stable() {
+fn modes(subject: &Subject<'_>) -> Result<Vec<Value>, NoModes> {
+    if !subject.equilibrium.is_stable() {
         return Ok(Vec::new());
     }
-    let coordinates = &case.rig.description().coordinates;
-    let modes = undamped(&case.rig.small_motions_at(&case.equilibrium.q))?;
+    let coordinates = &subject.rig.description().coordinates;
+    let modes = undamped(&subject.rig.small_motions_at(&subject.equilibrium.q))?;
     let mode = |mode: &crane_model::modes::Mode| {
         let names: Vec<&str> = mode.dominating.iter().map(|&index| coordinates[index].name.as_str()).collect();
         json!({"frequency": mode.frequency(), "shape": mode.shape.as_slice(), "moves": names})

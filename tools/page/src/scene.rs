@@ -1,4 +1,4 @@
-//! What moves, as the page draws it: frames of the bodies at one pose, and a screw for each coordinate.
+//! What moves, as a page draws it: frames of the bodies at one pose, and a screw for each coordinate.
 //!
 //! `T_p(q) = exp(ξ₁ (q₁ − q₁⁰)) … exp(ξ_n (q_n − q_n⁰)) T_p(q⁰)`, over the coordinates that move body p: the product of
 //! exponentials (R. W. Brockett, Robotic manipulators and the product of exponentials formula, 1984). Exact for any chain,

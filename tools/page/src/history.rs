@@ -1,0 +1,46 @@
+//! Internal forces and tipping lines over a run.
+
+use crane_model::{
+    Wrench,
+    dyn_crane::DynCrane,
+    own_states, results,
+    tipping::{TippingLine, lines},
+};
+
+/// What a crane carries at an instant.
+pub struct Instant {
+    /// Time, s.
+    pub t: f64,
+    /// Tipping lines.
+    pub lines: Vec<TippingLine>,
+    /// Internal forces at every cut.
+    pub wrenches: Vec<Wrench>,
+}
+
+impl Instant {
+    /// At rest.
+    pub fn at_rest(rig: &dyn DynCrane, q: &[f64]) -> Self {
+        let rest = vec![0.0; q.len()];
+        Self { t: 0.0, lines: lines(rig, 0.0, q, &rest, &rest), wrenches: rig.internal_forces_at(0.0, q, &rest, &rest) }
+    }
+
+    /// In motion.
+    fn moving(rig: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Self {
+        let (a, _) = own_states::accelerations(rig, t, (q, v), x);
+        Self { t, lines: lines(rig, t, q, v, &a), wrenches: rig.internal_forces_at(t, q, v, &a) }
+    }
+}
+
+/// At results of a run, rows of a recorded table.
+pub fn instants<'a>(rig: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64>>) -> Vec<Instant> {
+    let n = rig.size();
+    // Time, coordinates and rates come first.
+    let columns = results::quantities(rig.description());
+    let place = |name: String| columns.iter().position(|column| column.name == name);
+    let oil: Vec<usize> = own_states::columns(rig.description()).into_iter().filter_map(place).collect();
+    rows.map(|row| {
+        let x: Vec<f64> = oil.iter().map(|&place| row[place]).collect();
+        Instant::moving(rig, row[0], (&row[1..=n], &row[n + 1..=2 * n]), &x)
+    })
+    .collect()
+}

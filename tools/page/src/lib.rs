@@ -1,0 +1,73 @@
+//! A crane as one HTML page, which needs no network: in 3-D, with plots of a run, its modes and its strength.
+//!
+//! The page itself is built from `tools/report` and committed; here it gets its data. The command writes it to a file, the Python package
+//! shows it in notebooks.
+//!
+//! | module | content |
+//! |---|---|
+//! | `crane` | what a crane is, how it is drawn, its run and its modes |
+//! | `scene` | what moves: frames of the bodies, and a screw for each coordinate |
+//! | `strength` | utilisation of sections and tipping margins over a run |
+//! | `history` | internal forces and tipping lines over a run |
+//! | `record` | what a run was: enough to repeat it |
+
+mod crane;
+pub mod history;
+mod record;
+mod scene;
+mod strength;
+
+use crane_live::LiveCrane;
+use crane_model::{dyn_crane::DynCrane, dynamics::Settings, modes::NoModes, runs::Recorded, statics::Equilibrium};
+use serde_json::{Value, json};
+
+pub use record::{Program, record};
+
+/// The page without data: script, style and licences in one file.
+const PAGE: &str = include_str!("report.html");
+/// The place of the data.
+const PLACE: &str = "{\"data\":\"here\"}";
+
+/// One of the cranes of a page.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    /// What distinguishes it from the others.
+    pub label: &'a str,
+    /// The crane.
+    pub rig: &'a dyn DynCrane,
+    /// The same crane with derivatives of its transforms.
+    pub live: &'a LiveCrane,
+    /// Its equilibrium.
+    pub equilibrium: &'a Equilibrium,
+    /// Its run; without one, it is shown at rest.
+    pub run: Option<(&'a Settings, &'a Recorded)>,
+}
+
+/// What a page shows besides cranes.
+#[derive(Default)]
+pub struct Texts<'a> {
+    /// Tables as the page shows them; none if null.
+    pub tables: Value,
+    /// Figures of load charts; none if null.
+    pub chart: Value,
+    /// The command that wrote the page.
+    pub command: Option<String>,
+    /// Spec of the last crane.
+    pub spec: Option<&'a str>,
+}
+
+/// The page of some cranes; the last one is its subject, the one before it the rigid crane to compare it with.
+///
+/// # Errors
+/// The modes of a crane could not be computed.
+pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Result<String, NoModes> {
+    let cranes = subjects.iter().map(|subject| crane::data(subject, program)).collect::<Result<Vec<_>, _>>()?;
+    let Texts { tables, chart, command, spec } = texts;
+    let data =
+        json!({"cranes": cranes, "tables": tables, "chart": chart, "command": command, "spec": spec}).to_string();
+    // No text of a spec ends the script element that holds the data.
+    Ok(PAGE.replacen(PLACE, &data.replace('<', "\\u003c"), 1))
+}
+
+#[cfg(test)]
+mod tests;

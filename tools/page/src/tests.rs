@@ -1,0 +1,62 @@
+use crane_codegen::{SourceFile, compile};
+use crane_model::dyn_crane::DynModel;
+
+use super::*;
+
+fn live(name: &str) -> LiveCrane {
+    let text = crane_specs::spec(name).expect("a shipped crane");
+    LiveCrane::new(compile::load(&SourceFile::new(name, text)).unwrap_or_else(|mistakes| panic!("{mistakes}")))
+}
+
+/// The data in the page of a crane at rest.
+fn at_rest(live: &LiveCrane, equilibrium: &Equilibrium, spec: &str) -> (String, Value) {
+    let subject = Subject { label: "value", rig: live, live, equilibrium, run: None };
+    let program = Program { name: "test", version: "0" };
+    let page = page(&[subject], Texts { spec: Some(spec), ..Texts::default() }, program).expect("modes");
+    let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").expect("data");
+    let data = serde_json::from_str(rest.split_once("</script>").expect("an end").0).expect("JSON");
+    (page, data)
+}
+
+fn pose(crane: &Value) -> Vec<f64> {
+    crane["scene"]["pose"].as_array().expect("a pose").iter().filter_map(Value::as_f64).collect()
+}
+
+#[test]
+fn a_crane_without_a_run_is_shown_at_rest() {
+    let live = live("eight_link_hydraulic");
+    let rig: &dyn DynCrane = &live;
+    let equilibrium = rig.equilibrium(&crane_model::statics::Settings::default());
+    let (_, data) = at_rest(&live, &equilibrium, "");
+    let crane = &data["cranes"][0];
+    assert!(crane["record"].is_null() && data["tables"].is_null() && data["command"].is_null());
+    assert_eq!(crane["modes"].as_array().map(Vec::len), Some(live.size()));
+    assert_eq!(crane["run"]["rows"], 1);
+    let pose = pose(crane);
+    assert_eq!(pose.len(), live.size());
+    for (shown, found) in pose.iter().zip(&equilibrium.q) {
+        // serde_json reads numbers to within one unit in the last place.
+        assert!((shown - found).abs() <= f64::EPSILON * found.abs(), "{shown}, {found}");
+    }
+}
+
+#[test]
+fn a_crane_without_an_equilibrium_is_shown_at_its_guess() {
+    let live = live("knuckle_boom");
+    let rig: &dyn DynCrane = &live;
+    let mut equilibrium = rig.equilibrium(&crane_model::statics::Settings::default());
+    equilibrium.q.fill(f64::NAN);
+    equilibrium.status = crane_model::statics::Status::Overflow;
+    let (_, data) = at_rest(&live, &equilibrium, "");
+    assert_eq!(pose(&data["cranes"][0]), rig.guess());
+}
+
+#[test]
+fn no_text_of_a_spec_ends_the_data() {
+    let live = live("double_pendulum");
+    let rig: &dyn DynCrane = &live;
+    let equilibrium = rig.equilibrium(&crane_model::statics::Settings::default());
+    let spec = "# </script><script>alert(1)</script>";
+    let (page, data) = at_rest(&live, &equilibrium, spec);
+    assert_eq!((page.matches("</script>").count(), data["spec"].as_str()), (2, Some(spec)));
+}

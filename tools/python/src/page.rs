@@ -1,0 +1,104 @@
+//! The crane as an HTML page, for notebooks and files.
+
+use std::time::Duration;
+
+use crane_model::dyn_crane::DynCrane;
+use crane_model::dynamics::{Run, Settings, Statistics};
+use crane_model::results::{Recording, Verification};
+use crane_model::runs::Recorded;
+use crane_model::statics;
+use crane_page::{Program, Subject, Texts, page};
+use numpy::PyReadonlyArray2;
+use pyo3::exceptions::{PyArithmeticError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::crane::Crane;
+
+/// This package, in records of runs.
+const PROGRAM: Program = Program { name: "crane for Python", version: env!("CARGO_PKG_VERSION") };
+
+/// A run as Python keeps it.
+#[derive(FromPyObject)]
+pub struct Given<'py> {
+    #[pyo3(item)]
+    table: PyReadonlyArray2<'py, f64>,
+    #[pyo3(item)]
+    start: String,
+    #[pyo3(item)]
+    method: String,
+    #[pyo3(item)]
+    tolerance: Option<f64>,
+    #[pyo3(item)]
+    step: f64,
+    /// Steps, rejections, evaluations, factorisations.
+    #[pyo3(item)]
+    statistics: [usize; 4],
+    #[pyo3(item)]
+    differences: Option<Vec<f64>>,
+    #[pyo3(item)]
+    divergence: Option<f64>,
+    #[pyo3(item)]
+    cautions: Vec<String>,
+    #[pyo3(item)]
+    wall_time: f64,
+}
+
+impl Given<'_> {
+    /// The run, and the settings with which it was computed.
+    fn recorded(&self, crane: &dyn DynCrane) -> PyResult<(Settings, Recorded)> {
+        let mut table = Recording::new(crane).into_table();
+        let rows = self.table.as_array();
+        let name = &crane.description().name;
+        if rows.ncols() != table.columns.len() || rows.nrows() == 0 {
+            let (given, own) = (rows.shape(), table.columns.len());
+            return Err(PyValueError::new_err(format!(
+                "the table of a run of {name} has {own} columns, not {given:?}"
+            )));
+        }
+        table.rows = rows.outer_iter().map(|row| row.to_vec()).collect();
+        let times: Vec<f64> = table.rows.iter().map(|row| row[0]).collect();
+        let duration = times[times.len() - 1];
+        let own = Settings::of(crane.description());
+        let settings = Settings {
+            duration,
+            output: times.get(1).map_or(duration, |second| second - times[0]),
+            method: self.method.parse().map_err(|_| PyValueError::new_err(format!("method={:?}", self.method)))?,
+            tolerance: self.tolerance.unwrap_or(own.tolerance),
+            ..own
+        };
+        let [steps, rejections, evaluations, factorisations] = self.statistics;
+        let statistics = Statistics { steps, rejections, evaluations, factorisations };
+        let verification = self.differences.clone().map(|differences| Verification {
+            between: vec![false; differences.len()],
+            differences,
+            divergence: self.divergence,
+        });
+        let recorded = Recorded {
+            start: self.start.clone(),
+            run: Run { statistics, step: self.step, time: duration, efforts: Vec::new() },
+            table,
+            wall: Duration::try_from_secs_f64(self.wall_time).unwrap_or_default(),
+            verification,
+            cautions: self.cautions.clone(),
+        };
+        Ok((settings, recorded))
+    }
+}
+
+#[pymethods]
+impl Crane {
+    /// The crane in 3-D as an HTML page that needs no network: at rest, or with a run of it.
+    #[pyo3(signature = (run=None))]
+    fn page_with(&self, py: Python<'_>, run: Option<Given<'_>>) -> PyResult<String> {
+        let run = run.map(|run| run.recorded(&self.live)).transpose()?;
+        let (crane, live, spec) = (&self.live as &dyn DynCrane, &self.live, &self.source.text);
+        let made = py.detach(|| {
+            let equilibrium = crane.equilibrium(&statics::Settings::default());
+            let run = run.as_ref().map(|(settings, recorded)| (settings, recorded));
+            let subject =
+                Subject { label: &crane.description().name, rig: crane, live, equilibrium: &equilibrium, run };
+            page(&[subject], Texts { spec: Some(spec), ..Texts::default() }, PROGRAM)
+        });
+        made.map_err(|error| PyArithmeticError::new_err(error.to_string()))
+    }
+}

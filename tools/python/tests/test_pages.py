@@ -1,0 +1,92 @@
+"""Cranes and runs as pages: what a notebook shows. How a browser shows them is tested in tools/report."""
+
+import base64
+import html
+import json
+import pickle
+import re
+from xml.etree import ElementTree
+
+import crane
+import numpy as np
+import pytest
+
+from conftest import PENDULUM
+
+
+def data(page):
+    """What the script of a page reads."""
+    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1])
+
+
+def embedded(shown):
+    """The page inside what a notebook gets."""
+    return html.unescape(re.search(r'srcdoc="(.*?)"', shown, re.DOTALL)[1])
+
+
+def numbers(columns):
+    """Numbers of 32 bits, column by column."""
+    return np.frombuffer(base64.b64decode(columns["data"]), "<f4").reshape(len(columns["columns"]), columns["rows"])
+
+
+def test_a_notebook_shows_a_crane_at_rest(knuckle):
+    """One root element, well-formed: page, name, every parameter."""
+    shown = knuckle._repr_html_()
+    assert embedded(shown) == knuckle.page()
+    root = ElementTree.fromstring(shown.replace("<br>", "<br/>"))
+    assert root.find("iframe").get("sandbox") == "allow-scripts allow-downloads"
+    texts = " ".join(root.itertext())
+    assert "knuckle_boom" in texts and "payload" in texts and "kg" in texts
+    (at_rest,) = data(knuckle.page())["cranes"]
+    assert at_rest["record"] is None
+    assert at_rest["scene"]["pose"] == knuckle.statics().q.tolist()
+    assert [mode["frequency"] for mode in at_rest["modes"]] == knuckle.modes().frequencies.tolist()
+    results = dict(zip((column["name"] for column in at_rest["run"]["columns"]), numbers(at_rest["run"]), strict=True))
+    efforts = [results[name] for name in results if name.endswith(("_drive_torque", "_drive_force"))]
+    # At rest, not at the end of the manoeuvre; of 32 bits.
+    np.testing.assert_allclose(np.ravel(efforts), knuckle.statics().drive_efforts, rtol=2**-23, atol=1e-6)
+
+
+def test_a_batch_is_shown_by_its_first_row(knuckle):
+    shown = knuckle.replace(payload=[100.0, 900.0])._repr_html_()
+    assert "(2,): 100 to 900" in shown and "the first row" in shown
+    assert embedded(shown) == knuckle.replace(payload=100.0).page()
+
+
+def test_text_of_a_spec_is_escaped():
+    odd = crane.load("odd.yaml", text=PENDULUM.replace("about: what hangs", "about: 'a < b & c </script>'"))
+    assert "a &lt; b &amp; c" in odd._repr_html_()
+    page = odd.page()
+    assert page.count("</script>") == 2
+    assert data(page)["spec"] == odd.spec
+
+
+@pytest.mark.parametrize("verify", [True, False])
+def test_a_run_is_shown_with_all_its_columns(knuckle, verify):
+    run = knuckle.replace(payload=700.0).simulate(duration=0.5, output=0.01, verify=verify)
+    page = run.page()
+    assert embedded(run._repr_html_()) == page
+    (moving,) = data(page)["cranes"]
+    assert {column["name"]: column["unit"] for column in moving["run"]["columns"]} == run.units
+    np.testing.assert_array_equal(numbers(moving["run"]), run.table.T.astype(np.float32))
+    record = moving["record"]
+    assert record["parameters"]["payload"] == {"value": 700.0, "unit": "kg"}
+    assert (record["duration_s"], record["output_s"], record["steps"]) == (0.5, 0.01, run.statistics["steps"])
+    assert record["differences_from_a_finer_run"] == run.errors
+    assert pickle.loads(pickle.dumps(run)).page() == page
+
+
+def test_a_table_of_another_crane_is_refused(knuckle, pendulum):
+    run = pendulum.simulate(duration=0.1)
+    object.__setattr__(run, "crane", knuckle)
+    with pytest.raises(ValueError, match="the table of a run of knuckle_boom has .* columns"):
+        run.page()
+
+
+def test_a_crane_that_does_not_rest_has_a_page(pendulum):
+    """Upside down it has no stable equilibrium: modes are missing, the crane is there."""
+    falling = crane.load("falling.yaml", text=PENDULUM.replace("run:", "gravity: [0, 0, 9.81]\nrun:"))
+    with pytest.raises(crane.NoEquilibrium):
+        falling.statics()
+    (shown,) = data(falling.page())["cranes"]
+    assert shown["modes"] == [] and len(shown["scene"]["pose"]) == 1
