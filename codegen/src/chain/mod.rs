@@ -2,9 +2,12 @@
 //!
 //! // AFTER THIS POINT: no stage knows about links, D-H rows, cross-sections or YAML, and a failure is a bug.
 
+mod beam;
+mod body;
 mod connector;
 mod cut;
 mod cylinder;
+mod drive;
 mod force;
 mod frame;
 mod input;
@@ -12,12 +15,17 @@ mod load;
 mod loops;
 mod parameter;
 mod profile;
+mod run;
 mod start;
+mod support;
 mod value;
 
+pub use beam::{Beam, BeamSpring, Moduli, Outline};
+pub use body::{Axis, Body, Coordinate, CoordinateKind, Inertia, Part, Step};
 pub use connector::{Attachment, Connector, ConnectorLaw, Strain};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
+pub use drive::{Drive, JointDamper, Rotor, Transmission};
 pub use force::{Bristle, End, ForceElement, Friction, Law, Stop};
 pub use frame::{Frame, Vector};
 pub use input::{Input, InputId};
@@ -25,6 +33,8 @@ pub use load::{Load, LoadAxes};
 pub use loops::Loops;
 pub use parameter::{Bound, Parameter, Refusal, Relation};
 pub use profile::{Profile, Ramp, Segment};
+pub use run::{Analyses, Run};
+pub use support::{Support, SupportKinematics};
 pub use value::{ParameterId, Value};
 
 /// Index of a coordinate in [`Chain::coordinates`], the order of `q`.
@@ -92,317 +102,6 @@ pub struct Chain {
     pub loops: Loops,
 }
 
-/// A generalized coordinate.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Coordinate {
-    /// Unique name, a valid Rust identifier, such as `boom_psi` or `boom_2_theta`.
-    pub name: String,
-    /// Translation (m) or rotation (rad).
-    pub kind: CoordinateKind,
-    /// The axis of its frame along which it translates or about which it rotates.
-    pub axis: Axis,
-    /// The first body that it moves.
-    pub body: BodyId,
-}
-
-/// Kind of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CoordinateKind {
-    /// Along the axis, m.
-    Translation,
-    /// About the axis, rad.
-    Rotation,
-}
-
-/// Axis of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Axis {
-    /// First axis.
-    X,
-    /// Second axis.
-    Y,
-    /// Third axis.
-    Z,
-}
-
-impl Axis {
-    /// 0, 1, 2.
-    #[must_use]
-    pub fn index(self) -> usize {
-        self as usize
-    }
-}
-
-/// A body: a rigid link, a rigid finite element, or a massless frame.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Body {
-    /// Unique name, a valid Rust identifier: the link's, or `boom_0`, `boom_1` … for elements.
-    pub name: String,
-    /// Name of the link it belongs to.
-    pub link: String,
-    /// The transformation from the previous body's frame to this one's, T̃, as elementary steps in order.
-    pub path: Vec<Step>,
-    /// Mass properties about the origin of the body's frame; `None` for a massless frame.
-    pub inertia: Option<Inertia>,
-    /// The named parts combined into it, for tables.
-    pub parts: Vec<Part>,
-    /// Length along x for a rigid element, 0 otherwise, m; for pictures and moments along the beam.
-    pub length: Value,
-}
-
-/// One factor of a homogeneous transformation T̃, Eq. (3).
-#[derive(Clone, Debug, PartialEq)]
-pub enum Step {
-    /// Constant translation, m.
-    Translate([Value; 3]),
-    /// Constant rotation about an axis, by its sine and cosine.
-    Rotate {
-        /// Axis of rotation.
-        axis: Axis,
-        /// Sine of the angle.
-        sin: Value,
-        /// Cosine of the angle.
-        cos: Value,
-    },
-    /// Translation by a coordinate along its axis, or rotation by it about its axis.
-    Move(CoordinateId),
-    /// Rotation by the vector ρ whose components are three coordinates, one along each axis: `exp([ρ]×)`. They are
-    /// consecutive in q.
-    RotationVector([CoordinateId; 3]),
-}
-
-impl Step {
-    /// The coordinates on which it depends.
-    #[must_use]
-    pub fn coordinates(&self) -> &[CoordinateId] {
-        match self {
-            Step::Translate(_) | Step::Rotate { .. } => &[],
-            Step::Move(id) => std::slice::from_ref(id),
-            Step::RotationVector(ids) => ids,
-        }
-    }
-}
-
-/// Pseudo-inertia `H = ∫ r rᵀ dm`, `r = [x y z 1]ᵀ`, about the origin of the body's frame, Eq. (4).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Inertia {
-    /// Mass, kg.
-    pub mass: Value,
-    /// Static moments `∫ r dm`, kg m.
-    pub first: [Value; 3],
-    /// `∫ x² dm, ∫ y² dm, ∫ z² dm, ∫ xy dm, ∫ xz dm, ∫ yz dm`, kg m².
-    pub second: [Value; 6],
-}
-
-/// A named part of a body.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// Name as written by the user.
-    pub name: String,
-    /// Mass, kg.
-    pub mass: Value,
-    /// Centre of mass in the body's frame, m.
-    pub com: [Value; 3],
-}
-
-/// A support of the base: three springs and dampers along the world's axes, Eqs. (16)–(18).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Support {
-    /// Name.
-    pub name: String,
-    /// Attachment point in the frame of the first body, m.
-    pub position: [Value; 3],
-    /// Stiffness along x, y, z, N/m.
-    pub stiffness: [Value; 3],
-    /// Damping along x, y, z, N s/m.
-    pub damping: [Value; 3],
-    /// Free play δ along x, y, z, m.
-    pub free_play: [Value; 3],
-    /// Of a one-sided support, which presses and never pulls: the pressing force from which it holds sideways and damps in
-    /// full, N. `None` where it pulls as well.
-    pub full_hold: Option<Value>,
-    /// How its elongation depends on the base's coordinates.
-    pub kinematics: SupportKinematics,
-}
-
-/// How the elongation of a support depends on the base's coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SupportKinematics {
-    /// `e = U q̃(1) − δ`, Eq. (16): small rotations.
-    Linear,
-    /// `e = T(1) r_E − r_E0 − δ`, `r_E0` its position at q̃(1) = 0: any rotation.
-    Exact,
-}
-
-/// Spring and damper of a rigid element on one coordinate, Eqs. (14)–(15).
-#[derive(Clone, Debug, PartialEq)]
-pub struct BeamSpring {
-    /// The coordinate.
-    pub coordinate: CoordinateId,
-    /// Stiffness, N m/rad.
-    pub stiffness: Value,
-    /// Damping, N m s/rad.
-    pub damping: Value,
-}
-
-/// Data of a beam for pictures and for its stresses.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Beam {
-    /// Name of the link.
-    pub link: String,
-    /// Outlines of its cross-section along it: between two places they change linearly, at a step two places coincide; one
-    /// place if the section is the same everywhere, none if the spec does not give a shape.
-    pub outlines: Vec<(Value, Outline)>,
-    /// Moduli of the section where each of its elements begins; `None` if the spec does not give them.
-    pub moduli: Vec<Option<Moduli>>,
-    /// Yield stress over the safety factor, Pa; `None` without a yield stress.
-    pub allowable_stress: Option<Value>,
-}
-
-/// Outline of a cross-section. Pictures need it; mechanics needs only areas and moments.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outline {
-    /// Height and width, along the link's y and z, m.
-    pub size: [Value; 2],
-    /// Whether it is an ellipse in that box instead of the box.
-    pub round: bool,
-}
-
-/// Properties that relate forces and moments of a section to its largest stresses.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Moduli {
-    /// Area, m²: `σ = N/A`.
-    pub area: Value,
-    /// Moduli of bending about y and about z, m³: `σ = M/W`.
-    pub bending: [Value; 2],
-    /// Modulus of torsion, m³: the largest `τ = Mx/W`.
-    pub torsion: Value,
-    /// Shear areas along y and along z, m²: the largest `τ = Q/A`.
-    pub shear: [Value; 2],
-    /// Whether the stresses of both bendings add up in a corner; on a round section they are at right angles.
-    pub has_corners: bool,
-}
-
-/// A drive.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Drive {
-    /// The coordinate it drives.
-    pub coordinate: CoordinateId,
-    /// The transmission between its motion and the coordinate.
-    pub transmission: Transmission,
-    /// Prescribed motion of the transmission's far end.
-    pub profile: Profile,
-}
-
-/// The transmission between a prescribed motion and the coordinate.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Transmission {
-    /// A spring and a damper, Eqs. (19)–(21).
-    Flexible {
-        /// Stiffness, N m/rad or N/m.
-        stiffness: Value,
-        /// Damping, N m s/rad or N s/m.
-        damping: Value,
-        /// The greatest effort of both together, N m or N.
-        max_effort: Option<Value>,
-        /// The greatest rate at which it drives, rad/s or m/s.
-        max_rate: Option<f64>,
-        /// The greatest power with which it drives, W.
-        max_power: Option<f64>,
-    },
-    /// A rigid connection: the coordinate is prescribed.
-    Rigid,
-    /// The oil of a cylinder with a valve: at rest a spring, in motion the pressures are states.
-    Oil {
-        /// Stiffness at rest, N m/rad or N/m.
-        stiffness: Value,
-        /// The command of the valve over time, unless a servo follows the motion.
-        opening: Option<Profile>,
-    },
-}
-
-impl Drive {
-    /// Stiffness and damping, if it is flexible.
-    #[must_use]
-    pub fn spring(&self) -> Option<(&Value, &Value)> {
-        match &self.transmission {
-            Transmission::Flexible { stiffness, damping, .. } => Some((stiffness, damping)),
-            Transmission::Rigid | Transmission::Oil { .. } => None,
-        }
-    }
-
-    /// Stiffness at rest, if oil moves it.
-    #[must_use]
-    pub fn oil(&self) -> Option<&Value> {
-        match &self.transmission {
-            Transmission::Oil { stiffness, .. } => Some(stiffness),
-            Transmission::Flexible { .. } | Transmission::Rigid => None,
-        }
-    }
-
-    /// The command of its valve over time, if it has one.
-    #[must_use]
-    pub fn opening(&self) -> Option<&Profile> {
-        match &self.transmission {
-            Transmission::Oil { opening, .. } => opening.as_ref(),
-            Transmission::Flexible { .. } | Transmission::Rigid => None,
-        }
-    }
-
-    /// Begin and end, s, of the intervals in which its motion and its valve's command are smooth.
-    #[must_use]
-    pub fn pieces(&self) -> Vec<[Value; 2]> {
-        [Some(&self.profile), self.opening()].into_iter().flatten().flat_map(Profile::pieces).collect()
-    }
-
-    /// The greatest rate at which it drives, if it is limited.
-    #[must_use]
-    pub fn max_rate(&self) -> Option<f64> {
-        match self.transmission {
-            Transmission::Flexible { max_rate, .. } => max_rate,
-            Transmission::Rigid | Transmission::Oil { .. } => None,
-        }
-    }
-
-    /// The greatest power with which it drives, if it is limited.
-    #[must_use]
-    pub fn max_power(&self) -> Option<f64> {
-        match self.transmission {
-            Transmission::Flexible { max_power, .. } => max_power,
-            Transmission::Rigid | Transmission::Oil { .. } => None,
-        }
-    }
-
-    /// The greatest effort, if it is limited.
-    #[must_use]
-    pub fn max_effort(&self) -> Option<&Value> {
-        match &self.transmission {
-            Transmission::Flexible { max_effort, .. } => max_effort.as_ref(),
-            Transmission::Rigid | Transmission::Oil { .. } => None,
-        }
-    }
-}
-
-/// Viscous damping of a coordinate.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JointDamper {
-    /// The coordinate.
-    pub coordinate: CoordinateId,
-    /// Damping, N m s/rad or N s/m.
-    pub damping: Value,
-}
-
-/// A rotor that a joint drives through a gear, given by its inertia reflected to the joint: `i² J`, i the gear ratio.
-///
-/// It only resists the joint's acceleration: its weight and its gyroscopic moments are neglected.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rotor {
-    /// The coordinate of the joint.
-    pub coordinate: CoordinateId,
-    /// Reflected inertia, kg m² or kg.
-    pub armature: Value,
-}
-
 /// A point of interest fixed to a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
@@ -412,49 +111,6 @@ pub struct Point {
     pub body: BodyId,
     /// Position in the body's frame, m.
     pub position: [Value; 3],
-}
-
-/// Settings of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Run {
-    /// Simulated time, s.
-    pub duration: f64,
-    /// Step of the integrator, s.
-    pub step: f64,
-    /// Interval of the recorded results, s.
-    pub output: f64,
-}
-
-/// What to compute: a set of independent choices.
-#[allow(clippy::struct_excessive_bools)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Analyses {
-    /// Static residual and tangent stiffness.
-    pub statics: bool,
-    /// Mass matrix, bias, kinetic energy and power.
-    pub dynamics: bool,
-    /// Linearisation: A, K and D at a pose.
-    pub modes: bool,
-    /// Forces and moments that joints, beam sections and the ground transmit.
-    pub internal_forces: bool,
-    /// ∂T/∂q and ∂²T/∂q∂q of every body.
-    pub derivatives: bool,
-    /// Eight cranes per call, for simulations of many; needs dynamics.
-    pub ensemble: bool,
-}
-
-impl Analyses {
-    /// The analyses that the command needs.
-    pub const COMMAND: Analyses = Analyses { derivatives: false, ..Analyses::ALL };
-    /// All analyses of one crane, for checks.
-    pub const ALL: Analyses = Analyses {
-        statics: true,
-        dynamics: true,
-        modes: true,
-        internal_forces: true,
-        derivatives: true,
-        ensemble: false,
-    };
 }
 
 impl Chain {

@@ -4,8 +4,8 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{Item, parse_quote};
 
+use super::arguments::argument_name;
 use super::arithmetic::{integer, literal};
-use super::function::argument_name;
 use super::number::Number;
 use super::print::plain;
 use super::shape::{Storage, struct_name};

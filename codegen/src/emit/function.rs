@@ -1,37 +1,24 @@
 //! A lowered function as a Rust function.
 
-use std::collections::BTreeSet;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::{Expr, Stmt, parse_quote};
 
-use proc_macro2::{Span, TokenStream};
-use quote::{ToTokens, format_ident, quote};
-use syn::{Expr, Ident, Stmt, parse_quote};
-
-use super::arithmetic::{
-    borrow_mut, call, difference, element, field, integer, method, negative, product, quotient, sum, variable,
-};
+use super::arithmetic::{borrow_mut, call, element, integer, variable};
 use super::labels::Labels;
 use super::loops;
 use super::names::Names;
 use super::number::Number;
 use super::print::comment;
 use super::shape::{Handover, Storage};
+use super::writer::{Used, Writer, local, pattern};
 use crate::lower::{LoweredFunction, LoweredProgram, Statement};
-use crate::program::Argument;
 use crate::symbolic::{ExprId, Op};
 
 /// The items of one function: itself, and its pieces if it is long.
 pub fn function(lowered: &LoweredProgram, code: &LoweredFunction, labels: &Labels, number: Number) -> Vec<syn::Item> {
     let writer = Writer { lowered, code, storage: Storage::of(code.function, number), labels, number };
     if code.pieces.len() == 1 { vec![writer.whole()] } else { writer.in_pieces() }
-}
-
-/// Writes one function.
-pub struct Writer<'a> {
-    pub(super) lowered: &'a LoweredProgram<'a>,
-    pub(super) code: &'a LoweredFunction<'a>,
-    pub(super) storage: Storage<'a>,
-    pub(super) labels: &'a Labels<'a>,
-    pub(super) number: Number,
 }
 
 impl Writer<'_> {
@@ -159,74 +146,6 @@ impl Writer<'_> {
         }
     }
 
-    /// Arguments of the function itself: always the same for a function, used or not.
-    fn all_inputs(&self) -> Vec<TokenStream> {
-        let mut used = Used::new();
-        self.code.pieces.iter().for_each(|piece| self.use_inputs(piece, &mut used));
-        let mut inputs: Vec<TokenStream> = Vec::new();
-        for argument in self.code.function.arguments {
-            let (name, of) = argument_name(*argument, self.number);
-            let name = if used.contains(argument) { format_ident!("{name}") } else { format_ident!("_{name}") };
-            inputs.push(quote!(#name: #of));
-        }
-        if self.code.reads_parameters {
-            inputs.push(quote!(c: &Constants));
-        }
-        if self.code.reads_inputs {
-            inputs.push(quote!(u: &Inputs));
-        }
-        inputs
-    }
-
-    /// The values that statements, and loops among them, read.
-    fn use_inputs(&self, statements: &[Statement], used: &mut Used) {
-        for statement in statements {
-            match statement {
-                Statement::Input(id) => drop(self.input(*id, used)),
-                Statement::Loop { body, .. } => self.use_inputs(body, used),
-                _ => {}
-            }
-        }
-    }
-
-    /// Arguments of a piece: those that it uses.
-    fn inputs(&self, used: &Used) -> Vec<TokenStream> {
-        let mut inputs: Vec<TokenStream> = Vec::new();
-        for argument in self.code.function.arguments.iter().filter(|a| used.contains(a)) {
-            let (name, of) = argument_name(*argument, self.number);
-            let name = format_ident!("{name}");
-            inputs.push(quote!(#name: #of));
-        }
-        if used.contains(&Argument::Parameters) {
-            inputs.push(quote!(c: &Constants));
-        }
-        if used.contains(&Argument::Inputs) {
-            inputs.push(quote!(u: &Inputs));
-        }
-        inputs
-    }
-
-    fn input_names(&self, used: &Used) -> Vec<&'static str> {
-        let arguments = self.code.function.arguments.iter().filter(|a| used.contains(a));
-        arguments
-            .map(|a| argument_name(*a, self.number).0)
-            .chain(used.contains(&Argument::Parameters).then_some("c"))
-            .chain(used.contains(&Argument::Inputs).then_some("u"))
-            .collect()
-    }
-
-    /// Plain arrays behind the vectors: a constant index into an array is checked when it is compiled.
-    fn unpack(used: &Used) -> Vec<Stmt> {
-        let mut statements: Vec<Stmt> = Vec::new();
-        for (argument, vector) in VECTORS {
-            if used.contains(&argument) {
-                let vector = format_ident!("{vector}");
-                statements.push(parse_quote!(let #vector = &#vector.data.0[0];));
-            }
-        }
-        statements
-    }
-
     /// Statements of a piece, and what they use.
     fn piece(&self, piece: &[Statement]) -> (Vec<Stmt>, Used) {
         let mut names = Names::new(&self.lowered.program, self.code.rerolled.loops.len());
@@ -339,116 +258,6 @@ impl Writer<'_> {
         statements.append(&mut pending);
         statements
     }
-
-    /// An argument of a statement: a variable, a number, a constant, or an inlined operation.
-    pub(super) fn expression(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
-        let program = &self.lowered.program;
-        if self.lowered.constants.is_stored(id) {
-            used.insert(Argument::Parameters);
-            return field(variable("c"), &self.labels.constant(id));
-        }
-        match program.op(id) {
-            Op::Constant(c) => self.number.literal(c.value()),
-            Op::Symbol(symbol) if program.symbol(symbol).argument == Argument::Parameters => {
-                used.insert(Argument::Parameters);
-                field(field(variable("c"), "params"), &program.symbol(symbol).name)
-            }
-            _ if self.code.inlined[id.index()] => self.operation(id, names, used),
-            _ => variable(&names.of(id)),
-        }
-    }
-
-    /// An operation on its arguments. Recursion ends within the bound of one statement.
-    fn operation(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
-        if let Some(product) = self.code.fused[id.index()] {
-            return self.fused(id, product, names, used);
-        }
-        operation(self.lowered.program.op(id), self.number, &mut |operand| self.expression(operand, names, used))
-    }
-
-    /// A sum or difference with a product in it: `fma(a, b, c)`.
-    fn fused(&self, id: ExprId, product: ExprId, names: &mut Names, used: &mut Used) -> Expr {
-        let program = &self.lowered.program;
-        let Op::Mul(a, b) = program.op(product) else { unreachable!("only products are fused") };
-        let mut of = |operand: ExprId| self.expression(operand, names, used);
-        let (a, b) = (of(a), of(b));
-        let [a, b, c] = match program.op(id) {
-            Op::Add(x, y) => [a, b, of(if x == product { y } else { x })],
-            Op::Sub(x, y) if x == product => [a, b, negative(of(y))],
-            Op::Sub(x, _) => [negative(a), b, of(x)],
-            _ => unreachable!("only sums and differences take a product"),
-        };
-        call("fma", [a, b, c])
-    }
-
-    fn input(&self, id: ExprId, used: &mut Used) -> Expr {
-        let Op::Symbol(symbol) = self.lowered.program.op(id) else { unreachable!("inputs are symbols") };
-        let symbol = self.lowered.program.symbol(symbol);
-        match symbol.argument {
-            Argument::LoopVarying => return self.source(symbol.index, used),
-            Argument::LiveOut => return self.live_out(symbol.index),
-            _ => used.insert(symbol.argument),
-        };
-        match symbol.argument {
-            Argument::Time => variable("t"),
-            Argument::BaseAddedInertia => {
-                let columns = field(field(variable("base"), "data"), "0");
-                element(element(columns, symbol.index / 6), symbol.index % 6)
-            }
-            Argument::Parameters => unreachable!("parameters are read where they are used"),
-            vector => element(self.argument(vector, used), symbol.index),
-        }
-    }
-
-    /// An argument by its name.
-    pub(super) fn argument(&self, argument: Argument, used: &mut Used) -> Expr {
-        used.insert(argument);
-        variable(argument_name(argument, self.number).0)
-    }
-}
-
-/// An operation as Rust.
-pub fn operation(op: Op, number: Number, of: &mut dyn FnMut(ExprId) -> Expr) -> Expr {
-    match op {
-        Op::Neg(a) => negative(of(a)),
-        Op::Add(a, b) => sum(of(a), of(b)),
-        Op::Sub(a, b) => difference(of(a), of(b)),
-        Op::Mul(a, b) => product(of(a), of(b)),
-        Op::Div(a, b) => quotient(of(a), of(b)),
-        Op::Min(a, b) => method(of(a), "min", of(b)),
-        Op::Max(a, b) => method(of(a), "max", of(b)),
-        Op::Sqrt(a) => call("sqrt", [of(a)]),
-        Op::Exp(a) => call("exp", [of(a)]),
-        Op::Select(a, b, c) => {
-            let (a, b) = (of(a), of(b));
-            call("select", [a, b, of(c)])
-        }
-        Op::Sin(a) => field_of_pair(&of(a), 0),
-        Op::Cos(a) => field_of_pair(&of(a), 1),
-        Op::Stumpff(k, a) => {
-            let argument = of(a);
-            element(element(call("stumpff", [parse_quote!([#argument])]), usize::from(k)), 0)
-        }
-        Op::Constant(c) => number.literal(c.value()),
-        Op::Symbol(_) => unreachable!("inputs are read, not computed"),
-    }
-}
-
-/// `sin_cos([angle]).0[0]`
-fn field_of_pair(angle: &Expr, index: u32) -> Expr {
-    let angles: Expr = parse_quote!([#angle]);
-    element(field(call("sin_cos", [angles]), &index.to_string()), 0)
-}
-
-/// `let name = value;`
-pub fn local(name: &str, value: &Expr) -> Stmt {
-    let name = Ident::new(name, Span::call_site());
-    parse_quote!(let #name = #value;)
-}
-
-/// The name of a value, or `_` if it is not needed.
-pub fn pattern(id: Option<ExprId>, names: &mut Names) -> TokenStream {
-    id.map_or_else(|| quote!(_), |id| Ident::new(&names.of(id), Span::call_site()).into_token_stream())
 }
 
 /// The names of several values, or `_` if none is needed.
@@ -459,34 +268,4 @@ fn row_pattern(ids: &[Option<ExprId>], names: &mut Names) -> TokenStream {
     let patterns = ids.iter().map(|id| pattern(*id, names));
     let patterns: Vec<_> = patterns.collect();
     quote!([#(#patterns),*])
-}
-
-/// The inputs that a piece reads.
-pub type Used = BTreeSet<Argument>;
-
-/// Arguments that are vectors, and their names.
-const VECTORS: [(Argument, &str); 5] = [
-    (Argument::Position, "q"),
-    (Argument::Velocity, "v"),
-    (Argument::Acceleration, "a"),
-    (Argument::RightHandSide, "r"),
-    (Argument::AddedInertia, "added_inertia"),
-];
-
-/// Name and type of an argument, in functions and in the methods that call them.
-pub fn argument_name(argument: Argument, number: Number) -> (&'static str, TokenStream) {
-    let number = number.of();
-    match argument {
-        Argument::Time => ("t", quote!(#number)),
-        Argument::Position => ("q", quote!(&SVector<#number, N>)),
-        Argument::Velocity => ("v", quote!(&SVector<#number, N>)),
-        Argument::Acceleration => ("a", quote!(&SVector<#number, N>)),
-        Argument::RightHandSide => ("r", quote!(&SVector<#number, N>)),
-        Argument::AddedInertia => ("added_inertia", quote!(&SVector<#number, N>)),
-        Argument::BaseAddedInertia => ("base", quote!(&SMatrix<#number, 6, 6>)),
-        Argument::Factors => ("f", quote!(&Factors)),
-        Argument::Parameters => ("c", quote!(&Constants)),
-        Argument::Inputs => ("u", quote!(&Inputs)),
-        Argument::LoopVarying | Argument::LiveOut => unreachable!("loops take from themselves"),
-    }
 }

@@ -5,10 +5,10 @@ use quote::quote;
 use syn::{Expr, Stmt, parse_quote};
 
 use super::arithmetic::{at, element, integer, place, variable};
-use super::function::{Used, Writer, pattern};
 use super::names::{Names, OF_LOOPS, of_loop};
 use super::number::Number;
 use super::print::comment;
+use super::writer::{Used, Writer, pattern};
 use crate::lower::{LiveOut, Source, Statement, SweepPosition};
 use crate::symbolic::ExprId;
 

@@ -1,8 +1,10 @@
 //! Rust text from straight-line code. This is the only module that knows Rust.
 
+mod arguments;
 mod arithmetic;
 mod crane;
 mod description;
+mod expression;
 mod function;
 mod header;
 mod labels;
@@ -14,6 +16,7 @@ mod number;
 mod parameters;
 mod print;
 mod shape;
+mod writer;
 
 use std::collections::HashSet;
 use std::fmt::Write;

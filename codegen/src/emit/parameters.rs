@@ -4,10 +4,11 @@ use quote::format_ident;
 use syn::{Item, Stmt, parse_quote};
 
 use super::arithmetic::{field, variable};
-use super::function::{local, operation};
+use super::expression::operation;
 use super::labels::Labels;
 use super::number::Number;
 use super::print::plain;
+use super::writer::local;
 use crate::chain::{Chain, Parameter};
 use crate::lower::LoweredProgram;
 use crate::program::Argument;

@@ -137,9 +137,9 @@ impl<'g> Derivation<'g> {
         let (rest, still) = (model.zeros(), drives::at_rest(model));
         let at_rest =
             Load { v: &rest, forces: &model.right_hand_side, prescribed: &still, gravity: Vec3::zero(model.graph) };
-        let (solution, solution_tape) = model.graph.recorded(|| self.hybrid_dynamics(&at_rest).accelerations);
-        let (columns, mass_tape) = model.graph.recorded(|| columns(model, &self.factors));
-        let (bias, bias_tape) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
+        let (solution, solution_trace) = model.graph.recorded(|| self.hybrid_dynamics(&at_rest).accelerations);
+        let (columns, mass_trace) = model.graph.recorded(|| columns(model, &self.factors));
+        let (bias, bias_trace) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
         // The loop handles only bodies.
         let looped = model.chain.loops.fill_mass_matrix(model.size()) && model.chain.rotors.is_empty();
         let (mass_shape, both_shape, mass, mut both) = if looped {
@@ -169,7 +169,7 @@ impl<'g> Derivation<'g> {
                 Shape::Vector(model.size()),
                 solution,
             )
-            .by(solution_tape),
+            .by(solution_trace),
             function(
                 FunctionId::MassMatrix,
                 "Mass matrix A; kg, kg m and kg m².",
@@ -178,7 +178,7 @@ impl<'g> Derivation<'g> {
                 mass_shape,
                 mass,
             )
-            .by(mass_tape.clone()),
+            .by(mass_trace.clone()),
             function(
                 FunctionId::MassMatrixAndBias,
                 "Mass matrix A, its lower triangle, and bias e; kg, kg m, kg m², N, N m.",
@@ -187,7 +187,7 @@ impl<'g> Derivation<'g> {
                 both_shape,
                 both,
             )
-            .by(mass_tape.then(bias_tape.clone())),
+            .by(mass_trace.then(bias_trace.clone())),
             function(
                 FunctionId::Bias,
                 "Bias e: velocity and gravity forces, N and N m.",
@@ -196,7 +196,7 @@ impl<'g> Derivation<'g> {
                 Shape::Vector(model.size()),
                 bias,
             )
-            .by(bias_tape),
+            .by(bias_trace),
             function(
                 FunctionId::KineticEnergy,
                 "Kinetic energy, J.",

@@ -1,0 +1,52 @@
+//! Flexible links: springs between their elements, and data for stresses and pictures.
+
+use super::{CoordinateId, Value};
+
+/// Spring and damper of a rigid element on one coordinate, Eqs. (14)–(15).
+#[derive(Clone, Debug, PartialEq)]
+pub struct BeamSpring {
+    /// The coordinate.
+    pub coordinate: CoordinateId,
+    /// Stiffness, N m/rad.
+    pub stiffness: Value,
+    /// Damping, N m s/rad.
+    pub damping: Value,
+}
+
+/// Data of a beam for pictures and for its stresses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beam {
+    /// Name of the link.
+    pub link: String,
+    /// Outlines of its cross-section along it: between two places they change linearly, at a step two places coincide; one
+    /// place if the section is the same everywhere, none if the spec does not give a shape.
+    pub outlines: Vec<(Value, Outline)>,
+    /// Moduli of the section where each of its elements begins; `None` if the spec does not give them.
+    pub moduli: Vec<Option<Moduli>>,
+    /// Yield stress over the safety factor, Pa; `None` without a yield stress.
+    pub allowable_stress: Option<Value>,
+}
+
+/// Outline of a cross-section. Pictures need it; mechanics needs only areas and moments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Height and width, along the link's y and z, m.
+    pub size: [Value; 2],
+    /// Whether it is an ellipse in that box instead of the box.
+    pub round: bool,
+}
+
+/// Properties that relate forces and moments of a section to its largest stresses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moduli {
+    /// Area, m²: `σ = N/A`.
+    pub area: Value,
+    /// Moduli of bending about y and about z, m³: `σ = M/W`.
+    pub bending: [Value; 2],
+    /// Modulus of torsion, m³: the largest `τ = Mx/W`.
+    pub torsion: Value,
+    /// Shear areas along y and along z, m²: the largest `τ = Q/A`.
+    pub shear: [Value; 2],
+    /// Whether the stresses of both bendings add up in a corner; on a round section they are at right angles.
+    pub has_corners: bool,
+}

@@ -1,0 +1,45 @@
+//! Orders, stability and error control of the methods, on cranes written by hand.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod orders;
+mod runs;
+
+use common::Lift;
+use crane_model::{
+    Implicit,
+    dynamics::{rk4::State, rosenbrock},
+};
+use nalgebra::Complex;
+
+/// A lift on a spring of 2e5 rad/s, far beyond what steps resolve: the mass follows its drive, z ≈ sag + 0.1 m sin 7t, but for
+/// m a Ω²/s = 1e-10 m.
+fn stiff_lift() -> Lift {
+    Lift { stiffness: 4e11, damping: 4e5, ..Lift::default() }
+}
+
+/// A lift without drive, swinging freely with the circular frequency 20 rad/s and a damping ratio.
+fn swinging(ratio: f64) -> (Lift, Complex<f64>) {
+    let lift = Lift { amplitude: 0.0, ..Lift::default() };
+    let omega = (lift.stiffness / lift.mass).sqrt();
+    let lift = Lift { damping: 2.0 * ratio * omega * lift.mass, ..lift };
+    (lift, Complex::new(-ratio, (1.0 - ratio * ratio).sqrt()) * omega)
+}
+
+/// End of a second from `start` in equal steps of a method, and of its embedded formula, which starts every step afresh.
+fn run<const N: usize>(
+    steps: i32,
+    start: State<N>,
+    step: impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>),
+    embedded: bool,
+) -> State<N> {
+    let h = f64::from(steps).recip();
+    (0..steps).fold(start, |state, k| {
+        let (end, error) = step(h * f64::from(k), h, &state);
+        if embedded { State { q: end.q - error.q, v: end.v - error.v } } else { end }
+    })
+}
+
+fn implicit<const N: usize, C: Implicit<N>>(crane: &C) -> impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>) {
+    move |t, h, state| rosenbrock::step(crane, t, h, state).expect("inertia")
+}

@@ -1,0 +1,185 @@
+//! Analyses of one crane: strength, load charts, vibrations, stability, and quantities at given states.
+
+use std::{num::NonZeroUsize, path::PathBuf};
+
+use clap::{Args, ValueEnum, ValueHint};
+
+use super::{
+    crane::{Analysis, Choice},
+    number::{above_zero, count, margin, seconds},
+    run::{Folder, Timing},
+};
+
+/// Loads and stability against tipping.
+#[derive(Debug, Args)]
+pub struct Strength {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    #[command(flatten)]
+    pub timing: Timing,
+    /// Also evaluate the manoeuvre: smallest tipping margin, extremes of all loads and their times
+    #[arg(long)]
+    pub run: bool,
+    /// Live parameter to use as the load: find the values at which the first foot lifts and the crane tips [default: the only
+    /// parameter in kg]
+    #[arg(long, value_name = "PARAMETER")]
+    pub load: Option<String>,
+    /// CSV file for the moments about the tipping lines and all loads during the run
+    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath, requires = "run")]
+    pub results: Option<PathBuf>,
+}
+
+/// The largest load within limits over ranges of poses.
+#[derive(Debug, Args)]
+pub struct Envelope {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Positions of a drive, or values of a live parameter: from, to and how many, or one value, as in `boom_psi=0:60deg:13` and
+    /// `telescope_z=1.5`; may be given several times
+    #[arg(long = "range", value_name = "NAME=FROM:TO:COUNT", required = true, allow_hyphen_values = true)]
+    pub ranges: Vec<String>,
+    /// Live parameter that is the load [default: the only parameter in kg]
+    #[arg(long, value_name = "PARAMETER")]
+    pub load: Option<String>,
+    /// The greatest load looked at, in the unit of its parameter [default: a hundred times the crane's mass]
+    #[arg(long, value_name = "NUMBER")]
+    pub greatest_load: Option<f64>,
+    /// Least tipping margin, 1 − overturning / stabilising moment about each tipping line
+    #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = margin)]
+    pub tipping: f64,
+    /// Greatest utilisation of beams with a yield stress
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = above_zero)]
+    pub utilisation: f64,
+    /// Greatest torque or force of a drive, in either direction, N m or N, as in `boom_psi=80000`; may be given several times
+    #[arg(long = "effort", value_name = "DRIVE=NUMBER")]
+    pub efforts: Vec<String>,
+    /// How far the load may move a point of interest, m, as in `hook=0.1`; may be given several times
+    #[arg(long = "deflection", value_name = "POINT=METRES")]
+    pub deflections: Vec<String>,
+    /// Point whose radius and height are shown [default: the only point of interest, otherwise the origin of the last link]
+    #[arg(long, value_name = "POINT")]
+    pub point: Option<String>,
+    /// Threads [default: all of the machine]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
+    pub threads: Option<NonZeroUsize>,
+    /// Start again instead of continuing where the same command was interrupted
+    #[arg(long)]
+    pub restart: bool,
+    #[command(flatten)]
+    pub folder: Folder,
+}
+
+/// Small vibrations.
+#[derive(Debug, Args)]
+pub struct Modes {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Write pose, mass, stiffness and damping matrices, eigenvalues and mode shapes to a file, `.json` or `.npz`
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub matrices: Option<PathBuf>,
+}
+
+/// Small motions about a pose or a motion.
+#[derive(Debug, Args)]
+pub struct Linearise {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Time at which drives, loads and winches are, s; driven coordinates have the rates of their motions then [default: 0, or that
+    /// of the last row with --from]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
+    pub time: Option<f64>,
+    /// Hold a coordinate at a position or at a rate, in m, rad, m/s or rad/s or as an angle, as in `boom_psi=30deg` and
+    /// `column_psi_rate=0.2`; the others take the pose in which they stay; may be given several times
+    #[arg(long = "hold", value_name = "NAME=VALUE", allow_hyphen_values = true, conflicts_with = "from")]
+    pub held: Vec<String>,
+    /// Linearise about the motion in a row of a CSV file of results, the last or that at --time, instead of a steady motion
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    pub from: Option<PathBuf>,
+    /// Also write motion, matrices, eigenvalues and shapes to an archive for `numpy.load`
+    #[arg(short = 'o', long, value_name = "FILE.npz", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+}
+
+/// Stability of time steps.
+#[derive(Debug, Args)]
+pub struct Stability {
+    #[command(flatten)]
+    pub analysis: Analysis,
+    /// Number of further equilibria to evaluate, at times evenly spaced over the manoeuvre
+    #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u16).range(..=1000))]
+    pub along: u16,
+    /// Folder for the figure; created if missing
+    #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+}
+
+/// Output format of evaluated matrices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum EvalFormat {
+    /// One object of nested arrays.
+    #[default]
+    Json,
+    /// Archive for `numpy.load`, uncompressed.
+    Npz,
+}
+
+/// What `crane eval` computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Transforms of the bodies into the world frame, 4 × 4 each; m
+    Transforms,
+    /// ∂T/∂q, with the body and coordinate of each
+    TransformDerivatives,
+    /// ∂²T/∂q∂q, with the body and coordinates of each
+    TransformSecondDerivatives,
+    /// Positions of the points of interest, m
+    Points,
+    /// Velocities of the points of interest, m/s
+    PointVelocities,
+    /// Mass matrix A; kg, kg m, kg m²
+    MassMatrix,
+    /// Velocity and gravity forces e, N and N m
+    Bias,
+    /// Generalized forces of everything except inertia and gravity, N and N m
+    Forces,
+    /// Accelerations q̈, m/s² and rad/s²
+    Accelerations,
+    /// Gradient of the potential energy at t = 0, N and N m
+    StaticResidual,
+    /// Second derivative of the potential energy at t = 0, N/m and N m/rad
+    TangentStiffness,
+    /// Energies: kinetic, of gravity, supports, elements and drives; J
+    Energies,
+    /// Efforts of the drives, N and N m
+    DriveEfforts,
+    /// Forces of the supports on the crane, N
+    SupportReactions,
+}
+
+/// Quantities at one state or at many.
+#[derive(Debug, Args)]
+pub struct Eval {
+    #[command(flatten)]
+    pub crane: Choice,
+    /// What to compute, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "NAMES",
+          default_values_t = [Quantity::Transforms, Quantity::TransformDerivatives, Quantity::MassMatrix, Quantity::Bias])]
+    pub quantities: Vec<Quantity>,
+    /// Coordinates in m and rad: numbers separated by commas or blanks, or a file of them; several states follow one another
+    /// [default: the spec's guess]
+    #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
+    pub q: Option<String>,
+    /// Velocities in m/s and rad/s, given likewise, per state or once for all states [default: 0]
+    #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
+    pub v: Option<String>,
+    /// Time at which the drive motions are evaluated, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub time: f64,
+    /// Output format
+    #[arg(long, value_enum, default_value_t)]
+    pub format: EvalFormat,
+    /// File to write [default: standard output]
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+}

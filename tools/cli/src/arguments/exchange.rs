@@ -1,0 +1,67 @@
+//! Files of other programs.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum, ValueHint};
+
+use super::crane::Choice;
+
+/// Language of other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Language {
+    /// Kinematics and masses; springs, dampers and supports go to a second file.
+    Urdf,
+    /// With stiffness, damping and spring references of joints; linear supports are tendons.
+    Mjcf,
+    /// C99 for controllers: chosen functions, without a heap.
+    C,
+    /// A functional mock-up unit, FMI 2.0, for co-simulation and model exchange: the whole crane, ready to run elsewhere.
+    Fmu,
+}
+
+/// Type of numbers in C.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum CNumber {
+    /// 64 bits.
+    #[default]
+    Double,
+    /// 32 bits, for controllers that compute in them.
+    Single,
+}
+
+/// A crane for other programs.
+#[derive(Debug, Args)]
+pub struct Export {
+    #[command(flatten)]
+    pub crane: Choice,
+    /// Language to write
+    #[arg(long, value_enum)]
+    pub format: Language,
+    /// File to write [default: the crane's name with .urdf, .xml, .c or .fmu]
+    #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+    /// Functions to write in C, with commas between; a wrong name lists all
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "mass_matrix,bias,forward_dynamics")]
+    pub functions: Vec<String>,
+    /// Type of numbers in C
+    #[arg(long, value_enum, default_value_t)]
+    pub precision: CNumber,
+    /// Shared library to put into an FMU, .so, .dll or .dylib; given several times the FMU runs on several systems
+    /// [default: the one beside the command]
+    #[arg(long = "library", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub libraries: Vec<PathBuf>,
+}
+
+/// A spec from another program's file.
+#[derive(Debug, Args)]
+pub struct Import {
+    /// URDF file
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub urdf: PathBuf,
+    /// Spec to write [default: standard output]
+    #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub spec: Option<PathBuf>,
+    /// Joint to hold at zero, such as a gripper's; repeatable
+    #[arg(long = "fix", value_name = "JOINT")]
+    pub fixed: Vec<String>,
+}

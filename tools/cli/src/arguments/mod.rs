@@ -1,0 +1,194 @@
+//! Arguments of the command.
+
+mod analysis;
+mod crane;
+mod exchange;
+mod number;
+mod run;
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum, ValueHint};
+
+pub use analysis::{Envelope, Eval, EvalFormat, Linearise, Modes, Quantity, Stability, Strength};
+pub use crane::{Analysis, Check, Choice, Format, Generate, Limits, List, New, Parameters, STANDARD_INPUT, spec_file};
+pub use exchange::{CNumber, Export, Import, Language};
+pub use number::seconds;
+pub use run::{Compare, ComparePair, Ensemble, Folder, Page, Simulate, Step, Timing};
+
+const EXAMPLES: &str = "\
+Examples:
+  crane                                compare the eight-link crane with a rigid and with a flexible boom
+  crane statics                        pose, drive torques, support reactions
+  crane statics cantilever --format json
+                                       the same for another crane, as JSON
+  crane simulate --set load_mass=0 --out empty
+                                       the manoeuvre without the log
+  crane simulate --method rk4 --step 1e-4
+                                       the manoeuvre, integrated as in the paper
+  crane simulate --ensemble loads.csv -o peaks.csv
+                                       one run per row of a table of parameters
+  crane report -o report.html          the crane in 3-D, plots and tables on one page
+  crane strength --run                 tipping margin, stresses and joint loads, at rest and during the manoeuvre
+  crane envelope --range column_psi=0:360deg:25 --range boom_psi=0:70deg:15
+                                       load chart and slew diagram: the largest load within limits, pose by pose
+  crane compare my.yaml                your own crane, with beams that bend and with rigid ones
+  crane modes                          frequencies and damping about the static pose
+  crane linearise --time 2.5           matrices and modes about the motion in the middle of the manoeuvre
+  crane stability                      largest stable steps and what limits them, with a figure
+  crane check my.yaml; crane run my.yaml
+                                       your own crane: find its mistakes, then compute everything
+  crane explain my.yaml --svg my.svg   its bodies and coordinates, in words and as a picture
+  crane new my-crane --from cantilever a Rust crate that compiles your own crane
+  crane export my.yaml --format urdf -o my.urdf
+                                       the crane for other programs, with its springs in my.springs.yaml
+  crane import robot.urdf -o my.yaml   convert a URDF robot to a spec
+  crane list                           the shipped cranes
+  crane info                           coordinates, parameters, drives of a crane
+  source <(crane completions bash)     completion of commands, options and shipped cranes
+
+Exit codes:
+  0  done
+  1  no stable equilibrium, a run that grew without bound, a file that cannot be used
+  2  wrong arguments";
+
+/// Statics, motion and vibration of cranes compiled from YAML.
+///
+/// Without a command, the eight-link forest crane with a rigid boom is compared with the same crane with a flexible boom:
+/// the static pose, then a manoeuvre of 5 s followed to 10 s. Figures (SVG), data (CSV) and a report (HTML) go to `out/`.
+#[derive(Debug, Parser)]
+#[command(name = "crane", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub action: Option<Action>,
+    /// Options of the comparison.
+    #[command(flatten)]
+    pub compare: Compare,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Action {
+    /// Compute statics, motion, figures and the report, written to a folder
+    Run(Simulate),
+    /// Compare two cranes, or a crane with itself with rigid beams: statics, motion, figures and the report
+    Compare(ComparePair),
+    /// Find the static equilibrium: pose, drive torques, support reactions
+    Statics(Analysis),
+    /// Compute tipping margin, stresses, loads on joints and ground, and the tipping load
+    Strength(Strength),
+    /// Find the largest load within limits over ranges of poses: load chart, diagrams, data
+    Envelope(Envelope),
+    /// Simulate the motion from the static pose; write results and figures to a folder
+    Simulate(Simulate),
+    /// Compute frequencies, damping and dominant coordinates about the static pose
+    Modes(Modes),
+    /// Linearise about a pose or a motion: A, D, K with gyroscopic terms, eigenvalues, mode shapes
+    Linearise(Linearise),
+    /// Write statics, motion and modes as one HTML page with the crane in 3-D
+    Report(Page),
+    /// Compute the largest stable step of every method and what limits it
+    Stability(Stability),
+    /// Show coordinates, bodies, supports, drives and parameters of a crane
+    Info(Analysis),
+    /// Evaluate quantities such as T, A and e at given states, for other programs
+    Eval(Eval),
+    /// Create a Rust crate for your own crane
+    New(New),
+    /// Check a spec: report every mistake and everything implausible
+    Check(Check),
+    /// Explain a spec: bodies, coordinates, omissions and operation counts; draw a picture
+    Explain {
+        /// Shipped crane or YAML file
+        #[arg(value_name = "CRANE", value_hint = ValueHint::FilePath)]
+        spec: String,
+        /// Also draw the chain into this file
+        #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        svg: Option<PathBuf>,
+    },
+    /// Write a crane's Rust module, for your own program
+    Generate(Generate),
+    /// Print a Markdown table of operation counts: functions by cranes
+    Operations {
+        /// The cranes' YAML files
+        #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        specs: Vec<PathBuf>,
+    },
+    /// Print the JSON Schema of the spec language, for editors, or of what a command prints as JSON
+    Schema {
+        /// The command whose output is described
+        #[arg(value_name = "COMMAND", value_enum)]
+        of: Option<Output>,
+    },
+    /// Export a crane as URDF or MJCF, for Pinocchio, MuJoCo, ROS and others
+    Export(Export),
+    /// Convert a URDF robot to a spec
+    Import(Import),
+    /// List the shipped cranes
+    List(List),
+    /// Print a completion script for a shell
+    Completions {
+        /// Shell to write it for.
+        shell: clap_complete::Shell,
+    },
+}
+
+impl Action {
+    /// The crane, chosen by its name or by a YAML file.
+    pub fn choice(&mut self) -> Option<&mut Choice> {
+        match self {
+            Action::Run(options) | Action::Simulate(options) => Some(&mut options.analysis.crane),
+            Action::Statics(options) | Action::Info(options) => Some(&mut options.crane),
+            Action::Modes(options) => Some(&mut options.analysis.crane),
+            Action::Linearise(options) => Some(&mut options.analysis.crane),
+            Action::Strength(options) => Some(&mut options.analysis.crane),
+            Action::Envelope(options) => Some(&mut options.analysis.crane),
+            Action::Stability(options) => Some(&mut options.analysis.crane),
+            Action::Report(options) => Some(&mut options.crane),
+            Action::Eval(options) => Some(&mut options.crane),
+            Action::Compare(_)
+            | Action::New(_)
+            | Action::Check(_)
+            | Action::Explain { .. }
+            | Action::Generate(_)
+            | Action::Operations { .. }
+            | Action::Schema { .. }
+            | Action::Export(_)
+            | Action::Import(_)
+            | Action::List(_)
+            | Action::Completions { .. } => None,
+        }
+    }
+}
+
+/// What a command prints as JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Output {
+    /// Mistakes and warnings.
+    Check,
+    /// An equilibrium.
+    Statics,
+    /// Small motions.
+    Modes,
+    /// Small motions about a pose or a motion.
+    Linearise,
+    /// Largest stable steps.
+    Stability,
+    /// A run.
+    Simulate,
+    /// `simulate --ensemble`: many runs.
+    Ensemble,
+    /// Tipping margins, stresses and loads.
+    Strength,
+    /// Largest loads.
+    Envelope,
+    /// Two cranes.
+    Compare,
+    /// Everything about a crane.
+    Run,
+    /// What a crane consists of.
+    Info,
+    /// The shipped cranes.
+    List,
+}

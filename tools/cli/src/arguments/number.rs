@@ -1,0 +1,37 @@
+//! Numbers as arguments: what is allowed, and what to write instead.
+
+use std::num::NonZeroUsize;
+
+/// A length of time.
+///
+/// # Errors
+/// What to write instead.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "write a number of seconds, such as 0.5".to_owned())
+}
+
+/// An error that is allowed.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "write a number, such as 1e-4".to_owned())
+}
+
+/// A tipping margin.
+pub fn margin(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok();
+    number
+        .filter(|margin| (0.0..1.0).contains(margin))
+        .ok_or_else(|| "write a number from 0 to below 1, such as 0.25".to_owned())
+}
+
+/// A number above zero.
+pub fn above_zero(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok();
+    number
+        .filter(|number| *number > 0.0 && number.is_finite())
+        .ok_or_else(|| "write a number above 0, such as 0.8".to_owned())
+}
+
+/// A number of things, at least one.
+pub fn count(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| "write a whole number of 1 or more, such as 4".to_owned())
+}

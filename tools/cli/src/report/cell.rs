@@ -1,0 +1,166 @@
+//! Fields of tables: what people read, and what programs do.
+
+use serde_json::Value;
+
+use crate::files;
+
+/// One field of a table.
+#[derive(Clone, Debug)]
+pub enum Cell {
+    /// A name or a sentence.
+    Text(String),
+    /// A number.
+    Number(f64),
+    /// A relative error: its size is what matters.
+    Error(f64),
+    /// An absolute error, in the unit of its row: two digits are enough.
+    Uncertainty(f64),
+    /// An angle, rad: in degrees for people.
+    Angle(f64),
+    /// The unit of angles in its row, rad: degrees for people.
+    AngleUnit,
+    /// A relative change, %, with its sign.
+    Change(f64),
+    /// Several names.
+    Names(Vec<String>),
+    /// A count.
+    Count(usize),
+    /// Nothing to say.
+    Empty,
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Cell::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Cell::Text(text)
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(number: f64) -> Self {
+        Cell::Number(number)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(count: usize) -> Self {
+        Cell::Count(count)
+    }
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(number: Option<f64>) -> Self {
+        number.map_or(Cell::Empty, Cell::Number)
+    }
+}
+
+impl Cell {
+    /// What people read: four digits, degrees.
+    pub(super) fn text(&self) -> String {
+        self.with_digits(DIGITS)
+    }
+
+    pub(super) fn with_digits(&self, digits: i32) -> String {
+        match self {
+            Cell::Text(text) => text.clone(),
+            Cell::Number(number) => readable(*number, digits),
+            Cell::Angle(radians) => readable(radians.to_degrees(), digits),
+            Cell::AngleUnit => "°".to_owned(),
+            Cell::Error(error) => format!("{error:.1e}"),
+            Cell::Uncertainty(error) => uncertain(*error),
+            Cell::Change(change) => format!("{change:+.2}"),
+            Cell::Names(names) => names.join(", "),
+            Cell::Count(count) => count.to_string(),
+            Cell::Empty => "–".to_owned(),
+        }
+    }
+
+    /// All digits, and angles in degrees as on the screen; nothing where that says no more than the text.
+    pub(super) fn exact(&self) -> String {
+        match self {
+            Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) | Cell::Change(number) => {
+                files::number(*number)
+            }
+            Cell::Angle(radians) => files::number(radians.to_degrees()),
+            _ => String::new(),
+        }
+    }
+
+    pub(super) fn json(&self) -> Value {
+        match self {
+            Cell::Text(text) => text.as_str().into(),
+            Cell::Number(number)
+            | Cell::Error(number)
+            | Cell::Uncertainty(number)
+            | Cell::Angle(number)
+            | Cell::Change(number) => (*number).into(),
+            Cell::Names(names) => names.as_slice().into(),
+            Cell::AngleUnit => "rad".into(),
+            Cell::Count(count) => (*count).into(),
+            Cell::Empty => Value::Null,
+        }
+    }
+}
+
+/// A number with two significant digits, in powers of ten where it is very large or small.
+fn uncertain(number: f64) -> String {
+    let short = format!("{number:.1e}");
+    match short.parse::<f64>() {
+        Ok(rounded) if (1e-3..1e6).contains(&rounded) => rounded.to_string(),
+        _ => short,
+    }
+}
+
+/// Significant digits on the screen; files have all.
+const DIGITS: i32 = 4;
+/// Significant digits in documents.
+pub(super) const DIGITS_OF_DOCUMENTS: i32 = 6;
+
+/// A number with some significant digits, in powers of ten where it is very large or small; digits before the point are whole. What is
+/// below 1e-10 of a unit is what rounding left of zero.
+fn readable(number: f64, digits: i32) -> String {
+    let size = number.abs();
+    let plain = number.to_string();
+    let short = usize::try_from(digits).unwrap_or(0) + 1;
+    if size < 1e-10 {
+        "0".to_owned()
+    } else if plain.len() <= short {
+        plain
+    } else if (1e-3..1e7).contains(&size) {
+        // Digits before the point; 1e-3 counts as -2.
+        let before = (-2..=7).find(|&digits| size < 10_f64.powi(digits)).unwrap_or(7);
+        let places = usize::try_from(digits - before).unwrap_or(0);
+        format!("{number:.places$}")
+    } else {
+        let places = usize::try_from(digits - 1).unwrap_or(0);
+        format!("{number:.places$e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn people_read_four_digits_and_degrees() {
+        for (number, text) in [
+            (14270.4, "14270"),
+            (3.999_89, "4.000"),
+            (0.471_501, "0.4715"),
+            (0.02, "0.02"),
+            (-6509.11, "-6509"),
+            (1.234_56e9, "1.235e9"),
+            (1e-12, "0"),
+        ] {
+            assert_eq!(Cell::Number(number).text(), text);
+        }
+        let angle = Cell::Angle(std::f64::consts::FRAC_PI_3);
+        assert_eq!((angle.text().as_str(), angle.json()), ("60.00", std::f64::consts::FRAC_PI_3.into()));
+        assert_eq!(Cell::Number(14270.44).with_digits(DIGITS_OF_DOCUMENTS), "14270.4");
+    }
+}

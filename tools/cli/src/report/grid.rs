@@ -1,0 +1,183 @@
+//! Tables with named columns: printed, as JSON, as Markdown and for a page.
+
+use std::{fmt, io::Write};
+
+use serde_json::{Map, Value, json};
+
+use super::cell::{Cell, DIGITS_OF_DOCUMENTS};
+use crate::{files, problem::Outcome};
+
+/// The heading of a column.
+#[derive(Clone, Debug)]
+pub struct Heading {
+    /// Which of several cranes, or of several cases, the column is about; empty if there is one.
+    label: String,
+    name: String,
+    /// Unit of all its numbers; empty where there is none or each row has its own.
+    unit: String,
+}
+
+/// Name of a column about which its label says everything, and label of a crane that is alone.
+pub const VALUE: &str = "value";
+
+impl Heading {
+    /// The heading of a column about one of several things; [`VALUE`] as label: about the only one.
+    pub fn of(label: &str, name: &str) -> Self {
+        let label = if label == VALUE { "" } else { label };
+        Self { label: label.to_owned(), ..name.into() }
+    }
+
+    /// Its key in JSON.
+    fn key(&self) -> String {
+        self.name.replace(' ', "_")
+    }
+}
+
+impl From<&str> for Heading {
+    /// A name and a unit, as in `frequency [Hz]`, or a name alone.
+    fn from(text: &str) -> Self {
+        let parts = text.strip_suffix(']').and_then(|text| text.split_once(" ["));
+        let (name, unit) = parts.unwrap_or((text, ""));
+        Self { label: String::new(), name: name.to_owned(), unit: unit.to_owned() }
+    }
+}
+
+impl fmt::Display for Heading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.label.as_str(), self.name.as_str()) {
+            ("", name) => f.write_str(name)?,
+            (label, VALUE) => f.write_str(label)?,
+            (label, name) => write!(f, "{label} {name}")?,
+        }
+        if self.unit.is_empty() { Ok(()) } else { write!(f, " [{}]", self.unit) }
+    }
+}
+
+/// A table with named columns.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    pub(super) key: &'static str,
+    pub(super) title: String,
+    headings: Vec<Heading>,
+    rows: Vec<Vec<Cell>>,
+}
+
+impl Grid {
+    /// A table without rows; `key` names it in JSON, `title` for people. A heading is a name with or without a unit: `frequency [Hz]`.
+    pub fn new(key: &'static str, title: impl Into<String>, headings: &[&str]) -> Self {
+        Self::with_headings(key, title, headings.iter().map(|heading| Heading::from(*heading)).collect())
+    }
+
+    /// A table without rows, some of whose columns are about one of several things.
+    pub fn with_headings(key: &'static str, title: impl Into<String>, headings: Vec<Heading>) -> Self {
+        Self { key, title: title.into(), headings, rows: Vec::new() }
+    }
+
+    /// What people read above the columns.
+    pub(super) fn headers(&self) -> Vec<String> {
+        self.headings.iter().map(ToString::to_string).collect()
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, cells: impl Into<Vec<Cell>>) {
+        self.rows.push(cells.into());
+    }
+
+    /// Whether it has no rows.
+    pub(super) fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Its name in JSON.
+    pub fn key(&self) -> &'static str {
+        self.key
+    }
+
+    /// Rows as objects. Columns about one of several things are objects by label.
+    pub(super) fn json(&self) -> Value {
+        let object = |row: &Vec<Cell>| {
+            let mut object = Map::new();
+            for (heading, cell) in self.headings.iter().zip(row) {
+                if heading.label.is_empty() {
+                    object.insert(heading.key(), cell.json());
+                } else if let Value::Object(labelled) = object.entry(heading.key()).or_insert_with(|| json!({})) {
+                    labelled.insert(heading.label.clone(), cell.json());
+                }
+            }
+            Value::Object(object)
+        };
+        self.rows.iter().map(object).collect()
+    }
+
+    /// Units of the columns that have one.
+    pub(super) fn units(&self) -> Map<String, Value> {
+        let with_unit = self.headings.iter().filter(|heading| !heading.unit.is_empty());
+        with_unit.map(|heading| (heading.key(), heading.unit.as_str().into())).collect()
+    }
+
+    /// Whether a column holds numbers alone.
+    fn numeric(&self, column: usize) -> bool {
+        self.rows.iter().all(|row| !matches!(row.get(column), Some(Cell::Text(_) | Cell::AngleUnit)))
+            && !self.rows.is_empty()
+    }
+
+    /// Its texts as printed, for a page.
+    pub(super) fn page(&self) -> Value {
+        let numeric: Vec<bool> = (0..self.headings.len()).map(|column| self.numeric(column)).collect();
+        let rows: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect();
+        let exact: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::exact).collect()).collect();
+        json!({
+            "key": self.key, "title": self.title, "headers": self.headers(), "numeric": numeric, "rows": rows, "exact": exact,
+        })
+    }
+
+    /// Names of the columns, and rows of fields with all digits, for a CSV file.
+    pub fn fields(&self) -> (impl Iterator<Item = String>, impl Iterator<Item = Vec<String>>) {
+        let field = |cell: &Cell| match cell {
+            Cell::Number(number)
+            | Cell::Error(number)
+            | Cell::Uncertainty(number)
+            | Cell::Angle(number)
+            | Cell::Change(number) => files::number(*number),
+            Cell::AngleUnit => "rad".to_owned(),
+            Cell::Empty => String::new(),
+            other => other.text(),
+        };
+        (self.headers().into_iter(), self.rows.iter().map(move |row| row.iter().map(field).collect()))
+    }
+
+    /// The table in Markdown.
+    pub fn markdown(&self) -> String {
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let sides = (0..self.headings.len()).map(|column| if self.numeric(column) { "---:" } else { "---" }.to_owned());
+        let text = |cell: &Cell| cell.with_digits(DIGITS_OF_DOCUMENTS);
+        let rows = self.rows.iter().map(|row| line(row.iter().map(text).collect()));
+        [line(self.headers()), line(sides.collect())].into_iter().chain(rows).collect()
+    }
+
+    /// Prints its first rows for people.
+    pub(super) fn print(&self, most: usize, out: &mut dyn Write) -> Outcome<()> {
+        writeln!(out, "{}", self.title)?;
+        let headers = self.headers();
+        let texts: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect();
+        let width = |column: usize| {
+            let cells = texts.iter().filter_map(|row| row.get(column)).map(|text| text.chars().count());
+            cells.chain([headers[column].chars().count()]).max().unwrap_or(0)
+        };
+        let mut line = |cells: &mut dyn Iterator<Item = &str>| -> Outcome<()> {
+            let padded = cells.enumerate().map(|(column, cell)| {
+                let width = width(column);
+                if self.numeric(column) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+            });
+            Ok(writeln!(out, "  {}", padded.collect::<Vec<_>>().join("  ").trim_end())?)
+        };
+        line(&mut headers.iter().map(String::as_str))?;
+        for row in texts.iter().take(most) {
+            line(&mut row.iter().map(String::as_str))?;
+        }
+        if texts.len() > most {
+            writeln!(out, "  … {} more rows with `--all`", texts.len() - most)?;
+        }
+        Ok(())
+    }
+}

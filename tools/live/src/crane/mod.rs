@@ -1,0 +1,261 @@
+//! A crane from a chain that implements the traits of all algorithms.
+
+mod analyses;
+mod model;
+mod systems;
+
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crane_codegen::chain::{Chain, Input};
+use crane_codegen::program::FunctionId;
+use crane_codegen::{Diagnostics, SourceFile, compile};
+use crane_model::dyn_crane::DynCrane;
+use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
+use crane_model::{Description, ParameterError};
+
+use crate::describe::{describe, refusal};
+use crate::library::Library;
+use crate::machine::{Arguments, Machine};
+use crate::routine::Routine;
+
+/// A crane of any number of coordinates that is ready without rustc.
+///
+/// Functions are derived when they are first called. Clones share them, and have their own parameters.
+pub struct LiveCrane {
+    library: Arc<Library>,
+    description: Description,
+    parameters: Vec<f64>,
+    /// Of every input its value while it is set, else 0; and 0 while it is set, else 1.
+    inputs: Vec<f64>,
+    /// Room for a call of every function, kept from the last; cranes that differ in their inputs alone share it.
+    rooms: Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]>,
+}
+
+/// What a call of a function needs besides its arguments.
+struct Room {
+    machine: Machine<f64>,
+    /// For results that are copied to other positions.
+    results: Vec<f64>,
+}
+
+impl LiveCrane {
+    /// Coordinates of the largest crane whose functions fit into the registers: `solve` takes 49,144 of 65,536 at 3,013.
+    pub const MOST_COORDINATES: usize = 3000;
+
+    /// The crane of a spec.
+    ///
+    /// # Errors
+    /// All mistakes of the spec at once.
+    pub fn from_spec(source: &SourceFile) -> Result<Self, Diagnostics> {
+        compile::load(source).map(Self::new)
+    }
+
+    /// The crane of a chain, with the parameters of its spec.
+    #[must_use]
+    pub fn new(chain: Chain) -> Self {
+        let (description, parameters) = (describe(&chain), chain.parameter_defaults());
+        let inputs = not_set(&chain);
+        Self { library: Arc::new(Library::new(chain)), description, parameters, inputs, rooms: no_rooms() }
+    }
+
+    /// The chain from which it was made.
+    #[must_use]
+    pub fn chain(&self) -> &Chain {
+        self.library.chain()
+    }
+
+    /// Calls a function and passes on its results; nothing if the crane does not need it.
+    fn call<R>(
+        &self,
+        id: FunctionId,
+        arguments: &Arguments<'_, f64>,
+        show: impl FnOnce(&Routine, &mut [f64]) -> R,
+    ) -> Option<R> {
+        let routine = self.library.routine(id)?;
+        let place = &self.rooms[id as usize];
+        let kept = place.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let mut room = kept.unwrap_or_else(|| self.room(routine));
+        routine.run(&mut room.machine, &Arguments { inputs: &self.inputs, ..*arguments }, &mut room.results);
+        let shown = show(routine, &mut room.results);
+        *place.lock().unwrap_or_else(PoisonError::into_inner) = Some(room);
+        Some(shown)
+    }
+
+    /// The live parameters, in the order of the description.
+    #[must_use]
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// The inputs: of each its value while it is set, else 0; and 0 while it is set, else 1.
+    pub(crate) fn inputs(&self) -> &[f64] {
+        &self.inputs
+    }
+
+    /// The same crane with other inputs, in the order of the description: what is not set is as the spec says. Nothing is computed
+    /// again, and the rooms are shared.
+    #[must_use]
+    pub fn with_inputs(&self, values: &[Option<f64>]) -> Self {
+        let mut inputs = not_set(self.chain());
+        for (slots, value) in inputs.chunks_mut(Input::SLOTS).zip(values) {
+            set(slots, *value);
+        }
+        let Self { library, description, parameters, rooms, .. } = self;
+        Self {
+            library: Arc::clone(library),
+            description: description.clone(),
+            parameters: parameters.clone(),
+            inputs,
+            rooms: Arc::clone(rooms),
+        }
+    }
+
+    /// Its functions, which all its clones share.
+    pub(crate) fn library(&self) -> Arc<Library> {
+        Arc::clone(&self.library)
+    }
+
+    /// Whether all parameters together may have these values.
+    ///
+    /// # Errors
+    /// The rule of the spec language that they break.
+    pub fn check(&self, parameters: &[f64]) -> Result<(), ParameterError> {
+        for (info, value) in self.description.parameters.iter().zip(parameters) {
+            info.check(*value)?;
+        }
+        match self.chain().broken_relation(parameters) {
+            Some(relation) => Err(ParameterError { given: None, refusal: refusal(&relation.refusal) }),
+            None => Ok(()),
+        }
+    }
+
+    /// All parameters, of which the first have these values.
+    fn with_first(&self, values: &[f64]) -> Result<Vec<f64>, ParameterError> {
+        let mut parameters = self.parameters.clone();
+        copy(values, &mut parameters);
+        self.check(&parameters)?;
+        Ok(parameters)
+    }
+
+    fn room(&self, routine: &Routine) -> Room {
+        Room { machine: routine.machine(&self.parameters), results: vec![0.0; routine.results()] }
+    }
+
+    fn scalar(&self, id: FunctionId, arguments: &Arguments<'_, f64>) -> f64 {
+        self.call(id, arguments, |_, results| results.first().copied().unwrap_or(0.0)).unwrap_or(0.0)
+    }
+
+    fn numbers(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
+        let called = self.call(id, arguments, |_, results| copy(results, out));
+        if called.is_none() {
+            out.fill(0.0);
+        }
+    }
+
+    fn vectors(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [Vector3<f64>]) {
+        let vector = |vector: &[f64; 3]| Vector3::from(*vector);
+        let called = self.call(id, arguments, |_, results| copy_as(results.as_chunks().0, vector, out));
+        if called.is_none() {
+            out.fill(Vector3::zeros());
+        }
+    }
+
+    fn pairs(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [[f64; 2]]) {
+        let called = self.call(id, arguments, |_, results| copy_as(results.as_chunks().0, |pair| *pair, out));
+        if called.is_none() {
+            out.fill([0.0; 2]);
+        }
+    }
+
+    fn matrices(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [Matrix4<f64>]) {
+        let called = self.call(id, arguments, |_, results| {
+            copy_as(results.as_chunks::<16>().0, |matrix| Matrix4::from_column_slice(matrix), out);
+        });
+        if called.is_none() {
+            out.fill(Matrix4::zeros());
+        }
+    }
+
+    fn over_the_base(&self, id: FunctionId, q: &[f64], v: &[f64]) -> Matrix6<f64> {
+        self.call(id, &state(0.0, q, v), |_, results| Matrix6::from_column_slice(results)).unwrap_or_default()
+    }
+}
+
+fn no_rooms() -> Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]> {
+    Arc::new(std::array::from_fn(|_| Mutex::new(None)))
+}
+
+/// Inputs of which none is set.
+fn not_set(chain: &Chain) -> Vec<f64> {
+    chain.inputs.iter().flat_map(|_| Input::NOT_SET).collect()
+}
+
+/// Sets the numbers of an input, or gives it back to its spec.
+fn set(slots: &mut [f64], value: Option<f64>) {
+    slots.copy_from_slice(&value.map_or(Input::NOT_SET, |value| [value, 0.0]));
+}
+
+fn copy(results: &[f64], out: &mut [f64]) {
+    out.iter_mut().zip(results).for_each(|(place, result)| *place = *result);
+}
+
+fn copy_as<T, R>(results: &[T], as_is: impl Fn(&T) -> R, out: &mut [R]) {
+    out.iter_mut().zip(results).for_each(|(place, result)| *place = as_is(result));
+}
+
+/// A pose.
+fn at(q: &[f64]) -> Arguments<'_, f64> {
+    Arguments { q, ..Arguments::none() }
+}
+
+/// A state.
+fn state<'a>(t: f64, q: &'a [f64], v: &'a [f64]) -> Arguments<'a, f64> {
+    Arguments { t, q, v, ..Arguments::none() }
+}
+
+impl Clone for LiveCrane {
+    fn clone(&self) -> Self {
+        Self {
+            library: Arc::clone(&self.library),
+            description: self.description.clone(),
+            parameters: self.parameters.clone(),
+            inputs: self.inputs.clone(),
+            rooms: no_rooms(),
+        }
+    }
+}
+
+impl fmt::Debug for LiveCrane {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = f.debug_struct("LiveCrane");
+        debug.field("name", &self.description.name).field("parameters", &self.parameters).finish_non_exhaustive()
+    }
+}
+
+impl DynCrane for LiveCrane {
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
+        let mut values = self.parameters.clone();
+        if let Some(parameter) = values.get_mut(index) {
+            *parameter = value;
+        }
+        self.set_parameters(&values)
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
+        self.parameters = self.with_first(values)?;
+        // The workspaces contain constants computed from parameters.
+        self.rooms = no_rooms();
+        Ok(())
+    }
+
+    fn set_input(&mut self, index: usize, value: Option<f64>) {
+        if let Some(slots) = self.inputs.chunks_mut(Input::SLOTS).nth(index) {
+            set(slots, value);
+        }
+    }
+
+    fn boxed_clone(&self) -> Box<dyn DynCrane> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,97 @@
+//! What keeps numbers between its calls: linear systems of implicit steps, and eight cranes at a time.
+
+use crane_codegen::program::FunctionId;
+use crane_model::ParameterError;
+use crane_model::dyn_crane::{DynBlock, DynEnsemble, DynImplicit, DynSystem};
+use crane_model::nalgebra::Matrix6;
+use crane_model::rt::lanes::f64x8;
+
+use super::{LiveCrane, at, state};
+use crate::machine::{Arguments, Machine};
+use crate::routine::Routine;
+
+impl DynImplicit for LiveCrane {
+    fn system(&self) -> Box<dyn DynSystem + '_> {
+        let ready = |id: FunctionId| {
+            let routine = self.library.routine(id)?;
+            Some((routine, routine.machine(&self.parameters)))
+        };
+        let factors = self.library.routine(FunctionId::Factorise).map_or(0, Routine::results);
+        Box::new(System {
+            factorise: ready(FunctionId::Factorise),
+            solve: ready(FunctionId::Solve),
+            factors: vec![f64::NAN; factors],
+        })
+    }
+
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::JointStiffnessAndDamping, &Arguments::none(), out);
+    }
+
+    fn nonlinear_stiffness_and_damping(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]) {
+        self.pairs(FunctionId::NonlinearStiffnessAndDamping, &state(t, q, v), out);
+    }
+
+    fn base_stiffness(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
+        self.over_the_base(FunctionId::BaseStiffness, q, v)
+    }
+
+    fn base_damping(&self, q: &[f64], v: &[f64]) -> Matrix6<f64> {
+        self.over_the_base(FunctionId::BaseDamping, q, v)
+    }
+}
+
+/// A function and room for its calls.
+type Ready<'a, T> = Option<(&'a Routine, Machine<T>)>;
+
+/// Systems with the factors of the last one.
+struct System<'a> {
+    factorise: Ready<'a, f64>,
+    solve: Ready<'a, f64>,
+    factors: Vec<f64>,
+}
+
+impl DynSystem for System<'_> {
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &Matrix6<f64>) {
+        if let Some((routine, machine)) = &mut self.factorise {
+            let arguments = Arguments { added_inertia, base: base.as_slice(), ..at(q) };
+            routine.run(machine, &arguments, &mut self.factors);
+        }
+    }
+
+    fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+        if let Some((routine, machine)) = &mut self.solve {
+            routine.run(machine, &Arguments { factors: &self.factors, right: r, ..Arguments::none() }, out);
+        }
+    }
+}
+
+impl DynEnsemble for LiveCrane {
+    fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
+        let lanes = parameters.iter().map(|values| self.with_first(values)).collect::<Result<Vec<_>, _>>()?;
+        // Unused lanes are copies of this crane.
+        let of = |lane: usize| lanes.get(lane).unwrap_or(&self.parameters);
+        let eight = |index: usize| f64x8::new(std::array::from_fn(|lane| of(lane)[index]));
+        let parameters: Vec<f64x8> = (0..self.parameters.len()).map(eight).collect();
+        let routine = self.library.routine(FunctionId::ForwardDynamics);
+        Ok(Box::new(Block {
+            ready: routine.map(|routine| (routine, routine.machine(&parameters))),
+            inputs: self.inputs.iter().map(|slot| f64x8::splat(*slot)).collect(),
+        }))
+    }
+}
+
+/// Eight cranes.
+struct Block<'a> {
+    ready: Ready<'a, f64x8>,
+    inputs: Vec<f64x8>,
+}
+
+impl DynBlock for Block<'_> {
+    fn forward_dynamics(&mut self, t: f64, q: &[f64x8], v: &[f64x8], out: &mut [f64x8]) {
+        if let Some((routine, machine)) = &mut self.ready {
+            let arguments = Arguments { t: f64x8::splat(t), q, v, inputs: &self.inputs, ..Arguments::none() };
+            routine.run(machine, &arguments, out);
+        }
+    }
+}
