@@ -1,10 +1,12 @@
 //! The manual as a book: docs/SUMMARY.md lists every page, and every link leads to an existing page and heading.
 //!
-//! `mdbook build docs` turns the same files into a site. mdBook takes minutes to compile, so this check does without it.
+//! [`check`] reads the Markdown, of pages outside of the book too, in a second. [`site`] builds the site with mdBook and follows the
+//! links of its pages.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
 
-use crate::workspace;
+use crate::{step, workspace};
 
 const FOLDER: &str = "docs";
 const SUMMARY: &str = "docs/SUMMARY.md";
@@ -28,6 +30,18 @@ pub fn check() -> Result<(), String> {
         }
     }
     if wrong.is_empty() { Ok(()) } else { Err(format!("\n{}", wrong.join("\n"))) }
+}
+
+/// Builds the manual as a site into the folder `book` of the target, and follows every link of its pages.
+pub fn site() -> Result<(), String> {
+    let builder = |task: &str| {
+        let mut command = Command::new(step::cargo());
+        let manifest = ["--locked", "--manifest-path", "tools/book/Cargo.toml", "--target-dir"];
+        command.arg(task).args(manifest).arg(workspace::target().join("book-builder")).current_dir(workspace::root());
+        command
+    };
+    step::finish(&mut builder("test"))?;
+    step::finish(builder("run").args(["--", FOLDER]).arg(workspace::target().join("book")))
 }
 
 /// Pages of the book that its summary does not list exactly once.

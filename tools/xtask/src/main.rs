@@ -160,6 +160,7 @@ fn tests() -> Vec<Step> {
         Step::program("the example of your own crane", "own-crane"),
         Step::check("a new crane", new_crane::check),
         Step::check("commands of the manual", manual::check),
+        Step::check("the manual as a site", book::site),
         Step::check("the Python package", package::check),
         Step::check("pages of the Python package in a browser", report::in_notebook),
         Step::check("functional mock-up units", outside::units),

@@ -1,0 +1,99 @@
+//! Links of a site.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+/// Pages by their paths within the site.
+type Pages = BTreeMap<PathBuf, String>;
+
+/// Every link that leads nowhere, as an error; else the number of pages.
+pub fn check(site: &Path) -> Result<usize, String> {
+    let (mut pages, mut files) = (Pages::new(), BTreeSet::new());
+    collect(site, Path::new(""), &mut pages, &mut files)?;
+    let problems: Vec<String> = pages.iter().flat_map(|(page, text)| problems(page, text, &pages, &files)).collect();
+    if problems.is_empty() { Ok(pages.len()) } else { Err(problems.join("\n")) }
+}
+
+/// All files of a folder, and the text of those that are pages.
+fn collect(site: &Path, folder: &Path, pages: &mut Pages, files: &mut BTreeSet<PathBuf>) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("{}: {error}", site.join(folder).display());
+    for entry in fs::read_dir(site.join(folder)).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let path = folder.join(entry.file_name());
+        if entry.path().is_dir() {
+            collect(site, &path, pages, files)?;
+        } else {
+            if path.extension().is_some_and(|extension| extension == "html") {
+                pages.insert(path.clone(), fs::read_to_string(entry.path()).map_err(failed)?);
+            }
+            files.insert(path);
+        }
+    }
+    Ok(())
+}
+
+/// Links of a page that lead nowhere.
+fn problems(page: &Path, text: &str, pages: &Pages, files: &BTreeSet<PathBuf>) -> Vec<String> {
+    // Its links are relative to the address of the site, which is not known here.
+    if page.file_name().is_some_and(|name| name == "404.html") {
+        return Vec::new();
+    }
+    let links = ["href", "src"].into_iter().flat_map(|attribute| values(text, attribute));
+    let nowhere = links.filter(|link| !is_outside(link)).filter_map(|link| {
+        let (path, anchor) = link.split_once('#').map_or((link, None), |(path, anchor)| (path, Some(anchor)));
+        let target = if path.is_empty() { page.to_owned() } else { resolve(page, path) };
+        if !files.contains(&target) {
+            return Some(format!("{}: `{link}`: the site has no {}", page.display(), target.display()));
+        }
+        let anchor = anchor.filter(|anchor| !anchor.is_empty())?;
+        let known = pages.get(&target)?;
+        let missing = !values(known, "id").any(|id| id == anchor);
+        missing.then(|| format!("{}: `{link}`: {} has no such heading", page.display(), target.display()))
+    });
+    nowhere.collect()
+}
+
+/// Whether a link leads out of the site.
+fn is_outside(link: &str) -> bool {
+    link.contains("://") || link.starts_with("mailto:") || link.starts_with("data:")
+}
+
+/// The path within the site of a link on a page.
+fn resolve(page: &Path, link: &str) -> PathBuf {
+    let mut path = page.parent().unwrap_or(Path::new("")).to_owned();
+    for component in Path::new(link).components() {
+        match component {
+            Component::ParentDir => drop(path.pop()),
+            Component::Normal(name) => path.push(name),
+            _ => {}
+        }
+    }
+    path
+}
+
+/// Values of an attribute.
+fn values<'a>(text: &'a str, attribute: &str) -> impl Iterator<Item = &'a str> {
+    let pattern = format!(" {attribute}=\"");
+    let starts: Vec<usize> = text.match_indices(&pattern).map(|(at, found)| at + found.len()).collect();
+    starts.into_iter().filter_map(|start| text[start..].split('"').next())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_that_lead_nowhere_are_named() {
+        let page = "<h1 id=\"one\"></h1><a href=\"../b.html#two\"></a><a href=\"#one\"></a><img src=\"c.svg\">";
+        let pages: Pages = [("m/a.html", page), ("b.html", "<h2 id=\"three\">")]
+            .map(|(path, text)| (PathBuf::from(path), text.to_owned()))
+            .into();
+        let files = pages.keys().cloned().collect();
+        let found = problems(Path::new("m/a.html"), page, &pages, &files);
+        let expected = ["`../b.html#two`: b.html has no such heading", "`c.svg`: the site has no m/c.svg"];
+        assert_eq!(found, expected.map(|problem| format!("m/a.html: {problem}")));
+        let outside = "<a href=\"https://example.org/x\"></a>";
+        assert_eq!(problems(Path::new("m/a.html"), outside, &pages, &files), Vec::<String>::new());
+    }
+}
