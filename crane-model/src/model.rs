@@ -227,7 +227,8 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
         self.bias(q, v)
     }
 
-    /// Bias `e = −(h + g)`, Eq. (9): velocity and gravity forces.
+    /// Bias `e = −(h + g)`, Eq. (9): velocity and gravity forces on the right-hand side of `A q̈ = e + f`. It is the negative of the bias
+    /// force C of Featherstone and of other libraries, which have it on the left.
     fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N>;
 
     /// Accelerations q̈ of `A q̈ = e + f`, Eq. (23), in O(n) by articulated bodies: A is never formed. m/s² and rad/s². Cylinders with a valve do

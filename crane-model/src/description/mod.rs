@@ -60,8 +60,8 @@ pub struct Description {
 pub const NEAR_SINGULAR: f64 = 0.03;
 /// Rotation of a base beyond which linear supports are no longer accurate, rad: their error is half a percent of it.
 pub const LARGE_TILT: f64 = 0.1;
-/// Rotation of a base beyond which a crane on feet that lift has tipped over, rad: soft feet give way by some hundredths.
-pub const TIPPED: f64 = 0.5;
+/// Rotation of a base beyond which a crane on feet that lift has tipped over, 30° in rad: soft feet give way by some hundredths.
+pub const TIPPED: f64 = core::f64::consts::FRAC_PI_6;
 
 impl Description {
     /// Whether oil moves a joint, through a cylinder with a valve.

@@ -173,7 +173,7 @@ pub trait DynDynamics: DynModel {
     /// Mass matrix A, n × n.
     fn mass_matrix(&self, q: &[f64], out: &mut [f64]);
 
-    /// Bias e: velocity and gravity forces.
+    /// Bias e: velocity and gravity forces on the right-hand side, the negative of Featherstone's C.
     fn bias(&self, q: &[f64], v: &[f64], out: &mut [f64]);
 
     /// Accelerations q̈.

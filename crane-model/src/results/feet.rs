@@ -73,7 +73,7 @@ fn tips_over(description: &Description, table: &Table) -> Option<String> {
     });
     let about = last.map_or_else(String::new, |feet| format!(" about {feet}"));
     let (t, degrees) = (table.rows[over][0], TIPPED.to_degrees());
-    Some(format!("the crane tips over{about}: at {t:.2} s its base has turned by more than {degrees:.0}°"))
+    Some(format!("the crane tips over{about}: at {t:.2} s its base has rotated by more than {degrees:.0}°"))
 }
 
 /// Says which feet pull, with how much, and when.

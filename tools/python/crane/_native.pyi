@@ -151,7 +151,8 @@ class Crane:
     def mass_matrix(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n, n): the mass matrix A, symmetric positive definite; kg, kg m, kg m²."""
     def bias(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m."""
+        """(..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m: the negative of Pinocchio's `nle` and of
+        MuJoCo's `qfrc_bias`, which stand on the left."""
     def forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., n): generalized forces f of supports, elements, drives and joint dampers, N and N m. t: s, 0 unless given."""
     def element_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:

@@ -128,7 +128,8 @@ impl Crane {
         self.compute(py, Quantity::Of(FunctionId::MassMatrix), State { q: Some(q), ..State::default() }, &own, invalid)
     }
 
-    /// (..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m.
+    /// (..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m: the negative of Pinocchio's `nle` and of
+    /// MuJoCo's `qfrc_bias`, which stand on the left.
     #[pyo3(signature = (q, v, *, invalid="raise"))]
     fn bias<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, v: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.size()];
