@@ -1,8 +1,8 @@
-//! The command's help, with its subcommands grouped by task, and completions of crane names.
+//! The command's help, with its subcommands grouped by task.
 
 use std::fmt::Write as _;
 
-use clap::{Command, builder::PossibleValuesParser};
+use clap::Command;
 
 /// Tasks, and the subcommands for each. Subcommands that are not listed come last.
 const GROUPS: [(&str, &[&str]); 4] = [
@@ -12,8 +12,6 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ("For developers", &["generate", "operations", "schema", "completions"]),
 ];
 const OTHERS: &str = "Other commands";
-/// Name in the help of an argument that takes a shipped crane.
-const CRANE: &str = "CRANE";
 
 /// The command with its subcommands grouped by task in the help.
 pub fn grouped(command: Command) -> Command {
@@ -44,19 +42,6 @@ fn line(command: &Command, name: &str) -> Option<String> {
     Some(format!("  {name:<12} {about}\n"))
 }
 
-/// The command with the names of cranes among the values of every argument that takes one, for completions: files remain
-/// possible where the shell completes them by default.
-pub fn with_cranes(command: Command, names: &[&'static str]) -> Command {
-    let names = names.to_vec();
-    command.mut_subcommands(move |subcommand| {
-        subcommand.mut_args(|argument| {
-            let takes_crane =
-                argument.get_value_names().is_some_and(|values| values.iter().any(|value| value.as_str() == CRANE));
-            if takes_crane { argument.value_parser(PossibleValuesParser::new(names.clone())) } else { argument }
-        })
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
@@ -77,15 +62,5 @@ mod tests {
                 assert!(command.find_subcommand(name).is_some(), "`{name}` does not exist");
             }
         }
-    }
-
-    #[test]
-    fn bash_completes_the_names_of_cranes() {
-        let mut script = Vec::new();
-        let mut command = with_cranes(Arguments::command(), &["knuckle_boom", "cantilever"]);
-        clap_complete::generate(clap_complete::Shell::Bash, &mut command, "crane", &mut script);
-        let script = String::from_utf8(script).expect("a script");
-        // Once per subcommand that takes a crane: at least the analyses.
-        assert!(script.matches("knuckle_boom cantilever").count() > 8, "{script}");
     }
 }

@@ -14,6 +14,7 @@
 mod arguments;
 mod check;
 mod compare;
+mod completions;
 mod ensemble;
 mod envelope;
 mod eval;
@@ -50,7 +51,6 @@ mod variants;
 use std::{env, io, io::Write, process::ExitCode};
 
 use clap::{Command, CommandFactory, FromArgMatches};
-use clap_complete::Shell;
 
 use arguments::{Action, Arguments};
 use problem::Outcome;
@@ -69,6 +69,7 @@ pub mod toolbox {
 
 /// Does what the arguments of the process ask for, with the cranes of a registry or of a YAML file that the arguments name.
 pub fn main(registry: Registry) -> ExitCode {
+    completions::answer(registry.shipped());
     with_arguments(help::grouped(Arguments::command()), |arguments, out| act(arguments, registry, out))
 }
 
@@ -139,13 +140,8 @@ fn act(mut arguments: Arguments, mut registry: Registry, out: &mut dyn Write) ->
         Some(Action::Import(options)) => exchange::import(options, out),
         Some(Action::List(options)) => info::list(options.format, registry, out),
         Some(Action::Completions { shell }) => {
-            // Into memory first: the generator panics where the other end of a pipe is gone.
-            let mut script = Vec::new();
-            let mut command = Arguments::command();
-            if *shell == Shell::Bash {
-                command = help::with_cranes(command, registry.shipped());
-            }
-            clap_complete::generate(*shell, &mut command, "crane", &mut script);
+            // Into memory first: part of a script is none.
+            let script = completions::script(*shell)?;
             Ok(out.write_all(&script)?)
         }
     }

@@ -16,12 +16,14 @@ use crate::{
     variants,
 };
 
+/// Names and specs (YAML) of shipped cranes.
+pub type Specs = &'static [(&'static str, &'static str)];
+
 /// Cranes that the command can choose from: shipped ones, compiled or live, and one of a YAML file.
 #[derive(Default)]
 pub struct Registry {
     entries: Vec<Entry>,
-    /// Names of the shipped cranes.
-    shipped: Vec<&'static str>,
+    shipped: Specs,
 }
 
 /// A crane of the registry.
@@ -69,13 +71,13 @@ impl Entry {
 
 impl Registry {
     /// Cranes by names and specs (YAML), those of `compiled` as machine code.
-    pub fn new(specs: &'static [(&'static str, &'static str)], mut compiled: Vec<Box<dyn DynCrane>>) -> Self {
+    pub fn new(specs: Specs, mut compiled: Vec<Box<dyn DynCrane>>) -> Self {
         let entry = |&(name, spec): &(&'static str, &'static str)| {
             let index = compiled.iter().position(|crane| crane.description().name == name);
             let compiled = index.map(|index| compiled.swap_remove(index));
             Entry { compiled, ..Entry::new(name, Cow::Borrowed(spec)) }
         };
-        Self { entries: specs.iter().map(entry).collect(), shipped: specs.iter().map(|(name, _)| *name).collect() }
+        Self { entries: specs.iter().map(entry).collect(), shipped: specs }
     }
 
     /// Adds a crane by its spec, in place of one of the same name.
@@ -100,9 +102,9 @@ impl Registry {
         self.entries.push(entry);
     }
 
-    /// Names of the shipped cranes.
-    pub(super) fn shipped(&self) -> &[&'static str] {
-        &self.shipped
+    /// The shipped cranes.
+    pub(super) fn shipped(&self) -> Specs {
+        self.shipped
     }
 
     /// Adds a crane whose beams do not bend, and nothing else is different; its name.

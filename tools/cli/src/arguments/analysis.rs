@@ -139,7 +139,7 @@ pub enum Quantity {
     PointVelocities,
     /// Mass matrix A; kg, kg m, kg m²
     MassMatrix,
-    /// Velocity and gravity forces e, N and N m
+    /// Velocity and gravity forces e of `A q̈ = e + f`, N and N m
     Bias,
     /// Generalized forces of everything except inertia and gravity, N and N m
     Forces,

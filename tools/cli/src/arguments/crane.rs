@@ -34,7 +34,7 @@ pub struct Check {
 #[derive(Debug, Args)]
 pub struct Choice {
     /// Shipped crane, YAML file, or `-` for the standard input; `crane list` shows the shipped cranes
-    #[arg(default_value = "eight_link_flexible", value_name = "CRANE")]
+    #[arg(default_value = DEFAULT_CRANE, value_name = "CRANE")]
     pub name: String,
     /// Treat warnings about the YAML file as mistakes
     #[arg(long)]
@@ -62,6 +62,9 @@ impl Choice {
         spec_file(&self.name)
     }
 }
+
+/// The crane of a command that names none.
+pub const DEFAULT_CRANE: &str = "eight_link_flexible";
 
 /// What stands for the standard input in place of a file.
 pub const STANDARD_INPUT: &str = "-";

@@ -11,10 +11,12 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
 pub use analysis::{Envelope, Eval, EvalFormat, Linearise, Modes, Quantity, Stability, Strength};
-pub use crane::{Analysis, Check, Choice, Format, Generate, Limits, List, New, Parameters, STANDARD_INPUT, spec_file};
+pub use crane::{
+    Analysis, Check, Choice, DEFAULT_CRANE, Format, Generate, Limits, List, New, Parameters, STANDARD_INPUT, spec_file,
+};
 pub use exchange::{CNumber, Export, Import, Language};
 pub use number::seconds;
-pub use run::{Compare, ComparePair, Ensemble, Folder, Page, Simulate, Step, Timing};
+pub use run::{Compare, ComparePair, Ensemble, Page, Simulate, Step, Timing};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -45,7 +47,7 @@ Examples:
   crane import robot.urdf -o my.yaml   convert a URDF robot to a spec
   crane list                           the shipped cranes
   crane info                           coordinates, parameters, drives of a crane
-  source <(crane completions bash)     completion of commands, options and shipped cranes
+  source <(crane completions bash)     completion of commands, options, cranes and the names of their parts
 
 Exit codes:
   0  done

@@ -318,6 +318,21 @@ fn help_groups_commands_by_task() {
 }
 
 #[test]
+fn a_shell_asks_for_names_of_cranes_and_of_their_parameters() {
+    let answer = |line: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+        command.env("COMPLETE", "bash").env("_CLAP_COMPLETE_INDEX", (line.len() - 1).to_string());
+        let output = command.args(["--"]).args(line).output().expect("the command starts");
+        text(&output.stdout)
+    };
+    assert_eq!(answer(&["crane", "statics", "cantil"]).trim(), "cantilever");
+    assert_eq!(answer(&["crane", "statics", "cantilever", "--set", "t"]).trim(), "tip_mass=");
+    let script = crane(&["completions", "bash"]);
+    let (script, program) = (text(&script.stdout), env!("CARGO_BIN_EXE_crane"));
+    assert!(script.contains(program) && script.contains("COMPLETE="), "{script}");
+}
+
+#[test]
 fn a_closed_pipe_is_no_error() {
     for arguments in [&["eval"][..], &["completions", "bash"], &["--help"], &["info"]] {
         let mut child = Command::new(env!("CARGO_BIN_EXE_crane"))
