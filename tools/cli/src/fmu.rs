@@ -92,7 +92,8 @@ fn read(path: &Path) -> Outcome<Library> {
 /// The library in the folder of the command.
 fn beside_the_command() -> Outcome<PathBuf> {
     let name = format!("{}crane_fmu_library{}", consts::DLL_PREFIX, consts::DLL_SUFFIX);
-    let command = current_exe().map_err(|error| Problem::failed(format!("where the command is: {error}"), ""))?;
+    let command =
+        current_exe().map_err(|error| Problem::failed(format!("cannot find the path of this command: {error}"), ""))?;
     let folder = command.parent().unwrap_or(Path::new("."));
     let place = folder.join(&name);
     place.is_file().then_some(place).ok_or_else(|| {

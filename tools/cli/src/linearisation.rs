@@ -27,7 +27,7 @@ pub fn write(file: &Path, description: &Description, q: &[f64], motions: &SmallM
         }
         Some("json") => files::write_text(file, &format!("{:#}\n", json(description, motions, &arrays))),
         _ => Err(Problem::usage(
-            format!("`--matrices {}` has neither the ending .json nor .npz", file.display()),
+            format!("`--matrices {}` ends in neither .json nor .npz", file.display()),
             "give the file one of these endings",
         )),
     }

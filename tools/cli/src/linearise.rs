@@ -310,7 +310,7 @@ fn arrays(motion: &Motion, small: &SmallMotions, found: &[Mode]) -> Vec<Array> {
 fn write(file: &Path, arrays: &[Array]) -> Outcome<()> {
     if file.extension().is_none_or(|end| end != "npz") {
         return Err(Problem::usage(
-            format!("`--file {}` has not the ending .npz", file.display()),
+            format!("`--file {}` does not end in .npz", file.display()),
             "give it that ending; `--format json` prints the same as JSON",
         ));
     }

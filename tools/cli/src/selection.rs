@@ -112,9 +112,7 @@ impl Registry {
         self.crane(name)?;
         let found = self.spec(name).map_or(Ok(None), |text| variants::rigid(name, text)).map_err(|link| {
             Problem::usage(
-                format!(
-                    "the beam of {link} is curved or given element by element: what it is as a rigid body is not said"
-                ),
+                format!("the beam of {link} is curved or given element by element: it has no rigid form"),
                 "give it `sections`, `material` and `section` without `bend`, or write the rigid crane yourself",
             )
         })?;
