@@ -1,5 +1,6 @@
 //! The `crane` command as a user meets it.
 
+mod documents;
 mod ensemble;
 mod new;
 mod runs;
@@ -264,7 +265,7 @@ fn a_moment_of_a_run_is_linearised() {
         &["no coordinate `uper_theta`", "`upper_theta`"],
     );
     refused(&["linearise", "double_pendulum", "--hold", "upper_theta=high"], &["`high` is not a valid value"]);
-    refused(&["linearise", "double_pendulum", "-o", "a.json"], &["has not the ending .npz"]);
+    refused(&["linearise", "double_pendulum", "-o", "a.json"], &["does not end in .npz"]);
     refused(&["linearise", "eight_link_hydraulic"], &["pressures of its cylinders", "`crane modes`"]);
     let sticking = std::path::Path::new(&folder).join("arm.yaml");
     let spec = "format: 1\nname: arm\nlinks: [{name: arm, joint: {revolute: {axis: y}}, mass: 10, com: [0, 0, -1]}]\n\
