@@ -3,6 +3,10 @@
 import errno
 import json
 import os
+import signal
+import subprocess
+import sys
+import time
 
 import crane
 import numpy as np
@@ -114,6 +118,66 @@ def test_a_full_disk_loses_nothing(tmp_path, monkeypatch):
     assert study.run("knuckle_boom", cases(), tmp_path, part=8, **SHORT).computed == 2
 
 
+INTERRUPTED = """
+import signal, sys
+# Where the tests run in the background, processes inherit that Ctrl-C is ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+import numpy as np
+from crane import study
+try:
+    study.run("knuckle_boom", study.grid(payload=np.linspace(0, 600, 400)), sys.argv[1], part=2, duration=5)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+
+
+def test_ctrl_c_keeps_what_is_finished(tmp_path):
+    program = subprocess.Popen([sys.executable, "-c", INTERRUPTED, tmp_path], stdout=subprocess.PIPE, text=True)
+    finished = lambda: list(tmp_path.glob("part-*.parquet"))
+    begin = time.monotonic()
+    while len(finished()) < 2:
+        assert program.poll() is None and time.monotonic() - begin < 60
+        time.sleep(0.01)
+    program.send_signal(signal.SIGINT)
+    out, _ = program.communicate(timeout=60)
+    assert out == "interrupted\n"
+    kept = len(finished())
+    # Nothing half-written, and far from the end.
+    assert 2 <= kept < 200 and len(list(tmp_path.iterdir())) == kept + 1
+    done = study.run("knuckle_boom", study.grid(payload=np.linspace(0, 600, 400)), tmp_path, part=2, duration=5)
+    assert done.computed == 200 - kept and set(done.table()["status"].to_pylist()) == {"done"}
+
+
+def test_a_part_without_memory_stops_a_study_and_loses_nothing(tmp_path):
+    greedy = _Greedy(tmp_path / "asked")
+    folder = tmp_path / "study"
+    with pytest.raises(MemoryError):
+        study.run("knuckle_boom", cases(), folder, part=3, what=greedy)
+    # The fifth part has failed.
+    assert len(list(folder.glob("part-*.parquet"))) == 4 and len(list(folder.iterdir())) == 5
+    again = study.run("knuckle_boom", cases(), folder, part=3, what=greedy)
+    assert again.computed == 6 and again.table().num_rows == 30
+
+
+@pytest.mark.filterwarnings("default")
+def test_a_worker_without_memory_repeats_its_part(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    marker = tmp_path / "asked"
+    with (
+        distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        done = study.run("knuckle_boom", cases(), tmp_path / "there", part=3, what=_Greedy(marker), engine=client)
+        assert marker.exists() and done.computed == 10 and done.table().num_rows == 30
+        # Without repeats the error comes back; what is finished is kept.
+        marker.unlink()
+        with pytest.raises(MemoryError):
+            study.run("knuckle_boom", cases(), tmp_path / "once", part=3, what=_Greedy(marker), engine=client, retries=0)
+        kept = len(list((tmp_path / "once").glob("part-*.parquet")))
+        again = study.run("knuckle_boom", cases(), tmp_path / "once", part=3, what=_Greedy(marker), engine=client)
+        assert again.computed == 10 - kept and again.table().equals(done.table().replace_schema_metadata(again.table().schema.metadata))
+
+
 @pytest.mark.filterwarnings("default")
 def test_a_killed_worker_costs_only_its_part(tmp_path):
     distributed = pytest.importorskip("distributed")
@@ -147,4 +211,21 @@ class _Murderous:
                 pass
             else:
                 os.kill(os.getpid(), 9)
+        return dict(c.simulate_ensemble(**SHORT))
+
+
+class _Greedy:
+    """Runs a part; the first time that the fifth part is computed, it asks for more memory than there is."""
+
+    def __init__(self, marker):
+        self.marker = str(marker)
+
+    def __call__(self, c):
+        if np.any(c.parameters["payload"] == cases()["payload"][13]):
+            try:
+                os.close(os.open(self.marker, os.O_CREAT | os.O_EXCL))
+            except FileExistsError:
+                pass
+            else:
+                bytearray(2**62)
         return dict(c.simulate_ensemble(**SHORT))
