@@ -25,6 +25,12 @@ fn chain(source: &SourceFile) -> Chain {
     compile::load(source).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
+/// The spec of a robot.
+fn spec(name: &str, text: &str) -> String {
+    let imported = exchange::import(&SourceFile::new(name, text), &[]);
+    imported.unwrap_or_else(|mistakes| panic!("\n{mistakes}")).spec
+}
+
 /// The shipped cranes.
 fn shipped() -> Vec<Chain> {
     let specs = files("../specs").into_iter().filter(|path| path.extension().is_some_and(|found| found == "yaml"));
@@ -40,9 +46,10 @@ fn snapshot(name: &str, text: &str) {
 #[test]
 fn a_robot_that_is_no_crane_is_told_why() {
     let mut shown = BTreeSet::new();
-    for path in files("tests/bad_urdf") {
+    for path in files("tests/bad_robots") {
         let name = stem(&path);
-        let source = SourceFile::new(format!("{name}.urdf"), std::fs::read_to_string(&path).expect("a file"));
+        let file = path.file_name().expect("a name").to_string_lossy();
+        let source = SourceFile::new(&*file, std::fs::read_to_string(&path).expect("a file"));
         let fixed: &[String] = if name.starts_with("U013") { &["sholder".to_owned()] } else { &[] };
         let found = exchange::import(&source, fixed).expect_err(&name);
         snapshot(&name, &found.to_string());
@@ -59,7 +66,7 @@ fn a_robot_that_is_no_crane_is_told_why() {
 fn a_crane_comes_back_from_urdf() {
     for crane in shipped() {
         let urdf = exchange::urdf(&crane, &crane.parameter_defaults());
-        let spec = exchange::import(&SourceFile::new(format!("{}.urdf", crane.name), urdf), &[]).expect("a robot");
+        let spec = spec(&format!("{}.urdf", crane.name), &urdf);
         let back = chain(&SourceFile::new(&crane.name, spec));
         assert_eq!(back.coordinates.len(), crane.coordinates.len());
         for (old, new) in crane.coordinates.iter().zip(&back.coordinates) {
@@ -81,7 +88,7 @@ fn friction_of_a_robots_joint_is_that_of_the_crane() {
                 <link name='upper'><inertial><mass value='6'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
                 <joint name='shoulder' type='continuous'><parent link='base'/><child link='upper'/><axis xyz='0 0 1'/>\
                 <dynamics damping='0.5' friction='2.5'/></joint></robot>";
-    let spec = exchange::import(&SourceFile::new("arm.urdf", urdf), &[]).expect("a robot");
+    let spec = spec("arm.urdf", &urdf);
     let crane = chain(&SourceFile::new("arm", spec));
     let coulomb: Vec<f64> = crane.frictions().map(|(_, friction)| friction.coulomb.at(&[])).collect();
     assert_eq!(coulomb, [2.5]);
@@ -89,9 +96,9 @@ fn friction_of_a_robots_joint_is_that_of_the_crane() {
 
 #[test]
 fn a_joint_that_mimics_another_is_coupled_to_it() {
-    let urdf = std::fs::read_to_string("tests/bad_urdf/U010_mimic.urdf").expect("text");
+    let urdf = std::fs::read_to_string("tests/bad_robots/U010_mimic.urdf").expect("text");
     let urdf = urdf.replace("sholder\" multiplier=\"2\"", "shoulder\" multiplier=\"2\" offset=\"0.3\"");
-    let spec = exchange::import(&SourceFile::new("arm.urdf", urdf), &[]).expect("a robot");
+    let spec = spec("arm.urdf", &urdf);
     let crane = chain(&SourceFile::new("arm", spec));
     let [connector] = crane.connectors.as_slice() else { panic!("one coupling") };
     let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { panic!("{connector:?}") };
@@ -109,26 +116,119 @@ fn what_is_written_is_for_people_to_read() {
     snapshot("knuckle_boom.urdf", &urdf);
     snapshot("knuckle_boom.springs.yaml", &exchange::springs(planar, &planar.parameter_defaults()));
     snapshot("knuckle_boom.xml", &exchange::mjcf(planar, &planar.parameter_defaults()).expect("expressible"));
-    snapshot(
-        "knuckle_boom.yaml",
-        &exchange::import(&SourceFile::new("knuckle_boom.urdf", urdf), &[]).expect("a robot"),
-    );
+    snapshot("knuckle_boom.yaml", &spec("knuckle_boom.urdf", &urdf));
     // A live parameter is written as it is set.
     let heavy = exchange::urdf(rigid, &[800.0]);
     assert!(heavy.contains("load_mass = 800 kg") && heavy.contains("<mass value=\"1076\"/>"));
     snapshot("eight_link_rigid.xml", &exchange::mjcf(rigid, &rigid.parameter_defaults()).expect("expressible"));
 }
 
+/// A robot of an arm, with all that an import carries over.
+const ARM: &str = include_str!("robots/arm.xml");
+
+#[test]
+fn a_crane_comes_back_from_mjcf() {
+    let mut compared = 0;
+    for crane in shipped() {
+        let defaults = crane.parameter_defaults();
+        let Ok(mjcf) = exchange::mjcf(&crane, &defaults) else { continue };
+        let back = chain(&SourceFile::new(&crane.name, spec(&format!("{}.xml", crane.name), &mjcf)));
+        assert_eq!(back.coordinates.len(), crane.coordinates.len());
+        for (old, new) in crane.coordinates.iter().zip(&back.coordinates) {
+            assert_eq!((old.kind, old.axis), (new.kind, new.axis), "{}: {}", crane.name, old.name);
+        }
+        let mass = |chain: &Chain| -> f64 {
+            let defaults = chain.parameter_defaults();
+            chain.bodies.iter().filter_map(|body| Some(body.inertia.as_ref()?.mass.at(&defaults))).sum()
+        };
+        assert!((mass(&back) / mass(&crane) - 1.0).abs() < 1e-14, "{}", crane.name);
+        assert_eq!(back.points.len(), crane.points.len(), "{}", crane.name);
+        assert_eq!(back.rigid_drives().count(), crane.rigid_drives().count(), "{}", crane.name);
+        let apart = |(old, new): (&f64, &f64)| (old - new).abs();
+        assert!(crane.guess.iter().zip(&back.guess).map(apart).fold(0.0, f64::max) < 1e-14, "{}", crane.name);
+        compared += 1;
+    }
+    assert!(compared >= 5, "{compared} cranes can be written as MJCF");
+}
+
+#[test]
+fn an_arm_in_mjcf_is_a_crane() {
+    let imported = exchange::import(&SourceFile::new("arm.xml", ARM), &[]).expect("a robot");
+    snapshot("arm.yaml", &imported.spec);
+    insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "exchange", omit_expression => true }, {
+        insta::assert_snapshot!("arm.left_out", imported.left_out.join("\n"));
+    });
+    let crane = chain(&SourceFile::new("arm", imported.spec));
+    let names: Vec<&str> = crane.coordinates.iter().map(|coordinate| coordinate.name.as_str()).collect();
+    assert_eq!(names, ["upper_1_psi", "upper_theta", "fore_theta", "rod_z", "tool_phi"]);
+    let [friction] = crane.frictions().map(|(_, friction)| friction.coulomb.at(&[])).collect::<Vec<_>>()[..] else {
+        panic!("one joint rubs")
+    };
+    assert_eq!(friction, 1.5);
+    // Degrees of the file: the relaxed position of the shoulder, and where the elbow stands from the wrist's joint.
+    let [connector] = crane.connectors.as_slice() else { panic!("one coupling") };
+    let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { panic!("{connector:?}") };
+    assert_eq!(([coordinate.0, leader.0], ratio.at(&[])), ([3, 2], -0.25));
+    assert_eq!(crane.rigid_drives().count(), 1);
+    assert_eq!(crane.gravity.each_ref().map(|g| g.at(&[])), [0.0, 0.0, -3.7]);
+    assert_eq!(crane.guess[..4], [0.1, -0.2, 0.3, 0.05]);
+}
+
+/// Inertia of a body of the density of water about its centre, by sums over a grid of its shape.
+#[test]
+fn shapes_have_the_masses_of_solids() {
+    type Inside = fn([f64; 3]) -> bool;
+    let shapes: [(&str, Inside); 4] = [
+        ("type='ellipsoid' size='0.3 0.2 0.5'", |[x, y, z]| {
+            (x / 0.3).powi(2) + (y / 0.2).powi(2) + (z / 0.5).powi(2) <= 1.0
+        }),
+        ("type='box' size='0.3 0.2 0.5'", |[x, y, z]| x.abs() <= 0.3 && y.abs() <= 0.2 && z.abs() <= 0.5),
+        ("type='cylinder' size='0.3 0.5'", |[x, y, z]| x.hypot(y) <= 0.3 && z.abs() <= 0.5),
+        ("type='capsule' size='0.3 0.5'", |[x, y, z]| {
+            let beyond = (z.abs() - 0.5).max(0.0);
+            x * x + y * y + beyond * beyond <= 0.09
+        }),
+    ];
+    for (geom, inside) in shapes {
+        let mjcf = format!(
+            "<mujoco><worldbody><body name='a'><joint axis='1 0 0'/><geom {geom}/></body></worldbody></mujoco>"
+        );
+        let crane = chain(&SourceFile::new("a", spec("a.xml", &mjcf)));
+        let inertia = crane.bodies[0].inertia.as_ref().expect("a mass");
+        let step = 0.025;
+        let places = || (-34..34).map(|i| (f64::from(i) + 0.5) * step);
+        let (mut mass, mut second) = (0.0, [0.0; 3]);
+        for place in places().flat_map(|x| places().flat_map(move |y| places().map(move |z| [x, y, z]))) {
+            if inside(place) {
+                mass += 1000.0 * step * step * step;
+                for (sum, x) in second.iter_mut().zip(place) {
+                    *sum += 1000.0 * step * step * step * x * x;
+                }
+            }
+        }
+        // Cubes of 25 mm follow a surface of this size to about one per cent.
+        let close = |given: f64, found: f64| (given / found - 1.0).abs() < 0.02;
+        assert!(close(inertia.mass.at(&[]), mass), "{geom}: {} kg, {mass}", inertia.mass.at(&[]));
+        for k in 0..3 {
+            assert!(close(inertia.second[k].at(&[]), second[k]), "{geom}: {:?}, {second:?}", inertia.second);
+        }
+    }
+}
+
 #[test]
 fn any_bytes_get_an_answer() {
-    let urdf = std::fs::read_to_string(files("tests/bad_urdf").pop().expect("a file")).expect("text");
-    for (at, _) in urdf.char_indices() {
-        let cut = SourceFile::new(
-            "cut.urdf",
-            format!("{}{}", &urdf[..at], &urdf[at..].replacen(['"', '<', 'l', '0'], "é", 1)),
-        );
-        if let Ok(text) = exchange::import(&cut, &[]) {
-            let _ = compile::load(&SourceFile::new("cut.yaml", text));
+    // Of the longer file every 29th place.
+    for (file, every) in [("tests/bad_robots/U015_negative_mass.urdf", 1), ("tests/robots/arm.xml", 29)] {
+        any_bytes_of(&std::fs::read_to_string(file).expect("text"), every);
+    }
+}
+
+fn any_bytes_of(text: &str, every: usize) {
+    for (at, _) in text.char_indices().step_by(every) {
+        let cut =
+            SourceFile::new("cut", format!("{}{}", &text[..at], &text[at..].replacen(['"', '<', 'l', '0'], "é", 1)));
+        if let Ok(imported) = exchange::import(&cut, &[]) {
+            let _ = compile::load(&SourceFile::new("cut.yaml", imported.spec));
         }
     }
 }

@@ -3,8 +3,8 @@
     python exchange.py --crane target/release/crane --evaluate target/release/evaluate [--states 20] [--seed 1]
 
 Every compiled crane is exported as URDF, which Pinocchio reads, with its springs from the file beside it, and as MJCF, which
-MuJoCo reads, springs included. Robots of example-robot-data are imported from URDF and evaluated by the compiler's
-interpreter, against what Pinocchio reads of the same file.
+MuJoCo reads, springs included; both files are imported again. Robots of example-robot-data are imported from URDF and evaluated by the
+compiler's interpreter, against what Pinocchio reads of the same file, and random robots from MJCF, against MuJoCo.
 Exit code 0 if all agrees, 1 if something does not.
 """
 
@@ -25,6 +25,7 @@ from chain import TOOLS
 from comparison import HEADER, compare
 from crane_model import read_crane
 from evaluate import Evaluate
+from mjcf_import import random_robots_agree
 from mujoco_peer import MuJoCo
 from pinocchio_peer import Pinocchio
 from states import States
@@ -127,8 +128,11 @@ def main():
         ]
         cranes = [Exported(name, evaluate, Path(folder), options).agrees() for name in exact]
         robots = [robot_agrees(name, fixed, evaluate, Path(folder), options) for name, fixed in ROBOTS.items()]
-    print(f"{sum(cranes)} of {len(cranes)} cranes agree as exported, {sum(robots)} of {len(robots)} robots as imported")
-    return 0 if all(cranes + robots) and cranes else 1
+        converted = lambda path, spec: crane(options, "import", path, "-o", spec)
+        agreed, random = random_robots_agree(evaluate, Path(folder), options, converted, told)
+    print(f"{sum(cranes)} of {len(cranes)} cranes agree as exported, {sum(robots)} of {len(robots)} robots as imported from URDF")
+    print(f"{agreed} of {random} random robots agree as imported from MJCF")
+    return 0 if all(cranes + robots) and cranes and agreed == random else 1
 
 
 class Exported:
@@ -166,6 +170,7 @@ class Exported:
         if not expressible:
             said = any(words in written.stderr for words in (b"kinematics: linear", b"remove `one_sided`"))
             return passed and written.returncode == 1 and said
+        passed &= self.again(mjcf, springs, rotors=False)
         library = Mjcf(mjcf)
         forces = np.array([library.passive(q, v) for q, v in zip(self.states.q, self.states.v)])
         return self.compare(library, forces + efforts, applied=efforts) and passed
@@ -177,18 +182,20 @@ class Exported:
         comparisons.append(compare("forces", forces, self.ours["forces"], self.states.groups))
         return told(f"{self.name}, {type(library).__name__}", comparisons)
 
-    def again(self, urdf, springs):
-        """Compares A and e of the spec that comes of its own URDF file, which knows neither gravity nor rotors."""
+    def again(self, file, springs, rotors=True):
+        """Compares A and e of the spec that comes of its own file. URDF knows neither gravity nor `rotors`: both are added."""
         spec = self.folder / f"{self.name}_again.yaml"
-        crane(self.options, "import", urdf, "-o", spec)
-        with spec.open("a", encoding="utf-8") as text:
-            text.write(f"gravity: {list(springs.gravity)}\n")
+        crane(self.options, "import", file, "-o", spec)
+        if rotors:
+            with spec.open("a", encoding="utf-8") as text:
+                text.write(f"gravity: {list(springs.gravity)}\n")
         layout = self.evaluate.layout(str(spec))
         states = States(self.states.time, self.states.q, self.states.v, np.empty((len(self.states.time), 0)))
         again = self.evaluate.values(layout, states)
-        again["mass_matrix"] = again["mass_matrix"] + np.diag(springs.armature).ravel()
+        if rotors:
+            again["mass_matrix"] = again["mass_matrix"] + np.diag(springs.armature).ravel()
         comparisons = [compare(name, self.ours[name], again[name], states.groups) for name in ("mass_matrix", "bias")]
-        return told(f"{self.name}, spec of URDF", comparisons)
+        return told(f"{self.name}, spec of {file.suffix}", comparisons)
 
 
 def robot_agrees(name, fixed, evaluate, folder, options):

@@ -1,4 +1,4 @@
-//! Cranes in the languages of other programs: URDF and MJCF written, URDF read.
+//! Cranes in the languages of other programs: URDF and MJCF, written and read.
 //!
 //! URDF: <https://docs.ros.org/en/rolling/p/urdfdom_headers>; MJCF: <https://mujoco.readthedocs.io/en/stable/XMLreference.html>.
 //! Exported files have the coordinates of the crane: one joint of one degree of freedom per coordinate, with its name, in the
@@ -12,7 +12,7 @@ mod springs;
 mod urdf;
 pub mod xml;
 
-pub use import::{CATALOGUE, import};
+pub use import::{CATALOGUE, Imported, import};
 pub use mjcf::{Inexpressible, mjcf};
 pub use springs::springs;
 pub use urdf::urdf;

@@ -1,6 +1,6 @@
 //! Rotations in the form of other programs.
 
-use crate::chain::{Frame, Vector};
+use crate::chain::{Frame, Value, Vector};
 
 /// Roll, pitch and yaw of a frame, `Rz(yaw) Ry(pitch) Rx(roll)`, rad.
 ///
@@ -49,6 +49,46 @@ pub(super) fn along_z(direction: Vector) -> Frame {
     Frame { axes, origin: [0.0; 3] }
 }
 
+/// A frame rotated about an axis of length 1, rad.
+///
+/// Rodrigues' formula: `R = cos φ 1 + sin φ â + (1 − cos φ) a aᵀ`.
+pub(super) fn about(axis: Vector, angle: f64) -> Frame {
+    // Quarter turns are exact.
+    let (sin, cos) = Value::Constant(angle).sin_cos();
+    let (sin, cos) = (sin.at(&[]), cos.at(&[]));
+    let [x, y, z] = axis;
+    // Column j of â: a × e_j.
+    let across = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]];
+    let axes = [0, 1, 2].map(|j| {
+        [0, 1, 2].map(|i| {
+            let same = if i == j { cos } else { 0.0 };
+            same + sin * across[j][i] + (1.0 - cos) * axis[i] * axis[j]
+        })
+    });
+    Frame { axes, origin: [0.0; 3] }
+}
+
+/// The frame of a quaternion `(w, x, y, z)` of any length; `None` if that is zero.
+pub(super) fn from_quaternion(quaternion: [f64; 4]) -> Option<Frame> {
+    let size = quaternion.iter().map(|component| component * component).sum::<f64>().sqrt();
+    if size == 0.0 {
+        return None;
+    }
+    let [w, x, y, z] = quaternion.map(|component| component / size);
+    let axes = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
+        [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
+        [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ];
+    Some(Frame { axes: axes.map(|axis| axis.map(without_residue)), origin: [0.0; 3] })
+}
+
+/// An entry of a rotation without the rounding of quarter turns.
+fn without_residue(entry: f64) -> f64 {
+    let whole = entry.round();
+    if (entry - whole).abs() < 1e-15 { whole + 0.0 } else { entry }
+}
+
 /// Length of a vector.
 pub(super) fn length(vector: Vector) -> f64 {
     vector.iter().map(|component| component * component).sum::<f64>().sqrt()
@@ -76,17 +116,27 @@ mod tests {
             let frame = rotated(rpy);
             // Round-off of entries of order 1; quaternions are exact to the same.
             assert!(apart(&rotated(roll_pitch_yaw(&frame)), &frame) < 2e-15, "{rpy:?}");
-            let [w, x, y, z] = quaternion(&frame);
-            let from_quaternion = Frame {
-                axes: [
-                    [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
-                    [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
-                    [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
-                ],
-                origin: [0.0; 3],
-            };
-            assert!(apart(&from_quaternion, &frame) < 2e-15 && w >= 0.0, "{rpy:?}");
+            let written = quaternion(&frame);
+            let read = from_quaternion(written.map(|component| 3.0 * component)).expect("a length");
+            assert!(apart(&read, &frame) < 3e-15 && written[0] >= 0.0, "{rpy:?}");
         }
+    }
+
+    #[test]
+    fn a_rotation_about_an_axis() {
+        for (axis, index) in [(Axis::X, 0), (Axis::Y, 1), (Axis::Z, 2)] {
+            let mut direction = [0.0; 3];
+            direction[index] = 1.0;
+            for angle in [-2.0_f64, 0.3, FRAC_PI_2, PI] {
+                let frame = Frame::WORLD.rotated(axis, angle.sin(), angle.cos());
+                assert!(apart(&about(direction, angle), &frame) < 3e-16, "{axis:?} {angle}");
+            }
+        }
+        // The axis stays, and half the angle twice is the angle.
+        let axis = [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0];
+        let (half, whole) = (about(axis, 0.6), about(axis, 1.2));
+        assert!(apart(&half.outer(&half), &whole) < 1e-15);
+        assert!((0..3).all(|i| (whole.direction(axis)[i] - axis[i]).abs() < 1e-15));
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! `crane export` and `crane import`: cranes for other programs, and from them.
 
-use std::{io::Write, path::PathBuf};
+use std::{
+    io::{self, Write},
+    path::PathBuf,
+};
 
 use crane_codegen::{
     chain::{Bound, Chain, Refusal},
@@ -8,6 +11,7 @@ use crane_codegen::{
     compile::NoFunction,
     emit_c::{CCode, Precision},
     exchange,
+    exchange::Imported,
 };
 
 use crate::{
@@ -94,18 +98,28 @@ fn in_c(options: &Export, chain: &Chain, parameters: &[f64]) -> Outcome<CCode> {
     })
 }
 
-/// Writes a spec made from URDF, and checks it.
+/// Writes a spec made from URDF or MJCF, and checks it.
 pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
-    let source = own::open(&options.urdf, "give a URDF file")?;
-    let text = exchange::import(&source, &options.fixed).map_err(Problem::mistakes)?;
-    let Some(file) = &options.spec else { return Ok(out.write_all(text.as_bytes())?) };
-    files::write_text(file, &text)?;
+    let source = own::open(&options.robot, "give a URDF or MJCF file")?;
+    let Imported { spec, left_out } = exchange::import(&source, &options.fixed).map_err(Problem::mistakes)?;
+    let Some(file) = &options.spec else {
+        out.write_all(spec.as_bytes())?;
+        // Not into the spec. A reader of standard error that has gone misses it.
+        for said in &left_out {
+            let _ = writeln!(io::stderr(), "{said}");
+        }
+        return Ok(());
+    };
+    files::write_text(file, &spec)?;
     writeln!(out, "{} written", file.display())?;
     // What the robot's own numbers get wrong is to be mended there.
     let (Chain { name, bodies, coordinates, .. }, _) = own::load(file, false)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
     writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates; next: `crane run {file}`")?;
-    Ok(writeln!(out, "URDF has no springs and no drives: add `drives:` and `damping:` for joints that must not fall")?)
+    for said in &left_out {
+        writeln!(out, "{said}")?;
+    }
+    Ok(writeln!(out, "joints without `drives:` swing freely: add some where a joint must not fall")?)
 }
 
 /// A problem where values of live parameters break a rule of the spec language.

@@ -14,6 +14,8 @@ pub(super) struct SpecLink<'r> {
     /// Name of the robot's link, and of the joint that moves it.
     pub(super) was: &'r str,
     pub(super) joint: Option<&'r Joint>,
+    /// Joints without mass before it that are part of a free base, in order.
+    pub(super) before: Vec<&'r Joint>,
     /// In the frame of the link before.
     pub(super) placement: Frame,
     pub(super) motion: SpecMotion,
@@ -31,6 +33,13 @@ pub(super) enum SpecMotion {
     Prismatic(Axis),
     /// A base with these motions, in the order of the language.
     Free(Vec<(bool, Axis)>),
+}
+
+impl<'r> SpecLink<'r> {
+    /// Its joints with the names of their coordinates, in order.
+    pub(super) fn joints(&self) -> impl Iterator<Item = (&'r Joint, String)> {
+        self.before.iter().copied().chain(self.joint).zip(self.motion.coordinates(&self.name))
+    }
 }
 
 impl SpecMotion {
@@ -74,6 +83,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
             name: String::new(),
             was: &carrier.name,
             joint: group.joint.map(|(joint, _)| joint),
+            before: Vec::new(),
             placement,
             motion,
             bodies: Vec::new(),
@@ -115,6 +125,10 @@ fn free_base(links: &mut Vec<SpecLink>) {
     let mut motions: Vec<(bool, Axis)> = Vec::new();
     let mut place = 0;
     for (index, link) in links.iter().enumerate() {
+        // A free base has neither springs nor dampers of its own.
+        if !link.joint.is_some_and(Joint::is_plain) {
+            return;
+        }
         let motion = match link.motion {
             SpecMotion::Prismatic(axis) => (false, axis),
             SpecMotion::Revolute(axis) => (true, axis),
@@ -133,7 +147,8 @@ fn free_base(links: &mut Vec<SpecLink>) {
     // A single motion is an ordinary joint.
     if motions.len() > 1 && links.get(motions.len() - 1).is_some_and(|base| !base.bodies.is_empty()) {
         let placement = links[0].placement;
-        links.drain(..motions.len() - 1);
+        let before = links.drain(..motions.len() - 1).filter_map(|link| link.joint).collect();
+        links[0].before = before;
         links[0].placement = placement;
         links[0].motion = SpecMotion::Free(motions);
     }

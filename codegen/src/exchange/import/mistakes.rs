@@ -1,15 +1,15 @@
-//! The rules for a URDF file that can be converted to a crane.
+//! The rules for a file in URDF or MJCF that can be converted to a crane.
 
 use crate::diagnostic::catalogue;
 
 catalogue! {
     /// A file is XML.
     U001 not_xml(problem) "the file is not XML: {problem}", "reading stopped here", "check tags and quotes of this line";
-    /// The root of the file is `<robot>`, and macros are expanded.
-    U002 not_a_robot(found) "the file does not describe a robot: found <{found}>", "not an element of URDF",
-        "give a URDF file; convert a xacro file with `xacro robot.urdf.xacro > robot.urdf`";
-    /// Links and joints have what URDF requires of them.
-    U003 missing(owner, what) "{owner} lacks {what}", "{what} is missing here", "add {what}, as URDF requires";
+    /// The root of the file is `<robot>` (URDF) or `<mujoco>` (MJCF), and macros are expanded.
+    U002 not_a_robot(found) "the file does not describe a robot: found <{found}>", "an element of neither URDF nor MJCF",
+        "give a URDF or MJCF file; convert a xacro file with `xacro robot.urdf.xacro > robot.urdf`";
+    /// Links, bodies and joints have what their language requires of them.
+    U003 missing(owner, what) "{owner} lacks {what}", "{what} is missing here", "add {what}: URDF and MJCF require it";
     /// Numeric attributes have the right count of numbers.
     U004 wrong_numbers(place, given, expected) "{place} cannot be `{given}`", "not {expected}", "write {expected}, in SI units";
     /// Names of links and of joints are unique.
@@ -22,20 +22,40 @@ catalogue! {
     /// All links form one tree with one root.
     U008 not_a_tree(problem) "the links are not a tree: {problem}", "every link but the root is the child of one joint", "make every link but one the child of exactly one joint";
     /// Joints rotate about an axis, slide along it, or are fixed.
-    U009 unsupported(joint, kind) "joint `{joint}` is {kind}, which is not supported", "supported: revolute, continuous, prismatic, fixed",
+    U009 unsupported(joint, kind) "joint `{joint}` is {kind}, which is not supported", "supported: revolute, continuous, prismatic, fixed; hinge and slide in MJCF",
         "hold it at zero with `--fix {joint}`, or replace it by joints of one axis each; for a free base write `joint: free` in the spec";
     /// A joint follows another one that moves.
     U010 mimic(joint, leader) "joint `{joint}` follows joint `{leader}`, which does not move", "no moving joint of this name",
-        "hold it, too, with `--fix {joint}`, or remove `mimic`";
+        "hold it, too, with `--fix {joint}`, or remove `mimic` or the equality";
     /// Moving joints follow each other in a chain.
     U011 branches(link, first, second) "the chain branches after link `{link}`: joints `{first}` and `{second}` both move on it", "the second branch",
         "hold one of them at zero, with everything behind it: `--fix {second}` or `--fix {first}`";
     /// Something moves.
-    U012 nothing_moves() "nothing in the robot can move", "no revolute, continuous or prismatic joint", "leave a joint out of `--fix`";
+    U012 nothing_moves() "nothing in the robot can move", "no joint that rotates or slides", "leave a joint out of `--fix`";
     /// A joint to be held is in the file.
     U013 unknown_joint(name, help) "there is no joint `{name}` to hold", "`--fix {name}`", "{help}";
     /// An axis has a direction.
     U014 no_direction(joint) "the axis of joint `{joint}` has no direction", "its length is zero", "write a direction, such as `0 0 1`";
     /// A mass is not negative.
     U015 negative_mass(link, given) "the mass of link `{link}` is {given} kg", "below zero", "write the mass of the link, in kg";
+    /// A file in MJCF is complete: nothing in it is expanded or changed when MuJoCo loads it.
+    U016 to_expand(what) "{what} is not read", "MuJoCo replaces this when it loads the file",
+        "let MuJoCo write the complete file: `mujoco.mj_saveLastXML(\"complete.xml\", mujoco.MjModel.from_xml_path(\"robot.xml\"))`";
+    /// Bodies have an inertial frame, or shapes whose masses are known.
+    U017 unknown_mass(body, shape) "the mass of body `{body}` is not in the file", "the mass of a {shape} is known to MuJoCo alone",
+        "add `<inertial>` to the body: `mujoco.mj_saveLastXML` writes it; or give the shape `mass=\"0\"`";
+    /// Equalities hold joints or let them follow others.
+    U018 closed_loop(found) "the equality {found} is not supported", "it constrains bodies of an open chain",
+        "remove it, or write `active=\"false\"`; replace a cylinder by a drive of the joint that it moves";
+    /// A joint follows another one in proportion.
+    U019 not_linear(joint) "joint `{joint}` does not follow its leader in proportion", "powers of the leader's position are not supported",
+        "write `polycoef` with two numbers other than 0: offset and ratio";
+    /// An equality names a joint of the file.
+    U020 equality(joint) "an equality names joint `{joint}`, which is not in the file", "no such joint", "correct the name of the joint";
+    /// Classes of defaults are in the file.
+    U021 unknown_class(class, help) "there is no class `{class}` of defaults", "no <default> of this name", "{help}";
+    /// An orientation is written in one way.
+    U022 two_orientations(owner, both) "{owner} has {both}", "two orientations", "keep one of them";
+    /// An orientation has directions of some length that are not parallel.
+    U023 no_orientation(owner, key) "`{key}` of {owner} gives no orientation", "a direction has no length, or two are parallel", "write other numbers";
 }

@@ -1,32 +1,52 @@
-//! A robot described in URDF as a spec: `crane import`.
+//! A robot described in URDF or MJCF as a spec: `crane import`.
 //!
 //! ```text
-//! SourceFile ─robot::read→ Robot ─serial::chain→ groups of links ─links::links→ links of a spec ─yaml::write→ text
+//! SourceFile ─urdf::read, mjcf::read→ Robot ─serial::chain→ groups of links ─links::links→ links of a spec ─yaml::write→ text
 //! ```
 //!
 //! Links connected by fixed joints become one link of several bodies; massless frames at their ends become points. Joints
 //! keep their coordinates: if the axis of a joint is not x, y or z, the frame of the link is rotated so that it is.
 
+mod document;
 mod links;
 mod mistakes;
+mod mjcf;
 mod robot;
 mod serial;
+mod urdf;
 mod yaml;
 
 pub use mistakes::CATALOGUE;
 
 use crate::diagnostic::{Diagnostics, SourceFile};
 
-/// The spec of a robot, as commented YAML. `fixed`: joints that are held at zero.
+/// A robot as a spec.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Imported {
+    /// The spec, commented YAML.
+    pub spec: String,
+    /// What the robot has and the spec has not, one sentence each.
+    pub left_out: Vec<String>,
+}
+
+/// The spec of a robot in URDF or MJCF; the root of the file says which. `fixed`: joints that are held at zero.
 ///
 /// Masses and inertias are passed on unchanged; the validation of the spec checks them.
 ///
 /// # Errors
 /// Mistakes in the file, and structures that cannot be a crane: branches, and joints that are neither fixed nor about or along
 /// one axis.
-pub fn import(source: &SourceFile, fixed: &[String]) -> Result<String, Diagnostics> {
+pub fn import(source: &SourceFile, fixed: &[String]) -> Result<Imported, Diagnostics> {
     let told = |mistakes| Diagnostics::new(source, mistakes);
-    let robot = robot::read(source).map_err(told)?;
+    let document = document::parse(source).map_err(told)?;
+    let root = document.root_element();
+    let robot = match root.tag_name().name() {
+        "robot" => urdf::read(root),
+        "mujoco" => mjcf::read(root),
+        _ => Err(vec![mistakes::rule::not_a_robot(document::tag(root), document::name_of(root))]),
+    };
+    let robot = robot.map_err(told)?;
     let groups = serial::chain(&robot, fixed).map_err(told)?;
-    Ok(yaml::write(&robot, &links::links(&groups), source))
+    let spec = yaml::write(&robot, &links::links(&groups), source);
+    Ok(Imported { spec, left_out: robot.left_out })
 }

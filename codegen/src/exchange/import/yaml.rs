@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::links::{SpecLink, SpecMotion, identifier};
-use super::robot::{Follows, Joint, Motion, Robot};
+use super::robot::{Follows, Joint, Motion, Robot, Spring};
 use crate::chain::{Axis, Frame, Vector};
 use crate::diagnostic::{SourceFile, printable};
 use crate::exchange::mass::{Lump, clean, without_rounding};
@@ -24,32 +24,23 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
         text += &link_text(link);
     }
 
-    let damped: Vec<(String, f64)> = links
-        .iter()
-        .filter_map(|link| link.joint.filter(|joint| joint.damping > 0.0).map(|joint| (link, joint.damping)))
-        .flat_map(|(link, damping)| link.motion.coordinates(&link.name).into_iter().map(move |name| (name, damping)))
-        .collect();
-    if !damped.is_empty() {
-        text += "damping:                        # N m s/rad, N s/m; omit joints with a drive\n";
-        for (name, damping) in damped {
-            let _ = writeln!(text, "  {name}: {}", decimal(damping));
-        }
-        text.push('\n');
+    if let Some(gravity) = robot.gravity {
+        let _ = writeln!(text, "gravity: {}               # m/s²\n", list(gravity));
     }
-    // A joint of several coordinates has one number for friction that acts on none of them alone.
-    let rubbing = links.iter().filter_map(|link| {
-        let coulomb = link.joint.map(|joint| joint.friction).filter(|friction| *friction > 0.0)?;
-        let coordinates = link.motion.coordinates(&link.name);
-        (coordinates.len() == 1).then(|| coordinates.into_iter().map(move |name| (name, coulomb)))
-    });
-    let rubbing: Vec<(String, f64)> = rubbing.flatten().collect();
-    if !rubbing.is_empty() {
-        text += "friction:                       # N m, N\n";
-        for (name, coulomb) in rubbing {
-            let _ = writeln!(text, "  {name}: {{coulomb: {}}}", decimal(coulomb));
-        }
-        text.push('\n');
-    }
+    let joints = || links.iter().flat_map(SpecLink::joints);
+    let drives: Vec<String> = joints().filter_map(|(joint, name)| drive(joint, &name)).collect();
+    text += &section("drives", "springs of joints, and joints that stand still", &drives);
+    let undriven = || joints().filter(|(joint, _)| joint.spring.is_none() && joint.held.is_none());
+    let numbers = |given: &dyn Fn(&Joint) -> f64| -> Vec<String> {
+        let found = undriven().map(|(joint, name)| (name, given(joint))).filter(|(_, number)| *number != 0.0);
+        found.map(|(name, number)| format!("{name}: {}", decimal(number))).collect()
+    };
+    text += &section("damping", "N m s/rad, N s/m; omit joints with a drive", &numbers(&|joint| joint.damping));
+    text += &section("armature", "rotors, kg m², kg", &numbers(&|joint| joint.armature));
+    let rubbing = joints().filter(|(joint, _)| joint.friction > 0.0);
+    let rubbing: Vec<String> =
+        rubbing.map(|(joint, name)| format!("{name}: {{coulomb: {}}}", decimal(joint.friction))).collect();
+    text += &section("friction", "N m, N", &rubbing);
     text += &couplings(links);
     let points: Vec<_> = links.iter().flat_map(|link| link.points.iter().map(move |point| (link, point))).collect();
     if !points.is_empty() {
@@ -59,15 +50,42 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
         }
         text.push('\n');
     }
-    if let Some(name) = links.iter().find_map(|link| link.motion.coordinates(&link.name).into_iter().next()) {
+    let free = joints().filter(|(joint, _)| joint.held.is_none());
+    let starts = free.filter_map(|(joint, name)| Some(format!("{name}: {}", decimal(joint.start?))));
+    text += &section("guess", "the start, rad, m", &starts.collect::<Vec<_>>());
+    if let (true, Some((_, name))) = (drives.is_empty(), joints().next()) {
         let _ = write!(
             text,
-            "# URDF knows no drives: every joint swings freely. A spring and a damper hold or move one:\n\
+            "# {} A spring and a damper hold or move one:\n\
              # drives:\n\
-             #   - {{coordinate: {name}, stiffness: 1e6, damping: 1e4, motion: {{quintic: {{from: 0, to: 0.5, duration: 2}}}}}}\n"
+             #   - {{coordinate: {name}, stiffness: 1e6, damping: 1e4, motion: {{quintic: {{from: 0, to: 0.5, duration: 2}}}}}}\n",
+            robot.no_drives
         );
     }
     text
+}
+
+/// A key with a comment and lines of its own; nothing if there are none.
+fn section(key: &str, comment: &str, lines: &[String]) -> String {
+    if lines.is_empty() {
+        return String::new();
+    }
+    format!("{:<31} # {comment}\n  {}\n\n", format!("{key}:"), lines.join("\n  "))
+}
+
+/// The spring of a joint as a drive that holds it where the spring is relaxed; a joint that stands still as a rigid drive.
+fn drive(joint: &Joint, coordinate: &str) -> Option<String> {
+    let rotor = if joint.armature == 0.0 { String::new() } else { format!(", armature: {}", decimal(joint.armature)) };
+    let law = match (&joint.spring, joint.held) {
+        (_, Some(held)) => format!("rigid: true, motion: {{hold: {}}}", decimal(held)),
+        (Some(Spring { stiffness, rest }), None) => {
+            let damping =
+                if joint.damping == 0.0 { String::new() } else { format!(", damping: {}", decimal(joint.damping)) };
+            format!("stiffness: {}{damping}, motion: {{hold: {}}}", decimal(*stiffness), decimal(*rest))
+        }
+        (None, None) => return None,
+    };
+    Some(format!("- {{coordinate: {coordinate}, {law}{rotor}}}"))
 }
 
 /// Joints that follow others.
@@ -91,7 +109,7 @@ fn couplings(links: &[SpecLink]) -> String {
     if text.is_empty() {
         return text;
     }
-    let comment = "couplings:                      # joints that mimic others; URDF gives no stiffness and damping: these are guesses\n";
+    let comment = "couplings:                      # joints that follow others; the file gives no stiffness and damping: these are guesses\n";
     [comment, &text, "\n"].concat()
 }
 

@@ -55,9 +55,9 @@ pub struct Export {
 /// A spec from another program's file.
 #[derive(Debug, Args)]
 pub struct Import {
-    /// URDF file
+    /// URDF or MJCF file
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub urdf: PathBuf,
+    pub robot: PathBuf,
     /// Spec to write [default: standard output]
     #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub spec: Option<PathBuf>,

@@ -44,7 +44,7 @@ Examples:
   crane new my-crane --from cantilever a Rust crate that compiles your own crane
   crane export my.yaml --format urdf -o my.urdf
                                        the crane for other programs, with its springs in my.springs.yaml
-  crane import robot.urdf -o my.yaml   convert a URDF robot to a spec
+  crane import robot.urdf -o my.yaml   convert a robot in URDF or MJCF to a spec
   crane list                           the shipped cranes
   crane info                           coordinates, parameters, drives of a crane
   source <(crane completions bash)     completion of commands, options, cranes and the names of their parts

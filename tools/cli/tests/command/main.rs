@@ -124,11 +124,19 @@ fn a_crane_goes_to_other_programs_and_comes_back() {
     );
     let output = crane(&["import", &urdf, "-o", &spec]);
     assert!(text(&output.stdout).contains("knuckle_boom: valid; 4 bodies, 4 coordinates"), "{}", text(&output.stderr));
-    let output = crane(&["import", &mjcf]);
+    let again = file("again.yaml");
+    let output = crane(&["import", &mjcf, "-o", &again]);
+    assert!(text(&output.stdout).contains("knuckle_boom: valid; 4 bodies, 4 coordinates"), "{}", text(&output.stdout));
+    assert!(fs::read_to_string(&again).expect("a spec").contains("stiffness: 4000000"));
+    // To standard output goes the spec alone.
+    let output = crane(&["import", "../../codegen/tests/robots/arm.xml"]);
+    assert!(text(&output.stdout).starts_with("# The robot arm") && !text(&output.stdout).contains("left out"));
+    assert!(text(&output.stderr).contains("2 actuators are left out."), "{}", text(&output.stderr));
+    let output = crane(&["import", &spec, "-o", &file("nothing.yaml")]);
     assert!(
-        text(&output.stderr).contains("error[U002]") && output.status.code() == Some(1) && output.stdout.is_empty()
+        text(&output.stderr).contains("error[U001]") && output.status.code() == Some(1) && output.stdout.is_empty()
     );
-    assert_eq!(fs::read_dir(&out).expect("a folder").count(), 4, "nothing half-written is left behind");
+    assert_eq!(fs::read_dir(&out).expect("a folder").count(), 5, "nothing half-written is left behind");
     refused(
         &["export", "knuckle_boom", "--format", "c", "--input", "pull=3"],
         &["`--input`", "where the exported crane runs"],

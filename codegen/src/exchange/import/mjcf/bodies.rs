@@ -1,0 +1,234 @@
+//! Bodies and their joints, as links and joints.
+//!
+//! Of several joints of a body, all but the last one get a link without mass. The link of a joint has its origin at the joint's anchor, and
+//! its joint is at zero where `MuJoCo`'s is, so that a joint moves the body from its `ref`: `T = P T(p) M(−ref) M(q) T(−p)`.
+
+use roxmltree::Node;
+
+use super::geoms::together;
+use super::pose::unit;
+use super::{File, Inertia};
+use crate::chain::{Frame, Vector};
+use crate::exchange::import::document::{name_of, tag, value_span};
+use crate::exchange::import::mistakes::rule;
+use crate::exchange::import::robot::{Joint, Link, Motion, Named, Spring};
+use crate::exchange::mass::Lump;
+use crate::exchange::rotation::about;
+
+/// The link that carries everything.
+const WORLD: &str = "world";
+/// Elements that move a body.
+const JOINTS: [&str; 2] = ["joint", "freejoint"];
+/// `MuJoCo` refuses moving bodies without mass: what has less than this, kg, has none.
+const LEAST_MASS: f64 = 1e-12;
+
+/// An element in a body, and what it inherits from the elements around it.
+pub(super) struct Placed<'a, 'i> {
+    pub(super) node: Node<'a, 'i>,
+    /// Pose in the frame of the body of the `<frame>` elements around it.
+    pub(super) frame: Frame,
+    pub(super) class: Option<&'a str>,
+}
+
+/// A body that is still to be read.
+struct Open<'a, 'i> {
+    body: Placed<'a, 'i>,
+    /// Its link's parent, and the pose of the body in its frame.
+    parent: String,
+    /// Whether no joint is between it and the world.
+    stands: bool,
+}
+
+impl<'a, 'i> File<'a, 'i> {
+    /// Everything in the world.
+    pub(super) fn world(&mut self, world: Node<'a, 'i>) {
+        if self.robot.links.is_empty() {
+            self.robot.links.push(Link { name: WORLD.to_owned(), span: tag(world), lump: None });
+        }
+        let mut open = Vec::new();
+        let inside = self.elements(world, world.attribute("childclass"));
+        self.contents(inside, &Frame::WORLD, (WORLD, true), &mut open);
+        let mut count = 0;
+        while let Some(next) = open.pop() {
+            count += 1;
+            self.body(next, count, &mut open);
+        }
+    }
+
+    /// A body with its joints; the bodies in it are opened.
+    fn body(&mut self, Open { body, parent, stands }: Open<'a, 'i>, count: usize, open: &mut Vec<Open<'a, 'i>>) {
+        let node = body.node;
+        let named = node.attribute_node("name");
+        let name = named.map_or_else(|| format!("body_{count}"), |name| name.value().to_owned());
+        let span = named.map_or_else(|| tag(node), value_span);
+        let owner = format!("body `{name}`");
+        let class = node.attribute("childclass").or(body.class);
+        let inside = self.elements(node, class);
+        let placement = body.frame.outer(&self.pose(node, None, &owner));
+        let joints: Vec<&Placed> = inside.iter().filter(|inner| JOINTS.contains(&name_of(inner.node))).collect();
+        if node.attribute("gravcomp").is_some_and(|given| given.parse() != Ok(0.0)) {
+            self.robot.left_out.push(format!("Gravity compensation of body `{name}` is left out: gravity acts on it."));
+        }
+
+        let mut carrier = parent;
+        // Pose of the body in the link before the next joint, and in its own link.
+        let mut here = placement;
+        let mut within = Frame::WORLD;
+        for (index, joint) in joints.iter().enumerate() {
+            let last = index + 1 == joints.len();
+            let link = if last { name.clone() } else { format!("{name}_{}", index + 1) };
+            let ends = [&carrier, &link].map(|end| Named { name: end.clone(), span });
+            let (read, at) = self.joint(joint, (&name, index), ends, &here);
+            self.robot.joints.push(read);
+            if !last {
+                self.robot.links.push(Link { name: link.clone(), span, lump: None });
+            }
+            carrier = link;
+            within = Frame { origin: at.map(|x| -x), ..Frame::WORLD };
+            here = within;
+        }
+        if joints.is_empty() {
+            let ends = [&carrier, &name].map(|end| Named { name: end.clone(), span });
+            // Not a name that `--fix` could mean.
+            let fixed = Joint::new(&format!("{name} is fixed"), span, Motion::Fixed, ends);
+            self.robot.joints.push(Joint { placement, ..fixed });
+        }
+        let stands = stands && joints.is_empty();
+        let lump = self.lump(&inside, &name, stands);
+        let lump = lump.filter(|lump| lump.mass > LEAST_MASS).map(|lump| lump.seen_through(&within));
+        self.robot.links.push(Link { name: name.clone(), span, lump });
+        self.contents(inside, &within, (&name, stands), open);
+    }
+
+    /// Elements of a body or of the world, also those in `<frame>` elements.
+    fn elements(&mut self, node: Node<'a, 'i>, class: Option<&'a str>) -> Vec<Placed<'a, 'i>> {
+        let children = |of: Node<'a, 'i>| of.children().filter(Node::is_element).rev();
+        let placed = |frame, class| move |node| Placed { node, frame, class };
+        let mut open: Vec<Placed> = children(node).map(placed(Frame::WORLD, class)).collect();
+        let mut found = Vec::new();
+        while let Some(next) = open.pop() {
+            if name_of(next.node) == "frame" {
+                let frame = next.frame.outer(&self.pose(next.node, None, "a frame"));
+                let class = next.node.attribute("childclass").or(next.class);
+                open.extend(children(next.node).map(placed(frame, class)));
+            } else {
+                found.push(next);
+            }
+        }
+        found
+    }
+
+    /// Sites among the elements of a link as frames without mass, and the bodies among them. `within`: pose of the elements in the link.
+    fn contents(
+        &mut self,
+        inside: Vec<Placed<'a, 'i>>,
+        within: &Frame,
+        (link, stands): (&str, bool),
+        open: &mut Vec<Open<'a, 'i>>,
+    ) {
+        // The first body is on top of the stack.
+        for inner in inside.into_iter().rev() {
+            let placed = Placed { frame: within.outer(&inner.frame), ..inner };
+            match name_of(placed.node) {
+                "body" => open.push(Open { body: placed, parent: link.to_owned(), stands }),
+                "site" => self.site(&placed, link),
+                _ => {}
+            }
+        }
+    }
+
+    fn site(&mut self, site: &Placed<'a, 'i>, link: &str) {
+        let Some(name) = site.node.attribute_node("name") else { return };
+        let span = value_span(name);
+        // A body may have the same name.
+        let taken = self.robot.links.iter().any(|link| link.name == name.value());
+        let own = if taken { format!("{}_site", name.value()) } else { name.value().to_owned() };
+        let placement = site.frame.outer(&self.pose(site.node, site.class, &format!("site `{}`", name.value())));
+        let ends = [link, &own].map(|end| Named { name: end.to_owned(), span });
+        let joint = Joint::new(&format!("{own} is a site"), span, Motion::Fixed, ends);
+        self.robot.joints.push(Joint { placement, ..joint });
+        self.robot.links.push(Link { name: own, span, lump: None });
+    }
+
+    /// A joint, and its anchor in the frame of its body. `here`: pose of the body, as far as earlier joints moved it, in the link before.
+    fn joint(
+        &mut self,
+        joint: &Placed<'a, 'i>,
+        (body, index): (&str, usize),
+        ends: [Named; 2],
+        here: &Frame,
+    ) -> (Joint, Vector) {
+        let &Placed { node, ref frame, class } = joint;
+        let named = node.attribute_node("name");
+        let unnamed = || if index == 0 { format!("{body}_joint") } else { format!("{body}_joint_{}", index + 1) };
+        let name = named.map_or_else(unnamed, |name| name.value().to_owned());
+        let span = named.map_or_else(|| tag(node), value_span);
+        let owner = format!("joint `{name}`");
+        let kind = if name_of(node) == "freejoint" {
+            "free"
+        } else {
+            self.classes.text(node, class, "type").unwrap_or("hinge")
+        };
+        let motion = match kind {
+            "hinge" => Motion::Revolute,
+            "slide" => Motion::Prismatic,
+            other => Motion::Other(Named { name: other.to_owned(), span }),
+        };
+        let turns = matches!(motion, Motion::Revolute);
+        // Angles of the file in rad.
+        let angle = if turns { self.angles.unit } else { 1.0 };
+        let direction = self.numbers(node, class, "axis", &owner).unwrap_or([0.0, 0.0, 1.0]);
+        let axis = unit(direction).unwrap_or_else(|| {
+            self.reader.mistakes.push(rule::no_direction(tag(node), &name));
+            direction
+        });
+        let axis = frame.direction(axis);
+        let anchor = frame.transform_point(self.numbers(node, class, "pos", &owner).unwrap_or([0.0; 3]));
+        let mut number = |key| self.number(node, class, key, &owner).unwrap_or(0.0);
+        let [stiffness, damping, friction, armature] =
+            ["stiffness", "damping", "frictionloss", "armature"].map(&mut number);
+        let [reference, rest] = ["ref", "springref"].map(|key| number(key) * angle);
+        let limited = self.classes.text(node, class, "limited") != Some("false");
+        let range = self.numbers::<2>(node, class, "range", &owner).filter(|_| limited);
+        if self.classes.find(node, class, "springdamper").is_some() {
+            self.reader.mistakes.push(rule::to_expand(tag(node), format!("`springdamper` of joint `{name}`")));
+        }
+        let back = if turns {
+            about(axis, -reference)
+        } else {
+            Frame { origin: axis.map(|component| -reference * component), ..Frame::WORLD }
+        };
+        let placement = here.outer(&Frame { origin: anchor, ..Frame::WORLD }).outer(&back);
+        let spring = (stiffness != 0.0).then_some(Spring { stiffness, rest });
+        let limits = range.filter(|[lower, upper]| lower < upper).map(|range| range.map(|limit| limit * angle));
+        let plain = Joint::new(&name, span, motion, ends);
+        (Joint { placement, axis, limits, damping, friction, spring, armature, reference, ..plain }, anchor)
+    }
+
+    /// The mass of a body: its inertial frame, or its shapes.
+    fn lump(&mut self, inside: &[Placed<'a, 'i>], name: &str, stands: bool) -> Option<Lump> {
+        let owner = format!("the mass of body `{name}`");
+        let inertial = inside.iter().find(|inner| name_of(inner.node) == "inertial");
+        match (inertial, self.inertia) {
+            (Some(&Placed { node, ref frame, .. }), Inertia::Missing | Inertia::Never) => {
+                let placement = frame.outer(&self.pose(node, None, &owner));
+                let [mass] = self.reader.numbers(node, "mass", &owner)?;
+                if mass < 0.0 {
+                    self.reader.mistakes.push(rule::negative_mass(tag(node), name, mass));
+                }
+                let full = self.numbers(node, None, "fullinertia", &owner);
+                let tensor = full.unwrap_or_else(|| {
+                    let [xx, yy, zz] = self.numbers(node, None, "diaginertia", &owner).unwrap_or([0.0; 3]);
+                    [xx, yy, zz, 0.0, 0.0, 0.0]
+                });
+                Some(Lump { mass, com: [0.0; 3], tensor }.seen_through(&placement))
+            }
+            (_, Inertia::Never) => None,
+            _ => {
+                let shapes = inside.iter().filter(|inner| name_of(inner.node) == "geom");
+                let lumps: Vec<Lump> = shapes.filter_map(|shape| self.shape(shape, name, stands)).collect();
+                together(&lumps)
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Masses of bodies from their shapes.
+//!
+//! Inertias of solid shapes about their centres: any book on mechanics; of a capsule, a cylinder and two halves of a ball.
+
+use std::f64::consts::PI;
+
+use super::File;
+use super::bodies::Placed;
+use crate::chain::{Frame, Vector};
+use crate::exchange::import::document::tag;
+use crate::exchange::import::mistakes::rule;
+use crate::exchange::mass::Lump;
+use crate::exchange::rotation::{along_z, length};
+
+/// Density of a shape that has neither density nor mass, kg/m³.
+const WATER: f64 = 1000.0;
+/// Shapes without mass: the ground.
+const MASSLESS: [&str; 2] = ["plane", "hfield"];
+
+impl<'a, 'i> File<'a, 'i> {
+    /// A shape in the frame of its body; `None` if it has no mass. `stands`: what stands still may have any mass.
+    pub(super) fn shape(&mut self, shape: &Placed<'a, 'i>, body: &str, stands: bool) -> Option<Lump> {
+        let &Placed { node, ref frame, class } = shape;
+        let owner = format!("a geom of body `{body}`");
+        let mass = self.number(node, class, "mass", &owner);
+        let density = self.number(node, class, "density", &owner).unwrap_or(WATER);
+        let kind = self.classes.text(node, class, "type").unwrap_or("sphere");
+        let mesh = self.classes.text(node, class, "mesh").is_some();
+        if stands || mass.unwrap_or(density) == 0.0 || MASSLESS.contains(&kind) {
+            return None;
+        }
+        let size = match self.classes.find(node, class, "size") {
+            Some(given) => self.reader.some_numbers(given, &format!("`size` of {owner}"))?,
+            None => Vec::new(),
+        };
+        let ends = self.numbers::<6>(node, class, "fromto", &owner);
+        let shell = self.classes.text(node, class, "shellinertia") == Some("true");
+        let solid = if mesh || shell { None } else { Solid::new(kind, &size, ends) };
+        let Some(solid) = solid else {
+            let what = if mesh { "mesh" } else { kind };
+            self.reader.mistakes.push(rule::unknown_mass(tag(node), body, what));
+            return None;
+        };
+        let placement = match ends {
+            Some([a, b, c, d, e, f]) => {
+                let middle = [a + d, b + e, c + f].map(|sum| 0.5 * sum);
+                Frame { origin: middle, ..along_z([d - a, e - b, f - c]) }
+            }
+            None => self.pose(node, class, &owner),
+        };
+        let mass = mass.unwrap_or_else(|| density * solid.volume());
+        let [xx, yy, zz] = solid.radii_of_gyration().map(|square| mass * square);
+        Some(Lump { mass, com: [0.0; 3], tensor: [xx, yy, zz, 0.0, 0.0, 0.0] }.seen_through(&frame.outer(&placement)))
+    }
+}
+
+/// A solid about its centre, z along its axis.
+enum Solid {
+    /// By its three half axes, m.
+    Ellipsoid(Vector),
+    /// By half its sides, m.
+    Block(Vector),
+    /// By radius and half its length, m.
+    Cylinder(f64, f64),
+    /// By its radius and half the length between the centres of its ends, m.
+    Capsule(f64, f64),
+}
+
+impl Solid {
+    /// A solid of the language; `None` if its mass is not known.
+    fn new(kind: &str, size: &[f64], ends: Option<[f64; 6]>) -> Option<Self> {
+        let along = ends.map(|[a, b, c, d, e, f]| 0.5 * length([d - a, e - b, f - c]));
+        let radius = *size.first()?;
+        // Between two points, the first size is that across.
+        let half_length = || along.or_else(|| size.get(1).copied());
+        let half_sides = || match along {
+            Some(along) => Some([radius, radius, along]),
+            None => <Vector>::try_from(size.get(..3)?).ok(),
+        };
+        let solid = match kind {
+            "sphere" => Solid::Ellipsoid([radius; 3]),
+            "ellipsoid" => Solid::Ellipsoid(half_sides()?),
+            "box" => Solid::Block(half_sides()?),
+            "cylinder" => Solid::Cylinder(radius, half_length()?),
+            "capsule" => Solid::Capsule(radius, half_length()?),
+            _ => return None,
+        };
+        Some(solid)
+    }
+
+    /// m³.
+    fn volume(&self) -> f64 {
+        match *self {
+            Solid::Ellipsoid([a, b, c]) => 4.0 / 3.0 * PI * a * b * c,
+            Solid::Block([a, b, c]) => 8.0 * a * b * c,
+            Solid::Cylinder(r, h) => PI * r * r * 2.0 * h,
+            Solid::Capsule(r, h) => PI * r * r * (2.0 * h + 4.0 / 3.0 * r),
+        }
+    }
+
+    /// Squares of the radii of gyration about x, y, z, m².
+    fn radii_of_gyration(&self) -> Vector {
+        let of_three =
+            |[a, b, c]: Vector, share: f64| [b * b + c * c, a * a + c * c, a * a + b * b].map(|sum| share * sum);
+        match *self {
+            Solid::Ellipsoid(axes) => of_three(axes, 1.0 / 5.0),
+            Solid::Block(sides) => of_three(sides, 1.0 / 3.0),
+            Solid::Cylinder(r, h) => {
+                let across = 0.25 * r * r + h * h / 3.0;
+                [across, across, 0.5 * r * r]
+            }
+            Solid::Capsule(r, h) => {
+                // Parts of the volume.
+                let ball = 4.0 / 3.0 * r / (2.0 * h + 4.0 / 3.0 * r);
+                let cylinder = 1.0 - ball;
+                let along = cylinder * 0.5 * r * r + ball * 0.4 * r * r;
+                // The centre of a half ball is 3/8 of its radius beyond the end of the cylinder.
+                let across = cylinder * (0.25 * r * r + h * h / 3.0) + ball * (0.4 * r * r + h * h + 0.75 * h * r);
+                [across, across, along]
+            }
+        }
+    }
+}
+
+/// Masses that move together, as one.
+pub(super) fn together(lumps: &[Lump]) -> Option<Lump> {
+    let mass: f64 = lumps.iter().map(|lump| lump.mass).sum();
+    if mass <= 0.0 {
+        return None;
+    }
+    let com = [0, 1, 2].map(|i| lumps.iter().map(|lump| lump.mass * lump.com[i]).sum::<f64>() / mass);
+    let mut tensor = [0.0; 6];
+    for lump in lumps {
+        let [x, y, z] = [0, 1, 2].map(|i| lump.com[i] - com[i]);
+        let shifted = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z];
+        for (sum, (own, shift)) in tensor.iter_mut().zip(lump.tensor.iter().zip(shifted)) {
+            *sum += own + lump.mass * shift;
+        }
+    }
+    Some(Lump { mass, com, tensor })
+}

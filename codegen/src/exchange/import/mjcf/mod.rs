@@ -1,0 +1,124 @@
+//! A robot in MJCF, the language of `MuJoCo`.
+//!
+//! | here | what |
+//! |---|---|
+//! | `bodies` | bodies and their joints, as links and joints |
+//! | `classes` | attributes with the defaults of their classes |
+//! | `pose` | positions and the five ways to write an orientation |
+//! | `geoms` | masses of bodies from their shapes |
+//! | `others` | gravity, equalities, key frames; what a spec does not have |
+
+mod bodies;
+mod classes;
+mod geoms;
+mod others;
+mod pose;
+
+use roxmltree::Node;
+
+use super::document::{Reader, name_of, tag};
+use super::mistakes::rule;
+use super::robot::Robot;
+use crate::diagnostic::Mistake;
+
+use classes::Classes;
+use pose::Angles;
+
+/// Elements that `MuJoCo` expands to others when it loads a file.
+const EXPANDED: [&str; 6] = ["include", "composite", "flexcomp", "replicate", "attach", "model"];
+/// Settings of the compiler that change masses, and the values with which they do not.
+const OF_MASSES: [(&str, &str); 5] = [
+    ("boundmass", "0"),
+    ("boundinertia", "0"),
+    ("settotalmass", "-1"),
+    ("balanceinertia", "false"),
+    ("inertiagrouprange", "0 5"),
+];
+
+/// Reads a file by its root; returns what could be read, and all mistakes.
+pub(super) fn read(root: Node) -> Result<Robot, Vec<Mistake>> {
+    let mut file = File {
+        reader: Reader::default(),
+        classes: Classes::default(),
+        angles: Angles::default(),
+        inertia: Inertia::Missing,
+        robot: Robot {
+            name: root.attribute("model").unwrap_or("robot").to_owned(),
+            links: Vec::new(),
+            joints: Vec::new(),
+            gravity: None,
+            left_out: Vec::new(),
+            no_drives: "Actuators are not carried over: every joint swings freely.",
+        },
+    };
+    for node in root.descendants().filter(|node| EXPANDED.contains(&node.tag_name().name())) {
+        file.reader.mistakes.push(rule::to_expand(tag(node), format!("<{}>", name_of(node))));
+    }
+    let sections = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
+    sections("compiler").for_each(|node| file.compiler(node));
+    file.classes = Classes::read(root, &mut file.reader);
+    sections("worldbody").for_each(|node| file.world(node));
+    file.others(root);
+    if file.reader.mistakes.is_empty() { Ok(file.robot) } else { Err(file.reader.mistakes) }
+}
+
+/// Which bodies have the masses of their shapes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Inertia {
+    /// Those without an inertial frame.
+    Missing,
+    /// All.
+    Always,
+    /// None.
+    Never,
+}
+
+/// A file as far as it was read.
+struct File<'a, 'i> {
+    reader: Reader,
+    classes: Classes<'a, 'i>,
+    angles: Angles,
+    inertia: Inertia,
+    robot: Robot,
+}
+
+impl File<'_, '_> {
+    /// `<compiler>`: how numbers are meant.
+    fn compiler(&mut self, node: Node) {
+        for (key, harmless) in OF_MASSES {
+            let given = node.attribute(key).map(|given| given.split_whitespace().collect::<Vec<_>>().join(" "));
+            let number = |text: &str| text.parse::<f64>().ok();
+            let same = |given: &str| given == harmless || number(given).is_some_and(|n| Some(n) == number(harmless));
+            if given.is_some_and(|given| !same(&given)) {
+                self.reader.mistakes.push(rule::to_expand(tag(node), format!("`{key}` of <compiler>")));
+            }
+        }
+        self.angles.read(node, &mut self.reader);
+        if let Some(given) = node.attribute("inertiafromgeom") {
+            self.inertia = match given {
+                "true" => Inertia::Always,
+                "false" => Inertia::Never,
+                _ => Inertia::Missing,
+            };
+        }
+    }
+
+    /// One of the numbers of a joint: missing numbers are zero, and further ones, of a nonlinear law, have to be.
+    fn number(&mut self, node: Node, class: Option<&str>, key: &str, owner: &str) -> Option<f64> {
+        let attribute = self.classes.find(node, class, key)?;
+        let numbers = self.reader.some_numbers(attribute, &format!("`{key}` of {owner}"))?;
+        match numbers.as_slice() {
+            [number, others @ ..] if others.iter().all(|other| *other == 0.0) => Some(*number),
+            _ => {
+                self.reader.wrong_numbers(attribute, &format!("`{key}` of {owner}"), "a number");
+                None
+            }
+        }
+    }
+
+    /// A given number of numbers.
+    fn numbers<const N: usize>(&mut self, node: Node, class: Option<&str>, key: &str, owner: &str) -> Option<[f64; N]> {
+        let attribute = self.classes.find(node, class, key)?;
+        self.reader.exact_numbers(attribute, &format!("`{key}` of {owner}"))
+    }
+}

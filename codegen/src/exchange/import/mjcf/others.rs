@@ -1,0 +1,113 @@
+//! What is not a body: gravity, equalities, key frames, and what a spec does not have.
+
+use roxmltree::Node;
+
+use super::File;
+use crate::chain::Vector;
+use crate::exchange::import::document::{child, name_of, tag};
+use crate::exchange::import::mistakes::rule;
+use crate::exchange::import::robot::{Follows, Joint, Motion, Named};
+
+/// Gravity unless a file says otherwise, m/s².
+const GRAVITY: Vector = [0.0, 0.0, -9.81];
+/// Sections whose elements a spec does not have.
+const LEFT_OUT: [(&str, &str); 4] =
+    [("actuator", "actuators"), ("tendon", "tendons"), ("contact", "pairs of contact"), ("extension", "plugins")];
+
+impl<'a, 'i> File<'a, 'i> {
+    /// All sections besides settings, defaults and the world.
+    pub(super) fn others(&mut self, root: Node<'a, 'i>) {
+        let sections = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
+        let elements = |name: &'static str| sections(name).flat_map(|node| node.children()).filter(Node::is_element);
+        for node in sections("option") {
+            self.gravity(node);
+        }
+        for node in elements("equality") {
+            self.equality(node);
+        }
+        if let Some(key) = elements("keyframe").find(|node| node.has_attribute("qpos")) {
+            self.start(key);
+        }
+        for (section, what) in LEFT_OUT {
+            let count = elements(section).count();
+            if count > 0 {
+                self.robot.left_out.push(format!("{count} {what} are left out."));
+            }
+        }
+        let touches = |node: Node<'a, 'i>| {
+            node.has_tag_name("geom")
+                && ["contype", "conaffinity"].iter().any(|key| self.classes.text(node, None, key) != Some("0"))
+        };
+        if sections("worldbody").flat_map(|world| world.descendants()).any(touches) {
+            self.robot.left_out.push("Contacts of geoms are left out.".to_owned());
+        }
+        if self.robot.joints.iter().any(|joint| joint.limits.is_some()) {
+            let limits = "Ranges of joints are comments: write `stops` for those that the crane reaches.";
+            self.robot.left_out.push(limits.to_owned());
+        }
+    }
+
+    fn gravity(&mut self, option: Node<'a, 'i>) {
+        let given = self.numbers(option, None, "gravity", "<option>");
+        self.robot.gravity = given.filter(|gravity| *gravity != GRAVITY);
+        let flag = child(option, "flag").and_then(|flag| flag.attribute("gravity"));
+        if flag == Some("disable") {
+            self.robot.gravity = Some([0.0; 3]);
+        }
+        let flows = ["density", "viscosity"]
+            .iter()
+            .any(|key| option.attribute(*key).is_some_and(|given| given.parse() != Ok(0.0)));
+        if flows {
+            self.robot.left_out.push("Forces of the medium around the robot are left out.".to_owned());
+        }
+    }
+
+    /// A joint that stands still or follows another one; nothing else.
+    fn equality(&mut self, node: Node<'a, 'i>) {
+        if self.classes.text(node, None, "active") == Some("false") {
+            return;
+        }
+        if name_of(node) != "joint" {
+            return self.reader.mistakes.push(rule::closed_loop(tag(node), format!("<{}>", name_of(node))));
+        }
+        let Some(own) = self.reader.required(node, "joint1", "<joint> of <equality>") else { return };
+        let power = |place: usize| if place == 1 { 1.0 } else { 0.0 };
+        let given = self.classes.find(node, None, "polycoef");
+        let given = given.and_then(|given| self.reader.some_numbers(given, "`polycoef`")).unwrap_or_default();
+        let [zeroth, first, higher @ ..] =
+            [0, 1, 2, 3, 4].map(|place| given.get(place).copied().unwrap_or_else(|| power(place)));
+        let leader = node.attribute_node("joint2").and_then(|_| self.reader.required(node, "joint2", ""));
+        if leader.is_some() && higher != [0.0; 3] {
+            return self.reader.mistakes.push(rule::not_linear(tag(node), &own.name));
+        }
+        let reference =
+            |robot: &[Joint], name: &str| robot.iter().find(|joint| joint.name == name).map(|joint| joint.reference);
+        let Some(of_own) = reference(&self.robot.joints, &own.name) else {
+            return self.reader.mistakes.push(rule::equality(own.span, &own.name));
+        };
+        let of_leader = leader.as_ref().map(|leader| reference(&self.robot.joints, &leader.name).unwrap_or(0.0));
+        let Some(joint) = self.robot.joints.iter_mut().find(|joint| joint.name == own.name) else { return };
+        match (leader, of_leader) {
+            (Some(Named { name, span }), Some(of_leader)) => {
+                // q₁ − ref₁ = c₀ + c₁ (q₂ − ref₂).
+                let offset = of_own + zeroth - first * of_leader;
+                joint.follows = Some(Follows { leader: Named { name, span }, multiplier: first, offset });
+            }
+            _ => joint.held = Some(of_own + zeroth),
+        }
+    }
+
+    /// The pose of a key frame.
+    fn start(&mut self, key: Node<'a, 'i>) {
+        let Some(given) = key.attribute_node("qpos") else { return };
+        let Some(pose) = self.reader.some_numbers(given, "`qpos` of a key frame") else { return };
+        let moving = |joint: &&mut Joint| !matches!(joint.motion, Motion::Fixed);
+        let count = self.robot.joints.iter_mut().filter(moving).count();
+        if pose.len() == count {
+            self.robot.joints.iter_mut().filter(moving).zip(pose).for_each(|(joint, start)| joint.start = Some(start));
+        } else {
+            let said = format!("The key frame is left out: it has {} numbers for {count} joints.", pose.len());
+            self.robot.left_out.push(said);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! A robot as a file describes it: links and joints with their locations.
+
+use crate::chain::{Frame, Vector};
+use crate::diagnostic::Span;
+use crate::exchange::mass::Lump;
+
+/// A robot.
+pub(super) struct Robot {
+    pub(super) name: String,
+    pub(super) links: Vec<Link>,
+    pub(super) joints: Vec<Joint>,
+    /// Acceleration of gravity, m/s², if the file gives it.
+    pub(super) gravity: Option<Vector>,
+    /// What the file says and a spec made from it does not, one sentence each.
+    pub(super) left_out: Vec<String>,
+    /// Why joints move freely, if none has a spring.
+    pub(super) no_drives: &'static str,
+}
+
+/// A link and its mass, in the link's frame; `None`, or zero, if it carries nothing.
+pub(super) struct Link {
+    pub(super) name: String,
+    pub(super) span: Span,
+    pub(super) lump: Option<Lump>,
+}
+
+/// A joint between two links.
+pub(super) struct Joint {
+    pub(super) name: String,
+    pub(super) span: Span,
+    pub(super) motion: Motion,
+    pub(super) parent: Named,
+    pub(super) child: Named,
+    /// Pose of the child on the parent at zero.
+    pub(super) placement: Frame,
+    /// Unit vector in the frame of the child.
+    pub(super) axis: Vector,
+    pub(super) limits: Option<[f64; 2]>,
+    /// N m s/rad or N s/m.
+    pub(super) damping: f64,
+    /// Coulomb friction, N m or N.
+    pub(super) friction: f64,
+    /// The joint that it follows.
+    pub(super) follows: Option<Follows>,
+    /// Its spring.
+    pub(super) spring: Option<Spring>,
+    /// Inertia of its rotor, kg m² or kg.
+    pub(super) armature: f64,
+    /// The position that it never leaves, m or rad.
+    pub(super) held: Option<f64>,
+    /// Where it starts, m or rad.
+    pub(super) start: Option<f64>,
+    /// Its position in the file's own pose, m or rad.
+    pub(super) reference: f64,
+}
+
+impl Joint {
+    /// A joint that nothing moves and nothing brakes.
+    pub(super) fn new(name: &str, span: Span, motion: Motion, [parent, child]: [Named; 2]) -> Self {
+        Joint {
+            name: name.to_owned(),
+            span,
+            motion,
+            parent,
+            child,
+            placement: Frame::WORLD,
+            axis: [1.0, 0.0, 0.0],
+            limits: None,
+            damping: 0.0,
+            friction: 0.0,
+            follows: None,
+            spring: None,
+            armature: 0.0,
+            held: None,
+            start: None,
+            reference: 0.0,
+        }
+    }
+
+    /// Whether no force acts in it.
+    pub(super) fn is_plain(&self) -> bool {
+        let forces = self.damping != 0.0 || self.friction != 0.0 || self.armature != 0.0;
+        !forces && self.spring.is_none() && self.held.is_none() && self.follows.is_none()
+    }
+}
+
+/// A spring of a joint.
+pub(super) struct Spring {
+    /// N m/rad or N/m.
+    pub(super) stiffness: f64,
+    /// The position in which it is relaxed, rad or m.
+    pub(super) rest: f64,
+}
+
+/// A joint at `multiplier · leader + offset`.
+pub(super) struct Follows {
+    pub(super) leader: Named,
+    pub(super) multiplier: f64,
+    /// m or rad.
+    pub(super) offset: f64,
+}
+
+/// How a joint moves.
+pub(super) enum Motion {
+    Fixed,
+    Revolute,
+    Prismatic,
+    /// In a way that cranes do not support.
+    Other(Named),
+}
+
+/// A name or a word, and its location.
+pub(super) struct Named {
+    pub(super) name: String,
+    pub(super) span: Span,
+}

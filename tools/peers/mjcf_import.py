@@ -1,0 +1,54 @@
+"""Robots in MJCF as the compiler imports them, against what MuJoCo makes of the same files."""
+
+import mujoco
+import numpy as np
+
+from agree import compare_all, computed, dense_solution
+from comparison import compare
+from mujoco_peer import DISABLED, MuJoCo
+from random_mjcf import RandomRobot
+from states import States
+
+# Random robots, by seed.
+ROBOTS = range(40)
+
+
+class Loaded(MuJoCo):
+    """A file as MuJoCo loads it: bodies, springs, dampers and rotors; no contacts and no limits."""
+
+    def __init__(self, path):
+        self.model = mujoco.MjModel.from_xml_path(str(path))
+        self.model.opt.disableflags |= int(DISABLED)
+        self.data = mujoco.MjData(self.model)
+
+    def passive(self, q, v):
+        """Forces of springs and dampers."""
+        self.data.qpos, self.data.qvel = q, v
+        mujoco.mj_forward(self.model, self.data)
+        return self.data.qfrc_passive.copy()
+
+
+def random_robots_agree(evaluate, folder, options, import_to, told):
+    """How many random robots agree, and how many there are."""
+    agreed = 0
+    for seed in ROBOTS:
+        path = folder / f"random_{seed}.xml"
+        path.write_text(RandomRobot(seed).document(), encoding="utf-8")
+        spec = folder / f"random_{seed}.yaml"
+        import_to(path, spec)
+        agreed += told(path.name, compare_import(path, spec, evaluate, options))
+    return agreed, len(ROBOTS)
+
+
+def compare_import(path, spec, evaluate, options):
+    """A, e, forces and q̈ of a spec that comes of an MJCF file, and of that file."""
+    layout, library = evaluate.layout(str(spec)), Loaded(path)
+    rng, shape = np.random.default_rng(options.seed), (options.states, library.model.nv)
+    q, v = rng.uniform(-np.pi, np.pi, shape), rng.uniform(-2, 2, shape)
+    states = States(np.zeros(options.states), q, v, np.empty((options.states, 0)))
+    ours = evaluate.values(layout, states)
+    if "forward_dynamics" not in ours:
+        ours["forward_dynamics"] = dense_solution(ours)
+    theirs = computed(library, states, np.zeros(shape))
+    forces = np.array([library.passive(*state) for state in zip(q, v)])
+    return [*compare_all(theirs, ours, states), compare("forces", forces, ours["forces"], states.groups)]

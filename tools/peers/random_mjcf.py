@@ -1,0 +1,121 @@
+"""Random robots in MJCF that use what the language has: joints in a row, frames, classes, all orientations, shapes with masses."""
+
+from xml.etree import ElementTree
+
+import numpy as np
+
+LETTERS = "xyzXYZ"
+
+
+class RandomRobot:
+    """A serial robot of a seed."""
+
+    def __init__(self, seed):
+        self.rng = np.random.default_rng(seed)
+        self.degrees = self.rng.random() < 0.5
+        self.root = ElementTree.Element("mujoco", model=f"random_{seed}")
+        sequence = "".join(self.rng.choice(list(LETTERS), 3))
+        ElementTree.SubElement(self.root, "compiler", angle="degree" if self.degrees else "radian", eulerseq=sequence)
+        ElementTree.SubElement(self.root, "option", gravity=text(self.rng.uniform(-10, 10, 3)))
+        outer = ElementTree.SubElement(self.root, "default")
+        ElementTree.SubElement(outer, "joint", damping=text(self.rng.uniform(0, 3)))
+        inner = ElementTree.SubElement(outer, "default", {"class": "soft"})
+        ElementTree.SubElement(inner, "joint", stiffness=text(self.rng.uniform(1, 9)), type="hinge", axis="0 1 0")
+        ElementTree.SubElement(inner, "geom", type="capsule", size="0.05 0.2", density=text(self.rng.uniform(500, 3000)))
+        self.joints = 0
+        parent = ElementTree.SubElement(self.root, "worldbody")
+        for number in range(self.rng.integers(2, 6)):
+            parent = self.body(parent, number)
+
+    def document(self):
+        """The file."""
+        return ElementTree.tostring(self.root, encoding="unicode")
+
+    def body(self, parent, number):
+        """A body in another one, at times in a frame."""
+        if self.rng.random() < 0.3:
+            parent = ElementTree.SubElement(parent, "frame", self.pose())
+        body = ElementTree.SubElement(parent, "body", {"name": f"part_{number}", **self.pose()})
+        if self.rng.random() < 0.3:
+            body.set("childclass", "soft")
+        # The first body moves; of the others, some are fixed.
+        for _ in range(self.rng.integers(1 if number == 0 else 0, 4)):
+            self.joint(body)
+        self.mass(body)
+        if self.rng.random() < 0.5:
+            ElementTree.SubElement(body, "site", {"name": f"point_{number}", **self.pose()})
+        return body
+
+    def joint(self, body):
+        """A hinge or a slide, at times with an anchor, a spring, a rotor."""
+        joint = ElementTree.SubElement(body, "joint", name=f"joint_{self.joints}")
+        self.joints += 1
+        # Two joints of a body along one axis would be one too many.
+        first = len(body.findall("joint")) == 1
+        if body.get("childclass") is None or not first or self.rng.random() < 0.5:
+            joint.set("type", self.rng.choice(["hinge", "slide"]))
+            along = self.rng.choice([-1.0, 1.0]) * np.eye(3)[self.rng.integers(3)]
+            joint.set("axis", text(along if first and self.rng.random() < 0.6 else self.rng.normal(size=3)))
+        turns = joint.get("type", "hinge") == "hinge"
+        unit = np.degrees if turns and self.degrees else np.asarray
+        if self.rng.random() < 0.5:
+            joint.set("pos", text(self.rng.uniform(-0.5, 0.5, 3)))
+        if self.rng.random() < 0.4:
+            joint.set("ref", text(unit(self.rng.uniform(-1, 1))))
+        if self.rng.random() < 0.5:
+            joint.set("stiffness", text(self.rng.uniform(1, 50)))
+            joint.set("springref", text(unit(self.rng.uniform(-1, 1))))
+        if self.rng.random() < 0.3:
+            joint.set("armature", text(self.rng.uniform(0.1, 2)))
+        if self.rng.random() < 0.3:
+            joint.set("range", text(unit(np.array([-1.5, 1.5]))))
+
+    def mass(self, body):
+        """An inertial frame, or shapes."""
+        if self.rng.random() < 0.5:
+            inertial = ElementTree.SubElement(body, "inertial", mass=text(self.rng.uniform(1, 20)), **self.pose())
+            # Of some points: physically possible.
+            points = self.rng.normal(size=(4, 3))
+            second = points.T @ points
+            tensor = np.trace(second) * np.eye(3) - second
+            if self.rng.random() < 0.5:
+                # MuJoCo has no orientation beside a full tensor.
+                for key in ("quat", "axisangle", "xyaxes", "zaxis", "euler"):
+                    inertial.attrib.pop(key, None)
+                inertial.set("fullinertia", text(tensor[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]))
+            else:
+                inertial.set("diaginertia", text(np.diag(tensor)))
+            return
+        for _ in range(self.rng.integers(1, 4)):
+            kind = self.rng.choice(["sphere", "capsule", "cylinder", "box", "ellipsoid", "of the class"])
+            geom = ElementTree.SubElement(body, "geom")
+            if kind == "of the class":
+                geom.set("class", "soft")
+            else:
+                geom.set("type", kind)
+                geom.set("size", text(self.rng.uniform(0.05, 0.3, 3)))
+            if kind in ("capsule", "cylinder", "box", "ellipsoid") and self.rng.random() < 0.5:
+                geom.set("fromto", text(self.rng.uniform(-0.5, 0.5, 6)))
+            else:
+                geom.attrib.update(self.pose())
+            if self.rng.random() < 0.5:
+                geom.set("mass", text(self.rng.uniform(0.5, 5)))
+
+    def pose(self):
+        """Position and orientation, in one of the ways to write one."""
+        unit = np.degrees if self.degrees else np.asarray
+        ways = {
+            "quat": lambda: self.rng.normal(size=4),
+            "axisangle": lambda: np.append(self.rng.normal(size=3), unit(self.rng.uniform(-3, 3))),
+            "xyaxes": lambda: self.rng.normal(size=6),
+            "zaxis": lambda: self.rng.choice([self.rng.normal(size=3), np.array([0.0, 0.0, -2.0])]),
+            "euler": lambda: unit(self.rng.uniform(-3, 3, 3)),
+        }
+        way = self.rng.choice([*ways, "none"])
+        pose = {"pos": text(self.rng.uniform(-1, 1, 3))}
+        return pose if way == "none" else {**pose, way: text(ways[way]())}
+
+
+def text(numbers):
+    """Numbers to their last digit."""
+    return " ".join(repr(float(number)) for number in np.atleast_1d(numbers))
