@@ -88,7 +88,7 @@ fn friction_of_a_robots_joint_is_that_of_the_crane() {
                 <link name='upper'><inertial><mass value='6'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
                 <joint name='shoulder' type='continuous'><parent link='base'/><child link='upper'/><axis xyz='0 0 1'/>\
                 <dynamics damping='0.5' friction='2.5'/></joint></robot>";
-    let spec = spec("arm.urdf", &urdf);
+    let spec = spec("arm.urdf", urdf);
     let crane = chain(&SourceFile::new("arm", spec));
     let coulomb: Vec<f64> = crane.frictions().map(|(_, friction)| friction.coulomb.at(&[])).collect();
     assert_eq!(coulomb, [2.5]);

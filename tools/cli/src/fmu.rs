@@ -14,16 +14,40 @@ use crane_model::dyn_crane::DynCrane;
 use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptions};
 
 use crate::{
-    arguments::Export,
+    arguments::{Export, Fmi},
     files,
     problem::{Outcome, Problem},
 };
 
-/// A shared library and the system that it is for, by the name of FMI 2.0.
+/// A shared library and the system that it is for.
 struct Library {
-    system: &'static str,
-    suffix: &'static str,
+    system: &'static System,
     content: Vec<u8>,
+}
+
+/// A system by the ending of its shared libraries; cranes are for computers of 64 bits.
+struct System {
+    suffix: &'static str,
+    /// Its name in FMI 2.0.
+    with_bits: &'static str,
+    /// Its name in FMI 3.0, after that of the processor.
+    name: &'static str,
+}
+
+const SYSTEMS: [System; 3] = [
+    System { suffix: "so", with_bits: "linux64", name: "linux" },
+    System { suffix: "dll", with_bits: "win64", name: "windows" },
+    System { suffix: "dylib", with_bits: "darwin64", name: "darwin" },
+];
+
+impl System {
+    /// Its folder in the archive. In FMI 3.0 it names the processor, which is that of this program.
+    fn folder(&self, version: Fmi) -> String {
+        match version {
+            Fmi::Two => self.with_bits.to_owned(),
+            Fmi::Three => format!("{}-{}", consts::ARCH, self.name),
+        }
+    }
 }
 
 /// Writes a unit of a crane.
@@ -44,24 +68,30 @@ pub fn write(
     };
     let mut crane = LiveCrane::new(chain);
     crane.set_parameters(parameters).map_err(|refused| Problem::usage(refused.to_string(), ""))?;
-    let content = pack(&crane, spec, &libraries)
+    let content = pack(&crane, spec, &libraries, options.fmi)
         .map_err(|error| Problem::failed(format!("{}: {error}", file.display()), "make its libraries smaller"))?;
     files::write(file, |file| file.write_all(&content))?;
-    let systems: Vec<&str> = libraries.iter().map(|library| library.system).collect();
+    let systems: Vec<String> = libraries.iter().map(|library| library.system.folder(options.fmi)).collect();
     let (file, size) = (file.display(), content.len() as f64 / 1e6);
     Ok(writeln!(
         out,
-        "{file} written: FMI 2.0, co-simulation and model exchange, {}; {size:.1} MB",
+        "{file} written: FMI {}, co-simulation and model exchange, {}; {size:.1} MB",
+        options.fmi.number(),
         systems.join(", ")
     )?)
 }
 
 /// The archive.
-fn pack(crane: &LiveCrane, spec: &str, libraries: &[Library]) -> Result<Vec<u8>, ZipError> {
+fn pack(crane: &LiveCrane, spec: &str, libraries: &[Library], version: Fmi) -> Result<Vec<u8>, ZipError> {
     let name = &crane.chain().name;
-    let binary = |library: &Library| format!("binaries/{}/{name}.{}", library.system, library.suffix);
+    let binary =
+        |library: &Library| format!("binaries/{}/{name}.{}", library.system.folder(version), library.system.suffix);
+    let description = match version {
+        Fmi::Two => description::write_fmi2(crane),
+        Fmi::Three => description::write_fmi3(crane),
+    };
     let texts = [
-        ("modelDescription.xml".to_owned(), description::write_fmi2(crane)),
+        ("modelDescription.xml".to_owned(), description),
         (format!("resources/{}", resources::SPEC), spec.to_owned()),
         (format!("resources/{}", resources::PARAMETERS), resources::write_parameters(crane)),
     ];
@@ -79,14 +109,12 @@ fn pack(crane: &LiveCrane, spec: &str, libraries: &[Library]) -> Result<Vec<u8>,
 }
 
 fn read(path: &Path) -> Outcome<Library> {
-    /// Endings of shared libraries, and their systems; cranes are for computers of 64 bits.
-    const SYSTEMS: [(&str, &str); 3] = [("so", "linux64"), ("dll", "win64"), ("dylib", "darwin64")];
     let ending = path.extension().unwrap_or_default();
-    let (suffix, system) = *SYSTEMS.iter().find(|(suffix, _)| ending == *suffix).ok_or_else(|| {
+    let system = SYSTEMS.iter().find(|system| ending == system.suffix).ok_or_else(|| {
         Problem::usage(format!("{} is not a shared library", path.display()), "name a file .so, .dll or .dylib")
     })?;
     let content = fs::read(path).map_err(|error| Problem::file(path, &error))?;
-    Ok(Library { system, suffix, content })
+    Ok(Library { system, content })
 }
 
 /// The library in the folder of the command.

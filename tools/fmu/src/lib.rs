@@ -1,8 +1,8 @@
-//! Cranes as functional mock-up units: a live crane behind the C interface of FMI 2.0, for co-simulation and model exchange.
+//! Cranes as functional mock-up units: a live crane behind the C interfaces of FMI 2.0 and 3.0, for co-simulation and model exchange.
 //!
-//! The functional mock-up interface: <https://fmi-standard.org/docs/2.0.5/>. A unit is a ZIP archive of a description, of this crate as a
+//! The functional mock-up interface: <https://fmi-standard.org/docs/2.0.5/>, <https://fmi-standard.org/docs/3.0.2/>. A unit is a ZIP archive of a description, of this crate as a
 //! shared library, and of the crane's spec, which the library reads where the importer unpacked it. One library serves all
-//! cranes, so that a unit is made without a compiler.
+//! cranes and both versions, so that a unit is made without a compiler.
 //!
 //! | where | what |
 //! |---|---|

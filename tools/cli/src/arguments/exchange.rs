@@ -15,8 +15,30 @@ pub enum Language {
     Mjcf,
     /// C99 for controllers: chosen functions, without a heap.
     C,
-    /// A functional mock-up unit, FMI 2.0, for co-simulation and model exchange: the whole crane, ready to run elsewhere.
+    /// A functional mock-up unit for co-simulation and model exchange: the whole crane, ready to run elsewhere.
     Fmu,
+}
+
+/// Version of the functional mock-up interface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Fmi {
+    /// That of most tools.
+    #[default]
+    #[value(name = "2.0")]
+    Two,
+    /// That of newer tools.
+    #[value(name = "3.0")]
+    Three,
+}
+
+impl Fmi {
+    /// Its number.
+    pub fn number(self) -> &'static str {
+        match self {
+            Fmi::Two => "2.0",
+            Fmi::Three => "3.0",
+        }
+    }
 }
 
 /// Type of numbers in C.
@@ -46,6 +68,9 @@ pub struct Export {
     /// Type of numbers in C
     #[arg(long, value_enum, default_value_t)]
     pub precision: CNumber,
+    /// Version of the interface of an FMU
+    #[arg(long, value_enum, default_value_t, value_name = "VERSION")]
+    pub fmi: Fmi,
     /// Shared library to put into an FMU, .so, .dll or .dylib; given several times the FMU runs on several systems
     /// [default: the one beside the command]
     #[arg(long = "library", value_name = "FILE", value_hint = ValueHint::FilePath)]

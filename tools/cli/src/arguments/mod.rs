@@ -14,7 +14,7 @@ pub use analysis::{Envelope, Eval, EvalFormat, Linearise, Modes, Quantity, Stabi
 pub use crane::{
     Analysis, Check, Choice, DEFAULT_CRANE, Format, Generate, Limits, List, New, Parameters, STANDARD_INPUT, spec_file,
 };
-pub use exchange::{CNumber, Export, Import, Language};
+pub use exchange::{CNumber, Export, Fmi, Import, Language};
 pub use number::seconds;
 pub use run::{Compare, ComparePair, Ensemble, Page, Simulate, Step, Timing};
 

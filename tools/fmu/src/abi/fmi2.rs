@@ -1,28 +1,18 @@
 //! The functions of FMI 2.0.3, in the order of its headers.
 
 use std::ffi::{CString, c_char, c_double, c_int, c_uint, c_void};
-use std::ptr;
 
-use super::{array, array_mut, guarded, words};
-use crate::instance::{Fault, Instance, State};
+use super::unit::{Host, Pointer, Status, Unit, free, none_of, with, write};
+use super::{array, array_mut, states, words};
+use crate::instance::Fault;
 use crate::resources;
 
-type Component = *mut c_void;
+type Component = Pointer;
 type Boolean = c_int;
 type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, Status, *const c_char, *const c_char, ...);
 
 const TRUE: Boolean = 1;
 const FALSE: Boolean = 0;
-
-/// `fmi2Status`.
-#[repr(C)]
-#[derive(Clone, Copy)]
-enum Status {
-    Ok = 0,
-    Warning = 1,
-    Discard = 2,
-    Error = 3,
-}
 
 /// `fmi2CallbackFunctions`.
 #[repr(C)]
@@ -46,64 +36,19 @@ struct EventInfo {
     next_event_time: c_double,
 }
 
-/// What a component points to.
-struct Unit {
-    instance: Instance,
-    host: Host,
-    /// Time of the last step that was done, s.
-    last: f64,
-}
-
-/// Where messages go.
-struct Host {
-    name: CString,
-    callbacks: Callbacks,
-    /// Whether warnings are wanted; errors always are.
-    logs: bool,
-}
-
-impl Host {
-    fn say(&self, status: Status, category: &str, text: &str) {
-        let Some(logger) = self.callbacks.logger else { return };
+/// The importer's messages.
+fn host(callbacks: Option<Callbacks>, name: &str, logs: bool) -> Host {
+    let name = CString::new(name).unwrap_or_default();
+    let say = move |status, category: &str, text: &str| {
+        let Some(Callbacks { logger: Some(logger), environment, .. }) = callbacks else { return };
         // The importer prints it by a format of C.
         let text = text.replace('\0', " ").replace('%', "%%");
         if let (Ok(category), Ok(text)) = (CString::new(category), CString::new(text)) {
             // SAFETY: the importer's logger takes these types and a format that asks for no further arguments.
-            unsafe {
-                logger(self.callbacks.environment, self.name.as_ptr(), status, category.as_ptr(), text.as_ptr());
-            }
+            unsafe { logger(environment, name.as_ptr(), status, category.as_ptr(), text.as_ptr()) }
         }
-    }
-
-    fn warn(&self, warnings: &[String]) {
-        for warning in warnings.iter().filter(|_| self.logs) {
-            self.say(Status::Warning, "logStatusWarning", warning);
-        }
-    }
-
-    fn fail(&self, fault: &Fault) -> Status {
-        let status = match fault {
-            Fault::Discard(_) => Status::Discard,
-            Fault::Error(_) => Status::Error,
-        };
-        self.say(status, "logStatusError", &fault.to_string());
-        status
-    }
-}
-
-/// Does some work on a component, and says what there is to say.
-///
-/// # Safety
-/// The component is one that `fmi2Instantiate` has returned and `fmi2FreeInstance` has not taken back; no other call is at it.
-unsafe fn with(component: Component, work: impl FnOnce(&mut Unit) -> Result<(), Fault>) -> Status {
-    // SAFETY: as the caller promises.
-    let Some(unit) = (unsafe { component.cast::<Unit>().as_mut() }) else { return Status::Error };
-    let done = guarded(|| work(&mut *unit));
-    unit.host.warn(&unit.instance.take_warnings());
-    match done {
-        Ok(()) => Status::Ok,
-        Err(fault) => unit.host.fail(&fault),
-    }
+    };
+    Host { say: Box::new(say), logs }
 }
 
 #[unsafe(no_mangle)]
@@ -145,40 +90,13 @@ unsafe extern "C" fn fmi2Instantiate(
     // SAFETY: texts and callbacks are there, as the standard has it.
     let (name, guid, uri, callbacks) =
         unsafe { (words(name), words(guid), words(resources), callbacks.as_ref().copied()) };
-    let none = Callbacks {
-        logger: None,
-        allocate: ptr::null(),
-        free: ptr::null(),
-        step_finished: ptr::null(),
-        environment: ptr::null_mut(),
-    };
-    let host = Host {
-        name: CString::new(name).unwrap_or_default(),
-        callbacks: callbacks.unwrap_or(none),
-        logs: logs != FALSE,
-    };
-    let made = guarded(|| {
-        let folder = resources::folder_of(uri).map_err(Fault::Error)?;
-        Instance::new(&folder, guid).map_err(Fault::Error)
-    });
-    match made {
-        Ok(mut instance) => {
-            host.warn(&instance.take_warnings());
-            Box::into_raw(Box::new(Unit { instance, host, last: 0.0 })).cast()
-        }
-        Err(fault) => {
-            host.fail(&fault);
-            ptr::null_mut()
-        }
-    }
+    Unit::make(resources::folder_of(uri), guid, host(callbacks, name, logs != FALSE))
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2FreeInstance(component: Component) {
-    if !component.is_null() {
-        // SAFETY: the component was made by `fmi2Instantiate`, and is given back once.
-        drop(unsafe { Box::from_raw(component.cast::<Unit>()) });
-    }
+    // SAFETY: as the standard has it.
+    unsafe { free(component) }
 }
 
 #[unsafe(no_mangle)]
@@ -262,17 +180,9 @@ macro_rules! no_variables {
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, _: *const c_uint, count: usize, _: $value) -> Status {
             // SAFETY: as the standard has it.
-            unsafe { with(component, |_| none_of(count, $kind)) }
+            unsafe { with(component, |_| none_of(count, $kind, "Real")) }
         }
     )*};
-}
-
-fn none_of(count: usize, kind: &str) -> Result<(), Fault> {
-    if count == 0 {
-        Ok(())
-    } else {
-        Err(Fault::Error(format!("a crane has no variables of type {kind}: all are Real")))
-    }
 }
 
 no_variables! {
@@ -285,86 +195,43 @@ no_variables! {
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2GetFMUstate(component: Component, state: *mut *mut c_void) -> Status {
+unsafe extern "C" fn fmi2GetFMUstate(component: Component, state: *mut Pointer) -> Status {
     // SAFETY: as the standard has it; a state that is there already was made here, and is used again.
-    unsafe {
-        with(component, |unit| {
-            let place = state.as_mut().ok_or_else(no_state)?;
-            match place.cast::<State>().as_mut() {
-                Some(kept) => *kept = unit.instance.state(),
-                None => *place = Box::into_raw(Box::new(unit.instance.state())).cast(),
-            }
-            Ok(())
-        })
-    }
-}
-
-fn no_state() -> Fault {
-    Fault::Error("no state was given".to_owned())
+    unsafe { with(component, |unit| states::keep(unit, state)) }
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2SetFMUstate(component: Component, state: *mut c_void) -> Status {
-    // SAFETY: as the standard has it: the state was made by `fmi2GetFMUstate` or `fmi2DeSerializeFMUstate`.
-    unsafe {
-        with(component, |unit| {
-            unit.instance.set_state(state.cast::<State>().as_ref().ok_or_else(no_state)?);
-            unit.last = unit.instance.time();
-            Ok(())
-        })
-    }
+unsafe extern "C" fn fmi2SetFMUstate(component: Component, state: Pointer) -> Status {
+    // SAFETY: as the standard has it.
+    unsafe { with(component, |unit| states::restore(unit, state)) }
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2FreeFMUstate(component: Component, state: *mut *mut c_void) -> Status {
-    // SAFETY: as the standard has it: the state was made here, and is given back once.
-    unsafe {
-        with(component, |_| {
-            if let Some(place) = state.as_mut().filter(|place| !place.is_null()) {
-                drop(Box::from_raw(place.cast::<State>()));
-                *place = ptr::null_mut();
-            }
-            Ok(())
-        })
-    }
-}
-
-/// Bytes of a number of a state.
-const BYTES: usize = size_of::<f64>();
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2SerializedFMUstateSize(component: Component, state: *mut c_void, size: *mut usize) -> Status {
+unsafe extern "C" fn fmi2FreeFMUstate(component: Component, state: *mut Pointer) -> Status {
     // SAFETY: as the standard has it.
     unsafe {
         with(component, |_| {
-            let state = state.cast::<State>().as_ref().ok_or_else(no_state)?;
-            *size.as_mut().ok_or_else(no_state)? = BYTES * state.numbers().len();
+            states::free(state);
             Ok(())
         })
     }
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi2SerializedFMUstateSize(component: Component, state: Pointer, size: *mut usize) -> Status {
+    // SAFETY: as the standard has it.
+    unsafe { with(component, |_| states::measure(state, size)) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SerializeFMUstate(
     component: Component,
-    state: *mut c_void,
+    state: Pointer,
     bytes: *mut u8,
     size: usize,
 ) -> Status {
     // SAFETY: as the standard has it.
-    unsafe {
-        with(component, |_| {
-            let state = state.cast::<State>().as_ref().ok_or_else(no_state)?;
-            let (numbers, bytes) = (state.numbers(), array_mut(bytes, size));
-            if bytes.len() < BYTES * numbers.len() {
-                return Err(Fault::Error(format!("{size} bytes are too few for {} numbers", numbers.len())));
-            }
-            for (place, number) in bytes.chunks_exact_mut(BYTES).zip(numbers) {
-                place.copy_from_slice(&number.to_le_bytes());
-            }
-            Ok(())
-        })
-    }
+    unsafe { with(component, |_| states::to_bytes(state, bytes, size)) }
 }
 
 #[unsafe(no_mangle)]
@@ -372,19 +239,10 @@ unsafe extern "C" fn fmi2DeSerializeFMUstate(
     component: Component,
     bytes: *const u8,
     size: usize,
-    state: *mut *mut c_void,
+    state: *mut Pointer,
 ) -> Status {
     // SAFETY: as the standard has it.
-    unsafe {
-        with(component, |unit| {
-            let (chunks, rest) = array(bytes, size).as_chunks::<BYTES>();
-            let numbers: Vec<f64> = chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
-            let read = unit.instance.state_of(&numbers).filter(|_| rest.is_empty());
-            let read = read.ok_or_else(|| Fault::Error(format!("{size} bytes are not a state of this crane")))?;
-            *state.as_mut().ok_or_else(no_state)? = Box::into_raw(Box::new(read)).cast();
-            Ok(())
-        })
-    }
+    unsafe { with(component, |unit| states::from_bytes(unit, bytes, size, state)) }
 }
 
 #[unsafe(no_mangle)]
@@ -416,16 +274,15 @@ unsafe extern "C" fn fmi2NewDiscreteStates(component: Component, info: *mut Even
     unsafe {
         with(component, |unit| {
             let next = unit.instance.next_event();
-            if let Some(info) = info.as_mut() {
-                *info = EventInfo {
-                    new_discrete_states_needed: FALSE,
-                    terminate_simulation: FALSE,
-                    nominals_changed: FALSE,
-                    values_changed: FALSE,
-                    next_event_time_defined: if next.is_some() { TRUE } else { FALSE },
-                    next_event_time: next.unwrap_or(0.0),
-                };
-            }
+            let found = EventInfo {
+                new_discrete_states_needed: FALSE,
+                terminate_simulation: FALSE,
+                nominals_changed: FALSE,
+                values_changed: FALSE,
+                next_event_time_defined: if next.is_some() { TRUE } else { FALSE },
+                next_event_time: next.unwrap_or(0.0),
+            };
+            write(info, found);
             Ok(())
         })
     }
@@ -441,11 +298,8 @@ unsafe extern "C" fn fmi2CompletedIntegratorStep(
     // SAFETY: as the standard has it.
     unsafe {
         with(component, |_| {
-            for place in [enter_event_mode, terminate] {
-                if let Some(place) = place.as_mut() {
-                    *place = FALSE;
-                }
-            }
+            write(enter_event_mode, FALSE);
+            write(terminate, FALSE);
             Ok(())
         })
     }
@@ -591,9 +445,7 @@ unsafe extern "C" fn fmi2GetBooleanStatus(component: Component, _: c_int, value:
     unsafe {
         with(component, |_| {
             // `fmi2Terminated`, the one kind of this type: no step asks for an end.
-            if let Some(place) = value.as_mut() {
-                *place = FALSE;
-            }
+            write(value, FALSE);
             Ok(())
         })
     }

@@ -3,6 +3,9 @@
 #![allow(unsafe_code, non_snake_case)]
 
 mod fmi2;
+mod fmi3;
+mod states;
+mod unit;
 
 use std::any::Any;
 use std::ffi::{CStr, c_char};

@@ -1,6 +1,7 @@
 //! `modelDescription.xml`: what an importer knows of a crane.
 
 mod fmi2;
+mod fmi3;
 mod units;
 
 use std::collections::BTreeSet;
@@ -13,6 +14,7 @@ use crane_model::own_states;
 use crate::variables::{self, Source, Variable};
 
 pub use fmi2::write as write_fmi2;
+pub use fmi3::write as write_fmi3;
 
 /// Categories of messages, and what they hold.
 const CATEGORIES: [(&str, &str); 2] = [

@@ -103,7 +103,7 @@ impl File<'_, '_> {
         }
     }
 
-    /// One of the numbers of a joint: missing numbers are zero, and further ones, of a nonlinear law, have to be.
+    /// A number. `MuJoCo` also accepts the coefficients of a nonlinear law after it: they have to be zero.
     fn number(&mut self, node: Node, class: Option<&str>, key: &str, owner: &str) -> Option<f64> {
         let attribute = self.classes.find(node, class, key)?;
         let numbers = self.reader.some_numbers(attribute, &format!("`{key}` of {owner}"))?;

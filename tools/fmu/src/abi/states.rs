@@ -1,0 +1,97 @@
+//! States that an importer keeps, as pointers and as bytes; the same in both versions of the interface.
+
+use std::ptr;
+
+use super::unit::{Pointer, Unit};
+use super::{array, array_mut};
+use crate::instance::{Fault, State};
+
+/// Bytes of a number of a state.
+const BYTES: usize = size_of::<f64>();
+
+fn no_state() -> Fault {
+    Fault::Error("no state was given".to_owned())
+}
+
+/// Keeps the state, in the place of an earlier one if there is one.
+///
+/// # Safety
+/// There is a pointer at `state`: null, or to a state that was made here.
+pub(super) unsafe fn keep(unit: &Unit, state: *mut Pointer) -> Result<(), Fault> {
+    // SAFETY: as the caller promises.
+    let place = unsafe { state.as_mut() }.ok_or_else(no_state)?;
+    // SAFETY: as the caller promises.
+    match unsafe { place.cast::<State>().as_mut() } {
+        Some(kept) => *kept = unit.instance.state(),
+        None => *place = Box::into_raw(Box::new(unit.instance.state())).cast(),
+    }
+    Ok(())
+}
+
+/// Goes back to a state.
+///
+/// # Safety
+/// The state was made here, or is null.
+pub(super) unsafe fn restore(unit: &mut Unit, state: Pointer) -> Result<(), Fault> {
+    // SAFETY: as the caller promises.
+    unit.instance.set_state(unsafe { state.cast::<State>().as_ref() }.ok_or_else(no_state)?);
+    unit.last = unit.instance.time();
+    Ok(())
+}
+
+/// Takes a state back.
+///
+/// # Safety
+/// The state at `state` was made here, and is given back once.
+pub(super) unsafe fn free(state: *mut Pointer) {
+    // SAFETY: as the caller promises.
+    unsafe {
+        if let Some(place) = state.as_mut().filter(|place| !place.is_null()) {
+            drop(Box::from_raw(place.cast::<State>()));
+            *place = ptr::null_mut();
+        }
+    }
+}
+
+/// Writes how many bytes a state takes.
+///
+/// # Safety
+/// The state was made here, or is null; there is room for a number at `size`, or it is null.
+pub(super) unsafe fn measure(state: Pointer, size: *mut usize) -> Result<(), Fault> {
+    // SAFETY: as the caller promises.
+    let (state, size) = unsafe { (state.cast::<State>().as_ref(), size.as_mut()) };
+    *size.ok_or_else(no_state)? = BYTES * state.ok_or_else(no_state)?.numbers().len();
+    Ok(())
+}
+
+/// Writes a state as bytes.
+///
+/// # Safety
+/// The state was made here, or is null; there is room for `size` bytes.
+pub(super) unsafe fn to_bytes(state: Pointer, bytes: *mut u8, size: usize) -> Result<(), Fault> {
+    // SAFETY: as the caller promises.
+    let (state, bytes) = unsafe { (state.cast::<State>().as_ref().ok_or_else(no_state)?, array_mut(bytes, size)) };
+    let numbers = state.numbers();
+    if bytes.len() < BYTES * numbers.len() {
+        return Err(Fault::Error(format!("{size} bytes are too few for {} numbers", numbers.len())));
+    }
+    for (place, number) in bytes.chunks_exact_mut(BYTES).zip(numbers) {
+        place.copy_from_slice(&number.to_le_bytes());
+    }
+    Ok(())
+}
+
+/// Makes a state of bytes.
+///
+/// # Safety
+/// There are `size` bytes; there is room for a pointer at `state`.
+pub(super) unsafe fn from_bytes(unit: &Unit, bytes: *const u8, size: usize, state: *mut Pointer) -> Result<(), Fault> {
+    // SAFETY: as the caller promises.
+    let (bytes, place) = unsafe { (array(bytes, size), state.as_mut()) };
+    let (chunks, rest) = bytes.as_chunks::<BYTES>();
+    let numbers: Vec<f64> = chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
+    let read = unit.instance.state_of(&numbers).filter(|_| rest.is_empty());
+    let read = read.ok_or_else(|| Fault::Error(format!("{size} bytes are not a state of this crane")))?;
+    *place.ok_or_else(no_state)? = Box::into_raw(Box::new(read)).cast();
+    Ok(())
+}

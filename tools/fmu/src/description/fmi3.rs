@@ -1,0 +1,66 @@
+//! The description in the form of FMI 3.0.
+
+use crane_codegen::exchange::xml::Xml;
+use crane_model::dyn_crane::DynModel;
+
+use super::Subject;
+
+/// `modelDescription.xml` of a crane with the parameters that it has.
+pub fn write(crane: &dyn DynModel) -> String {
+    let subject = Subject::new(crane);
+    let mut xml = Xml::new("Units: SI, rad.");
+    let mut head = vec![("fmiVersion", "3.0".to_owned()), ("instantiationToken", subject.token())];
+    head.extend(subject.origin());
+    head.push(("variableNamingConvention", "flat".to_owned()));
+    xml.open("fmiModelDescription", &head);
+    let yes = |name| (name, "true".to_owned());
+    let common = [
+        ("modelIdentifier", crane.description().name.to_string()),
+        yes("canGetAndSetFMUState"),
+        yes("canSerializeFMUState"),
+        yes("providesDirectionalDerivatives"),
+    ];
+    let no_completed_steps = ("needsCompletedIntegratorStep", "false".to_owned());
+    xml.leaf("ModelExchange", &[&common[..], &[no_completed_steps]].concat());
+    xml.leaf("CoSimulation", &[&common[..], &[yes("canHandleVariableCommunicationStepSize")]].concat());
+    subject.write_units(&mut xml);
+    Subject::write_categories(&mut xml);
+    subject.write_experiment(&mut xml);
+    write_variables(&subject, &mut xml);
+    write_structure(&subject, &mut xml);
+    xml.finish()
+}
+
+fn write_variables(subject: &Subject, xml: &mut Xml) {
+    xml.open("ModelVariables", &[]);
+    for (reference, variable) in subject.variables.iter().enumerate() {
+        let [causality, variability] = Subject::nature(variable);
+        let mut float = vec![("name", variable.name.clone()), ("valueReference", reference.to_string())];
+        if !variable.about.is_empty() {
+            float.push(("description", variable.about.clone()));
+        }
+        float.push(("causality", causality.to_owned()));
+        float.push(("variability", variability.to_owned()));
+        float.extend(subject.attributes(variable));
+        if let Some(integral) = Subject::integral(variable.source) {
+            float.push(("derivative", subject.reference(integral).to_string()));
+        }
+        xml.leaf("Float64", &float);
+    }
+    xml.close();
+}
+
+fn write_structure(subject: &Subject, xml: &mut Xml) {
+    xml.open("ModelStructure", &[]);
+    let lists = [
+        ("Output", subject.outputs()),
+        ("ContinuousStateDerivative", subject.derivatives()),
+        ("InitialUnknown", subject.initial_unknowns()),
+    ];
+    for (name, references) in lists {
+        for reference in references {
+            xml.leaf(name, &[("valueReference", reference.to_string())]);
+        }
+    }
+    xml.close();
+}
