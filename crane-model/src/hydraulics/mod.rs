@@ -22,30 +22,24 @@
 //!
 //! The states are, cylinder by cylinder, p, p′ and u, and `p_s` behind all of them. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
 
+mod about_rest;
+mod cylinder;
+mod oil;
 mod valve;
 
-use nalgebra::{Complex, DMatrix, Vector3};
+use nalgebra::{DMatrix, Vector3};
 
 use crate::{
-    CylinderInfo, Description, PumpInfo, ValveInfo,
-    dyn_crane::{DynCrane, DynDynamics, DynModel},
-    modes::{DampedMode, SmallMotions},
+    CylinderInfo, Description,
+    dyn_crane::{DynDynamics, DynModel},
     own_states::{Moment, Pushed, STATES},
-    results::{CylinderState, cylinders_at},
+    results::CylinderState,
 };
-use valve::{flows, root};
-
-/// Share of a pressure above it at which a relief valve passes the nominal flow of the valve, and of its own pressure below which the pump
-/// delivers all it can.
-const BAND: f64 = 0.05;
-/// Pressure below the tank's at which a suction valve passes the nominal flow, Pa.
-const SUCTION: f64 = 1e5;
-/// Least share of the nominal pressure drop for which the servo computes an opening.
-const LEAST_DROP: f64 = 0.1;
-/// Way into a stop on which it carries the cylinder's greatest force, m.
-const STOP: f64 = 1e-3;
-/// Damping of a stop, s/m: it returns `1 − ⅔ a v` of a small speed.
-const STOP_DAMPING: f64 = 3.0;
+pub use about_rest::decays;
+pub(crate) use about_rest::stiffen;
+use cylinder::{Command, Moved, Pump};
+pub(crate) use oil::Oil;
+use valve::flows;
 
 /// The oil of a crane.
 #[derive(Clone, Debug, Default)]
@@ -61,35 +55,6 @@ pub(crate) struct Hydraulics {
     openings: Vec<[f64; 2]>,
     place: [Vec<f64>; 2],
 }
-
-/// A cylinder with a valve.
-#[derive(Clone, Debug)]
-struct Moved {
-    /// Its place among all cylinders.
-    index: usize,
-    coordinate: usize,
-    info: CylinderInfo,
-    valve: ValveInfo,
-    bulk_modulus: f64,
-    max_pressure: f64,
-}
-
-/// Where a servo wants its spool, and the derivatives by the length, the pressures on both sides and the pump's.
-#[derive(Clone, Copy, Debug, Default)]
-struct Command {
-    opening: f64,
-    by_length: f64,
-    by_sides: [f64; 2],
-    by_pump: f64,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Pump {
-    info: PumpInfo,
-    pressure: f64,
-    bulk_modulus: f64,
-}
-
 impl Hydraulics {
     /// What the description of a crane says about it; nothing where no cylinder has a valve.
     pub fn new(description: &Description) -> Self {
@@ -275,145 +240,6 @@ impl Hydraulics {
     }
 }
 
-impl Pump {
-    /// What it delivers at a pressure, m³/s, and the derivative.
-    fn flow(&self, pressure: f64) -> (f64, f64) {
-        let band = BAND * self.pressure;
-        let share = (self.pressure - pressure) / band;
-        let slope = if (0.0..1.0).contains(&share) { -self.info.max_flow / band } else { 0.0 };
-        (self.info.max_flow * share.clamp(0.0, 1.0), slope)
-    }
-}
-
-impl Moved {
-    /// Force and its derivatives at pressures.
-    fn push(&self, here: Vector3<f64>, [piston, rod]: [f64; 2]) -> Pushed {
-        let [area, ring] = self.info.areas;
-        let y = here.x - self.info.retracted;
-        let beyond = if y > self.info.stroke { y - self.info.stroke } else { y.min(0.0) };
-        let stiffness = area * self.max_pressure / STOP;
-        let damping = (1.0 + STOP_DAMPING * here.y * beyond.signum()).max(0.0);
-        let stopped = beyond != 0.0;
-        let (by_length, by_speed) = if stopped && damping > 0.0 {
-            (-stiffness * damping, -stiffness * STOP_DAMPING * beyond.abs())
-        } else {
-            (0.0, 0.0)
-        };
-        Pushed {
-            coordinate: self.coordinate,
-            arm: here.z,
-            force: piston * area - rod * ring - stiffness * beyond * damping,
-            by_length,
-            by_speed,
-            by_states: [area, -ring, 0.0],
-            speed: here.y,
-            ..Pushed::default()
-        }
-    }
-
-    /// What relief and suction valves let in, m³/s, and the derivative by the pressure.
-    fn guards(&self, pressure: f64) -> (f64, f64) {
-        let relief = -self.valve.flow / (BAND * self.max_pressure);
-        let suction = -self.valve.flow / SUCTION;
-        let (above, below) = (pressure - self.max_pressure, pressure - self.info.back_pressure);
-        if above > 0.0 {
-            (relief * above, relief)
-        } else if below < 0.0 {
-            (suction * below, suction)
-        } else {
-            (0.0, 0.0)
-        }
-    }
-
-    /// Where the servo wants the spool.
-    fn command(&self, here: Vector3<f64>, wanted: Vector3<f64>, sides: [f64; 2], pump: f64) -> Command {
-        let ValveInfo { flow, pressure_drop, gain, feed_forward, .. } = self.valve;
-        let fed = usize::from(wanted.y <= 0.0);
-        let difference = pump - sides[fed];
-        let least = LEAST_DROP * pressure_drop;
-        let drop = root(difference.max(least));
-        let share = feed_forward * self.info.areas[fed] * wanted.y * root(pressure_drop).value / (flow * drop.value);
-        let opening = gain * (wanted.x - here.x) + share;
-        if opening.abs() >= 1.0 {
-            return Command { opening: opening.clamp(-1.0, 1.0), ..Command::default() };
-        }
-        let by_pump = if difference > least { -share * drop.slope / drop.value } else { 0.0 };
-        let mut by_sides = [0.0; 2];
-        by_sides[fed] = -by_pump;
-        Command { opening, by_length: -gain, by_sides, by_pump }
-    }
-}
-
-/// The oil of a crane at a state: the cylinders with a valve by their place among all cylinders, their efforts on their joints, N m and N, and
-/// where their spools are; flow (m³/s), power (W) and pressure (Pa) of the pump.
-pub(crate) struct Oil {
-    pub cylinders: Vec<(usize, CylinderState, f64)>,
-    pub pump: [f64; 3],
-}
-
-impl Oil {
-    /// At a state of the crane and its oil.
-    pub fn at(crane: &dyn DynModel, moment: &Moment<'_>) -> Option<Self> {
-        let x = moment.x;
-        let mut hydraulics = Hydraulics::new(crane.description());
-        if hydraulics.is_empty() || x.len() < hydraulics.len() {
-            return None;
-        }
-        let mut pushed = vec![Pushed::default(); hydraulics.count()];
-        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut pushed, None);
-        let cylinders =
-            hydraulics.cylinders.iter().zip(&pushed).zip(x.chunks_exact(STATES)).map(|((moved, own), x)| {
-                let state = CylinderState {
-                    length: hydraulics.here[moved.index].x,
-                    speed: own.speed,
-                    arm: own.arm,
-                    force: own.force,
-                    pressures: [x[0], x[1]],
-                    flow: own.from_pump,
-                };
-                (moved.index, state, x[2])
-            });
-        Some(Self { cylinders: cylinders.collect(), pump: hydraulics.delivered(x) })
-    }
-
-    /// Puts the efforts of cylinders with a valve in place of those of their drives.
-    pub fn give_efforts(&self, description: &Description, efforts: &mut [f64]) {
-        for (index, state, _) in &self.cylinders {
-            efforts[description.cylinders[*index].drive] = state.force * state.arm;
-        }
-    }
-
-    /// Puts the states of cylinders with a valve in place of what their drives would take.
-    pub fn give_states(&self, cylinders: &mut [CylinderState]) {
-        for (index, state, _) in &self.cylinders {
-            cylinders[*index] = *state;
-        }
-    }
-
-    /// Flow, power and pressure of the pump, and the openings of the valves.
-    pub fn pump_and_spools(&self) -> impl Iterator<Item = f64> {
-        self.pump.into_iter().chain(self.cylinders.iter().map(|(.., spool)| *spool))
-    }
-}
-
-/// How fast the oil of each cylinder with a valve may decay at a pose, as a mode of its joint: while its suction valves let in oil, with edges
-/// near balance. Explicit methods are limited by it.
-pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
-    let cylinders = &crane.description().cylinders;
-    let mut lengths = vec![Vector3::zeros(); cylinders.len()];
-    crane.cylinder_states(q, &vec![0.0; q.len()], &mut lengths);
-    let decay = |(info, length): (&CylinderInfo, &Vector3<f64>)| {
-        let (valve, bulk_modulus) = (info.valve?, info.bulk_modulus?);
-        let y = (length.x - info.retracted).clamp(0.0, info.stroke);
-        let [of_piston, of_rod] = info.hose_volumes;
-        let volume = (of_piston + info.areas[0] * y).min(of_rod + info.areas[1] * (info.stroke - y));
-        let slope = 1.0 / SUCTION + root(0.0).slope / root(valve.pressure_drop).value;
-        let eigenvalue = Complex::new(-bulk_modulus / volume * valve.flow * slope, 0.0);
-        Some(DampedMode { eigenvalue, dominating: vec![crane.description().drives[info.drive].coordinate] })
-    };
-    cylinders.iter().zip(&lengths).filter_map(decay).collect()
-}
-
 /// Names of the columns of results with the states, in their order.
 pub(crate) fn columns(description: &Description) -> Vec<String> {
     let valves = description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
@@ -424,34 +250,6 @@ pub(crate) fn columns(description: &Description) -> Vec<String> {
         names.push("pump_pressure".to_owned());
     }
     names
-}
-
-/// Adds the stiffness of the oil that shut valves trap, `k (∂ℓ/∂q)² − F ∂²ℓ/∂q²`, to that of small motions about a pose at rest.
-pub(crate) fn stiffen(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotions) {
-    /// Difference over which a lever is differenced, m or rad: an error of 1e-8 of the second term.
-    const DIFFERENCE: f64 = 1e-4;
-    let cylinders = &crane.description().cylinders;
-    if !crane.description().has_valves() {
-        return;
-    }
-    let rest = vec![0.0; q.len()];
-    let states = cylinders_at(crane, q, &rest, &crane.drive_efforts_at_rest(q));
-    for (index, (info, state)) in
-        cylinders.iter().zip(&states).enumerate().filter(|(_, (info, _))| info.valve.is_some())
-    {
-        let coordinate = crane.description().drives[info.drive].coordinate;
-        let lever = |step: f64| {
-            let mut moved = q.to_vec();
-            moved[coordinate] += step;
-            let mut lengths = vec![Vector3::zeros(); cylinders.len()];
-            crane.cylinder_states(&moved, &rest, &mut lengths);
-            lengths[index].z
-        };
-        let curvature = (lever(DIFFERENCE) - lever(-DIFFERENCE)) / (2.0 * DIFFERENCE);
-        let Some(place) = motions.unknowns.iter().position(|unknown| *unknown == coordinate) else { continue };
-        let oil = state.oil_stiffness(info).unwrap_or(f64::NAN);
-        motions.stiffness[(place, place)] += oil - state.force * curvature;
-    }
 }
 
 #[cfg(test)]

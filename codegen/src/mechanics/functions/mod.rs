@@ -1,5 +1,7 @@
 //! The functions of a crane: signatures, documentation, and what is left out.
 
+mod drive_efforts;
+mod energies;
 mod forces;
 mod internal_forces;
 mod statics;

@@ -1,0 +1,106 @@
+//! Efforts, powers and motions of drives.
+
+use super::{Derivation, function, sum};
+use crate::mechanics::drives;
+use crate::program::Argument::{Position, Time, Velocity};
+use crate::program::{Function, FunctionId, Shape};
+use crate::symbolic::{Expr, SweepTrace};
+
+impl<'g> Derivation<'g> {
+    /// Efforts, powers and motions of drives, from their generalized forces.
+    pub(super) fn drives(&self, forces: Vec<Expr<'g>>, trace: SweepTrace) -> Vec<Function> {
+        let (model, chain) = (&self.model, self.model.chain);
+        let equation = if self.rigid {
+            "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]; of rigid drives (A q̈ − e)_j"
+        } else {
+            "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]"
+        };
+        let mut functions = vec![
+            function(
+                FunctionId::DriveForces,
+                "Generalized forces of the drives, N and N m.",
+                equation,
+                &[Time, Position, Velocity],
+                Shape::Vector(model.size()),
+                forces,
+            )
+            .by(trace),
+            function(
+                FunctionId::DriveMotions,
+                "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
+                "q_dr(t), q̇_dr(t)",
+                &[Time],
+                Shape::Pairs(chain.drives.len()),
+                drives::motions(model, chain.drives.iter()),
+            ),
+        ];
+        if chain.has_limited_drives() {
+            functions.push(function(
+                FunctionId::DriveLimits,
+                "Greatest effort of every drive, N m or N, 0 without a limit, and its stiffness at the state, N m/rad or N/m.",
+                "M, −∂t_dr/∂q",
+                &[Time, Position, Velocity],
+                Shape::Pairs(chain.drives.len()),
+                drives::limits(model),
+            ));
+        }
+        if chain.drives.iter().any(|drive| drive.opening().is_some()) {
+            functions.push(function(
+                FunctionId::ValveOpenings,
+                "Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one.",
+                "u*(t), u̇*(t)",
+                &[Time],
+                Shape::Pairs(chain.drives.len()),
+                drives::openings(model),
+            ));
+        }
+        let pieces = drives::pieces(model);
+        if !pieces.is_empty() {
+            functions.push(function(
+                FunctionId::DrivePieces,
+                "Begin and end of the intervals in which the motions and valves' commands of drives are smooth, drive by drive, s.",
+                "t_begin, t_end",
+                &[],
+                Shape::Pairs(pieces.len() / 2),
+                pieces,
+            ));
+        }
+        if self.rigid {
+            functions.push(function(
+                FunctionId::PrescribedMotions,
+                "Position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every coordinate that a rigid drive prescribes.",
+                "q_dr(t), q̇_dr(t)",
+                &[Time],
+                Shape::Pairs(chain.rigid_drives().count()),
+                drives::motions(model, chain.rigid_drives()),
+            ));
+        }
+        functions
+    }
+
+    /// Generalized forces of all drives: those of the springs, and those that the prescribed motions require.
+    pub(super) fn drive_forces(&self) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let flexible = drives::forces(model, model.t, &model.v);
+        if self.rigid { sum(&[flexible, self.rigid_efforts()]) } else { flexible }
+    }
+
+    /// Efforts of rigid drives: the forces that the prescribed motions require, minus the other forces on their joints.
+    pub(super) fn rigid_efforts(&self) -> Vec<Expr<'g>> {
+        let model = &self.model;
+        let given = self.given_forces(model.t, &model.v);
+        let mut efforts = self.motion().efforts;
+        for drive in model.chain.rigid_drives() {
+            let j = drive.coordinate.0;
+            if !given[j].is_zero() {
+                efforts[j] = efforts[j] - given[j];
+            }
+        }
+        efforts
+    }
+
+    /// Operations for efforts of rigid drives are in the order of the recursion that computes them.
+    pub(super) fn recorded_if_rigid<T>(&self, derive: impl FnOnce() -> T) -> (T, SweepTrace) {
+        if self.rigid { self.model.graph.recorded(derive) } else { (derive(), SweepTrace::default()) }
+    }
+}

@@ -1,0 +1,115 @@
+//! A cylinder with a valve, its servo, and the pump.
+
+use nalgebra::Vector3;
+
+use super::valve::root;
+use crate::{CylinderInfo, PumpInfo, ValveInfo, own_states::Pushed};
+
+/// Share of a pressure above it at which a relief valve passes the nominal flow of the valve, and of its own pressure below which the pump
+/// delivers all it can.
+const BAND: f64 = 0.05;
+/// Pressure below the tank's at which a suction valve passes the nominal flow, Pa.
+pub(super) const SUCTION: f64 = 1e5;
+/// Least share of the nominal pressure drop for which the servo computes an opening.
+const LEAST_DROP: f64 = 0.1;
+/// Way into a stop on which it carries the cylinder's greatest force, m.
+const STOP: f64 = 1e-3;
+/// Damping of a stop, s/m: it returns `1 − ⅔ a v` of a small speed.
+const STOP_DAMPING: f64 = 3.0;
+
+/// A cylinder with a valve.
+#[derive(Clone, Debug)]
+pub(super) struct Moved {
+    /// Its place among all cylinders.
+    pub index: usize,
+    pub coordinate: usize,
+    pub info: CylinderInfo,
+    pub valve: ValveInfo,
+    pub bulk_modulus: f64,
+    pub max_pressure: f64,
+}
+
+/// Where a servo wants its spool, and the derivatives by the length, the pressures on both sides and the pump's.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Command {
+    pub opening: f64,
+    pub by_length: f64,
+    pub by_sides: [f64; 2],
+    pub by_pump: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pump {
+    pub info: PumpInfo,
+    pub pressure: f64,
+    pub bulk_modulus: f64,
+}
+
+impl Pump {
+    /// What it delivers at a pressure, m³/s, and the derivative.
+    pub(super) fn flow(&self, pressure: f64) -> (f64, f64) {
+        let band = BAND * self.pressure;
+        let share = (self.pressure - pressure) / band;
+        let slope = if (0.0..1.0).contains(&share) { -self.info.max_flow / band } else { 0.0 };
+        (self.info.max_flow * share.clamp(0.0, 1.0), slope)
+    }
+}
+
+impl Moved {
+    /// Force and its derivatives at pressures.
+    pub(super) fn push(&self, here: Vector3<f64>, [piston, rod]: [f64; 2]) -> Pushed {
+        let [area, ring] = self.info.areas;
+        let y = here.x - self.info.retracted;
+        let beyond = if y > self.info.stroke { y - self.info.stroke } else { y.min(0.0) };
+        let stiffness = area * self.max_pressure / STOP;
+        let damping = (1.0 + STOP_DAMPING * here.y * beyond.signum()).max(0.0);
+        let stopped = beyond != 0.0;
+        let (by_length, by_speed) = if stopped && damping > 0.0 {
+            (-stiffness * damping, -stiffness * STOP_DAMPING * beyond.abs())
+        } else {
+            (0.0, 0.0)
+        };
+        Pushed {
+            coordinate: self.coordinate,
+            arm: here.z,
+            force: piston * area - rod * ring - stiffness * beyond * damping,
+            by_length,
+            by_speed,
+            by_states: [area, -ring, 0.0],
+            speed: here.y,
+            ..Pushed::default()
+        }
+    }
+
+    /// What relief and suction valves let in, m³/s, and the derivative by the pressure.
+    pub(super) fn guards(&self, pressure: f64) -> (f64, f64) {
+        let relief = -self.valve.flow / (BAND * self.max_pressure);
+        let suction = -self.valve.flow / SUCTION;
+        let (above, below) = (pressure - self.max_pressure, pressure - self.info.back_pressure);
+        if above > 0.0 {
+            (relief * above, relief)
+        } else if below < 0.0 {
+            (suction * below, suction)
+        } else {
+            (0.0, 0.0)
+        }
+    }
+
+    /// Where the servo wants the spool.
+    pub(super) fn command(&self, here: Vector3<f64>, wanted: Vector3<f64>, sides: [f64; 2], pump: f64) -> Command {
+        let ValveInfo { flow, pressure_drop, gain, feed_forward, .. } = self.valve;
+        let fed = usize::from(wanted.y <= 0.0);
+        let difference = pump - sides[fed];
+        let least = LEAST_DROP * pressure_drop;
+        let drop = root(difference.max(least));
+        let share = feed_forward * self.info.areas[fed] * wanted.y * root(pressure_drop).value / (flow * drop.value);
+        let opening = gain * (wanted.x - here.x) + share;
+        if opening.abs() >= 1.0 {
+            return Command { opening: opening.clamp(-1.0, 1.0), ..Command::default() };
+        }
+        let by_pump = if difference > least { -share * drop.slope / drop.value } else { 0.0 };
+        let mut by_sides = [0.0; 2];
+        by_sides[fed] = -by_pump;
+        Command { opening, by_length: -gain, by_sides, by_pump }
+    }
+}

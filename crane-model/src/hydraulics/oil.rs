@@ -1,0 +1,61 @@
+//! The oil of a crane at a state.
+
+use super::Hydraulics;
+use crate::{
+    Description,
+    dyn_crane::DynModel,
+    own_states::{Moment, Pushed, STATES},
+    results::CylinderState,
+};
+
+/// The cylinders with a valve by their place among all cylinders, their efforts on their joints, N m and N, and
+/// where their spools are; flow (m³/s), power (W) and pressure (Pa) of the pump.
+pub(crate) struct Oil {
+    pub cylinders: Vec<(usize, CylinderState, f64)>,
+    pub pump: [f64; 3],
+}
+
+impl Oil {
+    /// At a state of the crane and its oil.
+    pub fn at(crane: &dyn DynModel, moment: &Moment<'_>) -> Option<Self> {
+        let x = moment.x;
+        let mut hydraulics = Hydraulics::new(crane.description());
+        if hydraulics.is_empty() || x.len() < hydraulics.len() {
+            return None;
+        }
+        let mut pushed = vec![Pushed::default(); hydraulics.count()];
+        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut pushed, None);
+        let cylinders =
+            hydraulics.cylinders.iter().zip(&pushed).zip(x.chunks_exact(STATES)).map(|((moved, own), x)| {
+                let state = CylinderState {
+                    length: hydraulics.here[moved.index].x,
+                    speed: own.speed,
+                    arm: own.arm,
+                    force: own.force,
+                    pressures: [x[0], x[1]],
+                    flow: own.from_pump,
+                };
+                (moved.index, state, x[2])
+            });
+        Some(Self { cylinders: cylinders.collect(), pump: hydraulics.delivered(x) })
+    }
+
+    /// Puts the efforts of cylinders with a valve in place of those of their drives.
+    pub fn give_efforts(&self, description: &Description, efforts: &mut [f64]) {
+        for (index, state, _) in &self.cylinders {
+            efforts[description.cylinders[*index].drive] = state.force * state.arm;
+        }
+    }
+
+    /// Puts the states of cylinders with a valve in place of what their drives would take.
+    pub fn give_states(&self, cylinders: &mut [CylinderState]) {
+        for (index, state, _) in &self.cylinders {
+            cylinders[*index] = *state;
+        }
+    }
+
+    /// Flow, power and pressure of the pump, and the openings of the valves.
+    pub fn pump_and_spools(&self) -> impl Iterator<Item = f64> {
+        self.pump.into_iter().chain(self.cylinders.iter().map(|(.., spool)| *spool))
+    }
+}
