@@ -150,7 +150,7 @@ catalogue! {
     /// The joint of a D-H row rotates about z or slides along it.
     E043 dh_axis(link) "the joint of link `{link}` is not about z", "the joint axis of a D-H row is z",
         "leave `axis` out, or place the link by `transform`";
-    /// Mass, bodies and beam exclude one another.
+    /// Mass, bodies, beam and rope exclude one another.
     E044 two_masses(link, first, second) "link `{link}` has both `{first}` and `{second}`", "`{first}` is given too",
         "give one of `mass`, `bodies`, `beam`";
     /// A centre of mass and an inertia require a mass.
@@ -178,6 +178,11 @@ catalogue! {
     /// An inertia is given by its tensor or by radii of gyration.
     E052 two_inertias(place) "{place} is given in two ways", "`gyration` is given too",
         "give `gyration` alone, or `Ixx`, `Iyy`, `Izz`";
+
+    // Ropes.
+    /// A rope has 1 to 1000 links.
+    E053 rope_links(given) "a rope cannot have {given} links", "expected an integer from 1 to 1000",
+        "write an integer: 3 to 10 are common";
 
     // Beams.
     /// A beam has 1 to 1000 sections, or is rigid.
@@ -328,8 +333,8 @@ catalogue! {
     E113 rigid_input(coordinate) "the rigid drive of `{coordinate}` follows an input", "an input may jump, a rigid drive cannot",
         "give the drive `stiffness` and `damping`, or a motion without inputs";
     /// Every input is used.
-    E114 unused_input(input) "input `{input}` is not used", "no drive, load or rope refers to it",
-        "name it in `motion: {{input: …}}` of a drive or a rope, in `offset` of a drive or in `scale: {{input: …}}` of a load, or remove it";
+    E114 unused_input(input) "input `{input}` is not used", "no drive, valve, load or rope refers to it",
+        "name it in `motion: {{input: …}}` of a drive or a rope, in `offset` of a drive, in the `opening` of a valve or in `scale: {{input: …}}` of a load, or remove it";
 
     // Cylinders.
     /// The rod of a cylinder is thinner than its piston.
@@ -373,7 +378,7 @@ catalogue! {
         "write `gain:`, 1/m, for a servo that follows the drive's motion, or `opening:`, a motion or an input from -1 to 1";
     /// Only one of them does.
     E128 valve_commanded_twice(cylinder, other) "the valve of cylinder `{cylinder}` has two commands", "`opening`, and {other}",
-        "with `opening`, remove `gain` and `feed_forward`, and let the drive's motion `hold` where the crane stands before the run";
+        "with `opening`, remove `gain` and `feed_forward` (in a spec that extends another: `gain: ~`), and let the drive's motion `hold` where the crane stands before the run";
 
     // Connectors.
     /// Some coordinate changes the length of a connector.
@@ -423,4 +428,21 @@ catalogue! {
     /// The length of a connector without force fits the distance of its points at the guess.
     W021 connector_length(connector, length, distance) "connector `{connector}` is {length} m long without force", "its points are {distance} m apart at the guess",
         "check the unit, the points and the `guess`: the spring or rope pulls or pushes with its stiffness times the difference";
+    /// Diameters, lengths, pressures, flows, volumes and times of hydraulics are usual in SI units.
+    W022 hydraulics(what, given, unit, usual, help) "{what} is {given} {unit}", "usual: {usual}", "{help}";
+    /// The relief valves of a cylinder open above the pressure of the pump.
+    W023 relief_below_pump(pressure, cylinder, relief) "the pump keeps up {pressure} Pa, more than cylinder `{cylinder}` carries",
+        "its relief valve opens at {relief} Pa, its `max_pressure`", "check both; a relief valve usually opens above the pressure of the pump";
+    /// The command of a valve is from −1 to 1.
+    W024 opening_beyond(cylinder, opening) "an `opening` of cylinder `{cylinder}` is {opening}", "−1 and 1 are fully open; beyond them nothing changes",
+        "write the opening as a share: 50 % is 0.5";
+    /// Where its drive starts, the pins of a cylinder are as far apart as its stroke allows.
+    W025 out_of_stroke(cylinder, length, least, most) "cylinder `{cylinder}` is {length} m long at the start of its drive's motion", "its stroke is from {least} m to {most} m",
+        "check `retracted`, `stroke`, the pins and the motion of the drive";
+    /// Bristles of a joint that sticks slide after 1e-8 to 0.1 m or rad.
+    W026 odd_bristles(coordinate, way) "the bristles of `{coordinate}` slide after {way} m or rad", "breakaway friction over their stiffness; usual: 1e-8 to 0.1",
+        "check the unit of `stiffness`: bristles a thousand times as stiff need steps so much smaller, soft ones are a spring";
+    /// Each part of a beam holds the spring of a section, where stresses are computed.
+    W027 part_without_spring(number, link, sections) "part {number} of beam `{link}` holds no spring: its stress is not computed", "shorter than a section",
+        "use {sections} sections or more, or join the part with its neighbour";
 }

@@ -11,7 +11,7 @@ use crate::spec::{Angle, Input, Link, Motion, Placement, Scalar, Spanned, Turn};
 /// Bare angles beyond a full turn look like degrees; with four ulp of tolerance, because `6.283185307179586` is 2π.
 const FULL_TURN: f64 = TAU * (1.0 + 4.0 * f64::EPSILON);
 
-impl Look<'_> {
+impl<'a> Look<'a> {
     pub(super) fn angles(&mut self) {
         let crane = self.crane;
         for link in items(Some(&crane.links)) {
@@ -47,29 +47,23 @@ impl Look<'_> {
         for (scalar, at) in angles.into_iter().map(written) {
             self.angle(scalar, at, &format!("a rotation of link `{name}`"));
         }
+        let bend = link.beam.as_ref().and_then(|beam| beam.value.as_ref()?.bend.as_ref()?.value.as_ref());
+        for (scalar, at) in bend.into_iter().flat_map(|bend| [&bend.psi, &bend.theta]).flatten().map(written) {
+            self.angle(scalar, at, &format!("the `bend` of beam `{name}`"));
+        }
     }
 
     fn motion(&mut self, motion: &Motion, coordinate: &str) {
         let what = format!("a position of `{coordinate}`");
-        let positions: Vec<(Option<&Scalar>, Span)> = match motion {
-            Motion::Hold(at) => vec![written(at)],
-            Motion::Quintic(ramp) | Motion::Cubic(ramp) | Motion::Cycloid(ramp) => {
-                vec![written(&ramp.from), written(&ramp.to)]
-            }
-            Motion::Trapezoid(trapezoid) => vec![written(&trapezoid.from), written(&trapezoid.to)],
-            Motion::Speed(speed) => speed.from.iter().map(written).collect(),
-            Motion::Table(table) => {
-                let values = table.values.value.iter().flatten();
-                values.map(|value| (value.value.as_ref().map(|value| &value.0), value.span)).collect()
-            }
-            Motion::Input(name) => return self.input(name, coordinate),
-        };
+        if let Motion::Input(name) = motion {
+            return self.input(name, coordinate);
+        }
         // The first implausible number is reported for the motion.
         let before = self.warnings.len();
         if let Motion::Speed(speed) = motion {
             self.speed(&speed.rate, coordinate);
         }
-        for (scalar, at) in positions {
+        for (scalar, at) in positions(motion) {
             self.position(scalar, at, coordinate, &what);
             if self.warnings.len() > before {
                 return;
@@ -79,13 +73,7 @@ impl Look<'_> {
 
     /// An input that is the motion of a coordinate.
     fn input(&mut self, name: &Spanned<String>, coordinate: &str) {
-        let entries = self.crane.inputs.as_ref().and_then(|inputs| inputs.value.as_ref());
-        let named = |(known, _): &&(Spanned<String>, Spanned<Input>)| known.value == name.value;
-        let Some(input) =
-            entries.and_then(|entries| entries.0.iter().find(named)).and_then(|(_, input)| input.value.as_ref())
-        else {
-            return;
-        };
+        let Some(input) = self.named_input(name) else { return };
         if let Some(value) = &input.value {
             let what = format!("input `{}`", name.value.as_deref().unwrap_or_default());
             self.position(value.value.as_ref().map(|value| &value.0), value.span, coordinate, &what);
@@ -93,6 +81,12 @@ impl Look<'_> {
         if let Some(motion) = input.motion.as_ref().and_then(|motion| motion.value.as_ref()) {
             self.motion(motion, coordinate);
         }
+    }
+
+    /// The input of a name.
+    pub(super) fn named_input(&self, name: &Spanned<String>) -> Option<&'a Input> {
+        let entries = &self.crane.inputs.as_ref()?.value.as_ref()?.0;
+        entries.iter().find(|(known, _)| known.value == name.value)?.1.value.as_ref()
     }
 
     /// A speed of rotation.
@@ -147,6 +141,23 @@ impl Look<'_> {
                 _ => self.value(name),
             },
         }
+    }
+}
+
+/// The positions that a motion names, and where; an input names none.
+pub(super) fn positions(motion: &Motion) -> Vec<(Option<&Scalar>, Span)> {
+    match motion {
+        Motion::Hold(at) => vec![written(at)],
+        Motion::Quintic(ramp) | Motion::Cubic(ramp) | Motion::Cycloid(ramp) => {
+            vec![written(&ramp.from), written(&ramp.to)]
+        }
+        Motion::Trapezoid(trapezoid) => vec![written(&trapezoid.from), written(&trapezoid.to)],
+        Motion::Speed(speed) => speed.from.iter().map(written).collect(),
+        Motion::Table(table) => {
+            let values = table.values.value.iter().flatten();
+            values.map(|value| (value.value.as_ref().map(|value| &value.0), value.span)).collect()
+        }
+        Motion::Input(_) => Vec::new(),
     }
 }
 

@@ -42,6 +42,9 @@ impl Look<'_> {
         if let Some(beam) = link.beam.as_ref().and_then(|beam| beam.value.as_ref()) {
             self.length(&beam.length, &format!("the length of beam `{name}`"));
         }
+        if let Some(rope) = link.rope.as_ref().and_then(|rope| rope.value.as_ref()) {
+            self.length(&rope.length, &format!("the length of rope `{name}`"));
+        }
         self.place(link.com.as_ref(), &format!("the centre of mass of link `{name}`"));
         for body in items(link.bodies.as_ref()) {
             let body_name = body.name.value.as_deref().unwrap_or_default();

@@ -23,7 +23,8 @@ impl Look<'_> {
                 (format!("body `{name}`"), &body.mass)
             }));
         }
-        let at_the_end = items(Some(&crane.links)).last().is_some_and(|link| link.beam.is_none());
+        let at_the_end =
+            items(Some(&crane.links)).last().is_some_and(|link| link.beam.is_none() && link.rope.is_none());
         let count = masses.len();
         for (index, (place, given)) in masses.into_iter().enumerate() {
             let live = matches!(given.value.as_ref().map(|mass| &mass.0), Some(Scalar::Name(_)));

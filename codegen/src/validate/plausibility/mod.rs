@@ -7,6 +7,8 @@ mod angles;
 mod beams;
 mod connectors;
 mod feet;
+mod friction;
+mod hydraulics;
 mod lengths;
 mod masses;
 
@@ -19,8 +21,11 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     let mut look = Look { crane, chain, values, warnings: Vec::new() };
     look.beams();
     look.lengths();
+    look.hydraulics();
+    look.bristles();
     // Frequencies and masses that follow from such numbers would be reported a second time.
     if look.warnings.is_empty() {
+        look.parts();
         look.damping();
         look.masses();
         look.feet();

@@ -1,0 +1,30 @@
+//! Bristles of joints that stick.
+
+use super::{Look, rounded};
+use crate::chain::Law;
+use crate::diagnostic::rule;
+
+/// Usual deflections at which bristles slide, rad or m: from stiff bearings to soft seals.
+const USUAL: [f64; 2] = [1e-8, 0.1];
+
+impl Look<'_> {
+    /// Bristles that slide after a way which no surface has: steps become tiny, or the joint springs instead of sticking.
+    pub(super) fn bristles(&mut self) {
+        let entries = self.crane.friction.as_ref().and_then(|friction| friction.value.as_ref());
+        for (name, given) in entries.into_iter().flat_map(|entries| &entries.0) {
+            let Some(given) = given.value.as_ref().and_then(|own| own.bristle.as_ref()) else { continue };
+            let Some(name) = name.value.as_deref() else { continue };
+            let bristles = self.chain.forces.iter().find_map(|force| match &force.law {
+                Law::Friction(friction) if self.chain.coordinates[force.coordinate.0].name == name => {
+                    friction.bristle.as_ref()
+                }
+                _ => None,
+            });
+            let Some(bristle) = bristles else { continue };
+            let way = bristle.breakaway / bristle.stiffness;
+            if !(USUAL[0]..=USUAL[1]).contains(&way) {
+                self.warn(rule::odd_bristles(given.span, name, format!("{:e}", rounded(way))));
+            }
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Cylinders, valves, oil and the pump: pressures in bar, flows in l/min, diameters in mm, and cylinders that their poses overstretch.
+
+use std::ops::RangeInclusive;
+
+use super::{Look, angles::positions, beams::in_metres, items, rounded};
+use crate::chain::{Attachment, Pin};
+use crate::diagnostic::rule;
+use crate::spec::{Constant, Cylinder, Motion, Pump, Spanned, Valve};
+
+/// A quantity of hydraulics: unit, usual numbers, and how to write one that is given in another unit.
+struct Usual {
+    unit: &'static str,
+    range: RangeInclusive<f64>,
+    said: &'static str,
+    help: fn(f64) -> String,
+}
+
+/// Diameters of pistons and rods.
+const DIAMETER: Usual = Usual { unit: "m", range: 2e-3..=2.0, said: "0.002 to 2 m", help: in_metres };
+/// Lengths between pins, and strokes.
+const LENGTH: Usual = Usual { unit: "m", range: 1e-3..=50.0, said: "0.001 to 50 m", help: in_metres };
+/// Pressures of pumps and relief valves, and pressure drops.
+const PRESSURE: Usual = Usual { unit: "Pa", range: 1e4..=5e8, said: "1e4 to 5e8 Pa", help: in_pascal };
+/// Nominal flows of valves and pumps.
+const FLOW: Usual = Usual {
+    unit: "m³/s",
+    range: 1e-8..=0.1,
+    said: "1e-8 to 0.1 m³/s",
+    help: |flow| format!("write it in m³/s: {flow} l/min = {:e} m³/s", rounded(flow / 6e4)),
+};
+/// Bulk moduli, from oil with air to the purest.
+const BULK_MODULUS: Usual = Usual { unit: "Pa", range: 5e7..=5e9, said: "5e7 to 5e9 Pa", help: in_pascal };
+/// Volumes of hoses, and of the oil between pump and valves.
+const VOLUME: Usual = Usual {
+    unit: "m³",
+    range: 0.0..=0.1,
+    said: "at most 0.1 m³",
+    help: |volume| format!("write it in m³: {volume} l = {:e} m³", rounded(1e-3 * volume)),
+};
+/// Time constants of spools.
+const LAG: Usual = Usual {
+    unit: "s",
+    range: 1e-5..=2.0,
+    said: "1e-5 to 2 s",
+    help: |lag| format!("write it in s: {lag} ms = {:e} s", rounded(1e-3 * lag)),
+};
+
+fn in_pascal(pressure: f64) -> String {
+    let (bar, mega) = (rounded(1e5 * pressure), rounded(1e6 * pressure));
+    format!("write it in Pa: {pressure} bar = {bar:e} Pa, {pressure} MPa = {mega:e} Pa")
+}
+
+impl Look<'_> {
+    pub(super) fn hydraulics(&mut self) {
+        let before = self.warnings.len();
+        let pump = self.crane.pump.as_ref().and_then(|pump| pump.value.as_ref());
+        for cylinder in items(self.crane.cylinders.as_ref()) {
+            self.cylinder(cylinder);
+        }
+        if let Some(pump) = pump {
+            let pressure = pump.pressure.as_ref().map(|given| ("the pressure of the pump", given, &PRESSURE));
+            let volume = pump.volume.as_ref().map(|given| ("the volume between pump and valves", given, &VOLUME));
+            let flow = ("the greatest flow of the pump", &pump.max_flow, &FLOW);
+            self.usual([Some(flow), pressure, volume]);
+        }
+        // What such numbers lead to would be reported a second time.
+        if self.warnings.len() == before {
+            if let Some(pump) = pump {
+                self.reliefs(pump);
+            }
+            self.strokes();
+        }
+    }
+
+    fn cylinder(&mut self, cylinder: &Cylinder) {
+        let name = cylinder.name.value.as_deref().unwrap_or_default();
+        let of = |what: &str| format!("the {what} of cylinder `{name}`");
+        let [bore, rod] = [of("bore"), of("rod")];
+        let [retracted, stroke] = [of("retracted length"), of("stroke")];
+        let [most, modulus, hoses] = [of("greatest pressure"), of("bulk modulus"), of("hose volume")];
+        self.usual([Some((&bore, &cylinder.bore, &DIAMETER)), Some((&rod, &cylinder.rod, &DIAMETER))]);
+        self.usual([Some((&retracted, &cylinder.retracted, &LENGTH)), Some((&stroke, &cylinder.stroke, &LENGTH))]);
+        self.usual([cylinder.max_pressure.as_ref().map(|given| (most.as_str(), given, &PRESSURE))]);
+        self.usual([cylinder.bulk_modulus.as_ref().map(|given| (modulus.as_str(), given, &BULK_MODULUS))]);
+        let volumes = cylinder.hose_volumes.as_ref().and_then(|volumes| volumes.value.as_ref());
+        for volume in volumes.into_iter().flatten() {
+            self.usual([Some((&hoses, volume, &VOLUME))]);
+        }
+        if let Some(valve) = cylinder.valve.as_ref().and_then(|valve| valve.value.as_ref()) {
+            self.valve(valve, name);
+        }
+    }
+
+    fn valve(&mut self, valve: &Valve, cylinder: &str) {
+        let of = |what: &str| format!("the {what} of the valve of cylinder `{cylinder}`");
+        let [flow, drop, lag] = [of("flow"), of("pressure drop"), of("lag")];
+        let numbers = [(&flow, &valve.flow, &FLOW), (&drop, &valve.pressure_drop, &PRESSURE), (&lag, &valve.lag, &LAG)];
+        self.usual(numbers.map(|(what, given, usual)| Some((what.as_str(), given, usual))));
+        if let Some(opening) = valve.opening.as_ref().and_then(|opening| opening.value.as_ref()) {
+            self.opening(opening, cylinder);
+        }
+    }
+
+    /// The command of a valve; the first opening beyond the ends of its spool is reported for all.
+    fn opening(&mut self, motion: &Motion, cylinder: &str) {
+        if let Motion::Input(name) = motion {
+            let input = self.named_input(name);
+            let value = input.and_then(|input| input.value.as_ref());
+            if let Some(value) = value {
+                let number = value.value.as_ref().map_or(0.0, |value| self.scalar(&value.0));
+                if number.abs() > 1.0 {
+                    self.warn(rule::opening_beyond(value.span, cylinder, number));
+                }
+            }
+            let motion = input.and_then(|input| input.motion.as_ref()?.value.as_ref());
+            if let Some(motion) = motion {
+                self.opening(motion, cylinder);
+            }
+            return;
+        }
+        let numbers = positions(motion).into_iter().map(|(scalar, at)| (scalar.map_or(0.0, |s| self.scalar(s)), at));
+        let beyond = numbers.into_iter().find(|(number, _)| number.abs() > 1.0);
+        if let Some((number, at)) = beyond {
+            self.warn(rule::opening_beyond(at, cylinder, number));
+        }
+    }
+
+    /// Warns of numbers that are not usual.
+    fn usual<const N: usize>(&mut self, numbers: [Option<(&str, &Spanned<Constant>, &Usual)>; N]) {
+        for (what, given, usual) in numbers.into_iter().flatten() {
+            let Some(number) = given.value.as_ref().map(|number| self.scalar(&number.0)) else { continue };
+            if number != 0.0 && !usual.range.contains(&number) {
+                self.warn(rule::hydraulics(given.span, what, number, usual.unit, usual.said, (usual.help)(number)));
+            }
+        }
+    }
+
+    /// Relief valves that open before the pump has its pressure.
+    fn reliefs(&mut self, pump: &Pump) {
+        let Some(pressure) = pump.pressure.as_ref() else { return };
+        let of_pump = pressure.value.as_ref().map_or(f64::NAN, |number| self.scalar(&number.0));
+        for cylinder in &self.chain.cylinders {
+            if let Some(relief) = cylinder.max_pressure.filter(|relief| cylinder.valve.is_some() && *relief < of_pump) {
+                self.warn(rule::relief_below_pump(
+                    pressure.span,
+                    format!("{of_pump:e}"),
+                    &cylinder.name,
+                    format!("{relief:e}"),
+                ));
+            }
+        }
+    }
+
+    /// Cylinders that are too short or too long where their drives start. Those over a linkage are left to statics.
+    fn strokes(&mut self) {
+        let chain = self.chain;
+        let mut q = chain.guess.clone();
+        for drive in &chain.drives {
+            q[drive.coordinate.0] = drive.profile.start(&self.values);
+        }
+        for (given, cylinder) in items(self.crane.cylinders.as_ref()).zip(&chain.cylinders) {
+            let at = |pin: &Pin| Attachment { body: Some(pin.body), position: pin.position.clone() };
+            let length = chain.distance(&[at(&cylinder.foot), at(&cylinder.head)], &q, &self.values);
+            let (least, most) = (cylinder.retracted, cylinder.retracted + cylinder.stroke);
+            if cylinder.linkage.is_none() && !(least..=most).contains(&length) {
+                self.warn(rule::out_of_stroke(
+                    given.name.span,
+                    &cylinder.name,
+                    rounded(length),
+                    rounded(least),
+                    rounded(most),
+                ));
+            }
+        }
+    }
+}
