@@ -70,7 +70,7 @@ impl crate::Description {
                 cuts.push(Cut::Joint { body });
                 (link, x) = (Some(&info.link), 0.0);
             }
-            // Only elements of beams have a length.
+            // Only elements of beams and links of ropes have a length.
             cuts.push(Cut::Body { body, x: (info.length > 0.0).then_some(x) });
             x += info.length;
         }

@@ -65,6 +65,13 @@ impl Writer {
         self.beam("second", seed % 2 == 1);
         self.massless("fork");
         self.tip("hand");
+        if seed % 4 == 1 {
+            let damping = if self.driven { ", damping: 0.2" } else { "" };
+            let rope = format!("{{length: 0.9, links: 2, mass_per_length: 1.3{damping}}}");
+            self.line(&format!(
+                "  - {{name: cable, placement: {{transform: {{rotation: {{y: 50 deg}}}}}}, rope: {rope}}}"
+            ));
+        }
         self.supports(base, seed);
         if self.driven {
             self.drives(seed);

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from beams import DIRECTIONS, read_beam
+from beams import DIRECTIONS, Beam, read_beam
 from crane_spec import CraneSpec
 from cylinders import Cylinder, pin_of_rocker, turning_axis
 from inertias import read_pseudo_inertia
@@ -148,6 +148,7 @@ class Crane:
     coordinates: list = field(default_factory=list)
     bodies: list = field(default_factory=list)
     cuts: list = field(default_factory=list)
+    rope_dampers: list = field(default_factory=list)
     supports: list = field(default_factory=list)
     elements: list = field(default_factory=list)
     beams: list = field(default_factory=list)
@@ -223,6 +224,8 @@ def read_crane(path):
         crane.rotors.append((crane.drives[-1].coordinate, spec.number(written.get("armature", 0))))
     for name, damping in spec.get("damping", {}).items():
         crane.joint_dampers.append(Spring(crane.coordinate(name), 0, spec.number(damping)))
+    # An entry of its own replaces what the rope gives all its joints.
+    crane.joint_dampers += [damper for damper in crane.rope_dampers if damper.coordinate.name not in spec.get("damping", {})]
     for name, armature in spec.get("armature", {}).items():
         crane.rotors.append((crane.coordinate(name), spec.number(armature)))
     for name, written in spec.get("stops", {}).items():
@@ -255,10 +258,14 @@ def read_links(crane):
     for index, link in enumerate(crane.spec.keys["links"]):
         name = link["name"]
         joint, frame = read_joint(crane, link, is_base=index == 0)
+        if "rope" in link:
+            joint = frame = frame @ swing(crane, f"{name}_1")
         crane.cuts.append(Cut(tip @ joint, len(crane.bodies)))
         transform = tip @ frame
         if "beam" in link:
             spans[name], tip = read_beam_bodies(crane, name, transform, link["beam"])
+        elif "rope" in link:
+            spans[name], tip = read_rope_bodies(crane, name, transform, link["rope"])
         else:
             body = crane.add_body(name, transform, read_link_inertia(crane.spec, link))
             spans[name], tip = Span([body], [0.0]), transform
@@ -299,6 +306,33 @@ def read_beam_bodies(crane, name, transform, written):
         transform = transform @ translate(x=length)
         start = start + length
     return span, transform
+
+
+def swing(crane, name):
+    """The universal joint at the beginning of a link of a rope: about z, then about y."""
+    return crane.move(name, "psi") @ crane.move(name, "theta")
+
+
+def read_rope_bodies(crane, name, transform, written):
+    """Adds the links of a rope, the first behind its joint; returns its span and the pose of its end."""
+    count = int(written["links"])
+    length = crane.spec.number(written["length"]) / count
+    mass = crane.spec.number(written["mass_per_length"]) * length
+    # A slender rod along x, about its beginning.
+    pseudo_inertia = ca.SX(4, 4)
+    pseudo_inertia[0, 0] = mass * length**2 / 3
+    pseudo_inertia[0, 3] = pseudo_inertia[3, 0] = mass * length / 2
+    pseudo_inertia[3, 3] = mass
+    crane.beams.append(Beam([length] * count, [pseudo_inertia] * count, [], [], moduli=[None] * count))
+    span = Span([], [])
+    for number in range(1, count + 1):
+        if number > 1:
+            transform = transform @ translate(x=length) @ swing(crane, f"{name}_{number}")
+        for coordinate in crane.coordinates[-2:]:
+            crane.rope_dampers.append(Spring(coordinate, 0, crane.spec.number(written.get("damping", 0))))
+        span.bodies.append(crane.add_body(f"{name}_{number}", transform, pseudo_inertia))
+        span.starts.append((number - 1) * length)
+    return span, transform @ translate(x=length)
 
 
 def read_joint(crane, link, is_base):

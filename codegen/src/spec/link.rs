@@ -3,10 +3,10 @@
 use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 
-use super::{AxisName, Beam, Inertia, Number, Placement, Spanned, Vector};
+use super::{AxisName, Beam, Constant, Inertia, Number, Placement, Spanned, Vector};
 
 /// A link: its placement, its joint, and its mass: `mass`, `com` and `inertia`, or several `bodies`, or a `beam`, or
-/// nothing (a massless frame).
+/// a `rope`, or nothing (a massless frame).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `name`, `placement`, `joint` and what the link carries")]
 pub struct Link {
@@ -26,6 +26,22 @@ pub struct Link {
     pub bodies: Option<Spanned<Vec<Spanned<Body>>>>,
     /// A beam along x, of rigid finite elements; the next link is attached to its tip.
     pub beam: Option<Spanned<Beam>>,
+    /// A rope or chain along x, of rigid links that hang from each other; the next link, such as a hook, is attached to its end.
+    pub rope: Option<Spanned<HangingRope>>,
+}
+
+/// A rope or chain that does not stretch: slender rigid links end to end, each with a universal joint at its beginning.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a mapping of `length`, `links`, `mass_per_length` and `damping`")]
+pub struct HangingRope {
+    /// Length, m.
+    pub length: Spanned<Number>,
+    /// Number of links of equal length, an integer from 1 to 1000.
+    pub links: Spanned<Constant>,
+    /// Mass per length, kg/m.
+    pub mass_per_length: Spanned<Number>,
+    /// Damping of both rotations of every joint, N m s/rad. Default 0.
+    pub damping: Option<Spanned<Number>>,
 }
 
 /// One of several bodies combined into a link.

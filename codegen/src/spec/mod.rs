@@ -26,7 +26,7 @@ pub use drive::{Drive, Motion, Ramp, Speed, Table, Trapezoid};
 pub use inertia::{About, Inertia};
 pub use input::Input;
 pub use joint::{Bristle, Friction, Stops};
-pub use link::{BaseCoordinate, Body, Joint, JointAxis, Link};
+pub use link::{BaseCoordinate, Body, HangingRope, Joint, JointAxis, Link};
 pub use load::{Axes, Load};
 pub use placement::{AxisName, ClassicDh, ModifiedDh, Placement, Transform, Turn};
 pub use scalar::{Angle, Constant, FixedAngle, Number, Scalar, Vector, parse_angle};

@@ -126,10 +126,8 @@ impl<'a> Check<'a> {
 
     pub(super) fn joint_dampers(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<JointDamper> {
         let mut joint_dampers = Vec::new();
-        let Some(entries) = crane.damping.as_ref().and_then(|damping| damping.value.as_ref()) else {
-            return joint_dampers;
-        };
-        for (name, damping) in &entries.0 {
+        let entries = crane.damping.as_ref().and_then(|damping| damping.value.as_ref());
+        for (name, damping) in entries.into_iter().flat_map(|entries| &entries.0) {
             let coordinate = self.coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let place = format!("the damping of `{}`", name.value.as_deref().unwrap_or_default());
@@ -144,6 +142,13 @@ impl<'a> Check<'a> {
                 self.report(rule::not_passive(name.span, &self.coordinates[id.0].name, owner));
             }
             joint_dampers.push(JointDamper { coordinate: id, damping });
+        }
+        // What a rope gives all its joints, one by one is given instead.
+        let own = joint_dampers.len();
+        for (coordinate, damping) in std::mem::take(&mut self.rope_damping) {
+            if joint_dampers[..own].iter().all(|damper| damper.coordinate != coordinate) {
+                joint_dampers.push(JointDamper { coordinate, damping });
+            }
         }
         joint_dampers
     }

@@ -21,6 +21,7 @@ impl<'a> Check<'a> {
             ("mass", link.mass.as_ref().map(|given| given.span)),
             ("bodies", link.bodies.as_ref().map(|given| given.span)),
             ("beam", link.beam.as_ref().map(|given| given.span)),
+            ("rope", link.rope.as_ref().map(|given| given.span)),
         ]
         .into_iter()
         .filter_map(|(key, span)| Some((key, span?)))
@@ -32,6 +33,9 @@ impl<'a> Check<'a> {
 
         if let Some(beam) = &link.beam {
             return self.beam(beam, name, link.name.span, path);
+        }
+        if let Some(rope) = &link.rope {
+            return self.rope(rope, name, link.name.span, path);
         }
         let (inertia, parts) = match (&link.mass, &link.bodies) {
             (Some(mass), _) => {

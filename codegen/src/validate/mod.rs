@@ -19,6 +19,7 @@ mod names;
 mod numbers;
 mod plausibility;
 mod regular;
+mod rope;
 mod run;
 mod section;
 
@@ -130,6 +131,8 @@ struct Check<'a> {
     owners: Vec<Owner>,
     bodies: Vec<Body>,
     beam_springs: Vec<BeamSpring>,
+    /// Damping of the joints of ropes.
+    rope_damping: Vec<(CoordinateId, Value)>,
     beams: Vec<chain::Beam>,
     base: [Option<CoordinateId>; 6],
     links: BTreeMap<&'a str, LinkBodies>,

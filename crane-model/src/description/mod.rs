@@ -98,12 +98,18 @@ impl Description {
         self.coordinates.iter().zip(q).find_map(|(coordinate, angle)| {
             let CoordinateInfo { name, role, .. } = coordinate;
             let body = name.strip_suffix("_theta")?;
-            let all = matches!(role, CoordinateRole::Base | CoordinateRole::Element)
-                && ["psi", "phi"].iter().all(|other| turns(&format!("{body}_{other}"), *role));
-            (all && angle.cos().abs() < NEAR_SINGULAR.sin()).then(|| {
-                let degrees = angle.to_degrees();
-                format!("{name} is {degrees:.2}°: near ±90° {body}_psi and {body}_phi turn about the same axis and accuracy is lost")
-            })
+            let turns = |symbol: &str| turns(&format!("{body}_{symbol}"), *role);
+            let lost = match role {
+                CoordinateRole::Base | CoordinateRole::Element if turns("psi") && turns("phi") => {
+                    format!("{body}_psi and {body}_phi turn about the same axis")
+                }
+                // A link of a rope.
+                CoordinateRole::Passive if turns("psi") => format!("{body}_psi turns {body} about itself"),
+                _ => return None,
+            };
+            let degrees = angle.to_degrees();
+            (angle.cos().abs() < NEAR_SINGULAR.sin())
+                .then(|| format!("{name} is {degrees:.2}°: near ±90° {lost} and accuracy is lost"))
         })
     }
 

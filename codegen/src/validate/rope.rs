@@ -1,0 +1,95 @@
+//! Ropes and chains: rigid links that hang from each other.
+
+use super::limits::Limit;
+use super::{Check, Owner};
+use crate::chain::{self, Axis, CoordinateKind, Inertia, Step, Value};
+use crate::diagnostic::{Span, rule};
+use crate::expand::placement::translate;
+use crate::spec::{HangingRope, Spanned};
+
+/// Maximum number of links of a rope.
+const MOST_LINKS: f64 = 1000.0;
+/// Rotations of a universal joint, in order: none about the rope itself, which a rope without torsion does not resist.
+const ROTATIONS: [Axis; 2] = [Axis::Z, Axis::Y];
+
+impl<'a> Check<'a> {
+    /// Appends the links of a rope; returns their starts along x, and the position of the next link.
+    pub(super) fn rope(
+        &mut self,
+        given: &'a Spanned<HangingRope>,
+        link: &str,
+        span: Span,
+        mut path: Vec<Step>,
+    ) -> (Vec<Value>, Value) {
+        let links = given.value.as_ref().and_then(|rope| Some((rope, self.links_of_rope(rope)?)));
+        let Some((rope, count)) = links else {
+            // Its coordinates are not known.
+            self.unknown.links = true;
+            return (vec![Value::ZERO], Value::ZERO);
+        };
+        let length = self.number(&rope.length, "`length`", "m", Limit::Positive);
+        let line_density = self.number(&rope.mass_per_length, "`mass_per_length`", "kg/m", Limit::Positive);
+        let damping = self.number_or(rope.damping.as_ref(), 0.0, "`damping`", "N m s/rad", Limit::NotNegative);
+        let length = length / Value::Constant(f64::from(count));
+        // Forces are known at the beginning of every link, stresses are not.
+        self.beams.push(chain::Beam {
+            link: link.to_owned(),
+            outlines: Vec::new(),
+            moduli: vec![None; count as usize],
+            allowable_stress: None,
+        });
+        let inertia = slender(&length, &line_density);
+        let (mut starts, mut start, mut tip) = (Vec::new(), Value::ZERO, Value::ZERO);
+        for number in 1..=count {
+            let name = format!("{link}_{number}");
+            translate(&mut path, [tip, Value::ZERO, Value::ZERO]);
+            for axis in ROTATIONS {
+                let coordinate =
+                    self.push_coordinate((link, &name), CoordinateKind::Rotation, axis, Owner::Joint, span);
+                path.push(Step::Move(coordinate));
+                if !damping.is_zero() {
+                    self.rope_damping.push((coordinate, damping.clone()));
+                }
+            }
+            let body = chain::Body {
+                name,
+                link: link.to_owned(),
+                path: std::mem::take(&mut path),
+                inertia: Some(inertia.clone()),
+                parts: Vec::new(),
+                length: length.clone(),
+            };
+            self.push_body(body, span);
+            starts.push(start.clone());
+            start = start + length.clone();
+            tip = length.clone();
+        }
+        (starts, tip)
+    }
+
+    fn links_of_rope(&mut self, rope: &HangingRope) -> Option<u32> {
+        let count = self.constant(&rope.links, "`links`", "", Limit::Any);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an integer from 1 to 1000
+        if (1.0..=MOST_LINKS).contains(&count) && count.fract() == 0.0 {
+            return Some(count as u32);
+        }
+        // A number that could not be read has been reported.
+        if !count.is_nan() {
+            self.report(rule::rope_links(rope.links.span, count));
+        }
+        None
+    }
+}
+
+/// Pseudo-inertia about its start of a slender rod of length d along x: `m = μ d`, `∫x dm = m d/2`, `∫x² dm = m d²/3`.
+fn slender(length: &Value, line_density: &Value) -> Inertia {
+    let mass = line_density.clone() * length.clone();
+    let first = 0.5 * mass.clone() * length.clone();
+    let second = mass.clone() * length.clone() * length.clone() / 3.0.into();
+    let nothing = || Value::ZERO;
+    Inertia {
+        mass,
+        first: [first, nothing(), nothing()],
+        second: [second, nothing(), nothing(), nothing(), nothing(), nothing()],
+    }
+}
