@@ -64,9 +64,9 @@ async function eventually(page, check) {
   }
 }
 
-async function download(page, act) {
+async function download(page, act, encoding = "utf8") {
   const [given] = await Promise.all([page.waitForEvent("download"), act()]);
-  return readFile(await given.path(), "utf8");
+  return readFile(await given.path(), encoding);
 }
 
 /** Every panel has curves, and a value with a unit for each. */
@@ -214,6 +214,36 @@ async function strength(page) {
   assert.equal(await painted(), 0);
 }
 
+/** Each path has a dot where its point is now, in its colour; the tipping line is on the ground between two feet; pictures and films are files. */
+async function marks(page) {
+  const { paths, lines, feet, duration } = await page.evaluate(() => {
+    const { data: { crane }, plots, viewer, player } = globalThis.report;
+    const marked = plots.filter(({ kind }) => kind === "path").map(({ marks, curves }) => ({
+      colours: marks.map((mark) => mark.style.background), curves: curves.length, colour: curves.map(({ colour }) => colour),
+    }));
+    const { start, end } = Object.fromEntries(["start", "end"].map((one) => [one, viewer.tipping.geometry.getAttribute(`instance${one === "start" ? "Start" : "End"}`)]));
+    const ends = [start, end].map((one) => [one.getX(0), one.getY(0), one.getZ(0)]);
+    const places = viewer.reactions.map(({ local }) => local.clone().applyMatrix4(viewer.figure.kinematics.frames[0]).toArray());
+    const off = ends.map((end) => Math.min(...places.map((place) => Math.hypot(...place.map((x, i) => x - end[i])))));
+    return { paths: marked, lines: crane.strength?.stability?.lines.length ?? 0, feet: viewer.tipping.visible ? off : null, duration: player.duration };
+  });
+  for (const { colours, curves, colour } of paths) {
+    assert.equal(colours.length, curves, "a dot per path");
+    assert.equal(new Set(colours).size, new Set(colour).size, `a colour per point: ${colours}`);
+  }
+  assert.equal(feet !== null, lines > 0, "a tipping line where there are margins");
+  if (feet) assert(feet.every((off) => off < 1e-4), `the tipping line ends ${feet} m beside the feet`);
+  const png = await download(page, () => page.click("#picture"), null);
+  assert(png.length > 10_000 && png.subarray(1, 4).toString() === "PNG", "a picture of the view");
+  if (!duration || !(await page.locator("#video").count())) return;
+  // A film takes as long as the motion: the end of it will do.
+  const film = await download(page, async () => {
+    await page.click("#video");
+    await seek(page, duration - 3);
+  }, null);
+  assert(film.length > 1000, `a film of ${film.length} bytes`);
+}
+
 /** Paper is narrower than the screen: plots fit it, and nothing on it is folded. */
 async function paper(page) {
   // In one go: this is not paper, and plots that are observed would take the screen's width again.
@@ -259,6 +289,7 @@ const said = await open(browser, { viewport: { width: 1440, height: 900 }, color
   await moves(page);
   await plots(page);
   await strength(page);
+  await marks(page);
   await paper(page);
   assert((await page.$$eval("#tables table", (tables) => tables.filter((table) => table.rows.length > 1).length)) >= 3);
   assert((await page.locator("#repeat").textContent()).includes("spec hash"));

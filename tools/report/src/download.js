@@ -1,6 +1,6 @@
 // Files that the page gives away.
 
-/** Offers text as a file. */
+/** Offers text, or a blob, as a file. */
 export function save(name, text, type) {
   const url = URL.createObjectURL(new Blob([text], { type }));
   const link = Object.assign(document.createElement("a"), { href: url, download: name });

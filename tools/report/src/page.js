@@ -2,7 +2,7 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import { chart } from "./chart.js";
-import { gradient } from "./colours.js";
+import { PULLS, gradient } from "./colours.js";
 import { at, place, read, readable, scaled, spoken } from "./data.js";
 import { save, table } from "./download.js";
 import { follow, panels } from "./panels.js";
@@ -124,6 +124,7 @@ function controls() {
     play.setAttribute("aria-label", player.playing ? "Pause" : "Play");
   };
   play.addEventListener("click", () => player.play(!player.playing));
+  $("#whole").textContent = `of ${player.duration.toFixed(2)} s`;
   Object.assign($("#time"), { max: player.duration, step: "any" });
   $("#time").addEventListener("input", ({ target }) => player.seek(Number(target.value)));
   $("#speed").addEventListener("change", ({ target }) => (player.speed = Number(target.value)));
@@ -151,11 +152,13 @@ function controls() {
   check("#ghost", "ghost", rigid);
   check("#trace", "trace", !atRest && crane.scene.points.length);
   check("#arrows", "arrows", crane.scene.supports.length);
+  check("#tipping", "tipping", viewer.lines.length);
   check("#used", "use", viewer.used.beams.length);
   $("#used")?.addEventListener("change", ({ target }) => ($("#use_scale").hidden = !target.checked));
   $("#use_scale i").style.background = gradient;
   const use = viewer.used.unit === "1" ? ["utilisation", "1, beyond red"] : ["equivalent stress", `${readable(viewer.full)} MPa`];
   [$("#use_scale span").textContent, $("#use_scale b").textContent] = use;
+  recording();
   document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => viewer.look(button.dataset.view)));
   const mode = $("#mode");
   crane.modes.forEach((one, index) => mode.append(new Option(modeText(one, index), index)));
@@ -174,7 +177,29 @@ function controls() {
     $("#scale i").style.background = gradient;
     const { unit, factor: larger } = scaled("N", [viewer.greatest]);
     $("#scale b").textContent = `${readable(viewer.greatest * larger)} ${unit}`;
+    $("#pulls").hidden = !viewer.pulls;
+    $("#pulls i").style.background = PULLS;
   } else $("#scale").remove();
+}
+
+/** Pictures and films of the view. */
+function recording() {
+  $("#picture").addEventListener("click", async () => save(`${crane.name}_${player.t.toFixed(2)}s.png`, await viewer.picture(), "image/png"));
+  const film = $("#video");
+  const type = ["video/webm;codecs=vp9", "video/webm", "video/mp4"].find((type) => globalThis.MediaRecorder?.isTypeSupported(type));
+  if (!type || !player.duration) return film.remove();
+  film.addEventListener("click", () => {
+    const recorder = new MediaRecorder($("#view canvas").captureStream(), { mimeType: type, videoBitsPerSecond: 8e6 });
+    const parts = [];
+    recorder.addEventListener("dataavailable", ({ data }) => parts.push(data));
+    recorder.addEventListener("stop", () => {
+      Object.assign(film, { textContent: "Video", disabled: false });
+      save(`${crane.name}.${type.startsWith("video/mp4") ? "mp4" : "webm"}`, new Blob(parts, { type }), type);
+    });
+    Object.assign(film, { textContent: "Recording …", disabled: true });
+    player.once(() => recorder.stop());
+    recorder.start();
+  });
 }
 
 /** Values beside the view, at the present time. */

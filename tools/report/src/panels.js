@@ -114,7 +114,7 @@ function path(add, crane, rigid) {
   const [x, y] = way("y") < hardly ? ["x", "z"] : way("x") < hardly ? ["y", "z"] : ["x", "y"];
   const curves = crane.scene.points.flatMap(({ name }, colour) =>
     [crane, rigid].filter(Boolean).map((one, index) => ({
-      label: rigid ? `${spoken(name)}, ${one.label}` : spoken(name), colour, dashed: index === 1,
+      label: rigid ? `${spoken(name)}, ${one.label}` : spoken(name), colour, dashed: index === 1, t: one.run.t,
       x: one.run.column(`${name}_${x}`).values, values: one.run.column(`${name}_${y}`).values,
     })),
   );

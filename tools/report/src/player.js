@@ -28,7 +28,18 @@ export class Player {
       if (this.t >= this.duration) this.seek(0);
       requestAnimationFrame((now) => this.tick(now));
     }
+    if (!playing) {
+      this.done?.();
+      this.done = null;
+    }
     this.changed?.();
+  }
+
+  /** Plays from the start to the end, stops there, and calls `done`; also where someone stops it before. */
+  once(done) {
+    this.seek(0);
+    this.done = done;
+    this.play(true);
   }
 
   tick(now) {
@@ -37,6 +48,11 @@ export class Player {
     const passed = this.last ? Math.min((now - this.last) / 1000, 0.1) : 0;
     this.last = now;
     const t = this.t + passed * this.speed;
+    if (this.done && t >= this.duration) {
+      this.seek(this.duration);
+      this.play(false);
+      return;
+    }
     this.seek(t > this.duration ? 0 : t);
     requestAnimationFrame((next) => this.tick(next));
   }

@@ -1,7 +1,7 @@
 // A plot with hover, zoom, keyboard, and downloads as SVG and CSV.
 import uPlot from "uplot";
 import { curve, style } from "./colours.js";
-import { range, readable, tickText } from "./data.js";
+import { at, range, readable, tickText } from "./data.js";
 import { csv, save } from "./download.js";
 import { svg } from "./svg.js";
 
@@ -41,7 +41,9 @@ export class Plot {
     );
     this.head = element("figcaption", {}, element("span", { textContent: this.title }), this.tools);
     this.body = element("div", { className: "plot" });
-    this.marker = element("div", { className: this.kind === "path" ? "dot" : "marker", hidden: this.kind === "along" });
+    // A line at the present time, or a dot where each path is then.
+    const mark = (className) => element("div", { className, hidden: this.kind === "along" });
+    this.marks = this.kind === "path" ? this.curves.map(() => mark("dot")) : [mark("marker")];
     this.frame.append(this.head, this.body);
     this.frame.setAttribute("aria-label", `${this.title}: arrow keys move the cursor, + and − zoom, 0 shows everything`);
     host.append(this.frame);
@@ -73,7 +75,7 @@ export class Plot {
       points: { show: this.kind === "along", size: 5 }, value: value(this.y.unit),
       ...(path && {
         facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }], paths: drawPath,
-        value: (u, _, s, i) => (i == null ? "–" : `${readable(u.data[s][0][i])}, ${readable(u.data[s][1][i])} ${this.y.unit}`),
+        value: (u, _, s, i) => (i == null ? "–" : `${readable(u.data[s][0][i])}, ${readable(u.data[s][1][i])} ${this.y.unit} at ${this.curves[s - 1].t[i].toFixed(2)} s`),
       }),
     }));
     const seek = (u) => {
@@ -98,7 +100,7 @@ export class Plot {
         focus: { alpha: 0.35 },
         hooks: {
           ready: [(u) => {
-            u.over.append(this.marker);
+            u.over.append(...this.marks);
             u.over.addEventListener("click", () => seek(u));
           }],
           setScale: [() => this.mark()],
@@ -202,12 +204,14 @@ export class Plot {
     if (!this.at || !this.plot || this.kind === "along") return;
     const u = this.plot;
     const { t, here } = this.at;
-    const shown = this.kind === "path" && this.curves[0];
-    const x = shown ? shown.x[here.low] : t;
-    const [left, top] = [u.valToPos(x, "x"), shown ? u.valToPos(shown.values[here.low], "y") : 0];
-    const inside = left >= 0 && left <= u.over.clientWidth;
-    this.marker.style.display = inside ? "" : "none";
-    this.marker.style.transform = `translate(${left}px, ${top}px)`;
+    this.marks.forEach((mark, index) => {
+      const path = this.kind === "path" && this.curves[index];
+      const left = u.valToPos(path ? at(path.x, here) : t, "x");
+      const top = path ? u.valToPos(at(path.values, here), "y") : 0;
+      mark.style.display = left >= 0 && left <= u.over.clientWidth ? "" : "none";
+      mark.style.transform = `translate(${left}px, ${top}px)`;
+      if (path) mark.style.background = curve(path.colour ?? index);
+    });
   }
 
   /** New values of the curves, in the same order. */
@@ -219,6 +223,7 @@ export class Plot {
 
   theme() {
     this.plot.redraw(false, true);
+    this.mark();
     this.plot.root.querySelectorAll(".u-series").forEach((row, index) => {
       const mark = row.querySelector(".u-marker");
       const one = this.curves[this.kind === "path" ? index : index - 1];

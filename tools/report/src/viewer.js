@@ -7,10 +7,10 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
-import { curve, isDark, scale, smooth, style } from "./colours.js";
+import { BEYOND, curve, isDark, scale, smooth, style } from "./colours.js";
 import { at, place, range } from "./data.js";
 import { Figure, extent } from "./figure.js";
-import { used } from "./strength.js";
+import { margins, used } from "./strength.js";
 
 /** Largest motion of a mode as drawn, of the crane's size. */
 const SWING = 0.012;
@@ -21,6 +21,8 @@ const ROOM = 1.04;
 const MARGIN = 0.03;
 /** Length of the greatest reaction as drawn, of the crane's size. */
 const ARROW = 0.22;
+/** Part of the greatest reaction below which a pull is rounding. */
+const ROUNDING = 1e-9;
 
 export const VIEWS = {
   corner: [-1, -1.25, 0.62],
@@ -64,6 +66,7 @@ export class Viewer {
     this.ground();
     this.traces();
     this.forces();
+    this.tippingLines();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     this.resize();
     this.look("corner");
@@ -138,6 +141,32 @@ export class Viewer {
     });
     this.greatest = Math.max(...this.reactions.map(({ values: [, , z] }) => Math.max(...range(z).map(Math.abs))), 1e-9);
     this.arrow = (ARROW * size) / this.greatest;
+    this.pulls = this.reactions.some(({ values: [, , z] }) => range(z)[0] < -ROUNDING * this.greatest);
+  }
+
+  /** The lines between feet about which the crane could tip over, and one line to draw the governing one. */
+  tippingLines() {
+    const foot = (name) => this.reactions[this.crane.scene.supports.findIndex((support) => support.name === name)];
+    const known = margins(this.crane).map(({ name, values }) => ({ values, feet: name.split(" – ").map(foot) }));
+    this.lines = known.filter(({ feet }) => feet.length === 2 && feet.every(Boolean));
+    // Seen through the truck.
+    const material = new LineMaterial({ linewidth: 4, worldUnits: false, depthTest: false, transparent: true });
+    this.tipping = new Line2(new LineGeometry().setPositions([0, 0, 0, 1, 0, 0]), material);
+    this.tipping.frustumCulled = false;
+    this.tipping.visible = false;
+    this.scene.add(this.tipping);
+  }
+
+  /** Draws the line with the least margin now. */
+  tip(here) {
+    this.tipping.visible = this.lines.length > 0 && this.tippingShown !== false && !this.mode;
+    if (!this.tipping.visible) return;
+    const now = this.lines.map(({ values }) => at(values, here));
+    const margin = Math.min(...now);
+    const base = this.figure.kinematics.frames[0];
+    const places = this.lines[now.indexOf(margin)].feet.map(({ local }) => local.clone().applyMatrix4(base));
+    this.tipping.geometry.setPositions(places.flatMap((place) => place.toArray()));
+    this.tipping.material.color.set(margin <= 0 ? BEYOND : style("--strong"));
   }
 
   look(view) {
@@ -210,10 +239,11 @@ export class Viewer {
     this.show();
   }
 
-  set({ ghost, trace, arrows, factor, use }) {
+  set({ ghost, trace, arrows, tipping, factor, use }) {
     if (ghost !== undefined && this.ghost) this.ghost.group.visible = ghost;
     if (trace !== undefined) this.traced = trace;
     if (arrows !== undefined) this.arrows = arrows;
+    if (tipping !== undefined) this.tippingShown = tipping;
     if (factor !== undefined) this.factor = factor;
     if (use !== undefined) this.use = use;
     for (const { whole, come } of this.paths) whole.visible = come.visible = this.traced !== false && !this.mode;
@@ -240,6 +270,7 @@ export class Viewer {
       come.geometry.instanceCount = Math.max(1, here.low);
     }
     this.react(here);
+    this.tip(here);
     this.figure.colour(this.use && !this.mode ? (name) => this.useAlong(name, here) : null);
     this.draw();
   }
@@ -281,6 +312,13 @@ export class Viewer {
       this.asked = false;
       this.paint();
     });
+  }
+
+  /** The view as it is now, a PNG image. */
+  picture() {
+    // What is drawn is gone when the browser has shown it.
+    this.paint();
+    return new Promise((done) => this.canvas.toBlob(done, "image/png"));
   }
 
   /** Draws at once. */
