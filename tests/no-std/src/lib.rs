@@ -1,4 +1,4 @@
-//! Two cranes for a machine without operating system: no `std`, no heap, and no function that can panic.
+//! Three cranes for a machine without operating system: no `std`, no heap, and no function that can panic.
 //!
 //! As a static library with the panic handler below it builds only where no crate beneath needs `std` or a heap:
 //!
@@ -154,6 +154,10 @@ macro_rules! exported {
 crane! {
     /// The reference crane.
     eight_link_flexible
+}
+crane! {
+    /// Feet that lift, joints that stick, cylinders with valves.
+    eight_link_hydraulic
 }
 crane! {
     /// Exact kinematics, rotation vectors, a rigid drive, rotors.

@@ -99,5 +99,6 @@ macro_rules! call_all {
 
 fn main() {
     call_all!(eight_link_flexible);
+    call_all!(eight_link_hydraulic);
     call_all!(exact);
 }
