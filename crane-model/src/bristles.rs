@@ -10,11 +10,12 @@
 //! creeping, in steady sliding `F = g`. C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky: A new model for control of systems with
 //! friction, IEEE Transactions on Automatic Control 40 (1995).
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use crate::{
     BristleInfo, Description,
-    modes::SmallMotions,
+    dyn_crane::DynCrane,
+    modes::{DampedMode, SmallMotions},
     own_states::{Moment, Pushed},
 };
 
@@ -90,6 +91,20 @@ impl BristleInfo {
         };
         Slope { rate: slope, by_deflection }
     }
+}
+
+/// How fast bristles follow a joint that slides, σ₀ |q̇|/g, as modes of their joints: at the rate that its drive's motion has at a time, at the
+/// Stribeck velocity where no drive moves it. Explicit methods are limited by it.
+pub(crate) fn decays(crane: &dyn DynCrane, t: f64) -> Vec<DampedMode> {
+    let description = crane.description();
+    let motions = crane.drive_motions_at(t);
+    let decay = |joint: &BristleInfo| {
+        let drive = description.drives.iter().position(|drive| drive.coordinate == joint.coordinate);
+        let rate = drive.map_or(joint.stribeck, |drive| motions[drive][1]);
+        let by_deflection = joint.evaluate(0, 0.0, rate, &mut Pushed::default()).by_deflection;
+        DampedMode { eigenvalue: Complex::new(by_deflection, 0.0), dominating: vec![joint.coordinate] }
+    };
+    description.bristles.iter().map(decay).filter(|mode| mode.eigenvalue.re != 0.0).collect()
 }
 
 /// Torques and forces of the bristles on their joints, by coordinate, N m and N.

@@ -151,6 +151,20 @@ pub fn columns(description: &Description) -> Vec<String> {
     [hydraulics::columns(description), bristles::columns(description)].concat()
 }
 
+/// How far a spool may be beyond its ends by the error of a method.
+const ROUNDING: f64 = 1e-3;
+
+/// What is wrong with states that no valve can have: a spool beyond its ends.
+pub fn impossible(description: &Description, x: &[f64]) -> Option<String> {
+    let names = hydraulics::columns(description);
+    let beyond = |(place, name): (usize, &String)| {
+        let opening = *x.get(place)?;
+        (place % STATES == 2 && opening.abs() > 1.0 + ROUNDING)
+            .then(|| format!("`{name}` is {opening}: a valve is fully open at −1 and 1"))
+    };
+    names.iter().enumerate().find_map(beyond)
+}
+
 /// Accelerations at a state of a crane and its forces, m/s² and rad/s², and the rates of the states.
 ///
 /// # Panics

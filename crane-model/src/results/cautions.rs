@@ -1,6 +1,5 @@
 //! Cautions about poses and runs for which the model is not valid.
 
-pub use super::feet::of_reactions;
 use super::{Extremes, Table, connectors, cylinders, feet, limits, stop_effort};
 use crate::{Description, dyn_crane::DynCrane};
 
@@ -43,6 +42,22 @@ pub fn of_run(rig: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
         .chain(connectors::of_run(description, table))
         .chain(bent_beyond(bent, bend))
         .collect()
+}
+
+/// The first pose of a run near which the equations are singular.
+pub fn near_singular(description: &Description, table: &Table) -> Option<String> {
+    poses(description, table).find_map(|q| description.near_singular(q))
+}
+
+/// The first pose of a run for which a base that may only turn a little has turned further.
+pub fn large_tilt(description: &Description, table: &Table) -> Option<String> {
+    poses(description, table).find_map(|q| description.large_tilt(q))
+}
+
+/// The poses of a run: the columns behind its time.
+fn poses<'a>(description: &Description, table: &'a Table) -> impl Iterator<Item = &'a [f64]> {
+    let n = description.coordinates.len();
+    table.rows.iter().filter_map(move |row| row.get(1..=n))
 }
 
 /// Reports how long a joint is on its stops during a run, and the largest effort of these.

@@ -109,6 +109,30 @@ pub(super) fn columns(name: &str) -> [(String, &'static str); 6] {
     .map(|(what, unit)| (format!("{name}_{what}"), unit))
 }
 
+/// Names of the columns with pressures: of all cylinders, and of a pump whose oil moves them.
+pub(super) fn pressures(description: &Description) -> Vec<String> {
+    let of_cylinders =
+        description.cylinders.iter().flat_map(|cylinder| columns(&cylinder.name)).filter(|(_, unit)| *unit == "Pa");
+    of_cylinders.map(|(name, _)| name).chain(description.has_valves().then(|| "pump_pressure".to_owned())).collect()
+}
+
+/// Adds the columns of all cylinders, of the pump, and of the openings of valves.
+pub(super) fn add_columns(description: &Description, table: &mut Table) {
+    for (name, unit) in description.cylinders.iter().flat_map(|cylinder| columns(&cylinder.name)) {
+        table.add(name, unit);
+    }
+    if !description.cylinders.is_empty() {
+        table.add("pump_flow", "m³/s");
+        table.add("pump_power", "W");
+    }
+    if description.has_valves() {
+        table.add("pump_pressure", "Pa");
+    }
+    for cylinder in description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
+        table.add(spool(&cylinder.name), "");
+    }
+}
+
 /// Name of the column with the opening of a cylinder's valve, −1 to 1.
 pub(crate) fn spool(cylinder: &str) -> String {
     format!("{cylinder}_valve")
@@ -162,6 +186,7 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
     }
     if description.has_valves() {
         found.extend(short_of_oil(description, table));
+        found.extend(description.cylinders.iter().filter_map(|info| falls_behind(description, info, table)));
         found.extend(description.cylinders.iter().filter_map(|info| below_vacuum(info, table)));
         return found;
     }
@@ -191,6 +216,38 @@ fn short_of_oil(description: &Description, table: &Table) -> Option<String> {
         limit / LITRE_PER_MINUTE,
         table.rows[first][0]
     ))
+}
+
+/// A cylinder whose servo does not follow its motion: how far behind the joint is, and for how long the valve is fully open.
+fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -> Option<String> {
+    /// Share of its motion by which a joint may be behind; usual servos with their speed set ahead are below.
+    const FOLLOWS: f64 = 0.05;
+    /// Opening from which a valve is fully open.
+    const OPEN: f64 = 0.999;
+    info.valve.filter(|valve| !valve.commanded)?;
+    let coordinate = &description.coordinates[description.drives[info.drive].coordinate];
+    let wanted = format!("{}_prescribed", coordinate.name);
+    let range = Extremes::of(table, &wanted);
+    let way = range.maximum - range.minimum;
+    let behind = table.values(&wanted)?.zip(table.values(&coordinate.name)?).map(|(wanted, own)| (wanted - own).abs());
+    let (most, row) = behind.zip(&table.rows).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let interval = table.rows.get(1)?[0] - table.rows[0][0];
+    let open = interval * table.values(&spool(&info.name))?.filter(|opening| opening.abs() >= OPEN).count() as f64;
+    let valve = if open > 0.0 {
+        format!("its valve is fully open for {open:.2} s")
+    } else {
+        "its valve is never fully open".to_owned()
+    };
+    (way > 0.0 && most > FOLLOWS * way).then(|| {
+        format!(
+            "{} falls behind: {} is up to {most:.4} {} from its motion, {:.0} % of the way it moves, at {:.2} s; {valve}",
+            info.name,
+            coordinate.name,
+            coordinate.kind.unit(),
+            100.0 * most / way,
+            row[0]
+        )
+    })
 }
 
 /// A cylinder whose suction valves let in too little oil: pressures are above that of the surroundings, and none is less than that below.

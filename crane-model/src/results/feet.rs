@@ -25,14 +25,12 @@ pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = Str
 
 /// Feet over a run: as of a pose, and whether the crane tips over.
 pub(super) fn of_run(description: &Description, table: &Table) -> impl Iterator<Item = String> {
-    of_reactions(description, &|name| table.values(name).map(|_| Extremes::of(table, name)))
-        .into_iter()
-        .chain(tips_over(description, table))
+    of_reactions(description, table).into_iter().chain(tips_over(description, table))
 }
 
-/// Feet that pull the crane down over a run, and those that lift off, by the extremes of its columns, as far as there are such.
-pub fn of_reactions(description: &Description, extremes: &dyn Fn(&str) -> Option<Extremes>) -> Vec<String> {
-    let reaction = |name: &str| extremes(&format!("{name}_reaction_z")).unwrap_or_default();
+/// Feet that pull the crane down over a run, and those that lift off.
+fn of_reactions(description: &Description, table: &Table) -> Vec<String> {
+    let reaction = |name: &str| Extremes::of(table, &format!("{name}_reaction_z"));
     let greatest = description.supports.iter().map(|support| reaction(&support.name).size()).fold(0.0, f64::max);
     let pulls = description.supports.iter().filter_map(|support| {
         let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
@@ -40,10 +38,11 @@ pub fn of_reactions(description: &Description, extremes: &dyn Fn(&str) -> Option
     });
     let lifted = description.supports.iter().filter(|support| support.one_sided).filter_map(|support| {
         let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
-        let gap = extremes(&support_gap(&support.name)).map_or_else(String::new, |gap| {
-            format!(", by up to {} mm at {:.2} s", millimetres(gap.maximum), gap.time_of_maximum)
-        });
-        (minimum <= 0.0).then(|| format!("{} first at {time_of_minimum:.2} s{gap}", support.name))
+        (minimum <= 0.0).then(|| {
+            let gap = Extremes::of(table, &support_gap(&support.name));
+            let (most, time) = (millimetres(gap.maximum), gap.time_of_maximum);
+            format!("{} first at {time_of_minimum:.2} s, by up to {most} mm at {time:.2} s", support.name)
+        })
     });
     let lifted: Vec<String> = lifted.collect();
     let lifted = (!lifted.is_empty()).then(|| format!("feet that lift off the ground: {}", lifted.join("; ")));

@@ -1,6 +1,6 @@
 //! The most important columns of a run, by kind.
 
-use super::{Extremes, Table, connector_force, drive_effort};
+use super::{Extremes, Table, connector_force, cylinders, drive_effort};
 use crate::Description;
 
 /// The measure of a quantity's size, relative to which its error is judged.
@@ -52,7 +52,8 @@ impl Kind {
     }
 }
 
-/// The most important columns of a run: efforts of the drives, paths of the points, vertical forces of the supports, forces of connectors.
+/// The most important columns of a run: efforts of the drives, paths of the points, vertical forces of the supports, pressures of
+/// cylinders and pump, forces of connectors.
 pub fn headlines(description: &Description) -> Vec<Kind> {
     let efforts = |unit: &str| -> Vec<String> {
         let coordinates = description.drives.iter().map(|drive| &description.coordinates[drive.coordinate]);
@@ -72,6 +73,7 @@ pub fn headlines(description: &Description) -> Vec<Kind> {
         Kind::new(efforts("N"), "N", Size::Peak),
         Kind::new(points, "m", Size::Range),
         Kind::new(supports.collect(), "N", Size::Peak),
+        Kind::new(cylinders::pressures(description), "Pa", Size::Peak),
         Kind::new(connectors("N"), "N", Size::Peak),
         Kind::new(connectors("N m"), "N m", Size::Peak),
     ]

@@ -1,31 +1,54 @@
 //! Drives at the limit of their effort.
 
 use super::{Table, drive_effort};
-use crate::dyn_crane::DynCrane;
+use crate::{Text, dyn_crane::DynCrane};
 
 /// Part of its limit from which a drive is said to be there: what is left is the rounded corner of its law.
 const REACHED: f64 = 0.985;
 
 /// Drives that a pose at rest takes to their limits, and how far the joints are from where the drives stand.
 pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = String> {
-    let description = rig.description();
-    let efforts = rig.drive_efforts_at_rest(q);
     let motions = rig.drive_motions_at(0.0);
-    let drives = description.drives.iter().zip(rig.drive_limits_at()).zip(efforts.into_iter().zip(motions));
-    let reached = drives.filter_map(|((drive, limit), (effort, [position, _]))| {
-        let coordinate = &description.coordinates[drive.coordinate];
-        let behind = (position - q[drive.coordinate]).abs();
-        (effort.abs() >= REACHED * limit?).then(|| {
-            format!(
-                "the drive of {} cannot hold it: at its limit of {:.1} {} the joint is {behind:.4} {} from where the drive holds",
-                coordinate.name,
-                effort.abs(),
-                coordinate.kind.force_unit(),
-                coordinate.kind.unit()
-            )
+    let description = rig.description();
+    reached(rig, q).into_iter().map(move |Reached { drive, effort, limit }| {
+        let place = description.drives[drive].coordinate;
+        let coordinate = &description.coordinates[place];
+        let [position, _] = motions[drive];
+        let unit = coordinate.kind.force_unit();
+        format!(
+            "the drive of {} is at its limit, {:.1} of {limit:.1} {unit}: the joint rests {:.4} {} from where the drive would hold it",
+            coordinate.name,
+            effort.abs(),
+            (position - q[place]).abs(),
+            coordinate.kind.unit()
+        )
+    })
+}
+
+/// A drive at the limit of its effort.
+struct Reached {
+    drive: usize,
+    /// N m or N.
+    effort: f64,
+    limit: f64,
+}
+
+/// Drives that a pose at rest takes to their limits.
+fn reached(rig: &dyn DynCrane, q: &[f64]) -> Vec<Reached> {
+    let drives = rig.drive_limits_at().into_iter().zip(rig.drive_efforts_at_rest(q)).enumerate();
+    drives
+        .filter_map(|(drive, (limit, effort))| {
+            let limit = limit?;
+            (effort.abs() >= REACHED * limit).then_some(Reached { drive, effort, limit })
         })
-    });
-    reached.collect::<Vec<_>>().into_iter()
+        .collect()
+}
+
+/// Names of the coordinates whose drives a pose at rest takes to their limits.
+pub(crate) fn overloaded(rig: &dyn DynCrane, q: &[f64]) -> Vec<Text> {
+    let description = rig.description();
+    let name = |reached: Reached| description.coordinates[description.drives[reached.drive].coordinate].name.clone();
+    reached(rig, q).into_iter().map(name).collect()
 }
 
 /// Part of its greatest rate from which the effort of a drive is said to fade: it has fallen by a tenth.

@@ -16,6 +16,7 @@ pub(crate) use cylinders::unassembled;
 pub use cylinders::{CylinderState, cylinders_at, pump};
 pub use extremes::Extremes;
 pub use headlines::{Kind, headlines};
+pub(crate) use limits::overloaded;
 pub use peaks::Peaks;
 pub use recording::{Recording, connector_force, drive_effort, quantities, quantities_at, stop_effort, support_gap};
 pub use table::{Column, Table};

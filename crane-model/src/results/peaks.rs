@@ -1,17 +1,15 @@
 //! The extremes and final values of a run.
 
-use crate::{
-    Description,
-    dyn_crane::DynCrane,
-    dynamics::Sample,
-    results::{Column, Extremes, Table, drive_effort},
-};
+use super::{Column, Extremes, Table, connector_force, cylinders, drive_effort, stop_effort, support_gap};
+use crate::Description;
 
 /// Signed extremes with their times, and final values, over the samples of a run.
 ///
 /// Columns, `_min`, `_min_time`, `_max`, `_max_time` of each: of a point `<point>_x`, `_y`, `_z`; of a drive
-/// `<coordinate>_drive_torque` or `_drive_force`; of a support `<support>_reaction_x`, `_y`, `_z`. Finally `_end` of every
-/// coordinate of every point.
+/// `<coordinate>_drive_torque` or `_drive_force`; of a support `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap`;
+/// of a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`, `_rod_pressure` and `_flow`, of all `pump_flow` and `pump_power`,
+/// with valves `pump_pressure`; of end stops `<coordinate>_stop_torque` or `_stop_force`; of a connector `<connector>_force` or `_torque`.
+/// Finally `_end` of every coordinate of every point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {
     extremes: Vec<Extremes>,
@@ -21,41 +19,22 @@ pub struct Peaks {
 impl Peaks {
     /// Names and units of [`Peaks::values`].
     pub fn columns(description: &Description) -> Vec<Column> {
-        const AXES: [&str; 3] = ["x", "y", "z"];
         let mut table = Table::default();
-        let mut add = |name: String, unit: &'static str| {
-            for (what, unit) in [("min", unit), ("min_time", "s"), ("max", unit), ("max_time", "s")] {
+        for Column { name, unit } in tracked(description) {
+            for (what, unit) in [("min", unit.as_str()), ("min_time", "s"), ("max", unit.as_str()), ("max_time", "s")] {
                 table.add(format!("{name}_{what}"), unit);
             }
-        };
-        let places = || description.points.iter().flat_map(|point| AXES.map(|axis| format!("{point}_{axis}")));
-        places().for_each(|place| add(place, "m"));
-        for drive in &description.drives {
-            let coordinate = &description.coordinates[drive.coordinate];
-            add(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
         }
-        for support in &description.supports {
-            for axis in AXES {
-                add(format!("{}_reaction_{axis}", support.name), "N");
-            }
-        }
-        places().for_each(|place| table.add(format!("{place}_end"), "m"));
+        places(description).for_each(|place| table.add(format!("{place}_end"), "m"));
         table.columns
     }
 
-    /// Adds a sample of the run of `crane`.
-    pub fn push(&mut self, crane: &dyn DynCrane, sample: &Sample<'_>) {
-        let &Sample { t, q, v, .. } = sample;
-        self.last.clear();
-        self.last.extend(crane.points_at(q).iter().flatten());
-        let reactions = crane.support_reactions_at(q, v);
-        let efforts = crane.drive_efforts_of(sample);
-        let values = self.last.iter().copied().chain(efforts).chain(reactions.iter().flatten().copied());
-        for (index, value) in values.enumerate() {
-            match self.extremes.get_mut(index) {
-                Some(extremes) => extremes.widen(t, value),
-                None => self.extremes.push(Extremes::at(t, value)),
-            }
+    /// Of the table of a run.
+    pub(crate) fn of(description: &Description, table: &Table) -> Self {
+        let last = |name: &str| table.values(name).and_then(Iterator::last).unwrap_or(f64::NAN);
+        Self {
+            extremes: tracked(description).iter().map(|column| Extremes::of(table, &column.name)).collect(),
+            last: places(description).map(|place| last(&place)).collect(),
         }
     }
 
@@ -65,4 +44,38 @@ impl Peaks {
         let extremes = extremes.flat_map(|e| [e.minimum, e.time_of_minimum, e.maximum, e.time_of_maximum]);
         extremes.chain(self.last.iter().copied())
     }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Coordinates of points.
+fn places(description: &Description) -> impl Iterator<Item = String> {
+    description.points.iter().flat_map(|point| AXES.map(|axis| format!("{point}_{axis}")))
+}
+
+/// The columns of a run whose extremes are kept.
+fn tracked(description: &Description) -> Vec<Column> {
+    let mut table = Table::default();
+    places(description).for_each(|place| table.add(place, "m"));
+    for drive in &description.drives {
+        let coordinate = &description.coordinates[drive.coordinate];
+        table.add(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
+    }
+    for support in &description.supports {
+        for axis in AXES {
+            table.add(format!("{}_reaction_{axis}", support.name), "N");
+        }
+    }
+    for support in description.supports.iter().filter(|support| support.one_sided) {
+        table.add(support_gap(&support.name), "m");
+    }
+    cylinders::add_columns(description, &mut table);
+    for &coordinate in &description.stops {
+        let coordinate = &description.coordinates[coordinate];
+        table.add(stop_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
+    }
+    for connector in &description.connectors {
+        table.add(connector_force(connector), connector.kind.force_unit());
+    }
+    table.columns
 }

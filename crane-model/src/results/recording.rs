@@ -19,36 +19,48 @@ use crate::{
 /// error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
+    extent: Extent,
     table: Table,
     energy_at_start: f64,
+}
+
+/// How much of a state is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// Everything.
+    All,
+    /// What peaks and cautions read: no velocities of points, moments of elements and energies.
+    Peaks,
 }
 
 impl<'a> Recording<'a> {
     /// No samples yet.
     pub fn new(crane: &'a dyn DynCrane) -> Self {
-        Self {
-            crane,
-            table: Table {
-                columns: [quantities(crane.description()), audited(crane.description())].concat(),
-                rows: Vec::new(),
-            },
-            energy_at_start: 0.0,
-        }
+        let columns = [quantities(crane.description()), audited(crane.description())].concat();
+        Self { crane, extent: Extent::All, table: Table { columns, rows: Vec::new() }, energy_at_start: 0.0 }
+    }
+
+    /// No samples yet of what peaks and cautions read.
+    pub(crate) fn of_peaks(crane: &'a dyn DynCrane) -> Self {
+        let columns = quantities_of(crane.description(), Extent::Peaks);
+        Self { crane, extent: Extent::Peaks, table: Table { columns, rows: Vec::new() }, energy_at_start: 0.0 }
     }
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
         let &Sample { t, q, v, x, work, dissipated, load_work } = sample;
         let mut row = Vec::with_capacity(self.table.columns.len());
-        let energy = push_quantities(self.crane, t, (q, v), x, &mut row).total();
-        if self.table.rows.is_empty() {
-            self.energy_at_start = energy;
+        let energies = push_quantities(self.crane, self.extent, t, (q, v), x, &mut row);
+        if let Some(energy) = energies.as_ref().map(Energies::total) {
+            if self.table.rows.is_empty() {
+                self.energy_at_start = energy;
+            }
+            row.extend([work, dissipated]);
+            if !self.crane.description().loads.is_empty() {
+                row.push(load_work);
+            }
+            row.push(energy - self.energy_at_start - work - load_work + dissipated);
         }
-        row.extend([work, dissipated]);
-        if !self.crane.description().loads.is_empty() {
-            row.push(load_work);
-        }
-        row.push(energy - self.energy_at_start - work - load_work + dissipated);
         self.table.rows.push(row);
     }
 
@@ -62,13 +74,20 @@ impl<'a> Recording<'a> {
 /// [`quantities`].
 pub fn quantities_at(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Vec<f64> {
     let mut row = Vec::new();
-    push_quantities(crane, t, (q, v), x, &mut row);
+    push_quantities(crane, Extent::All, t, (q, v), x, &mut row);
     row
 }
 
-/// Adds what follows from a state to a row; its energies.
-fn push_quantities(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64], row: &mut Vec<f64>) -> Energies {
-    let energies = crane.energies_at(t, q, v);
+/// Adds what follows from a state to a row; its energies if they are wanted.
+fn push_quantities(
+    crane: &dyn DynCrane,
+    extent: Extent,
+    t: f64,
+    (q, v): (&[f64], &[f64]),
+    x: &[f64],
+    row: &mut Vec<f64>,
+) -> Option<Energies> {
+    let all = extent == Extent::All;
     row.push(t);
     row.extend_from_slice(q);
     row.extend_from_slice(v);
@@ -90,15 +109,21 @@ fn push_quantities(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[
         None if cylinders.is_empty() => (),
         None => row.extend(cylinders::pump(&cylinders)),
     }
-    for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {
-        row.extend(position.iter().chain(&velocity));
+    if all {
+        for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {
+            row.extend(position.iter().chain(&velocity));
+        }
+    } else {
+        row.extend(crane.points_at(q).iter().flatten());
     }
     for reaction in crane.support_reactions_at(q, v) {
         row.extend(&reaction);
     }
     let gaps = crane.support_gaps_at(q).into_iter().zip(&*crane.description().supports);
     row.extend(gaps.filter(|(_, support)| support.one_sided).map(|(gap, _)| gap));
-    row.extend(crane.element_moments_at(q, v));
+    if all {
+        row.extend(crane.element_moments_at(q, v));
+    }
     row.extend(crane.stop_efforts_at(q, v));
     let mut frictions = crane.friction_efforts_at(v);
     for (coordinate, effort) in bristles::efforts(crane.description(), v, x) {
@@ -112,6 +137,10 @@ fn push_quantities(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[
         row.extend(length);
         row.push(tension.force);
     }
+    if !all {
+        return None;
+    }
+    let energies = crane.energies_at(t, q, v);
     row.extend([energies.kinetic, energies.gravity, energies.supports, energies.elements, energies.drives]);
     if !crane.description().stops.is_empty() {
         row.push(energies.stops);
@@ -119,11 +148,16 @@ fn push_quantities(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[
     if !crane.description().connectors.is_empty() {
         row.push(energies.connectors);
     }
-    energies
+    Some(energies)
 }
 
 /// Names and units of what follows from a state.
 pub fn quantities(description: &Description) -> Vec<Column> {
+    quantities_of(description, Extent::All)
+}
+
+fn quantities_of(description: &Description, extent: Extent) -> Vec<Column> {
+    let all = extent == Extent::All;
     let mut table = Table::default();
     table.add("t", "s");
     for coordinate in &description.coordinates {
@@ -137,24 +171,12 @@ pub fn quantities(description: &Description) -> Vec<Column> {
         table.add(format!("{}_prescribed", coordinate.name), coordinate.kind.unit());
         table.add(drive_effort(&coordinate.name, coordinate.kind), coordinate.kind.force_unit());
     }
-    for (name, unit) in description.cylinders.iter().flat_map(|cylinder| cylinders::columns(&cylinder.name)) {
-        table.add(name, unit);
-    }
-    if !description.cylinders.is_empty() {
-        table.add("pump_flow", "m³/s");
-        table.add("pump_power", "W");
-        if description.has_valves() {
-            table.add("pump_pressure", "Pa");
-        }
-        for cylinder in description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
-            table.add(cylinders::spool(&cylinder.name), "");
-        }
-    }
+    cylinders::add_columns(description, &mut table);
     for point in &description.points {
         for axis in ["x", "y", "z"] {
             table.add(format!("{point}_{axis}"), "m");
         }
-        for axis in ["x", "y", "z"] {
+        for axis in ["x", "y", "z"].into_iter().filter(|_| all) {
             table.add(format!("{point}_v{axis}"), "m/s");
         }
     }
@@ -166,7 +188,7 @@ pub fn quantities(description: &Description) -> Vec<Column> {
     for support in description.supports.iter().filter(|support| support.one_sided) {
         table.add(support_gap(&support.name), "m");
     }
-    for coordinate in description.coordinates.iter().filter(|coordinate| coordinate.role.is_element()) {
+    for coordinate in description.coordinates.iter().filter(|coordinate| all && coordinate.role.is_element()) {
         table.add(format!("{}_moment", coordinate.name), coordinate.kind.force_unit());
     }
     for (coordinates, what) in [(&description.stops, "stop"), (&description.frictions, "friction")] {
@@ -183,6 +205,9 @@ pub fn quantities(description: &Description) -> Vec<Column> {
         table.add(format!("{}_{what}", connector.name), unit);
         table.add(format!("{}_{what}_rate", connector.name), format!("{unit}/s"));
         table.add(connector_force(connector), connector.kind.force_unit());
+    }
+    if !all {
+        return table.columns;
     }
     for energy in ["kinetic", "gravity", "support", "element", "drive"] {
         table.add(format!("{energy}_energy"), "J");

@@ -14,7 +14,7 @@ use crate::{
     ParameterError,
     dyn_crane::{DynCrane, Member},
     dynamics::{self, InitialState, Method, Run, Sample, Settings, Watch},
-    results::{Extremes, Peaks, cautions},
+    results::{self, Peaks, Recording, cautions},
 };
 
 /// The result of the run of a row.
@@ -127,8 +127,7 @@ fn ready(crane: &dyn DynCrane, parameters: &[f64]) -> Result<(Box<dyn DynCrane>,
 /// The record of a run in progress.
 struct Gathering<'a> {
     crane: &'a dyn DynCrane,
-    peaks: Peaks,
-    odd: [Option<String>; 2],
+    recording: Recording<'a>,
     end: InitialState,
     off: &'a dyn Fn() -> bool,
     called_off: bool,
@@ -136,48 +135,43 @@ struct Gathering<'a> {
 
 impl<'a> Gathering<'a> {
     fn new(crane: &'a dyn DynCrane, off: &'a dyn Fn() -> bool) -> Self {
-        let (peaks, end) = (Peaks::default(), InitialState::default());
-        Self { crane, peaks, odd: [None, None], end, off, called_off: false }
+        let (recording, end) = (Recording::of_peaks(crane), InitialState::default());
+        Self { crane, recording, end, off, called_off: false }
     }
 
     fn take(&mut self, sample: &Sample<'_>) {
-        let description = self.crane.description();
-        self.peaks.push(self.crane, sample);
-        let [singular, tilted] = &mut self.odd;
-        *singular = singular.take().or_else(|| description.near_singular(sample.q));
-        *tilted = tilted.take().or_else(|| description.large_tilt(sample.q));
-        self.end.q.clear();
-        self.end.v.clear();
-        self.end.x.clear();
-        self.end.q.extend_from_slice(sample.q);
-        self.end.v.extend_from_slice(sample.v);
-        self.end.x.extend_from_slice(sample.x);
+        self.recording.push(sample);
+        let InitialState { q, v, x } = &mut self.end;
+        for (end, now) in [(q, sample.q), (v, sample.v), (x, sample.x)] {
+            end.clear();
+            end.extend_from_slice(now);
+        }
     }
 
     fn finish(self, run: Result<Run, dynamics::Stopped>) -> Outcome {
-        let [singular, tilted] = self.odd;
         if self.called_off {
             return Outcome::without_run(Reason::CalledOff);
         }
-        let description = self.crane.description();
-        match run {
+        let (description, table) = (self.crane.description(), self.recording.into_table());
+        let near_singular = cautions::near_singular(description, &table);
+        let tilted = cautions::large_tilt(description, &table).into_iter();
+        let unassembled = || {
+            let (cylinder, time) = results::unassembled(description, &table)?;
+            Some(runs::Reason::Unassembled { cylinder, time })
+        };
+        let failed = match run {
+            Ok(run) => unassembled().map_or(Ok(run), Err),
+            Err(stopped) => Err(runs::Reason::Stopped { stopped, near_singular: near_singular.clone(), limit: None }),
+        };
+        match failed {
             Ok(run) => {
-                let columns = Peaks::columns(description);
-                let values: Vec<f64> = self.peaks.values().collect();
-                let extremes = |name: &str| {
-                    let first = columns.iter().position(|column| column.name.strip_suffix("_min") == Some(name))?;
-                    let &[minimum, time_of_minimum, maximum, time_of_maximum] = values[first..].first_chunk()?;
-                    Some(Extremes { minimum, time_of_minimum, maximum, time_of_maximum })
-                };
-                let pulls = cautions::of_reactions(description, &extremes);
-                let cautions = singular.into_iter().chain(tilted).chain(pulls).collect();
-                Outcome { peaks: Some(self.peaks), end: self.end, cautions, run: Ok(run) }
+                let of_run = cautions::of_run(self.crane, &table, cautions::BEND);
+                let cautions = near_singular.into_iter().chain(tilted).chain(of_run).collect();
+                Outcome { peaks: Some(Peaks::of(description, &table)), end: self.end, cautions, run: Ok(run) }
             }
-            Err(stopped) => {
-                let failed =
-                    runs::Reason::Stopped { stopped, near_singular: singular, limit: None }.of(&description.name);
-                let cautions = tilted.into_iter().collect();
-                Outcome { peaks: None, end: self.end, cautions, run: Err(Reason::Failed(failed)) }
+            Err(reason) => {
+                let run = Err(Reason::Failed(reason.of(&description.name)));
+                Outcome { peaks: None, end: self.end, cautions: tilted.collect(), run }
             }
         }
     }

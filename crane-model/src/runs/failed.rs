@@ -4,8 +4,10 @@ use std::{error::Error, fmt};
 
 use crate::{
     Text,
+    dyn_crane::DynCrane,
     dynamics::{Cause, Stopped},
     modes::NoModes,
+    results::overloaded,
     statics::Equilibrium,
 };
 
@@ -22,7 +24,12 @@ pub struct Failed {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reason {
     /// Statics found no stable equilibrium to start from.
-    Equilibrium(Equilibrium),
+    Equilibrium {
+        /// What it found.
+        equilibrium: Equilibrium,
+        /// Coordinates whose drives are at the limits of their efforts there.
+        overloaded: Vec<Text>,
+    },
     /// The mass matrix at the start is not positive definite.
     MassMatrix,
     /// There are no modes, which are needed to compute a stable step.
@@ -53,6 +60,12 @@ impl Failed {
 }
 
 impl Reason {
+    /// Statics that found no stable equilibrium of a crane.
+    pub fn no_equilibrium(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Self {
+        let overloaded = overloaded(crane, &equilibrium.q);
+        Self::Equilibrium { equilibrium: equilibrium.clone(), overloaded }
+    }
+
     /// For a crane with this name.
     pub fn of(self, crane: &Text) -> Failed {
         Failed { crane: crane.clone(), reason: Box::new(self) }
@@ -61,7 +74,10 @@ impl Reason {
     /// What to do about it.
     pub fn advice(&self) -> String {
         match self {
-            Reason::Equilibrium(_) => {
+            Reason::Equilibrium { overloaded, .. } if !overloaded.is_empty() => {
+                "raise `max_effort` of these drives, or change `guess:` and the motions to a pose that they can hold".to_owned()
+            }
+            Reason::Equilibrium { .. } => {
                 "change `guess:` in its spec to a pose near a stable equilibrium, or add a drive or spring to the coordinates named".to_owned()
             }
             Reason::MassMatrix => {
@@ -95,10 +111,15 @@ impl fmt::Display for Failed {
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Reason::Equilibrium(equilibrium) => {
+            Reason::Equilibrium { equilibrium, overloaded } => {
                 let residual = equilibrium.residual();
                 let left = if residual.is_finite() { format!(", residual {residual:.1e}") } else { String::new() };
-                write!(f, "statics did not find a stable equilibrium ({equilibrium}{left})")
+                write!(f, "statics did not find a stable equilibrium ({equilibrium}{left})")?;
+                match overloaded.as_slice() {
+                    [] => Ok(()),
+                    [one] => write!(f, "; the drive of {one} is at its limit"),
+                    several => write!(f, "; the drives of {} are at their limits", several.join(", ")),
+                }
             }
             Reason::MassMatrix => {
                 f.write_str("the mass matrix is not positive definite, so accelerations are not defined")

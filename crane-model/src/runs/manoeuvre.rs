@@ -2,6 +2,7 @@
 
 use super::{Failed, Reason, Start};
 use crate::{
+    bristles,
     dyn_crane::DynCrane,
     dynamics::Method,
     hydraulics,
@@ -21,7 +22,7 @@ pub const SAFE: f64 = 0.9;
 pub struct Pose {
     /// Time, s.
     pub t: f64,
-    /// Modes about the pose at rest, and how fast oil may decay.
+    /// Modes about the pose at rest, and how fast oil and bristles may decay.
     pub modes: Vec<DampedMode>,
 }
 
@@ -51,7 +52,7 @@ impl Bound {
 pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<Pose>, Failed> {
     let description = crane.description();
     let mut q = start.q.clone();
-    let mut poses = vec![Pose { t: 0.0, modes: modes_at(crane, &q)? }];
+    let mut poses = vec![Pose { t: 0.0, modes: modes_at(crane, 0.0, &q)? }];
     if start.rests {
         for index in 1..=count {
             let t = description.duration * f64::from(index) / f64::from(count);
@@ -60,21 +61,22 @@ pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<
                 break;
             }
             q = equilibrium.q;
-            poses.push(Pose { t, modes: modes_at(crane, &q)? });
+            poses.push(Pose { t, modes: modes_at(crane, t, &q)? });
         }
     }
     Ok(poses)
 }
 
-fn modes_at(crane: &dyn DynCrane, q: &[f64]) -> Result<Vec<DampedMode>, Failed> {
+fn modes_at(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<Vec<DampedMode>, Failed> {
     let modes = modes::damped(&crane.small_motions_at(q));
     let modes = modes.map_err(|no_modes| Reason::Modes(no_modes).of(&crane.description().name))?;
-    Ok(limiting_modes(crane, q, &modes))
+    Ok(limiting_modes(crane, t, q, &modes))
 }
 
-/// Modes about a pose that may limit a step: the damped ones, and the decays of oil, which are not among them.
-pub fn limiting_modes(crane: &dyn DynCrane, q: &[f64], damped: &[DampedMode]) -> Vec<DampedMode> {
-    [damped, &hydraulics::decays(crane, q)].concat()
+/// Modes about a pose that may limit a step: the damped ones, and the decays of oil and of bristles that slide as fast as the drives move at
+/// a time, which are not among them.
+pub fn limiting_modes(crane: &dyn DynCrane, t: f64, q: &[f64], damped: &[DampedMode]) -> Vec<DampedMode> {
+    [damped, &hydraulics::decays(crane, q), &bristles::decays(crane, t)].concat()
 }
 
 /// The limit of the step of [`Method::Rk4`] during the manoeuvre; `None` if there is none or there are no modes.

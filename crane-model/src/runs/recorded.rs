@@ -58,21 +58,15 @@ pub fn imbalance(table: &Table) -> f64 {
     error / turned.fold(kinetic.max(f64::MIN_POSITIVE), f64::max)
 }
 
-/// Records every sample, notes cautions about poses, and asks after every step whether to continue.
+/// Records every sample, and asks after every step whether to continue.
 struct Recorder<'a> {
-    crane: &'a dyn DynCrane,
     recording: Recording<'a>,
-    singular: Option<String>,
-    tilted: Option<String>,
     proceed: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
 }
 
 impl Watch for Recorder<'_> {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
-        let description = self.crane.description();
         self.recording.push(sample);
-        self.singular = self.singular.take().or_else(|| description.near_singular(sample.q));
-        self.tilted = self.tilted.take().or_else(|| description.large_tilt(sample.q));
         ControlFlow::Continue(())
     }
 
@@ -93,9 +87,10 @@ pub fn record(
     proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Recorded, Failed> {
     let begin = Instant::now();
-    let mut recorder = Recorder { crane, recording: Recording::new(crane), singular: None, tilted: None, proceed };
+    let mut recorder = Recorder { recording: Recording::new(crane), proceed };
     let run = dynamics::simulate_watched(crane, &start.state(), settings, &mut recorder);
-    let Recorder { recording, singular, tilted, .. } = recorder;
+    let table = recorder.recording.into_table();
+    let singular = cautions::near_singular(crane.description(), &table);
     let run = run.map_err(|stopped| {
         let limit = if settings.method.is_adaptive() { None } else { step_limit(crane, start) };
         let limit = limit.map(|Bound { t, limit }| {
@@ -104,7 +99,6 @@ pub fn record(
         });
         Reason::Stopped { stopped, near_singular: singular.clone(), limit }.of(&crane.description().name)
     })?;
-    let table = recording.into_table();
     if let Some((cylinder, time)) = results::unassembled(crane.description(), &table) {
         return Err(Reason::Unassembled { cylinder, time }.of(&crane.description().name));
     }
@@ -117,6 +111,7 @@ pub fn record(
             100.0 * off
         )
     });
+    let tilted = cautions::large_tilt(crane.description(), &table);
     let cautions = singular.into_iter().chain(tilted).chain(unbalanced).collect();
     Ok(Recorded { start: start.what.clone(), run, table, wall: begin.elapsed(), verification: None, cautions })
 }

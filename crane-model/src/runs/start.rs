@@ -47,7 +47,7 @@ impl Start {
     pub fn at(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Result<Self, Failed> {
         let name = &crane.description().name;
         if !equilibrium.is_stable() {
-            return Err(Reason::Equilibrium(equilibrium.clone()).of(name));
+            return Err(Reason::no_equilibrium(crane, equilibrium).of(name));
         }
         let q = equilibrium.q.clone();
         if !q.is_empty() && crane.mass_matrix_at(&q).cholesky().is_none() {

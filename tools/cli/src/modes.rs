@@ -37,7 +37,7 @@ pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outco
     }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
-    let limiting = limiting_modes(rig.as_ref(), &case.equilibrium.q, &modes);
+    let limiting = limiting_modes(rig.as_ref(), 0.0, &case.equilibrium.q, &modes);
     let step = limit(&limiting, &Method::Rk4.stability()).map(|limit| limit.step);
     report.value("stable", true);
     report.fact("largest stable step", Cell::from(step), "s");

@@ -85,7 +85,12 @@ impl Timing {
                     "a run that goes on needs all pressures, valves and bristles of the earlier run",
                 ));
             }
-            start.what = format!("end of {}", file.display());
+            let held = if start.x.is_empty() && !states.is_empty() {
+                ", forces with states as they hold this pose"
+            } else {
+                ""
+            };
+            start.what = format!("end of {}{held}", file.display());
         }
         for given in &self.start {
             let (name, value) = given.split_once('=').ok_or_else(|| {
@@ -111,6 +116,12 @@ impl Timing {
             let held = OwnStates::new(description).holding(rig, 0.0, &start.q);
             start.x.resize(held.len(), f64::NAN);
             start.x.iter_mut().zip(held).filter(|(x, _)| x.is_nan()).for_each(|(x, held)| *x = held);
+        }
+        if let Some(wrong) = own_states::impossible(description, &start.x) {
+            return Err(Problem::usage(
+                wrong,
+                "give an opening from −1 (fully open, retracts) to 1 (fully open, extends)",
+            ));
         }
         for given in &self.start {
             start.what += ", ";

@@ -46,7 +46,7 @@ impl<'a> Case<'a> {
         if self.equilibrium.is_stable() {
             Ok(())
         } else {
-            Err(Reason::Equilibrium(self.equilibrium.clone()).of(&self.rig.description().name).into())
+            Err(Reason::no_equilibrium(self.rig, &self.equilibrium).of(&self.rig.description().name).into())
         }
     }
 

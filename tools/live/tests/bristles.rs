@@ -154,3 +154,27 @@ fn every_method_follows_the_laws_written_a_second_time() {
     }
     assert!(least < 1e-5, "it slips without sticking: {least}");
 }
+
+/// Bristles that slide follow the joint at σ₀ |q̇|/g: `stability` names them, nine tenths of its step is right, half as much again is not.
+#[test]
+fn sliding_bristles_limit_the_step_of_explicit_methods() {
+    const RATE: f64 = 0.5;
+    let drive = format!(
+        "drives: [{{coordinate: slide_x, stiffness: 1e5, damping: 1e3, motion: {{speed: {{rate: {RATE}, ramp: 0.1}}}}}}]"
+    );
+    let crane = slide(&drive);
+    let start = Start::guess(&crane);
+    let poses = runs::manoeuvre(&crane, &Start { rests: true, ..start.clone() }, 4).expect("modes");
+    let limit = runs::Bound::of(&poses, Method::Rk4).expect("a limit").limit;
+    // Far above the Stribeck velocity g is the Coulomb friction.
+    let decay = STIFFNESS * RATE / COULOMB;
+    assert!((limit.mode.eigenvalue.re / -decay - 1.0).abs() < 1e-9, "{} for {decay}", limit.mode.eigenvalue);
+    let end = |step: f64| {
+        let own = Settings { step, ..settings(&crane, Method::Rk4, 1.0) };
+        let run = runs::record(&crane, &start, &own, &mut |_| ControlFlow::Continue(()));
+        run.ok().map(|run| *column(&run.table, "slide_x_bristle").last().expect("a row"))
+    };
+    let exact = COULOMB / STIFFNESS;
+    assert!((end(0.9 * limit.step).expect("a run") / exact - 1.0).abs() < 1e-3);
+    assert!(end(1.5 * limit.step).is_none_or(|z| (z / exact - 1.0).abs() > 0.1));
+}

@@ -33,7 +33,7 @@ impl Modes {
         let crane: &dyn DynCrane = crane;
         let motions = crane.small_motions_at(q);
         let damped = damped(&motions)?;
-        let limiting = limiting_modes(crane, q, &damped);
+        let limiting = limiting_modes(crane, 0.0, q, &damped);
         Ok(Self { undamped: undamped(&motions)?, damped, limiting })
     }
 }

@@ -146,6 +146,17 @@ fn a_run_goes_on_from_the_end_of_another() {
         &["`x` is not a valid value for upper_theta"],
     );
     refused(&["simulate", "double_pendulum", "--from", "no_such.csv"], &["no_such.csv"]);
+    refused(
+        &["simulate", "eight_link_hydraulic", "--start", "boom_cylinder_valve=7"],
+        &["`boom_cylinder_valve` is 7", "give an opening from −1"],
+    );
+    // The end of a run without oil has no pressures to go on with.
+    let csv = folder.join("pose.csv");
+    fs::write(&csv, "t [s],column_psi_rate [rad/s]\n0,0.01\n").expect("a file");
+    let from = ["--from", csv.to_str().expect("a path"), "--duration", "0.01", "--output", "0.01"];
+    let out = folder.display().to_string();
+    let run = crane(&[&["simulate", "eight_link_hydraulic", "--out", &out], &from[..]].concat());
+    assert!(text(&run.stdout).contains("pose.csv, forces with states as they hold this pose"), "{}", text(&run.stdout));
 }
 
 /// One of several states of forces: the others are those that hold the pose.

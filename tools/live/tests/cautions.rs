@@ -1,0 +1,117 @@
+//! What runs say about themselves: cautions of ensembles, servos that stay behind, drives that are too weak.
+
+use std::ops::ControlFlow;
+
+use crane_codegen::{SourceFile, build};
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynModel;
+use crane_model::dynamics::Settings;
+use crane_model::results::{Extremes, Peaks, cautions};
+use crane_model::runs::ensemble::{self, Conduct};
+use crane_model::runs::{Start, record_checked};
+
+fn shipped(name: &str) -> LiveCrane {
+    let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = build::open(path.as_ref()).unwrap_or_else(|failure| panic!("{failure}"));
+    LiveCrane::from_spec(&source).unwrap()
+}
+
+fn spec(text: &str) -> LiveCrane {
+    LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
+}
+
+fn said(crane: &LiveCrane, settings: &Settings) -> Vec<String> {
+    let start = Start::of(crane).unwrap_or_else(|failed| panic!("{failed}"));
+    let check = (false, cautions::BEND);
+    let recorded = record_checked(crane, &start, settings, check, &mut |_| ControlFlow::Continue(()));
+    recorded.unwrap_or_else(|failed| panic!("{failed}")).cautions
+}
+
+/// Feet that lift, pumps and pressures: a row of an ensemble says what a run of its crane says, and has the same extremes.
+#[test]
+fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
+    for name in ["eight_link_hydraulic", "loader_tipping"] {
+        let crane = shipped(name);
+        let settings = Settings { duration: 6.5, audit: false, ..Settings::of(crane.description()) };
+        let single = said(&crane, &settings);
+        assert!(!single.is_empty(), "{name}");
+        let conduct = Conduct { threads: 1, done: &|_, _| (), called_off: &|_| false };
+        let rows = ensemble::run(&crane, &[crane.parameters().to_vec()], &settings, &conduct);
+        assert_eq!(rows[0].cautions, single, "{name}");
+
+        let start = Start::of(&crane).expect("it rests");
+        let table = crane_model::runs::record(&crane, &start, &settings, &mut |_| ControlFlow::Continue(()))
+            .expect("a run")
+            .table;
+        let columns = Peaks::columns(crane.description());
+        let values: Vec<f64> = rows[0].peaks.as_ref().expect("peaks").values().collect();
+        assert_eq!(columns.len(), values.len());
+        let mut pressures = 0;
+        for (column, value) in columns.iter().zip(values) {
+            let Some(of) = column.name.strip_suffix("_max") else { continue };
+            let Extremes { maximum, .. } = Extremes::of(&table, of);
+            assert_eq!(value, maximum, "{name}: {of}");
+            pressures += usize::from(of.ends_with("_pressure"));
+        }
+        assert_eq!(pressures, if name == "eight_link_hydraulic" { 7 } else { 0 });
+    }
+}
+
+/// A mass that a cylinder lifts; its servo has no speed set ahead.
+fn lift(flow: f64, servo: &str) -> LiveCrane {
+    spec(&format!(
+        "format: 1
+name: lift
+links:
+  - {{name: post, mass: 50, com: [0, 0, 0], joint: {{prismatic: {{axis: x}}}}}}
+  - {{name: slide, joint: {{prismatic: {{axis: z}}}}, mass: 400, com: [0, 0, 0]}}
+drives:
+  - {{coordinate: post_x, rigid: true, motion: {{hold: 0}}}}
+  - {{coordinate: slide_z, stiffness: 1e8, motion: {{quintic: {{from: 0, to: 0.4, duration: 2}}}}}}
+cylinders:
+  - {{name: ram, coordinate: slide_z, foot: {{link: post, at: [0, 0, -0.8]}}, head: {{link: slide, at: [0, 0, 0]}},
+     bore: 0.08, rod: 0.05, retracted: 0.75, stroke: 0.6, back_pressure: 4e5, max_pressure: 2.5e7, bulk_modulus: 1.2e9,
+     hose_volumes: [5e-4, 5e-4], valve: {{flow: {flow}, pressure_drop: 1e6, lag: 0.03, {servo}}}}}
+pump: {{max_flow: 4e-3, pressure: 2e7}}
+run: {{duration: 3, output: 0.01}}
+"
+    ))
+}
+
+/// Without its speed set ahead a servo stays behind by v/(K gain), with K the speed of the fully open valve, here much more than a twentieth of
+/// the motion; with it, hardly.
+#[test]
+fn a_servo_that_stays_behind_says_so() {
+    let behind = |crane: &LiveCrane| {
+        let all = said(crane, &Settings::of(crane.description()));
+        all.into_iter().find(|caution| caution.starts_with("ram falls behind"))
+    };
+    let said = behind(&lift(1e-3, "gain: 2, feed_forward: 0")).expect("a caution");
+    assert!(said.contains("slide_z is up to 0.1") && said.ends_with("its valve is never fully open"), "{said}");
+    let said = behind(&lift(1e-5, "gain: 10, feed_forward: 0")).expect("a caution");
+    assert!(said.contains("its valve is fully open for"), "{said}");
+    assert_eq!(behind(&lift(1e-3, "gain: 10")), None);
+}
+
+/// A drive that cannot carry its load is what statics that fail name, with what to change.
+#[test]
+fn statics_that_fail_name_the_drive_that_is_too_weak() {
+    let lift = |limit: f64| {
+        spec(&format!(
+            "format: 1
+name: lift
+analyses: [statics, dynamics]
+links: [{{name: lift, joint: prismatic, mass: 100, com: [0, 0, 0]}}]
+drives: [{{coordinate: lift_z, stiffness: 1e5, max_effort: {limit}, motion: {{hold: 0}}}}]
+"
+        ))
+    };
+    let failed = Start::of(&lift(500.0)).expect_err("it falls");
+    assert!(failed.to_string().ends_with("; the drive of lift_z is at its limit"), "{failed}");
+    assert!(failed.advice().starts_with("raise `max_effort`"), "{}", failed.advice());
+    // Where it can, what is close to the limit says how close: 981 of 985 N.
+    let crane = lift(985.0);
+    let start = Start::of(&crane).expect("it rests");
+    let said = cautions::of_pose(&crane, &start.q, cautions::BEND);
+    assert!(said[0].starts_with("the drive of lift_z is at its limit, 981.0 of 985.0 N"), "{said:?}");
+}
