@@ -16,7 +16,7 @@ use crate::{
     BristleInfo, Description,
     dyn_crane::DynCrane,
     modes::{DampedMode, SmallMotions},
-    own_states::{Moment, Pushed},
+    own_states::{StateAt, StatefulForce},
 };
 
 /// The joints of a crane that stick.
@@ -46,9 +46,9 @@ impl Bristles {
     /// Evaluates all joints, as [`OwnStates::evaluate`](crate::own_states::OwnStates).
     pub fn evaluate(
         &self,
-        moment: &Moment<'_>,
+        moment: &StateAt<'_>,
         rates: &mut [f64],
-        pushed: &mut [Pushed],
+        pushed: &mut [StatefulForce],
         mut by_states: Option<&mut DMatrix<f64>>,
     ) {
         for (place, (joint, own)) in self.joints.iter().zip(pushed).enumerate() {
@@ -70,14 +70,14 @@ struct Slope {
 
 impl BristleInfo {
     /// The friction at a deflection and a rate of the joint.
-    fn evaluate(&self, first: usize, z: f64, rate: f64, own: &mut Pushed) -> Slope {
+    fn evaluate(&self, first: usize, z: f64, rate: f64, own: &mut StatefulForce) -> Slope {
         let &Self { coordinate, coulomb, breakaway, stribeck, stiffness, damping } = self;
         let decline = (breakaway - coulomb) * (-(rate / stribeck).powi(2)).exp();
         let (level, level_by_rate) = (coulomb + decline, -2.0 * rate / (stribeck * stribeck) * decline);
         let by_deflection = -stiffness * rate.abs() / level;
         let by_rate = 1.0 - stiffness * z / level * (rate.signum() - rate.abs() * level_by_rate / level);
         let slope = rate + by_deflection * z;
-        *own = Pushed {
+        *own = StatefulForce {
             coordinate,
             arm: 1.0,
             first,
@@ -87,7 +87,7 @@ impl BristleInfo {
             by_states: [-(stiffness + damping * by_deflection), 0.0, 0.0],
             rates_by_speed: [by_rate, 0.0, 0.0],
             speed: rate,
-            ..Pushed::default()
+            ..StatefulForce::default()
         };
         Slope { rate: slope, by_deflection }
     }
@@ -101,7 +101,7 @@ pub(crate) fn decays(crane: &dyn DynCrane, t: f64) -> Vec<DampedMode> {
     let decay = |joint: &BristleInfo| {
         let drive = description.drives.iter().position(|drive| drive.coordinate == joint.coordinate);
         let rate = drive.map_or(joint.stribeck, |drive| motions[drive][1]);
-        let by_deflection = joint.evaluate(0, 0.0, rate, &mut Pushed::default()).by_deflection;
+        let by_deflection = joint.evaluate(0, 0.0, rate, &mut StatefulForce::default()).by_deflection;
         DampedMode { eigenvalue: Complex::new(by_deflection, 0.0), dominating: vec![joint.coordinate] }
     };
     description.bristles.iter().map(decay).filter(|mode| mode.eigenvalue.re != 0.0).collect()
@@ -111,7 +111,7 @@ pub(crate) fn decays(crane: &dyn DynCrane, t: f64) -> Vec<DampedMode> {
 pub(crate) fn efforts(description: &Description, v: &[f64], x: &[f64]) -> Vec<(usize, f64)> {
     let first = x.len().saturating_sub(description.bristles.len());
     let effort = |(joint, z): (&BristleInfo, &f64)| {
-        let mut own = Pushed::default();
+        let mut own = StatefulForce::default();
         joint.evaluate(0, *z, v[joint.coordinate], &mut own);
         (joint.coordinate, own.force)
     };
@@ -149,7 +149,7 @@ mod tests {
             damping: 300.0,
         };
         let at = |z: f64, v: f64| {
-            let mut own = Pushed::default();
+            let mut own = StatefulForce::default();
             let slope = joint.evaluate(0, z, v, &mut own);
             (slope, own)
         };

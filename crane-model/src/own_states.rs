@@ -13,7 +13,7 @@ use crate::{
 
 /// A state of a crane, with the states of its forces.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment<'a> {
+pub(crate) struct StateAt<'a> {
     pub t: f64,
     pub q: &'a [f64],
     pub v: &'a [f64],
@@ -26,7 +26,7 @@ pub(crate) const STATES: usize = 3;
 /// A force with states at a state of the crane, with derivatives by what it depends on. Its length is ℓ of a cylinder, the coordinate of a
 /// joint with bristles.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pushed {
+pub(crate) struct StatefulForce {
     /// Index of its coordinate, and `∂ℓ/∂q`.
     pub coordinate: usize,
     pub arm: f64,
@@ -53,7 +53,7 @@ pub struct OwnStates {
     oil: Hydraulics,
     bristles: Bristles,
     /// The forces where they were evaluated last, those of the oil first.
-    pushed: Vec<Pushed>,
+    pushed: Vec<StatefulForce>,
     /// Their generalized forces, and what those add to the accelerations.
     efforts: [Vec<f64>; 2],
 }
@@ -64,7 +64,7 @@ impl OwnStates {
         let (oil, n) = (Hydraulics::new(description), description.coordinates.len());
         let bristles = Bristles::new(description, oil.len());
         Self {
-            pushed: vec![Pushed::default(); oil.count() + bristles.len()],
+            pushed: vec![StatefulForce::default(); oil.count() + bristles.len()],
             efforts: [vec![0.0; n], vec![0.0; n]],
             oil,
             bristles,
@@ -86,7 +86,7 @@ impl OwnStates {
         self.oil.scales().into_iter().chain(self.bristles.scales()).collect()
     }
 
-    /// The states that hold a pose at rest at a time: shut valves, the side that does not carry at the pressure of the tank, and
+    /// The states that hold a pose at rest at a time: shut valves, the unloaded side at tank pressure, and
     /// bristles that carry nothing.
     pub fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
         let mut states = self.oil.holding(crane, t, q);
@@ -100,7 +100,7 @@ impl OwnStates {
     }
 
     /// The forces where they were evaluated last.
-    pub(crate) fn pushed(&self) -> &[Pushed] {
+    pub(crate) fn pushed(&self) -> &[StatefulForce] {
         &self.pushed
     }
 
@@ -108,7 +108,7 @@ impl OwnStates {
     pub(crate) fn evaluate(
         &mut self,
         crane: &dyn DynModel,
-        moment: &Moment<'_>,
+        moment: &StateAt<'_>,
         rates: &mut [f64],
         mut by_states: Option<&mut DMatrix<f64>>,
     ) {
@@ -124,7 +124,7 @@ impl OwnStates {
     pub(crate) fn accelerate(
         &mut self,
         crane: &dyn DynDynamics,
-        moment: &Moment<'_>,
+        moment: &StateAt<'_>,
         rates: &mut [f64],
         accelerations: &mut [f64],
     ) {
@@ -141,7 +141,7 @@ impl OwnStates {
     /// Where they were evaluated last: power that cylinders put in, and that bristles take out, `Σ F ℓ̇`, W.
     pub(crate) fn powers(&self) -> [f64; 2] {
         let (of_oil, of_bristles) = self.pushed.split_at(self.oil.count());
-        let power = |all: &[Pushed]| all.iter().map(|own| own.force * own.speed).sum::<f64>();
+        let power = |all: &[StatefulForce]| all.iter().map(|own| own.force * own.speed).sum::<f64>();
         [power(of_oil), -power(of_bristles)]
     }
 }
@@ -175,7 +175,7 @@ pub fn accelerations(crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), 
     let mut states = OwnStates::new(crane.description());
     assert_eq!(x.len(), states.len(), "one number for each state of a force");
     if !states.is_empty() {
-        states.accelerate(crane, &Moment { t, q, v, x }, &mut rates, &mut accelerations);
+        states.accelerate(crane, &StateAt { t, q, v, x }, &mut rates, &mut accelerations);
     }
     (accelerations, rates)
 }

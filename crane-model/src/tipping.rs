@@ -1,8 +1,8 @@
 //! Stability against tipping: moments about the lines between the outermost feet.
 //!
 //! A crane on feet that push and do not pull tips about a tipping line: a side of the convex polygon that the feet make, seen
-//! from above. What a link's weight and inertia, and the loads applied to it, do about a line holds the crane down or tips it;
-//! where the sum of all tips, the crane falls. Feet are points, and the ground is rigid: what gives way under the feet shows in the pose alone.
+//! from above. Each link's weight, inertia and loads have a moment about the line, which stabilises or overturns the crane; it
+//! tips when the sum of all moments overturns it. Feet are points, and the ground is rigid: what gives way under the feet shows in the pose alone.
 
 use nalgebra::Vector3;
 

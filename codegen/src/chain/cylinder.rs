@@ -44,7 +44,7 @@ pub struct Valve {
     pub flow: f64,
     /// That pressure drop, Pa.
     pub pressure_drop: f64,
-    /// Share of the spool's way that is covered.
+    /// Share of the spool's travel that is covered.
     pub overlap: f64,
     /// Time constant of the spool, s.
     pub lag: f64,
@@ -61,7 +61,7 @@ pub struct Valve {
 pub struct Pump {
     /// Greatest flow, m³/s.
     pub max_flow: f64,
-    /// Pressure that it keeps up, Pa.
+    /// Pressure that it maintains, Pa.
     pub pressure: Option<f64>,
     /// Oil between pump and valves, m³.
     pub volume: f64,

@@ -152,7 +152,7 @@ catalogue! {
         "leave `axis` out, or place the link by `transform`";
     /// Mass, bodies, beam and rope exclude one another.
     E044 two_masses(link, first, second) "link `{link}` has both `{first}` and `{second}`", "`{first}` is given too",
-        "give one of `mass`, `bodies`, `beam`";
+        "give only one of `mass`, `bodies`, `beam` and `rope`";
     /// A centre of mass and an inertia require a mass.
     E045 without_mass(link, key) "link `{link}` has `{key}` but no mass", "`{key}` requires `mass`", "add `mass:`, or remove `{key}`";
     /// Every joint moves a mass of its own; otherwise the mass matrix is singular.
@@ -182,7 +182,7 @@ catalogue! {
     // Ropes.
     /// A rope has 1 to 1000 links.
     E053 rope_links(given) "a rope cannot have {given} links", "expected an integer from 1 to 1000",
-        "write an integer: 3 to 10 are common";
+        "write an integer; 3 to 10 links are typical";
 
     // Beams.
     /// A beam has 1 to 1000 sections, or is rigid.
@@ -306,10 +306,10 @@ catalogue! {
 
     // Joints that stick.
     /// Friction by bristles has constants, since their deflection is a state of the motion.
-    E101 live_bristles(coordinate) "the friction of `{coordinate}` has bristles and a live parameter", "`coulomb`, `breakaway` or `stribeck` is a parameter",
+    E101 live_bristles(coordinate) "the friction of `{coordinate}` has bristles, so it cannot use a live parameter", "`coulomb`, `breakaway` or `stribeck` is a parameter",
         "write numbers there, or remove `bristle`";
-    /// Bristles carry something.
-    E102 bristles_of_nothing(coordinate) "the bristles of `{coordinate}` carry nothing", "`coulomb` is 0", "give it a Coulomb friction above 0, or remove `bristle`";
+    /// Bristles have a Coulomb friction above zero.
+    E102 bristles_of_nothing(coordinate) "the bristles of `{coordinate}` need a Coulomb friction above 0", "`coulomb` is 0", "write the Coulomb friction, or remove `bristle`";
     /// A joint whose motion is prescribed does not stick.
     E103 prescribed_bristles(coordinate) "the friction of `{coordinate}` has bristles, but its drive is rigid", "a joint that follows its motion exactly does not stick",
         "remove `bristle`, or give the drive a `stiffness`";
@@ -323,7 +323,7 @@ catalogue! {
     // Inputs.
     /// An input has a value or follows a motion until it is set.
     E110 input_twice(input) "input `{input}` has a `value` and a `motion`", "one of the two",
-        "keep what the input is until it is set";
+        "keep the one that applies until the input is set";
     /// References name an input.
     E111 unknown_input(name, help) "unknown input `{name}`", "not under `inputs`", "{help}";
     /// An input does not follow an input.
@@ -348,7 +348,7 @@ catalogue! {
         "put its pins on links that only `{coordinate}` moves against each other";
     /// The joint of a cylinder has a drive, whose effort is the cylinder's.
     E118 undriven(cylinder, coordinate) "cylinder `{cylinder}` has no drive", "`{coordinate}` is not driven",
-        "add a drive of `{coordinate}` with the motion that the cylinder shall make";
+        "add a drive for `{coordinate}` that prescribes the motion of the cylinder";
     /// A joint has one cylinder; two side by side are one with twice the area.
     E119 second_cylinder(coordinate, other) "`{coordinate}` has two cylinders", "moved by cylinder `{other}` already",
         "give one cylinder: two equal ones side by side have √2 times the `bore` and `rod` of each";
@@ -363,8 +363,8 @@ catalogue! {
         "oil moves this joint: the cylinder's pressures limit its force",
         "give the drive a `stiffness`, which holds the crane at rest before the run, and neither `rigid` nor `max_effort`";
     /// A valve opens before its spool has gone all the way.
-    E123 covered_valve(cylinder, overlap) "the valve of cylinder `{cylinder}` never opens", "an overlap of {overlap} covers all of the spool's way",
-        "`overlap` is a share of the spool's way below 1, such as 0.05";
+    E123 covered_valve(cylinder, overlap) "the valve of cylinder `{cylinder}` never opens", "an overlap of {overlap} covers the whole travel of the spool",
+        "`overlap` is a fraction of the spool's travel below 1, such as 0.05";
     /// Oil remains on both sides at the ends of the stroke.
     E124 no_oil_at_the_end(cylinder) "cylinder `{cylinder}` has no oil left at an end of its stroke", "a volume of 0 m³ has an infinite stiffness",
         "give both sides the oil of hoses and dead ends, such as `[5e-4, 5e-4]` m³";
@@ -376,7 +376,7 @@ catalogue! {
     /// A servo or an opening over time commands a valve.
     E127 uncommanded_valve(cylinder) "nothing commands the valve of cylinder `{cylinder}`", "neither `gain` nor `opening`",
         "write `gain:`, 1/m, for a servo that follows the drive's motion, or `opening:`, a motion or an input from -1 to 1";
-    /// Only one of them does.
+    /// A valve has one command: a servo or an opening over time.
     E128 valve_commanded_twice(cylinder, other) "the valve of cylinder `{cylinder}` has two commands", "`opening`, and {other}",
         "with `opening`, remove `gain` and `feed_forward` (in a spec that extends another: `gain: ~`), and let the drive's motion `hold` where the crane stands before the run";
 
@@ -424,25 +424,25 @@ catalogue! {
         "no principal moment about the centre of mass exceeds the sum of the other two; rounded or identified data may violate this slightly";
     /// A one-sided support carries more than the pressing force from which it holds in full.
     W020 hold_beyond_weight(support, force, share) "`full_hold` of support `{support}` is {force} N",
-        "its share of the crane's weight is {share} N", "write a pressing force that it has at rest, in N: below it the support holds sideways and damps in part only";
+        "its share of the crane's weight is {share} N", "write a force below its load at rest, in N; under a smaller load the support gives only a part of its lateral stiffness and damping";
     /// The length of a connector without force fits the distance of its points at the guess.
     W021 connector_length(connector, length, distance) "connector `{connector}` is {length} m long without force", "its points are {distance} m apart at the guess",
-        "check the unit, the points and the `guess`: the spring or rope pulls or pushes with its stiffness times the difference";
+        "check the unit, the points and the `guess`: its force is its stiffness times the difference; a rope only pulls";
     /// Diameters, lengths, pressures, flows, volumes and times of hydraulics are usual in SI units.
     W022 hydraulics(what, given, unit, usual, help) "{what} is {given} {unit}", "usual: {usual}", "{help}";
     /// The relief valves of a cylinder open above the pressure of the pump.
-    W023 relief_below_pump(pressure, cylinder, relief) "the pump keeps up {pressure} Pa, more than cylinder `{cylinder}` carries",
+    W023 relief_below_pump(pressure, cylinder, relief) "the pump supplies {pressure} Pa, more than the relief pressure of cylinder `{cylinder}`",
         "its relief valve opens at {relief} Pa, its `max_pressure`", "check both; a relief valve usually opens above the pressure of the pump";
     /// The command of a valve is from −1 to 1.
-    W024 opening_beyond(cylinder, opening) "an `opening` of cylinder `{cylinder}` is {opening}", "−1 and 1 are fully open; beyond them nothing changes",
-        "write the opening as a share: 50 % is 0.5";
+    W024 opening_beyond(cylinder, opening) "the valve of cylinder `{cylinder}` has an opening of {opening}", "−1 and 1 are fully open; beyond them nothing changes",
+        "write a fraction: 50 % is 0.5";
     /// Where its drive starts, the pins of a cylinder are as far apart as its stroke allows.
     W025 out_of_stroke(cylinder, length, least, most) "cylinder `{cylinder}` is {length} m long at the start of its drive's motion", "its stroke is from {least} m to {most} m",
         "check `retracted`, `stroke`, the pins and the motion of the drive";
     /// Bristles of a joint that sticks slide after 1e-8 to 0.1 m or rad.
-    W026 odd_bristles(coordinate, way) "the bristles of `{coordinate}` slide after {way} m or rad", "breakaway friction over their stiffness; usual: 1e-8 to 0.1",
-        "check the unit of `stiffness`: bristles a thousand times as stiff need steps so much smaller, soft ones are a spring";
-    /// Each part of a beam holds the spring of a section, where stresses are computed.
-    W027 part_without_spring(number, link, sections) "part {number} of beam `{link}` holds no spring: its stress is not computed", "shorter than a section",
+    W026 odd_bristles(coordinate, deflection, unit) "the bristles of `{coordinate}` slide after a deflection of {deflection} {unit}", "breakaway friction over stiffness; usual: 1e-8 to 0.1 {unit}",
+        "check the unit of `stiffness`: bristles that are too stiff force very small steps, and bristles that are too soft act as a spring";
+    /// Each part of a beam contains the spring of a section, where stresses are computed.
+    W027 part_without_spring(number, link, sections) "part {number} of beam `{link}` contains no section spring, so its stress is not computed", "shorter than one of the beam's equal sections",
         "use {sections} sections or more, or join the part with its neighbour";
 }

@@ -1,4 +1,4 @@
-//! What a drive delivers of the effort of its spring and damper: its power and its rate are limited while it drives, not while it brakes.
+//! The part of the effort of spring and damper that a drive can deliver. Limits of power and rate apply while it drives, not while it brakes.
 //!
 //! Notation
 //! : u the effort of spring and damper up to the limit M, v the rate of the joint, P the greatest power, V the greatest rate; σ the law of

@@ -51,7 +51,7 @@ pub struct Valve {
     pub flow: Spanned<Constant>,
     /// Pressure drop over that edge, Pa.
     pub pressure_drop: Spanned<Constant>,
-    /// Share of the spool's way from the middle that is covered: below it no oil flows. Default 0.
+    /// Share of the spool's travel from the middle that is covered: below it no oil flows. Default 0.
     pub overlap: Option<Spanned<Constant>>,
     /// Time constant of the spool, s.
     pub lag: Spanned<Constant>,
@@ -110,7 +110,7 @@ pub enum Side {
 pub struct Pump {
     /// Greatest flow to all cylinders together, m³/s; 60 l/min are 1e-3.
     pub max_flow: Spanned<Constant>,
-    /// Pressure that it keeps up until its flow is at its limit, Pa; cylinders with a valve need it. Default: none.
+    /// Pressure that it maintains until its flow is at its limit, Pa; cylinders with a valve need it. Default: none.
     pub pressure: Option<Spanned<Constant>>,
     /// Oil between the pump and the valves, m³. Default 0.005.
     pub volume: Option<Spanned<Constant>>,

@@ -302,7 +302,7 @@ pub struct ValveInfo {
     pub flow: f64,
     /// That pressure drop, Pa.
     pub pressure_drop: f64,
-    /// Share of the spool's way from the middle that is covered.
+    /// Share of the spool's travel from the middle that is covered.
     pub overlap: f64,
     /// Time constant of the spool, s.
     pub lag: f64,
@@ -338,7 +338,7 @@ pub struct BristleInfo {
 pub struct PumpInfo {
     /// Greatest flow to all cylinders together, m³/s.
     pub max_flow: f64,
-    /// Pressure that it keeps up until its flow is at its limit, Pa.
+    /// Pressure that it maintains until its flow is at its limit, Pa.
     pub pressure: Option<f64>,
     /// Oil between it and the valves, m³.
     pub volume: f64,

@@ -11,7 +11,7 @@ use crate::{
     dynamics::{InitialState, Run, Sample, Stopped},
     hydraulics::{self, Oil},
     modes::SmallMotions,
-    own_states::Moment,
+    own_states::StateAt,
     statics,
     statics::Equilibrium,
 };
@@ -121,7 +121,7 @@ impl dyn DynCrane + '_ {
     pub fn drive_efforts_of(&self, sample: &Sample<'_>) -> Vec<f64> {
         let &Sample { t, q, v, x, .. } = sample;
         let mut efforts = self.drive_efforts_at(t, q, v);
-        if let Some(oil) = Oil::at(self, &Moment { t, q, v, x }) {
+        if let Some(oil) = Oil::at(self, &StateAt { t, q, v, x }) {
             oil.give_efforts(self.description(), &mut efforts);
         }
         efforts

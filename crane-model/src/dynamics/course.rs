@@ -19,8 +19,7 @@ use crate::{
     own_states::OwnStates,
 };
 
-/// A motion on its way. It stops wherever a result is wanted and goes on from there with the steps and the history that it has, so
-/// that the times of results cost nothing.
+/// A run that is advanced from result to result. It keeps its step size and its history, so that the times of results cost nothing.
 pub struct Course<'a> {
     crane: &'a dyn DynDynamics,
     stepper: Box<dyn Stepper + 'a>,
@@ -131,7 +130,7 @@ impl<'a> Course<'a> {
         Sample { t: self.time, q, v, x, work, dissipated, load_work }
     }
 
-    /// What it took up to the last result.
+    /// Statistics up to the last result.
     pub fn run(&self) -> Run {
         let statistics = self.stepper.statistics();
         let step = match (self.settings.method.is_adaptive(), statistics.steps) {

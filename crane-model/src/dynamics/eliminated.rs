@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVectorViewMut};
 
 use crate::{
     dyn_crane::DynModel,
-    own_states::{Moment, OwnStates, Pushed},
+    own_states::{OwnStates, StateAt, StatefulForce},
 };
 
 /// The forces of a crane with states at one of its states, and their part in the system there.
@@ -65,7 +65,7 @@ impl Eliminated {
     pub fn factorise(
         &mut self,
         crane: &dyn DynModel,
-        moment: &Moment<'_>,
+        moment: &StateAt<'_>,
         c: f64,
         solve: &mut dyn FnMut(&[f64], &mut [f64]),
     ) {
@@ -97,7 +97,8 @@ impl Eliminated {
             solve(&self.unit, answer);
         }
         self.correction.factorise(|row, column| {
-            let share = |(place, own): (usize, &Pushed)| added_inertia[(row, place)] * own.along(&answers[column]);
+            let share =
+                |(place, own): (usize, &StatefulForce)| added_inertia[(row, place)] * own.along(&answers[column]);
             f64::from(row == column) + pushed.iter().enumerate().map(share).sum::<f64>()
         });
     }
@@ -108,7 +109,7 @@ impl Eliminated {
         self.of_states.copy_from_slice(r);
         self.states.solve(&mut self.of_states);
         for (row, own) in pushed.iter().enumerate() {
-            let of_force = |(column, other): (usize, &Pushed)| {
+            let of_force = |(column, other): (usize, &StatefulForce)| {
                 let (g, p) = (other.along(g), other.along(p));
                 self.delta[(row, column)] * g + self.kappa[(row, column)] * (g * c + p)
             };
@@ -121,7 +122,8 @@ impl Eliminated {
     pub fn correct(&mut self, solution: &mut [f64]) {
         let pushed = self.own.pushed();
         for (row, share) in self.shares.iter_mut().enumerate() {
-            let of_force = |(column, own): (usize, &Pushed)| self.added_inertia[(row, column)] * own.along(solution);
+            let of_force =
+                |(column, own): (usize, &StatefulForce)| self.added_inertia[(row, column)] * own.along(solution);
             *share = pushed.iter().enumerate().map(of_force).sum();
         }
         self.correction.solve(&mut self.shares);
@@ -197,7 +199,7 @@ impl Factors {
     }
 }
 
-impl Pushed {
+impl StatefulForce {
     /// J x
     fn along(&self, x: &[f64]) -> f64 {
         self.arm * x[self.coordinate]

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     dyn_crane::DynDynamics,
-    own_states::{Moment, OwnStates},
+    own_states::{OwnStates, StateAt},
 };
 
 /// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.
@@ -108,7 +108,7 @@ impl<'a> Equations<'a> {
         if !self.own.is_empty() {
             let rates = &mut rest[..self.rates.len()];
             let x = &motion[2 * n..2 * n + rates.len()];
-            self.own.accelerate(self.crane, &Moment { t, q, v, x }, rates, accelerations);
+            self.own.accelerate(self.crane, &StateAt { t, q, v, x }, rates, accelerations);
             finite(rates)?;
         }
         self.guides.take_accelerations(self.crane, t, accelerations);
@@ -123,7 +123,7 @@ impl<'a> Equations<'a> {
             let mut powers = self.powers_at(t, q, v);
             let begin = self.integrals();
             if !self.own.is_empty() {
-                let moment = Moment { t, q, v, x: &motion[2 * self.n..begin] };
+                let moment = StateAt { t, q, v, x: &motion[2 * self.n..begin] };
                 self.own.evaluate(self.crane, &moment, &mut self.rates, None);
                 let [put_in, taken_out] = self.own.powers();
                 powers[0] += put_in;

@@ -11,7 +11,7 @@ use crate::{
 const RATE: f64 = 0.2;
 /// Fraction of a drive's effort that counts as much as an error of 1 m or rad.
 const EFFORT: f64 = 20.0;
-/// Share of the pump's pressure, or of a spool's way, that counts as much as an error of 1 m or rad.
+/// Share of the pump's pressure, or of a spool's travel, that counts as much as an error of 1 m or rad.
 const OIL: f64 = 5.0;
 /// Smallest scale of an effort, as a fraction of the largest force or moment of the crane's weight on a coordinate.
 const LEAST: f64 = 0.01;

@@ -2,9 +2,10 @@
 
 use super::{EffortAccuracy, Statistics, Stopped};
 
-/// A motion that proceeds step by step. It holds its crane, its state and its workspace: no step allocates, except where oil has states.
+/// A motion that proceeds step by step. It holds its crane, its state and its workspace: no step allocates.
 ///
-/// A motion is one slice: coordinates, rates and, in an audited run, the work of the drives and the energy that the dampers dissipated.
+/// A motion is one slice: coordinates, rates, states of forces and, in an audited run, the work of the drives and the energy that the
+/// dampers dissipated.
 pub trait Stepper: Send {
     /// Starts from a motion at time `t`, s.
     ///

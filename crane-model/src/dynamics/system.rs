@@ -18,7 +18,7 @@ use super::{connected::Connected, eliminated::Eliminated};
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
-    own_states::{Moment, OwnStates},
+    own_states::{OwnStates, StateAt},
 };
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.
@@ -93,7 +93,7 @@ impl<'a> System<'a> {
         self.factors.factorise(q, &self.added_inertia, &(damping * c + stiffness * (c * c)));
         self.connected.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
         let Self { factors, connected, .. } = self;
-        self.own.factorise(self.crane, &Moment { t, q, v, x }, c, &mut |right, solution| {
+        self.own.factorise(self.crane, &StateAt { t, q, v, x }, c, &mut |right, solution| {
             factors.solve(right, solution);
             connected.correct(solution);
         });

@@ -10,8 +10,8 @@ use crate::{
     results::cylinders_at,
 };
 
-/// How fast the oil of each cylinder with a valve may decay at a pose, as a mode of its joint: while its suction valves let in oil, with edges
-/// near balance. Explicit methods are limited by it.
+/// An upper bound on the decay rate of the pressures of each cylinder with a valve at a pose, as a mode of its joint: its suction valves are open, and
+/// the pressures at the edges of its valve nearly balance. It limits explicit methods.
 pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
     let cylinders = &crane.description().cylinders;
     let mut lengths = vec![Vector3::zeros(); cylinders.len()];

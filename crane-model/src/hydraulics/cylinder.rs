@@ -3,23 +3,23 @@
 use nalgebra::Vector3;
 
 use super::valve::root;
-use crate::{CylinderInfo, PumpInfo, ValveInfo, own_states::Pushed};
+use crate::{CylinderInfo, PumpInfo, ValveInfo, own_states::StatefulForce};
 
-/// Share of a pressure above it at which a relief valve passes the nominal flow of the valve, and of its own pressure below which the pump
-/// delivers all it can.
+/// Relative band of pressures: a relief valve passes the nominal flow of the valve at `1 + BAND` of its set pressure; the pump delivers its greatest
+/// flow below `1 − BAND` of its own.
 const BAND: f64 = 0.05;
 /// Pressure below the tank's at which a suction valve passes the nominal flow, Pa.
 pub(super) const SUCTION: f64 = 1e5;
 /// Least share of the nominal pressure drop for which the servo computes an opening.
 const LEAST_DROP: f64 = 0.1;
-/// Way into a stop on which it carries the cylinder's greatest force, m.
+/// Penetration of an end stop at which it carries the cylinder's greatest force, m.
 const STOP: f64 = 1e-3;
-/// Damping of a stop, s/m: it returns `1 − ⅔ a v` of a small speed.
+/// Damping a of a stop, s/m: the coefficient of restitution is `1 − ⅔ a v` at a low speed v.
 const STOP_DAMPING: f64 = 3.0;
 
 /// A cylinder with a valve.
 #[derive(Clone, Debug)]
-pub(super) struct Moved {
+pub(super) struct ValveCylinder {
     /// Its place among all cylinders.
     pub index: usize,
     pub coordinate: usize,
@@ -55,9 +55,9 @@ impl Pump {
     }
 }
 
-impl Moved {
+impl ValveCylinder {
     /// Force and its derivatives at pressures.
-    pub(super) fn push(&self, here: Vector3<f64>, [piston, rod]: [f64; 2]) -> Pushed {
+    pub(super) fn push(&self, here: Vector3<f64>, [piston, rod]: [f64; 2]) -> StatefulForce {
         let [area, ring] = self.info.areas;
         let y = here.x - self.info.retracted;
         let beyond = if y > self.info.stroke { y - self.info.stroke } else { y.min(0.0) };
@@ -69,7 +69,7 @@ impl Moved {
         } else {
             (0.0, 0.0)
         };
-        Pushed {
+        StatefulForce {
             coordinate: self.coordinate,
             arm: here.z,
             force: piston * area - rod * ring - stiffness * beyond * damping,
@@ -77,12 +77,12 @@ impl Moved {
             by_speed,
             by_states: [area, -ring, 0.0],
             speed: here.y,
-            ..Pushed::default()
+            ..StatefulForce::default()
         }
     }
 
     /// What relief and suction valves let in, m³/s, and the derivative by the pressure.
-    pub(super) fn guards(&self, pressure: f64) -> (f64, f64) {
+    pub(super) fn relief_and_suction(&self, pressure: f64) -> (f64, f64) {
         let relief = -self.valve.flow / (BAND * self.max_pressure);
         let suction = -self.valve.flow / SUCTION;
         let (above, below) = (pressure - self.max_pressure, pressure - self.info.back_pressure);

@@ -17,8 +17,8 @@
 //! u* = gain (ℓ* − ℓ) + share · A ẏ*/(K r(p_s − p)),     between −1 and 1
 //! ```
 //!
-//! with the length ℓ* that the cylinder has where the drive's motion is; its speed is set ahead with the pressures measured. The pump
-//! keeps up its pressure as long as the valves take no more than its greatest flow; `ṗ_s = β/V_s (Q_pump − Σ Q)`. At the ends of the stroke the piston meets a stiff stop (Hunt–Crossley).
+//! with the length ℓ* of the cylinder at the prescribed position of the drive; the second term is the feed-forward of its speed, at the pressures
+//! measured. The pump maintains its pressure as long as the valves take no more than its greatest flow; `ṗ_s = β/V_s (Q_pump − Σ Q)`. At the ends of the stroke the piston meets a stiff stop (Hunt–Crossley).
 //!
 //! The states are, cylinder by cylinder, p, p′ and u, and `p_s` behind all of them. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
 
@@ -32,19 +32,19 @@ use nalgebra::{DMatrix, Vector3};
 use crate::{
     CylinderInfo, Description,
     dyn_crane::{DynDynamics, DynModel},
-    own_states::{Moment, Pushed, STATES},
+    own_states::{STATES, StateAt, StatefulForce},
     results::CylinderState,
 };
 pub use about_rest::decays;
 pub(crate) use about_rest::stiffen;
-use cylinder::{Command, Moved, Pump};
+use cylinder::{Command, Pump, ValveCylinder};
 pub(crate) use oil::Oil;
 use valve::flows;
 
 /// The oil of a crane.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hydraulics {
-    cylinders: Vec<Moved>,
+    cylinders: Vec<ValveCylinder>,
     pump: Option<Pump>,
     /// Every cylinder of the crane: length, rate, and derivative by its coordinate.
     here: Vec<Vector3<f64>>,
@@ -59,7 +59,7 @@ impl Hydraulics {
     /// What the description of a crane says about it; nothing where no cylinder has a valve.
     pub fn new(description: &Description) -> Self {
         let moved = description.cylinders.iter().enumerate().filter_map(|(index, info)| {
-            Some(Moved {
+            Some(ValveCylinder {
                 index,
                 coordinate: description.drives[info.drive].coordinate,
                 valve: info.valve?,
@@ -68,7 +68,7 @@ impl Hydraulics {
                 info: info.clone(),
             })
         });
-        let cylinders: Vec<Moved> = moved.collect();
+        let cylinders: Vec<ValveCylinder> = moved.collect();
         let Some(first) = cylinders.first() else { return Self::default() };
         let pump = description
             .pump
@@ -108,7 +108,7 @@ impl Hydraulics {
         all.chain((!self.is_empty()).then_some(pressure)).collect()
     }
 
-    /// The states that hold a pose at rest at a time: shut valves, and the side that does not carry at the pressure of the tank.
+    /// The states that hold a pose at rest at a time: shut valves, and the unloaded side at tank pressure.
     pub(crate) fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
         if self.is_empty() {
             return Vec::new();
@@ -118,7 +118,7 @@ impl Hydraulics {
         crane.bias(q, &rest, &mut bias);
         crane.forces(t, q, &rest, &mut forces);
         crane.cylinder_states(q, &rest, &mut self.here);
-        let of_cylinder = |moved: &Moved| {
+        let of_cylinder = |moved: &ValveCylinder| {
             let effort = -(bias[moved.coordinate] + forces[moved.coordinate]);
             let state = CylinderState::new(&moved.info, self.here[moved.index].into(), effort);
             let [piston, rod] = state.pressures;
@@ -133,9 +133,9 @@ impl Hydraulics {
     pub(crate) fn evaluate(
         &mut self,
         crane: &dyn DynModel,
-        &Moment { t, q, v, x }: &Moment<'_>,
+        &StateAt { t, q, v, x }: &StateAt<'_>,
         rates: &mut [f64],
-        pushed: &mut [Pushed],
+        pushed: &mut [StatefulForce],
         mut by_states: Option<&mut DMatrix<f64>>,
     ) {
         let Some(last) = self.len().checked_sub(1) else { return };
@@ -165,7 +165,7 @@ impl Hydraulics {
                 let volume = moved.info.hose_volumes[side] + area * way;
                 let p = x[first + side];
                 let leak = moved.valve.leakage * (x[first] - x[first + 1]);
-                let (guard, guard_slope) = moved.guards(p);
+                let (guard, guard_slope) = moved.relief_and_suction(p);
                 let flow = flows.into[side] - sign * (area * here.y + leak) + guard;
                 let stiffness = moved.bulk_modulus / volume;
                 rates[first + side] = stiffness * flow;
@@ -224,7 +224,7 @@ impl Hydraulics {
         }
         crane.cylinder_states(wanted_q, wanted_v, &mut self.wanted);
         // What bends between the pins of a cylinder changes its length a little, but only its joint takes its force.
-        for Moved { index, coordinate, .. } in &self.cylinders {
+        for ValveCylinder { index, coordinate, .. } in &self.cylinders {
             self.here[*index].y = self.here[*index].z * v[*coordinate];
             self.wanted[*index].y = self.wanted[*index].z * wanted_v[*coordinate];
         }

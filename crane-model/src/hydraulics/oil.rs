@@ -4,7 +4,7 @@ use super::Hydraulics;
 use crate::{
     Description,
     dyn_crane::DynModel,
-    own_states::{Moment, Pushed, STATES},
+    own_states::{STATES, StateAt, StatefulForce},
     results::CylinderState,
 };
 
@@ -17,13 +17,13 @@ pub(crate) struct Oil {
 
 impl Oil {
     /// At a state of the crane and its oil.
-    pub fn at(crane: &dyn DynModel, moment: &Moment<'_>) -> Option<Self> {
+    pub fn at(crane: &dyn DynModel, moment: &StateAt<'_>) -> Option<Self> {
         let x = moment.x;
         let mut hydraulics = Hydraulics::new(crane.description());
         if hydraulics.is_empty() || x.len() < hydraulics.len() {
             return None;
         }
-        let mut pushed = vec![Pushed::default(); hydraulics.count()];
+        let mut pushed = vec![StatefulForce::default(); hydraulics.count()];
         hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut pushed, None);
         let cylinders =
             hydraulics.cylinders.iter().zip(&pushed).zip(x.chunks_exact(STATES)).map(|((moved, own), x)| {

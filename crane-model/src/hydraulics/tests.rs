@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::{Command, Moved, Pump, valve};
+use super::{Command, Pump, ValveCylinder, valve};
 use crate::{CylinderInfo, PumpInfo, ValveInfo};
 
-fn moved() -> Moved {
+fn moved() -> ValveCylinder {
     let valve = ValveInfo {
         flow: 1e-3,
         pressure_drop: 1e6,
@@ -28,7 +28,7 @@ fn moved() -> Moved {
         hose_volumes: [5e-4, 4e-4],
         valve: Some(valve),
     };
-    Moved { index: 0, coordinate: 0, valve, bulk_modulus: 1.2e9, max_pressure: 2.8e7, info }
+    ValveCylinder { index: 0, coordinate: 0, valve, bulk_modulus: 1.2e9, max_pressure: 2.8e7, info }
 }
 
 /// Relative difference of a derivative and the central difference of what it derives.
@@ -42,7 +42,7 @@ const CLOSE: f64 = 1e-5;
 
 #[test]
 fn flows_have_their_derivatives() {
-    let Moved { valve, .. } = moved();
+    let ValveCylinder { valve, .. } = moved();
     for u in [0.4, -0.7] {
         let sides = [9e6, 4e6];
         let (pump, tank) = (2e7, 3e5);
@@ -99,10 +99,10 @@ fn servo_and_stop_have_their_derivatives() {
 #[test]
 fn relief_and_suction_open_at_their_pressures() {
     let moved = moved();
-    assert_eq!(moved.guards(1e7), (0.0, 0.0));
+    assert_eq!(moved.relief_and_suction(1e7), (0.0, 0.0));
     // The nominal flow of the valve, 5 % above the greatest pressure and 1 bar below the tank's.
-    let (out, _) = moved.guards(1.05 * 2.8e7);
-    let (into, _) = moved.guards(2e5);
+    let (out, _) = moved.relief_and_suction(1.05 * 2.8e7);
+    let (into, _) = moved.relief_and_suction(2e5);
     assert!((out + 1e-3).abs() < 1e-12 && (into - 1e-3).abs() < 1e-12);
     let pump = Pump {
         info: PumpInfo { max_flow: 2e-3, pressure: Some(2e7), volume: 5e-3 },

@@ -5,7 +5,7 @@ use crate::{
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
     hydraulics::Oil,
-    own_states::Moment,
+    own_states::StateAt,
     results::{Column, Table, cylinders},
 };
 
@@ -92,7 +92,7 @@ fn push_quantities(
     row.extend_from_slice(q);
     row.extend_from_slice(v);
     let mut efforts = crane.drive_efforts_at(t, q, v);
-    let oil = Oil::at(crane, &Moment { t, q, v, x });
+    let oil = Oil::at(crane, &StateAt { t, q, v, x });
     if let Some(oil) = &oil {
         oil.give_efforts(crane.description(), &mut efforts);
     }

@@ -1,4 +1,4 @@
-//! A crane at work inside of a simulation of others.
+//! An instance of a crane inside another program's simulation.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -47,7 +47,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Everything that a crane's further motion follows from.
+/// Everything that determines the crane's future motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     parameters: Vec<f64>,
@@ -91,15 +91,15 @@ pub struct Instance {
     is_current: bool,
     settings: Settings,
     begin: f64,
-    /// Until the initialisation ends a parameter moves the start.
+    /// Whether initialisation has ended; before that, a parameter changes the start.
     has_begun: bool,
     moment: Option<Moment>,
-    /// Steps of the crane's own, on their way.
+    /// The run in progress by the crane's own method.
     motion: Option<Motion>,
     quantities: Option<Vec<f64>>,
     /// Accelerations, and the rates of the forces' states.
     accelerations: Option<(Vec<f64>, Vec<f64>)>,
-    /// What is to be said, and what has been said once.
+    /// Messages to report, and cautions that have been reported once.
     said: Vec<String>,
     cautions: Vec<&'static str>,
 }
@@ -229,7 +229,7 @@ impl Instance {
         self.moment.as_ref().ok_or_else(Fault::nowhere)
     }
 
-    /// Changes time, pose or rates, and lets rigid drives have their say.
+    /// Changes time, pose or rates, and applies the motions of rigid drives.
     fn change(&mut self, change: impl FnOnce(&mut Moment)) -> Result<(), Fault> {
         self.settle()?;
         if let Some(moment) = &mut self.moment {

@@ -28,7 +28,7 @@ pub enum Group {
 impl Group {
     const COUNT: usize = 6;
 
-    /// With what a function is derived.
+    /// The group to which a function belongs.
     fn of(id: FunctionId) -> Self {
         match id.seam() {
             Seam::CraneModel => Group::Common,

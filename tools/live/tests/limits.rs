@@ -103,7 +103,7 @@ fn statics_say_that_a_drive_cannot_hold() {
         let expected = (limit / 98.1_f64).acos();
         assert!((found.q[0] - expected).abs() < 1e-10, "{limit}: {} for {expected}", found.q[0]);
         let said = cautions::of_pose(arm, &found.q, 20.0);
-        assert!(said.len() == 1 && said[0].contains("cannot hold"), "{said:?}");
+        assert!(said.len() == 1 && said[0].contains("is at its limit"), "{said:?}");
     }
     // Within 95 % of the limit the drive is the one without.
     let (arm, weight) = (arm(110.0), 98.1);

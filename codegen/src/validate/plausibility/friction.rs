@@ -1,7 +1,7 @@
 //! Bristles of joints that stick.
 
 use super::{Look, rounded};
-use crate::chain::Law;
+use crate::chain::{Coordinate, CoordinateKind, Law};
 use crate::diagnostic::rule;
 
 /// Usual deflections at which bristles slide, rad or m: from stiff bearings to soft seals.
@@ -13,17 +13,23 @@ impl Look<'_> {
         let entries = self.crane.friction.as_ref().and_then(|friction| friction.value.as_ref());
         for (name, given) in entries.into_iter().flat_map(|entries| &entries.0) {
             let Some(given) = given.value.as_ref().and_then(|own| own.bristle.as_ref()) else { continue };
-            let Some(name) = name.value.as_deref() else { continue };
-            let bristles = self.chain.forces.iter().find_map(|force| match &force.law {
-                Law::Friction(friction) if self.chain.coordinates[force.coordinate.0].name == name => {
+            let named = |known: &&Coordinate| Some(known.name.as_str()) == name.value.as_deref();
+            let Some(coordinate) = self.chain.coordinates.iter().find(named) else { continue };
+            let of_joint = self.chain.forces.iter().find_map(|force| match &force.law {
+                Law::Friction(friction) if self.chain.coordinates[force.coordinate.0].name == coordinate.name => {
                     friction.bristle.as_ref()
                 }
                 _ => None,
             });
-            let Some(bristle) = bristles else { continue };
-            let way = bristle.breakaway / bristle.stiffness;
-            if !(USUAL[0]..=USUAL[1]).contains(&way) {
-                self.warn(rule::odd_bristles(given.span, name, format!("{:e}", rounded(way))));
+            let Some(bristle) = of_joint else { continue };
+            let deflection = bristle.breakaway / bristle.stiffness;
+            let unit = match coordinate.kind {
+                CoordinateKind::Translation => "m",
+                CoordinateKind::Rotation => "rad",
+            };
+            if !(USUAL[0]..=USUAL[1]).contains(&deflection) {
+                let deflection = format!("{:e}", rounded(deflection));
+                self.warn(rule::odd_bristles(given.span, &coordinate.name, deflection, unit));
             }
         }
     }

@@ -41,7 +41,7 @@ pub struct Envelope {
     /// Live parameter that is the load [default: the only parameter in kg]
     #[arg(long, value_name = "PARAMETER")]
     pub load: Option<String>,
-    /// The greatest load looked at, in the unit of its parameter [default: a hundred times the crane's mass]
+    /// Upper limit of the search for the load, in the unit of its parameter [default: a hundred times the crane's mass]
     #[arg(long, value_name = "NUMBER")]
     pub greatest_load: Option<f64>,
     /// Least tipping margin, 1 − overturning / stabilising moment about each tipping line
@@ -84,8 +84,8 @@ pub struct Modes {
 pub struct Linearise {
     #[command(flatten)]
     pub analysis: Analysis,
-    /// Time at which drives, loads and winches are, s; driven coordinates have the rates of their motions then [default: 0, or that
-    /// of the last row with --from]
+    /// Time at which to evaluate drives, loads and winches, s; driven coordinates take their prescribed rates at that time [default: 0,
+    /// or that of the last row with --from]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub time: Option<f64>,
     /// Hold a coordinate at a position or at a rate, in m, rad, m/s or rad/s or as an angle, as in `boom_psi=30deg` and

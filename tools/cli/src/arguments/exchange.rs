@@ -71,7 +71,7 @@ pub struct Export {
     /// Version of the interface of an FMU
     #[arg(long, value_enum, default_value_t, value_name = "VERSION")]
     pub fmi: Fmi,
-    /// Shared library to put into an FMU, .so, .dll or .dylib; given several times the FMU runs on several systems
+    /// Shared library to put into an FMU, .so, .dll or .dylib; repeat the option to include several systems
     /// [default: the one beside the command]
     #[arg(long = "library", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub libraries: Vec<PathBuf>,

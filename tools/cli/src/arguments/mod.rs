@@ -54,7 +54,7 @@ Exit codes:
   1  no stable equilibrium, a run that grew without bound, a file that cannot be used
   2  wrong arguments";
 
-/// Statics, motion and vibration of cranes compiled from YAML.
+/// Statics, motion and vibration of cranes described in YAML.
 ///
 /// Without a command, the eight-link forest crane with a rigid boom is compared with the same crane with a flexible boom:
 /// the static pose, then a manoeuvre of 5 s followed to 10 s. Figures (SVG), data (CSV) and a report (HTML) go to `out/`.
@@ -123,9 +123,9 @@ pub enum Action {
         #[arg(value_name = "COMMAND", value_enum)]
         of: Option<Output>,
     },
-    /// Export a crane as URDF or MJCF, for Pinocchio, MuJoCo, ROS and others
+    /// Export a crane as URDF, MJCF, C or an FMU, for Pinocchio, MuJoCo, ROS, controllers, Simulink and others
     Export(Export),
-    /// Convert a URDF robot to a spec
+    /// Convert a URDF or MJCF model to a spec
     Import(Import),
     /// List the shipped cranes
     List(List),
