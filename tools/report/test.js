@@ -235,8 +235,8 @@ async function marks(page) {
   if (feet) assert(feet.every((off) => off < 1e-4), `the tipping line ends ${feet} m beside the feet`);
   const png = await download(page, () => page.click("#picture"), null);
   assert(png.length > 10_000 && png.subarray(1, 4).toString() === "PNG", "a picture of the view");
-  if (!duration || !(await page.locator("#video").count())) return;
-  // A film takes as long as the motion: the end of it will do.
+  // A film takes as long as the motion: the end of it will do, on one page.
+  if (!csvFiles.length || !duration || !(await page.locator("#video").count())) return;
   const film = await download(page, async () => {
     await page.click("#video");
     await seek(page, duration - 3);
