@@ -35,12 +35,12 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         values.iter().enumerate().try_for_each(|(index, &value)| self.set_parameter(index, value))
     }
 
-    /// What an input is set to, by its place in [`Description::inputs`]; nothing while it is as its spec says.
+    /// What an input is set to, by its place in [`Description::inputs`]; `None` while it follows its spec.
     fn input(&self, _index: usize) -> Option<f64> {
         None
     }
 
-    /// Sets an input from now on, or gives it back to its spec. An index out of range changes nothing.
+    /// Sets an input from now on, or lets it follow its spec again. An index out of range changes nothing.
     ///
     /// A run takes inputs as they are when it begins: [`simulate_from`](crate::dynamics::simulate_from) goes on with other ones.
     fn set_input(&mut self, _index: usize, _value: Option<f64>) {}
@@ -132,7 +132,7 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     }
 
     /// Length of each cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m. `out`: one vector per
-    /// cylinder; numbers that are not numbers where its linkage cannot be assembled.
+    /// cylinder; NaN where its linkage cannot be assembled.
     fn cylinder_states(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
     /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair per drive.

@@ -91,7 +91,7 @@ impl<'g> Rope<'g> {
         }
     }
 
-    /// A number where the rope is taut, else 0. Just taut counts: a rope that is about to pull is where Newton's method begins.
+    /// `number` where the rope is taut, else 0. Just taut counts: Newton's method begins with ropes that are about to pull.
     fn where_taut(&self, number: Expr<'g>) -> Expr<'g> {
         self.slack.select(self.slack.graph().constant(0.0), number)
     }

@@ -2,15 +2,15 @@
 //!
 //! Notation
 //! : e, ė elongation and its rate along the world's axes; s, d stiffness and damping; N₀ the pressing force of full hold.
-//!   `δ = max(0, −e_z)` is how far the support is pressed in, `x = min(1, s_z δ/N₀)` and `w = x² (3 − 2x)` the share in which
-//!   it holds sideways and damps, `L = s_x e_x² + s_y e_y²`.
+//!   `δ = max(0, −e_z)` is how far the support is pressed in, `x = min(1, s_z δ/N₀)` and `w = x² (3 − 2x)` the fraction to which
+//!   its lateral springs and its dampers act, `L = s_x e_x² + s_y e_y²`.
 //!
 //! ```text
 //! E = ½ s_z δ² + ½ w L
 //! f = (−w (s_x e_x + d_x ė_x), −w (s_y e_y + d_y ė_y), max(0, c − w d_z ė_z)),     c = s_z δ + ½ w' L
 //! ```
 //!
-//! From N₀ on w = 1: a support that is well pressed is the one that pulls as well, to the last bit. The term `½ w' L` is the
+//! From N₀ on w = 1: a firmly pressed support acts exactly like a two-sided one, to the last bit. The term `½ w' L` is the
 //! energy of the lateral springs, which a support that lifts gives back.
 
 use super::vector::{Symmetric3, Vec3};

@@ -30,7 +30,7 @@ pub(super) trait Formula {
     fn factorisations(&self) -> usize;
 }
 
-/// A motion with adaptive steps, which go beyond the results; these are interpolated.
+/// A motion with adaptive steps, which may pass the times of results; results are interpolated.
 pub(super) struct Adaptive<'a, F> {
     formula: F,
     equations: Equations<'a>,

@@ -62,7 +62,7 @@ pub fn simulate_dyn(
     simulate_watched(crane, start, settings, &mut Samples(observe))
 }
 
-/// As [`simulate_dyn`], looked at after every step, too.
+/// As [`simulate_dyn`], also observed after every step.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -79,7 +79,7 @@ pub fn simulate_watched(
 }
 
 /// As [`simulate_watched`], from a time on, s, over the settings' duration: the drives' motions go on from there. A run in pieces is
-/// the same as long as the pieces are.
+/// repeated exactly if it is cut into the same pieces.
 ///
 /// # Errors
 /// As [`simulate`].

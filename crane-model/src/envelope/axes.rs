@@ -27,7 +27,7 @@ impl Varied {
     }
 }
 
-/// The values of one of them.
+/// A varied quantity and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// What is varied.

@@ -59,7 +59,7 @@ impl Condition {
         self.points.iter().zip(&from.points).map(|(to, from)| (to - from).norm()).collect()
     }
 
-    /// What is left up to every limit, as a part of it: 0 at the limit, negative beyond.
+    /// The remaining margin to each limit, relative to it: 0 at the limit, negative beyond.
     pub(super) fn slacks(&self, limits: &Limits, reference: &[Vector3<f64>]) -> Vec<(Limit, f64)> {
         let mut slacks = Vec::new();
         if let Some(least) = limits.tipping {

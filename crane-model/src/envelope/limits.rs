@@ -16,7 +16,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// None, for a crane of this description.
+    /// No limits, for a crane of this description.
     pub fn none(description: &Description) -> Self {
         Self {
             tipping: None,
@@ -66,7 +66,7 @@ impl Limit {
         }
     }
 
-    /// What it is a limit of.
+    /// The name of the part that it limits.
     pub fn place(self, description: &Description) -> String {
         match self {
             Limit::Equilibrium => String::new(),

@@ -7,7 +7,7 @@ use crate::{CoordinateKind, dyn_crane::DynCrane};
 /// A vertical axis about which the crane slews.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlewAxis {
-    /// Place of the drive that slews it; `None` where none does, and the axis goes through the world's origin.
+    /// Index of the drive that slews the crane about it; `None` where none does, and the axis goes through the world's origin.
     pub drive: Option<usize>,
     /// Where the axis meets the ground, m.
     pub at: [f64; 2],

@@ -9,7 +9,7 @@ use crate::{dyn_crane::DynCrane, statics::Settings};
 /// The largest load of a pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rating {
-    /// The largest load within all limits, in the unit of the load's parameter; `None` where the least is not.
+    /// The largest load within all limits, in the unit of the load's parameter; `None` if not even the least load is.
     pub load: Option<f64>,
     /// The limit that governs; `None` where none does up to the greatest load looked at.
     pub governing: Option<Limit>,
@@ -31,17 +31,17 @@ pub(super) struct Posed<'a> {
     pub positions: &'a [f64],
 }
 
-/// What is wanted of a pose.
+/// What to compute for a pose.
 pub(super) struct Wanted<'a> {
     /// What limits the load.
     pub limits: &'a Limits,
     /// The least and the greatest load.
     pub loads: [f64; 2],
-    /// The load for which the condition is wanted too.
+    /// Another load for which the condition is computed.
     pub own: f64,
 }
 
-/// Newton's method alone: from the pose of a load a little smaller, where it fails, there is no pose nearby.
+/// Newton's method alone: if it fails from the pose of a slightly smaller load, there is no pose nearby.
 const NEWTON: Settings = Settings { tolerance: 1e-10, iterations: 30, load_steps: 0 };
 
 impl Posed<'_> {
@@ -52,7 +52,7 @@ impl Posed<'_> {
         found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))
     }
 
-    /// Its rating from a pose nearby, where the search may begin with `guess`, and the pose with the least load.
+    /// Its rating, searched from a nearby pose and, if given, the load `guess`; also the pose with the least load.
     pub fn rate(&mut self, wanted: &Wanted<'_>, guess: Option<f64>, q: Vec<f64>) -> (Rating, Vec<f64>) {
         let Wanted { limits, loads: [least, greatest], own } = *wanted;
         let Some(empty) = self.rest(least, &q, &Settings::default()) else {

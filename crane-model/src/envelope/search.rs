@@ -2,19 +2,19 @@
 
 use super::{Condition, Limit};
 
-/// A load that was tried and rests.
+/// A trial load with which the crane rests.
 #[derive(Clone, Debug)]
 pub(super) struct Trial {
     /// The load.
     pub load: f64,
-    /// What is left up to every limit.
+    /// The remaining margin to each limit.
     pub slacks: Vec<(Limit, f64)>,
     /// The crane with it.
     pub at: Condition,
 }
 
 impl Trial {
-    /// The limit that has least left, and how much.
+    /// The limit with the smallest margin, and that margin.
     fn least(&self) -> Option<(Limit, f64)> {
         self.slacks.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1))
     }
@@ -30,19 +30,19 @@ pub(super) struct Range {
     pub greatest: f64,
     /// A load that may be near the largest.
     pub guess: f64,
-    /// The size that loads have, above zero.
+    /// The typical size of loads, positive.
     pub scale: f64,
 }
 
-/// Part of a load to which the largest is found: charts round to three digits.
+/// Relative accuracy of the largest load: charts round to three digits.
 const ACCURACY: f64 = 1e-6;
-/// Part of the scale below which loads do not differ.
+/// Loads that differ by less than this fraction of the scale are equal.
 const LEAST: f64 = 1e-9;
-/// Loads tried: secants take some five, halving an interval to the accuracy some thirty.
+/// Maximum number of trial loads: secants take some five, halving an interval to the accuracy some thirty.
 const MOST_TRIALS: usize = 60;
 /// The first step up where there is no guess, as a part of the scale.
 const FIRST_STEP: f64 = 0.1;
-/// How much further than from the least load to the last a step up may go.
+/// Largest ratio of a step up to the distance from the least load to the last one.
 const GROWTH: f64 = 4.0;
 
 /// The largest load from `first` on, and the limit that governs; `None` where the first is beyond a limit itself.
@@ -104,7 +104,7 @@ pub(super) fn largest(
     (Some(within), governing)
 }
 
-/// How near loads are equal.
+/// The difference up to which loads count as equal.
 fn accuracy(load: f64, range: &Range) -> f64 {
     (ACCURACY * load.abs()).max(LEAST * range.scale)
 }
@@ -137,7 +137,7 @@ mod tests {
 
     const RANGE: Range = Range { greatest: 1e6, guess: 0.0, scale: 1000.0 };
 
-    /// Finds the largest load of slacks as functions of it, from zero on, and counts trials.
+    /// Finds the largest load from zero on, for slacks that are functions of the load, and counts trials.
     fn find(slacks: &dyn Fn(f64) -> Option<Vec<f64>>, range: &Range) -> (Option<f64>, Option<Limit>, usize) {
         let mut trials = 0;
         let (best, governing) = largest(trial(0.0, &slacks(0.0).unwrap()), range, &mut |load, _| {

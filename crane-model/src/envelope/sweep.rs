@@ -12,12 +12,12 @@ use super::{
 };
 use crate::{Description, ParameterError, dyn_crane::DynCrane, statics::Settings};
 
-/// Poses of a piece at most.
+/// Maximum number of poses in a piece.
 pub const PIECE: usize = 25;
-/// How far a drive goes at once from a pose that rests to the next, m or rad.
+/// Largest stride of a drive from one pose at rest to the next, m or rad.
 const STRIDE: f64 = 0.2;
 
-/// What is asked of a crane.
+/// What to compute for a crane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Envelope {
     /// What is varied.
@@ -34,13 +34,13 @@ pub struct Envelope {
 pub struct Conduct<'a> {
     /// Threads.
     pub threads: usize,
-    /// Called with the ratings of every piece that is done, in the order in which they are, from any thread.
+    /// Called with the ratings of every piece that is done, in the order in which they finish, from any thread.
     pub done: &'a (dyn Fn(usize, &[Rating]) + Sync),
-    /// Whether to give up what is not done; asked before every piece.
+    /// Whether to skip the remaining pieces; asked before every piece.
     pub called_off: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// Load that stands for the least where zero is not allowed, kg: a gram.
+/// The least load to try if zero is not allowed, kg: a gram.
 const LEAST_LOAD: f64 = 1e-3;
 /// The greatest load looked at, in masses of the crane.
 const GREATEST_LOAD: f64 = 100.0;

@@ -138,7 +138,7 @@ impl Instance {
         })
     }
 
-    /// What there is to say since this was asked last: warnings of the spec, and what the model does not hold for.
+    /// Messages since the last call: warnings about the spec, and conditions for which the model is not valid.
     pub fn take_warnings(&mut self) -> Vec<String> {
         std::mem::take(&mut self.said)
     }
@@ -173,7 +173,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Goes back to how it was made.
+    /// Returns to the state in which it was created.
     pub fn reset(&mut self) {
         self.parameters.clone_from(&self.first);
         self.inputs.fill(None);
@@ -267,7 +267,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Value of an input; while it is not set, that with which the spec begins.
+    /// Value of an input; until it is set, the start value of the spec.
     fn input(&self, index: usize) -> f64 {
         self.inputs[index].unwrap_or(self.crane.description().inputs[index].default)
     }
@@ -480,7 +480,7 @@ impl Instance {
     /// # Errors
     /// As [`Instance::get`]; the step does not begin where the crane stands, or is not positive; the motion cannot be followed.
     pub fn step(&mut self, from: f64, length: f64) -> Result<(), Fault> {
-        /// Part of a step by which a sum of steps may be off.
+        /// Accepted error of a sum of steps, as a fraction of a step.
         const ROUNDING: f64 = 1e-6;
         let Moment { t, q, v, x } = self.moment()?.clone();
         if !(length > 0.0 && length.is_finite()) {
@@ -502,7 +502,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Notes what the model does not hold for, each kind once.
+    /// Notes conditions for which the model is not valid, each kind once.
     fn caution(&mut self, Moment { t, q, .. }: &Moment) {
         let description = self.crane.description();
         let found = [("singular", description.near_singular(q)), ("tilt", description.large_tilt(q))];

@@ -85,7 +85,7 @@ pub fn folder_of(uri: &str) -> Result<PathBuf, String> {
     Ok(PathBuf::from(if with_drive { &path[1..] } else { &path }))
 }
 
-/// Text with its `%20` and the like as what they stand for.
+/// Text with `%20` and the like decoded.
 fn decoded(text: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.bytes();

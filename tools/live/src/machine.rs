@@ -158,7 +158,7 @@ impl<T: Number> Arguments<'_, T> {
     }
 }
 
-/// Possible numbers of registers of a machine: register numbers are masked instead of checked.
+/// Possible register counts of a machine, powers of two: register numbers are masked instead of checked.
 const SIZES: [usize; 3] = [1 << 10, 1 << 13, 1 << 16];
 
 /// Registers of a function.

@@ -1,6 +1,6 @@
 //! A number with its slopes in eight directions: exact derivatives of any function of a crane, by the rule of each operation.
 //!
-//! Eight directions fill the widest registers, so a derivative costs about half of what a value costs, and nothing has to be derived.
+//! Eight directions fill the widest registers, so a derivative costs about half as much as a value, and nothing has to be derived.
 
 use std::ops::{Div, Mul, Neg};
 

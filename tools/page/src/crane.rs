@@ -66,7 +66,7 @@ pub fn data(subject: &Subject<'_>, program: Program) -> Result<Value, NoModes> {
     }))
 }
 
-/// The one result of a crane that stays where it is with its drives at their starts.
+/// The single result of a crane at rest, with its drives at their start positions.
 fn rest(rig: &dyn DynCrane, q: &[f64]) -> Table {
     let (v, x) = (vec![0.0; q.len()], OwnStates::new(rig.description()).holding(rig, 0.0, q));
     let mut recording = Recording::new(rig);

@@ -82,7 +82,7 @@ fn inverse(frame: &Matrix4<f64>) -> Matrix4<f64> {
 
 /// Points of interest with the body that carries each: the one in whose frame it stays where it is when everything moves.
 fn points(rig: &dyn DynCrane, q: &[f64]) -> Vec<Value> {
-    /// Way from the pose, m and rad: any that moves all coordinates, no two alike.
+    /// Way from the pose, m and rad: any one that moves all coordinates by different amounts.
     const WAY: f64 = 0.1;
     let other: Vec<f64> = q.iter().enumerate().map(|(i, q)| q + WAY / (1.0 + i as f64)).collect();
     let local = |q: &[f64]| -> Vec<Vec<Vector3<f64>>> {

@@ -1,4 +1,4 @@
-//! How far a run uses the beams, and how far the crane is from tipping over.
+//! How heavily a run loads the beams, and how far the crane is from tipping over.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use crane_model::{Description, SectionModuli, dyn_crane::DynCrane, results::Table, sections::stressed_sections};
@@ -9,7 +9,7 @@ use crate::history::{Instant, instants};
 /// Pascals in a newton per square millimetre.
 const MEGA: f64 = 1e6;
 
-/// Utilisation of all sections whose moduli are known, in megapascals where no beam has a yield stress, and margins about all tipping lines,
+/// Utilisation of all sections whose moduli are known (stresses in MPa if no beam has a yield stress), and margins about all tipping lines,
 /// of every `every`-th result.
 pub fn data(rig: &dyn DynCrane, run: &Table, every: usize) -> Value {
     let description = rig.description();
