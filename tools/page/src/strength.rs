@@ -9,7 +9,7 @@ use crate::history::{Instant, instants};
 /// Pascals in a newton per square millimetre.
 const MEGA: f64 = 1e6;
 
-/// Utilisation of all sections whose moduli are known (stresses in MPa if no beam has a yield stress), and margins about all tipping lines,
+/// Utilisation of all sections whose moduli are known (stresses in megapascals if no beam has a yield stress), and margins about all tipping lines,
 /// of every `every`-th result.
 pub fn data(rig: &dyn DynCrane, run: &Table, every: usize) -> Value {
     let description = rig.description();
