@@ -197,8 +197,8 @@ def test_a_killed_worker_costs_only_its_part(tmp_path):
         assert done.table().equals(here)
 
 
-class _Murderous:
-    """Runs a part; the first worker that comes to the fifth part is killed at it."""
+class _Once:
+    """Runs a part; the first time that the fifth part is computed, `fail` is called."""
 
     def __init__(self, marker):
         self.marker = str(marker)
@@ -210,22 +210,19 @@ class _Murderous:
             except FileExistsError:
                 pass
             else:
-                os.kill(os.getpid(), 9)
+                self.fail()
         return dict(c.simulate_ensemble(**SHORT))
 
 
-class _Greedy:
-    """Runs a part; the first time that the fifth part is computed, it asks for more memory than there is."""
+class _Murderous(_Once):
+    """The first worker that comes to the fifth part is killed at it."""
 
-    def __init__(self, marker):
-        self.marker = str(marker)
+    def fail(self):
+        os.kill(os.getpid(), 9)
 
-    def __call__(self, c):
-        if np.any(c.parameters["payload"] == cases()["payload"][13]):
-            try:
-                os.close(os.open(self.marker, os.O_CREAT | os.O_EXCL))
-            except FileExistsError:
-                pass
-            else:
-                bytearray(2**62)
-        return dict(c.simulate_ensemble(**SHORT))
+
+class _Greedy(_Once):
+    """The first time that the fifth part is computed, it asks for more memory than there is."""
+
+    def fail(self):
+        bytearray(2**62)

@@ -36,13 +36,7 @@ pub fn write(crane: &dyn DynModel) -> String {
 fn write_variables(subject: &Subject, xml: &mut Xml) {
     xml.open("ModelVariables", &[]);
     for (reference, variable) in subject.variables.iter().enumerate() {
-        let [causality, variability] = Subject::nature(variable);
-        let mut scalar = vec![("name", variable.name.clone()), ("valueReference", reference.to_string())];
-        if !variable.about.is_empty() {
-            scalar.push(("description", variable.about.clone()));
-        }
-        scalar.push(("causality", causality.to_owned()));
-        scalar.push(("variability", variability.to_owned()));
+        let scalar = Subject::identity(variable, reference);
         let mut real = subject.attributes(variable);
         if let Some(integral) = Subject::integral(variable.source) {
             real.push(("derivative", index(subject.reference(integral))));

@@ -34,13 +34,7 @@ pub fn write(crane: &dyn DynModel) -> String {
 fn write_variables(subject: &Subject, xml: &mut Xml) {
     xml.open("ModelVariables", &[]);
     for (reference, variable) in subject.variables.iter().enumerate() {
-        let [causality, variability] = Subject::nature(variable);
-        let mut float = vec![("name", variable.name.clone()), ("valueReference", reference.to_string())];
-        if !variable.about.is_empty() {
-            float.push(("description", variable.about.clone()));
-        }
-        float.push(("causality", causality.to_owned()));
-        float.push(("variability", variability.to_owned()));
+        let mut float = Subject::identity(variable, reference);
         float.extend(subject.attributes(variable));
         if let Some(integral) = Subject::integral(variable.source) {
             float.push(("derivative", subject.reference(integral).to_string()));

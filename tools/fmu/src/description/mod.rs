@@ -85,6 +85,17 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// Attributes that say which variable it is: name, value reference, description, causality and variability.
+    fn identity(variable: &Variable, reference: usize) -> Vec<(&'static str, String)> {
+        let [causality, variability] = Self::nature(variable);
+        let mut attributes = vec![("name", variable.name.clone()), ("valueReference", reference.to_string())];
+        if !variable.about.is_empty() {
+            attributes.push(("description", variable.about.clone()));
+        }
+        attributes.extend([("causality", causality.to_owned()), ("variability", variability.to_owned())]);
+        attributes
+    }
+
     /// Attributes of a variable's numbers: unit, start.
     fn attributes(&self, variable: &Variable) -> Vec<(&'static str, String)> {
         let mut attributes = Vec::new();
