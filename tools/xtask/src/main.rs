@@ -186,6 +186,7 @@ fn oracles() -> Vec<Step> {
         Step::check("Pinocchio and MuJoCo agree and notice errors", oracles::peers_self_test),
         Step::check("generated code against Pinocchio and MuJoCo", oracles::peers),
         Step::check("URDF and MJCF there and back", oracles::exchange),
+        Step::check("cylinders against Exudyn", oracles::hydraulics),
     ]
 }
 

@@ -51,6 +51,12 @@ pub fn motion() -> Result<(), String> {
     step::finish(script(&CHECKS, MOTION).arg("--command").arg(workspace::target().join("release/crane")))
 }
 
+/// Arms on hydraulic cylinders, beside Exudyn's.
+pub fn hydraulics() -> Result<(), String> {
+    let mut command = script(&CHECKS, "tools/peers/hydraulics.py");
+    step::finish(command.arg("--command").arg(workspace::target().join("release/crane")))
+}
+
 /// The environment of the checks.
 pub fn prepare() -> Result<(), String> {
     CHECKS.prepare()
