@@ -12,7 +12,7 @@ fn main() -> io::Result<()> {
     // The order of a folder differs from machine to machine.
     specs.sort();
     let names: Vec<String> = specs.iter().map(|spec| name(spec)).collect();
-    // A spec that extends another is one text with it: nobody who reads it has this folder.
+    // A spec that extends another is merged with it into one text: its readers do not have this folder.
     let texts: io::Result<Vec<String>> = names
         .iter()
         .zip(&specs)
@@ -30,7 +30,7 @@ fn main() -> io::Result<()> {
     fs::write(build::out_dir().join("cranes.rs"), module)
 }
 
-/// Compiles the crane of a spec; its name. Tests and the command use every analysis of every crane.
+/// Compiles the crane of a spec and returns its name. Tests and the command use every analysis of every crane.
 #[cfg(feature = "compiled")]
 fn name(spec: &Path) -> String {
     build::compile_spec_for(spec, Some(crane_codegen::chain::Analyses::ALL)).name

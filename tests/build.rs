@@ -21,7 +21,7 @@ fn main() -> io::Result<()> {
         let name = format!("random_{seed}");
         let text = random::spec(seed);
         let source = SourceFile::new(format!("{name}.yaml"), text.as_str());
-        // Without the warnings: soft materials make small numbers comparable.
+        // Warnings are ignored: the materials are soft on purpose, to keep numbers comparable in size.
         let code = compile(&source, Some(Analyses::ALL)).map_err(io::Error::other)?.code;
         fs::write(build::out_dir().join(&source.name), &text)?;
         fs::write(build::out_dir().join(format!("{name}.rs")), code.text)?;

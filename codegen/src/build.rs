@@ -33,7 +33,7 @@ pub fn compile_spec(spec: impl AsRef<Path>) -> GeneratedCode {
     compile_spec_for(spec, None)
 }
 
-/// Like [`compile_spec`], with other analyses than those of the spec.
+/// Like [`compile_spec`], with analyses other than those of the spec.
 pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> GeneratedCode {
     let spec = spec.as_ref();
     println!("cargo::rerun-if-changed={}", spec.display());
@@ -52,27 +52,27 @@ pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> G
     code
 }
 
-/// Reads a spec, and those that it extends; a file that is too large is not read completely.
+/// Reads a spec and the specs that it extends; a file that is too large is not read completely.
 ///
 /// # Errors
-/// Errors of the file system, a file that is too large or not text, and a spec to extend that cannot be read.
+/// Errors of the file system, a file that is too large or not text, and an extended spec that cannot be read.
 pub fn open(spec: &Path) -> Result<SourceFile, Failure> {
     open_with(spec, &|_| None)
 }
 
-/// Like [`open`]; `shipped` has the texts of cranes that are extended by name.
+/// Like [`open`]; `shipped` returns the texts of cranes that are extended by name.
 ///
 /// # Errors
-/// As those of [`open`].
+/// Those of [`open`].
 pub fn open_with(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) -> Result<SourceFile, Failure> {
     Ok(gather(spec, shipped)?.0)
 }
 
-/// Reads a spec from a stream, such as the standard input, called `name` in messages; specs that it extends are found from the
-/// working folder or among those that are `shipped`.
+/// Reads a spec from a stream, such as the standard input, called `name` in messages; specs that it extends are looked up
+/// from the working folder or among those that are `shipped`.
 ///
 /// # Errors
-/// As those of [`open`].
+/// Those of [`open`].
 pub fn read_with(
     name: &str,
     stream: impl Read,
@@ -81,12 +81,12 @@ pub fn read_with(
     Ok(gather_from(name.to_owned(), read_alone(name, stream)?, PathBuf::new(), shipped)?.0)
 }
 
-/// Specs that may extend each other in a row: more are a circle.
+/// Maximum number of specs that extend each other in a chain: more are taken for a cycle.
 const MOST_BASES: usize = 16;
 
-/// A spec with those that it extends, and the files of these.
+/// A spec combined with the specs that it extends, and the files of the latter.
 fn gather(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) -> Result<(SourceFile, Vec<PathBuf>), Failure> {
-    // The text may not depend on where the file is.
+    // The text must not depend on where the file is.
     let named = spec.file_name().unwrap_or_default().to_string_lossy().into_owned();
     gather_from(named, open_alone(spec)?, folder(spec), shipped)
 }
@@ -95,7 +95,7 @@ fn folder(file: &Path) -> PathBuf {
     file.parent().map(Path::to_owned).unwrap_or_default()
 }
 
-/// As [`gather`], for a spec that is read already; what it extends is found `from` a folder.
+/// Like [`gather`], for a spec that has already been read; the specs that it extends are looked up `from` a folder.
 fn gather_from(
     named: String,
     spec: SourceFile,
@@ -149,7 +149,7 @@ fn read_alone(name: &str, stream: impl Read) -> Result<SourceFile, Failure> {
 /// Why a spec could not be opened or compiled.
 #[derive(Debug)]
 pub enum Failure {
-    /// The file system refused.
+    /// An error of the file system.
     File(String),
     /// The spec has mistakes.
     Mistakes(Diagnostics),

@@ -22,7 +22,7 @@ pub struct Compiled {
     pub warnings: Diagnostics,
 }
 
-/// Compiles a spec to Rust: the functions that its `analyses` request, or those of `analyses` instead.
+/// Compiles a spec to Rust: the functions that the given `analyses` request or, without them, those that the spec requests.
 ///
 /// # Errors
 /// All mistakes of the spec at once.
@@ -51,7 +51,7 @@ pub fn check(source: &SourceFile) -> Result<Checked, Diagnostics> {
     check_with(source, &[])
 }
 
-/// Like [`check`], with warnings for other parameter values than those of the spec: names and values.
+/// Like [`check`], with warnings for parameter values other than those of the spec, given by name and value.
 ///
 /// # Errors
 /// All mistakes of the spec at once.
@@ -67,7 +67,7 @@ pub fn generate(chain: &Chain, analyses: Analyses, spec_file: &str) -> Generated
     emit(chain, analyses, &lowered, report_on(&lowered, chain, analyses), spec_file)
 }
 
-/// Compiles functions of a chain to C, by their names; `parameters` are the initial values of the live parameters.
+/// Compiles the named functions of a chain to C; `parameters` are the initial values of the live parameters.
 ///
 /// # Errors
 /// A function that the crane does not have.
@@ -86,7 +86,7 @@ pub fn generate_c(
         derivatives: is_chosen(FunctionId::TransformDerivatives),
         ensemble: false,
     };
-    // Straight lines need no tables of numbers and no loops over columns.
+    // Straight-line code needs no tables of numbers and no loops over columns.
     let chain = Chain { loops: Loops::Never, ..chain.clone() };
     let mut program = derive(&chain, analyses);
     let is_straight =

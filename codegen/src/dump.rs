@@ -15,8 +15,8 @@ use crate::symbolic::{ExprId, Op};
 /// A stage: name of a file, and the stage's result.
 pub type Stage = (&'static str, String);
 
-/// All stages of a spec, in the order of the pipeline: the spec as read, the chain, the program of expressions, its straight lines,
-/// and the Rust.
+/// All stages of a spec, in the order of the pipeline: the spec as read, the chain, the program of expressions, its straight-line
+/// code, and the Rust.
 ///
 /// # Errors
 /// All mistakes of the spec at once.

@@ -43,7 +43,7 @@ pub fn picture(chain: &Chain) -> String {
     }
     masses(&mut sheet, chain, &frames);
     let numbered: Vec<&Joint> = joints.iter().filter(|joint| role(chain, joint.coordinate) != "element").collect();
-    // The base moves about one place: one mark for all its coordinates.
+    // All coordinates of the base act at one place and share one mark.
     let base = numbered.iter().take_while(|joint| role(chain, joint.coordinate) == "base").count();
     if let (Some(first), 1..) = (numbered.first(), base) {
         let at = sheet.project(first.at);
@@ -68,7 +68,7 @@ pub fn picture(chain: &Chain) -> String {
     sheet.finish(chain)
 }
 
-/// Frames of all bodies, and the joints on the way.
+/// Frames of all bodies, and the joints between them.
 fn poses(chain: &Chain) -> (Vec<Frame>, Vec<Joint>) {
     let defaults = chain.parameter_defaults();
     let mut frame = Frame::WORLD;
@@ -105,7 +105,7 @@ fn is_inner(chain: &Chain, body: &Body) -> bool {
     chain.bodies.iter().find(|other| other.link == body.link).is_some_and(|first| first.name != body.name)
 }
 
-/// The end of a body: its length along x.
+/// The end of a body, its length away along x.
 fn end(chain: &Chain, body: usize, frame: &Frame) -> Vector {
     frame.transform_point([chain.bodies[body].length.at(&chain.parameter_defaults()), 0.0, 0.0])
 }
@@ -290,7 +290,7 @@ impl Sheet {
         self.label((x, y), &number.to_string());
     }
 
-    /// A label near a position, where there is no other yet.
+    /// A label near a position, at a place that is still free.
     fn label(&mut self, (x, y): (f64, f64), text: &str) {
         /// Width of a letter, and height of a line.
         const LETTER: (f64, f64) = (7.2, 14.0);
@@ -300,7 +300,7 @@ impl Sheet {
                 (level - line).abs() >= LETTER.1 || at + width < other || other + length < at
             })
         };
-        // First diagonally, where there is no line of a link; then further away.
+        // Diagonally first, where no line of a link runs; then further away.
         let candidates = (0..40_u8).map(|k| {
             let turn = f64::from([1, 7, 3, 5, 2, 6, 0, 4][usize::from(k % 8)]) * std::f64::consts::FRAC_PI_4;
             let reach = 17.0 + 11.0 * f64::from(k / 8);

@@ -1,4 +1,4 @@
-//! Whatever a file contains, reader and validator answer with a chain or with mistakes, and never panic.
+//! Whatever a file contains, the reader and the validator return a chain or mistakes, and never panic.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -41,7 +41,7 @@ fn specs() -> Vec<String> {
 
 static SPECS: LazyLock<Vec<String>> = LazyLock::new(specs);
 
-/// Words to put in place of others: keys, numbers at the edges, YAML's own signs.
+/// Words that replace others: keys, extreme numbers, special characters of YAML.
 const WORDS: &[&str] = &[
     "0",
     "-1",
@@ -102,7 +102,7 @@ const WORDS: &[&str] = &[
     "gen",
 ];
 
-/// What may stand between words.
+/// Separators between words.
 const SPACES: &[&str] = &[" ", "\n", ": ", "\n  "];
 
 /// One change of a text.
@@ -128,7 +128,7 @@ fn change() -> impl Strategy<Value = Change> {
     ]
 }
 
-/// Splits into words and what is between them, so that joining gives the text back.
+/// Splits a text into words and separators, so that joining them restores the text.
 fn words(text: &str) -> Vec<String> {
     let word = |c: char| c.is_alphanumeric() || "_.+-/".contains(c);
     let mut parts: Vec<String> = Vec::new();
@@ -177,14 +177,14 @@ fn apply(text: &str, change: &Change) -> String {
     parts.concat()
 }
 
-/// The same cases in every run, so that a test that fails fails again. `PROPTEST_CASES=1000000 PROPTEST_RNG_SEED=7` looks further.
+/// The same cases in every run, so that failures are reproducible. `PROPTEST_CASES=1000000 PROPTEST_RNG_SEED=7` tests more cases.
 fn settings() -> ProptestConfig {
     let given = ProptestConfig::default();
     let rng_seed = if given.rng_seed == RngSeed::Random { RngSeed::Fixed(2016) } else { given.rng_seed };
     ProptestConfig { cases: given.cases.max(1500), rng_seed, failure_persistence: None, ..given }
 }
 
-/// A beam that cannot be divided has no bodies; what is attached to it is looked at all the same.
+/// A beam that cannot be divided has no bodies; attachments to it are checked nevertheless.
 #[test]
 fn attachments_to_a_link_without_bodies_get_an_answer() {
     let crane = |attached: &str| {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use crane_codegen::diagnostic::CATALOGUE;
 use crane_codegen::{Diagnostics, SourceFile, read, validate};
 
-/// What is wrong with the bytes of a spec.
+/// The mistakes in the bytes of a spec.
 fn mistakes(name: &str, bytes: &[u8]) -> Diagnostics {
     SourceFile::from_bytes(name, bytes)
         .and_then(|source| read(&source).and_then(|spec| validate(&spec, &source)))
@@ -52,7 +52,7 @@ fn each_bad_spec_gives_its_message() {
 fn each_rule_has_a_bad_spec() {
     let mut shown: BTreeSet<String> =
         bad_specs().into_iter().filter_map(|(name, _)| Some(name.split_once('_')?.0.to_owned())).collect();
-    // Warnings have their specs and their test elsewhere.
+    // Warnings have specs and a test of their own (`implausible_specs.rs`).
     shown.extend(CATALOGUE.iter().map(|rule| rule.code.to_owned()).filter(|code| code.starts_with('W')));
     // Too large for a file in a repository; see below.
     shown.insert("E001".into());
@@ -95,7 +95,7 @@ fn the_largest_garbage_that_is_read_is_refused_soon() {
         let text = unit.repeat(size / unit.len());
         let begin = Instant::now();
         let found = mistakes("garbage.yaml", text.as_bytes()).to_string();
-        // Unoptimised, the slowest takes a second or two here.
+        // Without optimisation, the slowest takes a second or two.
         assert!(begin.elapsed() < Duration::from_secs(20), "{unit:?}: {:?}", begin.elapsed());
         assert!(found.len() < 200_000, "{unit:?}: {} bytes of message", found.len());
     }

@@ -7,7 +7,7 @@ const E: f64 = 2.1e11;
 const G: f64 = 8.1e10;
 const DENSITY: f64 = 7850.0;
 
-/// A crane of one beam of 3 m.
+/// A crane that consists of a single 3 m beam.
 fn beam(keys: &str) -> Chain {
     let text = format!(
         "format: 1\nname: test\nlinks:\n  - name: boom\n    joint: revolute\n    beam: {{length: 3, \
@@ -33,7 +33,7 @@ fn moments(chain: &Chain) -> [f64; 3] {
 }
 
 fn assert_close(actual: f64, expected: f64, what: &str) {
-    // Some dozen roundings, and Gauss's formula where it is not exact.
+    // A few dozen rounding errors, and the error of Gauss quadrature where it is not exact.
     assert!((actual / expected - 1.0).abs() < 1e-12, "{what}: {actual} instead of {expected}");
 }
 
@@ -55,7 +55,7 @@ fn a_stepped_beam_has_its_mass_where_it_is() {
         };
         assert_close(m, integral(1), sections);
         assert_close(x, integral(2), sections);
-        // Radii of gyration count along z and y, not along x.
+        // The extent of the cross-section contributes to the second moments along z and y, not along x.
         assert_close(xx, integral(3), sections);
     }
 }
@@ -93,7 +93,7 @@ fn a_cone_has_its_integrals() {
     }
 }
 
-/// One part of one section is the beam with that section, and a taper between equal ends, too.
+/// A single part is the same as a beam with that cross-section, and so is a taper between equal ends.
 #[test]
 fn one_part_is_the_beam_without_parts() {
     let section = "{box: {height: 0.25, width: 0.2, thickness: 0.008}}";
@@ -119,7 +119,7 @@ fn one_part_is_the_beam_without_parts() {
     }
 }
 
-/// Where the tip of a chain of one beam is at rest.
+/// Position and frame of the tip of a single-beam chain at rest.
 fn tip(chain: &Chain) -> (Frame, Vector) {
     let rest = vec![0.0; chain.coordinates.len()];
     let frame = chain
@@ -131,8 +131,8 @@ fn tip(chain: &Chain) -> (Frame, Vector) {
     (frame, frame.transform_point([length, 0.0, 0.0]))
 }
 
-/// A curved beam at rest is an arc of radius R = l/α: its tip is at `R (sin α, 1 − cos α)` and turned by α. Rigid elements are tangents
-/// in the middle of arcs: `(d/2)/tan(α/2n)` stands for R, which is smaller by a part `(α/n)²/12`.
+/// A curved beam at rest is an arc of radius R = l/α: its tip is at `R (sin α, 1 − cos α)` and turned by α. Rigid elements are
+/// tangent to the arcs at their midpoints: R is replaced by `(d/2)/tan(α/2n)`, which is smaller by a fraction `(α/n)²/12`.
 #[test]
 fn a_curved_beam_is_an_arc() {
     let angle = 1.2_f64;
@@ -142,7 +142,7 @@ fn a_curved_beam_is_an_arc() {
                 "sections: {sections}, section: {{circle: {{diameter: 0.1}}}}, bend: {{{key}: {angle}}}"
             ));
             let (frame, tip) = tip(&chain);
-            // About y a positive angle turns x towards −z.
+            // A positive angle about y turns x towards −z.
             let sign = if plane == 1 { 1.0 } else { -1.0 };
             let step = angle / f64::from(sections);
             let radius = 3.0 / f64::from(sections) / 2.0 / (step / 2.0).tan();

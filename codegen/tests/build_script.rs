@@ -1,4 +1,4 @@
-//! The build script and the library call: the same text, and errors that say what to do.
+//! The build script and the library produce the same text, and their errors say what to do.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ fn spec(name: &str) -> PathBuf {
     workspace().join(format!("specs/{name}.yaml"))
 }
 
-/// A folder of this test's own.
+/// A separate folder for this test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::create_dir_all(&folder).unwrap();
@@ -25,7 +25,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// Not a test: what a `build.rs` does, in a process of its own, for the spec named by `BUILD_SCRIPT_SPEC`.
+/// Not a test: acts as a `build.rs`, in a separate process, for the spec named by `BUILD_SCRIPT_SPEC`.
 #[test]
 #[ignore = "run by the tests of the build script"]
 fn act_as_build_script() {
@@ -52,7 +52,7 @@ fn build_script_and_library_write_the_same_bytes() {
     let source = build::open(path.as_ref()).unwrap();
     let library = compile::compile(&source, None).unwrap().code.text;
 
-    // Another process has other hash seeds, another folder other paths.
+    // A different process has different hash seeds, a different folder has different paths.
     let out = folder("out_dir");
     let built = build_script(&path, &workspace(), &out);
     assert!(built.status.success(), "{}", text(&built.stderr));

@@ -1,4 +1,4 @@
-//! Cranes in C: compiled by the system's C compiler without a warning, and the same numbers as the interpreter's.
+//! Cranes in C: the system's C compiler compiles them without warnings, and their results equal the interpreter's.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ fn shipped(name: &str) -> Chain {
     load(&build::open(path.as_ref()).unwrap()).unwrap()
 }
 
-/// A boom whose drive follows one input and is moved aside by another, with a load that a third one scales.
+/// A boom whose drive follows one input and is offset by another, with a load that is scaled by a third.
 const STEERED: &str = "format: 1
 name: steered
 parameters: {payload: {value: 80, unit: kg}}
@@ -68,7 +68,7 @@ fn arguments(chain: &Chain, function: &Function) -> Vec<(Argument, Vec<f64>)> {
     function.arguments.iter().filter(|a| **a != Argument::Factors).map(|a| (*a, of(a))).collect()
 }
 
-/// What the interpreter computes, in the order of the result in C.
+/// The interpreter's result, in the order of the result in C.
 fn expected(
     program: &Program,
     function: &Function,
@@ -76,7 +76,7 @@ fn expected(
     factors: &[f64],
     inputs: &[Option<f64>],
 ) -> Vec<f64> {
-    // Of each input its value while it is set, else 0; and 0 while it is set, else 1.
+    // Two numbers per input: its value if it is set, otherwise 0; and 0 if it is set, otherwise 1.
     let slots = inputs.iter().flat_map(|value| value.map_or(Input::NOT_SET, |value| [value, 0.0])).collect();
     let inputs = arguments(chain, function).into_iter().fold(
         Inputs::state(0.0, vec![], vec![], chain.parameter_defaults())
@@ -133,7 +133,7 @@ fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, in
         let _ = writeln!(text, "    {name}_inputs u = {}_INPUTS;", name.to_uppercase());
         for (input, value) in chain.inputs.iter().zip(inputs) {
             let place = format!("{}_INPUT_{}", name.to_uppercase(), input.name.to_uppercase());
-            // What is set first and unset then is as if it had never been set.
+            // An input that is set and then unset behaves as if it had never been set.
             let _ = writeln!(text, "    {name}_set_input(&u, {place}, {:?});", value.unwrap_or(17.0));
             if value.is_none() {
                 let _ = writeln!(text, "    {name}_unset_input(&u, {place});");
@@ -179,7 +179,7 @@ fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, in
     text + "    return 0;\n}\n"
 }
 
-/// Compiles and runs; the numbers that were printed.
+/// Compiles and runs a program; returns the numbers that it prints.
 fn run(folder: &Path, code: &CCode, main: &str) -> Vec<f64> {
     fs::create_dir_all(folder).unwrap();
     for (file, text) in [(format!("{}.h", code.name), &code.header), (format!("{}.c", code.name), &code.source)] {
@@ -194,14 +194,14 @@ fn run(folder: &Path, code: &CCode, main: &str) -> Vec<f64> {
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     };
     compile(&[&strict[..], &["-c", &format!("{}.c", code.name), "-o", "crane.o"]].concat());
-    // The caller's numbers are doubles; in single precision it rounds them.
+    // The numbers in the caller's source are doubles; in single precision the caller rounds them.
     compile(&["-std=c99", "-O0", "main.c", "crane.o", "-lm", "-o", "main"]);
     let printed = Command::new(program).output().unwrap();
     assert!(printed.status.success());
     String::from_utf8(printed.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect()
 }
 
-/// Greatest difference of each function from the interpreter, relative to its greatest number.
+/// Maximum difference of each function from the interpreter's result, relative to the largest number of that result.
 fn differences(name: &str, chain: &Chain, precision: Precision, inputs: &[Option<f64>]) -> Vec<(&'static str, f64)> {
     let straight = Chain { loops: Loops::Never, ..chain.clone() };
     let program = derive(&straight, EVERYTHING);
@@ -232,7 +232,7 @@ fn differences(name: &str, chain: &Chain, precision: Precision, inputs: &[Option
 fn every_function_of_every_kind_of_crane_is_the_interpreters() {
     for name in ["double_pendulum", "knuckle_boom", "eight_link_rigid", "eight_link_flexible"] {
         for (function, off) in differences(name, &shipped(name), Precision::Double, &[]) {
-            // The same operations, rounded alike except for sines; forward dynamics of stiff cranes cancels some digits.
+            // The same operations with the same rounding, except for sines; forward dynamics of stiff cranes loses some digits to cancellation.
             assert!(off < 1e-12, "{name}: {function} is off by {off:e}");
         }
     }
@@ -255,7 +255,7 @@ fn single_precision_has_the_digits_that_the_manual_says() {
     let of = |name: &str| off.iter().find(|(function, _)| *function == name).unwrap().1;
     // Measured: 6e-8, 4e-8, 2e-6.
     assert!(of("mass_matrix") < 1e-6 && of("bias") < 1e-6 && of("forward_dynamics") < 1e-5, "{off:?}");
-    // Numbers of 24 bits: an error below that would be double precision.
+    // A smaller error than 24-bit numbers allow would mean double precision.
     assert!(of("forward_dynamics") > 1e-8, "{off:?}");
 }
 
@@ -272,7 +272,7 @@ fn inputs_are_arguments() {
         }
     }
     let code = generate_c(&steered, &["mass_matrix", "forward_dynamics"], &[80.0], Precision::Double).unwrap();
-    // What depends on no input has no such argument.
+    // A function that does not depend on inputs does not have this argument.
     assert!(code.header.contains("steered_mass_matrix(const steered_constants *c, const double q[2], double out[4])"));
     assert!(code.header.contains("steered_forward_dynamics(const steered_constants *c, const steered_inputs *u,"));
     assert!(code.header.contains("STEERED_INPUT_GUST = 2, /* N, wind at the tip */"));

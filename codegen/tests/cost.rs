@@ -1,4 +1,4 @@
-//! What feet that lift and friction in all joints cost: at most a quarter of the forward dynamics without them.
+//! The cost of one-sided supports and of friction in all joints: at most a quarter of the forward dynamics without them.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ fn forward_dynamics(source: &SourceFile) -> usize {
 fn feet_that_lift_and_friction_cost_at_most_a_quarter() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/eight_link_flexible.yaml");
     let plain = build::open(&path).unwrap_or_else(|failure| panic!("{failure}"));
-    // A new support would lack its place: these are the eight of the shipped crane.
+    // These are the names of the eight supports of the shipped crane; a new support would need a position.
     let feet = [1, 2, 3, 4, 5, 6, 7, 8].map(|foot| format!("  - {{name: s{foot}, one_sided: true}}\n")).concat();
     let joints =
         ["column_psi", "boom_psi", "outer_boom_psi", "telescope_z", "upper_hinge_psi", "rotator_psi", "grapple_psi"];

@@ -15,7 +15,7 @@ fn page() -> String {
     std::fs::read_to_string(root().join("docs/SPEC.md")).expect("docs/SPEC.md")
 }
 
-/// All pages for readers, and their text.
+/// All pages of the documentation, and their text.
 fn pages() -> Vec<(PathBuf, String)> {
     let folders = [".", "docs", "docs/manual"].map(|folder| std::fs::read_dir(root().join(folder)).expect("a folder"));
     let files = folders.into_iter().flatten().map(|entry| entry.expect("an entry").path());
@@ -45,7 +45,7 @@ fn every_key_is_documented() {
     let (page, mut words) = (page(), BTreeSet::new());
     collect_words(&serde_json::from_str(&json_schema()).expect("JSON"), &mut words);
     assert!(words.len() > 90, "the schema was searched: {}", words.len());
-    // The words in code.
+    // The words in code spans.
     let code: BTreeSet<&str> = page
         .split('`')
         .skip(1)
@@ -86,7 +86,7 @@ fn what_the_schema_requires_the_reader_requires() {
                  stops: {a_x: {}}\nfriction: {a_x: {}}\n";
     let source = SourceFile::new("empty.yaml", empty);
     let found = read(&source).and_then(|spec| validate(&spec, &source)).expect_err("nothing in it").to_string();
-    // A spec that extends another one says less.
+    // The first alternative is a complete spec; one that extends another requires fewer keys.
     let top = &schema["anyOf"][0]["required"];
     let definitions = ["Link", "Parameter", "Material", "Support", "Drive", "Point", "Stops", "Friction"]
         .map(|name| &schema["$defs"][name]["required"]);

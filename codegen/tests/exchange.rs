@@ -1,6 +1,6 @@
-//! URDF and MJCF: what is written of the shipped cranes, what is read of robots, and what is said of files that are not cranes.
+//! URDF and MJCF: export of the shipped cranes, import of robots, and messages for files that are not cranes.
 //!
-//! That other programs compute the same of these files is checked by `tools/peers/exchange.py`.
+//! `tools/peers/exchange.py` checks that other programs compute the same results from these files.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -76,7 +76,7 @@ fn a_crane_comes_back_from_urdf() {
             let defaults = chain.parameter_defaults();
             chain.bodies.iter().filter_map(|body| Some(body.inertia.as_ref()?.mass.at(&defaults))).sum()
         };
-        // Masses are written to their last digit; their sum rounds.
+        // Masses are written with all their digits; only their sum is rounded.
         assert!((mass(&back) / mass(&crane) - 1.0).abs() < 1e-15, "{}", crane.name);
         assert_eq!(back.points.len(), crane.points.len());
     }
@@ -117,13 +117,13 @@ fn what_is_written_is_for_people_to_read() {
     snapshot("knuckle_boom.springs.yaml", &exchange::springs(planar, &planar.parameter_defaults()));
     snapshot("knuckle_boom.xml", &exchange::mjcf(planar, &planar.parameter_defaults()).expect("expressible"));
     snapshot("knuckle_boom.yaml", &spec("knuckle_boom.urdf", &urdf));
-    // A live parameter is written as it is set.
+    // A live parameter is written with the value that it is set to.
     let heavy = exchange::urdf(rigid, &[800.0]);
     assert!(heavy.contains("load_mass = 800 kg") && heavy.contains("<mass value=\"1076\"/>"));
     snapshot("eight_link_rigid.xml", &exchange::mjcf(rigid, &rigid.parameter_defaults()).expect("expressible"));
 }
 
-/// A robot of an arm, with all that an import carries over.
+/// A robot arm with everything that the import converts.
 const ARM: &str = include_str!("robots/arm.xml");
 
 #[test]
@@ -165,7 +165,7 @@ fn an_arm_in_mjcf_is_a_crane() {
         panic!("one joint rubs")
     };
     assert_eq!(friction, 1.5);
-    // Degrees of the file: the relaxed position of the shoulder, and where the elbow stands from the wrist's joint.
+    // The rod is coupled to the elbow.
     let [connector] = crane.connectors.as_slice() else { panic!("one coupling") };
     let Strain::Coupling { coordinate, leader, ratio } = &connector.strain else { panic!("{connector:?}") };
     assert_eq!(([coordinate.0, leader.0], ratio.at(&[])), ([3, 2], -0.25));
@@ -174,7 +174,7 @@ fn an_arm_in_mjcf_is_a_crane() {
     assert_eq!(crane.guess[..4], [0.1, -0.2, 0.3, 0.05]);
 }
 
-/// Inertia of a body of the density of water about its centre, by sums over a grid of its shape.
+/// Mass and second moments about the centre of bodies with the density of water, compared with sums over a grid.
 #[test]
 fn shapes_have_the_masses_of_solids() {
     type Inside = fn([f64; 3]) -> bool;
@@ -206,7 +206,7 @@ fn shapes_have_the_masses_of_solids() {
                 }
             }
         }
-        // Cubes of 25 mm follow a surface of this size to about one per cent.
+        // Cubes of 25 mm approximate shapes of this size to about one per cent.
         let close = |given: f64, found: f64| (given / found - 1.0).abs() < 0.02;
         assert!(close(inertia.mass.at(&[]), mass), "{geom}: {} kg, {mass}", inertia.mass.at(&[]));
         for k in 0..3 {
@@ -217,7 +217,7 @@ fn shapes_have_the_masses_of_solids() {
 
 #[test]
 fn any_bytes_get_an_answer() {
-    // Of the longer file every 29th place.
+    // In the longer file, only every 29th position.
     for (file, every) in [("tests/bad_robots/U015_negative_mass.urdf", 1), ("tests/robots/arm.xml", 29)] {
         any_bytes_of(&std::fs::read_to_string(file).expect("text"), every);
     }

@@ -1,11 +1,11 @@
-//! What becomes of links: beams of many elements, elements one by one, live lengths, parts of a free base.
+//! Expansion of links: beams of many elements, elements given one by one, live lengths, parts of a free base.
 
 use std::time::{Duration, Instant};
 
 use crane_codegen::chain::{Chain, Inertia, Step, Value};
 use crane_codegen::{SourceFile, compile, read, validate};
 
-/// A spec of the given links and further keys.
+/// The chain of a spec with the given links and further keys.
 fn chain(rest: &str) -> Chain {
     let source = SourceFile::new("test.yaml", format!("format: 1\nname: test\n{rest}"));
     read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
@@ -63,7 +63,7 @@ fn elements_one_by_one_make_the_beam_of_equal_sections() {
     for (a, b) in given.bodies.iter().zip(&equal.bodies) {
         assert_eq!(a.path, b.path);
         let (a, b) = (numbers(a.inertia.as_ref().expect("mass")), numbers(b.inertia.as_ref().expect("mass")));
-        // Written in full and shifted twice: some ulp.
+        // Printed with all digits and shifted twice: an error of a few ulp.
         assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() <= 1e-14 * b.abs()), "{a:?} {b:?}");
     }
 }
@@ -88,7 +88,7 @@ fn the_most_sections_are_still_regular() {
          \x20 - {{name: log, joint: revolute, mass: 800, com: [0, 2, 1], inertia: {{Ixx: 12, Iyy: 900, Izz: 900}}}}\n"
     ));
     assert_eq!(long.coordinates.len(), 6 + 1 + 3000 + 1);
-    // A fifth of a second unoptimised.
+    // It takes a fifth of a second without optimisation.
     assert!(begin.elapsed() < Duration::from_secs(10), "{:?}", begin.elapsed());
 }
 

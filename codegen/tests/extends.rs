@@ -16,7 +16,7 @@ fn folder(name: &str, files: &[(&str, &str)]) -> PathBuf {
     folder
 }
 
-/// A crane without what says where it comes from.
+/// A crane without its name, title and hash.
 fn anonymous(chain: Chain) -> Chain {
     Chain { name: String::new(), title: String::new(), spec_hash: String::new(), ..chain }
 }
@@ -33,7 +33,7 @@ fn mistakes(file: &Path) -> Diagnostics {
     }
 }
 
-/// Every key of both is written again in one file, as a person would without `extends`.
+/// The third file contains every key of both, as a person would write it without `extends`.
 #[test]
 fn an_extending_spec_is_the_crane_written_in_full() {
     let base = "
@@ -80,7 +80,7 @@ run: {duration: 3, output: 0.1}
     let load = |source: &SourceFile| compile::load(source).unwrap_or_else(|mistakes| panic!("{mistakes}"));
     let extended = load(&source);
     assert_eq!(anonymous(extended.clone()), anonymous(load(&opened(&folder.join("full.yaml")))));
-    // What was put together is a file of its own: wherever it is written, it is the same crane.
+    // The merged text is a complete spec: wherever it is written, it is the same crane.
     let whole = folder.join("whole.yaml");
     fs::write(&whole, &source.text).expect("a file");
     assert_eq!(load(&opened(&whole)), extended);

@@ -1,5 +1,5 @@
-//! Every warning has a spec in `tests/implausible` that deserves it and a snapshot of its message; no crane that is shipped
-//! or described gets one.
+//! Every warning has a spec in `tests/implausible` that triggers it and a snapshot of its message; no crane that is shipped
+//! or documented triggers one.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -28,7 +28,7 @@ fn specs(folder: &str) -> Vec<(String, String)> {
         .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
         .map(|path| {
             let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-            // With what it extends.
+            // Merged with the spec that it extends.
             (name, build::open(&path).unwrap_or_else(|failure| panic!("{failure}")).text)
         })
         .collect();
@@ -108,7 +108,7 @@ fn a_published_robot_that_misses_the_triangle_inequality_passes() {
     assert_eq!(codes(&warnings("puma", text)), ["W011"]);
 }
 
-/// What a parameter is set to is looked at like what the spec says.
+/// The value to which a parameter is set is checked like the one in the spec.
 #[test]
 fn values_of_parameters_are_looked_at() {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/knuckle_boom.yaml"));

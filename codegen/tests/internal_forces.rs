@@ -1,10 +1,10 @@
-//! What joints, sections and the ground transmit, against exact laws.
+//! Forces and moments that joints, sections and the ground transmit, compared with exact laws.
 
 use crane_codegen::chain::{Analyses, Chain, Cut};
 use crane_codegen::program::{Argument, FunctionId, Inputs};
 use crane_codegen::{SourceFile, compile, mechanics, read, validate};
 
-/// Sums of a few products: some roundings of the largest term.
+/// Sums of a few products: a few rounding errors of the largest term.
 const ROUNDING: f64 = 1e-13;
 /// Length of the beam, m.
 const LENGTH: f64 = 3.0;
@@ -22,13 +22,13 @@ const LOAD: f64 = 40.0;
 /// Force and moment.
 type Wrench = [[f64; 3]; 2];
 
-/// A crane whose gravity and links are given.
+/// A crane with the given keys.
 fn crane(rest: &str) -> Chain {
     let source = SourceFile::new("test.yaml", format!("format: 1\nname: test\n{rest}"));
     read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
-/// A beam on a hub that turns by `joint`, x of the beam along x of the hub; on its tip a point mass of [`LOAD`].
+/// A beam that is attached by `joint` at its beginning, with a point mass of [`LOAD`] at its tip.
 fn beam(joint: &str, gravity: &str, section_joint: &str) -> Chain {
     loaded_beam(joint, gravity, section_joint, "")
 }
@@ -51,12 +51,12 @@ links:
     ))
 }
 
-/// What every cut transmits.
+/// The wrench that every cut transmits.
 fn wrenches(chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
     wrenches_at(0.0, chain, q, v, a)
 }
 
-/// What every cut transmits at a time.
+/// The wrench that every cut transmits at time t.
 fn wrenches_at(t: f64, chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
     let analyses = Analyses { derivatives: false, ..Analyses::ALL };
     let program = mechanics::derive(chain, analyses);
@@ -66,7 +66,7 @@ fn wrenches_at(t: f64, chain: &Chain, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wr
     slots.as_chunks::<3>().0.as_chunks::<2>().0.to_vec()
 }
 
-/// Sections of a beam, and what they transmit.
+/// Positions of the sections of a beam, and the wrenches that they transmit.
 fn sections(chain: &Chain, wrenches: &[Wrench]) -> Vec<(f64, Wrench)> {
     let mut x = 0.0;
     let mut sections = Vec::new();
@@ -89,7 +89,7 @@ fn assert_close(what: &str, actual: Wrench, expected: Wrench) {
     }
 }
 
-/// Whatever the number of elements: their weights and levers add up to the integral.
+/// The results are exact for any number of elements: their weights and lever arms add up to the integral.
 #[test]
 fn a_cantilever_bends_by_its_weight_and_its_load() {
     for section_joint in ["symmetric", "paper"] {
@@ -104,18 +104,18 @@ fn a_cantilever_bends_by_its_weight_and_its_load() {
             let m = -9.81 * (LOAD * out + DENSITY * AREA * out * out / 2.0);
             assert_close(&format!("x = {x}"), wrench, [[0.0, q, 0.0], [0.0, 0.0, m]]);
         }
-        // The ground carries what the clamped end does.
+        // The ground carries the same wrench as the clamped end.
         assert_close("ground", wrenches[0], wrenches[1]);
     }
 }
 
-/// A force and a moment at the tip: the force goes through all sections, and bends with its lever.
+/// A force and a moment at the tip: every section transmits the force, which bends it with its lever arm.
 #[test]
 fn a_cantilever_carries_a_force_and_a_moment_at_its_tip() {
     let (force, moment) = ([30.0, -20.0, 10.0], [1.0, 2.0, 3.0]);
     let load = "loads: [{name: pull, link: load, at: [0.5, 0, 0], force: [30, -20, 10], moment: [1, 2, 3]}]";
     let along_the_link = load.replace("}]", ", axes: link, scale: {cubic: {from: 1, to: 3, duration: 2}}}]");
-    // Turned about z, the world's axes are not the beam's; a load that turns with the link does not feel it.
+    // After a rotation about z, the axes of the beam differ from the world's; a load that rotates with the link is not affected.
     for (joint, more, angle, t, scale) in
         [("fixed", load, None, 0.0, 1.0), ("revolute", &along_the_link, Some(0.7), 1.0, 2.0)]
     {
@@ -133,7 +133,7 @@ fn a_cantilever_carries_a_force_and_a_moment_at_its_tip() {
     }
 }
 
-/// What does not come from a load at the tip is carried where the load acts: nothing of it is beyond.
+/// A load that acts between the ends is transmitted only by the sections before it, not by those beyond.
 #[test]
 fn a_load_is_carried_from_where_it_acts() {
     let chain = loaded_beam(
@@ -152,8 +152,8 @@ fn a_load_is_carried_from_where_it_acts() {
     assert_close("ground", wrenches[0], [[0.0, 100.0, 0.0], [0.0, 0.0, 120.0]]);
 }
 
-/// `N = ∫ ρAω² x dx + m ω² l`; and while it speeds up by α, `Qy = −α (∫ ρA x dx + m l)` and
-/// `Mz = −α (∫ ρA x (x − x₀) dx + m l (l − x₀) + ρ J_z (l − x₀))`, the last part by the turning of the sections.
+/// `N = ∫ ρAω² x dx + m ω² l`; and with an angular acceleration α, `Qy = −α (∫ ρA x dx + m l)` and
+/// `Mz = −α (∫ ρA x (x − x₀) dx + m l (l − x₀) + ρ J_z (l − x₀))`, the last term due to the rotary inertia of the sections.
 #[test]
 fn a_turning_beam_pulls_by_its_centrifugal_force() {
     let (rate, speeding) = (7.0, 3.0);
@@ -172,7 +172,7 @@ fn a_turning_beam_pulls_by_its_centrifugal_force() {
     }
 }
 
-/// Weight that hangs beside the beam's axis twists it, and bends it about y.
+/// A weight that is offset from the beam's axis twists the beam, and bends it about y.
 #[test]
 fn an_eccentric_load_twists() {
     let chain = crane(
@@ -194,7 +194,7 @@ fn an_eccentric_load_twists() {
     assert_close("arm", section, [[0.0, 0.0, weight + own], [0.5 * weight, -2.0 * weight - own, 0.0]]);
 }
 
-/// A rope's tension m (g + a) in a hoist that speeds up, and the guide's moment of a load beside it.
+/// The tension m (g + a) in a hoist that accelerates, and the guide's moment due to an offset load.
 #[test]
 fn a_hoist_pulls_more_as_it_speeds_up() {
     let chain = crane("links:\n  - {name: cage, joint: {prismatic: {axis: z}}, mass: 200, com: [0.3, 0, 0]}\n");
@@ -203,7 +203,7 @@ fn a_hoist_pulls_more_as_it_speeds_up() {
     assert_close("joint", wrenches[1], [[0.0, 0.0, force], [0.0, -0.3 * force, 0.0]]);
 }
 
-/// A joint of a classic D-H row is cut at its axis, not at the link's frame: there the moment about z is the effort.
+/// A joint of a classic D-H row is cut at its axis, not at the link's frame: at the axis, the moment about z is the effort.
 #[test]
 fn a_classic_row_is_cut_at_its_axis() {
     let row = |name: &str, alpha: &str| {
@@ -215,13 +215,13 @@ fn a_classic_row_is_cut_at_its_axis() {
     let chain = crane(&format!("links:\n{}{}", row("one", "90 deg"), row("two", "30 deg")));
     let (q, v, a) = ([0.3, -0.7], [1.1, 0.4], [-2.0, 5.0]);
     let wrenches = wrenches(&chain, &q, &v, &a);
-    // A a − e, what drives would have to do.
+    // A a − e, the efforts that drives would have to exert.
     let program = mechanics::derive(&chain, Analyses::ALL);
     let inputs = Inputs::state(0.0, q.to_vec(), v.to_vec(), vec![]);
     let get = |id| program.evaluate(program.function(id).expect("every crane has it"), &inputs);
     let (mass, bias) = (get(FunctionId::MassMatrix), get(FunctionId::Bias));
     let efforts = [mass[0] * a[0] + mass[1] * a[1] - bias[0], mass[1] * a[0] + mass[2] * a[1] - bias[1]];
-    // Of each link its joint, then its frame.
+    // For each link there is a cut at its joint, then one at its frame.
     for (effort, wrench) in efforts.iter().zip([&wrenches[1], &wrenches[3]]) {
         assert!((effort + wrench[1][2]).abs() < ROUNDING * effort.abs(), "{effort} against {wrench:?}");
     }
@@ -233,7 +233,7 @@ fn a_classic_row_is_cut_at_its_axis() {
     );
 }
 
-/// The function of the reference crane costs at most half as much again as the bias.
+/// For the reference crane, the function costs at most one and a half times as much as the bias.
 #[test]
 fn they_cost_little_more_than_the_bias() {
     let path = format!("{}/../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));
@@ -247,7 +247,7 @@ fn they_cost_little_more_than_the_bias() {
     assert!(2 * forces <= 3 * bias, "{forces} operations, {bias} of the bias");
 }
 
-/// A crane whose spec does not ask for them has nothing of them.
+/// If the spec does not request internal forces, the generated code does not contain them.
 #[test]
 fn who_does_not_ask_does_not_pay() {
     let chain = beam("revolute", "[0, 0, 0]", "symmetric");

@@ -1,9 +1,9 @@
-//! Live parameters keep the rules of every place where they stand, for any value that they may get.
+//! Live parameters obey the rules of every place where they are used, for any value to which they are set.
 
 use crane_codegen::chain::Chain;
 use crane_codegen::{SourceFile, read, validate};
 
-/// A crane with a parameter `p` in many places, each in a spec of its own: `P` in these is the parameter or a number.
+/// Cranes with a parameter `p` in various places, one spec per place: `P` is replaced by the parameter or a number.
 const USES: [(&str, &str); 16] = [
     ("mass of a link", "links: [{name: arm, joint: revolute, mass: P, com: [1, 0, 0]}]"),
     (
@@ -67,7 +67,7 @@ fn chain(text: &str) -> Result<Chain, Vec<&'static str>> {
         .map_err(|found| found.mistakes().iter().map(|mistake| mistake.code).collect())
 }
 
-/// What the rules that go with a chain say of a value of its only parameter.
+/// The code of the rule in a chain that refuses a value of its only parameter, if there is one.
 fn refused(chain: &Chain, value: f64) -> Option<&'static str> {
     let least = chain.parameters[0].least.as_ref();
     let below = least.filter(|least| value < least.value || (value == least.value && !least.allowed));
@@ -77,7 +77,7 @@ fn refused(chain: &Chain, value: f64) -> Option<&'static str> {
 #[test]
 fn a_value_is_refused_at_run_time_where_the_spec_refuses_it() {
     for (place, spec) in USES {
-        // Sound in every place.
+        // A valid value in every place.
         let sound = if place == "thickness" { 0.01 } else { 1.0 };
         let live = |default: f64| {
             format!("format: 1\nname: test\nparameters: {{p: {{value: {default:?}}}}}\n{}", spec.replace('P', "p"))
@@ -88,7 +88,7 @@ fn a_value_is_refused_at_run_time_where_the_spec_refuses_it() {
             let refused = refused(&compiled, value);
             assert_eq!(refused.is_some(), written.is_err(), "{place} = {value}: {refused:?}, {written:?}");
             if let (Some(code), Err(codes)) = (refused, written) {
-                // Of a mass that cannot be zero a spec says that it is negative, or that the joint moves nothing (E046).
+                // For a mass that cannot be zero, a spec reports that it is negative, or that the joint moves nothing (E046).
                 let mass = place == "mass of a link" && code == "E031" && matches!(codes[..], ["E032" | "E046"]);
                 assert!(mass || codes.contains(&code), "{place} = {value}: {code}, {codes:?}");
             }

@@ -1,4 +1,4 @@
-//! Pictures of the shipped cranes: everything is in them, and in view; the gallery of the manual.
+//! Pictures of the shipped cranes: nothing is missing or out of view. The gallery of the manual.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -59,7 +59,7 @@ fn a_horizontal_beam_is_drawn_as_long_as_it_is() {
     let svg = picture::picture(&cantilever);
     let beams: Vec<&str> = svg.lines().filter(|line| line.contains("stroke-width='7'")).collect();
     let length = |line: &&str| values(line, "x2")[0] - values(line, "x1")[0];
-    // 8 sections: elements of 1/8 of the beam, half of that at both ends; places are rounded to 0.1.
+    // 8 sections: elements of 1/8 of the beam, half of that at both ends; positions are rounded to 0.1.
     for (index, line) in beams.iter().enumerate() {
         let part = if index == 0 || index == 8 { 0.5 } else { 1.0 };
         assert!((length(line) / length(&beams[4]) - part).abs() < 0.01, "{line}");

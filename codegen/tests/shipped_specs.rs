@@ -1,4 +1,4 @@
-//! Every shipped spec is sound, and the reference crane is the one that the documentation describes.
+//! Every shipped spec is valid, and the reference crane is the one that the documentation describes.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};
@@ -59,10 +59,10 @@ fn reference_crane() {
     );
     assert_eq!(names[8..11], ["boom_1_psi", "boom_1_theta", "boom_1_phi"]);
     assert_eq!(names[20..], ["outer_boom_psi", "telescope_z", "upper_hinge_psi", "rotator_psi", "grapple_psi"]);
-    // 15000 + 515.5 + 408.1 + 335 + 224 + 15 + 55 + 276 + 500 kg, to rounding.
+    // 15000 + 515.5 + 408.1 + 335 + 224 + 15 + 55 + 276 + 500 kg, up to rounding.
     assert!((mass(&chain) - 17_328.6).abs() < 1e-8, "{}", mass(&chain));
 
-    // E J_z/d, with J_z known to five digits; β s beside it.
+    // The stiffness E J_z/d, with J_z known to five digits, and the damping β s.
     let spring = &chain.beam_springs[0];
     let (stiffness, damping) = (spring.stiffness.at(&[]), spring.damping.at(&[]));
     assert!((stiffness / 1.5348e7 - 1.0).abs() < 1e-4, "{stiffness}");
@@ -70,7 +70,7 @@ fn reference_crane() {
     assert_eq!(chain.bodies[2].name, "boom_0");
     assert_eq!(chain.bodies[7].path[0], Step::Translate([0.4375.into(), 0.0.into(), 0.0.into()]));
 
-    // A driven coordinate starts at its drive, a given one where it is given.
+    // A driven coordinate starts at its drive's position, one with a guess at its guess.
     assert_eq!(chain.guess[20..23].to_vec(), vec![FRAC_PI_2, 2.0, PI]);
     let Profile::Quintic(ramp) = &chain.drives[1].profile else { panic!("not quintic") };
     assert_eq!(ramp.to, Value::Constant(7.0 * PI / 18.0));
@@ -114,7 +114,7 @@ type Vector = [f64; 3];
 fn position(chain: &Chain, name: &str) -> Vector {
     let parameters = chain.parameter_defaults();
     let point = chain.points.iter().find(|point| point.name == name).expect("a point");
-    // From the point back to the world: each step moves the point in the frame before it.
+    // From the point back to the world: each step transforms it into the frame before.
     let mut r = point.position.each_ref().map(|v| v.at(&parameters));
     let turn = |r: &mut Vector, axis: usize, (sin, cos): (f64, f64)| {
         let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -137,7 +137,7 @@ fn position(chain: &Chain, name: &str) -> Vector {
     r
 }
 
-/// Agreement of positions of some ten metres after some dozens of rotations.
+/// Agreement of positions of about ten metres after a few dozen rotations.
 const ROUNDING: f64 = 1e-13;
 
 fn assert_same(a: Vector, b: Vector) {

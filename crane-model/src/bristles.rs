@@ -6,8 +6,10 @@
 //! ż = q̇ − σ₀ |q̇| z/g(q̇)        g = F_c + (F_b − F_c) exp(−(q̇/v_s)²)        F = σ₀ z + σ₁ ż
 //! ```
 //!
-//! F resists the motion; viscous friction is part of the generated functions. At rest z holds a force up to the breakaway friction without
-//! creeping, in steady sliding `F = g`. C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky: A new model for control of systems with
+//! F resists the motion; viscous friction is part of the generated functions. At rest, z sustains a force up to the breakaway friction
+//! without creep; in steady sliding, `F = g`.
+//!
+//! C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky: A new model for control of systems with
 //! friction, IEEE Transactions on Automatic Control 40 (1995).
 
 use nalgebra::{Complex, DMatrix};
@@ -23,12 +25,12 @@ use crate::{
 #[derive(Clone, Debug)]
 pub(crate) struct Bristles {
     joints: Vec<BristleInfo>,
-    /// The first of their states among all.
+    /// Index of their first state among all states.
     first: usize,
 }
 
 impl Bristles {
-    /// What a description says about them; their states stand from `first` on.
+    /// The joints of a description that stick; their states begin at index `first`.
     pub fn new(description: &Description, first: usize) -> Self {
         Self { joints: description.bristles.to_vec(), first }
     }
@@ -43,7 +45,7 @@ impl Bristles {
         self.joints.iter().map(|joint| joint.breakaway / joint.stiffness)
     }
 
-    /// Evaluates all joints, as [`OwnStates::evaluate`](crate::own_states::OwnStates).
+    /// Evaluates all joints, like [`OwnStates::evaluate`](crate::own_states::OwnStates).
     pub fn evaluate(
         &self,
         moment: &StateAt<'_>,
@@ -62,7 +64,7 @@ impl Bristles {
     }
 }
 
-/// ż and its derivative by z.
+/// ż and its derivative with respect to z.
 struct Slope {
     rate: f64,
     by_deflection: f64,
@@ -93,8 +95,8 @@ impl BristleInfo {
     }
 }
 
-/// How fast bristles follow a joint that slides, σ₀ |q̇|/g, as modes of their joints: at the rate that its drive's motion has at a time, at the
-/// Stribeck velocity where no drive moves it. Explicit methods are limited by it.
+/// Decay rates σ₀ |q̇|/g of the bristles of sliding joints, as modes of the joints: q̇ is the rate of the drive's motion at time t, or the
+/// Stribeck velocity for a joint without a drive. They limit the step size of explicit methods.
 pub(crate) fn decays(crane: &dyn DynCrane, t: f64) -> Vec<DampedMode> {
     let description = crane.description();
     let motions = crane.drive_motions_at(t);
@@ -124,7 +126,7 @@ pub(crate) fn columns(description: &Description) -> Vec<String> {
     description.bristles.iter().map(name).collect()
 }
 
-/// Adds stiffness and damping of bristles that stick to those of small motions about a pose at rest.
+/// Adds the stiffness and damping of sticking bristles to those of small motions about a pose at rest.
 pub(crate) fn stiffen(description: &Description, motions: &mut SmallMotions) {
     for joint in &description.bristles {
         let Some(place) = motions.unknowns.iter().position(|unknown| *unknown == joint.coordinate) else { continue };

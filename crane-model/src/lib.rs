@@ -1,5 +1,5 @@
-//! Runtime of cranes compiled by `crane-codegen`: statics, motion and small vibrations of types that implement the traits of
-//! a generated crane.
+//! Runtime for cranes compiled by `crane-codegen`: statics, motion and small vibrations of types that implement the traits of a generated
+//! crane.
 //!
 //! | what | where | needs |
 //! |---|---|---|
@@ -22,7 +22,7 @@
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
-// Generated code names the runtime by its crate name, here as in a user's crate.
+// Generated code refers to the runtime by its crate name, here as in a user's crate.
 extern crate self as crane_model;
 
 mod description;

@@ -35,14 +35,14 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         values.iter().enumerate().try_for_each(|(index, &value)| self.set_parameter(index, value))
     }
 
-    /// What an input is set to, by its place in [`Description::inputs`]; `None` while it follows its spec.
+    /// Value that an input is set to, by its index in [`Description::inputs`]; `None` while it follows its spec.
     fn input(&self, _index: usize) -> Option<f64> {
         None
     }
 
     /// Sets an input from now on, or lets it follow its spec again. An index out of range changes nothing.
     ///
-    /// A run takes inputs as they are when it begins: [`simulate_from`](crate::dynamics::simulate_from) goes on with other ones.
+    /// A run reads the inputs when it begins; [`simulate_from`](crate::dynamics::simulate_from) continues it with changed ones.
     fn set_input(&mut self, _index: usize, _value: Option<f64>) {}
 
     /// Transforms T of all bodies into the world frame, Eq. (3). `out`: one per body.
@@ -54,8 +54,8 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// Velocities of the points of interest in the world frame, m/s. `out`: one per point.
     fn point_velocities(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
-    /// Generalized forces of everything except inertia and gravity: supports, elements, drives, joint dampers. N and N m. What cylinders with a valve
-    /// push with depends on their pressures and is not among them.
+    /// Generalized forces of everything except inertia and gravity: supports, elements, drives, joint dampers. N and N m. The forces of
+    /// cylinders with a valve depend on their pressures and are not included.
     fn forces(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::zeros()
     }
@@ -90,7 +90,7 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         SVector::zeros()
     }
 
-    /// Generalized forces of the loads applied from outside.
+    /// Generalized forces of the external loads.
     fn load_forces(&self, _t: f64, _q: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::zeros()
     }
@@ -108,18 +108,18 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// Length (m) of every connector, and its rate (m/s). `out`: one pair per connector.
     fn connector_lengths(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [[f64; 2]]) {}
 
-    /// Force of every connector and its slopes. `out`: one per connector.
+    /// Force of every connector and its derivatives. `out`: one per connector.
     fn connector_tensions(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Tension]) {}
 
     /// `∂ℓ/∂q` of every connector, ℓ its length. `out`: one row per connector.
     fn connector_jacobians(&self, _q: &SVector<f64, N>, _out: &mut [[f64; N]]) {}
 
-    /// Begin and end of the pieces in which winches move smoothly, s. `out`: one pair per piece, connector by connector, as many as
-    /// [`ConnectorInfo::pieces`](crate::ConnectorInfo::pieces) says.
+    /// Start and end of the intervals in which winches move smoothly, s. `out`: one pair per interval, connector by connector;
+    /// [`ConnectorInfo::pieces`](crate::ConnectorInfo::pieces) is their number.
     fn winch_pieces(&self, _out: &mut [[f64; 2]]) {}
 
-    /// Begin and end of the pieces in which the scales of loads are smooth, s. `out`: one pair per piece, load by load, as many
-    /// as [`LoadInfo::pieces`](crate::LoadInfo::pieces) says.
+    /// Start and end of the intervals in which the scales of loads are smooth, s. `out`: one pair per interval, load by load;
+    /// [`LoadInfo::pieces`](crate::LoadInfo::pieces) is their number.
     fn load_pieces(&self, _out: &mut [[f64; 2]]) {}
 
     /// Forces of the supports on the crane, world frame, N. `out`: one per support.
@@ -131,14 +131,14 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         out.fill([0.0; 2]);
     }
 
-    /// Length of each cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m. `out`: one vector per
-    /// cylinder; NaN where its linkage cannot be assembled.
+    /// Length of each cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate, m/rad or m/m. `out`: one
+    /// vector per cylinder; NaN where its linkage cannot be assembled.
     fn cylinder_states(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
     /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair per drive.
     fn drive_motions(&self, _t: f64, _out: &mut [[f64; 2]]) {}
 
-    /// Greatest effort of each drive, N m or N, 0 if it has no limit, and its stiffness `−∂t_dr/∂q` at the state, N m/rad or N/m.
+    /// Maximum effort of each drive, N m or N, 0 if it has no limit, and its stiffness `−∂t_dr/∂q` at the state, N m/rad or N/m.
     /// `out`: one pair per drive. A crane without limits writes zeros.
     fn drive_limits(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>, out: &mut [[f64; 2]]) {
         out.fill([0.0; 2]);
@@ -152,8 +152,8 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         out.fill([0.0; 2]);
     }
 
-    /// Begin and end of the intervals in which the drives' motions and valves' commands are smooth, s. `out`: one pair per interval, drive by drive;
-    /// [`DriveInfo::pieces`](crate::DriveInfo::pieces) is their number.
+    /// Start and end of the intervals in which the drives' motions and valves' commands are smooth, s. `out`: one pair per interval, drive
+    /// by drive; [`DriveInfo::pieces`](crate::DriveInfo::pieces) is their number.
     fn drive_pieces(&self, _out: &mut [[f64; 2]]) {}
 
     /// Potential energy of gravity, zero at the world's origin, Eq. (6). J.
@@ -194,7 +194,7 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         0.0
     }
 
-    /// Power that the loads applied from outside put in. W.
+    /// Power that the external loads put in. W.
     fn load_power(&self, _t: f64, _q: &SVector<f64, N>, _v: &SVector<f64, N>) -> f64 {
         0.0
     }
@@ -231,8 +231,8 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
     /// force C of Featherstone and of other libraries, which have it on the left.
     fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N>;
 
-    /// Accelerations q̈ of `A q̈ = e + f`, Eq. (23), in O(n) by articulated bodies: A is never formed. m/s² and rad/s². Cylinders with a valve do
-    /// not push here, see [`forces`](CraneModel::forces).
+    /// Accelerations q̈ of `A q̈ = e + f`, Eq. (23), in O(n) by articulated bodies: A is never formed. m/s² and rad/s². The forces of
+    /// cylinders with a valve are not included, see [`forces`](CraneModel::forces).
     fn forward_dynamics(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         self.solve_mass(q, &(self.bias(q, v) + self.forces(t, q, v)))
     }
@@ -248,12 +248,12 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
     fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64;
 }
 
-/// Cranes that can be moved eight at a time, each with its own state and parameters.
+/// Cranes that can be simulated eight at a time, each with its own state and parameters.
 pub trait Ensemble<const N: usize>: Dynamics<N> + Sized {
     /// Eight cranes.
     type Lanes: LaneDynamics<N>;
 
-    /// Eight cranes with the parameters of these.
+    /// The lanes of these eight cranes, with their parameters.
     fn lanes(cranes: [&Self; 8]) -> Self::Lanes;
 }
 
@@ -282,8 +282,8 @@ impl<const N: usize, C: Dynamics<N>> LaneDynamics<N> for OneByOne<C> {
 
 /// Functions for an implicit step: structured stiffness and damping, and systems with them at the cost of those with A.
 ///
-/// All springs and dampers act on single coordinates, or in the block of the base's coordinates, which are the first of q. Those
-/// of linear springs and dampers on single coordinates are constants; those of other laws are evaluated at each step.
+/// All springs and dampers except connectors act on single coordinates, or in the block of the base's coordinates, which are the first of
+/// q. The coefficients of linear springs and dampers on single coordinates are constants; those of other laws are evaluated at each step.
 pub trait Implicit<const N: usize>: Dynamics<N> {
     /// The factors that [`Implicit::factorise`] computes for [`Implicit::solve`].
     type Factors: Send;
@@ -341,12 +341,12 @@ pub trait Statics<const N: usize>: CraneModel<N> {
         SMatrix::zeros()
     }
 
-    /// Generalized forces of the drives that hold the crane at rest at t = 0: those of springs, and those that remain for rigid drives.
-    /// N and N m.
+    /// Generalized forces of the drives that hold the crane at rest at t = 0: the forces of their springs, and for rigid drives the forces
+    /// needed for equilibrium. N and N m.
     fn drive_forces_at_rest(&self, q: &SVector<f64, N>) -> SVector<f64, N> {
         let mut motions = [[0.0; 2]; N];
         self.drive_motions(0.0, &mut motions);
-        // At the rates of the motions the dampers are unloaded.
+        // The dampers are unloaded at the rates of the motions.
         let mut v = SVector::<f64, N>::zeros();
         for (drive, [_, rate]) in self.description().drives.iter().zip(motions) {
             if let Some(v) = v.get_mut(drive.coordinate) {
@@ -368,10 +368,10 @@ pub trait InternalForces<const N: usize>: CraneModel<N> {
     /// At every cut, the wrench that the part beyond it exerts on the part before it, in the cut's frame about its origin, at time t,
     /// pose q, rates v and accelerations a. `out`: one per cut, as [`Description::cuts`] lists them.
     ///
-    /// It is the inertia and the weight of everything beyond with the loads applied to it and the forces of the connectors attached to
-    /// it: a joint or a section transmits what no connector carries past it, and supports act only on the base. At the ground it is the load on the foundation or on the supports. In a section of
-    /// a beam it is `N, Qy, Qz` and `Mx, My, Mz`: a positive N is tension; Mx, My and Mz have the signs of the deformations that they
-    /// cause, φ, θ and ψ.
+    /// It is the sum of the inertia forces and weights of everything beyond, the loads applied to it, and the forces of the connectors
+    /// attached to it: a joint or a section transmits what no connector carries past it, and supports act only on the base. At the ground
+    /// it is the load on the foundation or on the supports. In a section of a beam it is `N, Qy, Qz` and `Mx, My, Mz`: a positive N is
+    /// tension; Mx, My and Mz have the signs of the deformations that they cause, φ, θ and ψ.
     fn internal_forces(
         &self,
         t: f64,

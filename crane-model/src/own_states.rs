@@ -1,4 +1,5 @@
-//! States of forces besides pose and rates of a motion: pressures and spools of cylinders with a valve, bristles of joints that stick.
+//! States of forces, in addition to the pose and rates of a motion: pressures and spools of cylinders with a valve, bristles of joints that
+//! stick.
 //!
 //! A motion is `[q, v, x, integrals]`; x has the states of the oil, then one for each joint with bristles.
 
@@ -20,10 +21,10 @@ pub(crate) struct StateAt<'a> {
     pub x: &'a [f64],
 }
 
-/// Most states of a force of its own.
+/// Maximum number of states of a force.
 pub(crate) const STATES: usize = 3;
 
-/// A force with states at a state of the crane, with derivatives by what it depends on. Its length is ℓ of a cylinder, the coordinate of a
+/// A force that has states, evaluated at a state of the crane, with its derivatives. ℓ is the length of a cylinder, or the coordinate of a
 /// joint with bristles.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StatefulForce {
@@ -33,12 +34,12 @@ pub(crate) struct StatefulForce {
     /// The first of its states, and their number.
     pub first: usize,
     pub count: usize,
-    /// F, N or N m, and its derivatives by ℓ, ℓ̇ and its own states.
+    /// F, N or N m, and its derivatives with respect to ℓ, ℓ̇ and its states.
     pub force: f64,
     pub by_length: f64,
     pub by_speed: f64,
     pub by_states: [f64; STATES],
-    /// Derivatives of its own rates by ℓ and ℓ̇.
+    /// Derivatives of the rates of its states with respect to ℓ and ℓ̇.
     pub rates_by_length: [f64; STATES],
     pub rates_by_speed: [f64; STATES],
     /// ℓ̇, m/s or rad/s.
@@ -52,14 +53,14 @@ pub(crate) struct StatefulForce {
 pub struct OwnStates {
     oil: Hydraulics,
     bristles: Bristles,
-    /// The forces where they were evaluated last, those of the oil first.
+    /// The forces as last evaluated, those of the oil first.
     pushed: Vec<StatefulForce>,
     /// Their generalized forces, and what those add to the accelerations.
     efforts: [Vec<f64>; 2],
 }
 
 impl OwnStates {
-    /// What the description of a crane says about them.
+    /// From the description of a crane.
     pub fn new(description: &Description) -> Self {
         let (oil, n) = (Hydraulics::new(description), description.coordinates.len());
         let bristles = Bristles::new(description, oil.len());
@@ -81,12 +82,13 @@ impl OwnStates {
         self.pushed.is_empty()
     }
 
-    /// Sizes by which errors of the states are measured: the pump's pressure, the full way of a spool, the way on which bristles give in.
+    /// Sizes by which errors of the states are measured: the pump's pressure, the travel of a spool from its centre, the deflection at
+    /// which bristles slide.
     pub fn scales(&self) -> Vec<f64> {
         self.oil.scales().into_iter().chain(self.bristles.scales()).collect()
     }
 
-    /// The states that hold a pose at rest at a time: shut valves, the unloaded side at tank pressure, and
+    /// The states that hold a pose at rest at a given time: shut valves, the unloaded side at tank pressure, and
     /// bristles that carry nothing.
     pub fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
         let mut states = self.oil.holding(crane, t, q);
@@ -99,12 +101,12 @@ impl OwnStates {
         self.pushed.len()
     }
 
-    /// The forces where they were evaluated last.
+    /// The forces as last evaluated.
     pub(crate) fn pushed(&self) -> &[StatefulForce] {
         &self.pushed
     }
 
-    /// Evaluates all forces and the rates of their states, and where it is wanted the derivatives of the rates by the states.
+    /// Evaluates all forces and the rates of their states and, if requested, the derivatives of the rates with respect to the states.
     pub(crate) fn evaluate(
         &mut self,
         crane: &dyn DynModel,
@@ -138,7 +140,7 @@ impl OwnStates {
         accelerations.iter_mut().zip(own).for_each(|(all, own)| *all += *own);
     }
 
-    /// Where they were evaluated last: power that cylinders put in, and that bristles take out, `Σ F ℓ̇`, W.
+    /// Power that cylinders put in and power that bristles take out, `Σ F ℓ̇`, at the last evaluation, W.
     pub(crate) fn powers(&self) -> [f64; 2] {
         let (of_oil, of_bristles) = self.pushed.split_at(self.oil.count());
         let power = |all: &[StatefulForce]| all.iter().map(|own| own.force * own.speed).sum::<f64>();
@@ -151,10 +153,10 @@ pub fn columns(description: &Description) -> Vec<String> {
     [hydraulics::columns(description), bristles::columns(description)].concat()
 }
 
-/// How far a spool may be beyond its ends by the error of a method.
+/// How far integration errors may move a spool beyond its ends.
 const ROUNDING: f64 = 1e-3;
 
-/// What is wrong with states that no valve can have: a spool beyond its ends.
+/// Describes states that no valve can have: a spool beyond its ends.
 pub fn impossible(description: &Description, x: &[f64]) -> Option<String> {
     let names = hydraulics::columns(description);
     let beyond = |(place, name): (usize, &String)| {
@@ -168,7 +170,7 @@ pub fn impossible(description: &Description, x: &[f64]) -> Option<String> {
 /// Accelerations at a state of a crane and its forces, m/s² and rad/s², and the rates of the states.
 ///
 /// # Panics
-/// Where there is not one number for each state.
+/// If `x` does not have one entry per state.
 pub fn accelerations(crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
     crane.forward_dynamics(t, q, v, &mut accelerations);

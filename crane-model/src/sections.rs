@@ -7,7 +7,7 @@ use crate::{Cut, Description, SectionModuli, Stress, Wrench};
 /// A section where stresses are known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StressedSection {
-    /// Place of the body that begins at the section.
+    /// Index of the body that begins at the section.
     pub body: usize,
     /// Distance from the beam's beginning, m.
     pub x: f64,

@@ -1,7 +1,7 @@
 //! Stresses of beams from the forces and moments of their sections.
 //!
 //! The stresses are elastic, for a straight prismatic beam: they do not cover buckling of plates or of the beam, notches, welds,
-//! holes, load introduction or fatigue, and are not a proof by a design code.
+//! holes, load introduction or fatigue, and are not a verification by a design code.
 
 #[cfg(feature = "std")]
 use crate::Wrench;
@@ -21,7 +21,7 @@ pub struct SectionModuli {
     pub shear_y: f64,
     /// Shear area along z, m².
     pub shear_z: f64,
-    /// 1 if the stresses of both bendings add up in a corner, 0 for a round section, where they are perpendicular.
+    /// 1 if the stresses of bending about y and z add up in a corner, 0 for a round section, where they combine as a vector.
     pub corners: f64,
     /// Yield stress over the safety factor, Pa; 0 without a yield stress.
     pub allowable_stress: f64,

@@ -2,7 +2,7 @@
 //!
 //! A crane on feet that push and do not pull tips about a tipping line: a side of the convex polygon that the feet make, seen
 //! from above. Each link's weight, inertia and loads have a moment about the line, which stabilises or overturns the crane; it
-//! tips when the sum of all moments overturns it. Feet are points, and the ground is rigid: what gives way under the feet shows in the pose alone.
+//! tips when the sum of all moments overturns it. Feet are points, and the ground is rigid: yielding under the feet affects the pose only.
 
 use nalgebra::Vector3;
 
@@ -11,7 +11,7 @@ use crate::{Wrench, dyn_crane::DynCrane};
 /// Moments about a tipping line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TippingLine {
-    /// Places of two supports; from the first to the second the crane is on the left, seen from above.
+    /// Indices of two supports; seen from above, the crane is to the left of the line from the first to the second.
     pub feet: [usize; 2],
     /// Moment of the links that hold the crane down, N m, not negative.
     pub stabilising: f64,
@@ -20,7 +20,7 @@ pub struct TippingLine {
 }
 
 impl TippingLine {
-    /// What is left to hold the crane down, N m; negative where it tips.
+    /// Remaining moment that holds the crane down, N m; negative where it tips.
     pub fn balance(&self) -> f64 {
         self.stabilising - self.overturning
     }
@@ -43,7 +43,7 @@ pub fn lines(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> V
     lines_of(crane, q, &crane.internal_forces_at(t, q, v, a))
 }
 
-/// As [`lines`], where every cut transmits a known wrench.
+/// As [`lines`], with known wrenches at all cuts.
 pub fn lines_of(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<TippingLine> {
     let feet = crane.support_positions_at(q);
     let corners = polygon(&feet);
@@ -52,12 +52,12 @@ pub fn lines_of(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<Tip
     sides.map(|(&from, &to)| line([from, to], [feet[from], feet[to]], &loads)).collect()
 }
 
-/// The line with the least margin.
+/// The line with the smallest margin.
 pub fn governing(lines: &[TippingLine]) -> Option<&TippingLine> {
     lines.iter().min_by(|a, b| a.margin().total_cmp(&b.margin()))
 }
 
-/// Moments of loads about the line through two places.
+/// Moments of loads about the line through two points.
 fn line(feet: [usize; 2], [from, to]: [Vector3<f64>; 2], loads: &[Wrench]) -> TippingLine {
     let direction = (to - from).normalize();
     // A load within the polygon turns the crane clockwise about the line, and so against the ground.
@@ -73,7 +73,7 @@ fn line(feet: [usize; 2], [from, to]: [Vector3<f64>; 2], loads: &[Wrench]) -> Ti
     TippingLine { feet, stabilising, overturning }
 }
 
-/// What the weight and the inertia of every link exert with what is applied to it, in the world frame about the world's origin.
+/// Wrench of the weight, the inertia and the applied loads of every link, in the world frame about the world's origin.
 fn loads_of_links(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<Wrench> {
     let description = crane.description();
     let transforms = crane.transforms_at(q);
@@ -81,7 +81,7 @@ fn loads_of_links(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<W
         crate::Cut::Body { body, .. } => Some((body, wrench)),
         _ => None,
     });
-    // What each link and all beyond it exert.
+    // The wrench of each link and everything beyond it.
     let mut beyond: Vec<Wrench> = Vec::new();
     for (body, wrench) in beginnings {
         let link = &description.bodies[body].link;
@@ -99,10 +99,11 @@ fn loads_of_links(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<W
     own.collect()
 }
 
-/// Part of the polygon's size below which a foot is on the line between two others.
+/// Fraction of the polygon's size below which a foot counts as on the line between two others.
 const ON_A_LINE: f64 = 1e-9;
 
-/// Corners of the convex polygon of some places, seen from above, anticlockwise from the first one on; none where they are in one line.
+/// Corners of the convex hull of some points, seen from above, anticlockwise from the one with the lowest index; none if the points are on
+/// one line.
 fn polygon(places: &[Vector3<f64>]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.sort_by(|&i, &j| {
@@ -113,7 +114,7 @@ fn polygon(places: &[Vector3<f64>]) -> Vec<usize> {
         along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
     };
     let least = if places.is_empty() { 0.0 } else { ON_A_LINE * size(0).max(size(1)).powi(2) };
-    // Twice the area of the triangle of three places, positive where it turns left.
+    // Twice the area of the triangle of three points, positive where it turns left.
     let turn = |[i, j, k]: [usize; 3]| {
         let (one, two) = (places[j] - places[i], places[k] - places[i]);
         one.x * two.y - one.y * two.x
@@ -135,7 +136,7 @@ fn polygon(places: &[Vector3<f64>]) -> Vec<usize> {
     if corners.len() < 3 {
         return Vec::new();
     }
-    // From the first foot on: which corner is leftmost changes as the crane moves.
+    // Start at the foot with the lowest index: the leftmost corner changes as the crane moves.
     let first = corners.iter().enumerate().min_by_key(|(_, foot)| **foot).map_or(0, |(place, _)| place);
     corners.rotate_left(first);
     corners

@@ -1,4 +1,4 @@
-//! What one part of a crane exerts on the other, and where it is cut to see that.
+//! Wrenches between parts of a crane, and the cuts at which they are computed.
 
 use nalgebra::Vector3;
 
@@ -31,7 +31,7 @@ impl Tension {
     /// No force.
     pub const ZERO: Tension = Tension { force: 0.0, stiffness: 0.0, damping: 0.0 };
 
-    /// Stiffness and damping for an implicit step, nowhere negative.
+    /// Stiffness and damping for an implicit step, never negative.
     #[cfg(feature = "std")]
     pub(crate) fn stiffness_and_damping(&self) -> [f64; 2] {
         [self.stiffness.max(0.0), self.damping.max(0.0)]
@@ -43,17 +43,17 @@ impl Tension {
 pub enum Cut {
     /// Between the crane and the world: world frame, about the world's origin.
     Ground,
-    /// At a link's joint, in the frame reached by the link's last coordinate, about its origin. That frame moves with the link;
-    /// a rotation leaves its axis, and so the bearing's, where it was. Of a link without a joint, in the link's frame.
+    /// At a link's joint, in the frame reached by the link's last coordinate, about its origin. That frame moves with the link; a rotation
+    /// leaves its own axis, and thus that of the bearing, in place. For a link without a joint, in the link's frame.
     Joint {
-        /// Place of the link's first body.
+        /// Index of the link's first body.
         body: usize,
     },
-    /// Before a body, in its frame: of a beam's element, the section of the beam where it begins, x along the beam.
+    /// Before a body, in its frame: for an element of a beam, the section where the element begins, with x along the beam.
     Body {
-        /// Place of the body.
+        /// Index of the body.
         body: usize,
-        /// Of a beam's element, the distance from the beam's beginning with default parameters, m.
+        /// For an element of a beam, the distance from the beam's beginning with default parameters, m.
         x: Option<f64>,
     },
 }
@@ -76,7 +76,7 @@ impl crate::Description {
         }
         cuts
     }
-    /// The sections of beams where their elements begin, from the base to the tip: the body that begins there, and the distance from the
+    /// The sections of beams where their elements begin, and of ropes where their links begin, from the base to the tip: the body that begins there, and the distance from the
     /// beam's beginning with default parameters, m.
     pub fn sections(&self) -> Vec<(usize, f64)> {
         let of = |cut| match cut {

@@ -24,7 +24,7 @@ fn a_step_allocates_nothing() {
 fn steps_of_every_method_allocate_nothing() {
     let lift = Lift::default();
     for method in Method::ALL {
-        // Room is made once per run: a run ten times as long allocates as often.
+        // Memory is allocated once per run: a run ten times as long allocates as often.
         let [short, long] = [1.0, 10.0].map(|duration| {
             let settings = Settings { method, duration, audit: true, ..Settings::of(lift.description) };
             let start = rk4::State::at_rest(Vector1::new(lift.sag()));

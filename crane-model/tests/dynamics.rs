@@ -43,7 +43,7 @@ fn order_of_rk4_on_a_known_motion() {
 
 #[test]
 fn order_of_rk4_on_a_double_pendulum() {
-    // Without a known motion: differences between three step sizes fall as 2⁴.
+    // The exact motion is not known: differences between runs with three step sizes fall by a factor of 2⁴.
     let pendulum = DoublePendulum::hanging();
     let [coarse, middle, fine] = [2e-3, 1e-3, 5e-4].map(|step| motion(&pendulum, Vector2::new(1.2, -0.5), step));
     let difference =
@@ -52,7 +52,7 @@ fn order_of_rk4_on_a_double_pendulum() {
     assert!((order - 4.0).abs() < 0.1, "order {order}");
 }
 
-/// Greatest size of `E(t) − E(0) − W + D` over a run, J.
+/// Maximum absolute value of `E(t) − E(0) − W + D` over a run, J.
 fn energy_error<const N: usize, C: Implicit<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> f64 {
     let settings = Settings { duration: 4.0, step, output: 0.1, audit: true, ..classical(crane.description()) };
     let mut first = None;
@@ -86,7 +86,7 @@ fn work_of_the_drive_is_energy_and_dissipation() {
 
 #[test]
 fn results_come_at_their_own_interval() {
-    // 0.03 s is not a multiple of 7 ms, nor 0.1 s of 0.03 s: steps shrink to fit, the end is met.
+    // 0.03 s is not a multiple of 7 ms, nor 0.1 s of 0.03 s: steps shrink to fit, and the run ends exactly at 0.1 s.
     let lift = Lift::default();
     let settings =
         Settings { duration: 0.1, step: 7e-3, output: 0.03, ..classical(&common::description("", &[], &[])) };
@@ -127,7 +127,7 @@ fn a_step_beyond_the_limit_stops_with_time_coordinate_and_advice() {
     assert!(run(0.141).is_ok());
     let stopped = run(0.143).expect_err("a run beyond the stability limit");
     assert_eq!((stopped.cause, stopped.coordinate.as_str(), stopped.unit), (Cause::Step, "lift_z", "m"));
-    // Recognised before the motion of 0.1 m is a hundred times as large.
+    // Detected before the motion of 0.1 m has grown a hundredfold.
     assert!(stopped.value.abs() < 10.0 && stopped.time > 0.0 && stopped.time < 400.0, "{stopped:?}");
     let message = stopped.to_string();
     assert!(message.contains("unstable") && message.contains("lift_z"), "{message}");
@@ -157,7 +157,7 @@ fn a_joint_without_inertia_is_named() {
 
 #[test]
 fn a_step_out_of_all_bounds_is_no_want_of_inertia() {
-    // The first stage already overflows: the mass matrix there is not a number, that of the start is sound.
+    // The first stage already overflows: the mass matrix there is NaN, that at the start is valid.
     let pendulum = DoublePendulum { gravity: 1e300, ..DoublePendulum::hanging() };
     let settings = Settings { step: 1e10, output: 1e10, duration: 1e10, ..classical(pendulum.description) };
     let stopped =

@@ -1,4 +1,4 @@
-//! Eight cranes at a time move as each would alone.
+//! Cranes simulated eight at a time move as each would alone.
 
 use crane_model::{
     Dynamics, Ensemble, dyn_crane,
@@ -8,7 +8,7 @@ use crane_model::{
 use crane_specs::{eight_link_flexible, knuckle_boom};
 use nalgebra::SVector;
 
-/// Knuckle-boom cranes with loads of their own, at rest where each rests.
+/// Knuckle-boom cranes with different loads, each at rest in its own equilibrium.
 fn knuckle_booms(count: u32) -> Vec<(knuckle_boom::Crane, State<{ knuckle_boom::N }>)> {
     let crane = |index| {
         let crane = knuckle_boom::Crane::new(knuckle_boom::Params { payload: 100.0 * f64::from(index) })
@@ -19,7 +19,7 @@ fn knuckle_booms(count: u32) -> Vec<(knuckle_boom::Crane, State<{ knuckle_boom::
     (0..count).map(crane).collect()
 }
 
-/// The first tenth of a second of the knuckle boom, the limit of the step being some 10 ms.
+/// The first tenth of a second of the knuckle boom, whose largest stable step is about 10 ms.
 fn settings() -> Settings {
     Settings {
         method: Method::Rk4,
@@ -55,7 +55,7 @@ fn lanes_are_single_cranes<const N: usize, C: Ensemble<N> + Copy>(cranes: [(C, S
     for (lane, single) in single.iter().enumerate() {
         let state = states.lane(lane);
         if cfg!(target_feature = "fma") {
-            // Products and sums may be fused in other places: some roundings a step.
+            // Products and sums may be fused differently: a few rounding errors per step.
             let error = (state.q - single.q).amax().max((state.v - single.v).amax());
             assert!(error <= 1e-12 * single.q.amax().max(single.v.amax()), "lane {lane}: {error:e}");
         } else {
@@ -96,7 +96,7 @@ fn run(
 fn an_ensemble_of_any_size_ends_where_single_runs_end() {
     let cranes = knuckle_booms(11);
     let (last, samples, stopped) = run(&cranes);
-    // 0.1 s in intervals of 0.01 s, both ends included; copies in the last batch are not shown.
+    // 0.1 s in intervals of 0.01 s, both ends included; copies that fill the last batch are not reported.
     assert_eq!(samples, [11; 11]);
     assert!(stopped.iter().all(Option::is_none), "{stopped:?}");
     for ((crane, start), last) in cranes.iter().zip(&last) {
@@ -107,7 +107,7 @@ fn an_ensemble_of_any_size_ends_where_single_runs_end() {
         });
         assert!(run.is_ok());
         let error = single.iter().zip(last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        // Accelerations by Cholesky's factors there, by articulated bodies here: roundings, times the condition of A.
+        // Accelerations by Cholesky's factors there, by articulated bodies here: rounding errors, times the condition number of A.
         assert!(error < 1e-11, "{error:e}");
     }
 }
@@ -126,7 +126,7 @@ fn a_crane_that_blows_up_does_not_harm_its_neighbours() {
             } else {
                 assert_eq!(stopped[lane], None);
                 let error = expected[lane].iter().zip(&last[lane]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                // Sines of all lanes take another way in the step in which one has angles beyond all reason.
+                // The sines of all lanes are computed differently in a step in which one lane has huge angles.
                 assert!(error < 1e-12, "lane {lane}: {error:e}");
             }
         }

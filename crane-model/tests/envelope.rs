@@ -1,4 +1,4 @@
-//! Envelopes against the equilibrium of moments, and against single cranes.
+//! Envelopes compared with the equilibrium of moments, and with single cranes.
 
 use std::sync::Mutex;
 
@@ -14,7 +14,7 @@ fn crane(spec: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("crane.yaml", format!("format: 1\nname: crane\n{spec}"))).expect("sound")
 }
 
-/// All ratings, in order, and the pieces as they were done.
+/// All ratings, in the order of the poses; every pose must be rated exactly once.
 fn rate(envelope: &Envelope, crane: &dyn DynCrane, threads: usize) -> Vec<Rating> {
     let found = Mutex::new(vec![None; envelope.axes.poses()]);
     let done = |piece: usize, ratings: &[Rating]| {
@@ -32,8 +32,8 @@ fn axis(varied: Varied, from: f64, to: f64, count: usize) -> Axis {
     Axis { varied, values }
 }
 
-/// A truck of 4 t, its centre amid four feet 3 m and 2 m apart on ground that hardly gives way, and a load that slews 5 m from its
-/// centre; the arm has no mass of its own.
+/// A truck of 4 t, its centre in the middle of four feet 3 m and 2 m apart on almost rigid ground, and a load on an arm of 5 m that slews;
+/// the arm is massless.
 const TRUCK: &str = "
 parameters: {payload: {value: 100, unit: kg}}
 links:
@@ -58,7 +58,7 @@ fn a_slewing_load_is_limited_by_the_nearest_tipping_line() {
     for (pose, rating) in rate(&envelope, &truck, 1).iter().enumerate() {
         let angle = envelope.axes.values(pose)[0];
         let (x, y) = (0.25 + 5.0 * angle.cos(), 5.0 * angle.sin());
-        // About each line, where the load stands beyond it: m (distance beyond) = (1 − margin) 4000 kg (distance within).
+        // For each line that the load is beyond: m (distance beyond) = (1 − margin) 4000 kg (distance within).
         let lines = [(x - 1.5, 1.5), (-x - 1.5, 1.5), (y - 1.0, 1.0), (-y - 1.0, 1.0)];
         let loads = lines.iter().filter(|(beyond, _)| *beyond > 0.0);
         let expected = loads.map(|(beyond, within)| (1.0 - margin) * 4000.0 * within / beyond).fold(f64::MAX, f64::min);
@@ -107,7 +107,7 @@ fn an_effort_limits_by_its_lever() {
     }
 }
 
-/// The load sinks by as much as its drive's spring gives way: `k δ = m g L cos(α − δ)`, from the least load on.
+/// The load sinks by as much as its drive's spring gives way: `k δ = m g L cos(α − δ)`, starting from the minimum load.
 #[test]
 fn a_deflection_limits_by_the_way_of_the_point() {
     let stiffness = 1e6;
@@ -122,7 +122,7 @@ fn a_deflection_limits_by_the_way_of_the_point() {
         let given_way = 2.0 * (0.05_f64 / 2.0 / 4.0).asin();
         let expected = stiffness * given_way / (9.81 * 4.0 * (position - given_way).cos());
         let load = rating.load.unwrap();
-        // The least load of 1 g moves the point by 1e-7 of that.
+        // The minimum load of 1 g moves the point by 1e-7 of that.
         assert!((load / expected - 1.0).abs() < 3e-6, "{position}: {load} instead of {expected}");
         assert_eq!(rating.governing, Some(Limit::Deflection { point: 0 }));
     }
@@ -140,7 +140,7 @@ fn a_load_without_limits_is_the_greatest_and_one_without_rest_is_none() {
     }
 }
 
-/// The shipped crane with 25 coordinates, over slewing, lifting and length: every drive gives way.
+/// The shipped crane with 25 coordinates, over slewing, lifting and length: all drives are flexible.
 fn forest_crane(positions: Option<[f64; 3]>, load: f64) -> LiveCrane {
     let shipped = crane_specs::spec("eight_link_flexible").expect("a shipped crane");
     let mut changes =
@@ -153,7 +153,7 @@ fn forest_crane(positions: Option<[f64; 3]>, load: f64) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("eight_link_flexible.yaml", shipped).changed(&changes)).expect("sound")
 }
 
-/// Each pose of the envelope is a spec of its own, whose drives hold there.
+/// Each pose of the envelope is compared with a separate spec whose drives hold that pose.
 #[test]
 fn every_pose_is_as_a_crane_alone() {
     let whole = forest_crane(None, 500.0);
@@ -202,7 +202,7 @@ fn every_pose_is_as_a_crane_alone() {
     assert!(governing.len() > 1, "{governing:?}");
 }
 
-/// Where drives give way, and where rigid ones do not, a position held is a motion that holds it.
+/// For flexible and for rigid drives, holding a position is equivalent to a motion that holds it.
 #[test]
 fn positions_held_are_motions_that_hold() {
     for drive in ["stiffness: 1e6, damping: 10", "rigid: true"] {

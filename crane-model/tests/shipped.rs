@@ -1,4 +1,4 @@
-//! What every shipped crane must do.
+//! Requirements on every shipped crane.
 
 use std::ops::ControlFlow;
 
@@ -38,7 +38,7 @@ fn live_parameters_keep_the_rules_of_the_spec() {
         assert!(CraneModel::<N>::set_parameters(&mut crane, &[payload]).is_err(), "{payload}");
         assert_eq!(crane, Crane::default(), "what is refused changes nothing");
     }
-    // The block hangs on the joint as well, so the load may be gone.
+    // The joint also carries the block, so the load may be zero.
     for payload in [0.0, 1e-30, 500.0, 1e18] {
         assert_eq!(CraneModel::<N>::set_parameter(&mut crane, 0, payload), Ok(()));
         assert_eq!(crane.params().payload, payload);
@@ -65,7 +65,7 @@ fn steps_of_the_reference_crane_allocate_nothing() {
     let start = rk4::State::at_rest(SVector::<f64, N>::from_column_slice(&equilibrium.q));
     let rig = dyn_crane::boxed::<N, Crane>();
     for method in Method::ALL {
-        // Room is made once per run: a run ten times as long allocates as often.
+        // Memory is allocated once per run: a run ten times as long allocates as often.
         let [short, long] = [0.02, 0.2].map(|duration| {
             let settings = Settings { method, duration, audit: true, ..Settings::of(rig.description()) };
             let run = || simulate(&crane, start, &settings, |_| ControlFlow::Continue(())).expect("a stable run");
@@ -93,7 +93,7 @@ fn path(rig: &dyn DynCrane, method: Method, tolerance: f64) -> (Vec<Vec<Vector3<
 fn implicit_methods_hold_their_tolerance_on_the_reference_crane() {
     use cranes::eight_link_flexible::{Crane, N};
     let rig = dyn_crane::boxed::<N, Crane>();
-    // Its error is 1e-13 of the path.
+    // The error of this reference is 1e-13 of the path.
     let (reference, constant) = path(rig.as_ref(), Method::Rk4, f64::NAN);
     // Diagonal of the box around the paths, m.
     let all = || reference.iter().flatten();
@@ -107,12 +107,12 @@ fn implicit_methods_hold_their_tolerance_on_the_reference_crane() {
         let error = distances.fold(0.0, f64::max) / size;
         println!("{method} {tolerance:e}: {error:.2e} of {size:.1} m, {statistics:?}");
         assert!(error < 10.0 * tolerance && error > 0.1 * tolerance, "{method} {tolerance:e}: {error:e}");
-        // Its steps are those of the motion, not of its stiffest spring.
+        // Steps resolve the motion, not the stiffest spring.
         assert!(tolerance < 1e-4 || 20 * statistics.evaluations < constant.evaluations, "{statistics:?}");
     }
 }
 
-/// Greatest effort of each drive over the run that the spec asks for, N or N m.
+/// Maximum effort of each drive over the run that the spec requests, N or N m.
 fn peaks(rig: &dyn DynCrane, method: Method, tolerance: f64) -> Vec<f64> {
     let start = InitialState::at_rest(rig.equilibrium(&statics::Settings::default()).q);
     let own = Settings::of(rig.description());

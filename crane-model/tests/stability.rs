@@ -16,16 +16,16 @@ use crane_specs as cranes;
 use live::Live;
 use nalgebra::{Complex, SVector};
 
-/// Predicted and observed limits agree to this.
+/// Maximum relative difference between predicted and observed limits.
 const AGREEMENT: f64 = 0.03;
-/// Steps of a run that shows growth: 1 % beyond its limit RK4 multiplies the limiting mode by 1.03 a step or more.
+/// Steps of a run that shows growth: 1 % beyond its limit RK4 multiplies the limiting mode by 1.03 or more per step.
 const STEPS: usize = 400;
 /// Rates of all coordinates at the start, m/s and rad/s: all modes take part, and motions stay small.
 const RATE: f64 = 1e-7;
 /// Growth of kinetic energy that a damped or oscillating motion does not reach.
 const GROWTH: f64 = 1e4;
 
-/// Largest stable step of RK4 as its stability function has it, s.
+/// Largest stable step of RK4 according to its stability function, s.
 fn predicted<const N: usize, C: Linearise<N>>(crane: &C, q: &SVector<f64, N>) -> f64 {
     let modes = damped(&SmallMotions::from(&crane.linearise(q))).expect("modes");
     limit(&modes, &Method::Rk4.stability()).expect("a limit").step
@@ -91,7 +91,7 @@ fn predicted_limits_of_all_shipped_cranes_are_observed() {
         knuckle_boom,
         loader_tipping
     );
-    // Single steps do not have the states of valves.
+    // Single steps do not support the states of valves.
     let with_valves = cranes::all().iter().filter(|crane| crane.description().has_valves()).count();
     assert_eq!(seen + with_valves, cranes::all().len(), "a crane is missing above");
 }
@@ -118,13 +118,13 @@ fn limits_of_rk4_on_both_axes() {
     assert!(relative(limit(0.0, 20.0), rk4::IMAGINARY_LIMIT / 20.0) < 1e-11);
     assert!(relative(limit(-500.0, 0.0), rk4::REAL_LIMIT / 500.0) < 1e-11);
     assert_eq!(function.largest_step(Complex::new(0.0, 0.0)), None);
-    // Growth is the motion's own; rounding of a vanishing damping must not forbid every step.
+    // Growth belongs to the motion itself; a rounding error of zero damping must not forbid every step.
     assert!(relative(limit(1e-9, 20.0), rk4::IMAGINARY_LIMIT / 20.0) < 1e-11);
 }
 
 #[test]
 fn an_a_stable_function_limits_nothing() {
-    // Trapezoidal rule, and Euler's method backwards.
+    // Trapezoidal rule, and backward Euler method.
     for denominator in [&[1.0, -0.5][..], &[1.0, -1.0]] {
         let numerator: &[f64] = if denominator[1] == -0.5 { &[1.0, 0.5] } else { &[1.0] };
         let function = StabilityFunction::Rational { numerator, denominator };
@@ -143,7 +143,7 @@ fn the_boundary_is_where_the_size_is_one() {
     let closes = boundary.last().expect("points");
     assert!(closes.norm() < 1e-6, "{closes}");
     let left = boundary.iter().map(|z| z.re).fold(0.0, f64::min);
-    // A degree of R from the end of the real axis the curve is level.
+    // Within a degree of R from its end on the real axis, the curve hardly changes its real part.
     assert!((left + rk4::REAL_LIMIT).abs() < 1e-3, "{left}");
 }
 

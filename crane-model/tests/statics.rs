@@ -25,7 +25,7 @@ fn an_equilibrium_follows_the_drives() {
     let equilibrium = solve_at(&lift, t, Vector1::zeros(), &Settings::default());
     assert_eq!(equilibrium.status, Status::Converged);
     let expected = lift.sag() + lift.amplitude * (lift.frequency * t).sin();
-    // Forces of 400 N in rounding, over 4000 N/m.
+    // Rounding errors of forces of 400 N, over 4000 N/m.
     assert!((equilibrium.q[0] - expected).abs() < 1e-15, "{:?}", equilibrium.q);
 }
 
@@ -35,7 +35,7 @@ fn the_guess_of_a_driven_coordinate_follows_its_drive() {
     // Sums of small whole numbers and halves are exact.
     assert_eq!(guess(&lift)[0], 2.0);
     assert_eq!(guess(&Lift::default())[0], 0.0);
-    // A guess that is not the drive's position is meant.
+    // A guess that is not the drive's position is intentional.
     assert_eq!(guess(&Lift { height: 2.0, ..Lift::guessed() })[0], 0.5);
     assert!((solve(&lift, &Settings::default()).q[0] - lift.sag()).abs() < 1e-15);
 }
@@ -86,7 +86,7 @@ fn a_guess_with_vanishing_stiffness_is_left_behind() {
     // Horizontal rods: K = 0, yet gravity pushes. Both equilibria of a rod are within reach; the status says which one it is.
     let equilibrium = solve(&DoublePendulum::horizontal(), &Settings::default());
     let from_vertical = [equilibrium.q[0], equilibrium.q[0] + equilibrium.q[1]];
-    // A tolerance of 1e-10 of moments that grow by the angle.
+    // A tolerance of 1e-10 for moments that grow with the angle.
     assert!(from_vertical.iter().all(|angle| angle.sin().abs() < 1e-9), "{equilibrium}: {from_vertical:?}");
     let hang = from_vertical.iter().all(|angle| angle.cos() > 0.0);
     assert_eq!(equilibrium.status == Status::Converged, hang, "{equilibrium}: {from_vertical:?}");
@@ -104,10 +104,10 @@ fn too_few_steps_do_not_converge() {
 
 #[test]
 fn continuation_finds_what_newton_misses() {
-    // Newton goes up, where the stiffness is negative as at the guess; under a growing load the rods sink.
+    // Newton's method goes up, where the stiffness is negative as at the guess; under a growing load the rods sink.
     let equilibrium = solve(&DoublePendulum::toppling(), &Settings::default());
     assert_eq!(equilibrium.status, Status::Converged, "{equilibrium}");
-    // A tolerance of 1e-10 of moments that grow by the angle.
+    // A tolerance of 1e-10 for moments that grow with the angle.
     assert!(equilibrium.q.iter().all(|angle| angle.abs() < 1e-9), "{:?}", equilibrium.q);
     let without = solve(&DoublePendulum::toppling(), &Settings { load_steps: 0, ..Settings::default() });
     assert!(matches!(without.status, Status::Unstable { .. }) && without.load_steps.is_none(), "{without}");
@@ -118,14 +118,14 @@ fn continuation_finds_what_newton_misses() {
 
 #[test]
 fn a_guess_upside_down_stays_what_it_is() {
-    // 0.14 rad off: near enough to be meant.
+    // 0.14 rad off: close enough to be the intended equilibrium.
     let equilibrium = solve(&DoublePendulum::upside_down(), &Settings::default());
     assert!(matches!(equilibrium.status, Status::Unstable { .. }) && equilibrium.load_steps.is_none(), "{equilibrium}");
 }
 
 #[test]
 fn forces_are_measured_against_one_another() {
-    // A lift of 1e-30 kg on a spring as weak: what is left over is small against nothing but its own weight.
+    // A lift of 1e-30 kg on an equally weak spring: the residual must be small relative to its own weight.
     let lift = Lift { mass: 1e-30, stiffness: 4e-28, damping: 0.0, ..Lift::default() };
     let equilibrium = solve(&lift, &Settings::default());
     assert_eq!(equilibrium.status, Status::Converged);

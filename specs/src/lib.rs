@@ -1,6 +1,6 @@
 //! The shipped cranes: a module for each file of `specs/`, compiled by the build script, and their specs.
 //!
-//! Without the feature `compiled` it has the specs alone. A spec that extends another is one text with it.
+//! Without the feature `compiled` the crate contains only the specs. A spec that extends another is merged with it into one text.
 
 #[cfg(all(doctest, feature = "compiled"))]
 mod manual;

@@ -1,4 +1,4 @@
-//! Dual numbers through the interpreter: derivatives that do not use our own rules.
+//! Dual numbers through the interpreter: derivatives independent of the compiler's own rules.
 
 use crane_codegen::symbolic::Scalar;
 use num_dual::{Dual64, DualNum};

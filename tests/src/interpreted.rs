@@ -36,7 +36,7 @@ impl Interpreted {
         self.chain.rigid_drives().map(|drive| drive.coordinate.0).collect()
     }
 
-    /// A matrix, and the right-hand side of a system with it, without the unknowns that are prescribed: x = 0 there.
+    /// A matrix and the right-hand side of its system, with the prescribed unknowns eliminated: x = 0 there.
     #[must_use]
     pub fn unknowns(&self, mut matrix: DMatrix<f64>, mut right: DVector<f64>) -> (DMatrix<f64>, DVector<f64>) {
         for j in self.prescribed() {
@@ -54,7 +54,7 @@ impl Interpreted {
         Inputs::state(state.t, state.q.clone(), state.v.clone(), self.chain.parameter_defaults())
     }
 
-    /// A function's result; zeros, as many as `otherwise`, where the scene does not need the function.
+    /// A function's result; `otherwise` zeros if the program does not have the function.
     pub fn get<S: Scalar>(&self, function: &str, inputs: &Inputs<S>, otherwise: usize) -> Vec<S> {
         let id = FunctionId::named(function).unwrap_or_else(|| panic!("there is no function `{function}`"));
         match self.program.function(id) {
@@ -63,7 +63,7 @@ impl Interpreted {
         }
     }
 
-    /// A vector of one number a coordinate.
+    /// A vector with one entry per coordinate.
     #[must_use]
     pub fn vector(&self, function: &str, state: &State) -> DVector<f64> {
         DVector::from_vec(self.get(function, &self.inputs(state), self.size()))
@@ -106,8 +106,8 @@ impl Interpreted {
     }
 
     /// The lowest undamped angular frequency at a pose in stable equilibrium, rad/s: `1/ω²` is the largest eigenvalue of
-    /// `L⁻¹ A L⁻ᵀ` with `K = L Lᵀ`. Of `A = L Lᵀ` it were the smallest of `L⁻¹ K L⁻ᵀ`, known to 1e-16 of the largest:
-    /// to 1e-5 for 32 sections.
+    /// `L⁻¹ A L⁻ᵀ` with `K = L Lᵀ`. With `A = L Lᵀ`, ω² would be the smallest one of `L⁻¹ K L⁻ᵀ`, with an error of
+    /// 1e-16 of the largest: a relative error of 1e-5 for 32 sections.
     pub fn lowest_frequency(&self, state: &State) -> f64 {
         let lower = self.matrix("tangent_stiffness", state).cholesky().expect("K is positive definite").l();
         let half = lower.solve_lower_triangular(&self.matrix("mass_matrix", state)).expect("L is regular");

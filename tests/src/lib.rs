@@ -1,4 +1,4 @@
-//! Whole-system tests of the compiler and the runtime: what they share.
+//! Code shared by the whole-system tests of the compiler and the runtime.
 
 #![allow(clippy::missing_panics_doc, reason = "tests fail by panicking")]
 

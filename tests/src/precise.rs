@@ -1,4 +1,4 @@
-//! Numbers of 192 bits through the interpreter: what rounding in 64 bits is measured against.
+//! 192-bit numbers through the interpreter: the reference for rounding errors in 64 bits.
 
 use std::cell::RefCell;
 
@@ -18,7 +18,7 @@ thread_local! {
 pub struct Precise(BigFloat);
 
 impl Precise {
-    /// The nearest number of 64 bits.
+    /// The nearest 64-bit number.
     ///
     /// # Panics
     /// If it is not a number.

@@ -192,7 +192,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     out.extend(motions.iter().flatten());
     out.extend([crane.drive_power(t, q, v), crane.dissipation(t, q, v)]);
     let mut wrenches = vec![Wrench::ZERO; info.cuts().len()];
-    // The rates stand for accelerations, too.
+    // The rates also serve as accelerations.
     crane.internal_forces(t, q, v, v, &mut wrenches);
     crane.support_positions(q, &mut reactions);
     let mut moduli = vec![SectionModuli::ZERO; info.sections().len()];
@@ -252,7 +252,7 @@ fn implicit_solution<const N: usize, C: Crane<N>>(
     crane.solve(&crane.factorise(q, &added_inertia, &base), v)
 }
 
-/// Accelerations of the crane in the third lane of eight, the others in states of their own.
+/// Accelerations of the crane in the third lane of eight; the other lanes are in other states.
 fn in_a_lane<const N: usize, C: Crane<N>>(
     crane: &C,
     t: f64,

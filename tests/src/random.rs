@@ -9,7 +9,7 @@ pub fn spec(seed: u64) -> String {
     Writer::new(seed, true).crane(seed)
 }
 
-/// The same without drives and dampers: what it has of energy it keeps.
+/// The same without drives and dampers: its energy is conserved.
 #[allow(dead_code)] // the build script compiles driven cranes only
 pub fn conservative(seed: u64) -> String {
     Writer::new(seed, false).crane(seed)
@@ -22,11 +22,11 @@ struct Writer {
     coordinates: Vec<(String, bool)>,
     /// Whether it has drives and dampers.
     driven: bool,
-    /// Flexible links whose sections have the paper's joint: the first, the second, both or none, by the seed.
+    /// Which flexible links have the section joint of the paper: the first, the second, both or none, depending on the seed.
     paper: [bool; 2],
 }
 
-/// What the base can do.
+/// Freedom of the base.
 #[derive(Clone, Copy, PartialEq)]
 enum Base {
     Fixed,
@@ -57,7 +57,7 @@ impl Writer {
         self.line("  soft: {E: modulus, G: 4.0e6, density: 1200, yield_stress: 3.0e6}");
         self.line("links:");
         self.base(base);
-        // Every kind at least once over the seeds: a fixed link, a prismatic one, both flexible ones, a classic row.
+        // Every kind occurs at least once over the seeds: a fixed link, a prismatic one, both flexible ones, classic DH parameters.
         self.link("arm", "revolute", true);
         self.beam("first", false);
         self.link("plate", "fixed", false);
@@ -94,7 +94,7 @@ impl Writer {
         format!("{head}{}{}", self.parameters(), self.text)
     }
 
-    /// The live parameters that the crane came to use.
+    /// The live parameters that the crane uses.
     fn parameters(&self) -> String {
         let rows = [
             ("payload", "{value: 7.5, unit: kg}"),
@@ -208,10 +208,10 @@ impl Writer {
         self.placement_and_joint(name, "revolute", false);
     }
 
-    /// Two bodies in one link, one of them live.
+    /// Two bodies in one link, one of them with a live mass.
     fn tip(&mut self, name: &str) {
         self.line(&format!("  - name: {name}"));
-        // Its axis crosses that of the fork, or nothing would resist one of the two.
+        // Its axis is not parallel to that of the fork; otherwise nothing would resist one of the two rotations.
         let by = self.vector(0.3);
         self.line(&format!("    placement: {{transform: {{translation: {by}, rotation: {{x: 70 deg}}}}}}"));
         self.line("    joint: revolute");
@@ -232,7 +232,7 @@ impl Writer {
         self.line(&format!("    inertia: {inertia}"));
     }
 
-    /// The inertia of six random particles: no other numbers are a body's.
+    /// The inertia of six random particles: arbitrary numbers would not be those of a body.
     fn inertia(&mut self, scale: f64) -> String {
         let mut second = [[0.0; 3]; 3];
         for _ in 0..6 {
@@ -262,7 +262,7 @@ impl Writer {
         }
         self.line("supports:");
         let damping = if self.driven { "damping: [40, 50, 90], " } else { "" };
-        // Of every other driven crane two press only; one of them holds in full only where it is pressed in far.
+        // Two supports of every other driven crane are one-sided; one of them holds fully only where it is pressed in far.
         let one_sided =
             |hold: &str| if self.driven && seed % 2 == 1 { format!(", one_sided: true{hold}") } else { String::new() };
         let one_sided = [String::new(), one_sided(", full_hold: 4000"), one_sided("")];
@@ -284,7 +284,7 @@ impl Writer {
         for (k, (coordinate, rotation)) in driven.into_iter().enumerate() {
             let to = if rotation { "swing".into() } else { self.number(0.5) };
             let from = self.number(0.5);
-            // Up to three are rigid, on joints that turn and that slide.
+            // A third of them is rigid, on joints that turn and that slide.
             let rigid = self.rng.u8(0..3) == 0;
             let motion = [
                 format!("{{quintic: {{from: {from}, to: {to}, begin: 0.2, duration: 1.5}}}}"),
@@ -294,15 +294,15 @@ impl Writer {
                 format!("{{table: {{times: [0, 0.5, 1.2, 2], values: [0.1, {from}, -0.2, 0.4]}}}}"),
                 format!("{{hold: {to}}}"),
                 format!("{{speed: {{from: {from}, rate: {to}, begin: 0.4, ramp: 0.7}}}}"),
-                // Only a drive that gives way may jump to its speed in a run.
+                // Only a flexible drive may jump to its speed during a run.
                 format!("{{speed: {{rate: {to}{}}}}}", if rigid { "" } else { ", begin: 0.6" }),
             ][(first + k) % 8]
                 .clone();
             let (stiffness, damping) = (self.positive(900.0), self.positive(30.0));
-            // Every other one has a rotor.
+            // Every other drive has a rotor.
             let armature = self.positive(4.0);
             let rotor = if k % 2 == 0 { format!("armature: {armature}, ") } else { String::new() };
-            // The second drive of every other crane has a limit that far states exceed.
+            // The second drive of every other crane has a limit that extreme states exceed.
             let limit = match (seed % 4, k) {
                 (0, 1) => ", max_effort: 300, max_rate: 1.5, max_power: 120",
                 (2, 1) => ", max_effort: 300",
@@ -332,7 +332,7 @@ impl Writer {
         }
     }
 
-    /// Stops and friction of driven joints, of rigid drives too, and of a passive one.
+    /// Stops and friction of driven joints, including rigid drives, and of a passive one.
     fn joint_forces(&mut self) {
         let names: Vec<String> = self.coordinates.iter().map(|(name, _)| name.clone()).collect();
         let (Some(last), [_, second, third, ..]) = (names.last(), names.as_slice()) else { return };

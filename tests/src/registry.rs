@@ -12,7 +12,7 @@ use crate::quantities::{self, State};
 pub struct Entry {
     /// Name of the crane.
     pub name: &'static str,
-    /// Whether its spec is made up.
+    /// Whether its spec is random.
     pub random: bool,
     /// Names, units and settings.
     pub description: &'static Description,

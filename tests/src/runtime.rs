@@ -1,9 +1,9 @@
-//! Numbers of 64 bits with the runtime's sine and cosine, so that the interpreter rounds as generated code does.
+//! 64-bit numbers with the runtime's sine and cosine, so that the interpreter rounds as generated code does.
 
 use crane_codegen::symbolic::Scalar;
 use crane_model::rt;
 
-/// A number as generated code has it.
+/// A number that computes as generated code does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Runtime(pub f64);
 

@@ -11,7 +11,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is a folder of the workspace").to_owned()
 }
 
-/// All shipped specs, in order of name.
+/// All shipped specs, sorted by name.
 #[must_use]
 pub fn specs() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(root().join("specs")).expect("specs/ is there");
@@ -21,7 +21,7 @@ pub fn specs() -> Vec<PathBuf> {
     paths
 }
 
-/// A spec, and those that it extends.
+/// A spec, together with those that it extends.
 #[must_use]
 pub fn source(path: &Path) -> SourceFile {
     build::open(path).unwrap_or_else(|failure| panic!("{failure}"))
@@ -51,7 +51,7 @@ pub fn reference_symmetric(sections: usize) -> Chain {
     reference_with(&format!("sections: {sections}, section_joint: symmetric"))
 }
 
-/// The reference crane with other keys of its boom's beam.
+/// The reference crane with changed keys in its boom's beam.
 fn reference_with(beam: &str) -> Chain {
     chain_in(&shipped("eight_link_flexible").changed(&format!("links: [{{name: boom, beam: {{{beam}}}}}]")))
 }

@@ -1,8 +1,8 @@
-//! How much of the O(n) recursions survives rounding: against A, e and forces of 192 bits and a dense elimination.
+//! Accuracy of the O(n) recursions under rounding, against A, e and forces of 192 bits and a dense elimination.
 //!
 //! The oracle shares neither the recursion nor its simplifications: A is Eq. (5) as printed, from the unsimplified program's
-//! derivatives of all transforms. It holds for the numbers of constant rotations as they are stored, whose `sin² + cos²` is 1 to
-//! 1e-16 only; composites turned by formulas that take it for 1 are off by as much, which the elimination multiplies by thousands.
+//! derivatives of all transforms. It takes the numbers of constant rotations as they are stored, whose `sin² + cos²` is 1 only
+//! to 1e-16; composites rotated by formulas that assume exactly 1 are off by as much, which the elimination multiplies by thousands.
 
 use std::ops::Add;
 
@@ -18,10 +18,10 @@ const DYNAMICS: Analyses =
     Analyses { statics: false, modes: false, internal_forces: false, derivatives: false, ..Analyses::ALL };
 const WITH_DERIVATIVES: Analyses = Analyses { derivatives: true, ..DYNAMICS };
 
-/// Of the largest acceleration: rounding of the forces alone, 1e-16 of the stiffest spring, is multiplied by
-/// some hundred along the chain. The dense solve of 64 bits is off by 3e-10 at 103 coordinates.
+/// Relative to the largest acceleration: rounding of the forces alone, 1e-16 of the stiffest spring, is multiplied by
+/// about a hundred along the chain. The dense 64-bit solve is off by 3e-10 at 103 coordinates.
 const TOLERANCE: f64 = 1e-13;
-/// Roundings of a force: it is a sum of about as many.
+/// Roundings of a force: it is a sum of about this many terms.
 const ROUNDINGS: f64 = 10.0;
 
 struct Crane {
@@ -123,7 +123,7 @@ fn check_forward_dynamics(crane: &Crane, count: usize, seed: u64) {
             precise::solve(crane.mass_matrix(&state), sum.collect())
         };
         let exact = solve(&forces);
-        // What rounding of the forces alone makes of it; a crane with a nearly massless link multiplies that by thousands.
+        // The error due to rounding of the forces alone; a crane with a nearly massless link multiplies it by thousands.
         let rounded: Vec<Precise> = forces.iter().map(|force| Precise::from_f64(force.round())).collect();
         let of_rounding = error(&solve(&rounded).iter().map(Precise::round).collect::<Vec<f64>>(), &exact);
         let own = error(&crane.evaluate("forward_dynamics", &crane.inputs(&state)), &exact);
@@ -193,7 +193,7 @@ fn structured_solves() {
             let inputs = inputs.with(Argument::AddedInertia, added_inertia).with(Argument::BaseAddedInertia, base);
             let factors = crane.evaluate("factorise", &inputs);
             let own = error(&crane.evaluate("solve", &inputs.with(Argument::Factors, factors)), &exact);
-            // Springs stiffer than h⁻² times the inertias share their digits with these.
+            // Springs stiffer than h⁻² times the inertias leave fewer digits for these in the sum.
             assert!(own < 1e-12, "{}: (A + D̂) x = r to {own:.1e}", crane.chain.name);
         }
     }

@@ -1,4 +1,4 @@
-//! No function of a generated crane allocates, eight cranes at once included, and no step of a run.
+//! No function of a generated crane allocates, including those for eight cranes at once, and neither does any step of a run.
 
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -68,7 +68,7 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     black_box((crane.drive_power(t, q, v), crane.dissipation(t, q, v)));
 }
 
-/// Where lists go; made before anything is counted.
+/// Buffers for lists, allocated before counting begins.
 struct Places {
     matrices: Vec<Matrix4<f64>>,
     vectors: Vec<Vector3<f64>>,
@@ -132,7 +132,7 @@ fn exact() {
     assert_eq!(calls.count_total, 0);
 }
 
-/// Room is made once per run: a run four times as long allocates as often, whichever the method.
+/// Memory is allocated once per run: a run four times as long makes as many allocations, whatever the method.
 #[test]
 fn steps_allocate_nothing() {
     let cranes = [

@@ -1,7 +1,7 @@
-//! Laws of the straight cantilever in rigid finite elements; exact, so held to rounding.
+//! Laws of the straight cantilever in rigid finite elements. They are exact, so they must hold up to rounding.
 //!
-//! With n sections, against Euler–Bernoulli's beam: tip force 1 − 1/(4n²), self-weight 1 − 1/(2n²), tip moment and
-//! torsion exact. The first frequency approaches from above with order 2.
+//! With n sections, relative to an Euler–Bernoulli beam: tip force 1 − 1/(4n²), self-weight 1 − 1/(2n²), tip moment and
+//! torsion exact. The first frequency converges from above with order 2.
 
 use crane_model::nalgebra::DVector;
 use crane_tests::interpreted::Interpreted;
@@ -119,10 +119,10 @@ fn first_frequency_approaches_from_above_with_order_two() {
     assert!((order - 2.0).abs() < 0.02, "order {order}");
 }
 
-/// Two halves, the outer one four times as flexible. Under a tip force Euler's and Bernoulli's beam sinks by
+/// Two halves, the outer one four times as flexible. Under a tip force an Euler–Bernoulli beam deflects by
 /// `F ∫ (l − x)²/(E J) dx = F l³ (7 + 4)/(24 E J)`. A spring in the middle of a section misses d³/12 of `∫ (l − x)² dx`, which makes
-/// 1 − 5/(11n²) if the step lies between two sections; if it lies in the middle of one, that spring takes a moment that is 3ld²/8 too large
-/// for its softer half: 1 + 4/(11n²).
+/// 1 − 5/(11n²) if the step lies between two sections; if it lies in the middle of one, that spring adds 3ld²/8, because
+/// the moment at its place is too large for its softer half: 1 + 4/(11n²).
 #[test]
 fn a_stepped_cantilever_bends_as_euler_and_bernoulli_say() {
     let section = |j: f64| format!("{{numbers: {{area: {AREA:?}, Jy: {j:?}, Jz: {j:?}, Jo: {j:?}}}}}");

@@ -92,7 +92,7 @@ fn eq_16_printed_column_order_lets_yaw_push_the_vertical_springs() {
     let force = |(at, s): ([f64; 3], Vector3<f64>)| -right_u(at).transpose() * s.component_mul(&(right_u(at) * yaw));
     let right = reference_supports().into_iter().map(force).sum::<Vector6<f64>>();
     let ours = support_forces(3, 0.01);
-    // Products and sums of eight feet.
+    // Rounding of products and sums over eight feet.
     assert!((right - ours.fixed_rows::<6>(0)).amax() < 1e-12 * right.amax(), "{ours} instead of {right}");
     let lift = |u: fn([f64; 3]) -> U| -> f64 {
         reference_supports().iter().map(|&(at, s)| (s.z * (u(at) * yaw).z).abs()).sum()
@@ -108,7 +108,7 @@ fn eq_16_with_an_absolute_value_is_undefined_at_rest_and_has_two_wells() {
     let printed = |u: f64, free: f64| 1e7 * (u.abs() - free) / u.abs() * u;
     assert!(printed(0.0, 0.0).is_nan(), "0/0 where the crane stands");
     assert!(printed(0.005, 0.01) < 0.0 && printed(-0.005, 0.01) > 0.0, "it pushes away between two wells");
-    // Ours is defined where the crane stands, and pulls back from everywhere.
+    // Ours is defined at rest, and pulls back from every displacement.
     for coordinate in 0..6 {
         assert_eq!(support_forces(coordinate, 0.0).amax(), 0.0);
         for by in [1e-12, 1e-3, 0.1] {
@@ -163,9 +163,9 @@ fn translations_of_elements_as_printed_put_the_springs_in_the_wrong_places() {
     let (places, d) = cantilever();
     let n = 1.0 / d;
     let right = tip_deflection(&places, d);
-    // Some sums of numbers below 1.
+    // Rounding of a few sums of numbers below 1.
     assert!((3.0 * right - (1.0 - 1.0 / (4.0 * n * n))).abs() < 1e-14, "the law of the cantilever: {places:?}");
-    // Printed: element i at l(i) instead of l(i−1), a section further from the first on, the last one half a section short.
+    // Printed: element i is translated by l(i) instead of l(i−1). All springs but the last move outward by half a section.
     let last = places.len() - 1;
     let printed: Vec<f64> = places.iter().enumerate().map(|(i, x)| x + if i < last { 0.5 * d } else { 0.0 }).collect();
     let printed = tip_deflection(&printed, d);
@@ -206,7 +206,7 @@ fn eq_23_with_rates_in_the_energy_gives_supports_without_stiffness() {
         };
         (at(1e-6) - at(-1e-6)) / 2e-6
     };
-    // ∂E_p/∂q̇ is zero: as printed nothing would carry the crane. −∂E_p/∂q is the force along z.
+    // ∂E_p/∂q̇ is zero: as printed, nothing would carry the crane. −∂E_p/∂q is the force along z.
     assert_eq!(slope(|state| &mut state.v[2]), 0.0);
     let force = crane.vector("support_forces", &state)[2];
     // A difference of energies of some kJ over 2 µm.

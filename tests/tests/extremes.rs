@@ -10,18 +10,18 @@ use crane_tests::{random, states, workspace};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// Of a sum, against the terms that cancel in it: the recursions over 20 coordinates take some hundred roundings a number,
+/// Of a sum, relative to the terms that cancel in it: the recursions over 20 coordinates round about a hundred times per number,
 /// and each of six joints may lose a digit where it carries a mass that is a millionth of its neighbour's.
 const TOLERANCE: f64 = 1e-9;
 
-/// A random crane at an extreme: powers of ten for the stiffness of drives, elements and supports, and for the mass of each
-/// body in turn.
+/// A random crane at an extreme: powers of ten for the stiffness of drives, elements and supports, and for the masses of
+/// the bodies, cyclically.
 #[derive(Clone, Debug)]
 struct Extreme {
     seed: u64,
     springs: [i32; 3],
     masses: [i32; 4],
-    /// θ of elements and base, of what is left to 90°.
+    /// θ of elements and base, as a fraction of 90°.
     lean: f64,
 }
 
@@ -63,7 +63,7 @@ impl Extreme {
         chain
     }
 
-    /// A state far from any pose, the second angle of every element and of the base near ±90°.
+    /// A state far from any pose, the second angle of every element and of the base at up to ±90°.
     fn state(&self, chain: &Chain) -> State {
         let mut state = states::far(chain, 1, self.seed).remove(0);
         for (coordinate, q) in chain.coordinates.iter().zip(&mut state.q) {
@@ -75,7 +75,7 @@ impl Extreme {
     }
 }
 
-/// Greatest of `|sum|` over the sum of the sizes of its terms, both in the measure in which A has a diagonal of ones.
+/// Maximum of `|sum|` over the maximum sum of the magnitudes of its terms, both scaled so that A has a unit diagonal.
 fn cancelled(matrix: &DMatrix<f64>, x: &DVector<f64>, terms: &[&DVector<f64>]) -> f64 {
     let scale = |i: usize| matrix[(i, i)].sqrt().recip();
     let sum = matrix * x - terms.iter().fold(DVector::zeros(x.len()), |sum, term| sum + *term);
@@ -129,7 +129,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// `A q̈ = e + f` and `½ vᵀ A v = E_k`, A symmetric positive definite: the recursion and the matrix share nothing.
+    /// `A q̈ = e + f` and `½ vᵀ A v = E_k`, with A symmetric positive definite: the recursion does not use the matrix.
     #[test]
     fn accelerations_obey_the_equations_of_motion(extreme in extreme()) {
         let crane = Crane::new(&extreme);
@@ -144,13 +144,13 @@ proptest! {
         prop_assert!((energy - kinetic).abs() < TOLERANCE * kinetic, "{energy} against {kinetic}");
     }
 
-    /// `(A + D̂) x = r` of an implicit step, for steps that resolve the springs and for such as jump over them.
+    /// `(A + D̂) x = r` of an implicit step, for steps that resolve the springs and for steps that do not.
     #[test]
     fn implicit_systems_are_solved(extreme in extreme(), power in -6..0_i32) {
         let crane = Crane::new(&extreme);
         let mass = crane.interpreted.matrix("mass_matrix", &crane.state);
         let (added_inertia, base, added) = added_inertias(&crane, 10_f64.powi(power));
-        // Forces as they act.
+        // The actual forces.
         let right = crane.vector("bias") + crane.vector("forces");
         let inputs: Inputs<f64> = crane.interpreted.inputs(&crane.state)
             .with(Argument::RightHandSide, right.as_slice().to_vec())
@@ -163,8 +163,8 @@ proptest! {
         prop_assert!(off < TOLERANCE, "x off by {off:.1e}");
     }
 
-    /// The residual is the gradient of the energy less what loads do, the tangent its derivative, along a random direction, by dual
-    /// numbers.
+    /// The residual is the gradient of the energy less the load forces, and the tangent is the derivative of the residual: along a
+    /// random direction, by dual numbers.
     #[test]
     fn statics_are_derivatives_of_the_energy(extreme in extreme()) {
         let crane = Crane::new(&extreme);
@@ -180,7 +180,7 @@ proptest! {
         let residual = crane.interpreted.vector("static_residual", &state);
         let parts = ["gravity_energy", "support_energy", "element_energy", "drive_energy", "stop_energy", "connector_energy"];
         let slopes = parts.map(|part| crane.interpreted.get(part, &inputs, 1)[0].derivative());
-        // Applied loads have no energy; they count by the work that they do along the direction.
+        // Applied loads have no energy; they contribute the work that they do along the direction.
         let work = crane.interpreted.vector("load_forces", &state).dot(&along);
         let size = slopes.iter().map(|slope| slope.abs()).sum::<f64>() + work.abs()
             + residual.iter().zip(&along).map(|(r, d)| (r * d).abs()).sum::<f64>();
@@ -190,12 +190,12 @@ proptest! {
         let tangent = crane.interpreted.matrix("tangent_stiffness", &state);
         let change: Vec<f64> = crane.interpreted.get("static_residual", &inputs, n).into_iter().map(Dual::derivative).collect();
         let off = &tangent * &along - DVector::from_vec(change);
-        // A load that turns with its link has no symmetric tangent; its symmetric part counts.
+        // The tangent of a load that turns with its link is not symmetric; only its symmetric part is used.
         let off = if crane.interpreted.chain.loads.is_empty() { off.amax() } else { off.dot(&along).abs() / along.norm() };
         prop_assert!(off < TOLERANCE * tangent.amax(), "tangent off by {off:.1e} of {:.1e}", tangent.amax());
     }
 
-    /// Energy changes by the power of the drives less what dampers take.
+    /// The energy changes by the power of drives, loads and winches less the dissipation.
     #[test]
     fn power_balances(extreme in extreme()) {
         let crane = Crane::new(&extreme);
@@ -209,7 +209,7 @@ proptest! {
         let scalar = |function: &str| crane.interpreted.scalar(function, &crane.state);
         let supplied = scalar("drive_power") + scalar("load_power") + scalar("winch_power") - scalar("dissipation");
         let off = (rates.iter().sum::<f64>() - supplied).abs();
-        // What a coordinate's inertia and its neighbours' forces do to one another cancels in the sum.
+        // The power that coordinates exchange through inertia forces cancels in the sum.
         let mass = crane.interpreted.matrix("mass_matrix", &crane.state);
         let exchanged = (0..v.len()).map(|i| (0..v.len()).map(|j| (v[i] * mass[(i, j)] * acceleration[j]).abs()).sum::<f64>());
         let size = rates.iter().map(|rate| rate.abs()).sum::<f64>() + exchanged.sum::<f64>();

@@ -17,7 +17,7 @@ fn cranes() -> impl Iterator<Item = (u64, Interpreted)> {
     SEEDS.map(|seed| (seed, Interpreted::new(workspace::chain_of("random", &random::spec(seed)))))
 }
 
-/// The state moving along `(1, v, a)`.
+/// The state in dual numbers, with these rates of t, q and v.
 fn moving(crane: &Interpreted, state: &State, rates: (f64, &[f64], &[f64])) -> Inputs<Dual> {
     let (t, q, v) = rates;
     let pair = |values: &[f64], rates: &[f64]| values.iter().zip(rates).map(|(x, r)| Dual::new(*x, *r)).collect();
@@ -25,7 +25,7 @@ fn moving(crane: &Interpreted, state: &State, rates: (f64, &[f64], &[f64])) -> I
     Inputs::state(Dual::new(state.t, t), pair(&state.q, q), pair(&state.v, v), parameters)
 }
 
-/// Relative to the larger of both, or to a size given by what cancels.
+/// Relative to the larger of the two, or to `size`, that of the terms that cancel, if it is larger.
 fn assert_close(a: f64, b: f64, size: f64, tolerance: f64, what: &str) {
     assert!((a - b).abs() <= tolerance * size.max(a.abs()).max(b.abs()), "{what}: {a} against {b}, size {size}");
 }
@@ -86,7 +86,7 @@ fn rate_of_the_mass_matrix_less_twice_c_is_skew() {
     }
 }
 
-/// A rotor adds its inertia to one entry of A, and `½ I q̇²` to the kinetic energy; no other force knows it.
+/// A rotor adds its inertia to one entry of A, and `½ I q̇²` to the kinetic energy; no other force depends on it.
 #[test]
 fn a_rotor_adds_to_the_diagonal_and_to_nothing_else() {
     for (seed, crane) in cranes() {
@@ -122,7 +122,7 @@ fn a_rotor_adds_to_the_diagonal_and_to_nothing_else() {
     }
 }
 
-/// What the supports push on the base's translations is the sum of their reactions, and what gravity pulls is the weight:
+/// The support forces on the base's translations are the sum of the reactions, and the gravity forces are the weight:
 /// in equilibrium the reactions carry the weight, whatever the crane.
 #[test]
 fn reactions_and_weight_are_what_acts_on_the_base() {
@@ -144,7 +144,7 @@ fn reactions_and_weight_are_what_acts_on_the_base() {
     }
 }
 
-/// What every cut transmits at a state with accelerations `a`: force, then moment.
+/// Force and moment that every cut transmits at a state with accelerations `a`.
 fn wrenches(crane: &Interpreted, state: &State, a: &DVector<f64>) -> Vec<[f64; 6]> {
     let inputs = crane.inputs(state).with(Argument::Acceleration, a.as_slice().to_vec());
     crane.get("internal_forces", &inputs, 0).as_chunks().0.to_vec()
@@ -161,8 +161,8 @@ fn forces_between_points(crane: &Interpreted, state: &State) -> DVector<f64> {
     })
 }
 
-/// Along the axis of a joint's last coordinate, a cut transmits what moves that coordinate: `A a − e` without the rotor, less what
-/// loads and connectors between points do.
+/// Along the axis of a joint's last coordinate, a cut transmits the generalized force of that coordinate: `A a − e` without the
+/// rotor, less the forces of loads and of connectors between points.
 #[test]
 fn what_a_joint_transmits_along_its_axis_is_its_effort() {
     for (seed, crane) in cranes() {
@@ -192,8 +192,8 @@ fn what_a_joint_transmits_along_its_axis_is_its_effort() {
     }
 }
 
-/// The load on the ground is the weight and the inertia of the crane, and what is applied to it: what the supports carry, as it
-/// moves.
+/// The load on the ground consists of the weight and inertia forces of the crane and the loads applied to it: the supports carry
+/// just that, also in motion.
 #[test]
 fn supports_carry_the_load_on_the_ground() {
     for (seed, crane) in cranes().filter(|(seed, _)| seed % 3 == 0) {
@@ -203,7 +203,7 @@ fn supports_carry_the_load_on_the_ground() {
             for axis in 0..3 {
                 let total: f64 = reactions.iter().skip(axis).step_by(3).sum();
                 let size = reactions.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-                // Accelerations are good to 1e-12 of the largest, which is that of a light element.
+                // Accelerations are accurate to 1e-12 of the largest, which is that of a light element.
                 assert_close(-ground[axis], total, size, 1e-9, &format!("seed {seed}"));
             }
         }
@@ -220,12 +220,12 @@ fn energy_drift_falls_as_h4() {
             let parts = ["kinetic_energy", "gravity_energy", "support_energy", "element_energy"];
             parts.iter().map(|part| crane.scalar(part, state)).sum()
         };
-        // The stiffest springs turn about 500 rad/s, so the largest step is well inside the region of stability.
+        // The stiffest springs vibrate at about 500 rad/s, so the largest step is well inside the region of stability.
         let drift = |steps: u32| (energy(&after(&crane, &start, 0.02, steps)) - energy(&start)).abs();
         let drifts = [40, 80, 160].map(drift);
         for pair in drifts.windows(2) {
             let order = (pair[0] / pair[1]).log2();
-            // The leading term may nearly vanish, never grow.
+            // The leading error term may nearly vanish, which only raises the order.
             assert!(order > 3.7, "seed {seed}: order {order}, {drifts:?}");
         }
     }
@@ -251,7 +251,7 @@ fn after(crane: &Interpreted, start: &State, duration: f64, steps: u32) -> State
     })
 }
 
-/// d/dt (E_k + E_p) = drive power − dissipation, along the motion that the equations give.
+/// d/dt (E_k + E_p) = power of drives, loads and winches − dissipation, along the motion that the equations give.
 #[test]
 fn power_balances() {
     for (seed, crane) in cranes() {
@@ -265,14 +265,14 @@ fn power_balances() {
                 + crane.scalar("winch_power", &state)
                 - crane.scalar("dissipation", &state);
             let size = rates.iter().map(|rate| rate.abs()).sum();
-            // q̈ comes from a dense solve, so the condition of A is in it.
+            // q̈ comes from a dense solve, so its error grows with the condition number of A.
             assert_close(rates.iter().sum(), supplied, size, 1e-9, &format!("seed {seed}: {rates:?}"));
         }
     }
 }
 
-/// Rigid drives: their coordinates move as prescribed, `A q̈ = e + f` holds with what they take for it, and no linear system has
-/// them among its unknowns.
+/// Rigid drives: their coordinates move as prescribed, `A q̈ = e + f` holds with the drive forces that this takes, and no linear
+/// system has them among its unknowns.
 #[test]
 fn prescribed_coordinates_are_no_unknowns() {
     let mut tested = 0;
@@ -343,7 +343,7 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
                 let size = slopes.iter().map(|slope| slope.abs()).sum::<f64>() + loads[j].abs();
                 let gradient = slopes.iter().sum::<f64>() - loads[j];
                 if crane.prescribed().contains(&j) {
-                    // No unknown: its drive takes what the gradient asks for, and it does not move.
+                    // Not an unknown: its drive balances the gradient, and it does not move.
                     assert_close(gradient, holding[j], size, 1e-11, &format!("seed {seed}, held {j}"));
                     assert!(residual[j] == 0.0, "seed {seed}, residual {j}");
                     let column: Vec<f64> = tangent.column(j).iter().copied().collect();
@@ -355,7 +355,7 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
                     crane.get("static_residual", &inputs, n).into_iter().map(Dual::derivative).collect();
                 jacobian.column_mut(j).copy_from_slice(&column);
             }
-            // Moments and forces that turn with a link have no potential: of their derivatives it is the symmetric part.
+            // Moments and forces that turn with a link have no potential: the tangent is the symmetric part of the Jacobian.
             let symmetric = (&jacobian + jacobian.transpose()) * 0.5;
             assert!((symmetric - &tangent).amax() < 1e-12 * tangent.amax(), "seed {seed}: tangent");
         }
@@ -408,7 +408,7 @@ fn transform_derivatives_are_derivatives() {
     }
 }
 
-/// Turning an unsupported crane about the vertical changes neither its energies nor its forces, seen from itself.
+/// Turning an unsupported crane about the vertical changes neither its energies nor its forces in its own frame.
 #[test]
 fn an_unsupported_crane_may_slew_freely() {
     let mut tested = 0;

@@ -1,4 +1,4 @@
-//! Generated code means what its program means, and simplification changes nothing.
+//! Generated code computes what its program defines, and simplification changes nothing but rounding.
 
 use crane_codegen::chain::Analyses;
 use crane_codegen::compile;
@@ -51,7 +51,7 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
     }
 }
 
-/// Coordinates and rates with those that are prescribed set.
+/// Coordinates and rates, with the prescribed ones set.
 fn prescribed(crane: &Interpreted, inputs: &Inputs<Runtime>) -> Vec<Runtime> {
     let mut state = [inputs.get(Argument::Position), inputs.get(Argument::Velocity)];
     for (j, motion) in crane.prescribed().into_iter().zip(crane.get("prescribed_motions", inputs, 0).chunks(2)) {
@@ -76,8 +76,8 @@ fn implicit_solution(crane: &Interpreted, inputs: &Inputs<Runtime>) -> Vec<Runti
     )
 }
 
-/// Where the target has a fused multiply-add, generated code rounds less often than the interpreter: relative to the
-/// largest value, as far as rounding is magnified in accelerations, or to 1 where all terms cancel.
+/// Where the target has a fused multiply-add, generated code rounds less often than the interpreter. The tolerance is relative
+/// to the largest value, and allows for the magnified rounding of accelerations; where all terms cancel, it is relative to 1.
 const FUSED: Option<f64> = if cfg!(any(target_feature = "fma", target_arch = "aarch64")) { Some(1e-11) } else { None };
 
 #[test]
@@ -114,7 +114,7 @@ fn simplification_changes_nothing_but_rounding() {
         let crane = Interpreted::new(chain);
         let verbatim = mechanics::derive_verbatim(&crane.chain, Analyses::ALL);
         for state in states::far(&crane.chain, 2, seed) {
-            // Some system with damping, and factors of it: those of the two programs differ in number and order.
+            // An arbitrary system with damping, factorised by each program: their factors differ in number and order.
             let diagonal = (0..36).map(|i| if i % 7 == 0 { 10.0 } else { 0.0 }).collect();
             let inputs = (crane.inputs(&state).with(Argument::RightHandSide, state.v.clone()))
                 .with(Argument::Acceleration, state.v.clone())
@@ -128,7 +128,7 @@ fn simplification_changes_nothing_but_rounding() {
                 let (simple, plain) = (evaluate(&crane.program, function.id), evaluate(&verbatim, function.id));
                 let size = plain.iter().fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
                 for (a, b) in simple.iter().zip(&plain) {
-                    // Some hundred roundings of the largest intermediate results.
+                    // About a hundred roundings of the largest intermediate results.
                     assert!((a - b).abs() <= 1e-12 * size, "seed {seed} {}: {a} against {b}", function.id.name());
                 }
             }
@@ -136,7 +136,7 @@ fn simplification_changes_nothing_but_rounding() {
     }
 }
 
-/// The guess of a driven coordinate comes from the profile in numbers, the motion from the profile in expressions.
+/// The guess of a driven coordinate comes from the numeric profile, the motion from the symbolic profile.
 #[test]
 fn driven_coordinates_start_where_their_drives_do() {
     for entry in registry::all() {
@@ -150,7 +150,7 @@ fn driven_coordinates_start_where_their_drives_do() {
     }
 }
 
-/// Parameters may be called what generated code calls its own: each keeps its value.
+/// Parameters may have the names of variables in generated code: each keeps its value.
 #[test]
 fn parameters_named_like_generated_code_keep_their_values() {
     let names = ["c001", "t012", "params", "sin_cos", "out", "q", "t", "v"];

@@ -1,4 +1,4 @@
-//! What a scene does not need is not there.
+//! What a crane does not need is left out of its generated code.
 
 use crane_codegen::chain::{Analyses, Axis};
 use crane_codegen::compile;
@@ -72,7 +72,7 @@ fn the_header_says_what_is_left_out_and_why() {
     assert!(text.contains("//   static residual and tangent stiffness: `analyses` does not include statics\n"));
 }
 
-/// The feet of the reference crane are symmetric about x = 0: what cancels is gone, not a rounding error.
+/// The feet of the reference crane are symmetric about x = 0: terms that cancel are left out, rather than kept as rounding errors.
 #[test]
 fn symmetric_supports_couple_nothing_by_rounding() {
     let crane = Interpreted::new(workspace::chain("eight_link_rigid"));

@@ -1,4 +1,4 @@
-//! The example of your own crane: as shown, sound, at rest.
+//! The example of your own crane: shown verbatim in the manual, valid, and stable at rest.
 
 use std::fs;
 
@@ -54,13 +54,13 @@ fn it_rests_stably() {
     let own = weight * length.powi(4) / (8.0 * bending) * (1.0 - 1.0 / 18.0);
     let sag = moment / stiffness * length + tip + own;
 
-    // What is left over is rounding of that moment.
+    // The residual is rounding of that moment.
     assert!(crane.vector("static_residual", &rest).amax() < 1e-12 * moment);
     assert!(
         crane.matrix("tangent_stiffness", &rest).cholesky().is_some(),
         "the tangent stiffness is positive definite"
     );
     let hook = crane.get("points", &crane.inputs(&rest), 3);
-    // Large angles: sag/length squared, 5e-5.
+    // Nonlinear in the angles: (sag/length)², 5e-5.
     assert!(((2.0 - 1.5 - hook[2]) / sag - 1.0).abs() < 2e-4, "{hook:?} {sag}");
 }

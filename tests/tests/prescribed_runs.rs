@@ -7,7 +7,7 @@ use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::modes::SmallMotions;
 use crane_tests::registry;
 
-/// A moment of a run, and how far its energies are from balance, J.
+/// An instant of a run, with the error of its energy balance, J.
 struct Moment {
     t: f64,
     q: Vec<f64>,
@@ -16,7 +16,7 @@ struct Moment {
     work: f64,
 }
 
-/// Random cranes with rigid drives, and the places of the prescribed coordinates.
+/// Random cranes with rigid drives, and the indices of the prescribed coordinates.
 fn cranes() -> Vec<(Box<dyn DynCrane>, Vec<usize>)> {
     let cranes = registry::all().into_iter().filter(|entry| entry.random).map(|entry| (entry.rig)());
     let cranes = cranes.map(|crane| {
@@ -61,8 +61,8 @@ fn run(crane: &dyn DynCrane, settings: &Settings) -> Vec<Moment> {
     moments
 }
 
-/// Prescribed coordinates are where their motion says at every result, to the last bit; the others as any method finds them, and
-/// the drives' work is the energy gained and dissipated.
+/// At every result, prescribed coordinates follow their motion to the last bit; all methods agree on the others, and the work of
+/// drives and loads is the energy gained and dissipated.
 #[test]
 fn every_method_follows_prescribed_motions() {
     for (crane, prescribed) in cranes() {
@@ -88,7 +88,7 @@ fn every_method_follows_prescribed_motions() {
     }
 }
 
-/// Lane by lane the same as one by one.
+/// A run in lanes gives the same as a single run.
 #[test]
 fn ensembles_follow_prescribed_motions() {
     for (crane, prescribed) in cranes() {
@@ -106,7 +106,7 @@ fn ensembles_follow_prescribed_motions() {
         let results = crane.simulate_ensemble(&members, &settings, &mut |member, sample| {
             let expected = &alone[seen / 3];
             let apart = sample.q.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // Fused multiply-adds of lanes, where single numbers have none.
+            // Lanes use fused multiply-adds where scalar code does not.
             assert!(apart < 1e-11, "member {member}: {apart:.1e} at t = {}", sample.t);
             assert!(prescribed.iter().all(|j| sample.q[*j] == expected[*j]), "member {member}");
             seen += 1;

@@ -1,4 +1,4 @@
-//! Rigid drives and rotors against laws of mechanics that every textbook has.
+//! Rigid drives and rotors against textbook laws of mechanics.
 
 use crane_codegen::program::Inputs;
 use crane_tests::dual::Dual;
@@ -6,7 +6,7 @@ use crane_tests::interpreted::Interpreted;
 use crane_tests::quantities::State;
 use crane_tests::workspace;
 
-/// Some hundred roundings.
+/// About a hundred roundings.
 const ROUNDING: f64 = 1e-13;
 
 fn crane(spec: &str) -> Interpreted {
@@ -42,7 +42,7 @@ drives:
   - {coordinate: arm_psi, rigid: true, armature: 0.4, motion: MOTION}
 ";
 
-/// At constant speed a motor carries the weight alone, `m g l cos q`; in the ramp also `(I + m l² + I_a) q̈`.
+/// At constant speed a motor carries only the weight, `m g l cos q`; during the ramp also `(I + m l² + I_a) q̈`.
 #[test]
 fn a_pendulum_that_turns_at_constant_speed() {
     let crane = crane(&PENDULUM.replace("MOTION", "{speed: {rate: 2.0, from: 0.3, begin: 0.5, ramp: 1.5}}"));
@@ -83,7 +83,7 @@ fn a_rigid_drive_holds_the_weight_at_rest() {
     assert_eq!(crane.matrix("tangent_stiffness", &state)[(0, 0)], 1.0);
 }
 
-/// Dampers hold nothing at rest, though the motion of their drive is under way at t = 0.
+/// Dampers carry nothing at rest, although the motion of their drive is under way at t = 0.
 #[test]
 fn dampers_are_no_part_of_statics() {
     let spec = PENDULUM.replace("rigid: true", "stiffness: 500, damping: 80");
@@ -171,7 +171,7 @@ fn after(crane: &Interpreted, start: &State, duration: f64, steps: u32) -> State
     })
 }
 
-/// The stiffer a drive, the nearer to a rigid one: motion of the load and torque differ by a share that falls as 1/s.
+/// The stiffer a drive, the nearer to a rigid one: the differences in load motion and torque fall as 1/s, s being the stiffness.
 #[test]
 fn a_stiff_drive_tends_to_a_rigid_one() {
     let run = |drive: &str| {
@@ -180,9 +180,9 @@ fn a_stiff_drive_tends_to_a_rigid_one() {
         (end.q[1], crane.vector("drive_forces", &end)[0])
     };
     let rigid = run("rigid: true");
-    // Stiffer still, the spring multiplies what is left of the steps' errors: the reason for rigid drives.
+    // An even stiffer spring would magnify the remaining error of the steps: the reason for rigid drives.
     let [stiff, stiffer] = [1e4, 1e5].map(|s| {
-        // A tenth of critical damping, so that what the start excites is gone.
+        // A tenth of critical damping, so that the vibration from the start has decayed.
         let (q, torque) = run(&format!("stiffness: {s}, damping: {}", 0.6 * f64::sqrt(s)));
         [q - rigid.0, torque - rigid.1].map(f64::abs)
     });
@@ -209,6 +209,6 @@ fn energy_of_a_rigidly_driven_crane_balances() {
     }
     let gained = energy(&state) - energy(&start);
     assert!(gained.abs() > 10.0, "{gained} J");
-    // h⁴ of Simpson's rule at some rad/s.
+    // The h⁴ error of Simpson's rule at a few rad/s.
     assert!((gained - work).abs() < 1e-7 * gained.abs(), "{gained} J against {work} J");
 }

@@ -11,7 +11,7 @@ use crane_tests::workspace;
 
 const LENGTH: f64 = 8.0;
 
-/// A cantilever along x with a mass at its tip, on which gravity acts along a direction; what it weighs is live.
+/// A cantilever along x with a mass at its tip, under gravity in some direction; the tip mass is a live parameter.
 struct Beam {
     crane: Interpreted,
 }
@@ -67,7 +67,7 @@ links:
         Interpreted { chain, program: self.crane.program.clone() }
     }
 
-    /// Equilibrium under a load, in steps that Newton's method follows.
+    /// Equilibrium under a load, in load steps small enough for Newton's method.
     fn equilibrium(&self, load: f64) -> State {
         let mut q = DVector::zeros(self.crane.size());
         for step in 1..=20 {
@@ -99,7 +99,7 @@ links:
     }
 }
 
-/// Excess of the load under which a cantilever, loaded at its tip in its stiff plane, falls aside, over
+/// Relative excess of the load under which a cantilever, loaded at its tip in its stiff plane, buckles sideways, over
 /// `4.0126 √(EI GJ)/L²` [Timoshenko and Gere, Theory of Elastic Stability, 1961, section 6.3].
 fn buckling_excess(joint: &str, sections: usize) -> f64 {
     let section = Section { jy: 1.0, jz: 1e-6, jo: 2e-6 };
@@ -132,8 +132,8 @@ fn lateral_torsional_buckling() {
     }
 }
 
-/// A round beam does not know which of its planes is called psi: the same load bends it by 70° whichever way it pulls, and
-/// it vibrates at the same frequencies.
+/// For a round beam it does not matter which of its planes is called psi: the same load bends it by 70° whichever way it pulls,
+/// and it vibrates at the same frequencies.
 #[test]
 fn a_round_beam_bends_alike_in_all_planes() {
     for sections in [2, 4, 8] {
@@ -159,7 +159,7 @@ fn a_round_beam_bends_alike_in_all_planes() {
         assert!((by_psi.0 - 70.0).abs() < 0.1, "bent by {}°", by_psi.0);
         for other in [&by_both, &by_theta] {
             for (a, b) in by_psi.1.iter().zip(&other.1) {
-                // Newton's method and the eigenvalues leave some 1e-12.
+                // Newton's method and the eigenvalues leave errors of about 1e-12.
                 assert!((a / b - 1.0).abs() < 1e-9, "{sections} sections: {by_psi:?} against {other:?}");
             }
         }
@@ -168,7 +168,7 @@ fn a_round_beam_bends_alike_in_all_planes() {
     }
 }
 
-/// In one plane, and in torsion alone, both joints are the same: motions, forces, and what they converge to.
+/// In one plane, and in torsion alone, both joints are the same: motions, forces and limits.
 #[test]
 fn motions_in_one_plane_are_those_of_the_paper() {
     for sections in [1, 3, 5] {
@@ -184,19 +184,19 @@ fn motions_in_one_plane_are_those_of_the_paper() {
             };
             let state = State { t: 0.0, q: own(1.1, 0.4), v: own(2.0, 1.7) };
             let (a, b) = (symmetric.acceleration(&state), paper.acceleration(&state));
-            // Accelerations of both lie in the plane; some hundred roundings.
+            // Accelerations of both lie in the plane; about a hundred roundings.
             assert!((&a - &b).amax() < 1e-11 * b.amax(), "{sections} sections, {kind}: {a} against {b}");
             for function in ["static_residual", "bias"] {
                 let (a, b) = (symmetric.vector(function, &state), paper.vector(function, &state));
                 let planar = |x: &DVector<f64>| DVector::from_fn(n, |j, _| if state.q[j] == 0.0 { 0.0 } else { x[j] });
-                // Of forces of order 1, which cancel in torsion.
+                // Relative to forces of order 1, which cancel in torsion.
                 assert!((planar(&a) - planar(&b)).amax() < 1e-12 * b.amax().max(1.0), "{function}, {kind}");
             }
         }
     }
 }
 
-/// About the straight beam, pulled lengthwise as a beam that rotates is, small vibrations in all planes are the same.
+/// About the straight beam under tension, as in a rotating blade, small vibrations are the same with both joints.
 #[test]
 fn a_straight_beam_under_tension_vibrates_as_with_the_joint_of_the_paper() {
     for sections in [2, 4, 8] {
@@ -211,7 +211,7 @@ fn a_straight_beam_under_tension_vibrates_as_with_the_joint_of_the_paper() {
 }
 
 /// A boom under its load, a quarter of it sideways: how far its tip turns about its own axis. With `paper` the error falls as
-/// 1/n, with `symmetric` as 1/n²; both tend to one limit.
+/// 1/n, with `symmetric` as 1/n²; both tend to the same limit.
 #[test]
 fn twist_of_a_tip_that_is_loaded_in_two_planes() {
     let section = Section { jy: 4e-6, jz: 1e-6, jo: 1e-6 };
@@ -231,7 +231,7 @@ fn twist_of_a_tip_that_is_loaded_in_two_planes() {
     assert!(error(symmetric[0]) < 0.1 * error(paper[0]), "{symmetric:?}, {paper:?}");
 }
 
-/// Tip of the elastica: along and across the straight beam, parts of its length, under `PL²/EI` across it.
+/// Tip of the elastica: along and across the straight beam, as fractions of its length, under a load `PL²/EI` across it.
 ///
 /// `θ″ = −α cos θ` with θ(0) = 0 and θ′(1) = 0, by shooting with the classical Runge–Kutta method.
 fn elastica(alpha: f64) -> [f64; 2] {
@@ -277,7 +277,7 @@ fn large_bending_tends_to_the_elastica() {
         });
         for axis in [0, 1] {
             let of: Vec<f64> = errors.iter().map(|error| error[axis].abs()).collect();
-            // The beam weighs 5e-5 of the load: below that the law ends.
+            // The beam weighs about 3e-5 of the load: below that the law does not hold.
             assert!(of[0] < 0.01 && of[2] < 7e-4, "{direction}: {errors:?}");
             assert!((of[0] / of[1]).log2() > 1.9 && (of[1] / of[2]).log2() > 1.8, "{direction}: {errors:?}");
         }

@@ -1,4 +1,4 @@
-//! Sines and cosines of generated code against those of 192 bits.
+//! Sines and cosines of generated code against 192-bit results.
 
 use crane_codegen::symbolic::Scalar;
 use crane_model::rt::{lanes, sin_cos};
@@ -15,7 +15,7 @@ fn ulps(value: f64, exact: &Precise) -> f64 {
     (Precise::from_f64(value) - exact.clone()).round().abs() / unit
 }
 
-/// Angles of all sizes, some of them as near to a multiple of π/2 as a number can be; beyond 2²⁰ quarter turns too.
+/// Angles of all sizes, some of them as near to a multiple of π/2 as a number can be, also beyond 2²⁰ quarter turns.
 fn angles(rng: &mut Rng) -> [f64; 13] {
     std::array::from_fn(|i| {
         let scale = [1e-3, 0.5, 4.0, 1e2, 1e4, 1.6e6, 1e8][i % 7];

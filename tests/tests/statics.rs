@@ -18,22 +18,22 @@ fn support_reactions_add_up_to_the_weight() {
         let reactions = crane.get("support_reactions", &crane.inputs(&state), 0);
         let total = |axis: usize| reactions.iter().skip(axis).step_by(3).sum::<f64>();
         let weight = weight(&crane);
-        // Newton ends at rounding of the springs' forces, 1e5 N each.
+        // Newton's method ends at the rounding error of the springs' forces, 1e5 N each.
         assert!((total(2) / weight - 1.0).abs() < 1e-10, "{name}: {} against {weight} N", total(2));
         assert!(total(0).abs() < 1e-10 * weight && total(1).abs() < 1e-10 * weight, "{name}");
     }
 }
 
-/// Newton of the runtime on generated code against plain Newton on the interpreter.
+/// The runtime's Newton method on generated code against a plain one on the interpreter.
 #[test]
 fn the_runtime_finds_the_same_equilibria() {
-    // Plain Newton does not find the feet that press.
+    // A plain Newton method does not find which feet are in contact.
     let lifts = |name: &str| name == "eight_link_hydraulic";
     for entry in registry::all().into_iter().filter(|e| e.name.starts_with("eight_link") && !lifts(e.name)) {
         let found = (entry.rig)().equilibrium(&crane_model::statics::Settings::default());
         let expected = Interpreted::new(workspace::chain(entry.name)).equilibrium();
         for (a, b) in found.q.iter().zip(&expected.q) {
-            // The iteration ends at a residual of rounding size over the smallest stiffness.
+            // The error is a residual of rounding size over the smallest stiffness.
             assert!((a - b).abs() < 1e-9, "{}: {a} against {b}", entry.name);
         }
     }

@@ -1,11 +1,11 @@
-//! What the default runs of the shipped cranes cost: a method that takes more steps than it did is noticed.
+//! What the default runs of the shipped cranes cost: reveals a method that takes more steps than before.
 
 use std::ops::ControlFlow;
 
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::statics;
 
-/// Steps and evaluations of the run that each spec asks for, by method; recorded, with the tolerance that is the default.
+/// Steps and evaluations of the run that each spec asks for, by method; recorded with the default tolerance.
 const RECORDED: [(&str, Method, [usize; 2]); 10] = [
     ("eight_link_flexible", Method::Bdf, [1514, 2112]),
     ("eight_link_identified", Method::Bdf, [853, 1620]),

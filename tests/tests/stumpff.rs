@@ -1,11 +1,11 @@
-//! Stumpff's functions of generated code and of the interpreter against those of 192 bits.
+//! Stumpff functions of generated code and of the interpreter against 192-bit results.
 
 use crane_codegen::symbolic::Scalar;
 use crane_model::rt::{lanes, stumpff};
 use crane_tests::precise::Precise;
 use fastrand::Rng;
 
-/// Units in the last place of the exact result, for x ≤ 10: a section bent by 180° has π².
+/// Units in the last place of the exact result, for x ≤ 10: a section bent by 180° has x = π².
 const LIMIT: f64 = 3.2;
 /// c₀ and c₁ have zeros, c₂ beyond 10: there the error is measured by 1/k!, the value at x = 0.
 const OF_LARGEST: f64 = 1.2e-15;
@@ -40,7 +40,7 @@ fn are_right_to_the_last_place() {
             for (k, (row, in_lane)) in (0..).zip(values.iter().zip(&in_lanes)) {
                 let exact = Precise::from_f64(x).stumpff(k);
                 assert_eq!(row[i], in_lane[i].to_array()[5], "c_{k}({x:?}): one lane, another number");
-                // As the interpreter has it, by another way.
+                // The interpreter computes it in another way.
                 let interpreted = off(x.stumpff(k), &exact);
                 assert!(
                     interpreted < 4e-15 * reciprocal_factorial(k),

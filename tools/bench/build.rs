@@ -6,9 +6,9 @@ use crane_codegen::chain::Analyses;
 use crane_codegen::{SourceFile, build};
 
 const SPEC: &str = "../../specs/eight_link_flexible.yaml";
-/// Sections of the boom; 0 is a rigid one. `CRANE_BENCH_SECTIONS="0 4"` in the environment builds fewer.
+/// Sections of the boom; 0 means a rigid boom. `CRANE_BENCH_SECTIONS="0 4"` in the environment builds fewer.
 const SECTIONS: &str = "0 4 10 20 30";
-/// Up to so many sections the derivatives of all transforms are generated, for the explicit triple sum.
+/// Maximum number of sections for which the derivatives of all transforms are generated, for the explicit triple sum.
 const DERIVATIVES_UP_TO: usize = 4;
 
 fn main() -> io::Result<()> {

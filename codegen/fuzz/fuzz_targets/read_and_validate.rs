@@ -1,7 +1,7 @@
-//! Any bytes get a chain or mistakes that can be drawn, and never a panic.
+//! Any input yields a chain or mistakes that can be drawn, never a panic.
 //!
 //! From `codegen/`: `cargo fuzz run read_and_validate fuzz/corpus ../specs tests/bad -- -dict=fuzz/spec.dict`; on a stable
-//! toolchain with `RUSTC_BOOTSTRAP=1`. New inputs go to the first folder, the others are where it starts from.
+//! toolchain with `RUSTC_BOOTSTRAP=1`. New inputs go to the first folder; the others contain initial inputs.
 #![no_main]
 
 use crane_codegen::{SourceFile, read, validate};

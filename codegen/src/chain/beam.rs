@@ -18,7 +18,7 @@ pub struct BeamSpring {
 pub struct Beam {
     /// Name of the link.
     pub link: String,
-    /// Outlines of its cross-section along it: between two places they change linearly, at a step two places coincide; one
+    /// Outlines of its cross-section along it: they change linearly between two places; at a step, two places coincide. One
     /// place if the section is the same everywhere, none if the spec does not give a shape.
     pub outlines: Vec<(Value, Outline)>,
     /// Moduli of the section where each of its elements begins; `None` if the spec does not give them.
@@ -36,17 +36,17 @@ pub struct Outline {
     pub round: bool,
 }
 
-/// Properties that relate forces and moments of a section to its largest stresses.
+/// Properties that relate forces and moments of a section to its maximum stresses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moduli {
     /// Area, m²: `σ = N/A`.
     pub area: Value,
-    /// Moduli of bending about y and about z, m³: `σ = M/W`.
+    /// Section moduli of bending about y and about z, m³: `σ = M/W`.
     pub bending: [Value; 2],
-    /// Modulus of torsion, m³: the largest `τ = Mx/W`.
+    /// Section modulus of torsion, m³: the maximum `τ = Mx/W`.
     pub torsion: Value,
-    /// Shear areas along y and along z, m²: the largest `τ = Q/A`.
+    /// Shear areas along y and along z, m²: the maximum `τ = Q/A`.
     pub shear: [Value; 2],
-    /// Whether the stresses of both bendings add up in a corner; on a round section they are at right angles.
+    /// Whether the stresses of bending about both axes add up in a corner; on a round section, both moments add as vectors.
     pub has_corners: bool,
 }

@@ -7,7 +7,7 @@ use super::{BodyId, Chain, CoordinateId, CoordinateKind, Frame, Profile, Value};
 pub struct Connector {
     /// Unique name.
     pub name: String,
-    /// What ℓ is.
+    /// How ℓ is measured.
     pub strain: Strain,
     /// How F depends on ℓ.
     pub law: ConnectorLaw,
@@ -16,9 +16,9 @@ pub struct Connector {
 /// The length of a connector.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Strain {
-    /// The distance of two points, m.
+    /// The distance between two points, m.
     Distance([Attachment; 2]),
-    /// `q_j − r q_i`, m or rad: how far a coordinate is from where another one takes it.
+    /// `q_j − r q_i`, m or rad: how far a coordinate is from the position given by its leader.
     Coupling {
         /// j
         coordinate: CoordinateId,
@@ -81,8 +81,8 @@ impl Connector {
 }
 
 impl Chain {
-    /// The coordinates that change the length of a connector, the first and the one after the last: of two points, those that move only
-    /// one of them.
+    /// The range of coordinates that change the length of a connector, the first and one past the last: between two points, those that
+    /// move only one of them.
     #[must_use]
     pub fn spanned(&self, connector: &Connector) -> [usize; 2] {
         match &connector.strain {
@@ -105,7 +105,7 @@ impl Chain {
         }
     }
 
-    /// The distance of two points at a pose, m.
+    /// The distance between two points at a pose, m.
     #[must_use]
     pub fn distance(&self, ends: &[Attachment; 2], q: &[f64], parameters: &[f64]) -> f64 {
         let mut frame = Frame::WORLD;
@@ -122,7 +122,7 @@ impl Chain {
         (0..3).map(|i| (other[i] - one[i]).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Number of coordinates that move a point: the first so many do.
+    /// Number of coordinates that move a point: they are the first ones of the chain.
     #[must_use]
     pub fn reach(&self, end: &Attachment) -> usize {
         end.body.map_or(0, |body| self.degrees_of_freedom(body))

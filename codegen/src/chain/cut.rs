@@ -8,9 +8,9 @@ pub enum Cut {
     /// Between the crane and the world: world frame, about the world's origin.
     Ground,
     /// At the joint of the link that begins with this body: in the frame reached by the link's last coordinate, about its
-    /// origin; of a link without a joint, in the body's frame.
+    /// origin; for a link without a joint, in the body's frame.
     Joint(BodyId),
-    /// Before a body, in its frame; of a beam's element, the section where it begins.
+    /// Before a body, in its frame; for a beam's element, at the section where it begins.
     Body(BodyId),
 }
 

@@ -25,9 +25,9 @@ pub struct Cylinder {
     pub retracted: f64,
     /// Stroke, m.
     pub stroke: f64,
-    /// Greatest pressure, Pa.
+    /// Maximum pressure, Pa.
     pub max_pressure: Option<f64>,
-    /// Pressure on the side that does not carry, Pa.
+    /// Pressure on the side that does not carry the load, Pa.
     pub back_pressure: f64,
     /// Bulk modulus of the oil, Pa.
     pub bulk_modulus: Option<f64>,
@@ -44,22 +44,22 @@ pub struct Valve {
     pub flow: f64,
     /// That pressure drop, Pa.
     pub pressure_drop: f64,
-    /// Share of the spool's travel that is covered.
+    /// Fraction of the spool's travel before an edge opens.
     pub overlap: f64,
     /// Time constant of the spool, s.
     pub lag: f64,
-    /// Opening for an error of length, 1/m; 0 if the drive has a command.
+    /// Opening per error of length, 1/m; 0 if the drive has a command.
     pub gain: f64,
-    /// Share of the opening that a speed takes which is set ahead of any error.
+    /// Fraction of the opening required by the speed of the motion that is applied before any error.
     pub feed_forward: f64,
     /// Leakage past the piston, m³/(s Pa).
     pub leakage: f64,
 }
 
-/// What supplies the cylinders.
+/// The pump that supplies the cylinders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pump {
-    /// Greatest flow, m³/s.
+    /// Maximum flow, m³/s.
     pub max_flow: f64,
     /// Pressure that it maintains, Pa.
     pub pressure: Option<f64>,
@@ -72,7 +72,7 @@ pub struct Pump {
 pub struct Pin {
     /// The body.
     pub body: BodyId,
-    /// Where, in its frame, m.
+    /// Position in its frame, m.
     pub position: [Value; 3],
 }
 
@@ -85,7 +85,7 @@ pub struct Linkage {
     pub rocker: Value,
     /// Length of the link, m.
     pub link: Value,
-    /// Whether the rod's pin is to the left of the line from the pivot to the head, seen against the joint's axis.
+    /// Whether the rod's pin is to the left of the line from the pivot to the head, looking against the direction of the joint's axis.
     pub left: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Drives of joints, and what acts on a joint in proportion to its rate or acceleration.
+//! Drives of joints, and elements that act on a joint in proportion to its rate or acceleration.
 
 use super::{CoordinateId, Profile, Value};
 
@@ -22,16 +22,16 @@ pub enum Transmission {
         stiffness: Value,
         /// Damping, N m s/rad or N s/m.
         damping: Value,
-        /// The greatest effort of both together, N m or N.
+        /// The maximum effort of both together, N m or N.
         max_effort: Option<Value>,
-        /// The greatest rate at which it drives, rad/s or m/s.
+        /// The maximum rate at which it drives, rad/s or m/s.
         max_rate: Option<f64>,
-        /// The greatest power with which it drives, W.
+        /// The maximum power with which it drives, W.
         max_power: Option<f64>,
     },
     /// A rigid connection: the coordinate is prescribed.
     Rigid,
-    /// The oil of a cylinder with a valve: at rest a spring, in motion the pressures are states.
+    /// The oil of a cylinder with a valve: a spring at rest; in motion, the pressures are states.
     Oil {
         /// Stiffness at rest, N m/rad or N/m.
         stiffness: Value,
@@ -50,7 +50,7 @@ impl Drive {
         }
     }
 
-    /// Stiffness at rest, if oil moves it.
+    /// Stiffness at rest, if a cylinder with a valve moves it.
     #[must_use]
     pub fn oil(&self) -> Option<&Value> {
         match &self.transmission {
@@ -74,7 +74,7 @@ impl Drive {
         [Some(&self.profile), self.opening()].into_iter().flatten().flat_map(Profile::pieces).collect()
     }
 
-    /// The greatest rate at which it drives, if it is limited.
+    /// The maximum rate at which it drives, if it is limited.
     #[must_use]
     pub fn max_rate(&self) -> Option<f64> {
         match self.transmission {
@@ -83,7 +83,7 @@ impl Drive {
         }
     }
 
-    /// The greatest power with which it drives, if it is limited.
+    /// The maximum power with which it drives, if it is limited.
     #[must_use]
     pub fn max_power(&self) -> Option<f64> {
         match self.transmission {
@@ -92,7 +92,7 @@ impl Drive {
         }
     }
 
-    /// The greatest effort, if it is limited.
+    /// The maximum effort, if it is limited.
     #[must_use]
     pub fn max_effort(&self) -> Option<&Value> {
         match &self.transmission {

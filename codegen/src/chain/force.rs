@@ -57,11 +57,11 @@ pub struct Friction {
     pub width: Value,
     /// b, N m s/rad or N s/m.
     pub viscous: Value,
-    /// If the joint sticks.
+    /// Bristles, if the joint sticks.
     pub bristle: Option<Bristle>,
 }
 
-/// Friction by bristles whose deflection is a state of the motion; only viscous friction is then part of the force element.
+/// Bristle friction, with the deflection as a state of the motion; the force element then contains only the viscous friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bristle {
     /// `F_c`, N m or N.

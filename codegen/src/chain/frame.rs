@@ -15,7 +15,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame in which all are given.
+    /// The world frame, in which all others are ultimately given.
     pub const WORLD: Frame = Frame { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
 
     /// A direction given in this frame, expressed in the outer frame.

@@ -2,7 +2,7 @@
 
 use super::Profile;
 
-/// Place of an input in the list of all.
+/// Index of an input in the chain's list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct InputId(pub usize);
 
@@ -13,14 +13,14 @@ pub struct Input {
     pub name: String,
     /// Unit as written by the user, for tables.
     pub unit: String,
-    /// What it is.
+    /// Its description.
     pub about: String,
-    /// What it is unless set: a number, or a motion.
+    /// Its value unless set: a number, or a motion.
     pub unless_set: Profile,
 }
 
 impl Input {
-    /// Numbers that stand for an input: its value while it is set, else 0; and 0 while it is set, else 1.
+    /// Count of the numbers that represent an input: its value while it is set, else 0; and 0 while it is set, else 1.
     pub const SLOTS: usize = 2;
     /// These numbers while it is not set.
     pub const NOT_SET: [f64; Self::SLOTS] = [0.0, 1.0];

@@ -1,4 +1,4 @@
-//! Loads applied from outside.
+//! External loads.
 
 use super::{BodyId, Profile, Value};
 
@@ -9,15 +9,15 @@ pub struct Load {
     pub name: String,
     /// The body it acts on.
     pub body: BodyId,
-    /// Where, in the body's frame, m.
+    /// Position in the body's frame, m.
     pub position: [Value; 3],
     /// N
     pub force: [Value; 3],
     /// N m
     pub moment: [Value; 3],
-    /// Along which axes force and moment are given.
+    /// The axes along which force and moment are given.
     pub axes: LoadAxes,
-    /// What both are multiplied by over time; 1 without.
+    /// Factor of both over time; `None` means 1.
     pub scale: Option<Profile>,
 }
 
@@ -31,7 +31,7 @@ pub enum LoadAxes {
 }
 
 impl Load {
-    /// Number of the pieces in which its scale is smooth.
+    /// Number of intervals in which its scale is smooth.
     #[must_use]
     pub fn pieces(&self) -> usize {
         self.scale.as_ref().map_or(0, |scale| scale.pieces().len())

@@ -1,6 +1,6 @@
-//! Whether repeated work is written out or a loop, based on measurements of the reference crane.
+//! Whether repeated work is written out or becomes a loop, based on measurements of the reference crane.
 
-/// When repeated work is a loop.
+/// When repeated work becomes a loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loops {
     /// If it is faster.
@@ -12,14 +12,14 @@ pub enum Loops {
     Never,
 }
 
-/// Equal work at this many consecutive bodies is a loop. Forward dynamics written out and in loops: 0.45 and 0.46 µs with 4
-/// sections, of which 3 are equal, eight at once 0.98 and 1.10; 0.72 and 0.67 with 8; 4.07 and 2.44 with 30, whose code no
-/// longer fits into the first-level cache.
+/// Equal work at this many consecutive bodies becomes a loop. Forward dynamics written out and in loops: 0.45 and 0.46 µs with 4
+/// sections, 3 of which are equal, and 0.98 and 1.10 for eight cranes at once; 0.72 and 0.67 with 8; 4.07 and 2.44 with 30,
+/// whose code written out no longer fits into the first-level cache.
 const MIN_ITERATIONS: usize = 5;
 
-/// The mass matrix of more coordinates is filled in a loop over rows and columns: written out it grows with the square, and so
-/// does rustc's time. A and e written out and in a loop: 0.47 and 0.59 µs at 13 coordinates, 0.53 and 0.56 at 16, 1.07 and
-/// 0.76 at 19, 1.75 and 1.39 at 25.
+/// With more coordinates, the mass matrix is filled in a loop over rows and columns: written out, the code grows with the square
+/// of their number, and so does rustc's time. A and e written out and in a loop: 0.47 and 0.59 µs at 13 coordinates, 0.53 and 0.56
+/// at 16, 1.07 and 0.76 at 19, 1.75 and 1.39 at 25.
 const LARGEST_WRITTEN_OUT: usize = 16;
 
 impl Loops {

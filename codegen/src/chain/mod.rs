@@ -50,7 +50,7 @@ pub struct BodyId(pub usize);
 pub struct Chain {
     /// Name of the crane, a valid Rust identifier.
     pub name: String,
-    /// One line for people.
+    /// One-line title for the reader.
     pub title: String,
     /// Hash of the YAML text (FNV-1a, 64 bit, hexadecimal), so that results can be traced to their input.
     pub spec_hash: String,
@@ -58,13 +58,13 @@ pub struct Chain {
     pub gravity: [Value; 3],
     /// Values that stay live at run time.
     pub parameters: Vec<Parameter>,
-    /// Rules about several numbers of which some are live.
+    /// Rules about several numbers, some of which are live.
     pub relations: Vec<Relation>,
     /// Generalized coordinates `q`, Eq. (1).
     pub coordinates: Vec<Coordinate>,
     /// Bodies from the base to the tip; body `p` is attached to body `p − 1`, the first to the world.
     pub bodies: Vec<Body>,
-    /// The base's coordinates in the order x, y, z, ψ, θ, φ; those that it has.
+    /// The base's coordinates in the order x, y, z, ψ, θ, φ; `None` for those that it lacks.
     pub base: [Option<CoordinateId>; 6],
     /// Supports of the base, Eqs. (16)–(18).
     pub supports: Vec<Support>,
@@ -78,11 +78,11 @@ pub struct Chain {
     pub joint_dampers: Vec<JointDamper>,
     /// End stops and friction of joints.
     pub forces: Vec<ForceElement>,
-    /// Forces and moments applied from outside.
+    /// External forces and moments.
     pub loads: Vec<Load>,
     /// Hydraulic cylinders of driven joints.
     pub cylinders: Vec<Cylinder>,
-    /// What supplies the cylinders.
+    /// The pump that supplies the cylinders.
     pub pump: Option<Pump>,
     /// Elements between two points, and couplings of coordinates.
     pub connectors: Vec<Connector>,
@@ -98,7 +98,7 @@ pub struct Chain {
     pub run: Run,
     /// What the user wants to compute; the rest is left out.
     pub analyses: Analyses,
-    /// When repeated work is a loop.
+    /// When repeated work becomes a loop.
     pub loops: Loops,
 }
 
@@ -148,7 +148,7 @@ impl Chain {
         self.frictions().filter_map(|(coordinate, friction)| Some((coordinate, friction.bristle?)))
     }
 
-    /// Whether forces have states besides pose and rates: oil, and bristles of joints that stick.
+    /// Whether forces have states in addition to pose and rates: oil, and bristles of joints that stick.
     #[must_use]
     pub fn has_own_states(&self) -> bool {
         self.has_valves() || self.bristles().next().is_some()
@@ -162,19 +162,19 @@ impl Chain {
         stopped
     }
 
-    /// Whether some support presses and never pulls.
+    /// Whether any support is one-sided: it presses and never pulls.
     #[must_use]
     pub fn has_one_sided_supports(&self) -> bool {
         self.supports.iter().any(|support| support.full_hold.is_some())
     }
 
-    /// Whether some drive has a greatest effort.
+    /// Whether any drive has a maximum effort.
     #[must_use]
     pub fn has_limited_drives(&self) -> bool {
         self.drives.iter().any(|drive| drive.max_effort().is_some())
     }
 
-    /// Whether oil moves a joint, through a cylinder with a valve.
+    /// Whether any joint is moved by a cylinder with a valve.
     #[must_use]
     pub fn has_valves(&self) -> bool {
         self.cylinders.iter().any(|cylinder| cylinder.valve.is_some())

@@ -49,7 +49,7 @@ impl Parameter {
     }
 }
 
-/// A rule about several numbers of which some are live.
+/// A rule about several numbers, some of which are live.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relation {
     /// The rule holds if this is above zero.

@@ -3,7 +3,7 @@
 use super::{InputId, Value};
 
 /// A prescribed motion: constant before it begins and, unless it is a speed, after it ends; continuously differentiable,
-/// unless it jumps to its speed.
+/// unless it jumps to its speed or follows an input that jumps.
 ///
 /// With `τ = clamp((t − begin)/duration, 0, 1)` the normalised profiles move from `from` to `to` as
 /// `q_dr = from + (to − from) s(τ)`.
@@ -36,7 +36,7 @@ pub enum Profile {
         /// Time to reach the speed, s: `q̇_dr = rate (3τ² − 2τ³)`. Without it, the speed jumps.
         ramp: Option<Value>,
     },
-    /// An input: constant where it is set, else as it is unless set.
+    /// An input: constant while it is set, otherwise the given motion.
     Input(InputId, Box<Profile>),
     /// The sum of two motions.
     Sum(Box<[Profile; 2]>),

@@ -25,7 +25,7 @@ pub struct Analyses {
     pub internal_forces: bool,
     /// ∂T/∂q and ∂²T/∂q∂q of every body.
     pub derivatives: bool,
-    /// Eight cranes per call, for simulations of many; needs dynamics.
+    /// Eight cranes per call, for simulations of many cranes; needs dynamics.
     pub ensemble: bool,
 }
 

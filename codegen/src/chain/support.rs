@@ -15,8 +15,8 @@ pub struct Support {
     pub damping: [Value; 3],
     /// Free play δ along x, y, z, m.
     pub free_play: [Value; 3],
-    /// Of a one-sided support, which presses and never pulls: the pressing force from which it holds sideways and damps in
-    /// full, N. `None` where it pulls as well.
+    /// For a one-sided support, which presses and never pulls: the pressing force above which its lateral stiffness and its
+    /// damping are fully effective, N. `None` if it pulls as well.
     pub full_hold: Option<Value>,
     /// How its elongation depends on the base's coordinates.
     pub kinematics: SupportKinematics,

@@ -11,7 +11,7 @@ pub struct Rule {
 
 /// A message on one line of limited length, whatever the user's names consist of.
 pub(crate) fn printable(message: &str) -> String {
-    /// A list of the longest names of the language fits.
+    /// Long enough for a list of the longest names of the language.
     const LONGEST: usize = 400;
     let visible = message.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c });
     let mut line: String = visible.take(LONGEST).collect();
@@ -28,7 +28,7 @@ macro_rules! catalogue {
         pub const CATALOGUE: &[$crate::diagnostic::Rule] =
             &[$($crate::diagnostic::Rule { code: stringify!($code), about: concat!($($about),+) }),+];
 
-        /// One function per rule, which says how the rule was broken.
+        /// One function per rule, which reports how the rule was broken.
         pub(crate) mod rule {
             use std::fmt::Display;
 

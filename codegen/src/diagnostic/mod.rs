@@ -59,7 +59,7 @@ pub struct Diagnostics {
 impl Diagnostics {
     /// The mistakes found in a source file.
     pub(crate) fn new(source: &SourceFile, mut mistakes: Vec<Mistake>) -> Self {
-        // What is wrong with a file as a whole is said of it, not of those that it extends.
+        // A mistake of the file as a whole is reported for this file, not for those that it extends.
         for mistake in mistakes.iter_mut().filter(|mistake| mistake.span == Span::START) {
             mistake.span = source.start();
         }
@@ -79,14 +79,14 @@ impl Diagnostics {
         self.mistakes.is_empty()
     }
 
-    /// Those that are not contained in others.
+    /// The mistakes or warnings that `others` does not contain.
     #[must_use]
     pub fn without(mut self, others: &Diagnostics) -> Self {
         self.mistakes.retain(|mistake| !others.mistakes.contains(mistake));
         self
     }
 
-    /// Each with its place.
+    /// Each mistake or warning with its place.
     pub fn located(&self) -> impl Iterator<Item = Located<'_>> {
         self.mistakes.iter().map(|mistake| Located {
             mistake,
@@ -96,7 +96,7 @@ impl Diagnostics {
         })
     }
 
-    /// Each in one line, for short displays: `crane.yaml:3:5: unknown key `masss` [E010]`.
+    /// Each mistake or warning in one line, for short displays: `crane.yaml:3:5: unknown key `masss` [E010]`.
     pub fn lines(&self) -> impl Iterator<Item = String> {
         self.located().map(|Located { mistake, file, start: (line, column), .. }| {
             format!("{file}:{line}:{column}: {} [{}]", mistake.title, mistake.code)

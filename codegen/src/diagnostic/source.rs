@@ -2,15 +2,15 @@
 
 use super::{Diagnostics, rule};
 
-/// A spec above this size is refused before it is parsed, bytes: the largest sensible crane is a thousandth of it.
+/// A spec above this size, bytes, is refused before it is parsed: the largest sensible crane takes a thousandth of it.
 pub const MAX_BYTES: usize = 4 << 20;
 
-/// What begins a part of a source file that was put together from several files; the name of the part follows.
+/// Marks the beginning of a part in a source file assembled from several files; the name of the part follows.
 const PART: &str = "--- # part: ";
 
 /// A YAML file: its name, for messages, and its text.
 ///
-/// A file that extends others holds all of them, see [`SourceFile::extended`].
+/// A file that extends others contains all of them, see [`SourceFile::extended`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourceFile {
     /// Name shown in messages, usually the path as the user gave it.
@@ -47,7 +47,7 @@ impl SourceFile {
     }
 
     /// This file as an extension of `base`: both texts, each under a line with the name of its part. The name of this file in
-    /// the text is `named`, which may not depend on the machine.
+    /// the text is `named`, which must not depend on the machine.
     #[must_use]
     pub fn extended(&self, base: &SourceFile, base_named: &str, named: &str) -> Self {
         let part = |name: &str, text: &str| format!("{PART}{name}\n{}\n", text.trim_end_matches(['\n', '\r']));
@@ -61,7 +61,7 @@ impl SourceFile {
         SourceFile::new(&self.name, changes).extended(self, "crane.yaml", "changes.yaml")
     }
 
-    /// Its parts, each of which extends the previous one; usually one, the whole.
+    /// Its parts, each of which extends the previous one; usually there is only one, the whole file.
     #[must_use]
     pub fn parts(&self) -> Vec<Part<'_>> {
         if !self.text.starts_with(PART) {
@@ -80,7 +80,7 @@ impl SourceFile {
         begins.iter().zip(ends).map(part).collect()
     }
 
-    /// The part that holds a byte.
+    /// The part that contains a byte.
     pub(crate) fn part(&self, byte: usize) -> Part<'_> {
         let mut parts = self.parts();
         while parts.len() > 1 && parts.last().is_some_and(|part| part.start > byte) {
@@ -191,7 +191,7 @@ mod tests {
             assert_eq!((again.part(at).name, again.position(at)), (name, position));
         }
         assert_eq!(again.start().start, again.text.find("e:").expect("the last part"));
-        // A usual file, also one that begins as a YAML document may.
+        // An ordinary file is one part, even if it begins with a YAML document marker.
         let usual = SourceFile::new("x", "--- # a crane\na: 1");
         assert_eq!((usual.parts().len(), usual.start(), usual.position(14)), (1, Span::START, (2, 1)));
     }

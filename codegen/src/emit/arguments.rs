@@ -37,7 +37,7 @@ pub fn argument_name(argument: Argument, number: Number) -> (&'static str, Token
 }
 
 impl Writer<'_> {
-    /// Arguments of the function itself: always the same for a function, used or not.
+    /// Arguments of the function itself: always all of them, whether used or not.
     pub(super) fn all_inputs(&self) -> Vec<TokenStream> {
         let mut used = Used::new();
         self.code.pieces.iter().for_each(|piece| self.use_inputs(piece, &mut used));
@@ -56,7 +56,7 @@ impl Writer<'_> {
         inputs
     }
 
-    /// The values that statements, and loops among them, read.
+    /// Collects the inputs that statements read, including those in loops.
     fn use_inputs(&self, statements: &[Statement], used: &mut Used) {
         for statement in statements {
             match statement {
@@ -93,7 +93,7 @@ impl Writer<'_> {
             .collect()
     }
 
-    /// Plain arrays behind the vectors: a constant index into an array is checked when it is compiled.
+    /// Unpacks vectors into plain arrays: a constant index into an array is checked at compile time.
     pub(super) fn unpack(used: &Used) -> Vec<Stmt> {
         let mut statements: Vec<Stmt> = Vec::new();
         for (argument, vector) in VECTORS {

@@ -31,7 +31,7 @@ pub fn integer(value: usize) -> Expr {
     Expr::Lit(syn::ExprLit { attrs: vec![], lit: Lit::Int(literal) })
 }
 
-/// −a; −(−2) becomes 2, and `−(2 · b)` becomes `−2 · b`, the same number at one operation less.
+/// −a; −(−2) becomes 2, and `−(2 · b)` becomes `−2 · b`, the same number with one operation fewer.
 pub fn negative(a: Expr) -> Expr {
     let a = match a {
         Expr::Binary(ExprBinary { left, op: op @ BinOp::Mul(_), right, .. }) if matches!(*left, Expr::Lit(_)) => {

@@ -99,7 +99,7 @@ pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
     items
 }
 
-/// Fields of a crane, or of eight.
+/// Fields of a crane, or of eight cranes.
 pub(super) fn fields(chain: &Chain) -> TokenStream {
     match (!chain.parameters.is_empty(), !chain.inputs.is_empty()) {
         (true, true) => quote!({ constants: Constants, inputs: Inputs }),
@@ -177,7 +177,7 @@ fn common_methods(chain: &Chain) -> TokenStream {
     }
 }
 
-/// What reads and sets inputs; nothing where there are none.
+/// Methods that read and set inputs; `None` if the crane has no inputs.
 fn input_methods(chain: &Chain) -> Option<TokenStream> {
     let indices: Vec<_> = (0..chain.inputs.len()).map(integer).collect();
     let slots = |slot: usize| (0..chain.inputs.len()).map(move |index| integer(Input::SLOTS * index + slot));

@@ -11,7 +11,7 @@ use crate::chain::{
     Profile, Strain, SupportKinematics, Value, Valve,
 };
 
-/// Sizes and the `DESCRIPTION`.
+/// The sizes and the `DESCRIPTION`.
 pub fn description(chain: &Chain) -> Vec<Item> {
     let n = integer(chain.coordinates.len());
     let mut items = vec![constant("Number of generalized coordinates.", "N", &quote!(usize), &quote!(#n))];

@@ -42,14 +42,14 @@ impl Writer<'_> {
         matches!(self.code.function.shape, crate::program::Shape::Scalar)
     }
 
-    /// The storage, with its blank values.
+    /// The storage with its initial values.
     fn begin(&self) -> Stmt {
         if matches!(self.storage.handover(), Handover::OutArgument) {
             return parse_quote!(out.fill(Matrix4::zeros()););
         }
         let name = format_ident!("{}", self.storage.storage_name());
         let (storage, blank) = (self.storage.storage_type(), self.storage.blank());
-        // Every slot may be zero.
+        // If no statement writes a slot, the storage is not mutable.
         let written = self.code.pieces.iter().flatten().any(|s| matches!(s, Statement::Output { .. }));
         let mutable = written.then(|| quote!(mut));
         parse_quote!(let #mutable #name: #storage = #blank;)
@@ -260,7 +260,7 @@ impl Writer<'_> {
     }
 }
 
-/// The names of several values, or `_` if none is needed.
+/// A pattern of the names of several values, or `_` if none is needed.
 fn row_pattern(ids: &[Option<ExprId>], names: &mut Names) -> TokenStream {
     if ids.iter().all(Option::is_none) {
         return quote!(_);

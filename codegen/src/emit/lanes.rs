@@ -17,7 +17,7 @@ use crate::program::FunctionId;
 /// Functions that a simulation of many cranes calls in every step.
 const FUNCTIONS: [FunctionId; 1] = [FunctionId::ForwardDynamics];
 
-/// Eight cranes of a spec that does not request them: one after the other.
+/// Eight cranes per call for a spec that does not request them: one after the other.
 pub fn one_by_one() -> Item {
     parse_quote! {
         impl Ensemble<N> for Crane {

@@ -64,7 +64,7 @@ impl Writer<'_> {
         statements
     }
 
-    /// The values that differ from iteration to iteration.
+    /// A value that differs from iteration to iteration.
     pub(super) fn source(&self, index: usize, used: &mut Used) -> Expr {
         let (of, source) = &self.code.rerolled.sources[index];
         match source {
@@ -85,7 +85,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The values that a loop leaves.
+    /// A value taken from a loop after its last iteration.
     pub(super) fn live_out(&self, index: usize) -> Expr {
         match self.code.rerolled.live_outs[index] {
             LiveOut::LoopCarried { of, place } => element(owned("carried", of), place),

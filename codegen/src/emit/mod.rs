@@ -89,8 +89,8 @@ pub fn emit(
     GeneratedCode { name: chain.name.clone(), text, report }
 }
 
-/// Imports of only what the body uses; nalgebra comes through the runtime, so that a user's crate depends only on the
-/// runtime.
+/// Imports only of names that the body uses; nalgebra is imported through the runtime, so that a user's crate depends only on
+/// the runtime.
 fn imports(items: &[syn::Item]) -> String {
     const SOURCES: [(&str, &[&str]); 3] = [
         ("::crane_model::nalgebra", &["Matrix4", "SMatrix", "SVector", "Vector3"]),

@@ -65,7 +65,7 @@ impl<'p> Names<'p> {
         Names { program, given: HashMap::new(), taken, next: 0 }
     }
 
-    /// The same, without some more words.
+    /// The same, avoiding further words.
     #[must_use]
     pub fn avoiding(mut self, words: &[&str]) -> Self {
         self.taken.extend(words.iter().map(ToString::to_string));

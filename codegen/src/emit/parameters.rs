@@ -14,7 +14,7 @@ use crate::lower::LoweredProgram;
 use crate::program::Argument;
 use crate::symbolic::{ExprId, Op};
 
-/// `Params` with defaults and units, and `Constants`, what functions read; nothing if all numbers are compiled in.
+/// `Params` with defaults and units, and `Constants`, which functions read; nothing if all numbers are compiled in.
 pub fn parameters(chain: &Chain, lowered: &LoweredProgram, labels: &Labels, number: Number) -> Vec<Item> {
     if chain.parameters.is_empty() {
         return vec![];

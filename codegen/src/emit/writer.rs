@@ -1,4 +1,4 @@
-//! What the parts of the emitter share while they write one function.
+//! State that the parts of the emitter share while they write one function.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! C expressions as text that knows how tightly it binds.
+//! C expressions: text, and how tightly it binds.
 
 use super::Precision;
 
@@ -67,7 +67,7 @@ impl Expression {
         &self.text
     }
 
-    /// Operations of one level are done from left to right: what stands on the right must bind more tightly, for sums are not
+    /// Operations of one level are evaluated from left to right: the right operand must bind more tightly, because sums are not
     /// associative.
     fn binary(self, sign: &str, other: Self, level: Level) -> Self {
         let right = match level {
@@ -77,7 +77,7 @@ impl Expression {
         Self { text: format!("{} {sign} {}", self.within(level), other.within(right)), level }
     }
 
-    /// As an operand that must bind at least so tightly.
+    /// The text as an operand that must bind at least this tightly.
     fn within(self, level: Level) -> String {
         if self.level < level { format!("({})", self.text) } else { self.text }
     }

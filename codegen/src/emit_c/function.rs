@@ -11,7 +11,7 @@ use crate::lower::{LoweredFunction, LoweredProgram, Statement};
 use crate::program::{Argument, Function, Shape};
 use crate::symbolic::{ExprId, Op};
 
-/// Words that a variable of C cannot have, besides those that Rust forbids as well or generated functions use.
+/// Names that a C variable cannot have, in addition to those that Rust also forbids or that generated functions use.
 const TAKEN: [&str; 24] = [
     "auto", "case", "char", "default", "double", "float", "goto", "inline", "int", "long", "register", "short",
     "signed", "sizeof", "switch", "typedef", "union", "unsigned", "void", "volatile", "smaller", "larger", "choose",
@@ -23,7 +23,7 @@ pub struct Writer<'a> {
     pub chain: &'a Chain,
     pub lowered: &'a LoweredProgram<'a>,
     pub labels: &'a Labels<'a>,
-    /// Values of the live parameters to begin with.
+    /// Initial values of the live parameters.
     pub parameters: &'a [f64],
     pub precision: Precision,
 }
@@ -49,7 +49,7 @@ impl Writer<'_> {
         format!("{signature}\n{{\n{ignored}{blank}{body}{end}}}\n\n")
     }
 
-    /// A long function: pieces that hand on values in an array of their caller's.
+    /// A long function: pieces that pass values on in an array provided by their caller.
     fn in_pieces(&self, code: &LoweredFunction, blank: &str, end: &str) -> String {
         let (function, number) = (code.function, self.precision.name());
         let (name, count, kept) = (self.name(function.id.name()), numbers(&function.shape), code.kept.max(1));
@@ -70,7 +70,7 @@ impl Writer<'_> {
         format!("{pieces}{signature}\n{{\n    {number} kept[{kept}];\n{blank}{calls}{end}}}\n\n")
     }
 
-    /// A name of the crane's own.
+    /// A name with the crane's name as its prefix.
     pub fn name(&self, of: &str) -> String {
         format!("{}_{of}", self.chain.name)
     }
@@ -89,7 +89,7 @@ impl Writer<'_> {
         format!("{returned} {}({arguments})", self.name(function.id.name()))
     }
 
-    /// Names and declarations of what a function takes.
+    /// Names and declarations of the arguments of a function.
     fn arguments(&self, function: &Function) -> Vec<(&'static str, String)> {
         let (n, number) = (self.chain.coordinates.len(), self.precision.name());
         let array = |name: &'static str, count: usize| (name, format!("const {number} {name}[{count}]"));
@@ -110,13 +110,13 @@ impl Writer<'_> {
         self.lowered.functions.iter().any(|code| code.function.id == function.id && code.reads_inputs)
     }
 
-    /// How many factors `solve` takes from `factorise`.
+    /// The number of factors that `solve` takes from `factorise`.
     fn factors(&self) -> usize {
         let shapes = self.lowered.program.functions.iter().map(|function| &function.shape);
         shapes.filter_map(|shape| if let Shape::Factors(count) = shape { Some(*count) } else { None }).sum()
     }
 
-    /// Says of arguments that nothing reads that this is as it should be.
+    /// Marks arguments that nothing reads as intentionally unused.
     fn ignored(&self, function: &Function, used: &Used) -> String {
         let reads = |name: &str| used.iter().any(|argument| argument_name(*argument) == name);
         let unread = self.arguments(function).into_iter().filter(|(name, _)| !reads(name));
@@ -133,7 +133,7 @@ impl Writer<'_> {
         (body.text, body.used)
     }
 
-    /// The functions that set inputs; nothing without such.
+    /// The functions that set inputs; empty if there are none.
     pub fn inputs(&self) -> String {
         if self.chain.inputs.is_empty() {
             return String::new();
@@ -151,7 +151,7 @@ impl Writer<'_> {
         format!("{set}\n{}{unset}\n{}", slots("value", 0.0), slots(not_set.text(), Input::NOT_SET[1]))
     }
 
-    /// Signatures of the functions that set an input, and that give it back to the spec.
+    /// Signatures of the functions that set an input, and that return it to the value or motion of the spec.
     pub fn input_functions(&self) -> [String; 2] {
         let (inputs, number) = (self.name("inputs"), self.precision.name());
         [
@@ -160,7 +160,7 @@ impl Writer<'_> {
         ]
     }
 
-    /// The function that makes constants of live parameters; nothing without such.
+    /// The function that computes constants from live parameters; empty if there are none.
     pub fn constants(&self) -> String {
         if self.chain.parameters.is_empty() {
             return String::new();
@@ -274,7 +274,7 @@ impl Body<'_> {
         self.line(&format!("const {number} {name} = {value};"));
     }
 
-    /// An argument of a statement: a variable, a number, a constant, or an operation that stands within.
+    /// An argument of a statement: a variable, a number, a constant, or an inlined operation.
     fn expression(&mut self, id: ExprId) -> Expression {
         let (program, constants) = (&self.writer.lowered.program, &self.writer.lowered.constants);
         if constants.is_stored(id) {
@@ -296,7 +296,7 @@ impl Body<'_> {
     fn operation(&mut self, id: ExprId) -> Expression {
         let program = &self.writer.lowered.program;
         match (self.code.fused[id.index()], program.op(id)) {
-            // A product in a sum is a product in a sum: whether it is rounded is for the compiler of C to say.
+            // A fused product is written as an ordinary product: the C compiler decides whether it is rounded.
             (Some(product), Op::Add(x, y)) if x == product => self.operation(x).plus(self.expression(y)),
             (Some(product), Op::Add(x, _)) => self.expression(x).plus(self.operation(product)),
             (Some(product), Op::Sub(x, y)) if x == product => self.operation(x).minus(self.expression(y)),
@@ -308,7 +308,7 @@ impl Body<'_> {
         }
     }
 
-    /// Where an input is read.
+    /// The C text that reads an input.
     fn input(&mut self, id: ExprId) -> String {
         let Op::Symbol(symbol) = self.writer.lowered.program.op(id) else { unreachable!("inputs are symbols") };
         let symbol = self.writer.lowered.program.symbol(symbol);
@@ -361,7 +361,7 @@ fn argument_name(argument: Argument) -> &'static str {
     }
 }
 
-/// How many numbers a result has.
+/// The number of entries of a result.
 pub fn numbers(shape: &Shape) -> usize {
     match shape {
         Shape::Symmetric(n) => n * n,
@@ -372,7 +372,7 @@ pub fn numbers(shape: &Shape) -> usize {
     }
 }
 
-/// Where a slot stands in the result: once, or twice in a symmetric matrix.
+/// The positions of a slot in the result: one, or two in a symmetric matrix.
 fn places(shape: &Shape, slot: usize) -> Vec<usize> {
     match shape {
         Shape::Symmetric(n) => {

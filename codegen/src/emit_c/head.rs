@@ -14,7 +14,7 @@ pub fn source(chain: &Chain) -> String {
 
 /// Where the files come from.
 fn origin(chain: &Chain) -> String {
-    // A title may hold anything; a comment ends at the first `*/`.
+    // A title may contain anything; a comment ends at the first `*/`.
     let title = chain.title.replace("*/", "* /").replace("/*", "/ *").replace(['\n', '\r'], " ");
     format!("{title}. Made by crane-codegen from the spec with hash {}; do not edit.", chain.spec_hash)
 }
@@ -50,7 +50,7 @@ fn about(precision: Precision) -> &'static str {
     }
 }
 
-/// Places of the coordinates in `q`.
+/// Indices of the coordinates in `q`.
 fn coordinates(chain: &Chain) -> String {
     let prefix = chain.name.to_uppercase();
     let mut text = format!(
@@ -69,7 +69,7 @@ fn coordinates(chain: &Chain) -> String {
     text + "};\n\n"
 }
 
-/// Live parameters, and what is made of them once; nothing without such.
+/// Live parameters and the constants computed from them; empty if there are none.
 fn parameters(writer: &Writer) -> String {
     let Writer { chain, lowered, precision, .. } = writer;
     if chain.parameters.is_empty() {
@@ -107,7 +107,7 @@ fn parameters(writer: &Writer) -> String {
     text
 }
 
-/// Inputs by name, and what sets them; nothing without such.
+/// Inputs by name, and the functions that set them; empty if there are none.
 fn inputs(writer: &Writer) -> String {
     let Writer { chain, precision, .. } = writer;
     if chain.inputs.is_empty() {
@@ -145,7 +145,7 @@ fn macro_name(chain: &Chain) -> String {
     format!("{}_PARAMS", chain.name.to_uppercase())
 }
 
-/// What a function computes, of what, and in which shape.
+/// What a function computes, from which arguments, and the shape of its result.
 fn documentation(writer: &Writer, function: &Function, operations: usize) -> String {
     let clean = |text: &str| text.replace("*/", "* /");
     let mut text = format!("/* {}\n   {}\n", clean(function.doc), clean(function.equation));

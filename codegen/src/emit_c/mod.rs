@@ -1,7 +1,7 @@
-//! C text from straight lines, for controllers: C99 without a heap, global data or recursion. The only module that knows C.
+//! C text from straight-line code, for controllers: C99 without a heap, global data or recursion. The only module that knows C.
 //!
-//! What is written is a header and a source of the functions that were asked for. Loops are not written: a crane whose elements count
-//! some tens at most fits a controller as straight lines, and needs no tables.
+//! The output is a header and a source with the requested functions. Repeated work is not turned into loops: a crane with at most some
+//! tens of elements fits a controller as straight-line code, and needs no tables.
 
 mod arithmetic;
 mod function;
@@ -32,7 +32,7 @@ impl Precision {
         }
     }
 
-    /// What names of functions and numbers end in.
+    /// Suffix of function names and of numbers.
     fn suffix(self) -> &'static str {
         match self {
             Precision::Double => "",
@@ -44,7 +44,7 @@ impl Precision {
 /// A crane in C.
 #[derive(Clone, Debug)]
 pub struct CCode {
-    /// Name of the crane: of both files, and before every name in them.
+    /// Name of the crane: name of both files and prefix of every name in them.
     pub name: String,
     /// The header, `<name>.h`.
     pub header: String,
@@ -52,7 +52,7 @@ pub struct CCode {
     pub source: String,
 }
 
-/// Writes functions of a crane, all of the lowered program; `parameters` are the initial values of the live parameters.
+/// Writes all functions of the lowered program of a crane; `parameters` are the initial values of the live parameters.
 ///
 /// # Panics
 /// If a function has loops, or a result that is left as factors: chains with [`Loops::Never`](crate::chain::Loops) have neither.

@@ -1,5 +1,5 @@
-//! What functions in C need besides arithmetic, and where: nothing else of the library than sines, cosines, square roots and
-//! exponentials.
+//! Helpers that functions in C need in addition to arithmetic, written only where used. From the C library, functions use only sine,
+//! cosine, square root and exponential.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ const LARGEST: f64 = 10.0;
 /// Terms of a polynomial: at the largest argument the next is below 2⁻⁶⁰ of the sum.
 const TERMS: usize = 15;
 
-/// Functions that a text calls, of this source alone.
+/// The helpers, private to the source, that a text calls.
 pub fn used(body: &str, precision: Precision) -> String {
     let number = precision.name();
     let simple = [

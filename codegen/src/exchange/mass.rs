@@ -1,4 +1,4 @@
-//! Mass properties in the form of other programs: mass, centre of mass, and the tensor about it.
+//! Mass properties as other programs describe them: mass, centre of mass, and the tensor about it.
 
 use crate::chain::{Frame, Inertia, Vector};
 
@@ -37,7 +37,7 @@ impl Lump {
     pub(super) fn seen_through(&self, frame: &Frame) -> Lump {
         let [xx, yy, zz, xy, xz, yz] = self.tensor;
         let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        // Row i of R: what the axes of the frame have along i.
+        // Row i of R: component i of each axis of the frame.
         let along = |i: usize| frame.axes.map(|axis| axis[i]);
         let entry = |i: usize, j: usize| -> f64 {
             let (left, right) = (along(i), along(j));

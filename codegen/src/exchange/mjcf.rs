@@ -10,13 +10,13 @@ use super::{RADIUS, approximations, bars, hinged, origin, placements};
 use crate::chain::{Chain, CoordinateId, CoordinateKind, Frame, Step, Support, SupportKinematics};
 
 /// `MuJoCo` refuses moving bodies without mass or inertia: a massless frame, or a point, gets this value, kg or kg m². It is
-/// below the rounding of any sum that contains it.
+/// negligible against the mass of any crane.
 const LEAST: f64 = 1e-14;
 
 /// A part of a crane that MJCF cannot express.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Inexpressible {
-    /// What, in the user's own names, and why.
+    /// What cannot be expressed, in the user's own names, and why.
     pub title: String,
     /// What to do instead.
     pub help: String,

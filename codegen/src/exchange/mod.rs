@@ -31,7 +31,7 @@ fn origin(chain: &Chain, parameters: &[f64]) -> String {
 }
 
 /// The path with one hinge per coordinate of a rotation vector, in the order of the coordinates: neither format has a joint
-/// that rotates by a vector with a spring on each component. To second order in the angles both are equal.
+/// that rotates by a vector with a spring on each component. Both are equal to first order in the angles.
 fn hinged(path: &[Step]) -> Vec<Step> {
     let hinges = |step: &Step| match step {
         Step::RotationVector(ids) => ids.map(Step::Move).to_vec(),

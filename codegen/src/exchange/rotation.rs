@@ -1,11 +1,11 @@
-//! Rotations in the form of other programs.
+//! Rotations as other programs describe them.
 
 use crate::chain::{Frame, Value, Vector};
 
 /// Roll, pitch and yaw of a frame, `Rz(yaw) Ry(pitch) Rx(roll)`, rad.
 ///
-/// Pitch and roll are computed from the frame rotated back by the yaw, so that they are correct however yaw and roll share a
-/// rotation if the pitch is a quarter turn.
+/// Pitch and roll are computed from the frame rotated back by the yaw, so that they are correct for any yaw
+/// if the pitch is a quarter turn, where only a combination of yaw and roll is determined.
 pub(super) fn roll_pitch_yaw(frame: &Frame) -> Vector {
     let [x, y, z] = frame.axes;
     // Yaw is arbitrary if x points along the third axis: then it is set to zero.
@@ -34,7 +34,7 @@ pub(super) fn quaternion(frame: &Frame) -> [f64; 4] {
     row.map(|component| component / sign)
 }
 
-/// A frame with its z axis along a direction, by the shortest rotation.
+/// A frame with its z axis along a direction, by the shortest rotation; of directions with z < 0, from a half turn about x.
 pub(super) fn along_z(direction: Vector) -> Frame {
     let size = length(direction);
     let [a, b, c] = direction.map(|component| component / size);
@@ -49,7 +49,7 @@ pub(super) fn along_z(direction: Vector) -> Frame {
     Frame { axes, origin: [0.0; 3] }
 }
 
-/// A frame rotated about an axis of length 1, rad.
+/// A frame rotated about an axis of length 1 by an angle, rad.
 ///
 /// Rodrigues' formula: `R = cos φ 1 + sin φ â + (1 − cos φ) a aᵀ`.
 pub(super) fn about(axis: Vector, angle: f64) -> Frame {
@@ -114,7 +114,7 @@ mod tests {
         let angles = [-PI, -2.0, -FRAC_PI_2, -1e-9, 0.0, 0.3, FRAC_PI_2 - 1e-9, FRAC_PI_2, 3.0];
         for rpy in angles.iter().flat_map(|&r| angles.iter().flat_map(move |&p| angles.map(|y| [r, p, y]))) {
             let frame = rotated(rpy);
-            // Round-off of entries of order 1; quaternions are exact to the same.
+            // Round-off of entries of order 1; quaternions are equally exact.
             assert!(apart(&rotated(roll_pitch_yaw(&frame)), &frame) < 2e-15, "{rpy:?}");
             let written = quaternion(&frame);
             let read = from_quaternion(written.map(|component| 3.0 * component)).expect("a length");

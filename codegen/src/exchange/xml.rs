@@ -20,7 +20,7 @@ impl Xml {
         xml
     }
 
-    /// A comment; two hyphens would end it.
+    /// A comment; it must not contain two consecutive hyphens.
     pub fn comment(&mut self, text: &str) {
         let text = text.replace("--", "\u{2013}");
         self.line(&format!("<!-- {text} -->"));
@@ -46,7 +46,7 @@ impl Xml {
         self.line(&format!("<{tag}/>"));
     }
 
-    /// The text, with all elements ended.
+    /// The text, with all elements closed.
     #[must_use]
     pub fn finish(mut self) -> String {
         while !self.open.is_empty() {

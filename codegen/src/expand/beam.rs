@@ -29,7 +29,7 @@ pub(crate) struct Joint {
 pub(crate) struct Elements {
     /// Elements, from the start to the tip.
     pub elements: Vec<RigidElement>,
-    /// Joints, one fewer.
+    /// Joints, one fewer than elements.
     pub joints: Vec<Joint>,
 }
 
@@ -74,18 +74,18 @@ pub(crate) fn stiffness(youngs: &Value, shear: &Value, section: &CrossSection, d
     [spring(youngs, &section.jz), spring(youngs, &section.jy), spring(shear, &section.jo)]
 }
 
-/// A part of a beam, with a section of its own.
+/// A part of a beam with its own section.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     /// Length, m.
     pub length: f64,
     /// The section at its beginning.
     pub from: Shape,
-    /// That at its end, if it is tapered.
+    /// The section at its end, if it is tapered.
     pub to: Option<Shape>,
 }
 
-/// Half of the places of Gauss's formula with ten points on (−1, 1), and their weights. The stiffness of a box that tapers to half of its
+/// The positive nodes of the ten-point Gauss formula on (−1, 1), and their weights. The stiffness of a box that tapers to half of its
 /// size over one section is exact to 1e-12.
 const GAUSS: [(f64, f64); 5] = [
     (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
@@ -98,12 +98,12 @@ const GAUSS: [(f64, f64); 5] = [
 /// Lengths that differ by less than this are the same, m: rounding of sums of decimals.
 const SAME: f64 = 1e-9;
 
-/// What lies between two places of a beam of parts.
+/// The portion of one part between two places of a beam of parts.
 struct Piece<'a> {
     part: &'a Part,
-    /// Begin and end, m from the beginning of the beam.
+    /// Beginning and end, m from the beginning of the beam.
     ends: [f64; 2],
-    /// Begin of the part, m.
+    /// Beginning of the part, m.
     begin: f64,
 }
 
@@ -119,7 +119,7 @@ impl Piece<'_> {
         tapered.unwrap_or_else(|| self.part.from.clone()).section()
     }
 
-    /// Places and lengths of thin slices that stand for it in integrals; of a prismatic piece its middle.
+    /// Places and lengths of thin slices that represent it in integrals; for a prismatic piece, its middle and its full length.
     fn slices(&self) -> Vec<(f64, f64)> {
         let (middle, half) = (0.5 * (self.ends[0] + self.ends[1]), 0.5 * self.length());
         if self.part.to.is_none() {
@@ -130,12 +130,12 @@ impl Piece<'_> {
     }
 }
 
-/// The pieces between two places, from parts end to end.
+/// The pieces between two places, from consecutive parts.
 fn pieces(parts: &[Part], [from, to]: [f64; 2]) -> Vec<Piece<'_>> {
     let mut begin = 0.0;
     let mut pieces = Vec::new();
     for (index, part) in parts.iter().enumerate() {
-        // Rounding leaves nothing behind the last part.
+        // The last part is extended, so that rounding leaves no gap behind it.
         let end = if index + 1 == parts.len() { f64::INFINITY } else { begin + part.length };
         let ends = [f64::max(from, begin), f64::min(to, end)];
         if ends[1] - ends[0] > SAME {
@@ -146,7 +146,7 @@ fn pieces(parts: &[Part], [from, to]: [f64; 2]) -> Vec<Piece<'_>> {
     pieces
 }
 
-/// The section of a beam of parts at a place; at a step that of the part that begins there.
+/// The section of a beam of parts at a place; at a step, that of the part that begins there.
 pub(crate) fn section_at(parts: &[Part], x: f64) -> Option<CrossSection> {
     // The last place of a beam belongs to its last part.
     pieces(parts, [x, x + 2.0 * SAME]).first().map(|piece| piece.section(x))
@@ -159,7 +159,7 @@ pub(crate) fn element_of_parts(parts: &[Part], ends: [f64; 2], density: &Value, 
         for (x, length) in piece.slices() {
             let section = piece.section(x);
             let line_density = density.clone() * section.area.clone() + extra.clone();
-            // Slices of a tapered piece are thin; a prismatic piece has its length.
+            // The slices of a tapered piece are thin; a prismatic piece keeps its full length.
             let own = if piece.part.to.is_none() {
                 prismatic(length.into(), &line_density, &section).inertia
             } else {
@@ -197,8 +197,8 @@ fn moved(inertia: Inertia, a: f64) -> Inertia {
     Inertia { first: [x + by(&mass), y, z], mass, second }
 }
 
-/// Stiffness of the spring of a section of a beam of parts: `1/s = ∫ dx/(E J)`, the angle by which a moment turns its ends against each
-/// other.
+/// Stiffness of the spring of a section of a beam of parts: `1/s = ∫ dx/(E J)`, the angle between its ends per unit
+/// moment.
 pub(crate) fn stiffness_of_parts(parts: &[Part], ends: [f64; 2], youngs: &Value, shear: &Value) -> [Value; 3] {
     let mut compliance = [Value::ZERO, Value::ZERO, Value::ZERO];
     for piece in pieces(parts, ends) {

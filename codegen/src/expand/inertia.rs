@@ -91,7 +91,7 @@ fn with_trace(tensor: &Tensor, a: f64, b: f64) -> Tensor {
 
 /// Principal moments of a tensor, ascending, by Jacobi's rotations.
 pub(crate) fn principal_moments([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 3] {
-    /// Jacobi's method converges quadratically: for three by three, six sweeps reach rounding.
+    /// Jacobi's method converges quadratically: for three by three, six sweeps reach rounding; two more are a margin.
     const SWEEPS: usize = 8;
     let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(3 * SWEEPS) {

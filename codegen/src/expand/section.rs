@@ -17,7 +17,7 @@ pub(crate) struct CrossSection {
     pub jo: Value,
     /// Section moduli for stresses, if known.
     pub moduli: Option<Moduli>,
-    /// What it looks like, if known.
+    /// Its outline, if known.
     pub outline: Option<Outline>,
 }
 
@@ -37,7 +37,7 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
-    /// What the spec calls it.
+    /// Its name in the spec.
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Shape::Box(_) => "box",
@@ -59,8 +59,8 @@ impl Shape {
         }
     }
 
-    /// The shape at a part of the way to another one, whose dimensions change linearly; `None` unless both are dimensions of the
-    /// same shape.
+    /// The shape at a fraction of the way to another one, with dimensions that change linearly; `None` unless both are given by
+    /// dimensions of the same shape.
     pub(crate) fn between(&self, other: &Shape, share: f64) -> Option<Shape> {
         let mix = |a: &Value, b: &Value| (1.0 - share) * a.clone() + share * b.clone();
         Some(match (self, other) {
@@ -160,7 +160,7 @@ pub(crate) fn solid_rectangle(height: f64, width: f64) -> CrossSection {
         .sum();
     let series = 31.0 / 32.0 * ZETA_5 - falling;
     let jo = a * b.powi(3) * (1.0 / 3.0 - 64.0 / PI.powi(5) * (b / a) * series);
-    // Terms beyond fall below rounding as those above do.
+    // The terms left out are below rounding, as in the series above.
     let along: f64 = (0..2 * TERMS)
         .rev()
         .map(|k| f64::from(2 * k + 1))
@@ -252,7 +252,7 @@ mod tests {
         // 4/3 of the mean.
         close(&shear[1], 0.75 * PI * 0.01, 1e-14);
         assert!(!has_corners);
-        // Of a thin tube twice the mean.
+        // For a thin tube, twice the mean.
         let thin = tube(&0.2.into(), &1e-5.into());
         close(&(thin.area.clone() / moduli(thin).shear[0].clone()), 2.0, 1e-4);
     }

@@ -45,7 +45,7 @@ mod tests {
         let (mut slope, mut curvature) = (0.0, None);
         for (segment, value) in segments.iter().zip(&values[1..]) {
             let ([c1, c2, c3], u) = (segment.coefficients, segment.duration);
-            // Position, slope and curvature continue from the piece before, to rounding of numbers of order 10.
+            // Position, slope and curvature continue those of the previous piece, up to rounding of numbers of order 10.
             assert!((c1 - slope).abs() < 1e-13);
             assert!(curvature.is_none_or(|k: f64| (k - 2.0 * c2).abs() < 1e-12));
             position += u * (c1 + u * (c2 + u * c3));

@@ -61,7 +61,7 @@ impl Constants {
 
 /// For every node, whether it depends only on parameters and numbers.
 fn parameters_alone(program: &Program) -> Vec<bool> {
-    // Numbers are compatible with everything, but are not constants of a parameter.
+    // Numbers combine with anything, but alone do not make a constant that depends on a parameter.
     #[derive(Clone, Copy, PartialEq, PartialOrd)]
     enum Depends {
         Number,

@@ -11,7 +11,7 @@ use crate::symbolic::{ExprId, Op};
 pub(super) struct Match {
     /// Its expression for each expression of the first visit.
     pub nodes: HashMap<ExprId, ExprId>,
-    /// Its operands from outside, by the first visit's expression and the operand's index.
+    /// Its operands from outside the visit, by the first visit's expression and the operand's index.
     pub outside: HashMap<(ExprId, usize), ExprId>,
     templates: HashMap<ExprId, ExprId>,
 }
@@ -23,7 +23,7 @@ impl Match {
     }
 }
 
-/// Pairs the expressions of two visits, from those that each requested itself down to those that only it needs.
+/// Pairs the expressions of two visits, from those that each visit requests down to those that only this visit needs.
 pub(super) fn matched(
     program: &Program,
     rank: &[usize],
@@ -34,7 +34,7 @@ pub(super) fn matched(
         return None;
     }
     let mut found = Match::default();
-    // The previous partner of an operand from outside.
+    // The previous partner of an operand from outside the visit.
     let mut known: HashMap<ExprId, ExprId> = HashMap::new();
     let mut stack: Vec<(ExprId, ExprId)> = own.iter().copied().zip(others.iter().copied()).rev().collect();
     let asked: HashMap<ExprId, ExprId> = stack.iter().copied().collect();
@@ -92,7 +92,7 @@ pub(super) fn matched(
     Some(found)
 }
 
-/// The kind of an operand from outside.
+/// The kind of an operand from outside the visit.
 fn class(program: &Program, id: ExprId) -> usize {
     match program.op(id) {
         Op::Constant(_) => 0,

@@ -3,9 +3,9 @@
 //!
 //! | pass | file | after it |
 //! |---|---|---|
-//! | reroll, loops, matching | `reroll` | repeated work of consecutive bodies is a loop over the operations of one |
+//! | reroll, loops, matching | `reroll` | repeated work of consecutive bodies becomes a loop over the operations of one |
 //! | constants | `constants` | values that depend only on live parameters are computed once, outside of all functions |
-//! | fuse | `fuse` | a product that only sums use is part of them, `a b + c` |
+//! | fuse | `fuse` | a product that only sums use becomes part of them, `a b + c` |
 //! | bundle | `bundle` | a value used once is inlined where it is used, as long as the expression stays bounded |
 //! | order | `order` | angles first, then each value just before its use, each output as soon as it is known |
 //! | split | `split` | no piece is too long for rustc; only values that cross a cut are kept |
@@ -175,7 +175,7 @@ fn lower_function<'p>(
     let rerolled = min_iterations.and_then(|least| reroll::reroll(program, constants, function, least));
     let in_line = || Rerolled::in_line(function);
     let (line, rerolled, inlined, fused) = match rerolled.map(|rerolled| line(program, constants, function, rerolled)) {
-        // Loops and the values that they leave stay in one piece.
+        // Loops and the values taken from them must stay in one piece.
         Some(loops) if !split::is_long(&loops.0) => loops,
         _ => line(program, constants, function, in_line()),
     };
@@ -211,7 +211,7 @@ fn line(program: &Program, constants: &Constants, function: &Function, rerolled:
 type Line = (Vec<Statement>, Rerolled, Vec<bool>, Vec<Option<ExprId>>);
 
 /// The values that need variables before `id` can be written: its operands, or, for an inlined operand, the values that it
-/// needs in turn.
+/// needs itself.
 fn variables_of(program: &Program, constants: &Constants, inlined: &[bool], id: ExprId) -> Vec<ExprId> {
     let mut variables = Vec::new();
     let mut stack: Vec<ExprId> = program.op(id).operands().rev().collect();

@@ -102,7 +102,7 @@ struct Line<'a> {
     inlined: &'a [bool],
     rerolled: &'a Rerolled,
     needed: Vec<bool>,
-    /// Slots of the result that wait for a value of a sweep.
+    /// Slots of the result that have not been written yet, by value.
     unwritten: HashMap<ExprId, Vec<usize>>,
     done: Vec<bool>,
     /// The loops that have been written.
@@ -120,7 +120,7 @@ impl Line<'_> {
         for id in angles.iter().flat_map(|known| [known.sin, known.cos]).flatten() {
             self.done[id.index()] = true;
         }
-        // Loops take theirs by index.
+        // Loops read sines and cosines by index.
         let outside = needed_here(self.program, self.constants, &self.rerolled.roots());
         let named = |id: &ExprId| self.rerolled.loops.is_empty() || outside[id.index()];
         for known in &mut angles {
@@ -140,7 +140,7 @@ impl Line<'_> {
         for id in arguments.iter().flat_map(|known| known.values).flatten() {
             self.done[id.index()] = true;
         }
-        // Loops take theirs by index.
+        // Loops read the functions by index.
         let outside = needed_here(self.program, self.constants, &self.rerolled.roots());
         let named = |id: &ExprId| self.rerolled.loops.is_empty() || outside[id.index()];
         for known in &mut arguments {
@@ -151,7 +151,7 @@ impl Line<'_> {
         }
     }
 
-    /// The statement of a loop, after everything it takes from outside.
+    /// The statement of a loop, after everything that it needs from outside.
     fn run(&mut self, of: usize) {
         if std::mem::replace(&mut self.run[of], true) {
             return;

@@ -15,11 +15,11 @@ use crate::symbolic::{ExprId, Op, Visit};
 /// The source of one operand in all iterations.
 #[derive(Clone, Debug)]
 enum Operands {
-    /// They are the same in every iteration.
+    /// The same operand in every iteration.
     Invariant,
     /// From this source.
     From(Source),
-    /// Another loop can save them.
+    /// Values that another loop can save.
     Saved { of: usize, template: ExprId, iteration: Progression },
 }
 
@@ -28,7 +28,7 @@ enum Operands {
 struct Plan {
     /// The expressions of the first visit, operands before their users.
     own: Vec<ExprId>,
-    /// Its iterations, and the requirements of their operands.
+    /// The loop under construction: its iterations and what their operands require.
     making: Loop,
     /// Sources of operands, by their expressions in each iteration.
     sources: HashMap<Vec<ExprId>, Operands>,
@@ -36,7 +36,7 @@ struct Plan {
     sites: Vec<((ExprId, usize), Vec<ExprId>)>,
 }
 
-/// Loops of at least `least` iterations, if the function has any.
+/// Loops with at least `least` iterations, if the function has any.
 pub(super) fn reroll(
     program: &mut Program,
     constants: &Constants,
@@ -61,7 +61,7 @@ pub(super) fn reroll(
     let mut start = 0;
     while start < visits.len() {
         let matches = rerolling.run(visits, start);
-        // One more iteration may require gathering values, because another loop has one iteration less.
+        // The last iteration may require gathering values, because another loop has one iteration fewer.
         let shorter = matches.split_last().map_or(&[][..], |(_, rest)| rest);
         let later = if shorter.len() >= least { rerolling.run(visits, start + 1) } else { vec![] };
         let candidates = [(0, &matches[..]), (0, shorter), (1, &later)];
@@ -124,7 +124,7 @@ struct Rerolling<'a> {
 }
 
 impl Rerolling<'_> {
-    /// The expressions that a visit requested itself.
+    /// The expressions that a visit requests and no earlier visit needs.
     fn anchors(&self, visit: &Visit, at: usize) -> Vec<ExprId> {
         visit.nodes.iter().copied().filter(|id| self.rank[id.index()] == at).collect()
     }
@@ -297,7 +297,7 @@ impl Rerolling<'_> {
         self.rerolled.loops.push(making);
     }
 
-    /// The model's name for a value in all iterations.
+    /// The part of a value's name in the model that is the same in all iterations.
     fn name_of(&self, operands: &[ExprId], source: &Source) -> String {
         let of = |id: &ExprId| match self.program.op(*id) {
             Op::Symbol(symbol) => Some(self.program.symbol(symbol).name.clone()),
@@ -378,7 +378,7 @@ impl Rerolling<'_> {
         self.program.append_symbol(Symbol { name, argument: Argument::LiveOut, index })
     }
 
-    /// The slots of the result: written in a loop if they are consecutive, otherwise outside.
+    /// The slots of the result: written in a loop if their indices form an arithmetic progression, otherwise outside.
     fn hand_over(&mut self, function: &Function) {
         let mut rows: HashMap<(usize, ExprId), Vec<(usize, usize)>> = HashMap::new();
         if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. }) {
@@ -422,7 +422,7 @@ fn number(op: Op) -> Option<f64> {
     }
 }
 
-/// The arithmetic progression of at least two indices.
+/// The arithmetic progression that the indices form, if they do and there are at least two.
 fn progression(places: impl Iterator<Item = Option<usize>>) -> Option<Progression> {
     let places: Vec<isize> =
         places.map(|place| place.and_then(|place| isize::try_from(place).ok())).collect::<Option<_>>()?;

@@ -53,8 +53,8 @@ pub struct Reaction<'g> {
     pub linear: Vec3<'g>,
 }
 
-/// The acceleration of a ball joint from those before it: `α' − α = rest − B α − G a`, with B only if there is added inertia;
-/// without it, α' itself.
+/// The acceleration of a ball joint from those before it: `α' − α = rest − B α − G a` if there is added inertia, otherwise
+/// `α' = rest − G a`.
 #[derive(Clone, Copy, Debug)]
 pub struct BallResponse<'g> {
     pub rest: Vec3<'g>,
@@ -82,7 +82,7 @@ impl<'g> Articulated<'g> {
         self.force = self.force + omega.cross(omega.cross(first));
     }
 
-    /// Names in generated code, at the frame of a body.
+    /// Names the quantities in generated code, at the frame of a body.
     pub fn named(&self, body: &str) {
         self.rotational.named(&format!("rotational_{body}"));
         self.coupling.named(&format!("coupling_{body}"));
@@ -91,7 +91,7 @@ impl<'g> Articulated<'g> {
         self.force.named(&format!("force_{body}"));
     }
 
-    /// From the origin at d back to the frame's own origin, where a is smaller by `α × d` and `acceleration`.
+    /// Moves the reference point from d to the frame's own origin, where a is smaller by `α × d` and `acceleration`.
     pub fn shift(&mut self, d: Vec3<'g>, acceleration: Vec3<'g>) {
         self.moment = self.moment + self.coupling.apply(acceleration);
         self.force = self.force + self.translational.apply(acceleration);
@@ -104,7 +104,7 @@ impl<'g> Articulated<'g> {
         self.rotational = Symmetric3::from_entries(|i, j| own.at(i, j) + old.0[j][i] + new.0[i][j]);
     }
 
-    /// Components in the frame before a rotation.
+    /// Transforms to components in the frame before a rotation.
     pub fn rotate_about_axis(&mut self, rotation: &AxisRotation<'g>) {
         *self = Articulated {
             rotational: rotation.outward_symmetric(&self.rotational),
@@ -115,7 +115,7 @@ impl<'g> Articulated<'g> {
         };
     }
 
-    /// Components in the frame before a rotation R.
+    /// Transforms to components in the frame before a rotation R.
     pub fn rotate(&mut self, rotation: Rotation<'g>) {
         *self = Articulated {
             rotational: self.rotational.rotated(rotation),
@@ -126,7 +126,8 @@ impl<'g> Articulated<'g> {
         };
     }
 
-    /// Components in the frame before a rotation R of the wrench that a released ball joint transmits: a force, and the moment n.
+    /// Transforms the wrench that a released ball joint transmits, a force and the moment n, to components in the frame before
+    /// a rotation R.
     pub fn rotate_force(&mut self, rotation: Rotation<'g>, moment: Vec3<'g>) {
         self.translational = self.translational.rotated(rotation);
         self.moment = moment;
@@ -135,8 +136,9 @@ impl<'g> Articulated<'g> {
 
     /// Releases the rotation about an axis, in the frame after it; `gyration` is `ω × e q̇`.
     ///
-    /// `D = J_kk + d̂`, `q̈ = (τ − n₀_k − J_k α − H_k a) / D`. Row k of J, H and n₀ is what the joint transmits: d̂/D of the
-    /// previous value, and only τ without added inertia. This is computed directly instead of as a difference that should be zero.
+    /// `D = J_kk + d̂`, `q̈ = (τ − n₀_k − J_k α − H_k a) / D`. Row k of J, H and n₀ then gives the moment `τ − d̂ q̈` about the axis:
+    /// J and H are scaled by d̂/D, and without added inertia only τ remains. This is computed directly instead of as a difference
+    /// that should be zero.
     pub fn free_rotation(&mut self, axis: Axis, effort: Effort<'g>, gyration: Vec3<'g>) -> Response<'g> {
         let k = axis.index();
         self.moment = self.moment + self.rotational.apply(gyration);
@@ -231,9 +233,9 @@ impl<'g> Articulated<'g> {
 
     /// Releases all rotations about the origin, against the moment `n_τ − D' (α' − α)`; everything in one frame.
     ///
-    /// With `K = J + D'`: `α' − α = K⁻¹ (n_τ − n₀ − H a − J α)`. What is transmitted,
-    /// `J ← D' K⁻¹ J`, `H ← D' K⁻¹ H`, `M ← M − Hᵀ K⁻¹ H`, is a pure force without added inertia: J and H then cannot lose
-    /// digits.
+    /// With `K = J + D'`: `α' − α = K⁻¹ (n_τ − n₀ − H a − J α)`. The joint transmits
+    /// `J ← D' K⁻¹ J`, `H ← D' K⁻¹ H`, `M ← M − Hᵀ K⁻¹ H`: without added inertia a pure force, with J and H exactly zero, so
+    /// that no digits are lost.
     pub fn free_ball(&mut self, moment: Vec3<'g>, added_inertia: Option<Symmetric3<'g>>) -> BallResponse<'g> {
         let blocks = added_inertia.map_or(self.rotational, |d| self.rotational + d).inverse();
         let graph = moment[0].graph();

@@ -1,4 +1,4 @@
-//! Elementary rotations of frames, applied as plane rotations: no 3×3 product with known zeros.
+//! Elementary rotations of frames, applied as plane rotations, which avoids 3×3 products with known zeros.
 //!
 //! A rotation is `R = R_axis(angle)`, from the inner frame (towards the tip) to the outer one (towards the base).
 //! `inward` is `x ↦ Rᵀ x`, from base to tip; `outward` is `x ↦ R x`, `S ↦ R S Rᵀ`, from tip to base.
@@ -32,8 +32,8 @@ impl<'g> AxisRotation<'g> {
 
     /// `R S Rᵀ`
     ///
-    /// In the plane of rotation, `w` is subtracted from `S_aa` and added to `S_bb`: entries of very different size keep their
-    /// digits as the angle goes to zero.
+    /// In the plane of rotation, `w` is subtracted from `S_aa` and added to `S_bb`, so that entries of very different size keep
+    /// their digits as the angle goes to zero.
     pub fn outward_symmetric(&self, s: &Symmetric3<'g>) -> Symmetric3<'g> {
         let (a, b) = plane(self.axis);
         let k = self.axis.index();

@@ -1,25 +1,27 @@
-//! The part of the effort of spring and damper that a drive can deliver. Limits of power and rate apply while it drives, not while it brakes.
+//! The part of the effort of spring and damper that a drive can deliver. The limits on power and rate apply while it drives, not
+//! while it brakes.
 //!
 //! Notation
-//! : u the effort of spring and damper up to the limit M, v the rate of the joint, P the greatest power, V the greatest rate; σ the law of
-//!   [`saturation`](super::saturation).
+//! : u the effort of spring and damper, limited to M; v the rate of the joint; P the maximum power; V the maximum rate; σ the law
+//!   of [`saturation`](super::saturation).
 //!
 //! ```text
 //! τ = w σ(u; P/max(|v|, P/2M))        if u v > 0, else u
 //! w = x² (3 − 2x),   x = (V − |v|)/0.1 V between 0 and 1
 //! ```
 //!
-//! What of u is not delivered slips in the transmission: with the drive's motion q_dr, it puts in `u q̇_dr − (u − τ) v`.
+//! The part of u that is not delivered slips in the transmission: with its motion q_dr, the drive's power input is
+//! `u q̇_dr − (u − τ) v`.
 
 use super::model::Model;
 use super::saturation::Saturation;
 use crate::chain::Drive;
 use crate::symbolic::Expr;
 
-/// Share of the greatest rate over which the effort falls to nothing.
+/// Fraction of the maximum rate over which the effort falls to zero.
 const FADING: f64 = 0.1;
 
-/// τ of a drive with the effort u at a rate of its joint.
+/// τ of a drive, from its effort u and the rate of its joint.
 pub fn delivered<'g>(model: &Model<'g>, drive: &Drive, effort: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
     let Some(limit) = drive.max_effort().filter(|_| drive.max_power().is_some() || drive.max_rate().is_some()) else {
         return effort;

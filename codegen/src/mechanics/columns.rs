@@ -3,7 +3,7 @@
 //! Notation
 //! : everything beyond a joint, as one composite body: its mass m, first moments s and inertia I about the joint's point, in the
 //!   joint's own frame; its momenta at unit rate of coordinate j, `P_j` and, about the point, `L_j`, and the axis `n_j`, in the
-//!   world's.
+//!   world's axes.
 //!
 //! Output
 //! : `a_ij = n_i · L_j` for a rotation i and `n_i · P_j` for a translation, i ≤ j, with L_j about the point of i
@@ -12,7 +12,7 @@
 //! In its own frame a joint's axis is one of the unit vectors: momenta are a column of I and two entries of s, and most
 //! placements are shifts along one axis. In the world's axes a row of A is one scalar product per column, without rotations
 //! from joint to joint. About local points nothing large is subtracted, so the torsional inertia of a slender element keeps
-//! its digits; about the world's origin it would be small beside the inertia of the whole crane.
+//! its digits; about the world's origin it would be small compared with the inertia of the whole crane.
 
 use super::axis_rotation::AxisRotation;
 use super::factors::Factor;
@@ -135,25 +135,25 @@ impl<'g> Composite<'g> {
         self.second = self.second + model.second_moments(inertia);
     }
 
-    /// Names in generated code, at the frame of a body.
+    /// Names the quantities in generated code, at the frame of a body.
     fn named(&self, body: &str) {
         self.first.named(&format!("first_from_{body}"));
         self.second.named(&format!("second_from_{body}"));
     }
 
-    /// Components in the frame before a rotation.
+    /// Transforms to components in the frame before a rotation.
     fn rotate_about_axis(&mut self, rotation: &AxisRotation<'g>) {
         self.first = rotation.outward(self.first);
         self.second = rotation.outward_symmetric(&self.second);
     }
 
-    /// The same before a rotation by its matrix.
+    /// The same for a rotation given by its matrix.
     fn rotate(&mut self, rotation: Rotation<'g>) {
         self.first = rotation.apply(self.first);
         self.second = self.second.rotated(rotation);
     }
 
-    /// From the origin at d back to the frame's own origin: `Σ + u dᵀ + d uᵀ` with `u = s + ½ m d`.
+    /// Moves the reference point from d to the frame's own origin: `Σ + u dᵀ + d uᵀ` with `u = s + ½ m d`.
     fn shift(&mut self, d: Vec3<'g>) {
         self.second = self.second + Symmetric3::outer(self.first + (0.5 * self.mass) * d, d);
         self.first = self.first + self.mass * d;
@@ -178,7 +178,7 @@ impl<'g> Composite<'g> {
 }
 
 impl<'g> Columns<'g> {
-    /// Coordinate j moves along or about an axis; its momenta are given by their components in a frame.
+    /// Stores the axis, the momenta and the offset of coordinate j; the momenta are given by their components in a frame.
     fn set(
         &mut self,
         model: &Model<'g>,
@@ -217,7 +217,7 @@ impl<'g> Columns<'g> {
     /// The points at which the coordinates act, in order.
     pub fn points(&self, model: &Model<'g>) -> Vec<ConcurrentAxes> {
         let mut points: Vec<ConcurrentAxes> = Vec::new();
-        // The offset from the previous coordinate; the first has none.
+        // Whether the next coordinate acts at a new point; the first always does.
         let mut apart = true;
         for (coordinate, offset) in model.chain.coordinates.iter().zip(&self.offsets) {
             let rotate = coordinate.kind == CoordinateKind::Rotation;
@@ -230,7 +230,7 @@ impl<'g> Columns<'g> {
         points
     }
 
-    /// All numbers for a loop: axes, P, L and offsets, coordinate by coordinate.
+    /// All numbers for a loop: the axes of all coordinates, then all P, all L and all offsets.
     pub fn slots(&self) -> Vec<Expr<'g>> {
         let vectors = [&self.axes, &self.linear, &self.angular, &self.offsets];
         vectors.into_iter().flatten().flat_map(|vector| vector.0).collect()

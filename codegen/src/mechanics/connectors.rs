@@ -2,8 +2,8 @@
 //!
 //! Notation
 //! : points p₁, p₂ in the world, `ℓ = |p₂ − p₁|`, `e = (p₂ − p₁)/ℓ`. `J_j = ∂ℓ/∂q_j = e · (∂p₂/∂q_j − ∂p₁/∂q_j)` for the coordinates
-//!   that move only one of the points: those that move both do not change ℓ. `ℓ̇ = J q̇`. Of a coupling `ℓ = q_j − r q_i`, `J_j = 1`,
-//!   `J_i = −r`.
+//!   that move only one of the points: those that move both do not change ℓ. `ℓ̇ = J q̇`. For a coupling `ℓ = q_j − r q_i`,
+//!   `J_j = 1`, `J_i = −r`.
 //!
 //! F is the force that resists the growth of ℓ, so `f = −Jᵀ F`.
 
@@ -18,7 +18,7 @@ use crate::symbolic::Expr;
 struct Stretched<'g> {
     /// ℓ, m or rad.
     length: Expr<'g>,
-    /// Places and values of J.
+    /// Indices and values of the entries of J.
     jacobian: Vec<(usize, Expr<'g>)>,
     /// p₁, p₂ and e of an element between points.
     line: Option<([Vec3<'g>; 2], Vec3<'g>)>,
@@ -65,7 +65,7 @@ impl<'g> Stretched<'g> {
     }
 }
 
-/// Length and rate on which the force depends; at rest nothing has a rate, not even a winch.
+/// Length and rate on which the force depends; at rest there are no rates, not even that of a winch.
 #[derive(Clone, Copy, Debug)]
 struct State<'g> {
     t: Expr<'g>,
@@ -73,7 +73,7 @@ struct State<'g> {
     rate: Option<Expr<'g>>,
 }
 
-/// A rope: ℓ₀ − ℓ, σ and σ̇.
+/// A rope: ℓ₀ − ℓ, the stretch σ and its rate σ̇.
 struct Rope<'g> {
     slack: Expr<'g>,
     stretch: Expr<'g>,
@@ -91,7 +91,8 @@ impl<'g> Rope<'g> {
         }
     }
 
-    /// `number` where the rope is taut, else 0. Just taut counts: Newton's method begins with ropes that are about to pull.
+    /// `number` if the rope is taut, otherwise 0. A rope that is just taut counts, because Newton's method starts with ropes that
+    /// are about to pull.
     fn where_taut(&self, number: Expr<'g>) -> Expr<'g> {
         self.slack.select(self.slack.graph().constant(0.0), number)
     }
@@ -187,7 +188,7 @@ pub fn tensions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<
     .collect()
 }
 
-/// `½ Σ k (ℓ − ℓ₀)² − P (ℓ − ℓ₀)`, of ropes `½ Σ k σ²`.
+/// `½ Σ k (ℓ − ℓ₀)² − P (ℓ − ℓ₀)`, for ropes `½ Σ k σ²`.
 pub fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     let all = stretched(model, kinematics, (model.t, None));
     all.fold(model.zero(), |sum, (connector, _, state)| {
@@ -203,7 +204,7 @@ pub fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     })
 }
 
-/// Power lost: `d ℓ̇²`, of ropes `k σ max(−1, a σ̇) σ̇`.
+/// Dissipated power: `d ℓ̇²`, for ropes `k σ max(−1, a σ̇) σ̇`.
 pub fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     let all = stretched(model, kinematics, (model.t, Some(&model.v)));
     all.fold(model.zero(), |sum, (connector, _, state)| {
@@ -220,7 +221,7 @@ pub fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'
     })
 }
 
-/// Power that winches put in, `−Σ F ℓ̇₀`.
+/// Power input of the winches, `−Σ F ℓ̇₀`.
 pub fn winch_power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     let all = stretched(model, kinematics, (model.t, Some(&model.v)));
     all.fold(model.zero(), |sum, (connector, _, state)| match connector.winch() {
@@ -229,7 +230,7 @@ pub fn winch_power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'
     })
 }
 
-/// Begin and end of the intervals in which every winch moves smoothly.
+/// Start and end of the intervals in which every winch moves smoothly.
 pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let winches = model.chain.connectors.iter().filter_map(Connector::winch);
     winches.flat_map(Profile::pieces).flatten().map(|time| model.number(&time)).collect()
@@ -258,7 +259,8 @@ pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut 
     }
 }
 
-/// Forces on the bodies at both ends, in the world: body, point, force. A coupling acts along its joints, like their drives.
+/// Forces on the bodies at both ends, in the world: body, point, force. Couplings have none: they act on their
+/// joints, like drives.
 pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(BodyId, Vec3<'g>, Vec3<'g>)> {
     let all = stretched(model, kinematics, (model.t, Some(&model.v)));
     all.filter_map(|(connector, stretched, state)| {

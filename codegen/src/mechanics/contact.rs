@@ -1,7 +1,7 @@
 //! The law of one-sided supports, which press on the ground and never pull.
 //!
 //! Notation
-//! : e, ė elongation and its rate along the world's axes; s, d stiffness and damping; N₀ the pressing force of full hold.
+//! : e, ė elongation and its rate along the world's axes; s, d stiffness and damping; N₀ the pressing force above which it holds fully.
 //!   `δ = max(0, −e_z)` is how far the support is pressed in, `x = min(1, s_z δ/N₀)` and `w = x² (3 − 2x)` the fraction to which
 //!   its lateral springs and its dampers act, `L = s_x e_x² + s_y e_y²`.
 //!
@@ -10,8 +10,8 @@
 //! f = (−w (s_x e_x + d_x ė_x), −w (s_y e_y + d_y ė_y), max(0, c − w d_z ė_z)),     c = s_z δ + ½ w' L
 //! ```
 //!
-//! From N₀ on w = 1: a firmly pressed support acts exactly like a two-sided one, to the last bit. The term `½ w' L` is the
-//! energy of the lateral springs, which a support that lifts gives back.
+//! Above N₀, w = 1: a firmly pressed support acts exactly like a two-sided one, to the last bit. Through the term `½ w' L`, a
+//! lifting support returns the energy of its lateral springs.
 
 use super::vector::{Symmetric3, Vec3};
 use crate::symbolic::Expr;
@@ -30,7 +30,7 @@ pub struct Contact<'g> {
     pub full_hold: Expr<'g>,
 }
 
-/// The share in which a support holds, w, and its derivatives by δ.
+/// The fraction w to which a support holds, and its derivatives with respect to δ.
 struct Share<'g> {
     value: Expr<'g>,
     slope: Expr<'g>,
@@ -42,8 +42,8 @@ impl<'g> Contact<'g> {
         self.full_hold.graph().constant(0.0)
     }
 
-    /// A number where the support touches the ground, else 0. Just touching counts: a spring that is about to press is where
-    /// Newton's method begins.
+    /// `number` if the support touches the ground, otherwise 0. A support that just touches counts, because Newton's method
+    /// starts with springs that are about to press.
     fn touching(&self, number: Expr<'g>) -> Expr<'g> {
         self.elongation[2].select(self.zero(), number)
     }
@@ -70,12 +70,12 @@ impl<'g> Contact<'g> {
         self.stiffness[0] * self.elongation[0].squared() + self.stiffness[1] * self.elongation[1].squared()
     }
 
-    /// `c = s_z δ + ½ w' L`, what the springs press with.
+    /// `c = s_z δ + ½ w' L`, the pressing force of the springs.
     fn spring(&self, share: &Share<'g>) -> Expr<'g> {
         self.stiffness[2] * self.depth() + 0.5 * share.slope * self.lateral()
     }
 
-    /// `−w d_z ė_z`, what the damper adds as long as the sum presses.
+    /// `−w d_z ė_z`, the force that the damper adds as long as the sum is positive.
     fn damper(&self, share: &Share<'g>) -> Expr<'g> {
         -(share.value * (self.damping[2] * self.rate[2]))
     }
@@ -95,8 +95,8 @@ impl<'g> Contact<'g> {
         self.stiffness[2] * self.depth().squared() + self.share().value * self.lateral()
     }
 
-    /// Power that is lost, W: `w (d_x ė_x² + d_y ė_y²) + max(−w d_z ė_z, −c) (−ė_z) ≥ 0`, the power of the forces less the growth of
-    /// the energy.
+    /// Dissipated power, W: `w (d_x ė_x² + d_y ė_y²) + max(−w d_z ė_z, −c) (−ė_z) ≥ 0`, the power put into the support minus the
+    /// rate of change of its energy.
     pub fn dissipation(&self) -> Expr<'g> {
         let share = self.share();
         let lateral = self.damping[0] * self.rate[0].squared() + self.damping[1] * self.rate[1].squared();
@@ -126,8 +126,8 @@ impl<'g> Contact<'g> {
         Vec3(self.damping.0.map(|damping| share.value * damping))
     }
 
-    /// Stiffness and damping along the axes for an implicit step, which does not need the exact derivative, but must keep `A + D̂` positive definite:
-    /// `w s_x, w s_y, max(0, ∂f_z/∂δ)` and `w d`; along z nothing where the support does not press.
+    /// Stiffness and damping along the axes for an implicit step, which does not need the exact derivative, but must keep `A + D̂`
+    /// positive definite: `w s_x, w s_y, max(0, ∂f_z/∂δ)` and `w d`; along z zero if the support does not press.
     pub fn stiffness_and_damping(&self) -> [Vec3<'g>; 2] {
         let share = self.share();
         let presses = self.spring(&share) + self.damper(&share);

@@ -1,4 +1,4 @@
-//! Cylinders between their pins: length, its rate, and its derivative by the joint's coordinate.
+//! Cylinders between their pins: length, its rate, and its derivative with respect to the joint's coordinate.
 //!
 //! Notation
 //! : A the foot, B the rod's pin, H the head, P the pivot of the rocker, all in the world; e = (B − A)/ℓ. Rates are those seen from the
@@ -8,7 +8,8 @@
 //! ℓ = |B − A|        ℓ̇ = e · Ḃ
 //! ```
 //!
-//! With a linkage, B is at the rocker's length r from P and at the link's length l from H, in the plane across the joint's axis n. With
+//! With a linkage, B is at the rocker's length r from P and at the link's length l from H, in the plane normal to the joint's axis
+//! n. With
 //! `w = H − P`, `d = |w|`, `c = w/d` and `m = ± (n × w)/|n × w|`:
 //!
 //! ```text
@@ -16,8 +17,8 @@
 //! Ḃ = ȧ c + a ċ + ḣ m + h ṁ,      ȧ = ḋ (1 − a/d),         ḣ = −a ȧ/h
 //! ```
 //!
-//! The axis turns, too, as seen from there, where something bends between the pins and the joint. A square root of a negative number,
-//! not a number, is a pose that cannot be assembled.
+//! Seen from that body, the axis turns as well if something bends between the pins and the joint. In a pose in which the linkage
+//! cannot be assembled, the square root is of a negative number, and the result is NaN.
 
 use super::kinematics::{Generator, Kinematics};
 use super::model::Model;
@@ -44,10 +45,10 @@ struct Assembled<'g> {
     /// w and d
     across: Vec3<'g>,
     distance: Expr<'g>,
-    /// a and h, of the side of the rocker's pin
+    /// a, and h with the sign of m: negative if the rod's pin is on the right
     along: Expr<'g>,
     height: Expr<'g>,
-    /// c and m
+    /// c, and m without its sign
     unit_along: Vec3<'g>,
     unit_height: Vec3<'g>,
     /// |n × w|
@@ -118,7 +119,7 @@ fn geometry<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylin
     Geometry { head, length, direction: (1.0 / length) * way, linkage }
 }
 
-/// Angular velocity of a joint's axis as seen from a body: what turns between them.
+/// Angular velocity of a joint's axis relative to a body: that of the rotations between them.
 fn spin_of_axis<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, joint: usize, from: usize) -> Vec3<'g> {
     let turning = |(j, generator): (usize, &Generator<'g>)| match (generator.body > from, j < joint) {
         (true, true) => Some(model.v[j] * generator.omega),

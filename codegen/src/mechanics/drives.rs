@@ -1,5 +1,5 @@
-//! Drives: a spring and a damper between a coordinate and its prescribed motion, or that motion itself. What oil moves has a spring at
-//! rest only: its force in motion follows from pressures, which are states of the run.
+//! Drives: a spring and a damper between a coordinate and its prescribed motion, or that motion itself. A joint that oil moves has a
+//! spring at rest only: in motion, its force follows from pressures, which are states of the run.
 
 use super::capability::delivered;
 use super::model::Model;
@@ -14,7 +14,7 @@ fn flexible<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Va
     model.chain.drives.iter().filter_map(|drive| drive.spring().map(|(s, d)| (drive, s, d)))
 }
 
-/// Drives by oil, with their stiffness at rest.
+/// Hydraulic drives, with their stiffness at rest.
 fn moved_by_oil<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value)> {
     model.chain.drives.iter().filter_map(|drive| drive.oil().map(|stiffness| (drive, stiffness)))
 }
@@ -31,18 +31,18 @@ fn unlimited<'g>(
     model.number(stiffness) * stretch + model.number(damping) * rate
 }
 
-/// `t_dr = s (q_dr − q) + d (q̇_dr − q̇)` [Urbaś 2016, Eqs. (20)–(21)], up to the limits of the drive.
+/// `t_dr = s (q_dr − q) + d (q̇_dr − q̇)` [Urbaś 2016, Eqs. (20)–(21)], within the limits of the drive.
 fn effort<'g>(model: &Model<'g>, flexible: (&Drive, &Value, &Value), t: Expr<'g>, v: &[Expr<'g>]) -> Expr<'g> {
     let within = limited(model, flexible.0, unlimited(model, flexible, t, v));
     named(model, flexible.0, delivered(model, flexible.0, within, v[flexible.0.coordinate.0]))
 }
 
-/// An effort up to the greatest of its drive.
+/// An effort, limited to the maximum of its drive.
 fn limited<'g>(model: &Model<'g>, drive: &Drive, effort: Expr<'g>) -> Expr<'g> {
     drive.max_effort().map_or(effort, |limit| Saturation::new(effort, model.number(limit)).effort())
 }
 
-/// Drives with a limit, and the saturation of what their springs deliver at a time.
+/// Drives with a limit, and the saturation of the efforts of their springs at time t.
 fn saturations<'a, 'g>(
     model: &'a Model<'g>,
     t: Expr<'g>,
@@ -105,7 +105,7 @@ fn prescribed<'g>(model: &Model<'g>, of: impl Fn(&Drive) -> Expr<'g>) -> Vec<Opt
     prescribed
 }
 
-/// `E_dr = ½ Σ s (q_dr − q)²` [Urbaś 2016, Eq. (19)]; with a limit `∫ sat(s e) de`.
+/// `E_dr = ½ Σ s (q_dr − q)²` [Urbaś 2016, Eq. (19)]; for a drive with a limit `∫ sat(s e) de`.
 pub fn energy<'g>(model: &Model<'g>) -> Expr<'g> {
     let linear = flexible(model).filter(|(drive, ..)| drive.max_effort().is_none());
     let twice = linear.fold(model.zero(), |sum, (drive, stiffness, _)| {
@@ -142,7 +142,7 @@ pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     }
 }
 
-/// Stiffness at rest of drives by oil, on the diagonal.
+/// Stiffness at rest of hydraulic drives, on the diagonal.
 pub fn holding_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     for (drive, stiffness) in moved_by_oil(model) {
         matrix.add(drive.coordinate.0, drive.coordinate.0, model.number(stiffness));
@@ -156,7 +156,7 @@ pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     }
 }
 
-/// Greatest effort of every drive, 0 if it has no limit, and its stiffness at the state, `−∂t_dr/∂q`.
+/// Maximum effort of every drive, 0 if it has no limit, and its stiffness at the state, `−∂t_dr/∂q`.
 pub fn limits<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let zero = model.zero();
     let limit = |drive: &Drive| {
@@ -184,7 +184,7 @@ pub fn motions<'g, 'a>(model: &Model<'g>, drives: impl Iterator<Item = &'a Drive
     drives.flat_map(motion).collect()
 }
 
-/// Opening and its rate of every drive's valve that has a command over time; zeros of all others.
+/// Opening and its rate for every drive whose valve has a command over time; zeros for all others.
 pub fn openings<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let opening = |drive: &Drive| {
         drive.opening().map_or([model.zero(); 2], |profile| {
@@ -194,13 +194,14 @@ pub fn openings<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.chain.drives.iter().flat_map(opening).collect()
 }
 
-/// Begin and end of the smooth intervals of every drive's motion and valve.
+/// Start and end of the smooth intervals of every drive's motion and valve.
 pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let pieces = model.chain.drives.iter().flat_map(Drive::pieces);
     pieces.flatten().map(|time| model.number(&time)).collect()
 }
 
-/// Power of the prescribed motions, `Σ t_dr q̇_dr`, without what slips in drives at their limits of power and rate; for rigid drives, whose efforts are given, `τ q̇`.
+/// Power of the prescribed motions, `Σ t_dr q̇_dr`, minus the power of the effort that slips in drives at their limits of power and
+/// rate; for rigid drives, whose efforts are given, `τ q̇`.
 pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
     let flexible = flexible(model).fold(model.zero(), |sum, drive| {
         let (motion, rate) = (profile::rate(model, &drive.0.profile, model.t), model.v[drive.0.coordinate.0]);
@@ -211,8 +212,8 @@ pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
     model.chain.rigid_drives().map(|drive| drive.coordinate.0).fold(flexible, |sum, j| sum + efforts[j] * model.v[j])
 }
 
-/// Power that the drives' dampers dissipate, `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]); with a limit
-/// `(sat(u) − sat(s e)) ė ≥ 0`.
+/// Power that the drives' dampers dissipate, `Σ d (q̇_dr − q̇)²` (2R of [Urbaś 2016, Eq. (19)]); for a drive with a
+/// limit `(sat(u) − sat(s e)) ė ≥ 0`.
 pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     let rate = |drive: &Drive| profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
     let linear = flexible(model).filter(|(drive, ..)| drive.max_effort().is_none());

@@ -69,7 +69,7 @@ pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[F
     x
 }
 
-/// The factor at which the frame of the first body is reached.
+/// The index of the factor at which the frame of the first body is reached.
 fn first_body(factors: &[Factor]) -> usize {
     factors.iter().position(|factor| matches!(factor, Factor::Body(_))).unwrap_or(0)
 }

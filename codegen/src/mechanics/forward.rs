@@ -1,7 +1,7 @@
 //! Accelerations from efforts in O(n), by articulated bodies.
 //!
 //! Three sweeps: outward for velocities ([`super::outward`]), inward for articulated inertias, outward for accelerations.
-//! The mass matrix is never formed, and nothing is lost to its condition number.
+//! The mass matrix is never formed, and no digits are lost to its condition number.
 //!
 //! With velocities and gravity: `q̈` of `A q̈ = e + f` [Urbaś 2016, Eq. (23)]. At rest without gravity: `A x = r`, and with
 //! added inertias D̂, block-diagonal, `(A + D̂) x = r`. If a coordinate's acceleration is prescribed, its joint is not released, and
@@ -188,7 +188,7 @@ pub(super) fn outward<'g>(
 }
 
 impl<'g> Joint<'g> {
-    /// The acceleration of a joint of one coordinate, or the effort that it takes where that is prescribed, from the
+    /// The acceleration of a joint with one coordinate and, if it is prescribed, the effort that it requires, from the
     /// accelerations before it.
     fn move_on(&self, own: &mut Expr<'g>, effort: &mut Expr<'g>, angular: Vec3<'g>, linear: Vec3<'g>) {
         match self {
@@ -264,8 +264,8 @@ impl<'g> Ball<'g> {
 
     /// Releases the joint and transforms the articulated inertia to the frame before it.
     ///
-    /// Without added inertia it is released in the body's own frame, where its inertia has most zeros; with added inertia in the
-    /// frame after the second rotation, where D' has most zeros.
+    /// Without added inertia it is released in the body's own frame, where its inertia has the most zeros; with added inertia in
+    /// the frame after the second rotation, where D' has the most zeros.
     fn free(&self, articulated: &mut Articulated<'g>, efforts: [Effort<'g>; 3]) -> BallResponse<'g> {
         let ([a, b, c], tangent, secant) = self.geometry();
         let [first, second, third] = &self.rotations;

@@ -34,7 +34,7 @@ pub fn stop_energy<'g>(model: &Model<'g>) -> Expr<'g> {
     0.5 * twice
 }
 
-/// Power that stops and friction take out.
+/// Power that stops and friction dissipate.
 pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     let stops = model.chain.stops().fold(model.zero(), |sum, (coordinate, stop)| {
         let j = coordinate.0;
@@ -46,8 +46,8 @@ pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     })
 }
 
-/// `∂F/∂q_j` and `∂F/∂q̇_j` of all laws on each coordinate at the present state, for implicit steps: where friction declines
-/// with the rate 0: a step does not need the exact derivative, but `A + D̂` must stay positive definite.
+/// `∂F/∂q_j` and `∂F/∂q̇_j` of all laws on each coordinate at the present state, for implicit steps. Where friction declines with
+/// increasing rate, its derivative is set to 0: a step does not need the exact derivative, but `A + D̂` must stay positive definite.
 pub fn stiffness_and_damping<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
     let (stops, frictions) = (stop_forces(model, &model.v), friction_forces(model, &model.v));
     let drives = drives::stiffness_and_damping(model);
@@ -72,8 +72,8 @@ pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     }
 }
 
-/// Damping at rest, on the diagonal: of the stops, and viscous friction. A joint that sticks has no damping of its own, so
-/// Coulomb friction is not among it.
+/// Damping at rest, on the diagonal: that of the stops, and viscous friction. Coulomb friction is not included, because a joint that
+/// sticks has no damping.
 pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     for (coordinate, stop) in model.chain.stops() {
         let j = coordinate.0;

@@ -1,4 +1,4 @@
-//! Poses of bodies and axes of motion, by one walk along the chain.
+//! Poses of bodies and axes of motion, in one pass along the chain.
 //!
 //! Notation
 //! : `T(p)` pose of body p in the world; `R`, `r` its rotation and origin. For coordinate j the generator in the world
@@ -10,8 +10,8 @@
 //!
 //! Output
 //! : `T(p) = T(p−1) T̃(p)` [Urbaś 2016, Eq. (3)], and Ω_j, with which `∂T/∂q_j = Ω_j T`. Second derivatives are
-//!   `∂²T/∂q_m∂q_n = Ω_m Ω_n T`, m ≤ n; for two coordinates of one rotation vector, whose axes depend on each other both ways,
-//!   with an additional rotation about the same point ([`Curvature`]).
+//!   `∂²T/∂q_m∂q_n = Ω_m Ω_n T`, m ≤ n; for two coordinates of one rotation vector, each of whose axes depends on the other
+//!   coordinate, with an additional rotation about the same point ([`Curvature`]).
 
 use crate::chain::{CoordinateId, CoordinateKind, Step};
 use crate::symbolic::Expr;
@@ -95,7 +95,7 @@ impl<'g> Curvature<'g> {
         self.vector.by_coordinates(self.vector.rates_of(self.vector.curvature(self.axes(pair))).0)
     }
 
-    /// Work of a torque of the world at unit rate of each `E_mn`.
+    /// Power of a torque, given in the world frame, at unit rate of each `E_mn`.
     pub fn works(&self, torque: Vec3<'g>) -> [Expr<'g>; 6] {
         let local = self.pose.rotation.apply_transposed(torque);
         Self::PAIRS.map(|pair| self.vector.curvature_along(local, self.axes(pair)))

@@ -1,10 +1,11 @@
-//! Laws of force elements: a strain s of the pose and its rate give a force F, positive where it resists a growing strain.
+//! Laws of force elements: a strain s, which depends on the pose, and its rate determine a force F, positive where it resists a
+//! growing strain.
 
 use super::model::Model;
 use crate::chain::{End, Friction, Stop};
 use crate::symbolic::Expr;
 
-/// `δ = max(0, s)` of an end stop, with `s = ±(q − q_stop)` the way beyond it, and the sign: `∂s/∂q`.
+/// `δ = max(0, s)` of an end stop, with `s = ±(q − q_stop)` the travel beyond it, and the sign `∂s/∂q`.
 fn depth<'g>(model: &Model<'g>, stop: &Stop, q: Expr<'g>) -> (Expr<'g>, f64) {
     let at = model.number(&stop.at);
     let (beyond, sign) = match stop.end {
@@ -27,7 +28,7 @@ pub fn twice_stop_energy<'g>(model: &Model<'g>, stop: &Stop, q: Expr<'g>) -> Exp
     model.number(&stop.stiffness) * depth.squared()
 }
 
-/// `k δ max(−1, a δ̇) δ̇ ≥ 0`: what a stop takes out, the power of its force less the growth of its energy.
+/// `k δ max(−1, a δ̇) δ̇ ≥ 0`: the power that a stop dissipates, that of F minus the rate of change of its energy.
 pub fn stop_dissipation<'g>(model: &Model<'g>, stop: &Stop, q: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
     let (depth, sign) = depth(model, stop, q);
     let approach = sign * rate;
@@ -41,7 +42,8 @@ pub fn stop_damping_at_rest<'g>(model: &Model<'g>, stop: &Stop, q: Expr<'g>) -> 
     model.number(&stop.stiffness) * model.number(&stop.damping) * depth
 }
 
-/// `F = (F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) + b q̇`; of a joint that sticks `b q̇`, since the rest is a state's.
+/// `F = (F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) + b q̇`; for a joint with bristles only `b q̇`, since
+/// the rest follows from a state.
 pub fn friction_force<'g>(model: &Model<'g>, friction: &Friction, rate: Expr<'g>) -> Expr<'g> {
     if friction.bristle.is_some() {
         return model.number(&friction.viscous) * rate;

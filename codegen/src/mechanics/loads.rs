@@ -1,4 +1,4 @@
-//! Loads applied from outside: a force and a moment at a point of a body.
+//! External loads: a force and a moment at a point of a body.
 //!
 //! `f_j = F · Ω_j x + M · ω_j` for the coordinates j that move the body, x the point in the world: the power `F · ẋ + M · ω` at unit
 //! rate of j.
@@ -19,7 +19,7 @@ struct Applied<'g> {
     moment: Vec3<'g>,
 }
 
-/// What a load is multiplied by at time t; nothing where it is constant.
+/// The factor of a load at time t; `None` if the load is constant.
 fn scale<'g>(model: &Model<'g>, load: &Load, t: Expr<'g>) -> Option<Expr<'g>> {
     load.scale.as_ref().map(|scale| profile::position(model, scale, t))
 }
@@ -54,7 +54,7 @@ pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>) -
     forces
 }
 
-/// The load on each body by loads and connectors, force and moment about its origin along its own axes.
+/// The force that loads and connectors exert on each body and its moment about the body's origin, in the body's axes.
 pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Option<[Vec3<'g>; 2]>> {
     let mut wrenches: Vec<Option<[Vec3<'g>; 2]>> = vec![None; model.chain.bodies.len()];
     for load in &model.chain.loads {
@@ -89,13 +89,13 @@ fn add<'g>(sum: &mut Option<[Vec3<'g>; 2]>, [force, moment]: [Vec3<'g>; 2]) {
     });
 }
 
-/// Begin and end of the pieces of every load's scale.
+/// Start and end of the smooth intervals of every load's factor.
 pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let pieces = model.chain.loads.iter().filter_map(|load| load.scale.as_ref()).flat_map(Profile::pieces);
     pieces.flatten().map(|time| model.number(&time)).collect()
 }
 
-/// Power that the loads put in, `Σ F · ẋ + M · ω`.
+/// Power input of the loads, `Σ F · ẋ + M · ω`.
 pub fn power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist<'g>]) -> Expr<'g> {
     model.chain.loads.iter().fold(model.zero(), |sum, load| {
         let Applied { at, force, moment } = applied(model, kinematics, load, model.t);
@@ -104,8 +104,8 @@ pub fn power<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist
     })
 }
 
-/// `−∂f/∂q` of the loads at t = 0, its symmetric part: that of a force along fixed axes is symmetric, those of a moment and of a force
-/// that turns with its link are not, and have no potential.
+/// The symmetric part of `−∂f/∂q` of the loads at t = 0. For a force along fixed axes `∂f/∂q` is symmetric; for a moment, and for a
+/// force that turns with its link, it is not, and there is no potential.
 pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
     if model.chain.loads.is_empty() {
         return;

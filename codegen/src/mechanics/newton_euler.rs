@@ -32,7 +32,7 @@ pub fn internal_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, facto
     wrenches.flatten().flat_map(|vector| vector.0).collect()
 }
 
-/// The contribution of one factor to the motion of the frame after it.
+/// The motion of the frame after one factor.
 struct Motion<'g> {
     velocities: Velocities<'g>,
     /// Angular acceleration of the frame after the factor, in its components.
@@ -92,16 +92,16 @@ type Wrench<'g> = [Vec3<'g>; 2];
 struct Inward<'g> {
     /// Generalized forces that the motion requires.
     bias: Vec<Expr<'g>>,
-    /// The record of each body in the frame after its last coordinate; `None` if it has no coordinate.
+    /// The wrench recorded for each body in the frame after its last coordinate; `None` if it has no coordinate.
     joints: Vec<Option<Wrench<'g>>>,
-    /// The record of each body in its own frame.
+    /// The wrench recorded for each body in its own frame.
     bodies: Vec<Option<Wrench<'g>>>,
-    /// The record in the world frame.
+    /// The wrench recorded in the world frame.
     ground: Option<Wrench<'g>>,
 }
 
-/// From tip to base: the force and moment that each frame requires, less what is `applied` to the bodies. `note` converts them to the
-/// record of every cut.
+/// From tip to base: the force and moment that each frame requires, minus the loads `applied` to the bodies. `note` converts them to
+/// the wrench recorded at each cut.
 fn inward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],

@@ -41,7 +41,7 @@ pub fn left_out(chain: &Chain, analyses: Analyses) -> Vec<(&'static str, &'stati
     rows
 }
 
-/// Whether the chain moves in a plane: all rotations keep one direction of the world, and no translation is along it.
+/// Whether the chain moves in a plane: all rotations are about one fixed direction of the world, and all translations are normal to it.
 fn planar(chain: &Chain) -> bool {
     let graph = Graph::simplifying();
     let kinematics = Kinematics::new(&Model::new(&graph, chain));

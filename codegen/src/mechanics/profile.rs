@@ -103,7 +103,8 @@ pub fn rate<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
     }
 }
 
-/// `q̈_dr(t)`, m/s² or rad/s². At a jump, a motion that begins or ends has the acceleration with which it begins or ends.
+/// `q̈_dr(t)`, m/s² or rad/s². At a jump at the beginning or end of a motion,
+/// this is the acceleration within the motion.
 pub fn acceleration<'g>(model: &Model<'g>, profile: &Profile, t: Expr<'g>) -> Expr<'g> {
     let scale = |ramp: &Ramp, curvature: Expr<'g>| {
         let travel = model.number(&ramp.to) - model.number(&ramp.from);
@@ -163,7 +164,8 @@ fn tau<'g>(model: &Model<'g>, ramp: &Ramp, t: Expr<'g>) -> Expr<'g> {
     ((t - model.number(&ramp.begin)) * per_second).clamp(zero, one)
 }
 
-/// For a constant speed: the fraction τ of its ramp that has passed, which jumps from 0 to 1 without a ramp, and the time since, s.
+/// For a constant speed: the fraction τ of its ramp that has passed, which without a ramp jumps from 0 to 1, and the time since the
+/// end of the ramp, s.
 fn since<'g>(model: &Model<'g>, begin: &Value, ramp: Option<&Value>, t: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
     let (zero, one) = (model.zero(), model.graph.constant(1.0));
     let passed = t - model.number(begin);
@@ -176,7 +178,7 @@ fn since<'g>(model: &Model<'g>, begin: &Value, ramp: Option<&Value>, t: Expr<'g>
     }
 }
 
-/// 1 if x > 0, otherwise 0: times are 0, or not as small as the reciprocal of this.
+/// 1 if x > 0, otherwise 0: a positive difference of times is never as small as the reciprocal of `STEEP`.
 fn after<'g>(model: &Model<'g>, x: Expr<'g>) -> Expr<'g> {
     const STEEP: f64 = 1e300;
     (x * STEEP).clamp(model.zero(), model.graph.constant(1.0))

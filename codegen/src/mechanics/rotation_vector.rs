@@ -2,8 +2,8 @@
 //!
 //! Notation
 //! : `x = ρ·ρ`; `c_k` Stumpff's functions of x; `f = c_1/(2 c_2)` and `g = (1 − f)/x = (c_3 − 2 c_4)/(2 c_2)`. *Before* and *after*
-//!   the joint are the frames on the base's and on the tip's side. `R = c_0 1 + c_1 [ρ]× + c_2 ρρᵀ` takes components from after to
-//!   before.
+//!   the joint are the frames on the base's and on the tip's side. `R = c_0 1 + c_1 [ρ]× + c_2 ρρᵀ` transforms components
+//!   after the joint to components before it.
 //!
 //! Output
 //! : with `J = c_1 1 + c_2 [ρ]× + c_3 ρρᵀ` the relative angular velocity is `J ρ̇` in components before and `w = Jᵀ ρ̇` after;
@@ -40,7 +40,7 @@ impl<'g> RotationVector<'g> {
         RotationVector { places, rho, c }
     }
 
-    /// Three numbers of the coordinates as a vector along the axes.
+    /// Three numbers, one per coordinate, as a vector along the axes.
     pub fn along_axes<T: Copy>(&self, of_coordinates: [T; 3]) -> [T; 3] {
         self.places.map(|place| of_coordinates[place])
     }
@@ -71,7 +71,7 @@ impl<'g> RotationVector<'g> {
         dyadic(self.rho, [c1, c2, c3])
     }
 
-    /// `½/c_2`, f and g.
+    /// f and g.
     fn inverse_functions(&self) -> [Expr<'g>; 2] {
         let [_, c1, c2, c3, c4, _] = self.c;
         let half_over = 0.5 / c2;
@@ -158,7 +158,7 @@ impl<'g> RotationVector<'g> {
         derivative - jacobian.column(m).cross(jacobian.column(n))
     }
 
-    /// The same along t, a vector in the frame before: `t · (∂(J e_n)/∂ρ_m − J e_m × J e_n)`, with
+    /// Its scalar product with t, a vector in the frame before: `t · (∂(J e_n)/∂ρ_m − J e_m × J e_n)`, with
     /// `J e_m × J e_n = 2c_2 J⁻ᵀ (e_m × e_n)`.
     pub fn curvature_along(&self, t: Vec3<'g>, (m, n): (usize, usize)) -> Expr<'g> {
         let [_, c1, c2, c3, c4, c5] = self.c;

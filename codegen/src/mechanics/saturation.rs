@@ -2,7 +2,7 @@
 //!
 //! Notation
 //! : u the effort of spring and damper without the limit M; `a = (1 − κ) M` where the parabola begins, `b = (1 + κ) M` where it ends,
-//!   κ its share of M. With `r = min(max(0, |u| − a), 2κM)` and `o = max(0, |u| − b)`:
+//!   κM half its width. With `r = min(max(0, |u| − a), 2κM)` and `o = max(0, |u| − b)`:
 //!
 //! ```text
 //! sat(u) = sign(u) (|u| − r²/(4κM) − o)        ∫ sat du = u²/2 − r³/(12κM) − o²/2 − κM o
@@ -10,7 +10,7 @@
 
 use crate::symbolic::Expr;
 
-/// κ: so much below the limit an effort is still exactly that of spring and damper.
+/// κ: up to this fraction below the limit, the effort is exactly that of spring and damper.
 const CORNER: f64 = 0.05;
 
 /// A limited effort.
@@ -28,7 +28,7 @@ pub struct Saturation<'g> {
 }
 
 impl<'g> Saturation<'g> {
-    /// Of the effort u with the limit M.
+    /// The saturation of the effort u with the limit M.
     pub fn new(effort: Expr<'g>, limit: Expr<'g>) -> Self {
         let zero = limit.graph().constant(0.0);
         let size = effort.max(-effort);

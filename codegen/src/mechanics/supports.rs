@@ -4,9 +4,9 @@
 //! : support at r_E of the first body; stretch `e`, stiffness `s`, damping `d` along the world's x, y, z; J its Jacobian.
 //!   Linear kinematics: `e = U q̃ − δ`, J = U constant. Exact: `e = T r_E − r_E0 − δ`, column j of J is `Ω_j T r_E`.
 //!
-//! Everything is written once in J and e: `f = −Jᵀ (s e + d ė)`, `E = ½ eᵀ s e`. Linear supports are summed into one
-//! 6×6 stiffness and damping of the base before they meet the state, because their J is constant. One-sided supports follow
-//! the law of [`contact`](super::contact) in place of `s e + d ė`.
+//! Everything is expressed in J and e: `f = −Jᵀ (s e + d ė)`, `E = ½ eᵀ s e`. Linear supports are summed into one
+//! 6×6 stiffness and damping of the base, which is then multiplied by the state, because their J is constant. One-sided supports
+//! follow the law of [`contact`](super::contact) instead of `s e + d ė`.
 
 use crate::chain::{CoordinateId, Step, Support, SupportKinematics};
 use crate::symbolic::Expr;
@@ -16,7 +16,7 @@ use super::kinematics::Kinematics;
 use super::model::Model;
 use super::vector::{Rotation, Symmetric3, SymmetricMatrix, Vec3};
 
-/// The base's coordinates that the crane has: place in `x y z ψ θ φ`, and place in q.
+/// The base coordinates that the crane has: place in `x y z ψ θ φ`, and place in q.
 fn base_coordinates<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
     model.chain.base.iter().enumerate().filter_map(|(place, id)| id.map(|CoordinateId(j)| (place, j)))
 }
@@ -56,9 +56,9 @@ struct Stretched<'g> {
     jacobian: Vec<(usize, Vec3<'g>)>,
     stiffness: Vec3<'g>,
     damping: Vec3<'g>,
-    /// Of a one-sided support.
+    /// N₀ of a one-sided support, N.
     full_hold: Option<Expr<'g>>,
-    /// Whether J follows the pose.
+    /// Whether J depends on the pose.
     exact: bool,
 }
 
@@ -130,7 +130,7 @@ fn diagonal(c: Vec3<'_>) -> Symmetric3<'_> {
     Symmetric3([c[0], c[1], c[2], zero, zero, zero])
 }
 
-/// Where a point of the first body is at q̃ = 0: its constant placement alone.
+/// Where a point of the first body is at q̃ = 0, by its constant placement alone.
 fn at_rest<'g>(model: &Model<'g>, r: Vec3<'g>) -> Vec3<'g> {
     model.chain.bodies[0].path.iter().rev().fold(r, |point, step| match step {
         Step::Translate(by) => point + model.vector(by),
@@ -147,7 +147,7 @@ fn is_linear(support: &Support) -> bool {
     support.kinematics == SupportKinematics::Linear && support.full_hold.is_none()
 }
 
-/// Supports with J or a law that follows the state, one by one.
+/// Supports whose J depends on the pose or whose law is nonlinear; these are treated one by one.
 fn nonlinear<'a>(model: &'a Model<'_>) -> impl Iterator<Item = &'a Support> {
     model.chain.supports.iter().filter(|support| !is_linear(support))
 }
@@ -173,14 +173,14 @@ fn linear_entry<'g>(model: &Model<'g>, of: impl Fn(&Support) -> Vec3<'g>, a: usi
     balanced_sum(model, terms.collect())
 }
 
-/// A sum in which numbers that cancel, as those of a symmetric layout do, leave exactly zero and not a rounding error:
-/// what is not coupled stays so.
+/// A sum in which numbers that cancel, as those of a symmetric layout do, leave exactly zero and not a rounding error, so that
+/// uncoupled coordinates stay uncoupled.
 fn balanced_sum<'g>(model: &Model<'g>, terms: Vec<Expr<'g>>) -> Expr<'g> {
     let numbers: Option<Vec<f64>> = terms.iter().map(|term| term.as_constant()).collect();
     if let Some(numbers) = numbers {
         let size: f64 = numbers.iter().map(|x| x.abs()).sum();
         let sum: f64 = numbers.iter().sum();
-        // Each term carries a few roundings, each addition one.
+        // Each term contributes a few rounding errors, each addition one.
         if sum.abs() <= (numbers.len() + 4) as f64 * f64::EPSILON * size {
             return model.zero();
         }
@@ -214,7 +214,7 @@ pub fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, v: &[Expr<'g>]
     forces
 }
 
-/// `Σ uᵀ s δ`: what free play of the linear supports pushes at q̃ = 0.
+/// `Σ uᵀ s δ`: the force due to the free play of the linear supports at q̃ = 0.
 fn linear_preload<'g>(model: &Model<'g>, place: usize) -> Expr<'g> {
     let terms = linear(model).map(|support| {
         let (s, free_play) = (model.vector(&support.stiffness), model.vector(&support.free_play));
@@ -230,8 +230,8 @@ pub fn reactions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr
     model.chain.supports.iter().flat_map(reaction).collect()
 }
 
-/// Gap of each support, how far it is above the ground, and the rate of the gap, m and m/s: `e_z` and `ė_z` of one-sided supports,
-/// negative where they are pressed in; 0 of all others.
+/// Gap of each support, that is, its height above the ground, and the rate of the gap, m and m/s: `e_z` and `ė_z` for one-sided
+/// supports, with a negative gap where they are pressed in; 0 for all others.
 pub fn gaps<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
     let gap = |support: &Support| {
         let stretched = Stretched::new(model, kinematics, support, &model.v);
@@ -246,12 +246,12 @@ pub fn energy<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     0.5 * sum(model, kinematics, |s| (s.stretch, s.stiffness), Contact::twice_energy)
 }
 
-/// Power that the supports' dampers take out, `Σ d ė²` (2R of [Urbaś 2016, Eq. (17)]).
+/// Power that the supports' dampers dissipate, `Σ d ė²` (2R of [Urbaś 2016, Eq. (17)]).
 pub fn dissipation<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Expr<'g> {
     sum(model, kinematics, |s| (s.rate, s.damping), Contact::dissipation)
 }
 
-/// `Σ c x²` over supports and axes; of one-sided supports what their law says.
+/// `Σ c x²` over supports and axes; for one-sided supports, the value that their law gives.
 fn sum<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
@@ -273,7 +273,7 @@ pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mu
     add_stiffness(model, kinematics, &model.zeros(), Stretched::tangent, matrix);
 }
 
-/// The same for an implicit step at the present state: the law's stiffness along the axes, nowhere negative.
+/// The same for an implicit step at the present state: the law's stiffness along the axes, never negative.
 pub fn step_stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
     add_stiffness(model, kinematics, &model.v, |stretched| diagonal(stretched.stiffness_and_damping()[0]), matrix);
 }
@@ -299,7 +299,7 @@ fn add_stiffness<'g>(
     }
 }
 
-/// `Jᵀ d J`, of one-sided supports at rest.
+/// `Jᵀ d J`, with one-sided supports at rest.
 pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut SymmetricMatrix<'g>) {
     let at_rest =
         |stretched: &Stretched<'g>| stretched.contact().map_or(stretched.damping, |contact| contact.damping_at_rest());

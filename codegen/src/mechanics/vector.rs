@@ -215,7 +215,7 @@ impl<'g> Symmetric3<'g> {
         self.0[Self::slot(i, j)]
     }
 
-    /// The entry (i, j), to be changed.
+    /// The entry (i, j), mutable.
     pub fn at_mut(&mut self, i: usize, j: usize) -> &mut Expr<'g> {
         &mut self.0[Self::slot(i, j)]
     }

@@ -17,7 +17,7 @@ pub struct OperationCount {
     pub divisions: usize,
     /// Angles whose sine, cosine or both are taken.
     pub angles: usize,
-    /// Arguments of which one or more of Stumpff's functions are taken.
+    /// Arguments for which one or more of Stumpff's functions are evaluated.
     pub stumpff: usize,
     /// Minima and maxima.
     pub comparisons: usize,

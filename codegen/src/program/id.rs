@@ -3,8 +3,8 @@
 /// Writes the list once: as an enumeration, with the name and the trait of each.
 macro_rules! functions {
     ($($seam:ident { $($id:ident = $name:literal,)* })*) => {
-        /// A function of a crane, named as the method of the runtime that calls it; documentation and equation stand with its
-        /// derivation, see [`Function`](super::Function).
+        /// A function of a crane, named after the method of the runtime that calls it; documentation and equation are given where it
+        /// is derived, see [`Function`](super::Function).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[expect(missing_docs, reason = "the methods are documented")]
         pub enum FunctionId {
@@ -32,7 +32,7 @@ macro_rules! functions {
             }
         }
 
-        /// A trait of the runtime that generated functions stand behind.
+        /// A trait of the runtime that generated functions implement.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[expect(missing_docs, reason = "the traits are documented")]
         pub enum Seam {

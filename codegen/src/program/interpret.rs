@@ -31,7 +31,8 @@ impl<S: Scalar> Inputs<S> {
 }
 
 impl Program {
-    /// Evaluates a function, with inputs as the spec says unless they are given; the result is in the order of its [`Shape`](super::Shape), closed.
+    /// Evaluates a function; inputs that are not given follow the spec. The result is in the order of its [`Shape`](super::Shape),
+    /// closed.
     ///
     /// # Panics
     /// If an input that the function uses is missing.
@@ -45,7 +46,7 @@ impl Program {
                 Op::Symbol(id) => {
                     let symbol = self.symbol(id);
                     match inputs.0.get(&symbol.argument) {
-                        // Nothing is set: 0 and 1 in turn.
+                        // No input is set: 0 and 1 alternate.
                         None if symbol.argument == Argument::Inputs => S::from_f64((symbol.index % 2) as f64),
                         None => panic!("`{}` needs {:?}", function.id.name(), symbol.argument),
                         Some(values) => values[symbol.index].clone(),

@@ -1,4 +1,4 @@
-//! What is derived of a crane: named functions over one graph of expressions, and what they mean.
+//! What is derived from a crane: named functions over one graph of expressions, and their semantics.
 
 mod closing;
 mod count;
@@ -58,7 +58,7 @@ pub enum Argument {
     AddedInertia,
     /// Added inertia of the base, a symmetric 6×6 matrix.
     BaseAddedInertia,
-    /// Results of an earlier function for this one.
+    /// Results of an earlier function that this one uses.
     Factors,
     /// Values that differ from one iteration of a loop to the next, in order of the loop's sources.
     LoopVarying,
@@ -79,7 +79,7 @@ pub struct Function {
     pub doc: &'static str,
     /// Equations it implements, and their source.
     pub equation: &'static str,
-    /// Arguments besides the live parameters and the inputs, in order.
+    /// Arguments in addition to the live parameters and the inputs, in order.
     pub arguments: &'static [Argument],
     /// Shape of the result.
     pub shape: Shape,

@@ -3,7 +3,7 @@
 /// Consecutive coordinates that act at one point: at most three, and either all rotate or all translate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConcurrentAxes {
-    /// Their number.
+    /// The number of these coordinates.
     pub coordinates: usize,
     /// Whether they rotate.
     pub rotate: bool,
@@ -14,9 +14,10 @@ pub struct ConcurrentAxes {
 pub enum Struct {
     /// Force x, y, z, then moment x, y, z.
     Wrench,
-    /// Area, moduli of bending about y and z and of torsion, shear areas along y and z, weight of corners, allowable stress.
+    /// Area, section moduli for bending about y and z and for torsion, shear areas along y and z, 1 for a section with corners and 0
+    /// for a round one, allowable stress.
     SectionModuli,
-    /// Force, slope by length, slope by rate.
+    /// Force, and its derivatives with respect to length and rate.
     Tension,
 }
 
@@ -53,7 +54,7 @@ pub enum Shape {
         /// The number of coordinates.
         n: usize,
     },
-    /// Several of one type of the runtime.
+    /// Several values of one type of the runtime.
     Structs(Struct, usize),
     /// Homogeneous transformations or their derivatives, grouped by body; slots are the upper three rows of each, row
     /// by row. `corner` is the corner of the constant fourth row: 1 for a transformation, 0 for a derivative.

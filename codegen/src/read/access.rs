@@ -129,7 +129,8 @@ impl<'a> MapAccess<'a> for Entries<'a> {
     }
 }
 
-/// Fields of a struct: those that are given, then those that are not, so that missing required ones are reported.
+/// All fields of a struct in the order of their declaration, including those that are not given, so that missing required ones are
+/// reported.
 pub(super) struct Fields<'a> {
     reader: Reader<'a>,
     names: &'static [&'static str],

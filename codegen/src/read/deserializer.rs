@@ -227,7 +227,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                 visitor.visit_enum(Choice { reader: self, variant, node: None })
             }
             Content::Mapping(entries) => {
-                // All are read before any is refused.
+                // Every key is checked before the first error is returned.
                 let choices: Vec<_> = entries
                     .iter()
                     .map(|(key, node)| Ok((key.span, self.variant(&key.key_text(), key.span, variants)?, node)))

@@ -37,7 +37,7 @@ pub fn read(source: &SourceFile) -> Result<CraneSpec, Diagnostics> {
     }
 }
 
-/// The tree of a source file, its parts laid over each other.
+/// The tree of a source file, with its parts merged, each over the previous ones.
 fn parts(source: &SourceFile, mistakes: &mut Vec<Mistake>) -> Result<Node, Mistake> {
     let mut whole: Option<Node> = None;
     for part in source.parts() {
@@ -52,14 +52,14 @@ fn parts(source: &SourceFile, mistakes: &mut Vec<Mistake>) -> Result<Node, Mista
         });
     }
     let whole = whole.ok_or_else(|| rule::empty(Span::START))?;
-    // Only the reader of the file could have followed it.
+    // Only the code that reads files can follow `extends`; here it was not followed.
     if let Some((base, span)) = whole.base() {
         mistakes.push(rule::no_base(span, base, "this spec is text, not a file, so there is no folder to look in"));
     }
     Ok(whole.without_base())
 }
 
-/// The spec that a source file extends and where it says so, if it does.
+/// The spec that a source file extends and the location of its name, if there is one.
 #[must_use]
 pub(crate) fn base(source: &SourceFile) -> Option<(String, Span)> {
     let tree = tree::parse(&source.text).ok()?;

@@ -1,4 +1,4 @@
-//! Specs that extend others: trees merged, the later over the earlier.
+//! Specs that extend others: their trees are merged, the later over the earlier.
 
 use std::collections::BTreeSet;
 
@@ -9,13 +9,13 @@ use crate::diagnostic::{Mistake, Span, rule};
 const EXTENDS: &str = "extends";
 /// Key that removes an entry of a list.
 const REMOVE: &str = "remove";
-/// Keys whose value is one of several kinds, a mapping of the kind's name: another kind replaces the value.
+/// Keys whose value is one of several kinds, a mapping with the kind's name as its key: a value of another kind replaces it.
 const KINDS: [&str; 7] = ["joint", "law", "motion", "opening", "placement", "scale", "section"];
-/// Keys by which entries of lists are known.
+/// Keys that identify the entries of lists.
 const IDENTITIES: [&str; 2] = ["name", "coordinate"];
 
 impl Node {
-    /// The same, further on in the text.
+    /// The node with all its locations shifted by a number of bytes.
     pub fn shifted(mut self, by: usize) -> Self {
         self.span = Span { start: self.span.start + by, end: self.span.end + by };
         self.content = match self.content {
@@ -38,7 +38,7 @@ impl Node {
         }
     }
 
-    /// Without the key that has been followed.
+    /// The node without its `extends` key.
     pub fn without_base(self) -> Self {
         match self.content {
             Content::Mapping(mut entries) => {
@@ -54,7 +54,7 @@ impl Node {
         entries.iter().find(|(known, _)| known.key_text() == key).map(|(_, value)| value)
     }
 
-    /// What an entry of a list is known by.
+    /// The value that identifies an entry of a list.
     fn identity(&self) -> Option<String> {
         IDENTITIES.iter().find_map(|key| self.entry(key)).map(Node::key_text)
     }
@@ -64,7 +64,7 @@ impl Node {
     }
 }
 
-/// `over` laid over `base`.
+/// `over` merged over `base`.
 pub(super) fn merge(base: Node, over: Node, mistakes: &mut Vec<Mistake>) -> Node {
     let content = match (base.content, over.content) {
         (Content::Mapping(base), Content::Mapping(over)) => Content::Mapping(merge_entries(base, over, mistakes)),
@@ -97,7 +97,7 @@ fn merge_entries(
     let mut seen = BTreeSet::new();
     for (key, value) in over {
         if !seen.insert(key.key_text()) {
-            // A key twice in one mapping is a mistake, which reading reports.
+            // A duplicate key in one mapping is a mistake, which reading reports.
             base.push((key, value));
             continue;
         }
@@ -123,7 +123,7 @@ fn merge_items(mut base: Vec<Node>, over: Vec<Node>, mistakes: &mut Vec<Mistake>
     let mut seen = BTreeSet::new();
     for item in over {
         if !seen.insert(item.identity()) {
-            // So is a name twice in one list, which validation reports.
+            // A duplicate name in one list is a mistake, which validation reports.
             base.push(item);
             continue;
         }

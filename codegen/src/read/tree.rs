@@ -19,7 +19,7 @@ pub(super) struct Node {
 /// Content of a node.
 #[derive(Clone, Debug)]
 pub(super) enum Content {
-    /// Nothing, `null` or `~`.
+    /// An empty value, `null` or `~`.
     Null,
     /// `true` or `false`.
     Boolean(bool),
@@ -95,7 +95,7 @@ fn too_many(error: &serde_yaml::Error) -> bool {
     }
 }
 
-/// The parser's message without the location, which the drawing shows, and without advice on how to call the parser.
+/// The parser's message without the location, which the source excerpt shows, and without advice on how to call the parser.
 fn problem(error: &serde_yaml::Error) -> String {
     if matches!(error.without_snippet(), serde_yaml::Error::MultipleDocuments { .. }) {
         return "it contains several documents".into();

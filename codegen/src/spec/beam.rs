@@ -44,7 +44,7 @@ pub struct Beam {
 pub enum Sections {
     /// The number as written, checked later.
     Count(f64),
-    /// None: the beam does not bend.
+    /// No sections: the beam does not bend.
     Rigid,
 }
 
@@ -79,13 +79,13 @@ impl JsonSchema for Sections {
     }
 }
 
-/// A part of a beam with a section of its own.
+/// A part of a beam with its own section.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `length`, `section` and `to`")]
 pub struct BeamPart {
     /// Length, m.
     pub length: Spanned<Number>,
-    /// Cross-section, of a tapered part that of its beginning.
+    /// Cross-section; for a tapered part, that at its beginning.
     pub section: Spanned<Section>,
     /// Cross-section of a tapered part at its end, of the same shape. Default: the part is not tapered.
     pub to: Option<Spanned<Section>>,
@@ -105,7 +105,7 @@ pub struct Bend {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SectionJoint {
-    /// By the rotation vector (phi, theta, psi), which treats both directions of bending alike.
+    /// By the rotation vector (phi, theta, psi), which treats both directions of bending equally.
     Symmetric,
     /// By successive rotations as in the paper: psi, theta, phi.
     Paper,
@@ -159,7 +159,7 @@ pub enum Section {
         /// Diameter, m.
         diameter: Spanned<Number>,
     },
-    /// Any section, given by its numbers.
+    /// Any section, given by its properties.
     Numbers {
         /// Area, m².
         area: Spanned<Number>,
@@ -177,20 +177,20 @@ pub enum Section {
     },
 }
 
-/// Moduli of a section that is given by its numbers.
+/// Moduli of a section that is given by its properties.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `Wy`, `Wz`, `Wt`, `Ay` and `Az`")]
 pub struct Moduli {
-    /// Modulus of bending about y, m³.
+    /// Section modulus for bending about y, m³.
     #[serde(rename = "Wy")]
     pub wy: Spanned<Number>,
-    /// Modulus of bending about z, m³.
+    /// Section modulus for bending about z, m³.
     #[serde(rename = "Wz")]
     pub wz: Spanned<Number>,
-    /// Modulus of torsion, m³.
+    /// Section modulus for torsion, m³.
     #[serde(rename = "Wt")]
     pub wt: Spanned<Number>,
-    /// Shear area along y, m²: the force over the largest shear stress.
+    /// Shear area along y, m²: the force divided by the maximum shear stress.
     #[serde(rename = "Ay")]
     pub ay: Spanned<Number>,
     /// Shear area along z, m².

@@ -25,7 +25,7 @@ pub struct Connector {
 pub struct Attachment {
     /// The link. Default: the world.
     pub link: Option<Spanned<String>>,
-    /// Position in the frame of the link (of a beam: undeformed) or of the world, m.
+    /// Position in the frame of the link (for a beam: undeformed) or of the world, m.
     pub at: Spanned<Vector>,
 }
 
@@ -39,9 +39,9 @@ pub struct Coupling {
     pub coordinate: Spanned<String>,
     /// The coordinate that leads.
     pub follows: Spanned<String>,
-    /// How far the one moves per unit of the other: m, rad, m/rad or rad/m.
+    /// Motion of `coordinate` per unit of `follows`: m/m, rad/rad, m/rad or rad/m.
     pub ratio: Spanned<Number>,
-    /// Where the one is while the other is at 0, m or rad. Default 0.
+    /// Position of `coordinate` when `follows` is at 0, m or rad. Default 0.
     pub offset: Option<Spanned<Angle>>,
     /// Stiffness, N/m or N m/rad, of the coordinate that follows.
     pub stiffness: Spanned<Number>,
@@ -69,7 +69,7 @@ pub struct PointSpring {
     pub stiffness: Spanned<Number>,
     /// Damping, N s/m. Default 0.
     pub damping: Option<Spanned<Number>>,
-    /// Length without force, m.
+    /// Length at which the spring exerts no force, m.
     pub length: Spanned<Number>,
 }
 
@@ -81,7 +81,7 @@ pub struct GasSpring {
     pub force: Spanned<Number>,
     /// Length of the extended spring, m.
     pub length: Spanned<Number>,
-    /// How much more it pushes per metre of compression, N/m. Default 0.
+    /// Increase of the force per metre of compression, N/m. Default 0.
     pub stiffness: Option<Spanned<Number>>,
     /// Damping, N s/m. Default 0.
     pub damping: Option<Spanned<Number>>,
@@ -93,10 +93,10 @@ pub struct GasSpring {
 pub struct Rope {
     /// Stiffness EA/ℓ₀, N/m.
     pub stiffness: Spanned<Number>,
-    /// Growth of the force with the rate of stretch, as a fraction per m/s. Default 0.
+    /// Relative increase of the force with the rate of stretch, as a fraction per m/s. Default 0.
     pub damping: Option<Spanned<Number>>,
-    /// Length without force, m.
+    /// Unstretched length, m.
     pub length: Option<Spanned<Number>>,
-    /// Length without force over time, m, instead of `length`: a winch.
+    /// Unstretched length over time, m, instead of `length`: a winch.
     pub motion: Option<Spanned<Motion>>,
 }

@@ -18,7 +18,7 @@ pub struct Cylinder {
     pub coordinate: Spanned<String>,
     /// The pin of its barrel.
     pub foot: Spanned<Pin>,
-    /// The pin of its rod, on the other side of the joint; with a linkage the pin of the linkage's link there.
+    /// The pin of its rod, on the other side of the joint; with a linkage, the pin there of the linkage's link.
     pub head: Spanned<Pin>,
     /// Rocker and link between its rod and `head`. Default: none.
     pub linkage: Option<Spanned<Linkage>>,
@@ -26,20 +26,20 @@ pub struct Cylinder {
     pub bore: Spanned<Constant>,
     /// Diameter of the rod, m.
     pub rod: Spanned<Constant>,
-    /// Distance of its pins when it is retracted, m.
+    /// Distance between its pins when it is retracted, m.
     pub retracted: Spanned<Constant>,
     /// Stroke, m.
     pub stroke: Spanned<Constant>,
-    /// Greatest pressure, at which its relief valves open, Pa. Default: none.
+    /// Maximum pressure, at which its relief valves open, Pa. Default: none.
     pub max_pressure: Option<Spanned<Constant>>,
-    /// Pressure on the side that does not carry, Pa. Default 0.
+    /// Pressure on the side that does not carry the load, Pa. Default 0.
     pub back_pressure: Option<Spanned<Constant>>,
     /// Bulk modulus of the oil with its hoses, Pa, for the stiffness of the trapped oil. Default: none.
     pub bulk_modulus: Option<Spanned<Constant>>,
     /// Oil in hoses and valves on the piston's side and on the rod's, m³. Default `[0, 0]`.
     pub hose_volumes: Option<Spanned<HoseVolumes>>,
-    /// The valve that moves it: its pressures and the valve's opening become states of the motion. Default: none, the
-    /// drive moves the joint.
+    /// The valve that moves it: the cylinder's pressures and the valve's opening become states of the motion. Default: none, and
+    /// the drive moves the joint.
     pub valve: Option<Spanned<Valve>>,
 }
 
@@ -47,20 +47,21 @@ pub struct Cylinder {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `flow`, `pressure_drop`, `lag` and `gain` or `opening`")]
 pub struct Valve {
-    /// Flow through an edge of the fully open valve at `pressure_drop`, m³/s; 60 l/min are 1e-3.
+    /// Flow through one metering edge of the fully open valve at `pressure_drop`, m³/s; 60 l/min are 1e-3.
     pub flow: Spanned<Constant>,
     /// Pressure drop over that edge, Pa.
     pub pressure_drop: Spanned<Constant>,
-    /// Share of the spool's travel from the middle that is covered: below it no oil flows. Default 0.
+    /// Overlap as a fraction of the spool's travel from its centre: within it no oil flows. Default 0.
     pub overlap: Option<Spanned<Constant>>,
     /// Time constant of the spool, s.
     pub lag: Spanned<Constant>,
-    /// Opening of the servo for an error of the cylinder's length, 1/m; 1 is fully open.
+    /// Opening that the servo commands per error of the cylinder's length, 1/m; an opening of 1 is fully open.
     pub gain: Option<Spanned<Constant>>,
-    /// The spool's command over time instead of the servo, from −1 (fully open, retracts) to 1 (fully open, extends): a motion, a table or an
-    /// input. The drive's motion must then `hold` where the crane stands before the run.
+    /// The spool's command over time instead of a servo, from −1 (fully open, retracts) to 1 (fully open, extends): a motion, a table
+    /// or an input. The drive's motion must then `hold` the position of the crane before the run.
     pub opening: Option<Spanned<Motion>>,
-    /// Share of the opening for the speed of the motion, at the pressures measured, that the servo sets ahead of any error. Default 1.
+    /// Fraction of the opening required for the speed of the motion at the measured pressures that the servo adds as a
+    /// feed-forward. Default 1.
     pub feed_forward: Option<Spanned<Constant>>,
     /// Leakage past the piston, m³/s per Pa. Default 0.
     pub leakage: Option<Spanned<Constant>>,
@@ -104,11 +105,11 @@ pub enum Side {
     Right,
 }
 
-/// What supplies the cylinders.
+/// The pump that supplies the cylinders.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `max_flow` and, for cylinders with a valve, `pressure`")]
 pub struct Pump {
-    /// Greatest flow to all cylinders together, m³/s; 60 l/min are 1e-3.
+    /// Maximum flow to all cylinders together, m³/s; 60 l/min are 1e-3.
     pub max_flow: Spanned<Constant>,
     /// Pressure that it maintains until its flow is at its limit, Pa; cylinders with a valve need it. Default: none.
     pub pressure: Option<Spanned<Constant>>,

@@ -20,11 +20,11 @@ pub struct Drive {
     pub damping: Option<Spanned<Number>>,
     /// Whether the coordinate follows the motion exactly. Default false.
     pub rigid: Option<Spanned<bool>>,
-    /// Greatest torque or force that spring and damper deliver together, N m or N. Default: none.
+    /// Maximum torque or force that spring and damper deliver together, N m or N. Default: none.
     pub max_effort: Option<Spanned<Number>>,
-    /// Greatest rate at which it drives, rad/s or m/s: its effort falls to nothing over the last tenth. Needs `max_effort`. Default: none.
+    /// Maximum rate at which it drives, rad/s or m/s: its effort falls to zero over the last tenth. Needs `max_effort`. Default: none.
     pub max_rate: Option<Spanned<Constant>>,
-    /// Greatest power with which it drives, W. Needs `max_effort`. Default: none.
+    /// Maximum power with which it drives, W. Needs `max_effort`. Default: none.
     pub max_power: Option<Spanned<Constant>>,
     /// Inertia of the drive's rotor, reflected to the joint by the square of the gear ratio, kg m² or kg. Default 0.
     pub armature: Option<Spanned<Number>>,
@@ -48,7 +48,7 @@ pub enum Motion {
     Cycloid(Ramp),
     /// Constant acceleration, constant velocity, constant deceleration.
     Trapezoid(Trapezoid),
-    /// Constant speed, without end.
+    /// Constant speed, which never ends.
     Speed(Speed),
     /// Cubic spline through given positions, at rest at both ends.
     Table(Table),

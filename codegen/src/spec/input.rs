@@ -9,12 +9,12 @@ use super::{FixedAngle, Motion, Spanned};
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `value` or `motion`, `unit` and `about`")]
 pub struct Input {
-    /// Value unless set, in SI units; default 0.
+    /// Value while it is not set, in SI units. Default 0.
     pub value: Option<Spanned<FixedAngle>>,
-    /// What it follows unless set, in place of a value.
+    /// The motion that it follows while it is not set, instead of a value.
     pub motion: Option<Spanned<Motion>>,
-    /// Unit, for tables, such as `N`. Default: none.
+    /// Unit shown in tables, such as `N`. Default: none.
     pub unit: Option<Spanned<String>>,
-    /// What it is. Default: empty.
+    /// Description. Default: empty.
     pub about: Option<Spanned<String>>,
 }

@@ -29,7 +29,7 @@ pub struct Stops {
 pub struct Friction {
     /// Coulomb friction, N m or N.
     pub coulomb: Spanned<Number>,
-    /// Breakaway friction, N m or N, at least `coulomb`. Default: as `coulomb`.
+    /// Breakaway friction, N m or N, at least `coulomb`. Default: equal to `coulomb`.
     pub breakaway: Option<Spanned<Number>>,
     /// Rate at which `breakaway` has declined towards `coulomb` by a factor of e, rad/s or m/s. Default 0.01.
     pub stribeck: Option<Spanned<Number>>,

@@ -12,7 +12,7 @@ use super::{AxisName, Beam, Constant, Inertia, Number, Placement, Spanned, Vecto
 pub struct Link {
     /// Name, a `snake_case` identifier; coordinates are named after it, such as `boom_psi`.
     pub name: Spanned<String>,
-    /// Its pose on the previous link. Default: the same frame.
+    /// Its pose relative to the previous link. Default: the same frame.
     pub placement: Option<Spanned<Placement>>,
     /// Its joint. Default `fixed`.
     pub joint: Option<Spanned<Joint>>,

@@ -1,4 +1,4 @@
-//! Loads applied from outside.
+//! External loads.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -13,7 +13,7 @@ pub struct Load {
     pub name: Spanned<String>,
     /// The link it acts on.
     pub link: Spanned<String>,
-    /// Where, in the frame of the link (of a beam: undeformed), m. Default `[0, 0, 0]`.
+    /// Its point of application in the frame of the link (for a beam: undeformed), m. Default `[0, 0, 0]`.
     pub at: Option<Spanned<Vector>>,
     /// Force along x, y, z, N. Default `[0, 0, 0]`.
     pub force: Option<Spanned<Vector>>,
@@ -21,7 +21,7 @@ pub struct Load {
     pub moment: Option<Spanned<Vector>>,
     /// Whether x, y, z are the axes of the world or those of the link, with which the load turns. Default `world`.
     pub axes: Option<Spanned<Axes>>,
-    /// What force and moment are multiplied by over time, as a motion of a drive. Default 1.
+    /// Factor of force and moment over time, given like a motion of a drive. Default 1.
     pub scale: Option<Spanned<Motion>>,
 }
 

@@ -46,7 +46,7 @@ use crate::diagnostic::Mistake;
 pub struct CraneSpec {
     /// The contents of the file.
     pub crane: Crane,
-    /// Mistakes of keys and shapes.
+    /// Mistakes in keys and shapes.
     pub(crate) mistakes: Vec<Mistake>,
 }
 
@@ -55,15 +55,15 @@ pub struct CraneSpec {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of keys to values")]
 pub struct Crane {
-    /// Another spec to start from: a file, relative to this one, or a shipped crane. This file then says only what differs: mappings
-    /// are merged key by key, lists of links, supports, drives and points entry by entry, by `name` or `coordinate`; everything
+    /// Another spec to start from: a file, relative to this one, or a shipped crane. This file then contains only the differences:
+    /// mappings are merged key by key, lists whose entries have a `name` or a `coordinate`, such as links, supports and drives, entry by entry; everything
     /// else is replaced. A key without a value removes what it names, and so does `remove: true` in an entry of a list.
     pub extends: Option<Spanned<String>>,
     /// Version of the spec language: 1.
     pub format: Spanned<Constant>,
     /// Name of the crane, a `snake_case` identifier; names the generated module.
     pub name: Spanned<String>,
-    /// One line for people. Default: the name.
+    /// Title for human readers, one line. Default: the name.
     pub title: Option<Spanned<String>>,
     /// Acceleration of gravity in the world frame, m/s². Default `[0, 0, -9.81]`.
     pub gravity: Option<Spanned<Vector>>,
@@ -73,7 +73,7 @@ pub struct Crane {
     pub loops: Option<Spanned<Loops>>,
     /// Values that stay live at run time, by name.
     pub parameters: Option<Spanned<Entries<Parameter>>>,
-    /// Numbers that are set between steps, by name.
+    /// Numbers that can be set between steps, by name.
     pub inputs: Option<Spanned<Entries<Input>>>,
     /// Materials of beams, by name.
     pub materials: Option<Spanned<Entries<Material>>>,
@@ -91,7 +91,7 @@ pub struct Crane {
     pub stops: Option<Spanned<Entries<Stops>>>,
     /// Friction of joints by coordinate.
     pub friction: Option<Spanned<Entries<Friction>>>,
-    /// Forces and moments applied from outside.
+    /// External forces and moments.
     pub loads: Option<Spanned<Vec<Spanned<Load>>>>,
     /// Springs, gas springs and ropes between two points.
     pub connectors: Option<Spanned<Vec<Spanned<Connector>>>>,
@@ -99,11 +99,11 @@ pub struct Crane {
     pub couplings: Option<Spanned<Vec<Spanned<Coupling>>>>,
     /// Hydraulic cylinders of driven joints, by their pins.
     pub cylinders: Option<Spanned<Vec<Spanned<Cylinder>>>>,
-    /// What supplies the cylinders.
+    /// The pump that supplies the cylinders.
     pub pump: Option<Spanned<Pump>>,
     /// Points of interest, whose motion is reported.
     pub points: Option<Spanned<Vec<Spanned<Point>>>>,
-    /// Start of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at
+    /// Starting point of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at
     /// t = 0, all others at 0.
     pub guess: Option<Spanned<Entries<FixedAngle>>>,
     /// Settings of a run.
@@ -124,7 +124,7 @@ pub enum Analysis {
     InternalForces,
     /// First and second derivatives of every body's transformation.
     Derivatives,
-    /// Accelerations of eight cranes per call, for simulations of many with different parameters; includes `dynamics`.
+    /// Accelerations of eight cranes per call, for simulations of many cranes with different parameters; includes `dynamics`.
     Ensemble,
 }
 
@@ -173,7 +173,7 @@ pub struct Parameter {
 pub struct Run {
     /// Simulated time, s. Default 10.
     pub duration: Option<Spanned<Constant>>,
-    /// Step of the integrator, s. Default 1e-4.
+    /// Step size of the integrator, s. Default 1e-4.
     pub step: Option<Spanned<Constant>>,
     /// Interval of the recorded results, s. Default 0.01.
     pub output: Option<Spanned<Constant>>,

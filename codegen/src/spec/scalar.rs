@@ -132,8 +132,8 @@ scalar! {
     Number, angle: false, parameter: true, "a number in SI units without its unit, or the name of a parameter"
 }
 scalar! {
-    /// An angle in rad, or written `90 deg`, `7/18 pi`; or the name of a parameter. Where a length may stand as
-    /// well, as with a drive of a prismatic joint, a number in m.
+    /// An angle in rad, or written `90 deg`, `7/18 pi`; or the name of a parameter. Where a length is allowed as
+    /// well, as for a drive of a prismatic joint, a number in m.
     Angle, angle: true, parameter: true, "a number, an angle such as `90 deg` or `7/18 pi`, or the name of a parameter"
 }
 scalar! {

@@ -12,7 +12,7 @@ use super::Crane;
 pub fn json_schema() -> String {
     let mut schema = schemars::schema_for!(Crane).to_value();
     forbid_null(&mut schema);
-    // A spec that extends another says only what differs.
+    // A spec that extends another contains only the differences.
     if let Some(object) = schema.as_object_mut() {
         let whole = object.remove("required").unwrap_or_default();
         object.insert("anyOf".to_owned(), json!([{ "required": whole }, { "required": ["extends"] }]));

@@ -21,9 +21,9 @@ pub struct Support {
     pub free_play: Option<Spanned<Vector>>,
     /// How the elongation depends on the base's coordinates. Default `linear`.
     pub kinematics: Option<Spanned<Kinematics>>,
-    /// Whether it presses only, along z, and lifts off instead of pulling. Free play along z is then a gap. Default `false`.
+    /// Whether it only presses along z, and lifts off instead of pulling. Free play along z is then a gap. Default `false`.
     pub one_sided: Option<Spanned<bool>>,
-    /// Pressing force from which a one-sided support holds sideways and damps in full, N. Default 1000.
+    /// Pressing force above which the lateral springs and the dampers of a one-sided support act fully, N. Default 1000.
     pub full_hold: Option<Spanned<Number>>,
 }
 

@@ -11,7 +11,7 @@ impl Graph {
     /// For Stumpff's functions `c_k' = (k c_{k+2} − c_{k+1})/2`, up to [`Op::STUMPFF_ORDERS`].
     ///
     /// # Panics
-    /// If a function `c_k` with k > 3 depends on x: its derivative would need an order without an operation.
+    /// If a function `c_k` with k > 3 depends on x: its derivative would need an order that has no operation.
     pub fn derivatives<'g>(&'g self, of: &[Expr<'g>], by: Expr<'g>) -> Vec<Expr<'g>> {
         let zero = self.constant(0.0);
         let last = of.iter().map(|f| f.id().0).max().unwrap_or(0);

@@ -18,14 +18,14 @@ pub struct Graph {
     simplify: bool,
 }
 
-/// What a graph holds.
+/// The contents of a graph.
 #[derive(Debug, Default)]
 pub struct Nodes {
     /// All operations, operands before their users.
     pub operations: Vec<Op>,
     /// The position of each operation.
     pub index: HashMap<Op, ExprId>,
-    /// What the model calls some of them.
+    /// Names that the model gives to some of them.
     pub names: HashMap<ExprId, String>,
 }
 
@@ -58,7 +58,7 @@ impl Graph {
         self.expr(id)
     }
 
-    /// The node of exactly this operation, new or known.
+    /// The node of exactly this operation, new or existing.
     pub(super) fn intern(&self, op: Op) -> ExprId {
         let Nodes { operations, index, .. } = &mut *self.nodes.borrow_mut();
         let id = *index.entry(op).or_insert_with(|| {

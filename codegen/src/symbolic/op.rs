@@ -43,7 +43,7 @@ impl Constant {
     }
 }
 
-/// One bounded operation.
+/// One operation, on at most three operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// A number.

@@ -42,7 +42,7 @@ fn number(graph: &Graph, id: ExprId) -> Option<f64> {
     }
 }
 
-/// `−a`, moved to a place where it costs nothing.
+/// `−a`, with the sign moved to where it costs nothing.
 fn negate(graph: &Graph, a: ExprId) -> ExprId {
     match graph.op(a) {
         Op::Constant(c) => constant(graph, -c.value()),
@@ -86,7 +86,7 @@ fn subtract(graph: &Graph, a: ExprId, b: ExprId) -> ExprId {
             let sum = add(graph, x, b);
             negate(graph, sum)
         }
-        // Only the other order exists: share it.
+        // If only the difference in the other order exists, share it.
         _ => match graph.known(Sub(b, a)) {
             Some(flipped) if graph.known(Sub(a, b)).is_none() => graph.intern(Neg(flipped)),
             _ => graph.intern(Sub(a, b)),

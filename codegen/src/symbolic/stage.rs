@@ -17,8 +17,8 @@ pub struct Stages<'g> {
 }
 
 impl Graph {
-    /// Splits the computation of `results` by the sweeps of `trace` where it first uses a `late` symbol. The factors get the
-    /// symbols from `first` on.
+    /// Splits the computation of `results` by the sweeps of `trace` where it first uses a `late` symbol. The factors are
+    /// assigned the symbols from `first` on.
     pub fn stages<'g>(
         &'g self,
         results: &[Expr<'g>],
@@ -44,7 +44,7 @@ impl Graph {
         }
         let mut factors = Vec::new();
         let mut next = (first.0..).map(SymbolId);
-        // The position of each needed expression in the second stage.
+        // The counterpart of each needed expression in the second stage.
         let mut moved = ids.clone();
         for id in ids.into_iter().filter(|id| needed[id.index()]) {
             let op = self.op(id);

@@ -5,14 +5,15 @@
 
 use super::Scalar;
 
-/// Up to here the series is accurate; beyond, sines and cosines are.
+/// Largest argument for which the series is used; beyond it, sines and cosines are more accurate.
 const SERIES: f64 = 10.0;
-/// Orders at which the series starts: its cancellation error vanishes in `1/k! − x c_{k+2}`.
+/// Order from which the series is summed directly; for lower orders, its cancellation error becomes negligible in
+/// `1/k! − x c_{k+2}`.
 const HIGHEST: u8 = 12;
-/// Terms of a series at x = 100: the last is below 2⁻²⁰⁰.
+/// Terms of a series at x = 100: the last is below 2⁻¹⁷⁸ for every order.
 const TERMS: u32 = 48;
 
-/// `c_k(x)` for x ≥ 0, the same digits on any platform.
+/// `c_k(x)` for x ≥ 0, with the same digits on every platform.
 pub(super) fn of(k: u8, x: f64) -> f64 {
     if x > SERIES { by_angles(k, x) } else { downward(k, x) }
 }

@@ -28,7 +28,7 @@ fn values(program: &Program, x: f64, y: f64) -> Vec<f64> {
 }
 
 /// Every rule, in one list of expressions.
-#[allow(clippy::eq_op)] // x − x is what a rule is for
+#[allow(clippy::eq_op)] // one of the rules is for x − x
 fn all_rules<'g>(g: &'g Graph, x: Expr<'g>, y: Expr<'g>) -> Vec<Expr<'g>> {
     let c = |value| g.constant(value);
     vec![
@@ -152,7 +152,7 @@ fn stumpff_functions_are_sines_and_cosines() {
         let (sin, cos) = s.sin_cos();
         let direct = [cos, sin / s, (1.0 - cos) / x, (s - sin) / (s * x)];
         for (k, direct) in (0..).zip(direct) {
-            // A difference of numbers of order 1 over x.
+            // A difference of numbers of order 1, divided by x.
             assert!((of(k, x) - direct).abs() < 1e-15 / x.min(1.0), "c_{k}({x}): {} against {direct}", of(k, x));
         }
     }
@@ -225,7 +225,7 @@ fn a_hyperbolic_tangent_overflows_nowhere() {
     let p = program(|_, x, _| vec![x.tanh()], Graph::simplifying());
     for x in [0.0, 1e-9, -0.4, 3.0, -40.0, 1e9, -f64::MAX] {
         let (found, expected) = (values(&p, x, 0.0)[0], x.tanh());
-        // 1 − exp(−2x) loses the digits that x has below 1: an error of ε against 1.
+        // 1 − exp(−2x) loses digits for small x: its error is ε relative to 1, not to x.
         assert!((found - expected).abs() <= 2.0 * f64::EPSILON, "{x}: {found} for {expected}");
     }
 }

@@ -1,4 +1,4 @@
-//! The expressions that a sweep over the bodies of a chain requests, body by body: here lowering looks for repeated work.
+//! The expressions that a sweep over the bodies of a chain requests, body by body: lowering looks for repeated work here.
 
 use std::collections::HashSet;
 
@@ -22,7 +22,7 @@ impl SweepTrace {
     }
 }
 
-/// A sweep at a body.
+/// One visit of a sweep to a body.
 #[derive(Clone, Debug)]
 pub struct Visit {
     /// Number of the sweep.

@@ -6,8 +6,8 @@ use crate::chain::{Step, Support, SupportKinematics, Value};
 use crate::diagnostic::rule;
 use crate::spec::{self, Crane, Kinematics};
 
-/// Pressing force from which a one-sided support holds in full unless the spec says so, N: a hundredth of what a foot of a
-/// timber crane carries.
+/// Default pressing force from which a one-sided support has its full lateral stiffness and damping, N: a hundredth of what a
+/// foot of a timber crane carries.
 const FULL_HOLD: f64 = 1e3;
 
 impl<'a> Check<'a> {
@@ -58,7 +58,7 @@ impl<'a> Check<'a> {
         sound
     }
 
-    /// The pressing force from which a one-sided support holds in full.
+    /// The pressing force from which a one-sided support has its full lateral stiffness and damping.
     fn full_hold(&mut self, support: &spec::Support, name: &str, stiffness: &Value) -> Option<Value> {
         let place = format!("the full hold of support `{name}`");
         let full_hold = self.number_or(support.full_hold.as_ref(), FULL_HOLD, &place, "N", Limit::Positive);

@@ -1,4 +1,4 @@
-//! Beams: of equal sections, and how elements become bodies.
+//! Beams: division into equal sections, and conversion of elements into bodies.
 
 use super::elements::WRITTEN;
 use super::limits::Limit;
@@ -12,11 +12,11 @@ use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Number,
 
 /// Maximum number of sections of a beam.
 const MOST_SECTIONS: f64 = 1000.0;
-/// Maximum number of coordinates of a crane: far more than make sense, few enough for an immediate answer.
+/// Maximum number of coordinates of a crane: far more than make sense, but few enough for an immediate response.
 pub(super) const MOST_COORDINATES: usize = 10_000;
 /// Default factor between the yield stress and the allowable stress.
 const SAFETY_FACTOR: f64 = 1.5;
-/// Advice about too many of them.
+/// Advice for a beam with too many sections.
 const FEWER_SECTIONS: &str =
     "divide beams into fewer sections: the error falls with the square of their number, and 4 to 20 are common";
 /// Rotations of an element after the first, in order.
@@ -54,7 +54,7 @@ impl<'a> Check<'a> {
         }
         let section_joint = given.value.as_ref().and_then(|inside| inside.section_joint.as_ref()?.value);
         let Some(Elements { elements, joints }) = elements.filter(|_| total <= MOST_COORDINATES) else {
-            // Its coordinates are not known.
+            // The beam's coordinates are not known.
             self.unknown.links = true;
             return (vec![Value::ZERO], Value::ZERO);
         };
@@ -62,8 +62,8 @@ impl<'a> Check<'a> {
         self.unroll((link, span), path, (elements, joints), section_joint)
     }
 
-    /// Appends rigid elements as bodies: element 0 on the link's joint, element i ≥ 1 at the end of the previous one
-    /// by the rotation vector (φ, θ, ψ), or through `Rz(ψ) Ry(θ) Rx(φ)`.
+    /// Appends rigid elements as bodies: element 0 on the link's joint, element i ≥ 1 at the end of the previous one,
+    /// rotated by the rotation vector (φ, θ, ψ) or by `Rz(ψ) Ry(θ) Rx(φ)`.
     fn unroll(
         &mut self,
         (link, span): (&str, Span),
@@ -260,7 +260,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Damping of equal sections.
+    /// Damping of a beam with equal sections.
     fn beam_damping(&mut self, given: Option<&Spanned<BeamDamping>>) -> Damping {
         let none = || [Value::ZERO; 3];
         match given.and_then(|given| given.value.as_ref()) {
@@ -288,9 +288,9 @@ impl<'a> Check<'a> {
 
 /// A beam divided into elements.
 struct Divided {
-    /// Outlines along it.
+    /// Outlines along the beam.
     outlines: Vec<(Value, Outline)>,
-    /// Moduli where each element begins.
+    /// Section moduli at the beginning of each element.
     moduli: Vec<Option<Moduli>>,
     elements: Vec<RigidElement>,
     /// Stiffness of the springs, N m/rad.

@@ -17,7 +17,7 @@ impl<'a> Check<'a> {
             let name = self.name(&connector.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
                 self.take_name("connectors", &name, "an earlier connector".into(), connector.name.span);
-                // Both have columns of results with a length and a force.
+                // Both have result columns for length and force.
                 if cylinders.iter().any(|cylinder| cylinder.name == name) {
                     self.report(rule::duplicate_name(connector.name.span, "elements", &name, "a cylinder"));
                 }
@@ -68,7 +68,7 @@ impl<'a> Check<'a> {
 
     /// Reports connectors whose points coincide at the guess.
     pub(super) fn connectors_apart(&mut self, chain: &Chain, crane: &Crane) {
-        /// Distance below which two points are one up to rounding, m.
+        /// Distance below which two points coincide up to rounding, m.
         const NONE: f64 = 1e-9;
         let given = crane.connectors.as_ref().and_then(|connectors| connectors.value.as_deref()).unwrap_or_default();
         let given = given.iter().filter_map(|connector| connector.value.as_ref());
@@ -88,7 +88,7 @@ impl<'a> Check<'a> {
         Some(Attachment { body: Some(body), position })
     }
 
-    /// How many coordinates move an end. After a mistake the bodies may end before it.
+    /// How many coordinates move an end. After a mistake, the body of the end may be missing.
     fn reach(&self, end: &Attachment) -> usize {
         end.body.map_or(0, |BodyId(body)| {
             let before = self.bodies.iter().take(body + 1);

@@ -9,7 +9,7 @@ use crate::chain::{
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Constant, Crane, Side, Spanned};
 
-/// Oil between pump and valves unless given, m³.
+/// Default volume of the oil between pump and valves, m³.
 const VOLUME: f64 = 5e-3;
 
 impl<'a> Check<'a> {
@@ -28,7 +28,7 @@ impl<'a> Check<'a> {
         cylinders
     }
 
-    /// What supplies the cylinders.
+    /// The pump that supplies the cylinders.
     pub(super) fn pump(&mut self, crane: &'a Crane) -> Option<Pump> {
         let given = crane.pump.as_ref()?;
         if crane.cylinders.is_none() {
@@ -45,7 +45,7 @@ impl<'a> Check<'a> {
         Some(Pump { max_flow, pressure, volume })
     }
 
-    /// Makes oil move the joints of cylinders with a valve.
+    /// Changes the transmission of joints with a valve-controlled cylinder to oil.
     pub(super) fn moved_by_oil(
         &mut self,
         crane: &'a Crane,
@@ -108,7 +108,7 @@ impl<'a> Check<'a> {
                 self.report(rule::valve_commanded_twice(other.span, name, key));
             }
         }
-        // A share is not an angle.
+        // An opening is a fraction, not an angle.
         self.motion(given.value.as_ref()?, Some(CoordinateKind::Translation), given.span)
     }
 
@@ -197,7 +197,7 @@ impl<'a> Check<'a> {
         })
     }
 
-    /// A pin, and where the frame of its body is along the link, m.
+    /// A pin, and the position of the frame of its body along the link, m.
     fn pin(&mut self, given: Option<&spec::Pin>, place: &str) -> Option<(Pin, Value)> {
         let given = given?;
         let at = self.vector(&given.at, place, "m", Limit::Any);
@@ -207,7 +207,7 @@ impl<'a> Check<'a> {
         Some((Pin { body, position }, start))
     }
 
-    /// `start`: where the frame of the body that carries the foot is along its link, m.
+    /// `start`: the position, along its link, of the frame of the body that carries the foot, m.
     fn linkage(&mut self, given: &spec::Linkage, name: &str, start: &Value) -> Linkage {
         let place = |what: &str| format!("the {what} of the linkage of cylinder `{name}`");
         let [along, y, z] = self.vector(&given.pivot, &place("pivot"), "m", Limit::Any);
@@ -219,7 +219,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Reports a cylinder that does not have its joint, or has another one, between its pins.
+    /// Reports a cylinder whose joint is not between its pins, or that has another joint between them.
     fn spans(&mut self, given: &spec::Cylinder, name: &str, joint: CoordinateId, [foot, head]: [BodyId; 2]) {
         let (near, far) = if foot < head { (foot, head) } else { (head, foot) };
         let paths = self.bodies.iter().take(far.0 + 1).skip(near.0 + 1).flat_map(|body| &body.path);

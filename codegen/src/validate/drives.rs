@@ -94,7 +94,7 @@ impl<'a> Check<'a> {
             }
             return Transmission::Rigid;
         }
-        // The value of `rigid` may have been wrong.
+        // An invalid value of `rigid` has been reported already.
         if stiffness.is_none() && drive.rigid.as_ref().is_none_or(|rigid| rigid.value.is_some()) {
             self.report(rule::no_transmission(span, name));
         }
@@ -104,7 +104,7 @@ impl<'a> Check<'a> {
             self.number(given, &place, unit, Limit::Positive)
         });
         let stiffness = stiffness.unwrap_or(f64::NAN.into());
-        // The energy of a spring with a limit is an integral over its force.
+        // The energy of a drive with an effort limit is the integral of its spring force: it needs a spring.
         if let (Some(given), Some(_)) = (&drive.stiffness, &max_effort) {
             let broken = rule::limited_without_spring(given.span, name);
             if self.now(&stiffness) == 0.0 {
@@ -143,7 +143,7 @@ impl<'a> Check<'a> {
             }
             joint_dampers.push(JointDamper { coordinate: id, damping });
         }
-        // What a rope gives all its joints, one by one is given instead.
+        // Damping given for a single joint replaces the damping that its rope gives to all joints.
         let own = joint_dampers.len();
         for (coordinate, damping) in std::mem::take(&mut self.rope_damping) {
             if joint_dampers[..own].iter().all(|damper| damper.coordinate != coordinate) {
@@ -254,7 +254,7 @@ impl<'a> Check<'a> {
     }
 }
 
-/// When a motion jumps to its speed, in words, if it does so during a run.
+/// The time at which a motion jumps to its speed, as text, if it does so during a run.
 fn jump(profile: &Profile) -> Option<String> {
     match profile {
         Profile::Speed { begin: Value::Constant(begin), ramp: None, .. } => {

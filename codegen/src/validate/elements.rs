@@ -7,7 +7,7 @@ use crate::diagnostic::rule;
 use crate::expand::beam::{Elements, Joint, RigidElement};
 use crate::spec::{Beam, Directions, Element, Spanned, Spring};
 
-/// Elements and parts may differ from the length of their beam by this fraction, because lengths are decimal numbers.
+/// The lengths of elements or parts may differ in sum from that of their beam by this fraction, because lengths are decimal numbers.
 pub(super) const WRITTEN: f64 = 1e-9;
 
 impl<'a> Check<'a> {

@@ -1,4 +1,4 @@
-//! Inputs, and what refers to them.
+//! Inputs, and references to them.
 
 use super::Check;
 use crate::chain::{Input, InputId, Profile};
@@ -26,7 +26,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// What an input is until it is set.
+    /// The profile that an input follows until it is set.
     fn unless_set(&mut self, name: &str, span: Span, input: &spec::Input) -> Profile {
         if input.value.is_some() && input.motion.is_some() {
             self.report(rule::input_twice(span, name));
@@ -59,7 +59,7 @@ impl<'a> Check<'a> {
     }
 
     pub(super) fn every_input_used(&mut self, crane: &Crane) {
-        // What could not be read may have been what refers to it.
+        // Something that could not be read may refer to it.
         if !self.mistakes.is_empty() {
             return;
         }

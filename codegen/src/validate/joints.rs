@@ -104,7 +104,7 @@ impl<'a> Check<'a> {
             if more < less {
                 self.report(broken.clone());
             }
-            // A live one may be equal, but not smaller.
+            // A live breakaway friction may be equal to the Coulomb friction, but not smaller.
             let margin = breakaway.clone() - coulomb.clone() + Value::Constant(f64::MIN_POSITIVE);
             self.keep_positive(margin, &broken);
             (breakaway, stribeck.clone())

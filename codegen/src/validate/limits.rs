@@ -13,11 +13,11 @@ pub(super) enum Limit {
     NotNegative,
     /// Above zero.
     Positive,
-    /// Above zero; a live mass may be zero if the crane stays regular without it.
+    /// Above zero; a live mass may be zero if the mass matrix stays regular without it.
     Mass,
 }
 
-/// The message of a rule before the number that breaks it, or without one.
+/// The message of a rule up to the number that breaks it, or without a number.
 fn refusal(mistake: &Mistake) -> Refusal {
     Refusal { code: mistake.code, title: mistake.title.trim_end().to_owned(), help: mistake.help.clone() }
 }
@@ -53,13 +53,13 @@ impl Check<'_> {
         }
     }
 
-    /// A rule that holds if `smaller` is below `larger`, whose defaults are checked elsewhere: with live numbers it must hold
-    /// whenever they are set.
+    /// Records the rule that `smaller` is below `larger`. Default values are checked elsewhere; with live numbers, the rule must
+    /// hold whenever they are set.
     pub(super) fn keep_below(&mut self, smaller: &Value, larger: &Value, broken: &Mistake) {
         self.keep_positive(larger.clone() - smaller.clone(), broken);
     }
 
-    /// A rule that holds if `margin` is above zero, whose defaults are checked elsewhere.
+    /// Records the rule that `margin` is above zero. Default values are checked elsewhere.
     pub(super) fn keep_positive(&mut self, margin: Value, broken: &Mistake) {
         if margin.as_constant().is_none() {
             self.relations.push(Relation { margin, refusal: refusal(broken) });

@@ -18,7 +18,7 @@ impl From<AxisName> for Axis {
     }
 }
 
-/// Symbol of a coordinate: x, y, z, or psi about z, theta about y, phi about x.
+/// Symbol of a coordinate: x, y, z for a translation; psi about z, theta about y, phi about x for a rotation.
 fn symbol(kind: CoordinateKind, axis: Axis) -> &'static str {
     match kind {
         CoordinateKind::Translation => ["x", "y", "z"][axis.index()],
@@ -82,7 +82,7 @@ impl<'a> Check<'a> {
         tip
     }
 
-    /// Appends a body, whose name must be new.
+    /// Appends a body; its name must not be taken.
     pub(super) fn push_body(&mut self, body: Body, span: Span) {
         self.take_expanded("bodies", &body.name, &body.link, span);
         self.bodies.push(body);

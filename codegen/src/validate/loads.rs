@@ -1,4 +1,4 @@
-//! Loads applied from outside.
+//! Applied loads.
 
 use super::Check;
 use super::limits::Limit;
@@ -26,7 +26,7 @@ impl<'a> Check<'a> {
                 Some(Axes::Link) => LoadAxes::Link,
                 Some(Axes::World) | None => LoadAxes::World,
             };
-            // A factor is not an angle.
+            // The scale is a factor, not an angle.
             let factor = Some(CoordinateKind::Translation);
             let scale = load.scale.as_ref().and_then(|scale| self.motion(scale.value.as_ref()?, factor, scale.span));
             if let Some((body, position)) = self.attach(&load.link, at) {

@@ -9,9 +9,9 @@ use crate::spec::{About, Body, Inertia, Link, Number, Spanned, Vector};
 
 /// Published inertias are measured or rounded: they may violate the triangle inequality by this fraction.
 const SLIGHT: f64 = 0.25;
-/// Rounding of written inertias, which is not worth a warning.
+/// Rounding of inertias in a spec that is not worth a warning.
 const WRITTEN: f64 = 1e-6;
-/// A smallest principal moment below this fraction of the largest is zero to rounding.
+/// If the smallest principal moment is below this fraction of the largest, it counts as zero.
 const VANISHING: f64 = 1e-12;
 
 impl<'a> Check<'a> {
@@ -54,7 +54,7 @@ impl<'a> Check<'a> {
         (vec![Value::ZERO], Value::ZERO)
     }
 
-    /// `com` and `inertia` of a link require `mass`.
+    /// Checks that `com` and `inertia` of a link come with `mass`, and `mass` with `com`.
     fn alone(&mut self, link: &Link, name: &str) {
         let com = link.com.as_ref().map(|given| ("com", given.span));
         let inertia = link.inertia.as_ref().map(|given| ("inertia", given.span));
@@ -105,7 +105,7 @@ impl<'a> Check<'a> {
         let written = given.value.as_ref()?;
         let (tensor, about) = self.tensor(written, given.span, &m, &place)?;
         match &written.gyration {
-            // Whether radii are possible does not depend on the mass, which may be zero.
+            // Whether radii of gyration are possible does not depend on the mass, which may be zero.
             Some(_) => {
                 let (unit, _) = self.tensor(written, given.span, &Value::ONE, &place)?;
                 self.possible(&Value::ONE, &com, &unit, about, given.span, &place);

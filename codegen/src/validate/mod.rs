@@ -47,7 +47,7 @@ pub struct Checked {
 /// Checks a spec and expands it into the chain of its bodies.
 ///
 /// # Errors
-/// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
+/// If the spec breaks any rule of the language; all mistakes are returned together, including those of reading.
 pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnostics> {
     check(spec, source).map(|checked| checked.chain)
 }
@@ -55,15 +55,15 @@ pub fn validate(spec: &CraneSpec, source: &SourceFile) -> Result<Chain, Diagnost
 /// Checks a spec, expands it into the chain of its bodies, and looks for implausible numbers.
 ///
 /// # Errors
-/// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
+/// If the spec breaks any rule of the language; all mistakes are returned together, including those of reading.
 pub fn check(spec: &CraneSpec, source: &SourceFile) -> Result<Checked, Diagnostics> {
     check_with(spec, source, &[])
 }
 
-/// Like [`check`], with warnings for other parameter values than those of the spec: names and values.
+/// Like [`check`], but the warnings are for the parameter values in `set` (names and values) instead of those of the spec.
 ///
 /// # Errors
-/// If the spec breaks any rule of the language; all mistakes at once, those of reading included.
+/// If the spec breaks any rule of the language; all mistakes are returned together, including those of reading.
 pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) -> Result<Checked, Diagnostics> {
     let mut check = Check { mistakes: spec.mistakes.clone(), ..Check::default() };
     let mut chain = check.crane(&spec.crane, source);
@@ -112,18 +112,18 @@ struct Check<'a> {
     /// Warnings about rules that are slightly violated.
     warnings: Vec<Mistake>,
     parameters: Vec<Parameter>,
-    /// Their values at which live numbers are checked.
+    /// Default values of the parameters, at which live numbers are checked.
     defaults: Vec<f64>,
-    /// Those to which some number refers.
+    /// Whether some number refers to each parameter.
     used: Vec<bool>,
     /// Live masses, and the bound of those that cannot be zero.
     live_masses: Vec<(ParameterId, Bound)>,
-    /// Rules about several numbers of which some are live.
+    /// Rules about several numbers, some of them live.
     relations: Vec<Relation>,
     inputs: Vec<Input>,
-    /// Which of them some motion refers to.
+    /// Whether some motion refers to each input.
     used_inputs: Vec<bool>,
-    /// Whether some could not be read.
+    /// Whether some inputs could not be read.
     unknown_inputs: bool,
     materials: BTreeMap<&'a str, Elastic>,
     coordinates: Vec<Coordinate>,
@@ -138,11 +138,11 @@ struct Check<'a> {
     links: BTreeMap<&'a str, LinkBodies>,
     /// Names of bodies and coordinates after expansion.
     expanded: Names,
-    /// Kinds of names that could not be read, so that references to them may be correct.
+    /// Kinds of names of which some could not be read.
     unknown: Unknown,
 }
 
-/// Kinds of names of which some could not be read: an unknown reference is then not a separate mistake.
+/// Kinds of names of which some could not be read: references to unknown names of such a kind are not reported.
 #[derive(Clone, Copy, Debug, Default)]
 struct Unknown {
     parameters: bool,

@@ -28,7 +28,7 @@ const CRATES: [&str; 10] = [
 pub(super) struct Names(BTreeMap<(&'static str, String), String>);
 
 impl Names {
-    /// Takes a name, or returns its owner.
+    /// Registers a name, or returns its owner if it is taken.
     fn take(&mut self, kind: &'static str, name: &str, taker: String) -> Result<(), String> {
         match self.0.entry((kind, name.to_owned())) {
             std::collections::btree_map::Entry::Vacant(free) => {
@@ -69,7 +69,7 @@ impl Check<'_> {
         Some(name)
     }
 
-    /// A text for people that comments of the generated code repeat: one line without characters that break or reverse it.
+    /// A descriptive text that is copied into comments of the generated code: one line, without characters that break or reverse it.
     pub(super) fn text(&mut self, given: Option<&Spanned<String>>, place: &str) -> Option<String> {
         let given = given?;
         let text = given.value.as_ref()?;
@@ -80,14 +80,14 @@ impl Check<'_> {
         Some(text.clone())
     }
 
-    /// Takes a name that must be unique among its kind.
+    /// Registers a name that must be unique among its kind.
     pub(super) fn take_name(&mut self, kind: &'static str, name: &str, taker: String, span: Span) {
         if let Err(other) = self.expanded.take(kind, name, taker) {
             self.report(rule::duplicate_name(span, kind, name, other));
         }
     }
 
-    /// Takes the name of a body or coordinate of a link, unless the link's own name is in question.
+    /// Registers the name of a body or coordinate of a link, unless the link's own name is invalid or a duplicate.
     pub(super) fn take_expanded(&mut self, kind: &'static str, name: &str, link: &str, span: Span) {
         if !link.is_empty() && !self.links.contains_key(link) {
             self.take_name(kind, name, format!("link `{link}`"), span);

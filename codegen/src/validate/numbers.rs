@@ -6,7 +6,7 @@ use crate::chain::{CoordinateKind, Parameter, ParameterId, Value};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{Angle, Constant, Crane, FixedAngle, Number, Scalar, Spanned, Vector};
 
-/// Magnitudes outside of this range, except zero, come from a slip in an exponent. Inside, no product or quotient in the
+/// Magnitudes outside this range, except zero, come from a slip in an exponent. Within it, no product or quotient in the
 /// expansion leaves the range of a double.
 const SMALLEST: f64 = 1e-30;
 const LARGEST: f64 = 1e18;
@@ -57,7 +57,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The number with the default values of the parameters.
+    /// The number at the default values of the parameters.
     pub(super) fn now(&self, value: &Value) -> f64 {
         value.at(&self.defaults)
     }
@@ -111,14 +111,14 @@ impl<'a> Check<'a> {
         self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, turns)
     }
 
-    /// A position that no parameter can replace.
+    /// A position that cannot be a parameter.
     pub(super) fn fixed(&mut self, given: &Spanned<FixedAngle>, place: &str, kind: Option<CoordinateKind>) -> f64 {
         let turns = kind != Some(CoordinateKind::Translation);
         let value = self.resolve(given.value.as_ref().map(|angle| &angle.0), given.span, place, turns);
         value.as_constant().unwrap_or(f64::NAN)
     }
 
-    /// A number that no parameter can replace.
+    /// A number that cannot be a parameter.
     pub(super) fn constant(&mut self, given: &Spanned<Constant>, place: &str, unit: &str, limit: Limit) -> f64 {
         let value = self.resolve(given.value.as_ref().map(|constant| &constant.0), given.span, place, false);
         self.keep_limit(&value, given.span, place, unit, limit);

@@ -8,11 +8,11 @@ use crate::chain::{Axis, BodyId, Chain, CoordinateId, CoordinateKind, Frame, Ine
 use crate::diagnostic::{Span, rule};
 use crate::spec::Crane;
 
-/// A pivot below this fraction of the coordinate's inertia with all later joints locked is zero to rounding. The smallest
-/// pivot of a realistic crane, torsion of one of 1000 elements below a long load, is four orders above.
+/// A pivot below this fraction of the coordinate's inertia with all later joints locked counts as zero. The smallest pivot
+/// of a realistic crane, torsion of one of 1000 elements under a long load, is four orders of magnitude larger.
 const VANISHING: f64 = 1e-10;
 
-/// Forces have the moment first, motions the angular velocity.
+/// Forces have the moment first, velocities the angular velocity.
 type Spatial = [f64; 6];
 type SpatialInertia = [[f64; 6]; 6];
 
@@ -28,7 +28,7 @@ fn apply(inertia: &SpatialInertia, motion: &Spatial) -> Spatial {
     inertia.each_ref().map(|row| dot(row, motion))
 }
 
-/// Velocity of the point at the world's origin, if it moved with a unit velocity of a coordinate.
+/// Spatial velocity about the world's origin for a unit velocity of a coordinate.
 fn unit_motion(frame: &Frame, kind: CoordinateKind, axis: Axis) -> Spatial {
     let direction = frame.axes[axis.index()];
     let (turning, moving) = match kind {
@@ -81,7 +81,7 @@ impl Check<'_> {
             let mass: f64 = inertias.map(|inertia| self.now(&inertia.mass)).sum();
             self.report(rule::too_light(joint_span(crane, link), link, format!("{mass:.3e}")));
         }
-        // Next to a massless beam, it is arbitrary which joints are lost to rounding.
+        // With a massless beam, rounding decides which other joints appear to be singular.
         if light.is_empty() {
             for (body, CoordinateId(index)) in idle {
                 let span = joint_span(crane, &chain.bodies[body.0].link);
@@ -90,7 +90,7 @@ impl Check<'_> {
         }
     }
 
-    /// Coordinates that move no mass of their own, and the bodies behind them, at a generic pose.
+    /// Coordinates that move no mass of their own, each with the body to whose joint it belongs, at a generic pose.
     pub(super) fn idle_coordinates(&self, chain: &Chain, parameters: &[f64]) -> Vec<(BodyId, CoordinateId)> {
         let mut idle = Vec::new();
         let mut frame = Frame::WORLD;

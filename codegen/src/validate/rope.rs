@@ -9,7 +9,7 @@ use crate::spec::{HangingRope, Spanned};
 
 /// Maximum number of links of a rope.
 const MOST_LINKS: f64 = 1000.0;
-/// Rotations of a universal joint, in order: none about the rope itself, which a rope without torsion does not resist.
+/// Rotations of a universal joint, in order. There is none about the rope itself: links have no torsion.
 const ROTATIONS: [Axis; 2] = [Axis::Z, Axis::Y];
 
 impl<'a> Check<'a> {
@@ -23,7 +23,7 @@ impl<'a> Check<'a> {
     ) -> (Vec<Value>, Value) {
         let links = given.value.as_ref().and_then(|rope| Some((rope, self.links_of_rope(rope)?)));
         let Some((rope, count)) = links else {
-            // Its coordinates are not known.
+            // The rope's coordinates are not known.
             self.unknown.links = true;
             return (vec![Value::ZERO], Value::ZERO);
         };

@@ -6,7 +6,7 @@ use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Support, Transmissio
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{self, Constant, Crane, Spanned};
 
-/// A point belongs to the element that starts at its x, with this fraction of the beam's length as tolerance, because both
+/// A point belongs to the element that starts at its x, with this fraction of that start as tolerance, because both
 /// are rounded numbers.
 const AT_THE_JOINT: f64 = 1e-12;
 

@@ -11,7 +11,7 @@ use crate::Bound;
 pub struct Description {
     /// Name of the crane.
     pub name: Text,
-    /// One line for people.
+    /// One-line description.
     pub title: Text,
     /// Hash of the YAML text it was compiled from.
     pub spec_hash: Text,
@@ -29,9 +29,9 @@ pub struct Description {
     pub stops: List<usize>,
     /// Coordinates with friction, by their indices in `q`.
     pub frictions: List<usize>,
-    /// Those of them that stick: bristles whose deflections are states of the motion.
+    /// Friction of the joints that stick: the deflections of their bristles are states of the motion.
     pub bristles: List<BristleInfo>,
-    /// Loads applied from outside.
+    /// Applied loads.
     pub loads: List<LoadInfo>,
     /// Springs, gas springs and ropes between two points, and couplings of coordinates.
     pub connectors: List<ConnectorInfo>,
@@ -39,13 +39,13 @@ pub struct Description {
     pub inputs: List<InputInfo>,
     /// Hydraulic cylinders of driven joints.
     pub cylinders: List<CylinderInfo>,
-    /// What supplies them.
+    /// The pump that supplies the cylinders.
     pub pump: Option<PumpInfo>,
     /// Names of the points of interest.
     pub points: List<Text>,
     /// Whether the spec requests statics: a run then starts from the static equilibrium, otherwise from the guess.
     pub statics: bool,
-    /// Start of the static solution, or of the run without statics, with default parameters, m and rad.
+    /// Pose at which the static solution starts, or the run if there is no static solution, with default parameters, m and rad.
     pub guess: List<f64>,
     /// Simulated time, s.
     pub duration: f64,
@@ -55,12 +55,13 @@ pub struct Description {
     pub output: f64,
 }
 
-/// Angle from ±90° below which θ of a base or an element is near its singularity, rad: ψ and φ then rotate about nearly
+/// Distance of θ from ±90° below which a base or an element is near its singularity, rad: ψ and φ then rotate about nearly
 /// equal axes, and three digits or more are lost.
 pub const NEAR_SINGULAR: f64 = 0.03;
-/// Rotation of a base beyond which linear supports are no longer accurate, rad: their error is half a percent of it.
+/// Rotation of a base beyond which linear supports are no longer accurate, rad: their error is then half a percent of the lever arm.
 pub const LARGE_TILT: f64 = 0.1;
-/// Rotation of a base beyond which a crane on feet that lift has tipped over, 30° in rad: soft feet give way by some hundredths.
+/// Rotation of a base beyond which a crane on feet that lift has tipped over, 30° in rad: soft feet
+/// yield by only a few hundredths.
 pub const TIPPED: f64 = core::f64::consts::FRAC_PI_6;
 
 impl Description {
@@ -167,9 +168,9 @@ pub struct CoordinateInfo {
 /// Kind of motion of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoordinateKind {
-    /// Along an axis: m, driven by N.
+    /// Along an axis: in m, driven by a force in N.
     Translation,
-    /// About an axis: rad, driven by N m.
+    /// About an axis: in rad, driven by a moment in N m.
     Rotation,
 }
 
@@ -238,7 +239,7 @@ pub struct BodyInfo {
     pub mass: f64,
     /// Length along x of a rigid finite element, m; 0 otherwise.
     pub length: f64,
-    /// Coordinates that move it: the first `degrees_of_freedom` of `q`, Eq. (2).
+    /// Number of coordinates that move it: the first `degrees_of_freedom` of `q`, Eq. (2).
     pub degrees_of_freedom: usize,
 }
 
@@ -251,7 +252,7 @@ pub struct SupportInfo {
     pub position: [f64; 3],
     /// Whether its elongation is linear in the base's coordinates, `kinematics: linear`.
     pub linear: bool,
-    /// Whether it presses only, and lifts off instead of pulling.
+    /// Whether it only presses, and lifts off instead of pulling.
     pub one_sided: bool,
 }
 
@@ -264,9 +265,9 @@ pub struct DriveInfo {
     pub start: f64,
     /// The number of intervals in which its motion is smooth.
     pub pieces: usize,
-    /// Greatest rate at which it drives, rad/s or m/s, if it is limited.
+    /// Maximum rate, rad/s or m/s, if it is limited.
     pub max_rate: Option<f64>,
-    /// Greatest power with which it drives, W, if it is limited.
+    /// Maximum power, W, if it is limited.
     pub max_power: Option<f64>,
 }
 
@@ -277,19 +278,19 @@ pub struct CylinderInfo {
     pub name: Text,
     /// Index of the drive whose effort is that of the cylinder.
     pub drive: usize,
-    /// Areas on which the oil presses: of the piston, and of the ring around the rod, m².
+    /// Areas on which the oil acts: of the piston, and of the annulus around the rod, m².
     pub areas: [f64; 2],
-    /// Distance of the pins when it is retracted, m.
+    /// Distance between the pins when it is retracted, m.
     pub retracted: f64,
     /// Stroke, m.
     pub stroke: f64,
-    /// Greatest pressure, Pa.
+    /// Maximum pressure, Pa.
     pub max_pressure: Option<f64>,
-    /// Pressure on the side that does not carry, Pa.
+    /// Pressure on the side that does not carry the load, Pa.
     pub back_pressure: f64,
     /// Bulk modulus of the oil, Pa.
     pub bulk_modulus: Option<f64>,
-    /// Oil in hoses and valves on the piston's side and on the rod's, m³.
+    /// Volumes of the oil in hoses and valves on the piston's side and on the rod's, m³.
     pub hose_volumes: [f64; 2],
     /// The valve that moves it; its pressures and the valve's opening are then states of the motion.
     pub valve: Option<ValveInfo>,
@@ -298,19 +299,19 @@ pub struct CylinderInfo {
 /// A proportional directional valve; a servo makes its cylinder follow the drive's motion, unless it is commanded over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValveInfo {
-    /// Flow through a fully open edge at the pressure drop, m³/s.
+    /// Flow through a fully open edge at the nominal pressure drop, m³/s.
     pub flow: f64,
-    /// That pressure drop, Pa.
+    /// Nominal pressure drop, Pa.
     pub pressure_drop: f64,
-    /// Share of the spool's travel from the middle that is covered.
+    /// Share of the spool's travel from the middle over which the edges stay closed.
     pub overlap: f64,
     /// Time constant of the spool, s.
     pub lag: f64,
     /// Whether it is commanded over time, without a servo.
     pub commanded: bool,
-    /// Opening of the servo for an error of the cylinder's length, 1/m.
+    /// Gain of the servo: opening per error of the cylinder's length, 1/m.
     pub gain: f64,
-    /// Share of the opening that the speed of the motion takes which is set ahead of any error.
+    /// Feed-forward of the servo: share of the opening required by the speed of the motion that is applied without any error.
     pub feed_forward: f64,
     /// Leakage past the piston, m³/(s Pa).
     pub leakage: f64,
@@ -333,23 +334,23 @@ pub struct BristleInfo {
     pub damping: f64,
 }
 
-/// What supplies the cylinders.
+/// The pump that supplies the cylinders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PumpInfo {
-    /// Greatest flow to all cylinders together, m³/s.
+    /// Maximum total flow to all cylinders, m³/s.
     pub max_flow: f64,
     /// Pressure that it maintains until its flow is at its limit, Pa.
     pub pressure: Option<f64>,
-    /// Oil between it and the valves, m³.
+    /// Volume of the oil between the pump and the valves, m³.
     pub volume: f64,
 }
 
-/// A load applied from outside.
+/// An applied load.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoadInfo {
     /// Name.
     pub name: Text,
-    /// In how many pieces its scale is smooth.
+    /// The number of intervals in which its scale is smooth.
     pub pieces: usize,
 }
 
@@ -360,11 +361,11 @@ pub struct InputInfo {
     pub name: Text,
     /// Unit.
     pub unit: Text,
-    /// What it is.
+    /// Description.
     pub about: Text,
-    /// What it is at t = 0 with default parameters unless set.
+    /// Its value at t = 0 with default parameters, if it is not set.
     pub default: f64,
-    /// Whether it follows a motion unless set.
+    /// Whether it follows a motion until it is set.
     pub moves: bool,
 }
 
@@ -381,12 +382,12 @@ pub struct ConnectorInfo {
     pub is_rope: bool,
     /// The coordinates that change its length: the first, and the one after the last.
     pub spanned: [usize; 2],
-    /// In how many pieces its winch moves smoothly.
+    /// The number of intervals in which its winch moves smoothly.
     pub pieces: usize,
 }
 
 impl ConnectorInfo {
-    /// Whether one of its points is a point of the world.
+    /// Whether one of its ends is fixed in the world.
     pub fn holds_to_world(&self) -> bool {
         self.ends.iter().flatten().any(|end| end.body.is_none())
     }
@@ -395,7 +396,7 @@ impl ConnectorInfo {
 /// A point of a body or of the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachmentInfo {
-    /// Place of the body; `None` for the world.
+    /// Index of the body; `None` for the world.
     pub body: Option<usize>,
     /// Position in the frame of the body or of the world with default parameters, m.
     pub position: [f64; 3],

@@ -1,6 +1,7 @@
 //! Text and lists of a description: constants of generated code, or owned by a crane that is made at run time.
 //!
-//! Constants need neither heap nor `std`. Owned data are reference-counted: a copy is another pointer, and the last one frees them.
+//! Constants need neither heap nor `std`. Owned data are reference-counted: a clone is another pointer; dropping the last one
+//! frees them.
 
 use core::{fmt, ops::Deref};
 

@@ -1,4 +1,4 @@
-//! A crane with its number of coordinates in the type, on slices.
+//! Adapts cranes with the number of coordinates in their type to the traits on slices.
 
 use std::ops::{Deref, DerefMut};
 
@@ -24,13 +24,13 @@ impl<const N: usize, C> Crane<N> for C where
 {
 }
 
-/// A crane of `N` coordinates on slices, held by a reference or by a box: `Instance(&crane)`, `Instance(Box::new(crane))`.
+/// Adapts a crane of `N` coordinates, in a reference or a box, to slices: `Instance(&crane)`, `Instance(Box::new(crane))`.
 ///
 /// It implements each trait of this module whose counterpart the crane implements.
 #[derive(Clone, Copy, Debug)]
 pub struct Instance<const N: usize, H>(pub H);
 
-/// A crane with the parameters of its spec behind a pointer.
+/// A boxed crane with the parameters of its spec.
 pub fn boxed<const N: usize, C: Crane<N> + Default + Send + Sync + 'static>() -> Box<dyn DynCrane> {
     Box::new(Instance::<N, _>(Box::new(C::default())))
 }
@@ -259,7 +259,7 @@ impl<const N: usize, H: Deref<Target: Implicit<N> + Sized> + Send + Sync> DynImp
     }
 }
 
-/// Factors of a system.
+/// A linear system and its factors.
 struct System<'a, const N: usize, C: Implicit<N>> {
     crane: &'a C,
     factors: Option<C::Factors>,
@@ -298,7 +298,7 @@ impl<const N: usize, H: Deref<Target: Ensemble<N> + Clone> + Send + Sync> DynEns
     }
 }
 
-/// Eight cranes.
+/// A block of eight cranes.
 pub(crate) struct Block<const N: usize, L>(pub L);
 
 impl<const N: usize, L: LaneDynamics<N>> DynBlock for Block<N, L> {

@@ -1,6 +1,6 @@
 //! Cranes of any size through one pointer: the traits of a generated crane on slices.
 //!
-//! Statics, integrators, modes and stability are written over these traits, once for all cranes. A trait here is the counterpart of
+//! Statics, integrators, modes and stability are implemented once, in terms of these traits. A trait here is the counterpart of
 //! a trait with the number of coordinates in its type; [`Instance`] adapts one to the other.
 //!
 //! | here | counterpart | used by |
@@ -42,7 +42,7 @@ pub trait DynModel: Send + Sync {
     /// Value of a live parameter, by its index in the description.
     fn parameter(&self, index: usize) -> f64;
 
-    /// What an input is set to, by its place in the description; nothing while it is as its spec says.
+    /// Value to which an input is set, by its index in the description; `None` while it follows its spec.
     fn input(&self, index: usize) -> Option<f64>;
 
     /// Transforms T of all bodies into the world frame.
@@ -69,7 +69,7 @@ pub trait DynModel: Send + Sync {
     /// Generalized forces of joint friction.
     fn friction_forces(&self, v: &[f64], out: &mut [f64]);
 
-    /// Generalized forces of the loads applied from outside.
+    /// Generalized forces of the applied loads.
     fn load_forces(&self, t: f64, q: &[f64], out: &mut [f64]);
 
     /// Generalized forces of connectors.
@@ -87,25 +87,25 @@ pub trait DynModel: Send + Sync {
     /// `∂ℓ/∂q` of every connector, row by row.
     fn connector_jacobians(&self, q: &[f64], out: &mut [f64]);
 
-    /// Begin and end of the pieces in which winches move smoothly, s; one pair per piece, connector by connector.
+    /// Beginning and end of the intervals in which winches move smoothly, s; one pair per interval, connector by connector.
     fn winch_pieces(&self, out: &mut [[f64; 2]]);
 
-    /// Begin and end of the pieces in which the scales of loads are smooth, s; one pair per piece, load by load.
+    /// Beginning and end of the intervals in which the scales of loads are smooth, s; one pair per interval, load by load.
     fn load_pieces(&self, out: &mut [[f64; 2]]);
 
     /// Forces of the supports on the crane, world frame, N.
     fn support_reactions(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
 
-    /// How far each one-sided support is above the ground, m, and the rate of that, m/s; 0 of all others.
+    /// Height of each one-sided support above the ground, m, and its rate, m/s; 0 for all others.
     fn support_gaps(&self, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
 
-    /// Length of every cylinder, its rate, and its derivative by the joint's coordinate.
+    /// Length of every cylinder, its rate, and its derivative with respect to the joint's coordinate.
     fn cylinder_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
 
     /// Prescribed position and rate of every drive.
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]);
 
-    /// Greatest effort of every drive, 0 if it has no limit, and its stiffness at the state.
+    /// Maximum effort of every drive, 0 if it has no limit, and its stiffness at the state.
     fn drive_limits(&self, t: f64, q: &[f64], v: &[f64], out: &mut [[f64; 2]]);
 
     /// Sets the coordinates that rigid drives prescribe, and their rates, at time t.
@@ -114,7 +114,7 @@ pub trait DynModel: Send + Sync {
     /// Command of the valve of every drive over time, −1 to 1, and its rate, 1/s; zeros without one.
     fn valve_openings(&self, t: f64, out: &mut [[f64; 2]]);
 
-    /// Begin and end of the intervals in which the drives' motions and valves' commands are smooth, s; one pair per interval, drive by drive.
+    /// Beginning and end of the intervals in which drives' motions and valves' commands are smooth, s; one pair per interval, drive by drive.
     fn drive_pieces(&self, out: &mut [[f64; 2]]);
 
     /// Potential energy of gravity, J.
@@ -138,10 +138,10 @@ pub trait DynModel: Send + Sync {
     /// Energy of connectors, J.
     fn connector_energy(&self, t: f64, q: &[f64]) -> f64;
 
-    /// Power that winches put in, W.
+    /// Power supplied by the winches, W.
     fn winch_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
-    /// Power that the loads applied from outside put in, W.
+    /// Power supplied by the applied loads, W.
     fn load_power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
     /// Power that all dampers dissipate, W.
@@ -161,7 +161,7 @@ pub trait DynStatics: DynModel {
     /// `∂²E_p/∂q²` at t = 0, n × n.
     fn tangent_stiffness(&self, q: &[f64], out: &mut [f64]);
 
-    /// The part of connectors in the tangent stiffness, with winches where they are at time t, n × n.
+    /// The contribution of connectors to the tangent stiffness, with winches at their positions at time t, n × n.
     fn connector_stiffness(&self, t: f64, q: &[f64], out: &mut [f64]);
 
     /// Generalized forces of the drives that hold the crane at rest at t = 0, including rigid drives.
@@ -179,7 +179,7 @@ pub trait DynDynamics: DynModel {
     /// Accelerations q̈.
     fn forward_dynamics(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
 
-    /// x of `A(q) x = r`.
+    /// The solution x of `A(q) x = r`.
     fn solve_mass(&self, q: &[f64], r: &[f64], out: &mut [f64]);
 
     /// Kinetic energy, J.
@@ -210,7 +210,7 @@ pub trait DynSystem: Send {
     /// Factorises `A(q) + D̂`, like [`Implicit::factorise`](crate::Implicit::factorise).
     fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &Matrix6<f64>);
 
-    /// x of the system that was factorised last; NaN before the first.
+    /// The solution x of the system that was factorised last; NaN before the first factorisation.
     fn solve(&mut self, r: &[f64], out: &mut [f64]);
 }
 
@@ -247,7 +247,7 @@ pub trait DynInternalForces: DynModel {
     fn section_moduli(&self, out: &mut [SectionModuli]);
 }
 
-/// Cranes that move several at a time, each with its own state and parameters: [`Ensemble`](crate::Ensemble) on slices.
+/// Evaluation of several cranes at a time, each with its own state and parameters: [`Ensemble`](crate::Ensemble) on slices.
 pub trait DynEnsemble: DynDynamics {
     /// The number of cranes in a block: a multiple of eight.
     fn lanes(&self) -> usize {
@@ -279,7 +279,8 @@ pub trait DynDerivatives: DynModel {
     fn transform_second_derivatives(&self, q: &[f64], out: &mut [Matrix4<f64>]);
 }
 
-/// A crane with every analysis except the rarely needed derivatives of transforms: [`DynDerivatives`].
+/// A crane with every analysis except two that are rarely needed: derivatives of transforms, [`DynDerivatives`], and small motions about a
+/// motion, [`DynLineariseMotion`].
 ///
 /// Functions that return owned lists and matrices are methods of [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
 pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynInternalForces + DynEnsemble + Send + Sync {
@@ -295,8 +296,8 @@ pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynInternalForces 
     /// A value breaks a rule of the spec language; the crane stays unchanged.
     fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError>;
 
-    /// Sets an input from now on, or gives it back to its spec: [`CraneModel::set_input`](crate::CraneModel::set_input). No
-    /// constant is computed again.
+    /// Sets an input, or with `None` returns it to its spec: [`CraneModel::set_input`](crate::CraneModel::set_input). No
+    /// constants are recomputed.
     fn set_input(&mut self, index: usize, value: Option<f64>);
 
     /// A separate crane with the same parameters and inputs.

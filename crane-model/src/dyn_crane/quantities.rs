@@ -59,13 +59,13 @@ fn numbers(crane: &(impl DynModel + ?Sized), write: impl FnOnce(&mut [f64])) -> 
 }
 
 impl dyn DynImplicit + '_ {
-    /// Stiffness of every drive at rest in a pose, N m/rad or N/m; 0 of rigid ones, and of those beyond their limit.
+    /// Stiffness of every drive at rest in a pose, N m/rad or N/m; 0 for rigid drives and for drives beyond their limit.
     pub(crate) fn drive_stiffness(&self, q: &[f64]) -> Vec<f64> {
         let drives = &self.description().drives;
         let (mut linear, mut limits) = (vec![[0.0; 2]; q.len()], vec![[0.0; 2]; drives.len()]);
         self.joint_stiffness_and_damping(&mut linear);
         self.drive_limits(0.0, q, &vec![0.0; q.len()], &mut limits);
-        // A drive with a limit is not among the linear ones.
+        // The stiffness of a drive with a limit is not among the linear ones.
         drives.iter().zip(limits).map(|(drive, [_, limited])| linear[drive.coordinate][0].max(limited)).collect()
     }
 }
@@ -117,7 +117,7 @@ impl dyn DynCrane + '_ {
         self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
     }
 
-    /// Torques and forces of the drives at a sample of a run, those of cylinders with a valve by their pressures: N m and N.
+    /// Torques and forces of the drives at a sample of a run, those of cylinders with a valve from their pressures: N m and N.
     pub fn drive_efforts_of(&self, sample: &Sample<'_>) -> Vec<f64> {
         let &Sample { t, q, v, x, .. } = sample;
         let mut efforts = self.drive_efforts_at(t, q, v);
@@ -137,7 +137,7 @@ impl dyn DynCrane + '_ {
     pub fn drive_efforts_holding(&self, positions: &[f64], q: &[f64]) -> Vec<f64> {
         let Description { drives, coordinates, .. } = self.description();
         let motions = self.drive_motions_at(0.0);
-        // A drive feels how far its coordinate is from its position alone; a rigid one holds what the pose asks for.
+        // The effort of a flexible drive depends only on the deviation from its position; that of a rigid one follows from the pose.
         let mut moved = q.to_vec();
         for (drive, (position, [start, _])) in drives.iter().zip(positions.iter().zip(motions)) {
             moved[drive.coordinate] -= position - start;
@@ -154,7 +154,7 @@ impl dyn DynCrane + '_ {
         drives.iter().map(effort).collect()
     }
 
-    /// Greatest efforts of the drives, N m and N; `None` where there is no limit.
+    /// Maximum efforts of the drives, N m and N; `None` where there is no limit.
     pub fn drive_limits_at(&self) -> Vec<Option<f64>> {
         let mut out = vec![[0.0; 2]; self.description().drives.len()];
         let state = vec![0.0; self.size()];
@@ -210,7 +210,7 @@ impl dyn DynCrane + '_ {
         out
     }
 
-    /// How far each one-sided support is above the ground, negative where it is pressed in, and 0 for all others, m.
+    /// Height of each one-sided support above the ground, m: negative where it is pressed in, 0 for all others.
     pub fn support_gaps_at(&self, q: &[f64]) -> Vec<f64> {
         let mut out = vec![[0.0; 2]; self.description().supports.len()];
         self.support_gaps(q, &vec![0.0; q.len()], &mut out);
@@ -290,13 +290,14 @@ impl dyn DynCrane + '_ {
         statics::guess_dyn(self)
     }
 
-    /// Static equilibrium from the guess: [`statics::solve`]. Where feet lift and no pose stands, it says what the crane tips over.
+    /// Static equilibrium from the guess: [`statics::solve`]. If feet lift and no pose is
+    /// stable, it names the supports over which the crane tips.
     pub fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {
         statics::named(self, 0.0, &self.guess(), statics::solve_dyn(self, settings))
     }
 
-    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`], and what the crane
-    /// tips over.
+    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`], with the supports
+    /// over which the crane tips, if it does.
     pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
         statics::named(self, t, q, statics::solve_at_dyn(self, t, q, settings))
     }

@@ -9,11 +9,11 @@ use super::{
 pub(super) const FIRST: f64 = 1e-4;
 /// Longest step, s: ten steps per period for a load that swings once per second.
 pub(super) const LONGEST: f64 = 0.1;
-/// Fraction of the step at which the error would just be the tolerance.
+/// Safety factor on the step size at which the error would equal the tolerance.
 pub(super) const SAFETY: f64 = 0.9;
 /// Smallest and largest ratio of a step to the previous one.
 const RATIO: (f64, f64) = (0.2, 3.0);
-/// A step as short as this, relative to the remaining time, makes no progress.
+/// A step as short as this, relative to the time of the next result, makes no progress.
 pub(super) const LEAST: f64 = 1e-13;
 /// A step that would end this close to a stop, relative to its length, ends there.
 pub(super) const SLIVER: f64 = 0.01;
@@ -23,7 +23,7 @@ pub(super) trait Formula {
     /// Its name.
     const METHOD: Method;
 
-    /// Tries a step from its start, length and first slope.
+    /// Tries a step, given its start, length and initial slope.
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite>;
 
     /// Factorisations so far.
@@ -45,20 +45,20 @@ pub(super) struct Adaptive<'a, F> {
 }
 
 impl<'a, F: Formula> Adaptive<'a, F> {
-    /// With a measure of errors.
+    /// Creates the motion, with a measure of errors.
     pub fn new(formula: F, equations: Equations<'a>, norm: Norm) -> Self {
         let (step, motion) = (Step::new(equations.len()), vec![0.0; equations.len()]);
         Self { formula, equations, norm, next: FIRST, step, motion, steps: 0, rejections: 0 }
     }
 
-    /// No further step is possible.
+    /// The error that no further step is possible.
     fn stuck(&self, t: f64, h: f64) -> Stopped {
         let Equations { crane, n, .. } = self.equations;
         let q = &self.motion[..n];
         StepContext { method: F::METHOD, t, h, q, description: crane.description() }.failed(Cause::Tolerance, crane)
     }
 
-    /// Whether a tried step meets the tolerance, and the length to try next.
+    /// Returns whether a tried step meets the tolerance, and sets the length to try next.
     fn judge(&mut self, tried: Result<(), NotFinite>) -> bool {
         let Step { length, end, error, .. } = &self.step;
         let error = match tried {

@@ -1,4 +1,4 @@
-//! What connectors add to the linear system of an implicit step: a term of low rank.
+//! The contribution of connectors to the linear system of an implicit step: a term of low rank.
 //!
 //! A connector whose length changes with `J q̇` has the stiffness `Jᵀ k J` and the damping `Jᵀ d J`. With M the system without
 //! connectors, their rows J in U and `R = diag(c d + c² k)`, the Woodbury identity solves the system with connectors by solutions of M:
@@ -65,7 +65,7 @@ impl Connected {
         }
     }
 
-    /// Takes J, k and d at a state, and prepares solutions; `factors` are of the system without connectors.
+    /// Evaluates J, k and d at a state, and prepares solutions; `factors` are those of the system without connectors.
     pub fn factorise(
         &mut self,
         crane: &dyn DynImplicit,

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::dyn_crane::DynDynamics;
 
-/// A motion by [`rk4`].
+/// A motion integrated by [`rk4`].
 pub struct Rk4<'a> {
     equations: Equations<'a>,
     settings: Settings,
@@ -54,7 +54,7 @@ impl Equal {
 }
 
 impl<'a> Rk4<'a> {
-    /// Steps according to the settings.
+    /// Creates the motion, with the step of the settings.
     pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
         let equations = Equations::new(crane, Guides::rigid(crane), settings.audit);
         let n = equations.n;
@@ -76,7 +76,7 @@ impl<'a> Rk4<'a> {
         StepContext { method: Method::Rk4, t, h, q, description: self.equations.crane.description() }
     }
 
-    /// The cause is growth from step to step if there is some, otherwise the given cause.
+    /// Reports growth from step to step if there is any, otherwise the given cause.
     fn rough(&self, context: &StepContext<'_>, otherwise: impl FnOnce(&StepContext<'_>) -> Stopped) -> Stopped {
         let rough = self.roughness.roughest().map(|coordinate| context.stopped(Cause::Step, coordinate));
         rough.unwrap_or_else(|| otherwise(context))
@@ -107,7 +107,7 @@ fn advance(
     advanced
 }
 
-/// The method on all numbers of a motion alike, for cranes whose oil has states.
+/// The method applied to all components of a motion in the same way, for cranes with forces that have states.
 #[derive(Default)]
 struct FirstOrder {
     slopes: [Vec<f64>; rk4::STAGES],
@@ -143,7 +143,7 @@ impl FirstOrder {
     }
 }
 
-/// Steps through an interval of a motion that is shorter than the requested step: a single step would have an error of a quarter.
+/// Number of steps in an interval of a motion that is shorter than the requested step: a single step would have an error of 25 %.
 const PIECE: usize = 16;
 
 impl Stepper for Rk4<'_> {

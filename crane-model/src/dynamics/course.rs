@@ -1,4 +1,4 @@
-//! A motion that is followed from result to result.
+//! A motion that is advanced from result to result.
 
 use std::ops::ControlFlow;
 
@@ -19,18 +19,18 @@ use crate::{
     own_states::OwnStates,
 };
 
-/// A run that is advanced from result to result. It keeps its step size and its history, so that the times of results cost nothing.
+/// A run that is advanced from result to result. It keeps its step size and its history from one result to the next.
 pub struct Course<'a> {
     crane: &'a dyn DynDynamics,
     stepper: Box<dyn Stepper + 'a>,
     settings: Settings,
-    /// Number of states of oil.
+    /// Number of states of forces.
     states: usize,
     stops: Stops,
-    /// Where it begins and ends, s.
+    /// Beginning and end of the run, s.
     begin: f64,
     end: f64,
-    /// How far steps have come, s: as far as `time` or further.
+    /// Time that the steps have reached, s: at or beyond `time`.
     reached: f64,
     /// Time and motion of the last result.
     time: f64,
@@ -38,14 +38,14 @@ pub struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    /// From a state at a time, s, by the method of the settings. Of these the duration may be infinite; the interval of results means
-    /// nothing here.
+    /// Starts from a state at time `begin`, s, with the method of the settings. Their duration may be infinite; their interval of results
+    /// is not used for stepping.
     ///
     /// # Errors
-    /// [`Stopped`] where the mass matrix is not positive definite or accelerations are not finite.
+    /// [`Stopped`] if the mass matrix is not positive definite or accelerations are not finite.
     ///
     /// # Panics
-    /// Where the start has not as many numbers as the crane has coordinates and its oil has states.
+    /// If the start does not have as many numbers as the crane has coordinates, or, unless `x` is empty, as its forces have states.
     pub fn new(
         crane: &'a dyn DynImplicit,
         begin: f64,
@@ -61,7 +61,7 @@ impl<'a> Course<'a> {
         Self::by(stepper, crane, begin, start, settings)
     }
 
-    /// The same by a stepper made for this crane and these settings.
+    /// The same with a stepper made for this crane and these settings.
     pub(super) fn by(
         mut stepper: Box<dyn Stepper + 'a>,
         crane: &'a dyn DynDynamics,
@@ -89,10 +89,10 @@ impl<'a> Course<'a> {
         Ok(Self { crane, states, stepper, settings: *settings, stops, begin, end, reached: begin, time: begin, motion })
     }
 
-    /// Goes on to a later time, s. `step` receives the time after every step and may stop the motion: then the last result stays.
+    /// Advances to a later time, s. `step` receives the time after every step and may stop the motion: the last result then stays.
     ///
     /// # Errors
-    /// [`Stopped`] where the motion grows without bound, no step meets the tolerance, or steps are more than the settings allow.
+    /// [`Stopped`] if the motion grows without bound, no step meets the tolerance, or there are more steps than the settings allow.
     pub fn advance(
         &mut self,
         result: f64,
@@ -141,8 +141,8 @@ impl<'a> Course<'a> {
     }
 }
 
-/// Checks that the mass matrix at a pose is positive definite: the recursion of O(n) divides by inertias one by one and would go on
-/// with negative ones. Otherwise the coordinate to blame.
+/// Checks that the mass matrix at a pose is positive definite: the O(n) recursion divides by inertias one by one and would
+/// continue with negative ones. Otherwise returns the coordinate that is the cause.
 fn check_inertia(crane: &dyn DynDynamics, q: &[f64]) -> Result<(), usize> {
     let mut mass = DMatrix::zeros(q.len(), q.len());
     crane.mass_matrix(q, mass.as_mut_slice());

@@ -62,7 +62,7 @@ const DENSE: [f64; STAGES] = [
     69_997_945.0 / 29_380_423.0,
 ];
 
-/// A step from `t` to `t + h`: the state there, and the difference to the embedded formula.
+/// A step from `t` to `t + h`: the state there, and the difference from the embedded formula.
 ///
 /// # Errors
 /// An acceleration is not finite.
@@ -77,11 +77,11 @@ pub fn step<const N: usize, C: Dynamics<N>>(
     typed::step(&mut equations, t, h, state, &mut Tableau::new(2 * N))
 }
 
-/// A motion by the pair.
+/// A motion integrated by the pair.
 pub struct DormandPrince<'a>(Adaptive<'a, Tableau>);
 
 impl<'a> DormandPrince<'a> {
-    /// With the tolerance of the settings.
+    /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
         let equations = Equations::new(crane, Guides::rigid(crane), settings.audit);
         let norm = Norm::with_states(crane, settings.tolerance);

@@ -1,4 +1,4 @@
-//! What forces with states of their own add to the linear system of an implicit step, once those states are eliminated.
+//! The contribution of forces with states of their own to the linear system of an implicit step, once those states are eliminated.
 //!
 //! With `U` the rows ∂ℓ/∂q of the forces, c the length of the implicit part of the step, g the rates of the states x and
 //! `W = (I/c − ∂g/∂x)⁻¹`:
@@ -8,8 +8,8 @@
 //! (M + Uᵀ S U) z = … + c² Uᵀ (δ U G + κ U (c G + P) + F_x W R/c)
 //! ```
 //!
-//! with the right-hand side R of the states. By Woodbury's identity it takes one solution of M for each force. Cylinders act on each other
-//! through the pump.
+//! with the right-hand side R of the states. By Woodbury's identity, this takes one solution with M for each force. Cylinders are
+//! coupled through the pump.
 
 use nalgebra::{DMatrix, DVectorViewMut};
 
@@ -18,7 +18,7 @@ use crate::{
     own_states::{OwnStates, StateAt, StatefulForce},
 };
 
-/// The forces of a crane with states at one of its states, and their part in the system there.
+/// The crane's forces that have states, evaluated at a state of the crane, and their contribution to the system there.
 pub(crate) struct Eliminated {
     own: OwnStates,
     rates: Vec<f64>,
@@ -33,7 +33,7 @@ pub(crate) struct Eliminated {
     /// I + S U M⁻¹ Uᵀ.
     correction: Factors,
     unit: Vec<f64>,
-    /// Room for one number per state and per force.
+    /// Workspace: one number per state, and one per force.
     of_states: Vec<f64>,
     shares: Vec<f64>,
 }
@@ -61,7 +61,7 @@ impl Eliminated {
         }
     }
 
-    /// Takes the forces at a state, and prepares solutions; `solve` solves the system without them.
+    /// Evaluates the forces at a state, and prepares solutions; `solve` solves the system without them.
     pub fn factorise(
         &mut self,
         crane: &dyn DynModel,
@@ -134,7 +134,7 @@ impl Eliminated {
         }
     }
 
-    /// The increments of the states, `W (R + g_ℓ U p + g_ℓ̇ U w)`, with those of pose and rates.
+    /// The increments of the states, `W (R + g_ℓ U p + g_ℓ̇ U w)`, given those of pose and rates.
     pub fn states(&self, (p, w): (&[f64], &[f64]), r: &[f64], out: &mut [f64]) {
         out.copy_from_slice(r);
         for own in self.own.pushed() {
@@ -148,7 +148,7 @@ impl Eliminated {
     }
 }
 
-/// L and U of a matrix, with rows exchanged, in storage that is used again: nalgebra's factors are allocated for each matrix.
+/// LU factors of a matrix, with row exchanges, in storage that is reused: nalgebra allocates its factors for each matrix.
 struct Factors {
     matrix: DMatrix<f64>,
     /// The row with which each row was exchanged.
@@ -160,7 +160,7 @@ impl Factors {
         Self { matrix: DMatrix::identity(size, size), exchanged: (0..size).collect() }
     }
 
-    /// Gauss's elimination of the matrix with these entries, with the largest entry of a column as pivot.
+    /// Gaussian elimination of the matrix with these entries, with the largest entry of each column as pivot.
     fn factorise(&mut self, entry: impl Fn(usize, usize) -> f64) {
         let Self { matrix, exchanged } = self;
         let size = exchanged.len();
@@ -190,7 +190,7 @@ impl Factors {
         }
         let size = x.len();
         if size == 0 {
-            // There are no views of nothing.
+            // There are no empty views.
             return;
         }
         let mut x = DVectorViewMut::from_slice(x, size);
@@ -222,13 +222,13 @@ mod tests {
             DMatrix::from_row_slice(4, 4, &[0., 2., 1., 3., 4., -1., 0., 2., 1., 5., -2., 0., 3., 3., 3., -7.]);
         let expected = [1.0, -2.0, 0.5, 4.0];
         let mut factors = Factors::new(4);
-        // The storage of one matrix is that of the next.
+        // The storage of the first matrix is reused for the second.
         for scale in [7.0, 1.0] {
             factors.factorise(|row, column| scale * matrix[(row, column)]);
             let mut x: Vec<f64> =
                 (0..4).map(|row| scale * (matrix.row(row) * DMatrix::from_column_slice(4, 1, &expected))[0]).collect();
             factors.solve(&mut x);
-            // Some roundings of numbers below 10.
+            // A few rounding errors of numbers below 10.
             assert!(x.iter().zip(expected).all(|(x, expected)| (x - expected).abs() < 1e-14), "{x:?}");
         }
         Factors::new(0).solve(&mut []);

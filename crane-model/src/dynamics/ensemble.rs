@@ -57,7 +57,7 @@ pub fn step<const N: usize, L: LaneDynamics<N>>(cranes: &L, t: f64, h: f64, stat
 }
 
 /// Integrates Eq. (23) of every crane from its state at t = 0, eight at a time, and passes `observe` its index in `cranes` and
-/// a sample at t = 0, at every interval and at the end, as [`simulate`](super::simulate) by RK4 without audit.
+/// a sample at t = 0, at every interval and at the end, like [`simulate`](super::simulate) with RK4 and without audit.
 ///
 /// A crane that leaves the bound of the settings ends with [`Stopped`], and the others continue. Returns one result per crane.
 pub fn simulate<const N: usize, C: Ensemble<N>>(
@@ -77,7 +77,7 @@ pub fn simulate<const N: usize, C: Ensemble<N>>(
     results
 }
 
-/// As [`simulate`], of cranes of any size that differ from one in their parameters, as many at a time as it has lanes.
+/// Like [`simulate`], for cranes of any size that differ from `crane` in their parameters, as many at a time as it has lanes.
 ///
 /// # Errors
 /// The parameters of a member break a rule of the spec language.
@@ -158,7 +158,7 @@ impl<'a> Batch<'a> {
         batch
     }
 
-    /// Numbers of a lane.
+    /// Copies the numbers of a lane.
     fn lane(&self, lane: usize, of: &[f64x8], out: &mut [f64]) {
         for (out, vectors) in out.iter_mut().zip(of.chunks(self.vectors)) {
             *out = vectors[lane / LANES].to_array()[lane % LANES];
@@ -213,7 +213,7 @@ impl<'a> Batch<'a> {
         });
     }
 
-    /// Steps are limited by the intervals of results and by stops.
+    /// Runs the batch. No step passes the time of a result or a stop.
     fn run(mut self, settings: &Settings, observe: &mut dyn FnMut(usize, &Sample<'_>)) -> Vec<Result<Run, Stopped>> {
         let run =
             Run { statistics: Statistics::default(), step: settings.step_taken(), time: 0.0, efforts: Vec::new() };

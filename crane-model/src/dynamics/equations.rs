@@ -30,7 +30,7 @@ pub(super) struct Equations<'a> {
 }
 
 impl<'a> Equations<'a> {
-    /// For a crane, with or without integrals.
+    /// The equations of a crane, with or without integrals.
     pub fn new(crane: &'a dyn DynDynamics, guides: Guides, audit: bool) -> Self {
         let n = crane.size();
         let own = OwnStates::new(crane.description());
@@ -115,7 +115,7 @@ impl<'a> Equations<'a> {
         finite(accelerations)
     }
 
-    /// Powers of a motion given relative to the guides into the last numbers of a slope, where it has them.
+    /// Writes the powers of a motion given relative to the guides into the last components of a slope, if it has them.
     pub fn powers(&mut self, t: f64, motion: &[f64], slope: &mut [f64]) {
         if self.audit {
             self.state(t, motion);

@@ -30,7 +30,7 @@ pub(super) struct Guided {
 impl Guides {
     /// Fraction of a step over which rates are differenced: the error is of second order in it.
     const DIFFERENCE: f64 = 1e-3;
-    /// Shortest time between differenced rates, s: rounding of a rate leaves 1e-8 m/s² or rad/s².
+    /// Shortest time between differenced rates, s: rounding of a rate then causes an error of 1e-8 m/s² or rad/s².
     const LEAST: f64 = 1e-8;
 
     /// All driven coordinates, unless the rate of a motion jumps: a flexibly driven coordinate does not follow a jump.
@@ -50,7 +50,7 @@ impl Guides {
             let rigid = coordinates[info.coordinate].role == CoordinateRole::Prescribed;
             Guided { coordinate: info.coordinate, drive, rigid }
         });
-        // What oil moves does not follow its drive's motion closely.
+        // A joint that is moved by oil does not follow its drive's motion closely.
         let by_oil =
             |drive: usize| cylinders.iter().any(|cylinder| cylinder.drive == drive && cylinder.valve.is_some());
         let guided = guided.filter(|guided| counts(guided.drive, guided.rigid) && !by_oil(guided.drive)).collect();
@@ -90,7 +90,7 @@ impl Guides {
         }
     }
 
-    /// Subtracts `p̈` from accelerations; it is differenced inside the step, at whose ends a motion may be less smooth.
+    /// Subtracts `p̈` from accelerations. Rates are differenced within the step, because a motion may be less smooth at its ends.
     pub fn take_accelerations(&mut self, crane: &dyn DynModel, t: f64, accelerations: &mut [f64]) {
         if self.guided.is_empty() {
             return;

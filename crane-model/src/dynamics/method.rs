@@ -34,7 +34,7 @@ impl Method {
         }
     }
 
-    /// One line for people.
+    /// One-line description.
     pub const fn title(self) -> &'static str {
         match self {
             Method::Rk4 => "classical Runge-Kutta, order 4, constant step",
@@ -57,7 +57,7 @@ impl Method {
         !matches!(self, Method::Rk4)
     }
 
-    /// Whether its steps have a stability limit for any damping.
+    /// Whether its step size has a stability limit, whatever the damping.
     pub const fn is_explicit(self) -> bool {
         matches!(self, Method::Rk4 | Method::DormandPrince)
     }

@@ -1,6 +1,6 @@
 //! Sums of motions.
 
-/// `y += a x`, in a plain loop that becomes vector instructions.
+/// `y += a x`, in a plain loop that compiles to vector instructions.
 #[inline]
 pub(super) fn add(y: &mut [f64], a: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {

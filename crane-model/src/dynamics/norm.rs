@@ -9,26 +9,26 @@ use crate::{
 
 /// Weight of an error of a rate relative to one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
 const RATE: f64 = 0.2;
-/// Fraction of a drive's effort that counts as much as an error of 1 m or rad.
+/// Error of a drive's effort, in units of its scale, that counts as much as an error of 1 m or rad.
 const EFFORT: f64 = 20.0;
-/// Share of the pump's pressure, or of a spool's travel, that counts as much as an error of 1 m or rad.
+/// Error of a state of a force, in units of its scale such as the pump's pressure, that counts as much as an error of 1 m or rad.
 const OIL: f64 = 5.0;
 /// Smallest scale of an effort, as a fraction of the largest force or moment of the crane's weight on a coordinate.
 const LEAST: f64 = 0.01;
-/// Stiffness over the scale of an effort about which nothing else is known, 1/m or 1/rad.
+/// Stiffness divided by the scale of an effort, if nothing else is known about the scale, 1/m or 1/rad.
 const UNKNOWN: f64 = 2e3;
 /// Number of rounding errors of a coordinate and of the sums that contain it.
 const ROUNDINGS: f64 = 4.0;
 /// Maximum amplification of rounding by successive stages: their coefficients are up to 40.
 const MAGNIFIED: f64 = 1e3;
 
-/// The measure of errors: of coordinates, rates, states of oil and the efforts of drives.
+/// The measure of errors: of coordinates, rates, states of forces and the efforts of drives.
 pub(super) struct Norm {
     n: usize,
     /// Allowed error of a step, m and rad.
     tolerance: f64,
     efforts: Vec<Effort>,
-    /// Sizes of the states of oil.
+    /// Scales of the states of forces.
     states: Vec<f64>,
 }
 
@@ -65,7 +65,7 @@ impl Norm {
         Self { n, tolerance, efforts: Vec::new(), states: Vec::new() }
     }
 
-    /// For coordinates, rates and states of oil.
+    /// For coordinates, rates and states of forces.
     pub fn with_states(crane: &dyn DynModel, tolerance: f64) -> Self {
         let states = OwnStates::new(crane.description()).scales();
         Self { states, ..Self::new(crane.description().coordinates.len(), tolerance) }
@@ -76,7 +76,7 @@ impl Norm {
         let n = crane.size();
         let mut stiffness_and_damping = vec![[0.0; 2]; n];
         crane.joint_stiffness_and_damping(&mut stiffness_and_damping);
-        // At the guess drives with a limit are far from it.
+        // At the guess, drives with an effort limit are far from it.
         let stiffness = crane.drive_stiffness(&crane.description().guess);
         let effort = |(coordinate, stiffness): (usize, f64)| {
             let [_, damping] = stiffness_and_damping[coordinate];
@@ -111,8 +111,8 @@ impl Norm {
         self.note_rounding(&q, &v);
     }
 
-    /// Size of an error of a motion: the largest of `|δq|` in m and rad, `|δv|/(1 + |v|)` times [`RATE`], and of pressures, spools and efforts over
-    /// their scales, over the tolerance; infinite if one is NaN.
+    /// Size of an error of a motion: the largest of `|δq|` in m and rad, `|δv|/(1 + |v|)` times [`RATE`], and of states of forces
+    /// and efforts divided by [`OIL`] and [`EFFORT`] times their scales; all relative to the tolerance. Infinite if one is not finite.
     pub fn size(&self, motion: &[f64], error: &[f64]) -> f64 {
         let mut greatest = Greatest::default();
         for error in &error[..self.n] {
@@ -130,7 +130,7 @@ impl Norm {
         greatest.value() / self.tolerance
     }
 
-    /// Records the efforts after a completed step, and its error.
+    /// Records the efforts after a completed step, and their errors.
     pub fn note(&mut self, motion: &[f64], error: &[f64]) {
         let n = self.n;
         for effort in &mut self.efforts {
@@ -161,14 +161,14 @@ impl Norm {
 }
 
 impl Effort {
-    /// `s x + d ẋ` of a motion, each by its `part`.
+    /// `s x + d ẋ` of a motion, with `part` applied to x and ẋ.
     #[inline]
     fn of(&self, n: usize, motion: &[f64], part: fn(f64) -> f64) -> f64 {
         self.stiffness * part(motion[self.coordinate]) + self.damping * part(motion[n + self.coordinate])
     }
 }
 
-/// The largest of some sizes; several comparisons at once become vector instructions.
+/// The largest of some sizes; comparisons in several lanes compile to vector instructions.
 #[derive(Clone, Copy, Debug)]
 struct Greatest {
     lanes: [f64; Greatest::LANES],

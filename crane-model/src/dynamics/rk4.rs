@@ -40,8 +40,8 @@ pub fn step<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, h: f64, state: &m
     step_with(crane, t, h, state, |_, _, _| SVector::<f64, 0>::zeros()).map(|_| ())
 }
 
-/// As [`step`], and returns the increments `∫ₜᵗ⁺ʰ integrand dt` of `M` integrals along the motion, to the same order: the
-/// method's own stages and weights serve them as further components of the state.
+/// Like [`step`], and returns the increments `∫ₜᵗ⁺ʰ integrand dt` of `M` integrals along the motion, to the same order: they
+/// are treated as further components of the state, with the method's own stages and weights.
 ///
 /// # Errors
 /// An acceleration is not finite; `state` is unchanged.
@@ -64,7 +64,7 @@ pub fn step_with<const N: usize, const M: usize, C: Dynamics<N>>(
     Ok(increments(&integrands, h))
 }
 
-/// Numbers that a step moves: one crane's, or those of eight cranes in lanes.
+/// The type of the numbers in a step: one crane's, or those of eight cranes in lanes.
 pub(super) trait Number: Copy + Add<Output = Self> + Mul<f64, Output = Self> {}
 
 impl Number for f64 {}

@@ -8,8 +8,8 @@
 //!
 //! The order does not depend on J: an inexact Jacobian costs accuracy only in the stiff parts. It does not depend on ∂f/∂t either, which is
 //! neglected: driven coordinates are relative to their drives' motions, so that no stiff spring is forced (`guides`). Six stages, γ = 1/4, order 4,
-//! R(∞) = 0, and with `J = ∂f/∂y` A(α)-stable with α = 89.8°: only modes damped by less than 0.35 % can grow, by less than 0.65 %
-//! per step, in steps that do not resolve them.
+//! R(∞) = 0, and with `J = ∂f/∂y` A(α)-stable with α = 89.8°: only modes with less than 0.35 % of critical damping can grow, by
+//! less than 0.65 % per step, in steps that do not resolve them.
 //! A. Rahunanthan, D. Stanescu, High-order W-methods, J. Comput. Appl. Math. 233 (2010) 1798; the form
 //! of the stages: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.7.
 //!
@@ -38,7 +38,7 @@ use crate::{
     dyn_crane::{DynImplicit, Instance},
 };
 
-/// Stages, as many as evaluations per step: the slope at its end is the first of the next.
+/// Number of stages, and of evaluations per step: the slope at its end is the first of the next step.
 pub const STAGES: usize = 6;
 /// Coefficients of the numerator of R(z); the denominator is `(1 − z/4)⁶`.
 pub const NUMERATOR: [f64; 6] = [1.0, -0.5, -0.0625, 1.0 / 24.0, 0.006_510_416_666_666_667, -0.002_430_737_286_220_53];
@@ -79,7 +79,7 @@ const WEIGHTS: [f64; STAGES] = [
     0.660_393_686_635_241_7,
     0.6,
 ];
-/// Weights of the difference to the embedded formula.
+/// Weights of the difference from the embedded formula.
 const ERROR: [f64; STAGES] = [
     0.186_221_371_705_313_72,
     0.802_949_310_218_888_9,
@@ -98,7 +98,7 @@ const NODES: [f64; STAGES] = [
     0.927_104_723_987_567,
 ];
 
-/// A step from `t` to `t + h`: the state there, and the difference to the embedded formula.
+/// A step from `t` to `t + h`: the state there, and the difference from the embedded formula.
 ///
 /// # Errors
 /// An acceleration is not finite.
@@ -114,11 +114,11 @@ pub fn step<const N: usize, C: Implicit<N>>(
     typed::step(&mut equations, t, h, state, &mut Stages::new(&crane, 2 * N))
 }
 
-/// A motion by the method.
+/// A motion integrated by the method.
 pub struct Rosenbrock<'a>(Adaptive<'a, Stages<'a>>);
 
 impl<'a> Rosenbrock<'a> {
-    /// With the tolerance of the settings.
+    /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
         let equations = Equations::new(crane, Guides::of(crane), settings.audit);
         let norm = Norm::with_efforts(crane, settings.tolerance);
@@ -167,8 +167,8 @@ impl Formula for Stages<'_> {
         step.error.fill(0.0);
         add_all(&mut step.error, 1.0, &ERROR, self.u.iter());
         equations.slope(step.reached(), &step.end, &mut step.slopes[1])?;
-        // Where a stiff law begins or ends to act, J is that of one side alone: what it damps away the embedded formula damps away as
-        // well, and their difference says nothing. The rates then have to be those of the trapezoidal rule.
+        // Where a stiff law starts or stops acting, J is that of one side only: the method and the embedded formula damp away the same
+        // terms, and their difference does not show the error. The rates are then compared with those of the trapezoidal rule.
         if self.system.switched(step.reached(), equations.state(step.reached(), &step.end)) {
             let (n, [before, after]) = (equations.n, &step.slopes);
             for i in n..2 * n {

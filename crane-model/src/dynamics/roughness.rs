@@ -2,15 +2,15 @@
 
 /// Rates below this, m/s and rad/s, are rounding near rest.
 const REST: f64 = 1e-6;
-/// Growth of roughness, as energy, while it dominates the motion: a decaying mode loses energy from step to step, and one
-/// that is merely not resolved keeps it.
+/// Growth of the roughness, as an energy, that counts as unstable while it dominates the motion: a decaying mode loses energy
+/// from step to step, and one that is merely not resolved keeps it.
 const GROWTH: f64 = 1e2;
 
 /// Compares the rates after a step with those predicted from the acceleration at its start,
 /// `ε = v(t) + h q̈(t) − v(t+h)`.
 ///
-/// A resolved motion has `ε ≈ h² v̈/2`, small against v. At the limit of stability a step multiplies the limiting mode by
-/// a factor of size 1 though `1 + hλ` is well beyond: ε outweighs v, and grows beyond the limit. Both are measured as
+/// A resolved motion has `ε ≈ h² v̈/2`, small compared with v. At the stability limit, a step multiplies the limiting
+/// mode by a factor of magnitude 1 although `1 + hλ` is much larger: ε exceeds v, and grows beyond the limit. Both are measured as
 /// kinetic energy with the diagonal of the mass matrix, which makes m and rad comparable.
 #[derive(Clone, Debug)]
 pub(super) struct Roughness {
@@ -20,7 +20,7 @@ pub(super) struct Roughness {
 }
 
 impl Roughness {
-    /// With the diagonal of the mass matrix at the start.
+    /// Creates the detector, with the diagonal of the mass matrix at the start as weights.
     pub(super) fn new(weights: Vec<f64>) -> Self {
         Self { weights, outweighs: None }
     }

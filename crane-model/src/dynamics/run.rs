@@ -11,13 +11,14 @@ pub struct Sample<'a> {
     pub q: &'a [f64],
     /// Their rates, m/s and rad/s.
     pub v: &'a [f64],
-    /// States of the oil of cylinders with a valve, in the order of [`hydraulics`](crate::hydraulics): Pa and shares.
+    /// States of forces: of the oil of cylinders with a valve, in the order of [`hydraulics`](crate::hydraulics), Pa and shares; then
+    /// deflections of bristles, m and rad.
     pub x: &'a [f64],
     /// Work of the drives' motions and of cylinders since t = 0, J; 0 without audit.
     pub work: f64,
     /// Energy that the dampers dissipated since t = 0, J; 0 without audit.
     pub dissipated: f64,
-    /// Work that loads applied from outside put in since t = 0, J; 0 without audit.
+    /// Work done by the applied loads since t = 0, J; 0 without audit.
     pub load_work: f64,
 }
 
@@ -26,7 +27,7 @@ pub struct Sample<'a> {
 pub struct Run {
     /// Counts of steps and evaluations.
     pub statistics: Statistics,
-    /// Step, s; the mean of an adaptive method.
+    /// Step size, s; for an adaptive method, its mean.
     pub step: f64,
     /// Time reached, s.
     pub time: f64,

@@ -11,8 +11,8 @@ use crate::{
 /// Integrates Eq. (23) from `start` at t = 0 and passes `observe` a sample at t = 0, at every interval and at the end.
 /// `observe` may stop the run.
 ///
-/// With `audit`, work W of the drives and dissipated energy D are integrated along with the motion, so that
-/// `E(t) − E(0) − W + D`, W with the work of loads, zero for the exact motion, measures the error of the run.
+/// With `audit`, the work W of drives and loads and the dissipated energy D are integrated along with the motion:
+/// `E(t) − E(0) − W + D`, which is zero for the exact motion, measures the error of the run.
 ///
 /// # Errors
 /// [`Stopped`] if the motion grows from step to step or beyond the bound, if no step meets the tolerance, if there are too many
@@ -46,7 +46,7 @@ impl Watch for Samples<'_> {
     }
 }
 
-/// As [`simulate`], of a crane of any size.
+/// Like [`simulate`], for a crane of any size.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -62,7 +62,7 @@ pub fn simulate_dyn(
     simulate_watched(crane, start, settings, &mut Samples(observe))
 }
 
-/// As [`simulate_dyn`], also observed after every step.
+/// Like [`simulate_dyn`], but also observed after every step.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -78,8 +78,8 @@ pub fn simulate_watched(
     simulate_from(crane, 0.0, start, settings, watch)
 }
 
-/// As [`simulate_watched`], from a time on, s, over the settings' duration: the drives' motions go on from there. A run in pieces is
-/// repeated exactly if it is cut into the same pieces.
+/// Like [`simulate_watched`], from time `begin`, s, over the settings' duration: the drives' motions continue from there. A run in
+/// pieces is reproduced exactly if it is divided into the same pieces.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -96,7 +96,7 @@ pub fn simulate_from(
     follow(Course::new(crane, begin, start, settings)?, begin, settings, watch)
 }
 
-/// As [`simulate_dyn`], by a stepper made for this crane and these settings: explicit ones ask for no more than [`DynDynamics`].
+/// Like [`simulate_dyn`], with a stepper made for this crane and these settings: explicit ones only require [`DynDynamics`].
 ///
 /// # Errors
 /// As [`simulate`].

@@ -4,8 +4,8 @@ use nalgebra::SVector;
 
 use crate::Dynamics;
 
-/// An acceleration is not finite: a body has no inertia, or the pose contains NaN. Or it depends on pressures, which single steps do not
-/// have: a `Course` does.
+/// An acceleration is not finite: a body has no inertia, or the pose contains NaN. Or forces have states of their own, which single
+/// steps do not support: a `Course` does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotFinite;
 
@@ -57,8 +57,8 @@ pub struct InitialState {
     pub q: Vec<f64>,
     /// Their rates, m/s and rad/s.
     pub v: Vec<f64>,
-    /// States of the oil of cylinders with a valve, in the order of [`hydraulics`](crate::hydraulics): Pa and shares. Empty: those that hold
-    /// the pose at rest.
+    /// States of forces: of the oil of cylinders with a valve, in the order of [`hydraulics`](crate::hydraulics), Pa and shares; then
+    /// deflections of bristles, m and rad. If empty, the states that hold the pose at rest.
     pub x: Vec<f64>,
 }
 

@@ -13,7 +13,7 @@ pub(super) struct Step {
     pub start: Vec<f64>,
     /// Motion at the end.
     pub end: Vec<f64>,
-    /// Difference to the embedded formula.
+    /// Difference from the embedded formula.
     pub error: Vec<f64>,
     /// Slopes at the start and at the end; the latter is the first of the next step.
     pub slopes: [Vec<f64>; 2],
@@ -44,7 +44,7 @@ impl Step {
 
     /// Motion at a time within the step: Hermite's cubic through values and slopes at both ends, and the bulge.
     ///
-    /// The error of the cubic is at most `h⁴/384` times the fourth derivative, the order of methods of order 4.
+    /// The error of the cubic is at most `h⁴/384` times the fourth derivative: sufficient for methods of order 4.
     pub fn at(&self, t: f64, motion: &mut [f64]) {
         let theta = if self.length > 0.0 { (t - self.t) / self.length } else { 1.0 };
         let rest = 1.0 - theta;
@@ -58,7 +58,7 @@ impl Step {
         add(motion, theta * theta * rest * rest, &self.bulge);
     }
 
-    /// Rate of a coordinate of `n` at a time within the step, as the slope of its cubic.
+    /// Rate of one of `n` coordinates at a time within the step, as the slope of its cubic.
     ///
     /// The acceleration of a stiff spring is not used: its damper would magnify the error at the ends.
     pub fn rate_at(&self, t: f64, n: usize, coordinate: usize) -> f64 {

@@ -4,8 +4,8 @@ use super::{EffortAccuracy, Statistics, Stopped};
 
 /// A motion that proceeds step by step. It holds its crane, its state and its workspace: no step allocates.
 ///
-/// A motion is one slice: coordinates, rates, states of forces and, in an audited run, the work of the drives and the energy that the
-/// dampers dissipated.
+/// A motion is one slice: coordinates, rates, states of forces and, in an audited run, the work of the drives, the energy dissipated
+/// by the dampers and the work of the loads.
 pub trait Stepper: Send {
     /// Starts from a motion at time `t`, s.
     ///
@@ -65,7 +65,7 @@ impl<S: Stepper + ?Sized> Stepper for &mut S {
 pub struct Ahead {
     /// The next result: a method with constant steps ends a step there, others interpolate.
     pub result: f64,
-    /// The next time that no step may pass; infinite without one.
+    /// The next time that no step may pass; infinite if there is none.
     pub stop: f64,
 }
 

@@ -68,8 +68,8 @@ impl StepContext<'_> {
         self.stopped(cause, worst.unwrap_or(0))
     }
 
-    /// A failed step: because of missing inertia if the mass matrix at its start is not positive definite, otherwise for another
-    /// cause.
+    /// A run that stopped at a failed step: because of missing inertia if the mass matrix at its start is not positive definite,
+    /// otherwise for the given cause.
     pub fn failed(&self, cause: Cause, crane: &dyn DynDynamics) -> Stopped {
         let n = self.q.len();
         let mut mass = DMatrix::zeros(n, n);
@@ -85,7 +85,7 @@ pub(super) fn without_inertia(mass: &DMatrix<f64>) -> Option<usize> {
 }
 
 impl Stopped {
-    /// What to do about it.
+    /// Advice on how to avoid it.
     pub fn advice(&self) -> String {
         match self.cause {
             Cause::Growth | Cause::Step if !self.method.is_adaptive() => format!(

@@ -10,8 +10,8 @@ impl Stops {
     /// Times closer than this, relative to the run, are merged: no step is that short.
     const NEAR: f64 = 1e-9;
 
-    /// Begins and ends of the smooth intervals of the motions, loads and winches of some cranes, within a run from one time to another, s;
-    /// without an end, the run is as long as the motions.
+    /// Beginnings and ends of the smooth intervals of the motions, loads and winches of some cranes, within a run from `begin` to `end`,
+    /// s; if `end` is infinite, the run is as long as the motions.
     pub fn between<'a>(cranes: impl IntoIterator<Item = &'a dyn DynModel>, begin: f64, end: f64) -> Self {
         let mut times = Vec::new();
         for crane in cranes {
@@ -35,7 +35,7 @@ impl Stops {
         Self(times)
     }
 
-    /// The first after a time, s; infinite without one.
+    /// The first one after a time, s; infinite if there is none.
     pub fn after(&self, t: f64) -> f64 {
         self.0.get(self.0.partition_point(|stop| *stop <= t)).copied().unwrap_or(f64::INFINITY)
     }

@@ -9,8 +9,8 @@
 //! (A + cD̂ + c²K̂) z = −c² ((D̂ + cK̂) G + K̂ P),     w = c G + z,     p = c (w + P)
 //! ```
 //!
-//! What connectors add, `Σ Jᵀ (c d + c² k) J`, is of low rank: [`Connected`]. So is what forces with states of
-//! their own add, which are eliminated: [`Eliminated`].
+//! The contribution of connectors, `Σ Jᵀ (c d + c² k) J`, has low rank: [`Connected`]. So has that of forces with
+//! states of their own, which are eliminated: [`Eliminated`].
 
 use nalgebra::Matrix6;
 
@@ -25,18 +25,18 @@ use crate::{
 pub(super) struct System<'a> {
     crane: &'a dyn DynImplicit,
     factors: Box<dyn DynSystem + 'a>,
-    /// Stiffness and damping on single coordinates: of linear springs and dampers, and with those of other laws added.
+    /// Stiffness and damping on single coordinates: of linear springs and dampers, and with those of nonlinear laws added.
     linear: Vec<[f64; 2]>,
     joints: Vec<[f64; 2]>,
-    /// Those of other laws, where it was factorised and at a state compared with that.
+    /// Those of nonlinear laws, at the state of the factorisation and at a state compared with it.
     nonlinear: [Vec<[f64; 2]>; 2],
     /// Stiffness and damping over the base's coordinates.
     base: [Matrix6<f64>; 2],
-    /// Whether some law acts in one part of the poses and not in another.
+    /// Whether some law acts at some states and not at others.
     switches: bool,
     /// Stiffness and damping of connectors.
     connected: Connected,
-    /// Forces with states, and the number of these.
+    /// Forces with states, and the number of these states.
     own: Eliminated,
     states: usize,
     /// c, s.
@@ -100,8 +100,8 @@ impl<'a> System<'a> {
         self.factorisations += 1;
     }
 
-    /// Whether at a state some law acts that did not act where the system was factorised, or the other way about: a stiffness or a
-    /// damping is less than half, or more than twice, of what it was.
+    /// Whether at a state some law acts that did not act where the system was factorised, or vice versa: a stiffness or a damping
+    /// is less than half or more than twice what it was.
     pub fn switched(&mut self, t: f64, (q, v): (&[f64], &[f64])) -> bool {
         if !self.switches {
             return false;
@@ -121,7 +121,7 @@ impl<'a> System<'a> {
     pub fn solve(&mut self, rhs: &[f64], u: &mut [f64]) {
         let (c, n) = (self.c, self.joints.len());
         let (p, g) = rhs[..2 * n].split_at(n);
-        // D̂ G + K̂ (c G + P), first of single coordinates, then of the base.
+        // D̂ G + K̂ (c G + P), first for single coordinates, then for the base.
         for (i, [stiffness, damping]) in self.joints.iter().enumerate() {
             self.right[i] = damping * g[i] + stiffness * (c * g[i] + p[i]);
         }
@@ -154,7 +154,7 @@ impl<'a> System<'a> {
     }
 }
 
-/// Whether a stiffness or a damping is less than half, or more than twice, of what it was.
+/// Whether a stiffness or a damping is less than half or more than twice what it was.
 pub(super) fn differs(before: f64, now: f64) -> bool {
     (now - before).abs() > 0.5 * before.abs().max(now.abs())
 }

@@ -1,13 +1,13 @@
-//! What an envelope varies.
+//! The quantities that an envelope varies.
 
 use crate::{Description, dyn_crane::DynCrane};
 
-/// What is varied.
+/// A quantity that is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Varied {
-    /// Position of a drive, by its place in the description, m or rad.
+    /// Position of a drive, by its index in the description, m or rad.
     Drive(usize),
-    /// A live parameter, by its place in the description.
+    /// A live parameter, by its index in the description.
     Parameter(usize),
 }
 
@@ -30,7 +30,7 @@ impl Varied {
 /// A varied quantity and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What is varied.
+    /// The quantity.
     pub varied: Varied,
     /// Its values, at least one.
     pub values: Vec<f64>,
@@ -51,7 +51,7 @@ impl Axes {
         self.0.last().map_or(1, |axis| axis.values.len())
     }
 
-    /// Places of a combination's values on their axes.
+    /// Indices of a combination's values on their axes.
     pub fn places(&self, pose: usize) -> Vec<usize> {
         let mut rest = pose;
         let mut places: Vec<usize> = self
@@ -73,7 +73,7 @@ impl Axes {
         self.0.iter().zip(self.places(pose)).map(|(axis, place)| axis.values[place]).collect()
     }
 
-    /// Parameters of a crane in a combination, in the order of the description.
+    /// Parameters of a crane for a combination, in the order of the description.
     pub(super) fn parameters(&self, crane: &dyn DynCrane, pose: usize) -> Vec<f64> {
         let mut parameters: Vec<f64> =
             (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
@@ -85,7 +85,7 @@ impl Axes {
         parameters
     }
 
-    /// Positions of a crane's drives in a combination: what is not varied stands as at the beginning of its motion.
+    /// Positions of a crane's drives for a combination: drives that are not varied are at the beginning of their motions.
     pub(super) fn positions(&self, crane: &dyn DynCrane, pose: usize) -> Vec<f64> {
         let mut positions: Vec<f64> = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
         for (axis, value) in self.0.iter().zip(self.values(pose)) {

@@ -1,4 +1,4 @@
-//! What a crane at rest bears.
+//! Tipping moments, stresses, efforts and positions of a crane at rest.
 
 use nalgebra::Vector3;
 
@@ -9,7 +9,7 @@ use crate::{
     tipping::{self, TippingLine},
 };
 
-/// What a crane at rest bears.
+/// Tipping moments, stresses, efforts and positions of a crane at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     /// The pose, m and rad.
@@ -27,7 +27,7 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// At pose `q`, where drives that hold these positions keep the crane at rest.
+    /// The condition at pose `q`, in which drives that hold these positions keep the crane at rest.
     pub fn at(crane: &dyn DynCrane, q: Vec<f64>, positions: &[f64]) -> Self {
         let rest = vec![0.0; q.len()];
         let wrenches = crane.internal_forces_at(0.0, &q, &rest, &rest);
@@ -44,22 +44,22 @@ impl Condition {
         }
     }
 
-    /// The least tipping margin; `None` without tipping lines.
+    /// The minimum tipping margin; `None` without tipping lines.
     pub fn margin(&self) -> Option<f64> {
         tipping::governing(&self.lines).map(TippingLine::margin)
     }
 
-    /// The greatest utilisation; `None` where no beam has a yield stress.
+    /// The maximum utilisation; `None` if no beam has a yield stress.
     pub fn utilisation(&self) -> Option<f64> {
         self.sections.iter().filter_map(|section| section.utilisation).max_by(f64::total_cmp)
     }
 
-    /// How far the points are from those of another condition, m.
+    /// Distances of the points from those of another condition, m.
     pub fn deflections(&self, from: &Condition) -> Vec<f64> {
         self.points.iter().zip(&from.points).map(|(to, from)| (to - from).norm()).collect()
     }
 
-    /// The remaining margin to each limit, relative to it: 0 at the limit, negative beyond.
+    /// The remaining margin to each limit, relative to the limit except for tipping: 0 at the limit, negative beyond.
     pub(super) fn slacks(&self, limits: &Limits, reference: &[Vector3<f64>]) -> Vec<(Limit, f64)> {
         let mut slacks = Vec::new();
         if let Some(least) = limits.tipping {

@@ -1,17 +1,17 @@
-//! What limits the load.
+//! Limits of the load.
 
 use crate::Description;
 
 /// Limits that a load must not exceed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
-    /// Least tipping margin, `1 − overturning / stabilising` about each tipping line.
+    /// Minimum tipping margin, `1 − overturning / stabilising` about each tipping line.
     pub tipping: Option<f64>,
-    /// Greatest utilisation of the sections of beams that have a yield stress.
+    /// Maximum utilisation of the sections of beams that have a yield stress.
     pub utilisation: Option<f64>,
-    /// Greatest torque or force of each drive, in either direction, N m or N; infinite where it is not limited.
+    /// Maximum torque or force of each drive, in either direction, N m or N; infinite where it is not limited.
     pub efforts: Vec<f64>,
-    /// How far the load may move each point of interest, m, from where it is with the least load; infinite where it is not limited.
+    /// Maximum displacement of each point of interest from its position with the minimum load, m; infinite where it is not limited.
     pub deflections: Vec<f64>,
 }
 
@@ -30,32 +30,32 @@ impl Limits {
 /// A limit that governs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
-    /// Beyond the load there is no stable equilibrium, or none was found.
+    /// Beyond this load there is no stable equilibrium, or none was found.
     Equilibrium,
     /// The margin about the tipping line through two supports.
     Tipping {
-        /// Places of the supports.
+        /// Indices of the supports.
         feet: [usize; 2],
     },
     /// The utilisation of a section of a beam.
     Utilisation {
-        /// Place of the body that begins at the section.
+        /// Index of the body that begins at the section.
         body: usize,
     },
     /// The effort of a drive.
     Effort {
-        /// Place of the drive.
+        /// Index of the drive.
         drive: usize,
     },
     /// The deflection of a point of interest.
     Deflection {
-        /// Place of the point.
+        /// Index of the point.
         point: usize,
     },
 }
 
 impl Limit {
-    /// Its kind in a word, for programs and for the colours of a chart.
+    /// Its kind in one word, for programs and for the colours of a chart.
     pub fn kind(self) -> &'static str {
         match self {
             Limit::Equilibrium => "equilibrium",
@@ -66,7 +66,7 @@ impl Limit {
         }
     }
 
-    /// The name of the part that it limits.
+    /// The name of the part at which the limit is reached.
     pub fn place(self, description: &Description) -> String {
         match self {
             Limit::Equilibrium => String::new(),

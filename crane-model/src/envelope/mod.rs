@@ -1,13 +1,14 @@
 //! Envelopes: the largest load within limits, over ranges of poses and parameters.
 //!
-//! A pose is where the drives stand; what they do not hold, such as a load on its hinge or a beam, follows from equilibrium. For
-//! each pose the load is the largest one up to which every smaller one, from the least on, rests within all [`Limits`].
+//! A pose is given by the positions of the drives; whatever they do not hold, such as a hanging load or a flexible beam, follows from
+//! equilibrium. The load of a pose is the largest one for which the crane rests within all [`Limits`] with it and with every smaller load,
+//! down to the minimum.
 //!
-//! Where moments, stresses and efforts grow with the load, that is the largest load of all. A crane that needs a load to be within
-//! its limits, such as one whose counterweight tips it, has no rating.
+//! Where moments, stresses and efforts grow with the load, that is the maximum load overall. A crane that needs a load to be within its
+//! limits, such as one that its counterweight tips over, has no rating.
 //!
-//! Poses are rated in pieces: a row of neighbours, each from the equilibrium of its predecessor. A piece is the same whatever else
-//! is rated, on however many threads.
+//! Poses are rated in pieces: a piece is a row of neighbouring poses, each starting from the equilibrium of the previous one. Its result
+//! depends neither on what else is rated nor on the number of threads.
 
 mod axes;
 mod condition;

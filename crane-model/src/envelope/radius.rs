@@ -1,4 +1,4 @@
-//! From where the radius of a load is measured.
+//! The axis from which the radius of a load is measured.
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
@@ -7,7 +7,7 @@ use crate::{CoordinateKind, dyn_crane::DynCrane};
 /// A vertical axis about which the crane slews.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlewAxis {
-    /// Index of the drive that slews the crane about it; `None` where none does, and the axis goes through the world's origin.
+    /// Index of the drive that slews the crane about it; `None` if no drive does; the axis is then at the world's origin.
     pub drive: Option<usize>,
     /// Where the axis meets the ground, m.
     pub at: [f64; 2],
@@ -31,7 +31,7 @@ impl SlewAxis {
         let last = |q: &[f64]| crane.transforms_at(q).last().copied();
         let (Some(from), Some(to)) = (last(&here), last(&turned)) else { return none };
         let Some(back) = from.try_inverse() else { return none };
-        // What turns by 1 rad about an axis leaves it where it is: `c = R c + t`.
+        // A rotation by 1 rad about an axis leaves the axis in place: `c = R c + t`.
         let motion = to * back;
         let rotation = motion.fixed_view::<3, 3>(0, 0);
         let axis = Vector3::new(
@@ -47,7 +47,7 @@ impl SlewAxis {
         held.try_inverse().map_or(none, |inverse| Self { drive: Some(drive), at: (inverse * shift).into() })
     }
 
-    /// Horizontal distance of a place from the axis, m.
+    /// Horizontal distance of a point from the axis, m.
     pub fn radius(&self, place: &Vector3<f64>) -> f64 {
         (place.x - self.at[0]).hypot(place.y - self.at[1])
     }

@@ -9,15 +9,15 @@ use crate::{dyn_crane::DynCrane, statics::Settings};
 /// The largest load of a pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rating {
-    /// The largest load within all limits, in the unit of the load's parameter; `None` if not even the least load is.
+    /// The largest load within all limits, in the unit of the load's parameter; `None` if not even the minimum load is.
     pub load: Option<f64>,
-    /// The limit that governs; `None` where none does up to the greatest load looked at.
+    /// The limit that governs; `None` if none is reached up to the maximum load considered.
     pub governing: Option<Limit>,
-    /// The crane with that load, or with the least one; `None` where it does not rest.
+    /// The crane with that load, or with the minimum load if there is none; `None` if no equilibrium is found.
     pub loaded: Option<Condition>,
-    /// The crane with its own load; `None` where it does not rest.
+    /// The crane with the load of its parameters; `None` if no equilibrium is found.
     pub own: Option<Condition>,
-    /// How far its own load moves the points of interest, m; empty where it does not rest.
+    /// How far that load moves the points of interest, m; empty if no equilibrium is found.
     pub deflections: Vec<f64>,
 }
 
@@ -25,9 +25,9 @@ pub struct Rating {
 pub(super) struct Posed<'a> {
     /// The crane; its load is changed.
     pub crane: &'a mut dyn DynCrane,
-    /// Place of the load among its parameters.
+    /// Index of the load among its parameters.
     pub load: usize,
-    /// Where the drives stand.
+    /// Positions of the drives.
     pub positions: &'a [f64],
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Posed<'a> {
 pub(super) struct Wanted<'a> {
     /// What limits the load.
     pub limits: &'a Limits,
-    /// The least and the greatest load.
+    /// Minimum and maximum load.
     pub loads: [f64; 2],
     /// Another load for which the condition is computed.
     pub own: f64,
@@ -52,7 +52,7 @@ impl Posed<'_> {
         found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))
     }
 
-    /// Its rating, searched from a nearby pose and, if given, the load `guess`; also the pose with the least load.
+    /// Its rating, with the search starting from the nearby pose `q` and, if given, the load `guess`; also the pose with the minimum load.
     pub fn rate(&mut self, wanted: &Wanted<'_>, guess: Option<f64>, q: Vec<f64>) -> (Rating, Vec<f64>) {
         let Wanted { limits, loads: [least, greatest], own } = *wanted;
         let Some(empty) = self.rest(least, &q, &Settings::default()) else {

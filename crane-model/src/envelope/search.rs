@@ -1,4 +1,4 @@
-//! The largest load within limits, by secants: moments, stresses and efforts are nearly linear in the load.
+//! The largest load within limits, by the secant method: moments, stresses and efforts are nearly linear in the load.
 
 use super::{Condition, Limit};
 
@@ -9,7 +9,7 @@ pub(super) struct Trial {
     pub load: f64,
     /// The remaining margin to each limit.
     pub slacks: Vec<(Limit, f64)>,
-    /// The crane with it.
+    /// The crane with this load.
     pub at: Condition,
 }
 
@@ -24,9 +24,9 @@ impl Trial {
     }
 }
 
-/// Where loads are looked for.
+/// The range in which the load is searched.
 pub(super) struct Range {
-    /// The greatest load looked at.
+    /// Maximum load considered.
     pub greatest: f64,
     /// A load that may be near the largest.
     pub guess: f64,
@@ -38,14 +38,14 @@ pub(super) struct Range {
 const ACCURACY: f64 = 1e-6;
 /// Loads that differ by less than this fraction of the scale are equal.
 const LEAST: f64 = 1e-9;
-/// Maximum number of trial loads: secants take some five, halving an interval to the accuracy some thirty.
+/// Maximum number of trial loads: the secant method takes about five, bisection to the accuracy about thirty.
 const MOST_TRIALS: usize = 60;
-/// The first step up where there is no guess, as a part of the scale.
+/// First step up if there is no guess, as a fraction of the scale.
 const FIRST_STEP: f64 = 0.1;
-/// Largest ratio of a step up to the distance from the least load to the last one.
+/// Maximum ratio of a step up to the distance between the minimum load and the last one within the limits.
 const GROWTH: f64 = 4.0;
 
-/// The largest load from `first` on, and the limit that governs; `None` where the first is beyond a limit itself.
+/// The largest load from `first` on, and the limit that governs; `None` if `first` itself is beyond a limit.
 pub(super) fn largest(
     first: Trial,
     range: &Range,
@@ -57,7 +57,7 @@ pub(super) fn largest(
     }
     let least = first.load;
     let mut within = first;
-    // The one tried before the last, for the secant, and the least load beyond a limit, where it rests.
+    // The previous trial within the limits, for the secant; and the smallest load beyond a limit, with its trial if the crane rests.
     let mut before: Option<Trial> = None;
     let mut beyond: Option<(f64, Option<Trial>)> = None;
     for turn in 0..MOST_TRIALS {
@@ -82,7 +82,7 @@ pub(super) fn largest(
                 let inside = |at: &f64| *at > within.load && *at < *high;
                 let found = secant.map(|(at, _)| at).filter(inside).or(chord).filter(inside);
                 let middle = 0.5 * (within.load + high);
-                // Every third is a bisection: no kink of a limit holds the interval for long.
+                // Every third trial is a bisection, so that a kink of a limit cannot stall the search.
                 if turn % 3 == 2 { middle } else { found.map_or(middle, |at| aim(at, within.load, range)) }
             }
         };
@@ -114,7 +114,7 @@ fn aim(at: f64, from: f64, range: &Range) -> f64 {
     (at - 0.5 * accuracy(at, range)).max(0.5 * (at + from))
 }
 
-/// Where the line through two trials meets the first limit, and which.
+/// The load at which the line through two trials first meets a limit, and that limit.
 fn crossing(one: &Trial, two: &Trial) -> Option<(f64, Limit)> {
     let meets = |(limit, slack): &(Limit, f64)| {
         let (_, before) = one.slacks.iter().find(|(other, _)| other == limit)?;
@@ -156,7 +156,7 @@ mod tests {
         assert!(trials <= 3, "{trials}");
     }
 
-    /// `1 − (x/50)²` and the same of an absolute value that turns: kinks and curves.
+    /// Margins `1 − (x/50)²`, which is curved, and `1 − |x/30 − 0.8|`, which has a kink.
     #[test]
     fn curved_limits_are_met_from_below() {
         let curved = |load: f64| Some(vec![1.0 - (load / 50.0).powi(2), 1.0 - (load / 30.0 - 0.8).abs()]);

@@ -14,7 +14,7 @@ use crate::{Description, ParameterError, dyn_crane::DynCrane, statics::Settings}
 
 /// Maximum number of poses in a piece.
 pub const PIECE: usize = 25;
-/// Largest stride of a drive from one pose at rest to the next, m or rad.
+/// Maximum change of a drive's position from one pose at rest to the next, m or rad.
 const STRIDE: f64 = 0.2;
 
 /// What to compute for a crane.
@@ -22,9 +22,9 @@ const STRIDE: f64 = 0.2;
 pub struct Envelope {
     /// What is varied.
     pub axes: Axes,
-    /// Place of the live parameter that is the load.
+    /// Index of the live parameter that is the load.
     pub load: usize,
-    /// The least and the greatest load looked at.
+    /// Minimum and maximum load considered.
     pub loads: [f64; 2],
     /// What limits it.
     pub limits: Limits,
@@ -32,27 +32,27 @@ pub struct Envelope {
 
 /// How an envelope is computed.
 pub struct Conduct<'a> {
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Called with the ratings of every piece that is done, in the order in which they finish, from any thread.
+    /// Called with the ratings of every completed piece, in the order of completion, from any thread.
     pub done: &'a (dyn Fn(usize, &[Rating]) + Sync),
     /// Whether to skip the remaining pieces; asked before every piece.
     pub called_off: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// The least load to try if zero is not allowed, kg: a gram.
+/// Minimum load to try if zero is not allowed, kg: a gram.
 const LEAST_LOAD: f64 = 1e-3;
-/// The greatest load looked at, in masses of the crane.
+/// Maximum load considered, in multiples of the crane's mass.
 const GREATEST_LOAD: f64 = 100.0;
 
-/// Place of the live parameter that is the load unless another is named: the only one in kg.
+/// Index of the live parameter that is the load unless another is named: the only one in kg.
 pub fn only_mass(description: &Description) -> Option<usize> {
     let mut masses = description.parameters.iter().enumerate().filter(|(_, parameter)| parameter.unit == "kg");
     masses.next().filter(|_| masses.next().is_none()).map(|(index, _)| index)
 }
 
-/// The least load, which is allowed and as near to zero as possible, and the greatest one to look at: `greatest`, or a hundred times
-/// the mass of the crane.
+/// The minimum load, which is allowed and as near to zero as possible, and the maximum load to consider: `greatest`, or a hundred times the
+/// mass of the crane.
 pub fn range_of_loads(description: &Description, load: usize, greatest: Option<f64>) -> [f64; 2] {
     let info = &description.parameters[load];
     let is_allowed = |value: &f64| info.check(*value).is_ok();
@@ -79,7 +79,7 @@ impl Envelope {
     /// Rates some pieces.
     ///
     /// # Errors
-    /// Values of parameters on an axis, or the least load, break a rule of the spec language.
+    /// Values of parameters on an axis, or the minimum load, break a rule of the spec language.
     pub fn run(&self, crane: &dyn DynCrane, pieces: &[usize], conduct: &Conduct<'_>) -> Result<(), ParameterError> {
         let waiting = Mutex::new(pieces.iter());
         let refused = Mutex::new(None);
@@ -128,13 +128,13 @@ impl Envelope {
     }
 }
 
-/// Where the drives stand at the beginning of their motions, and the crane with them.
+/// Positions of the drives at the beginning of their motions, and the pose of the crane there.
 fn begin(crane: &dyn DynCrane) -> (Vec<f64>, Vec<f64>) {
     let positions = crane.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
     (positions, crane.equilibrium(&Settings::default()).q)
 }
 
-/// A pose near the one at which drives hold `positions`: from another one, in strides.
+/// A pose near the one with the drives at `positions`, approached in strides from the pose with the drives at `from`.
 fn walk(crane: &dyn DynCrane, (from, mut q): (Vec<f64>, Vec<f64>), positions: &[f64]) -> Vec<f64> {
     let furthest = from.iter().zip(positions).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
     let strides = (furthest / STRIDE).ceil().max(1.0);
@@ -145,7 +145,7 @@ fn walk(crane: &dyn DynCrane, (from, mut q): (Vec<f64>, Vec<f64>), positions: &[
             q[drive.coordinate] += (to - from) / strides;
         }
         if stride >= strides {
-            // The last stride is for the caller.
+            // The equilibrium of the last stride is left to the caller.
             return q;
         }
         let part = stride / strides;

@@ -1,4 +1,4 @@
-//! Oil about a pose at rest: how fast it decays, and the stiffness of what shut valves trap.
+//! Oil about a pose at rest: the decay rates of its pressures, and the stiffness of the oil that shut valves trap.
 
 use nalgebra::{Complex, Vector3};
 
@@ -10,8 +10,8 @@ use crate::{
     results::cylinders_at,
 };
 
-/// An upper bound on the decay rate of the pressures of each cylinder with a valve at a pose, as a mode of its joint: its suction valves are open, and
-/// the pressures at the edges of its valve nearly balance. It limits explicit methods.
+/// An upper bound on the decay rate of the pressures of each cylinder with a valve at a pose, as a mode of its joint: the one with open
+/// suction valves and nearly equal pressures on both sides of the valve's edges. It limits explicit methods.
 pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
     let cylinders = &crane.description().cylinders;
     let mut lengths = vec![Vector3::zeros(); cylinders.len()];
@@ -30,7 +30,7 @@ pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
 
 /// Adds the stiffness of the oil that shut valves trap, `k (∂ℓ/∂q)² − F ∂²ℓ/∂q²`, to that of small motions about a pose at rest.
 pub(crate) fn stiffen(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotions) {
-    /// Difference over which a lever is differenced, m or rad: an error of 1e-8 of the second term.
+    /// Step of the central difference of a lever arm, m or rad: the relative error of the second term is 1e-8.
     const DIFFERENCE: f64 = 1e-4;
     let cylinders = &crane.description().cylinders;
     if !crane.description().has_valves() {

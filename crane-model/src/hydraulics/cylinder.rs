@@ -5,14 +5,14 @@ use nalgebra::Vector3;
 use super::valve::root;
 use crate::{CylinderInfo, PumpInfo, ValveInfo, own_states::StatefulForce};
 
-/// Relative band of pressures: a relief valve passes the nominal flow of the valve at `1 + BAND` of its set pressure; the pump delivers its greatest
-/// flow below `1 − BAND` of its own.
+/// Relative band of pressures: a relief valve passes the nominal flow of the valve at `1 + BAND` of its set pressure; the pump delivers its
+/// maximum flow below `1 − BAND` of its set pressure.
 const BAND: f64 = 0.05;
 /// Pressure below the tank's at which a suction valve passes the nominal flow, Pa.
 pub(super) const SUCTION: f64 = 1e5;
-/// Least share of the nominal pressure drop for which the servo computes an opening.
+/// Minimum pressure drop for which the servo computes an opening, as a fraction of the nominal one.
 const LEAST_DROP: f64 = 0.1;
-/// Penetration of an end stop at which it carries the cylinder's greatest force, m.
+/// Penetration of an end stop at which it carries the cylinder's maximum force, m.
 const STOP: f64 = 1e-3;
 /// Damping a of a stop, s/m: the coefficient of restitution is `1 − ⅔ a v` at a low speed v.
 const STOP_DAMPING: f64 = 3.0;
@@ -20,7 +20,7 @@ const STOP_DAMPING: f64 = 3.0;
 /// A cylinder with a valve.
 #[derive(Clone, Debug)]
 pub(super) struct ValveCylinder {
-    /// Its place among all cylinders.
+    /// Its index among all cylinders.
     pub index: usize,
     pub coordinate: usize,
     pub info: CylinderInfo,
@@ -29,7 +29,8 @@ pub(super) struct ValveCylinder {
     pub max_pressure: f64,
 }
 
-/// Where a servo wants its spool, and the derivatives by the length, the pressures on both sides and the pump's.
+/// The spool position that a servo commands, and its derivatives with respect to the length, the pressures on both sides and the pump's
+/// pressure.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Command {
     pub opening: f64,
@@ -46,7 +47,7 @@ pub(super) struct Pump {
 }
 
 impl Pump {
-    /// What it delivers at a pressure, m³/s, and the derivative.
+    /// Flow that it delivers at a pressure, m³/s, and its derivative.
     pub(super) fn flow(&self, pressure: f64) -> (f64, f64) {
         let band = BAND * self.pressure;
         let share = (self.pressure - pressure) / band;
@@ -56,7 +57,7 @@ impl Pump {
 }
 
 impl ValveCylinder {
-    /// Force and its derivatives at pressures.
+    /// Force at given pressures, and its derivatives.
     pub(super) fn push(&self, here: Vector3<f64>, [piston, rod]: [f64; 2]) -> StatefulForce {
         let [area, ring] = self.info.areas;
         let y = here.x - self.info.retracted;
@@ -81,7 +82,7 @@ impl ValveCylinder {
         }
     }
 
-    /// What relief and suction valves let in, m³/s, and the derivative by the pressure.
+    /// Flow in through relief and suction valves, m³/s, and its derivative with respect to the pressure.
     pub(super) fn relief_and_suction(&self, pressure: f64) -> (f64, f64) {
         let relief = -self.valve.flow / (BAND * self.max_pressure);
         let suction = -self.valve.flow / SUCTION;
@@ -95,7 +96,7 @@ impl ValveCylinder {
         }
     }
 
-    /// Where the servo wants the spool.
+    /// The spool position that the servo commands.
     pub(super) fn command(&self, here: Vector3<f64>, wanted: Vector3<f64>, sides: [f64; 2], pump: f64) -> Command {
         let ValveInfo { flow, pressure_drop, gain, feed_forward, .. } = self.valve;
         let fed = usize::from(wanted.y <= 0.0);

@@ -1,26 +1,27 @@
-//! Cylinders that oil moves: pressures and valves as states of the motion.
+//! Cylinders moved by oil: pressures and valves as states of the motion.
 //!
 //! A cylinder with the length ℓ, `y = ℓ − ℓ_retracted`, has oil at the pressure p on the side of its piston and p′ on that of its rod,
-//! with the areas A and A′, and pushes with `F = p A − p′ A′`. With the bulk modulus β and the oil V₀ of hoses and dead ends
+//! with the areas A and A′, and pushes with `F = p A − p′ A′`. With the bulk modulus β and the volume V₀ of oil in hoses and dead ends
 //!
 //! ```text
 //! ṗ  = β/V  (Q  − A ẏ  − λ (p − p′) − relief + suction)     V  = V₀ + A y
 //! ṗ′ = β/V′ (Q′ + A′ ẏ + λ (p − p′) − relief + suction)     V′ = V₀′ + A′ (stroke − y)
 //! ```
 //!
-//! λ is the leakage past the piston. Relief valves open at the greatest pressure of the cylinder, suction valves below that of the
-//! tank. The spool at u, −1 to 1, opens an edge from the pump to one side and one from the other side to the tank; the flow through an edge is
-//! `K |u| r(Δp)` with `r(Δ) = Δ/(Δ² + ε²)^¼`, a square root that is laminar below ε = 1 bar; check valves keep oil from flowing back to
-//! the pump. The spool lags behind its command, `u̇ = (u* − u)/T`, which the servo gives, or the spec over time:
+//! λ is the leakage past the piston. Relief valves open at the maximum pressure of the cylinder, suction valves below tank pressure. The
+//! spool at u, −1 to 1, opens an edge from the pump to one side and one from the other side to the tank; the flow through an edge is
+//! `K s r(Δp)` with the opening `s = max(0, |u| − overlap)/(1 − overlap)` and `r(Δ) = Δ/(Δ² + ε²)^¼`, a square root that is laminar below ε = 1 bar; check valves keep oil from flowing back to the
+//! pump. The spool lags behind its command u*, `u̇ = (u* − u)/T`. The spec gives the command over time, or a servo computes it:
 //!
 //! ```text
 //! u* = gain (ℓ* − ℓ) + share · A ẏ*/(K r(p_s − p)),     between −1 and 1
 //! ```
 //!
-//! with the length ℓ* of the cylinder at the prescribed position of the drive; the second term is the feed-forward of its speed, at the pressures
-//! measured. The pump maintains its pressure as long as the valves take no more than its greatest flow; `ṗ_s = β/V_s (Q_pump − Σ Q)`. At the ends of the stroke the piston meets a stiff stop (Hunt–Crossley).
+//! with the length ℓ* of the cylinder at the prescribed position of the drive; the second term is the feed-forward of its speed, at the
+//! measured pressures. The pump maintains its pressure as long as the valves take no more than its maximum flow;
+//! `ṗ_s = β/V_s (Q_pump − Σ Q)`. At the ends of the stroke the piston meets a stiff stop (Hunt–Crossley).
 //!
-//! The states are, cylinder by cylinder, p, p′ and u, and `p_s` behind all of them. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
+//! The states are, cylinder by cylinder, p, p′ and u, followed by `p_s`. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
 
 mod about_rest;
 mod cylinder;
@@ -46,17 +47,17 @@ use valve::flows;
 pub(crate) struct Hydraulics {
     cylinders: Vec<ValveCylinder>,
     pump: Option<Pump>,
-    /// Every cylinder of the crane: length, rate, and derivative by its coordinate.
+    /// Every cylinder of the crane: length, rate, and derivative of the length with respect to its coordinate.
     here: Vec<Vector3<f64>>,
-    /// The same with all drives where their motions are.
+    /// The same with the drives at the positions of their motions.
     wanted: Vec<Vector3<f64>>,
     motions: Vec<[f64; 2]>,
-    /// Commands over time of the drives' valves.
+    /// Prescribed commands of the drives' valves.
     openings: Vec<[f64; 2]>,
     place: [Vec<f64>; 2],
 }
 impl Hydraulics {
-    /// What the description of a crane says about it; nothing where no cylinder has a valve.
+    /// From the description of a crane; empty if no cylinder has a valve.
     pub fn new(description: &Description) -> Self {
         let moved = description.cylinders.iter().enumerate().filter_map(|(index, info)| {
             Some(ValveCylinder {
@@ -100,7 +101,7 @@ impl Hydraulics {
         self.cylinders.len()
     }
 
-    /// Sizes by which errors of the states are measured: the pump's pressure, and the full way of a spool.
+    /// Sizes by which errors of the states are measured: the pump's pressure, and the travel of a spool from its centre.
     pub(crate) fn scales(&self) -> Vec<f64> {
         let pressure = self.pump.map_or(1.0, |pump| pump.pressure);
         let of_cylinder = [pressure, pressure, 1.0];
@@ -108,7 +109,7 @@ impl Hydraulics {
         all.chain((!self.is_empty()).then_some(pressure)).collect()
     }
 
-    /// The states that hold a pose at rest at a time: shut valves, and the unloaded side at tank pressure.
+    /// The states that hold a pose at rest at a given time: shut valves, and the unloaded side at tank pressure.
     pub(crate) fn holding(&mut self, crane: &dyn DynDynamics, t: f64, q: &[f64]) -> Vec<f64> {
         if self.is_empty() {
             return Vec::new();
@@ -128,8 +129,8 @@ impl Hydraulics {
         all.chain(self.pump.map(|pump| pump.pressure)).collect()
     }
 
-    /// Rates of the states, and every cylinder with a valve, at a state of the crane. `by_states`, if wanted: the derivatives of the
-    /// rates by the states.
+    /// Rates of the states, and the force of every cylinder with a valve, at a state of the crane; `by_states`, if given, receives the
+    /// derivatives of the rates with respect to the states.
     pub(crate) fn evaluate(
         &mut self,
         crane: &dyn DynModel,
@@ -209,7 +210,7 @@ impl Hydraulics {
         }
     }
 
-    /// Lengths of all cylinders here, and where the drives' motions are.
+    /// Lengths of all cylinders at this state, and with the drives at the positions of their motions.
     fn measure(&mut self, crane: &dyn DynModel, t: f64, q: &[f64], v: &[f64]) {
         crane.cylinder_states(q, v, &mut self.here);
         crane.drive_motions(t, &mut self.motions);
@@ -223,7 +224,7 @@ impl Hydraulics {
             wanted_v[moved.coordinate] = rate;
         }
         crane.cylinder_states(wanted_q, wanted_v, &mut self.wanted);
-        // What bends between the pins of a cylinder changes its length a little, but only its joint takes its force.
+        // Bending between the pins of a cylinder changes its length slightly, but its force acts on its joint only.
         for ValveCylinder { index, coordinate, .. } in &self.cylinders {
             self.here[*index].y = self.here[*index].z * v[*coordinate];
             self.wanted[*index].y = self.wanted[*index].z * wanted_v[*coordinate];

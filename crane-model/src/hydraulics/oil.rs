@@ -8,8 +8,8 @@ use crate::{
     results::CylinderState,
 };
 
-/// The cylinders with a valve by their place among all cylinders, their efforts on their joints, N m and N, and
-/// where their spools are; flow (m³/s), power (W) and pressure (Pa) of the pump.
+/// The cylinders with a valve: index among all cylinders, state, and position of the spool; flow (m³/s), power (W) and pressure (Pa) of the
+/// pump.
 pub(crate) struct Oil {
     pub cylinders: Vec<(usize, CylinderState, f64)>,
     pub pump: [f64; 3],
@@ -40,14 +40,14 @@ impl Oil {
         Some(Self { cylinders: cylinders.collect(), pump: hydraulics.delivered(x) })
     }
 
-    /// Puts the efforts of cylinders with a valve in place of those of their drives.
+    /// Replaces the efforts of drives by those of their cylinders with a valve.
     pub fn give_efforts(&self, description: &Description, efforts: &mut [f64]) {
         for (index, state, _) in &self.cylinders {
             efforts[description.cylinders[*index].drive] = state.force * state.arm;
         }
     }
 
-    /// Puts the states of cylinders with a valve in place of what their drives would take.
+    /// Replaces the states that the drives' efforts would require by those of the cylinders with a valve.
     pub fn give_states(&self, cylinders: &mut [CylinderState]) {
         for (index, state, _) in &self.cylinders {
             cylinders[*index] = *state;

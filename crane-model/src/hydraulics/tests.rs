@@ -1,4 +1,4 @@
-//! The derivatives of the laws against differences.
+//! Derivatives of the laws compared with finite differences.
 
 use nalgebra::Vector3;
 
@@ -31,13 +31,13 @@ fn moved() -> ValveCylinder {
     ValveCylinder { index: 0, coordinate: 0, valve, bulk_modulus: 1.2e9, max_pressure: 2.8e7, info }
 }
 
-/// Relative difference of a derivative and the central difference of what it derives.
+/// Relative difference between a derivative and the central difference of its function.
 fn off(of: impl Fn(f64) -> f64, at: f64, h: f64, derivative: f64) -> f64 {
     let difference = (of(at + h) - of(at - h)) / (2.0 * h);
     (difference - derivative).abs() / difference.abs().max(derivative.abs()).max(f64::MIN_POSITIVE)
 }
 
-/// Central differences of the square root at steps of 1e-3 of its argument are exact to 1e-6 of it.
+/// Central differences of the square root with steps of 1e-3 of its argument have a relative error of about 1e-6.
 const CLOSE: f64 = 1e-5;
 
 #[test]
@@ -59,7 +59,7 @@ fn flows_have_their_derivatives() {
             let by_pump = off(|pump| into(u, sides, pump), pump, 1e3, at.by_pump[side]);
             assert!(by_pump < CLOSE, "{by_pump}");
         }
-        // What flows in is fed by the pump, what flows out goes to the tank.
+        // Inflow comes from the pump, outflow goes to the tank.
         let [fed, drained] = if u > 0.0 { [0, 1] } else { [1, 0] };
         assert!(at.into[fed] > 0.0 && at.into[drained] < 0.0);
     }
@@ -100,7 +100,7 @@ fn servo_and_stop_have_their_derivatives() {
 fn relief_and_suction_open_at_their_pressures() {
     let moved = moved();
     assert_eq!(moved.relief_and_suction(1e7), (0.0, 0.0));
-    // The nominal flow of the valve, 5 % above the greatest pressure and 1 bar below the tank's.
+    // The nominal flow of the valve, 5 % above the maximum pressure and 1 bar below the tank's.
     let (out, _) = moved.relief_and_suction(1.05 * 2.8e7);
     let (into, _) = moved.relief_and_suction(2e5);
     assert!((out + 1e-3).abs() < 1e-12 && (into - 1e-3).abs() < 1e-12);

@@ -25,19 +25,19 @@ fn checked(difference: f64) -> Sloped {
     if difference > 0.0 { root(difference) } else { Sloped::default() }
 }
 
-/// What flows into the two sides of a cylinder, m³/s, and from the pump.
+/// Flows into the two sides of a cylinder, m³/s, and their derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Flows {
     /// Into the side of the piston, and of the rod.
     pub into: [f64; 2],
-    /// Their derivatives by the pressure on the own side, by the pump's, and by the spool's place.
+    /// Their derivatives with respect to the pressure on the same side, the pump's pressure, and the spool position.
     pub by_own: [f64; 2],
     pub by_pump: [f64; 2],
     pub by_spool: [f64; 2],
 }
 
 /// Flows at pressures on the sides of piston and rod, of the pump and of the tank, Pa, with the spool at u from −1 to 1: u > 0 connects
-/// the piston's side to the pump and the rod's to the tank, u < 0 the other way about.
+/// the piston's side to the pump and the rod's to the tank, u < 0 the other way round.
 pub(super) fn flows(valve: &ValveInfo, u: f64, sides: [f64; 2], pump: f64, tank: f64) -> Flows {
     // Exactly the nominal flow at the nominal pressure drop.
     let gain = valve.flow / root(valve.pressure_drop).value;

@@ -9,7 +9,7 @@ use super::{
     eigenvectors::{Block, rounding},
 };
 
-/// Iterations of the QR algorithm for each eigenvalue: 2 to 4 are usual.
+/// Maximum iterations of the QR algorithm per eigenvalue: 2 to 4 are usual.
 const ITERATIONS: usize = 100;
 /// Relative accuracy of the QR algorithm.
 const PRECISION: f64 = f64::EPSILON;
@@ -78,7 +78,7 @@ pub fn damped_with_shapes(motions: &SmallMotions) -> Result<Vec<(DampedMode, Com
     Ok(modes)
 }
 
-/// The shape with `xᴴ A x = 1`, and real and positive at one place.
+/// The shape with `xᴴ A x = 1`, and real and positive at the index `at`.
 fn normalised(shape: ComplexShape, mass: &DMatrix<Complex<f64>>, at: Option<usize>) -> ComplexShape {
     let norm = shape.dotc(&(mass * &shape)).re.sqrt();
     let phase = at.map_or(0.0, |place| shape[place].arg());

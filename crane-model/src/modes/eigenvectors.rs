@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Entries of a vector that grows beyond this are scaled down, so that none overflows.
+/// A vector with larger entries than this is scaled down, so that none overflows.
 const LARGE: f64 = 1e100;
 
 /// Differences of entries of T below this are rounding.
@@ -13,9 +13,9 @@ pub fn rounding(t: &DMatrix<f64>) -> f64 {
 /// A block on the diagonal of a quasi-triangular matrix: one real eigenvalue, or a conjugate pair.
 #[derive(Clone, Copy)]
 pub enum Block {
-    /// At this place.
+    /// At this index.
     Real(usize),
-    /// At this place and the next.
+    /// At this index and the next.
     Pair(usize),
 }
 
@@ -44,8 +44,8 @@ impl Block {
         }
     }
 
-    /// Its eigenvector in the basis of the Schur form: `(T − λ) y = 0`, up to the end of the block, beyond which y is 0. Where
-    /// eigenvalues coincide, their difference is `least`, what [`rounding`] leaves.
+    /// Its eigenvector in the basis of the Schur form: `(T − λ) y = 0`, up to the end of the block, beyond which y is 0. Where eigenvalues
+    /// coincide, their difference is replaced by `least`, the size of [`rounding`] errors.
     pub fn eigenvector(self, t: &DMatrix<f64>, blocks: &[Block], least: f64) -> DVector<Complex<f64>> {
         let lambda = self.eigenvalue(t);
         let apart = |difference: Complex<f64>| if difference.norm() < least { least.into() } else { difference };
@@ -53,7 +53,7 @@ impl Block {
             Block::Real(i) => (i, 1),
             Block::Pair(i) => (i, 2),
         };
-        // `right` is −Σ T y over what is known; solved rows hold y.
+        // `right` is −Σ T y over the known entries of y; solved rows contain y itself.
         let mut right: DVector<Complex<f64>> = DVector::zeros(place + size);
         let known = |right: &mut DVector<Complex<f64>>, column: usize, above: usize, y: Complex<f64>| {
             for row in 0..above {
@@ -125,7 +125,7 @@ mod tests {
                 let complex = |matrix: &DMatrix<f64>| matrix.map(Complex::from);
                 let x = complex(&vectors).columns(0, y.len()) * &y;
                 let off = complex(&matrix) * &x - &x * lambda;
-                // The Schur form is that of a matrix which differs by some roundings per row.
+                // The Schur form is that of a matrix perturbed by a few rounding errors per row.
                 assert!(off.camax() < 1e-13 * n as f64 * x.camax(), "{n}: {lambda}: {:e}", off.camax() / x.camax());
             }
         }
@@ -137,7 +137,7 @@ mod tests {
         let blocks = Block::all(&t);
         for block in &blocks {
             let y = block.eigenvector(&t, &blocks, rounding(&t));
-            // The only direction that there is: the first.
+            // There is only one eigenvector: the first unit vector.
             assert!(y.iter().all(|y| y.re.is_finite()) && y[0].norm() >= y.camax() * (1.0 - 1e-12), "{y}");
         }
     }

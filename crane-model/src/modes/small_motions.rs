@@ -9,7 +9,7 @@ use crate::{
     model::state_blocks,
 };
 
-/// A coordinate dominates a mode from this fraction of the largest share of energy.
+/// A coordinate is dominant in a mode if its share of the energy is at least this fraction of the largest one.
 const SHARE: f64 = 0.2;
 
 /// Coefficients of `A δq̈ + D δq̇ + K δq = 0`, of the coordinates that can move. About a pose at rest K and D are symmetric.
@@ -17,9 +17,9 @@ const SHARE: f64 = 0.2;
 pub struct SmallMotions {
     /// Mass matrix A.
     pub mass: DMatrix<f64>,
-    /// Tangent stiffness K; about a motion with centrifugal terms.
+    /// Tangent stiffness K, which includes centrifugal terms about a motion.
     pub stiffness: DMatrix<f64>,
-    /// Damping matrix D; about a motion with gyroscopic terms.
+    /// Damping matrix D, which includes gyroscopic terms about a motion.
     pub damping: DMatrix<f64>,
     /// Indices in q of the rows and columns: all except those that rigid drives prescribe.
     pub unknowns: Vec<usize>,
@@ -108,11 +108,11 @@ impl SmallMotions {
         Ok(state)
     }
 
-    /// Shares of the coordinates in the energy of a mode, `|x̄ᵢ (A x)ᵢ|`, and the names of the dominant ones.
+    /// Indices of the dominant coordinates, by their share in the energy of a mode, `|x̄ᵢ (A x)ᵢ|`, largest first.
     ///
-    /// In an undamped mode `K x = ω² A x`: the same shares for kinetic and strain energy, whatever the units.
+    /// In an undamped mode `K x = ω² A x`, so that the shares of kinetic and strain energy are equal, whatever the units.
     pub(super) fn dominating<T: ComplexField<RealField = f64>>(&self, shape: &DVector<T>) -> Vec<usize> {
-        // A is symmetric: its rows are its columns, which stand together in memory.
+        // A is symmetric: its rows are its columns, which are contiguous in memory.
         let momentum = |column: DVectorView<'_, f64>| {
             shape.iter().zip(&column).fold(T::zero(), |sum, (x, &a)| sum + x.clone().scale(a)).modulus()
         };

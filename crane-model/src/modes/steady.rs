@@ -1,4 +1,4 @@
-//! Steady motions: some coordinates keep their rates, the others stay where they are relative to them.
+//! Steady motions: some coordinates have constant rates, the others constant positions.
 
 use std::{error::Error, fmt};
 
@@ -6,15 +6,15 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use crate::dyn_crane::DynLineariseMotion;
 
-/// Newton steps at each part of the rates.
+/// Maximum Newton steps at each fraction of the rates.
 const ITERATIONS: usize = 30;
 /// A Newton step below this is the last, m and rad: far below any deflection, far above rounding.
 const LAST_STEP: f64 = 1e-9;
-/// Greatest component of a step, m and rad.
+/// Maximum component of a step, m and rad.
 const GREATEST_STEP: f64 = 0.5;
 /// Halvings of a Newton step before it is given up.
 const HALVINGS: u32 = 12;
-/// Least part of the rates by which the search goes on.
+/// Minimum increment of the search, as a fraction of the rates.
 const LEAST_PART: f64 = 1e-3;
 /// Time over which forces are compared to see whether a motion remains steady, s.
 const MOMENT: f64 = 1e-4;
@@ -39,19 +39,19 @@ pub struct Steady {
     pub q: Vec<f64>,
     /// Rates, m/s and rad/s.
     pub v: Vec<f64>,
-    /// What holding a coordinate takes in addition to its drive, spring and friction, N and N m; 0 for others.
+    /// Effort that holds a coordinate in addition to its drive, spring and friction, N and N m; 0 for others.
     pub efforts: Vec<f64>,
-    /// The greatest rate at which the pose of the other coordinates would have to change for the motion to remain steady, m/s and rad/s:
+    /// The maximum rate at which the pose of the other coordinates would have to change for the motion to remain steady, m/s and rad/s:
     /// 0 if it does.
     pub drift: f64,
-    /// The greatest acceleration of a drive's motion at this time whose coordinate is not held, m/s² and rad/s².
+    /// The maximum acceleration at this time of the motions of drives whose coordinates are not held, m/s² and rad/s².
     pub acceleration: f64,
 }
 
 /// Why there is no steady motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotSteady {
-    /// The part of the rates, and of the way to the positions held, up to which there is one.
+    /// The fraction of the rates, and of the way to the held positions, up to which one was found.
     pub reached: f64,
 }
 
@@ -65,8 +65,8 @@ impl Error for NotSteady {}
 
 /// The steady motion with some coordinates held: `(e + f)(t, q, v) = 0` for all others, solved by Newton's method for their positions.
 ///
-/// At time t drives are where their motions are, and driven coordinates have the rates of their motions unless they are held. All other
-/// rates are zero. The search begins at the pose `start` without motion and increases rates and distances to held positions as fast as
+/// At time t drives are at the positions of their motions, and driven coordinates have the rates of these motions unless they are held. All
+/// other rates are zero. The search starts at rest in the pose `start`, and raises the rates and approaches the held positions as fast as
 /// Newton's method converges, so that it follows the pose from rest.
 ///
 /// # Errors
@@ -140,7 +140,7 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
         }
     }
 
-    /// `−(e + f)`: what the motion requires besides all forces.
+    /// `−(e + f)`: the forces that the motion requires in addition to those that act.
     fn required(&self, t: f64, q: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
         let (mut bias, mut forces) = (DVector::zeros(q.len()), DVector::zeros(q.len()));
         self.crane.bias(q.as_slice(), v.as_slice(), bias.as_mut_slice());
@@ -148,12 +148,12 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
         -(bias + forces)
     }
 
-    /// The same of the free coordinates.
+    /// The same for the free coordinates.
     fn residual(&self, t: f64, q: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
         self.required(t, q, v).select_rows(&self.free)
     }
 
-    /// The tangent of the free coordinates.
+    /// The factorised tangent matrix of the free coordinates.
     fn tangent(&self, q: &DVector<f64>, v: &DVector<f64>) -> LU<f64, Dyn, Dyn> {
         let n = q.len();
         let zeros = || DMatrix::zeros(n, n);
@@ -169,7 +169,7 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
         stiffness.select_rows(&self.free).select_columns(&self.free).lu()
     }
 
-    /// The pose at a part of the rates, from a pose nearby.
+    /// The pose at a fraction of the rates, from a pose nearby.
     fn pose(&self, near: &DVector<f64>, part: f64) -> Option<DVector<f64>> {
         let (mut q, v) = (near.clone(), &self.rates * part);
         for (coordinate, distance) in &self.held {
@@ -196,7 +196,7 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
             if size <= LAST_STEP {
                 return Some(moved(1.0));
             }
-            // The natural monotonicity test: residuals are compared by the Newton steps that they ask for.
+            // The natural monotonicity test: residuals are compared by their Newton steps with the same tangent.
             let longest = f64::min(1.0, GREATEST_STEP / size);
             let (pose, next) = (0..=HALVINGS).find_map(|k| {
                 let pose = moved(longest * 0.5_f64.powi(k.cast_signed()));
@@ -208,7 +208,7 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
         None
     }
 
-    /// The greatest acceleration of a drive that holds no given rate.
+    /// The maximum acceleration of the drives whose coordinates are not held.
     fn acceleration(&self) -> f64 {
         let drives = &self.crane.description().drives;
         let rates = |t: f64| {
@@ -223,7 +223,7 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
         of_free.map(|(change, _)| change / (2.0 * MOMENT)).fold(0.0, f64::max)
     }
 
-    /// How fast the free coordinates would have to move for their forces to stay in balance while the others go on.
+    /// How fast the free coordinates would have to move for their forces to stay in balance while the others keep moving.
     fn drift(&self, q: &DVector<f64>) -> Option<f64> {
         if self.free.is_empty() {
             return Some(0.0);

@@ -49,18 +49,18 @@ pub fn near_singular(description: &Description, table: &Table) -> Option<String>
     poses(description, table).find_map(|q| description.near_singular(q))
 }
 
-/// The first pose of a run for which a base that may only turn a little has turned further.
+/// The first pose of a run at which a base that is limited to small rotations has rotated further.
 pub fn large_tilt(description: &Description, table: &Table) -> Option<String> {
     poses(description, table).find_map(|q| description.large_tilt(q))
 }
 
-/// The poses of a run: the columns behind its time.
+/// The poses of a run: the columns after the time.
 fn poses<'a>(description: &Description, table: &'a Table) -> impl Iterator<Item = &'a [f64]> {
     let n = description.coordinates.len();
     table.rows.iter().filter_map(move |row| row.get(1..=n))
 }
 
-/// Reports how long a joint is on its stops during a run, and the largest effort of these.
+/// Reports how long a joint is on its stops during a run, and their largest effort.
 fn on_stop(description: &Description, table: &Table, coordinate: usize) -> Option<String> {
     let coordinate = &description.coordinates[coordinate];
     let column = stop_effort(&coordinate.name, coordinate.kind);

@@ -16,7 +16,7 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
     description.connectors.iter().filter_map(|connector| goes_slack(connector, table)).collect()
 }
 
-/// Says when a rope is first slack in a run, for how long in all, and its largest force.
+/// Reports when a rope is first slack in a run, for how long in total, and its largest force.
 fn goes_slack(connector: &ConnectorInfo, table: &Table) -> Option<String> {
     let column = connector_force(connector);
     let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(table, &column);

@@ -1,8 +1,8 @@
-//! Hydraulic cylinders of driven joints: force, pressures and flow that the motion of a drive takes.
+//! Hydraulic cylinders of driven joints: force, pressures and flow that the motion of a drive requires.
 //!
 //! A drive with the effort τ on its joint is a cylinder that pushes with `F = τ/(∂ℓ/∂q_j)`: both have the power `τ q̇_j`. With the areas A
-//! of the piston and A′ of the ring around the rod, `F = p A − p′ A′`; the side that does not carry has the back pressure. Oil
-//! flows into the side that grows, at the rate A ℓ̇ or A′ |ℓ̇|. The oil is taken as incompressible; how soft it would be is
+//! of the piston and A′ of the ring around the rod, `F = p A − p′ A′`; the side that does not carry the load is at back pressure. Oil
+//! flows into the side that grows, at the rate A ℓ̇ or A′ |ℓ̇|. The oil is taken as incompressible; its actual stiffness is
 //! [`CylinderState::oil_stiffness`].
 
 use nalgebra::Vector3;
@@ -17,19 +17,19 @@ use crate::{
 const BAR: f64 = 1e5;
 /// m³/s
 const LITRE_PER_MINUTE: f64 = 1e-3 / 60.0;
-/// A drive as much stiffer than the oil of its cylinder, or more, is no longer a model of it.
+/// A drive stiffer than the oil of its cylinder by this factor or more is no longer a model of it.
 const STIFFER: f64 = 2.0;
 
 /// A cylinder at a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CylinderState {
-    /// Distance of its pins ℓ, m; not a number where its linkage cannot be assembled.
+    /// Distance ℓ between its pins, m; not a number where its linkage cannot be assembled.
     pub length: f64,
     /// ℓ̇, m/s; positive if it extends.
     pub speed: f64,
     /// `∂ℓ/∂q_j`, m/rad or m/m.
     pub arm: f64,
-    /// What it pushes with, N; negative if it pulls.
+    /// Force that it pushes with, N; negative if it pulls.
     pub force: f64,
     /// Pressures on the piston's side and on the rod's, Pa.
     pub pressures: [f64; 2],
@@ -79,7 +79,7 @@ pub fn cylinders_at(crane: &dyn DynCrane, q: &[f64], v: &[f64], efforts: &[f64])
     cylinders.iter().zip(states).map(|(info, state)| CylinderState::new(info, state, efforts[info.drive])).collect()
 }
 
-/// Flow that the pump delivers to all cylinders, m³/s, and its power, W: one pump at the greatest of their supply pressures.
+/// Flow that the pump delivers to all cylinders, m³/s, and its power, W: one pump at the maximum of their supply pressures.
 pub fn pump(cylinders: &[CylinderState]) -> [f64; 2] {
     let flow: f64 = cylinders.iter().map(|cylinder| cylinder.flow).sum();
     let moving = cylinders.iter().filter(|cylinder| cylinder.flow > 0.0);
@@ -87,7 +87,7 @@ pub fn pump(cylinders: &[CylinderState]) -> [f64; 2] {
     [flow, flow * pressure]
 }
 
-/// The first cylinder of a run whose linkage does not reach, and when, s.
+/// The first cylinder of a run whose linkage cannot be assembled, and when, s.
 pub(crate) fn unassembled(description: &Description, table: &Table) -> Option<(Text, f64)> {
     description.cylinders.iter().find_map(|info| {
         let [(length, _), ..] = columns(&info.name);
@@ -138,13 +138,13 @@ pub(crate) fn spool(cylinder: &str) -> String {
     format!("{cylinder}_valve")
 }
 
-/// Their values.
+/// Values of the columns of a cylinder.
 pub(super) fn values(state: &CylinderState) -> [f64; 6] {
     let [piston, rod] = state.pressures;
     [state.length, state.speed, state.force, piston, rod, state.flow]
 }
 
-/// Cylinders that cannot take a pose at rest or hold it.
+/// Cylinders that cannot reach a pose at rest or hold it.
 pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     let description = crane.description();
     if description.cylinders.is_empty() {
@@ -202,9 +202,9 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
     found
 }
 
-/// When and for how long the pump delivers all it can.
+/// When and for how long the pump delivers its maximum flow.
 fn short_of_oil(description: &Description, table: &Table) -> Option<String> {
-    /// Share of the greatest flow from which it counts.
+    /// Fraction of the maximum flow from which it counts as maximum.
     const ALL: f64 = 0.999;
     let limit = description.pump?.max_flow;
     let rows: Vec<f64> = table.values("pump_flow")?.collect();
@@ -220,9 +220,9 @@ fn short_of_oil(description: &Description, table: &Table) -> Option<String> {
 
 /// A cylinder whose servo does not follow its motion: how far behind the joint is, and for how long the valve is fully open.
 fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -> Option<String> {
-    /// Share of its motion by which a joint may be behind; usual servos with their speed set ahead are below.
+    /// Fraction of its motion by which a joint may lag behind; usual servos with a feed-forward of the speed stay below it.
     const FOLLOWS: f64 = 0.05;
-    /// Opening from which a valve is fully open.
+    /// Opening from which a valve counts as fully open.
     const OPEN: f64 = 0.999;
     info.valve.filter(|valve| !valve.commanded)?;
     let coordinate = &description.coordinates[description.drives[info.drive].coordinate];
@@ -250,7 +250,7 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
     })
 }
 
-/// A cylinder whose suction valves let in too little oil: pressures are above that of the surroundings, and none is less than that below.
+/// A cylinder whose suction valves let in too little oil: pressures are relative to the atmosphere, so that none can be below −1 bar.
 fn below_vacuum(info: &CylinderInfo, table: &Table) -> Option<String> {
     const VACUUM: f64 = -1e5;
     let [.., piston, rod, _] = columns(&info.name).map(|(column, _)| Extremes::of(table, &column));

@@ -16,7 +16,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Of the column of this name; zeros where there is none.
+    /// Extremes of the column with this name; zeros if there is none.
     pub fn of(table: &Table, name: &str) -> Self {
         let Some(values) = table.values(name) else { return Self::default() };
         let mut times = table.rows.iter().map(|row| row[0]).zip(values);

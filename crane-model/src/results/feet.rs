@@ -1,11 +1,11 @@
-//! What feet do that the model does not hold for, or that a user must know: they pull, they lift off, the crane tips over.
+//! Cautions about feet: they pull, which the model is not valid for, they lift off, or the crane tips over.
 
 use nalgebra::Vector3;
 
 use super::{Extremes, Table, support_gap};
 use crate::{Description, TIPPED, dyn_crane::DynCrane};
 
-/// Part of the greatest reaction below which a pull is rounding.
+/// Fraction of the maximum reaction below which a pull is a rounding error.
 const ROUNDING: f64 = 1e-9;
 
 /// Feet at a pose at rest: those that pull the crane down, and those that have lifted off.
@@ -23,7 +23,7 @@ pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = Str
     pulled(&pulls).into_iter().chain(lifted)
 }
 
-/// Feet over a run: as of a pose, and whether the crane tips over.
+/// Feet over a run: as for a pose, and whether the crane tips over.
 pub(super) fn of_run(description: &Description, table: &Table) -> impl Iterator<Item = String> {
     of_reactions(description, table).into_iter().chain(tips_over(description, table))
 }
@@ -49,12 +49,12 @@ fn of_reactions(description: &Description, table: &Table) -> Vec<String> {
     pulled(&pulls.collect::<Vec<_>>()).into_iter().chain(lifted).collect()
 }
 
-/// A gap, m, in words that do not round it to nothing.
+/// A gap, given in m, as text in mm that does not round it to zero.
 fn millimetres(gap: f64) -> String {
     if gap < 1e-5 { format!("{:.1e}", 1e3 * gap) } else { format!("{:.3}", 1e3 * gap) }
 }
 
-/// Says that the base of a crane on feet that lift tips over in a run, and which feet carried it last.
+/// Reports that the base of a crane on feet that lift tips over in a run, and which feet carried it last.
 fn tips_over(description: &Description, table: &Table) -> Option<String> {
     let n = description.coordinates.len();
     let pose = |row: &[f64]| row[1..=n].to_vec();
@@ -75,7 +75,7 @@ fn tips_over(description: &Description, table: &Table) -> Option<String> {
     Some(format!("the crane tips over{about}: at {t:.2} s its base has rotated by more than {degrees:.0}°"))
 }
 
-/// Says which feet pull, with how much, and when.
+/// Reports which feet pull, with what force, and when.
 fn pulled(pulls: &[(&str, f64, Option<f64>)]) -> Option<String> {
     let each = pulls.iter().map(|(name, force, time)| {
         let when = time.map_or_else(String::new, |t| format!(" at {t:.2} s"));

@@ -12,7 +12,7 @@ enum Size {
     Range,
 }
 
-/// Columns of one kind, whose sizes compare.
+/// Columns of one kind, whose sizes are comparable.
 #[derive(Clone, Debug)]
 pub struct Kind {
     /// Names of the columns.

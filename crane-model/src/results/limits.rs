@@ -3,10 +3,10 @@
 use super::{Table, drive_effort};
 use crate::{Text, dyn_crane::DynCrane};
 
-/// Part of its limit from which a drive is said to be there: what is left is the rounded corner of its law.
+/// Fraction of its limit from which a drive is reported to be at it: the rest is the rounded corner of its law.
 const REACHED: f64 = 0.985;
 
-/// Drives that a pose at rest takes to their limits, and how far the joints are from where the drives stand.
+/// Drives at their limits in a pose at rest, and how far the joints are from the drives' positions.
 pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = String> {
     let motions = rig.drive_motions_at(0.0);
     let description = rig.description();
@@ -33,7 +33,7 @@ struct Reached {
     limit: f64,
 }
 
-/// Drives that a pose at rest takes to their limits.
+/// Drives at their limits in a pose at rest.
 fn reached(rig: &dyn DynCrane, q: &[f64]) -> Vec<Reached> {
     let drives = rig.drive_limits_at().into_iter().zip(rig.drive_efforts_at_rest(q)).enumerate();
     drives
@@ -44,17 +44,17 @@ fn reached(rig: &dyn DynCrane, q: &[f64]) -> Vec<Reached> {
         .collect()
 }
 
-/// Names of the coordinates whose drives a pose at rest takes to their limits.
+/// Names of the coordinates whose drives are at their limits in a pose at rest.
 pub(crate) fn overloaded(rig: &dyn DynCrane, q: &[f64]) -> Vec<Text> {
     let description = rig.description();
     let name = |reached: Reached| description.coordinates[description.drives[reached.drive].coordinate].name.clone();
     reached(rig, q).into_iter().map(name).collect()
 }
 
-/// Part of its greatest rate from which the effort of a drive is said to fade: it has fallen by a tenth.
+/// Fraction of its maximum rate from which the effort of a drive is reported to fade: it has fallen by a tenth.
 const FADED: f64 = 0.92;
 
-/// Drives that a run takes to their limits: when first, for how long, and how far the joints fall behind.
+/// Drives that reach their limits in a run: when first, for how long, and how far the joints fall behind.
 pub(super) fn of_run(rig: &dyn DynCrane, table: &Table) -> Vec<String> {
     let description = rig.description();
     let limits = description.drives.iter().zip(rig.drive_limits_at());

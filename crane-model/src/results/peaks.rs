@@ -5,11 +5,11 @@ use crate::Description;
 
 /// Signed extremes with their times, and final values, over the samples of a run.
 ///
-/// Columns, `_min`, `_min_time`, `_max`, `_max_time` of each: of a point `<point>_x`, `_y`, `_z`; of a drive
-/// `<coordinate>_drive_torque` or `_drive_force`; of a support `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap`;
-/// of a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`, `_rod_pressure` and `_flow`, of all `pump_flow` and `pump_power`,
-/// with valves `pump_pressure`; of end stops `<coordinate>_stop_torque` or `_stop_force`; of a connector `<connector>_force` or `_torque`.
-/// Finally `_end` of every coordinate of every point.
+/// Columns, each with `_min`, `_min_time`, `_max`, `_max_time`: for a point `<point>_x`, `_y`, `_z`; for a drive
+/// `<coordinate>_drive_torque` or `_drive_force`; for a support `<support>_reaction_x`, `_y`, `_z`, and `<support>_gap` if it is one-sided;
+/// for a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`, `_rod_pressure` and `_flow`, for all cylinders `pump_flow`
+/// and `pump_power`, with valves `pump_pressure`; for end stops `<coordinate>_stop_torque` or `_stop_force`; for a connector
+/// `<connector>_force` or `_torque`. Finally `_end` of every coordinate of every point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {
     extremes: Vec<Extremes>,

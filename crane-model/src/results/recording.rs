@@ -1,4 +1,4 @@
-//! Everything of a run that is worth a column.
+//! Recording of a run in columns.
 
 use crate::{
     ConnectorInfo, CoordinateKind, Description, bristles,
@@ -11,12 +11,14 @@ use crate::{
 
 /// Records the samples of a run of a crane.
 ///
-/// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; of a drive `<coordinate>_prescribed` and
-/// `<coordinate>_drive_torque` or `_drive_force`; of a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`,
-/// `_rod_pressure` and `_flow`, of all `pump_flow` and `pump_power`; of a point `<point>_x`, `_y`, `_z` and `_vx`, `_vy`, `_vz`; of a support
-/// `<support>_reaction_x`, `_y`, `_z`, of a one-sided one `<support>_gap` as well; of a coordinate of an element `<coordinate>_moment`; of end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or `_friction_force`, of joints that stick `<coordinate>_bristle`; of a
-/// connector `<connector>_length`, `<connector>_length_rate` and `<connector>_force`, of a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; energies. `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the
-/// error of the run if it is audited.
+/// Columns: `t`; `<coordinate>` and `<coordinate>_rate`; for a drive `<coordinate>_prescribed` and `<coordinate>_drive_torque` or
+/// `_drive_force`; for a cylinder `<cylinder>_length`, `_speed`, `_force`, `_piston_pressure`, `_rod_pressure` and `_flow`, for all
+/// cylinders `pump_flow` and `pump_power`, with valves `pump_pressure` and `<cylinder>_valve`; for a point `<point>_x`, `_y`, `_z` and
+/// `_vx`, `_vy`, `_vz`; for a support `<support>_reaction_x`, `_y`, `_z`, and `<support>_gap` if it is one-sided; for a coordinate of an
+/// element `<coordinate>_moment`; for end stops and friction `<coordinate>_stop_torque` or `_stop_force`, `<coordinate>_friction_torque` or
+/// `_friction_force`; for joints that stick `<coordinate>_bristle`; for a connector `<connector>_length`, `<connector>_length_rate` and
+/// `<connector>_force`; for a coupling `<coupling>_slip`, `<coupling>_slip_rate` and `<coupling>_force` or `_torque`; energies.
+/// `energy_balance` is `E(t) − E(0) − drive_work − load_work + dissipated_energy`, the error of the run if it is audited.
 pub struct Recording<'a> {
     crane: &'a dyn DynCrane,
     extent: Extent,
@@ -29,18 +31,18 @@ pub struct Recording<'a> {
 pub(crate) enum Extent {
     /// Everything.
     All,
-    /// What peaks and cautions read: no velocities of points, moments of elements and energies.
+    /// What peaks and cautions need: no velocities of points, moments of elements or energies.
     Peaks,
 }
 
 impl<'a> Recording<'a> {
-    /// No samples yet.
+    /// A recording without samples.
     pub fn new(crane: &'a dyn DynCrane) -> Self {
         let columns = [quantities(crane.description()), audited(crane.description())].concat();
         Self { crane, extent: Extent::All, table: Table { columns, rows: Vec::new() }, energy_at_start: 0.0 }
     }
 
-    /// No samples yet of what peaks and cautions read.
+    /// A recording without samples, of only what peaks and cautions need.
     pub(crate) fn of_peaks(crane: &'a dyn DynCrane) -> Self {
         let columns = quantities_of(crane.description(), Extent::Peaks);
         Self { crane, extent: Extent::Peaks, table: Table { columns, rows: Vec::new() }, energy_at_start: 0.0 }
@@ -70,7 +72,7 @@ impl<'a> Recording<'a> {
     }
 }
 
-/// What follows from a state of the crane and its oil: all columns of a [`Recording`] but those of its audit, in the order of
+/// The quantities at a state of the crane and its oil: all columns of a [`Recording`] except those of its audit, in the order of
 /// [`quantities`].
 pub fn quantities_at(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Vec<f64> {
     let mut row = Vec::new();
@@ -78,7 +80,7 @@ pub fn quantities_at(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: 
     row
 }
 
-/// Adds what follows from a state to a row; its energies if they are wanted.
+/// Appends the quantities at a state to a row; returns the energies if they are recorded.
 fn push_quantities(
     crane: &dyn DynCrane,
     extent: Extent,
@@ -151,7 +153,7 @@ fn push_quantities(
     Some(energies)
 }
 
-/// Names and units of what follows from a state.
+/// Names and units of the quantities at a state.
 pub fn quantities(description: &Description) -> Vec<Column> {
     quantities_of(description, Extent::All)
 }
@@ -221,7 +223,7 @@ fn quantities_of(description: &Description, extent: Extent) -> Vec<Column> {
     table.columns
 }
 
-/// Names and units of what only a run knows.
+/// Names and units of the quantities that only a run has: work, dissipated energy and energy balance.
 fn audited(description: &Description) -> Vec<Column> {
     let load_work = (!description.loads.is_empty()).then_some("load_work");
     let names = ["drive_work", "dissipated_energy"].into_iter().chain(load_work).chain(["energy_balance"]);
@@ -233,7 +235,7 @@ pub fn support_gap(support: &str) -> String {
     format!("{support}_gap")
 }
 
-/// What the length of a connector is called: the distance of points, or how much a coupling gives way.
+/// Name of a connector's length: the distance between its points, or the slip of a coupling.
 fn length_of(connector: &ConnectorInfo) -> &'static str {
     if connector.ends.is_some() { "length" } else { "slip" }
 }

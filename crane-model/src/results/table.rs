@@ -18,7 +18,7 @@ impl fmt::Display for Column {
     }
 }
 
-/// Numbers in rows, one column a quantity.
+/// Numbers in rows, one column per quantity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     /// Names and units.
@@ -33,7 +33,7 @@ impl Table {
         self.rows.iter().enumerate().find_map(|(index, row)| Some((index, row.iter().position(|x| !x.is_finite())?)))
     }
 
-    /// Adds a column; for a table without rows.
+    /// Adds a column to a table without rows.
     pub fn add(&mut self, name: impl Into<String>, unit: impl Into<String>) {
         self.columns.push(Column { name: name.into(), unit: unit.into() });
     }

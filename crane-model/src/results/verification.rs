@@ -38,7 +38,7 @@ pub struct Verification {
     /// Largest difference over the run, column by column, in the column's unit: of values at the same times, and of minima and
     /// maxima.
     pub differences: Vec<f64>,
-    /// Whether it belongs to a minimum or maximum between two results.
+    /// Whether the largest difference is that of a minimum or maximum between two results.
     pub between: Vec<bool>,
     /// Time in which small differences grow by a factor e, s, where the motion is chaotic.
     pub divergence: Option<f64>,

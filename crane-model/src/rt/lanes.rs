@@ -14,7 +14,7 @@ pub const fn splat(x: f64) -> f64x8 {
 
 /// Numbers with a fused multiply-add if the target has one.
 ///
-/// Without the target feature `fma`, `mul_add` is a slow call into a library: it is then a product and a sum.
+/// Without the target feature `fma`, `mul_add` would be a slow library call: a product and a sum are used instead.
 pub trait Fused: Copy {
     /// `a b + c`
     #[must_use]

@@ -65,7 +65,7 @@ impl<const N: usize, const E: usize> MassColumns<N, E> {
     }
 
     /// The lower triangle, column by column: row i of the upper triangle is column i of the lower one. The entries above
-    /// the diagonal are not results.
+    /// the diagonal are meaningless.
     #[inline]
     pub fn fill(&mut self, points: &[ConcurrentAxes], lower: &mut [[f64; N]; N]) {
         let eights = &mut self.eights;
@@ -110,7 +110,8 @@ impl<const N: usize> Rows<'_, N> {
 /// The lanes of eight columns.
 const LANES: f64x8 = f64x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
-/// Rows from `first` on: `entries` of the momenta of eight columns at a time, those after the rows shifted by `offset` first.
+/// Fills the rows from `first` on, eight columns at a time, with the `entries` of their momenta; the momenta of columns after these rows
+/// are first shifted by `offset`.
 #[inline]
 fn fill<const K: usize, const N: usize>(
     first: usize,

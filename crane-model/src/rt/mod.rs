@@ -1,4 +1,4 @@
-//! Functions that generated code calls, besides nalgebra.
+//! Functions that generated code calls, in addition to nalgebra.
 
 pub mod lanes;
 mod mass_matrix;
@@ -39,7 +39,8 @@ pub struct TransformFactors<const N: usize, const D: usize, const V: usize = 0> 
     pub axes: [Vector3<f64>; N],
     /// `∂T/∂q_n`, body by body.
     pub first: [Matrix4<f64>; D],
-    /// First coordinates of rotation vectors, whose three coordinates k have an additional `Σ_k share_k ∂T/∂q_k` in their pairs.
+    /// First coordinates of rotation vectors; a pair of the three coordinates k of such a vector has the additional term
+    /// `Σ_k share_k ∂T/∂q_k`.
     pub vectors: [usize; V],
     /// The shares of the six pairs of each rotation vector, row by row of a triangle.
     pub shares: [[[f64; 3]; 6]; V],

@@ -35,7 +35,7 @@ pub struct Outcome {
 pub enum Reason {
     /// Its parameters break a rule of the spec language.
     Refused(ParameterError),
-    /// It cannot start, or stopped before its time.
+    /// It cannot start, or stopped before its end.
     Failed(Failed),
     /// The ensemble was cancelled.
     CalledOff,
@@ -69,9 +69,9 @@ impl std::fmt::Display for Reason {
     }
 }
 
-/// Execution of an ensemble, besides its settings.
+/// How an ensemble is executed, in addition to its settings.
 pub struct Conduct<'a> {
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
     /// Called with every completed row, in the order of completion, from any thread.
     pub done: &'a (dyn Fn(usize, &Outcome) + Sync),
@@ -82,7 +82,7 @@ pub struct Conduct<'a> {
 /// Runs the crane with every row of parameters, all of them in the order of the description, each from its own [`Start`]. One outcome
 /// per row, in order.
 pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, conduct: &Conduct<'_>) -> Vec<Outcome> {
-    // States of forces have no lanes.
+    // Lanes do not support states of forces.
     let in_lanes = settings.method == Method::Rk4 && !crane.description().has_own_states();
     let piece = if in_lanes { crane.lanes() } else { 1 };
     let waiting = Mutex::new(rows.chunks(piece).enumerate());
@@ -200,7 +200,7 @@ fn alone(crane: &dyn DynCrane, parameters: &[f64], settings: &Settings, off: &dy
     gathering.finish(run)
 }
 
-/// Runs the cranes of some rows together, those that can start.
+/// Runs the cranes of some rows together, except those that cannot start.
 fn side_by_side(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings) -> Vec<Outcome> {
     let ready: Vec<_> = rows.iter().map(|row| ready(crane, row)).collect();
     let mut members = Vec::new();

@@ -34,7 +34,7 @@ pub enum Reason {
     MassMatrix,
     /// There are no modes, which are needed to compute a stable step.
     Modes(NoModes),
-    /// The linkage of a cylinder does not reach in a pose of the run.
+    /// The linkage of a cylinder cannot be assembled in a pose of the run.
     Unassembled {
         /// The cylinder.
         cylinder: Text,
@@ -60,13 +60,13 @@ impl Failed {
 }
 
 impl Reason {
-    /// Statics that found no stable equilibrium of a crane.
+    /// The reason for a crane for which statics found no stable equilibrium.
     pub fn no_equilibrium(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Self {
         let overloaded = overloaded(crane, &equilibrium.q);
         Self::Equilibrium { equilibrium: equilibrium.clone(), overloaded }
     }
 
-    /// For a crane with this name.
+    /// This reason for the crane with the given name.
     pub fn of(self, crane: &Text) -> Failed {
         Failed { crane: crane.clone(), reason: Box::new(self) }
     }

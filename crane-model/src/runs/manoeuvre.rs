@@ -22,7 +22,7 @@ pub const SAFE: f64 = 0.9;
 pub struct Pose {
     /// Time, s.
     pub t: f64,
-    /// Modes about the pose at rest, and how fast oil and bristles may decay.
+    /// Modes about the pose at rest, and bounds on the decay rates of oil and bristles.
     pub modes: Vec<DampedMode>,
 }
 
@@ -44,11 +44,11 @@ impl Bound {
     }
 }
 
-/// The start and `count` further poses evenly spaced in time, each the equilibrium with the drives stopped there. The poses end
-/// early without statics, or where the crane would fall.
+/// The start and `count` further poses evenly spaced in time, each the equilibrium with the drives stopped there. There is only the start
+/// if it is not at rest, and the poses end early where the crane would fall.
 ///
 /// # Errors
-/// There are no modes because of the masses.
+/// The modes cannot be computed.
 pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<Pose>, Failed> {
     let description = crane.description();
     let mut q = start.q.clone();
@@ -73,8 +73,8 @@ fn modes_at(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<Vec<DampedMode>, 
     Ok(limiting_modes(crane, t, q, &modes))
 }
 
-/// Modes about a pose that may limit a step: the damped ones, and the decays of oil and of bristles that slide as fast as the drives move at
-/// a time, which are not among them.
+/// Modes about a pose that may limit a step: the damped ones and, not among these, the decays of oil and of bristles that slide as fast as
+/// the drives move at time `t`.
 pub fn limiting_modes(crane: &dyn DynCrane, t: f64, q: &[f64], damped: &[DampedMode]) -> Vec<DampedMode> {
     [damped, &hydraulics::decays(crane, q), &bristles::decays(crane, t)].concat()
 }

@@ -46,10 +46,10 @@ const LEAST_TURNED: f64 = 1e-9;
 /// Largest error of the energy balance over the largest energy exchanged.
 pub fn imbalance(table: &Table) -> f64 {
     let column = |name: &str| table.values(name).map_or_else(Vec::new, Iterator::collect::<Vec<f64>>);
-    // Only the kinetic energy has a zero: a body that bounces has exchanged all of it between two results.
+    // Only the kinetic energy has an absolute zero: a body that bounces may exchange all of it between two results.
     let kinetic = column("kinetic_energy").into_iter().fold(0.0, f64::max);
-    let parts = ["gravity", "support", "element", "drive", "stop"].map(|part| format!("{part}_energy"));
-    let turned = parts.iter().map(String::as_str).chain(["drive_work", "dissipated_energy"]).map(|name| {
+    let parts = ["gravity", "support", "element", "drive", "stop", "connector"].map(|part| format!("{part}_energy"));
+    let turned = parts.iter().map(String::as_str).chain(["drive_work", "load_work", "dissipated_energy"]).map(|name| {
         let values = column(name);
         let first = values.first().copied().unwrap_or(0.0);
         values.iter().map(|x| (x - first).abs().max(LEAST_TURNED * x.abs())).fold(0.0, f64::max)
@@ -116,8 +116,8 @@ pub fn record(
     Ok(Recorded { start: start.what.clone(), run, table, wall: begin.elapsed(), verification: None, cautions })
 }
 
-/// As [`record`], once more to estimate the error if `verify`, and adds cautions; `bend`: degrees by which
-/// one section of a beam may rotate.
+/// As [`record`], with further cautions, and with a second run to estimate the error if `verify`; `bend`: degrees by which one section of a
+/// beam may rotate.
 ///
 /// # Errors
 /// [`Reason::Stopped`].

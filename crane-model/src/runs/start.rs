@@ -19,9 +19,9 @@ pub struct Start {
     pub q: Vec<f64>,
     /// Its rates, m/s and rad/s.
     pub v: Vec<f64>,
-    /// States of the oil; empty: those that hold the pose at rest.
+    /// States of forces; if empty, those that hold the pose at rest.
     pub x: Vec<f64>,
-    /// In words: [`EQUILIBRIUM`], [`GUESS`], or the request.
+    /// In words: [`EQUILIBRIUM`], [`GUESS`], or the start that was requested.
     pub what: String,
     /// Whether the crane would stay there with its drives stopped.
     pub rests: bool,
@@ -31,7 +31,7 @@ impl Start {
     /// The static equilibrium if the crane's spec requests statics, otherwise its guess.
     ///
     /// # Errors
-    /// There is no stable equilibrium, or the crane cannot be moved.
+    /// There is no stable equilibrium, or the mass matrix is not positive definite.
     pub fn of(crane: &dyn DynCrane) -> Result<Self, Failed> {
         if crane.description().statics {
             Self::at(crane, &crane.equilibrium(&Settings::default()))
@@ -43,7 +43,7 @@ impl Start {
     /// A given equilibrium.
     ///
     /// # Errors
-    /// It is not stable, or the crane cannot be moved.
+    /// It is not stable, or the mass matrix is not positive definite.
     pub fn at(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Result<Self, Failed> {
         let name = &crane.description().name;
         if !equilibrium.is_stable() {

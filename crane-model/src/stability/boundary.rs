@@ -1,4 +1,4 @@
-//! The boundary of a region of stability, for pictures.
+//! The boundary of a region of stability, for plots.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use nalgebra::Complex;
 
 use super::StabilityFunction;
 
-/// Points a turn of R: an arc of a degree.
+/// Points per turn of R: one per degree.
 const POINTS: usize = 360;
 /// Newton steps from one point to the next, a degree of R away: two reach the last bit, more cost nothing.
 const NEWTON: usize = 6;
@@ -15,7 +15,7 @@ impl StabilityFunction {
     /// The closed curve `|R(z)| = 1` through the origin, by following `R(z) = e^{iφ}` until it is back.
     pub fn boundary(&self) -> Vec<Complex<f64>> {
         let mut z = Complex::new(0.0, 0.0);
-        // R takes every value as often as its degree says: after that many turns of R the curve is closed.
+        // R takes every value as many times as its degree: after that many turns of R the curve is closed.
         let turns = self.degree();
         let follow = |step: usize| {
             let target = Complex::from_polar(1.0, TAU * step as f64 / POINTS as f64);

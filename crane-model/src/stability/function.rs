@@ -2,13 +2,13 @@
 
 use nalgebra::Complex;
 
-/// `|R|` counts as 1 up to this: it is 1 up to a high order of z on the imaginary axis, where rounding must not decide.
+/// Up to this `|R|` counts as 1: on the imaginary axis it is 1 up to a high order of z, and rounding must not decide there.
 const ABOVE_ONE: f64 = 1.0 + 1e-12;
-/// Step of the search along a ray: no region of a method offered has a hole narrower than this.
+/// Step of the search along a ray: the regions of the available methods have no hole narrower than this.
 const SCAN: f64 = 0.01;
-/// The search goes on linearly up to here, beyond every bounded region of a method offered, then by ratio.
+/// Up to here, beyond every bounded region of the available methods, the steps of the search are constant; then they grow geometrically.
 const LINEAR: f64 = 50.0;
-/// Where a region counts as without end.
+/// Distance at which a region counts as unbounded.
 const FAR: f64 = 1e12;
 /// Halvings of [`SCAN`], or of a ratio, to the last bit.
 const HALVINGS: usize = 60;
@@ -51,7 +51,7 @@ impl StabilityFunction {
         }
     }
 
-    /// How often R takes a value.
+    /// How many times R takes each value.
     pub(super) fn degree(&self) -> usize {
         match self {
             Self::Rational { numerator, denominator } => numerator.len().max(denominator.len()) - 1,

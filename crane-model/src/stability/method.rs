@@ -4,8 +4,8 @@ use super::StabilityFunction::{self, Backward, Rational};
 use crate::dynamics::{Method, dormand_prince, rk4, rosenbrock};
 
 impl Method {
-    /// R(z), by which a step multiplies a small motion; of an implicit method with the exact Jacobian. Of backward differences that of
-    /// order 2, to which they return where a motion grows at a higher one.
+    /// R(z), by which a step multiplies a small motion: for implicit methods with the exact Jacobian, for backward differences of order 2,
+    /// to which they return if a motion grows at a higher order.
     pub const fn stability(self) -> StabilityFunction {
         match self {
             Method::Rk4 => Rational { numerator: &rk4::STABILITY, denominator: &[1.0] },

@@ -56,7 +56,7 @@ fn moving(description: &Description, coordinate: usize) -> (String, Option<&str>
 pub fn grouped(number: f64) -> String {
     /// Significant digits.
     const DIGITS: usize = 3;
-    // 2.29e4: the digits as rounding to so many gives them, and the power of ten of the first.
+    // 2.29e4: the rounded digits, and the power of ten of the first one.
     let text = format!("{:.*e}", DIGITS - 1, number.abs());
     let Some((digits, Ok(power))) = text.split_once('e').map(|(digits, power)| (digits, power.parse::<usize>())) else {
         return format!("{number:.DIGITS$}");

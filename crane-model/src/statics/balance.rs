@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::{CoordinateKind, CoordinateRole, Tension, dyn_crane::DynStatics};
 
-/// Least scale of the forces against that of the moments, 1/m, and the other way about, m: where all moments cancel, forces
-/// at levers of some metres leave their rounding.
+/// Minimum ratio of the scale of forces to that of moments, 1/m, and vice versa, m: where all moments cancel, forces with lever arms of
+/// several metres leave their rounding errors.
 const LEAST: f64 = 1e-5;
 
 /// Size of the forces that balance, by which the residual is measured.
@@ -15,7 +15,7 @@ const LEAST: f64 = 1e-5;
 /// the greatest force that any translation balances at the guess, that of a rotation the greatest moment of any rotation.
 pub(super) struct Balance {
     scale: DVector<f64>,
-    /// Size of the numbers whose difference is the elongation of springs, coordinate by coordinate, besides the coordinate itself, m.
+    /// Size of the numbers whose difference is the elongation of springs, per coordinate, in addition to the coordinate itself, m.
     reach: DVector<f64>,
 }
 
@@ -42,7 +42,7 @@ impl Balance {
             CoordinateKind::Translation => force,
             CoordinateKind::Rotation => moment,
         });
-        // Exact kinematics subtract the place of a support from where it is.
+        // Exact kinematics subtract the position of a support in the spec from its current position.
         let supports = crane.description().supports.iter().filter(|support| !support.linear);
         let farthest = supports.flat_map(|support| support.position).fold(0.0, |far: f64, x| far.max(x.abs()));
         let reach = DVector::from_fn(n, |i, _| match (coordinates[i].role, coordinates[i].kind) {
@@ -67,10 +67,10 @@ impl Balance {
         number / self.scale[i]
     }
 
-    /// The least scaled residual that poses in double precision have: coordinates are rounded, and stiff springs make forces
-    /// of that.
+    /// The smallest scaled residual that poses in double precision can reach: stiff springs turn the rounding errors of coordinates into
+    /// forces.
     pub(super) fn rounding(&self, crane: &dyn DynStatics, stiffness: &DMatrix<f64>, q: &DVector<f64>) -> f64 {
-        /// Roundings of a coordinate and of the sums that it goes through.
+        /// Number of rounding errors of a coordinate and of the sums that contain it.
         const ROUNDINGS: f64 = 4.0;
         let of_coordinates = stiffness.abs() * (q.abs() + &self.reach);
         ROUNDINGS * f64::EPSILON * self.norm(&(of_coordinates + of_lengths(crane, q)))
@@ -83,8 +83,8 @@ impl Balance {
     }
 }
 
-/// Size of the forces that connectors would have over lengths as great as the numbers from which their lengths are computed: a length
-/// is the difference of two places.
+/// Size of the forces that connectors would have if stretched by as much as the numbers from which their lengths are computed: a length is
+/// the difference of two positions.
 fn of_lengths(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
     let connectors = &crane.description().connectors;
     let mut sum = DVector::zeros(q.len());

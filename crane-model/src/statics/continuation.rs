@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{balance::Balance, equations::Equations};
 
-/// Greatest change of a coordinate in a step, m or rad, and of λ.
+/// Maximum change of a coordinate in a step, m or rad, and of λ.
 const LONGEST: f64 = 0.3;
 /// A step as short as this makes no progress.
 const SHORTEST: f64 = 1e-9;
@@ -30,7 +30,7 @@ pub(super) fn follow<T>(
     let n = start.len();
     let springs = balance.springs(&equations.stiffness(start));
     let path = Path { equations, start, springs, balance };
-    // A point is q and λ in one vector; the path sets out towards greater λ.
+    // A point is q and λ in one vector; the path starts towards increasing λ.
     let mut point = start.clone().push(0.0);
     let ahead = DVector::zeros(n).push(1.0);
     let mut tangent = path.tangent(&point, &ahead)?;
@@ -71,7 +71,7 @@ struct Path<'a> {
 }
 
 impl Path<'_> {
-    /// Scaled H at a point, and its derivatives by q and λ above the row `last`.
+    /// Scaled H at a point, and its derivatives with respect to q and λ, followed by the row `last`.
     fn system(&self, point: &DVector<f64>, last: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let n = self.start.len();
         let (q, load) = (point.rows(0, n).into_owned(), point[n]);
@@ -88,7 +88,7 @@ impl Path<'_> {
         (value.push(0.0), matrix)
     }
 
-    /// Direction of the path at a point of it, of length 1, onward from the direction before.
+    /// Unit tangent of the path at one of its points, oriented like the previous direction.
     fn tangent(&self, point: &DVector<f64>, before: &DVector<f64>) -> Option<DVector<f64>> {
         let (_, matrix) = self.system(point, before);
         let along = DVector::zeros(self.start.len()).push(1.0);
@@ -97,7 +97,7 @@ impl Path<'_> {
         length.is_normal().then(|| direction / length)
     }
 
-    /// The point of the path across its tangent from `point`, and how many corrections it took.
+    /// The point of the path perpendicular to the tangent from `point`, and the number of corrections.
     fn corrected(&self, mut point: DVector<f64>, tangent: &DVector<f64>) -> Option<(DVector<f64>, usize)> {
         for correction in 0..=CORRECTIONS {
             let (value, matrix) = self.system(&point, tangent);

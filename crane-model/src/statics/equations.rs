@@ -39,7 +39,7 @@ pub(super) struct Held<'a> {
     positions: &'a [f64],
     /// Prescribed positions and rates of the drives at t = 0.
     motions: Vec<[f64; 2]>,
-    /// The prescribed rates, at which dampers of drives are unloaded, at the places of their coordinates.
+    /// The prescribed rates, at which dampers of drives are unloaded, at the indices of their coordinates.
     rates: Vec<f64>,
     /// Time of loads and winches, s.
     t: f64,
@@ -57,7 +57,7 @@ impl<'a> Held<'a> {
         Self { crane, positions, motions, rates, t }
     }
 
-    /// Moves the coordinates of rigid drives to where these hold them.
+    /// Sets the coordinates of rigid drives to the positions of these drives.
     pub(super) fn prescribe(&self, q: &mut [f64]) {
         let drives = self.crane.description().drives.iter().zip(self.positions);
         for (drive, position) in drives.filter(|(drive, _)| self.is_rigid(drive.coordinate)) {
@@ -65,13 +65,13 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Rigid drives move their coordinates, and leave no residual.
+    /// Whether a rigid drive prescribes the coordinate, which then has no residual.
     fn is_rigid(&self, coordinate: usize) -> bool {
         self.crane.description().coordinates[coordinate].role == CoordinateRole::Prescribed
     }
 
-    /// The pose at which drives at their positions of t = 0 have the stretch that they have here: a drive reacts only to the
-    /// distance of its coordinate from its position.
+    /// The pose at which the drives, at their positions of t = 0, are stretched as much as they are here: the effort of a drive depends
+    /// only on the distance of its coordinate from its position.
     fn moved(&self, q: &DVector<f64>) -> DVector<f64> {
         let mut moved = q.clone();
         let drives = self.crane.description().drives.iter().zip(self.positions.iter().zip(&self.motions));
@@ -116,7 +116,7 @@ impl Equations for Held<'_> {
         residual
     }
 
-    /// With the stiffness of drives whose effort is limited as it is at their stretch; that of loads is taken as at t = 0.
+    /// The stiffness of drives with limited effort is that at their stretch; that of loads is taken at t = 0.
     fn stiffness(&self, q: &DVector<f64>) -> DMatrix<f64> {
         let mut stiffness = AtStart(self.crane).stiffness(q);
         let drives = &self.crane.description().drives;

@@ -9,7 +9,7 @@ use super::{Settings, Status};
 pub struct Iteration {
     /// Scaled residual.
     pub residual: f64,
-    /// Part of the Newton step that led here: 1 for a full step, 0 at the first pose.
+    /// Fraction of the Newton step that led here: 1 for a full step, 0 at the first pose.
     pub fraction: f64,
 }
 

@@ -7,10 +7,11 @@ use crate::{
     dyn_crane::{DynModel, Instance},
 };
 
-/// A guess is the drive's position up to this, m or rad: above rounding, below the differences that matter in a spec.
+/// A guess within this distance of the drive's position is equal to it, m or rad: above rounding, below the differences that matter in a
+/// spec.
 const ROUNDING: f64 = 1e-9;
 
-/// The description's guess, made with default parameters, for the crane's own parameters.
+/// The description's guess, which is for default parameters, adapted to the parameters of the crane.
 ///
 /// A driven coordinate whose guess is the drive's position at t = 0 follows that position as parameters change; other guesses
 /// of the spec are unchanged.

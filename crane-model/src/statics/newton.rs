@@ -7,7 +7,7 @@ use crate::CoordinateKind;
 
 /// Halvings of a step before it is given up: 1e-6 of a Newton step no longer makes progress.
 const HALVINGS: u32 = 20;
-/// Greatest rotation in a step, rad: far from equilibrium the tangent says nothing about poses further away.
+/// Maximum rotation in a step, rad: far from equilibrium the tangent says nothing about poses further away.
 const GREATEST_ROTATION: f64 = 1.0;
 
 /// The iteration from the pose `q`.
@@ -41,7 +41,7 @@ pub(super) fn iterate(
         }
         let newton = tangent.step(&residual);
         // A stiff connector makes a curved valley: its force grows along a straight step, even if the step leads towards the
-        // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count alike:
+        // equilibrium. There a residual is measured by the Newton step from it, in which soft and stiff directions count equally:
         // the natural monotonicity test, P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004.
         let way = newton.norm();
         let is_nearer =

@@ -3,7 +3,7 @@
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Greatest scaled residual `‖r/scale‖` of an equilibrium: the part of the balancing forces left over.
+    /// Maximum scaled residual `‖r/scale‖` of an equilibrium: the fraction of the balancing forces that is left over.
     pub tolerance: f64,
     /// Newton steps before giving up.
     pub iterations: usize,
@@ -13,7 +13,7 @@ pub struct Settings {
 
 impl Default for Settings {
     /// 1e-10 is 1e-5 N on a crane of ten tonnes and 1e4 times the rounding error; good guesses need 3 to 5 steps. A crane
-    /// that sinks by some radians needs some 100 load steps.
+    /// that sinks by several radians needs about 100 load steps.
     fn default() -> Self {
         Self { tolerance: 1e-10, iterations: 50, load_steps: 1000 }
     }

@@ -29,8 +29,8 @@ use crate::{
 /// H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0,   λ from 0 to 1
 /// ```
 ///
-/// a path without end if the potential energy grows with the distance from the guess, so that it reaches an equilibrium for
-/// almost every guess. It is followed by arclength, since λ may decrease along it.
+/// This path does not end before λ = 1 if the potential energy grows with the distance from the guess, so that it reaches an equilibrium
+/// for almost every guess. It is followed by arclength, since λ may decrease along it.
 /// S. N. Chow, J. Mallet-Paret, J. A. Yorke, Finding zeroes of maps, Math. Comp. 32 (1978) 887; H. B. Keller, Numerical
 /// solution of bifurcation and nonlinear eigenvalue problems, in Applications of Bifurcation Theory, Academic Press 1977.
 pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> Equilibrium {
@@ -43,8 +43,8 @@ pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
     prescribed(crane, found)
 }
 
-/// As [`solve`], with the drives where their motions are at time `t`, s, and from the pose `q`: where the crane would rest
-/// if its motion stopped. This gives poses during a manoeuvre, each starting from the previous one.
+/// As [`solve`], with the drives at the positions of their motions at time `t`, s, and starting from the pose `q`: where the crane would
+/// rest if its motion stopped. This gives poses during a manoeuvre, each starting from the previous one.
 pub fn solve_at<const N: usize, C: Statics<N>>(
     crane: &C,
     t: f64,
@@ -62,7 +62,7 @@ pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settin
     solve_held(crane, t, &positions, q, settings)
 }
 
-/// As [`solve_at_dyn`] at t = 0, with the drives at given positions, one per drive, instead of where their motions are.
+/// As [`solve_at_dyn`] at t = 0, with the drives at given positions, one per drive, instead of those of their motions.
 pub fn solve_holding_dyn(crane: &dyn DynStatics, positions: &[f64], q: &[f64], settings: &Settings) -> Equilibrium {
     solve_held(crane, 0.0, positions, q, settings)
 }

@@ -22,7 +22,7 @@ pub enum Status {
     },
     /// A crane on feet that lift has no stable pose with its base upright.
     TipsOver {
-        /// Feet at the ends of the line that it tips over, or those that press last; may be empty.
+        /// Feet at the ends of the line that it tips over, or those that still press on the ground; may be empty.
         feet: Vec<Text>,
     },
     /// Forces or stiffnesses at the guess are not finite numbers.

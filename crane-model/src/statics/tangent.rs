@@ -10,7 +10,7 @@ use crate::{CoordinateKind, Description, Text};
 const LEAST_STIFFNESS: f64 = 1e-13;
 /// A direction is free below this fraction of the largest scaled stiffness. Scaling brings joints and springs to about 1.
 const FREE: f64 = 1e-7;
-/// A coordinate belongs to a direction from this fraction of its largest component.
+/// A coordinate belongs to a direction if its component is at least this fraction of the largest one.
 const SHARE: f64 = 0.3;
 
 /// `K = S⁻¹ U Λ Uᵀ S⁻¹`, with `S = diag(1/√|K_ii|)`: m and rad become comparable, and relative coordinates nearly decouple.

@@ -1,4 +1,4 @@
-//! Cranes on feet that lift: where no pose stands, the line that they tip over.
+//! Cranes on feet that lift: the line over which they tip if there is no stable upright pose.
 
 use super::{Equilibrium, Status};
 use crate::{
@@ -7,14 +7,15 @@ use crate::{
     tipping::{governing, lines},
 };
 
-/// Tipping margin below which a crane without a stable pose is reported to tip over: its drives and feet give way by less than that.
+/// Tipping margin below which a crane without a stable pose is reported to tip over: yielding drives and feet change the margin by less
+/// than that.
 const LITTLE: f64 = 0.1;
 
-/// Scaled residual below which a pose is at rest except for rounding, whatever Newton's method made of it.
+/// Scaled residual below which a pose is at rest except for rounding, even if Newton's method did not converge.
 const AT_REST: f64 = 1e-6;
 
-/// The equilibrium at time `t`, s, found from a pose, with the status that the crane tips over if it has feet that lift and the pose found is not stable
-/// or its base is not upright.
+/// The equilibrium at time `t`, s, that was found from the pose `from`; its status becomes that the crane tips over if it has feet that
+/// lift and the pose found is not stable or its base is not upright.
 pub(crate) fn named(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibrium) -> Equilibrium {
     let description = crane.description();
     let feet = || description.supports.iter().filter(|support| support.one_sided);
@@ -29,7 +30,7 @@ pub(crate) fn named(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibri
         Some(line) if fell || line.margin() < LITTLE => {
             line.feet.iter().map(|&foot| description.supports[foot].name.clone()).collect()
         }
-        // In a plane there are no lines: the feet that still press.
+        // In a plane there are no tipping lines: name the feet that still press.
         None if fell => {
             let reactions = crane.support_reactions_at(&found.q, &rest);
             let pressing = description.supports.iter().zip(&reactions).filter(|(_, force)| force.z > 0.0);

@@ -1,4 +1,4 @@
-//! Implicit systems of cranes written by hand, by dense factors; eight of them, one by one.
+//! Implicit systems of cranes written by hand, by dense factors; lanes of eight cranes, evaluated one after the other.
 
 use crane_model::{Dynamics, Ensemble, Implicit, OneByOne};
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
@@ -17,7 +17,7 @@ pub fn factorise<const N: usize, C: Dynamics<N>>(
     Cholesky::new(crane.mass_matrix(q) + SMatrix::from_diagonal(added_inertia))
 }
 
-/// x of `(A + D̂) x = r`; no number where A is not positive definite.
+/// x of `(A + D̂) x = r`; NaN if A + D̂ is not positive definite.
 pub fn solve<const N: usize>(factors: &Factors<N>, r: &SVector<f64, N>) -> SVector<f64, N> {
     factors.as_ref().map_or(SVector::repeat(f64::NAN), |factors| factors.solve(r))
 }

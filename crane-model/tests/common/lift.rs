@@ -44,7 +44,7 @@ pub struct Lift {
     pub amplitude: f64,
     /// Circular frequency of the support, rad/s.
     pub frequency: f64,
-    /// When the support moves up and back again, s, and how long that takes, instead of all the time.
+    /// Start and duration of a single motion of the support up and back, s; without it, the support oscillates all the time.
     pub bump: Option<[f64; 2]>,
 }
 
@@ -64,7 +64,7 @@ impl Default for Lift {
 }
 
 impl Lift {
-    /// Starts at a guess of its own.
+    /// Starts at a guess that is not the drive's position.
     pub fn guessed() -> Self {
         Self { description: &GUESSED, ..Self::default() }
     }

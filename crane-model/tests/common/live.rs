@@ -1,4 +1,4 @@
-//! A live crane with its number of coordinates in the type, for what is typed: single steps.
+//! A live crane with its number of coordinates in the type, for functions that need it there: single steps.
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;

@@ -12,8 +12,8 @@ use crane_model::{
 };
 use nalgebra::Complex;
 
-/// A lift on a spring of 2e5 rad/s, far beyond what steps resolve: the mass follows its drive, z ≈ sag + 0.1 m sin 7t, but for
-/// m a Ω²/s = 1e-10 m.
+/// A lift on a spring of 2e5 rad/s, far beyond what steps resolve: the mass follows its drive, z ≈ sag + 0.1 m sin 7t, except
+/// for m a Ω²/s = 1e-10 m.
 fn stiff_lift() -> Lift {
     Lift { stiffness: 4e11, damping: 4e5, ..Lift::default() }
 }
@@ -26,7 +26,7 @@ fn swinging(ratio: f64) -> (Lift, Complex<f64>) {
     (lift, Complex::new(-ratio, (1.0 - ratio * ratio).sqrt()) * omega)
 }
 
-/// End of a second from `start` in equal steps of a method, and of its embedded formula, which starts every step afresh.
+/// State one second after `start`, in equal steps of a method or of its embedded formula, whose result then starts the next step.
 fn run<const N: usize>(
     steps: i32,
     start: State<N>,

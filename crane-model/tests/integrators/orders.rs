@@ -65,7 +65,8 @@ impl<const N: usize, C: Dynamics<N>> Implicit<N> for Misled<C> {
     }
 }
 
-/// Order from the differences between three halved steps, over several starts: in a single one, terms of two orders may cancel.
+/// Order from the differences between runs with three successively halved steps, over several starts: in a single run, terms of two orders
+/// may cancel.
 fn order<const N: usize>(coarse: i32, starts: &[State<N>], run: impl Fn(i32, State<N>) -> State<N>) -> f64 {
     let ends = [1, 2, 4].map(|factor| starts.iter().map(|start| run(coarse * factor, *start)).collect::<Vec<_>>());
     let distance = |a: &[State<N>], b: &[State<N>]| {
@@ -84,7 +85,7 @@ fn explicit<const N: usize, C: Dynamics<N>>(crane: &C) -> impl Fn(f64, f64, &Sta
     move |t, h, state| dormand_prince::step(crane, t, h, state).expect("inertia")
 }
 
-/// How far a measured order may be from the true one: the next term of the error is h as large.
+/// How far a measured order may be from the true one: the next term of the error is smaller by a factor of h.
 const ORDER: f64 = 0.25;
 
 #[test]
@@ -103,14 +104,14 @@ fn orders_on_swinging_double_pendulums() {
 
 #[test]
 fn the_implicit_method_keeps_its_orders_with_any_jacobian() {
-    // None at all, and others that have nothing to do with the crane's; the lift's is [4000, 40].
+    // No Jacobian at all, and others unrelated to the crane's; the lift's is [4000, 40].
     for stiffness_and_damping in [[0.0, 0.0], [20.0, 0.0], [3.0, 7.0]] {
         let pendulum = Misled { crane: DoublePendulum::hanging(), stiffness_and_damping };
         let measured = order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), false));
         assert!((measured - 4.0).abs() < ORDER, "{stiffness_and_damping:?}: order {measured}");
         let measured = order(320, &starts(), |n, start| run(n, start, implicit(&pendulum), true));
         assert!((measured - 3.0).abs() < ORDER, "{stiffness_and_damping:?}, embedded: order {measured}");
-        // A drive depends on time besides.
+        // A drive depends on time, too.
         let lift = Misled { crane: Lift::default(), stiffness_and_damping };
         let rest = [State::at_rest(Vector1::new(lift.crane.sag()))];
         let measured = order(160, &rest, |n, start| run(n, start, implicit(&lift), false));
@@ -146,7 +147,7 @@ fn the_implicit_method_is_stable_up_to_a_sector() {
         let direction = Complex::new(-ratio, (1.0 - ratio * ratio).sqrt());
         (0..200_000).map(|k| function.value(direction * (f64::from(k) * 1e-2)).norm()).fold(0.0, f64::max)
     };
-    // Undamped modes grow by 0.644 % a step at most, at hω = 3.5; a damping ratio of 0.0035 suffices: sin(90° − 89.8°).
+    // Undamped modes grow by 0.644 % per step at most, at hω = 3.5; a damping ratio of 0.0035 suffices: sin(90° − 89.8°).
     assert!((most(0.0) - 1.006_44).abs() < 1e-5, "{}", most(0.0));
     for ratio in [0.0035, 0.01, 0.1, 0.5, 1.0] {
         assert!(most(ratio) <= 1.0 + 1e-12, "{ratio}: {}", most(ratio));
@@ -157,9 +158,10 @@ fn the_implicit_method_is_stable_up_to_a_sector() {
     assert!((function.value(z) - z.exp()).norm() < 1e-2 * z.norm().powi(5));
 }
 
-/// Steps of backward differences over a second, from as many exact states as the order: a step of the pair hardly errs.
+/// Steps of backward differences over a second, from as many states as the order, computed almost exactly by fine steps of the explicit
+/// pair.
 fn differences<const N: usize, C: Implicit<N>>(crane: &C, order: usize, steps: i32, start: State<N>) -> State<N> {
-    /// Steps of the pair in a step.
+    /// Steps of the explicit pair per step.
     const FINE: i32 = 8;
     let h = f64::from(steps).recip();
     let fine = |from: i32, state: State<N>| {
@@ -168,7 +170,7 @@ fn differences<const N: usize, C: Implicit<N>>(crane: &C, order: usize, steps: i
             explicit(crane)(h * f64::from(from) + part * f64::from(k), part, &state).0
         })
     };
-    // The last first.
+    // Most recent first.
     let mut past = vec![start];
     for k in 0..steps {
         let next = if past.len() < order {
@@ -183,7 +185,7 @@ fn differences<const N: usize, C: Implicit<N>>(crane: &C, order: usize, steps: i
 
 #[test]
 fn backward_differences_have_their_orders_with_any_jacobian() {
-    // Both converge to the same state, so a Jacobian that slows the iteration down does not count.
+    // The iteration converges to the same state with both, so that a poor Jacobian only slows it down.
     for stiffness_and_damping in [[0.0, 0.0], [3.0, 7.0]] {
         let pendulum = Misled { crane: DoublePendulum::hanging(), stiffness_and_damping };
         for expected in 1..=bdf::ORDER {
@@ -199,7 +201,7 @@ fn backward_differences_have_their_orders_with_any_jacobian() {
 
 #[test]
 fn backward_differences_meet_their_stability_function() {
-    // Past states on an eigenvector of λ that is multiplied by R a step: so is the next.
+    // If past states are on an eigenvector of λ and multiplied by R per step, so is the next one.
     for ratio in [0.0, 0.1, 0.9] {
         let (lift, lambda) = swinging(ratio);
         for h in [1e-3, 0.03, 0.2, 1.0, 50.0] {
@@ -213,7 +215,7 @@ fn backward_differences_meet_their_stability_function() {
             let (re, im) = (part(|z| z.re), part(|z| z.im));
             let (q, v) = (Complex::new(re.0, im.0), Complex::new(re.1, im.1));
             let scale = factor.inv().norm();
-            // Of the past states as large as 1/R, (hω)² = 1e6 amplifies rounding for the longest step.
+            // For the longest step, (hω)² = 1e6 amplifies the rounding errors of past states as large as 1/R.
             assert!((q - factor).norm() < 1e-9 * scale, "{ratio}, h {h}: {q} {factor}");
             assert!((v / lambda - factor).norm() < 1e-9 * scale, "{ratio}, h {h}: {v} {factor}");
         }
@@ -222,9 +224,9 @@ fn backward_differences_meet_their_stability_function() {
 
 #[test]
 fn backward_differences_are_stable_up_to_a_sector() {
-    /// Steps of a run: what grows by 2 % a step is a thousand times as large in the end.
+    /// Steps of a run: growth by 2 % per step amounts to more than a factor of a thousand.
     const STEPS: usize = 400;
-    /// Greatest growth, over steps from a hundredth of what a mode asks for to a hundred times that.
+    /// Maximum growth over step sizes from 0.01/|λ| to 100/|λ|.
     fn growth(order: usize, ratio: f64) -> f64 {
         let (lift, lambda) = swinging(ratio);
         let run = |z: f64| {
@@ -246,7 +248,7 @@ fn backward_differences_are_stable_up_to_a_sector() {
     for (order, ratio) in [(3, 0.03), (4, 0.2)] {
         assert!(growth(order, ratio) > 10.0, "order {order}, {ratio}: {:e}", growth(order, ratio));
     }
-    // Stiff motions die out at once.
+    // Stiff motions decay within one step.
     let (lift, lambda) = swinging(0.5);
     for order in 1..=bdf::ORDER {
         let past = vec![State { q: Vector1::new(lift.sag()), v: Vector1::new(0.0) }; order];
@@ -259,7 +261,7 @@ fn backward_differences_are_stable_up_to_a_sector() {
 
 #[test]
 fn backward_differences_keep_their_orders_where_a_stiff_spring_is_forced() {
-    // Of a crane that does not say what its drive prescribes; rates are differences of positions that follow it, and lose nothing.
+    // For a crane that does not report the motion of its drive; rates are differences of positions that follow it, and keep their order.
     let lift = stiff_lift();
     let blind = Misled { crane: lift, stiffness_and_damping: [lift.stiffness, lift.damping] };
     let forced = |t: f64| {
@@ -270,7 +272,7 @@ fn backward_differences_keep_their_orders_where_a_stiff_spring_is_forced() {
     for order in 1..=bdf::ORDER {
         let errors = [50, 100, 200].map(|n: i32| {
             let h = f64::from(n).recip();
-            // The last first.
+            // Most recent first.
             let mut past: Vec<_> = (0..order).rev().map(|k| forced(h * k as f64)).collect();
             for k in past.len()..=usize::try_from(n).expect("steps") {
                 past.insert(0, bdf::step(&blind, h * (k - 1) as f64, h, &past[..order]).expect("mass"));
@@ -280,7 +282,7 @@ fn backward_differences_keep_their_orders_where_a_stiff_spring_is_forced() {
         let measured = (errors[0][1] / errors[2][1]).log2() / 2.0;
         println!("order {order}: {measured:.3} of rates, {errors:?}");
         assert!((measured - order as f64).abs() < ORDER, "order {order}: {measured}, {errors:?}");
-        // Positions are off by the rates' error times d/s, except for the spring's own deflection.
+        // The error of positions is that of rates times d/s, apart from the deflection of the spring.
         assert!(errors[0][0] < 1e-5 * errors[0][1] + 1e-9, "order {order}: {errors:?}");
     }
 }

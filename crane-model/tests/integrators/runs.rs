@@ -16,7 +16,7 @@ use crate::{implicit, run, stiff_lift, swinging};
 
 #[test]
 fn unresolved_undamped_modes_do_not_grow_in_adaptive_runs() {
-    // 20 rad/s, and a tolerance that steps of half a swing meet once the swinging is small.
+    // 20 rad/s, and a tolerance that steps of half an oscillation meet once the amplitude is small.
     let (lift, _) = swinging(0.0);
     let settings = Settings {
         method: Method::Bdf,
@@ -31,7 +31,7 @@ fn unresolved_undamped_modes_do_not_grow_in_adaptive_runs() {
         ControlFlow::Continue(())
     })
     .expect("a run");
-    // What grows is noticed at the tolerance of a step.
+    // Growth is detected when it reaches the tolerance of a step.
     assert!(most < 0.1, "{most}");
 }
 
@@ -41,15 +41,15 @@ fn a_stiff_spring_is_not_forced_by_its_drive() {
     let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(lift.amplitude * lift.frequency) };
     let exact = (lift.sag() + lift.amplitude * lift.frequency.sin(), 0.7 * lift.frequency.cos());
     let end = run(50, start, implicit(&lift), false);
-    // The deviation from the drive's motion is all that is integrated. Of the rate, what differencing of the motion leaves.
+    // Only the deviation from the drive's motion is integrated. The error of the rate is that of differencing the motion.
     assert!((end.q.x - exact.0).abs() < 1e-9 && (end.v.x - exact.1).abs() < 1e-6, "{end:?} {exact:?}");
 }
 
 #[test]
 fn efforts_are_right_however_stiff_the_drive() {
     for stiffness in [1e6, 1e8, 1e10, 1e12] {
-        // In the limit of a rigid drive the effort is m (g + z̈_dr). The start misses the rate m a Ω³/s of the spring, which rings
-        // with ω = √(s/m).
+        // In the limit of a rigid drive the effort is m (g + z̈_dr). The start lacks the rate m a Ω³/s of the spring, which
+        // therefore rings with ω = √(s/m).
         let lift = Lift { stiffness, damping: 1e-3 * stiffness, ..Lift::default() };
         let Lift { mass, amplitude, frequency, .. } = lift;
         let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(amplitude * frequency) };
@@ -67,7 +67,7 @@ fn efforts_are_right_however_stiff_the_drive() {
             .expect("a run");
             let ringing = mass * amplitude * frequency.powi(3) * (mass / stiffness).sqrt();
             println!("{method} {stiffness:e}: {:.1e}, {:?}", worst / peak, run.statistics);
-            // The tolerance asks for a thousandth of a step; rounding of a position of 0.1 m times the stiffness is 2e-5 N.
+            // The tolerance allows a thousandth of the effort per step; rounding of a position of 0.1 m times the stiffness is 2e-5 N.
             assert!(worst < 2e-3 * peak + ringing, "{method} {stiffness:e}: {worst:e} of {peak} N");
             let said = &run.efforts[0];
             assert!((said.peak / peak - 1.0).abs() < 0.01 && said.error < 0.01 * peak, "{said:?}, {peak}");
@@ -87,7 +87,7 @@ fn what_rounding_leaves_of_an_effort_is_said() {
     }
 }
 
-/// Greatest error of a run of the lift at its results, m, and the run's statistics.
+/// Maximum error of a run of the lift at its results, m, and the run's statistics.
 fn lift_error(method: Method, tolerance: f64, output: f64) -> (f64, crane_model::dynamics::Run) {
     let lift = Lift::default();
     let settings =
@@ -209,7 +209,7 @@ impl<const N: usize, C: Implicit<N>> Implicit<N> for Counted<C> {
 #[test]
 fn statistics_count_what_was_done() {
     for method in Method::ALL {
-        // Steps of DoublePendulum's first seconds are rejected now and then.
+        // In the first seconds of the double pendulum, steps are rejected now and then.
         let none = AtomicUsize::new(0);
         let crane =
             Counted { crane: DoublePendulum::hanging(), evaluations: none, factorisations: AtomicUsize::new(0) };

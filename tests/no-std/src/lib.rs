@@ -1,12 +1,12 @@
 //! Three cranes for a machine without operating system: no `std`, no heap, and no function that can panic.
 //!
-//! As a static library with the panic handler below it builds only where no crate beneath needs `std` or a heap:
+//! As a static library with the panic handler below it builds only if no dependency needs `std` or a heap:
 //!
 //! ```text
 //! cargo rustc --release -p no-std-crane --lib --features bare --crate-type staticlib -- -C panic=abort
 //! ```
 //!
-//! The program of this package links only where the optimiser has found every path to a panic impossible:
+//! The program of this package links only if the optimiser has proved that no panic can be reached:
 //!
 //! ```text
 //! cargo build --release -p no-std-crane --features no-panic --config 'profile.release.lto="fat"' --config profile.release.codegen-units=1
@@ -117,13 +117,13 @@ macro_rules! crane {
                 cranes.forward_dynamics(t, q, v)
             }
 
-            /// Another value of a live parameter.
+            /// Sets a live parameter.
             #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
             pub fn set_parameter(crane: &mut Crane, index: usize, value: f64) -> Result<(), ParameterError> {
                 crane.set_parameter(index, value)
             }
 
-            /// Other values of the first live parameters.
+            /// Sets the first live parameters.
             #[cfg_attr(feature = "no-panic", no_panic::no_panic)]
             pub fn set_parameters(crane: &mut Crane, values: &[f64]) -> Result<(), ParameterError> {
                 crane.set_parameters(values)

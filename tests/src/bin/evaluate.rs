@@ -1,10 +1,9 @@
 //! Evaluates generated cranes for checks in other languages.
 //!
-//! `evaluate list` prints the cranes, one per line. `evaluate layout CRANE` describes one as JSON. A YAML file in place of a
-//! crane's name is run by the interpreter, which has T, A, e, forces, accelerations and what
-//! statics need.
-//! `evaluate values CRANE` reads records `t, q[N], v[N], parameters[P]` from standard input until its end, and writes for
-//! each all quantities in the order of the layout: 64-bit little-endian numbers, matrices row by row.
+//! `evaluate list` prints the cranes, one per line. `evaluate layout CRANE` describes one as JSON. `evaluate values CRANE` reads records
+//! `t, q[N], v[N], parameters[P]` from standard input until its end, and writes for each all quantities in the order of the layout: 64-bit
+//! little-endian numbers, matrices row by row. A YAML file instead of a crane's name is run by the interpreter, which provides T, A, e,
+//! forces, accelerations, and the residual and stiffness of statics.
 
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
@@ -86,7 +85,7 @@ fn layout(entry: &Entry) -> serde_json::Value {
     })
 }
 
-/// Reads states of `n` coordinates and writes what is computed of them.
+/// Reads states of `n` coordinates and writes what is computed from them.
 fn values(n: usize, parameters: usize, evaluate: impl Fn(&State, &[f64]) -> Vec<f64>) -> io::Result<()> {
     let length = 1 + 2 * n + parameters;
     let mut input = BufReader::new(io::stdin().lock());
@@ -116,7 +115,7 @@ fn interpreted(file: &str) -> Result<Interpreted, String> {
     Ok(Interpreted::new(compile::load(&source).map_err(|mistakes| mistakes.to_string())?))
 }
 
-/// Functions of an interpreted crane, in order, and what they are of: bodies, coordinates, pairs of coordinates.
+/// Functions of an interpreted crane, in order, and the shapes of their results.
 fn functions(chain: &Chain) -> [(&'static str, Vec<usize>); 7] {
     let (n, bodies) = (chain.coordinates.len(), chain.bodies.len());
     [

@@ -1,5 +1,5 @@
-//! Live cranes against compiled ones: `cargo bench -p crane-bench --bench live`. Forward dynamics of one state, and in blocks of the lanes that
-//! each has; medians of rounds that take turns, so that both meet the same machine.
+//! Live cranes against compiled ones: `cargo bench -p crane-bench --bench live`. Forward dynamics of one state, and of blocks as wide as the
+//! lanes of each; medians of alternating rounds, so that both run under the same conditions.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -11,9 +11,9 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynBlock, DynDynamics, DynEnsemble, DynModel};
 use crane_model::rt::lanes::f64x8;
 
-/// Rounds that take turns.
+/// Number of alternating rounds.
 const ROUNDS: usize = 31;
-/// About how long one takes, s.
+/// Approximate duration of a round, s.
 const ROUND: f64 = 5e-3;
 
 /// One state of a crane: t, q, v.

@@ -3,7 +3,7 @@
 use crate::kernel::Kernel;
 use crate::{kernels, states};
 
-/// A crane and what of it is timed.
+/// A crane and its kernels to be timed.
 pub struct Entry {
     /// How many coordinates it has.
     pub coordinates: usize,
@@ -16,14 +16,14 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// The kernel of a name.
+    /// The kernel with this name.
     #[must_use]
     pub fn kernel(&self, name: &str) -> Option<Kernel> {
         (self.kernels)().into_iter().find(|kernel| kernel.name == name)
     }
 }
 
-/// The crane with so many coordinates.
+/// The crane with this many coordinates.
 #[must_use]
 pub fn find(coordinates: usize) -> Option<Entry> {
     all().into_iter().find(|entry| entry.coordinates == coordinates)

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use crane_model::nalgebra::{Dim, Matrix, Matrix4, RawStorage, SMatrix, SVector};
 use crane_model::rt::lanes::f64x8;
 
-/// A function of a state with the states that it is called on, one after the other: nothing is known when it is compiled,
-/// and nothing is left over from the call before.
+/// A function of a state, with the states that it is called on, one after the other: the compiler knows none of them,
+/// and no call can reuse results of the one before.
 pub struct Kernel {
     /// What it computes.
     pub name: &'static str,
@@ -35,7 +35,7 @@ impl Kernel {
         self.work.values()
     }
 
-    /// Time that so many calls take.
+    /// Time that this many calls take.
     pub fn time(&mut self, calls: u64) -> Duration {
         let passes = calls.div_ceil(self.calls as u64);
         let start = Instant::now();
@@ -45,7 +45,7 @@ impl Kernel {
         start.elapsed().mul_f64(calls as f64 / (passes * self.calls as u64) as f64)
     }
 
-    /// Nanoseconds a call: the median of batches of about a millisecond, as many as fit into `budget`.
+    /// Nanoseconds per call: the median of batches of about a millisecond, as many as fit into `budget`.
     pub fn nanoseconds(&mut self, budget: Duration) -> f64 {
         const BATCH: f64 = 1e-3;
         // Warm-up, and the length of a batch.

@@ -1,4 +1,4 @@
-//! What is timed: a line a kernel.
+//! What is timed: one entry per kernel.
 
 use crane_model::dynamics::rk4;
 use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
@@ -9,7 +9,7 @@ use crate::kernel::{Kernel, Lower};
 use crate::states::{self, State};
 use crate::triple_sum::TripleSum;
 
-/// Stable for all numbers of sections, so that one step agrees with another library's, s.
+/// Step size, s: stable for all numbers of sections, so that one step agrees with another library's.
 pub const STEP: f64 = 1e-8;
 
 /// Kernels of any crane.

@@ -1,14 +1,14 @@
-//! Times one kernel, so that programs that time other libraries can take turns with it.
+//! Times one kernel, so that programs that time other libraries can alternate with it.
 //!
 //! ```text
 //! crane-bench coordinates              the numbers of coordinates, one per line
 //! crane-bench spec N                   the YAML text of the crane with N coordinates
 //! crane-bench kernels N                names of its kernels and the number of cranes per call, one per line
 //! crane-bench step                     the step of the kernel rk4_step, s
-//! crane-bench repeat N KERNEL CALLS    calls a kernel so often, for programs that count instructions
+//! crane-bench repeat N KERNEL CALLS    calls a kernel CALLS times, for programs that count instructions
 //! crane-bench states N                 states as records t, q, v, f: 64-bit little-endian numbers
 //! crane-bench values N KERNEL          what a kernel computes at these states, in the same form
-//! crane-bench time N KERNEL SECONDS    nanoseconds a call, measured for so long
+//! crane-bench time N KERNEL SECONDS    nanoseconds per call, measured for this long
 //! ```
 
 use std::io::Write as _;

@@ -5,7 +5,7 @@ use crane_model::rt::lanes::f64x8;
 use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Description};
 use fastrand::Rng;
 
-/// So many that no result is found in a register or a branch predictor, so few that all stay in the first cache.
+/// Enough that neither registers nor the branch predictor remember a result, and few enough that all stay in the L1 cache.
 const COUNT: usize = 64;
 const SEED: u64 = 3;
 

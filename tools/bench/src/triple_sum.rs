@@ -1,4 +1,4 @@
-//! A and e by the sums of the print over T, ∂T/∂q and ∂²T/∂q∂q: what the formulation of the generated functions is worth.
+//! A and e by the published sums over T, ∂T/∂q and ∂²T/∂q∂q: a baseline for the formulation of the generated functions.
 
 use crane_codegen::chain::{Chain, Inertia};
 use crane_codegen::{SourceFile, compile};
@@ -8,7 +8,7 @@ use crane_model::rt::fma;
 
 use crate::kernel::Numbers;
 
-/// A body: how many coordinates move it, its pseudo-inertia H.
+/// A body: how many coordinates move it, and its pseudo-inertia H.
 struct Body {
     degrees_of_freedom: usize,
     pseudo_inertia: Matrix4<f64>,
@@ -20,13 +20,13 @@ pub struct TripleSum {
     bodies: Vec<Body>,
 }
 
-/// A and e, and room for what leads to them.
+/// A and e, with room for intermediate results.
 pub struct Sums<const N: usize> {
     mass_matrix: SMatrix<f64, N, N>,
     bias: SVector<f64, N>,
     first: Vec<Matrix4<f64>>,
     second: Vec<Matrix4<f64>>,
-    /// `∂T/∂q_i H` of one body, a row an entry, a column a coordinate i.
+    /// `∂T/∂q_i H` of one body, one row per entry and one column per coordinate i.
     momenta: [[f64; N]; 16],
 }
 

@@ -29,9 +29,9 @@ fn main() -> ExitCode {
     }
 }
 
-/// Builds the site; the number of its pages.
+/// Builds the site; returns the number of its pages.
 fn build(docs: PathBuf, site: &Path) -> Result<usize, String> {
-    // What an earlier manual left would hide a missing page.
+    // Files of an earlier build would hide a missing page.
     if site.exists() {
         fs::remove_dir_all(site).map_err(|error| format!("{}: {error}", site.display()))?;
     }

@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 /// Pages by their paths within the site.
 type Pages = BTreeMap<PathBuf, String>;
 
-/// Every link that leads nowhere, as an error; else the number of pages.
+/// Returns the number of pages, or all broken links as an error.
 pub fn check(site: &Path) -> Result<usize, String> {
     let (mut pages, mut files) = (Pages::new(), BTreeSet::new());
     collect(site, Path::new(""), &mut pages, &mut files)?;
@@ -33,7 +33,7 @@ fn collect(site: &Path, folder: &Path, pages: &mut Pages, files: &mut BTreeSet<P
     Ok(())
 }
 
-/// Links of a page that lead nowhere.
+/// Broken links of a page.
 fn problems(page: &Path, text: &str, pages: &Pages, files: &BTreeSet<PathBuf>) -> Vec<String> {
     // Its links are relative to the address of the site, which is not known here.
     if page.file_name().is_some_and(|name| name == "404.html") {

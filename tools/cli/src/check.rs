@@ -32,7 +32,7 @@ pub fn check(options: &Check, registry: &Registry, out: &mut dyn Write) -> Outco
             };
             let valid = chain.is_some() && (found.is_empty() || !*strict);
             writeln!(out, "{:#}", json(valid, chain.as_ref(), &found))?;
-            // Programs have read what is wrong.
+            // The JSON already contains what is wrong.
             if valid { Ok(()) } else { Err(Problem::Elsewhere(FAILED)) }
         }
     }

@@ -27,7 +27,7 @@ pub fn compare(options: &Compare, registry: &Registry, out: &mut dyn Write) -> O
     side_by_side(options, [(RIGID, rigid?), (FLEXIBLE, flexible?)], Method::Rk4, registry, out)
 }
 
-/// Takes the cranes of YAML files, or the rigid one, into the registry; their names stand in place of the files then.
+/// Adds the cranes of YAML files, or the rigid one, to the registry, and puts their names in place of the files.
 pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
     let ComparePair { first, second, strict, .. } = options;
     if let Some(file) = spec_file(first) {
@@ -35,7 +35,7 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
         *first = registry.add_read(chain, text)?;
     }
     let Some(name) = second else {
-        // The first stands for the rigid crane, as in the comparison of the eight-link cranes.
+        // The first becomes the rigid crane, as in the comparison of the eight-link cranes.
         let rigid = registry.add_rigid(first)?;
         *second = Some(mem::replace(first, rigid));
         return Ok(());
@@ -43,7 +43,7 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
     if let Some(file) = spec_file(name) {
         let (chain, text) = own::load(file, *strict)?;
         if chain.name == *first {
-            // Two versions of a crane have one name.
+            // Two versions of a crane share one name.
             *name = format!("{first}_other");
             registry.add(name, renamed(name, &text));
         } else {
@@ -67,7 +67,7 @@ pub fn compare_pair(options: &ComparePair, registry: &Registry, out: &mut dyn Wr
         .iter()
         .any(|setting| !one.settings.contains(setting) && !other.settings.contains(setting))
     {
-        // What neither has is a mistake, which the first one tells.
+        // A parameter that neither crane has is a mistake, which the first one reports.
         one = Parameters { settings: compare.parameters.settings.clone() };
     }
     let cranes = [one.crane(first, *strict, registry)?, other.crane(second, *strict, registry)?];

@@ -23,7 +23,7 @@ use crate::{
 
 /// Names in the help of arguments that take a crane.
 const CRANES: [&str; 2] = ["CRANE", "OTHER"];
-/// The variable of the environment with which a shell asks.
+/// Environment variable that a shell sets to ask for completions.
 const VARIABLE: &str = "COMPLETE";
 
 /// If a shell asks for completions, answers it and ends the process.
@@ -34,7 +34,7 @@ pub fn answer(specs: Specs) {
 /// The script that lets a shell ask this program.
 ///
 /// # Errors
-/// Where this program is cannot be found out.
+/// The path of this program cannot be determined.
 pub fn script(shell: Shell) -> io::Result<Vec<u8>> {
     let program = env::current_exe()?;
     let mut script = Vec::new();
@@ -125,7 +125,7 @@ fn cranes(specs: Specs, current: &OsStr) -> Vec<CompletionCandidate> {
     found
 }
 
-/// The names that begin as what has been typed.
+/// The names that begin with what has been typed.
 fn matching(names: Vec<Named>, current: &OsStr) -> Vec<CompletionCandidate> {
     let typed = current.to_string_lossy();
     let fitting = names.into_iter().filter(|(name, _)| name.starts_with(typed.as_ref()));

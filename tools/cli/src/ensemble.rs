@@ -140,8 +140,8 @@ fn kept(records: &[Vec<String>], rows: usize, width: usize) -> Vec<Option<Vec<St
     kept
 }
 
-/// Settings of all runs, and whose step it is by a method with constant steps: stable for the first and the last row that rest, the
-/// spec's at most unless another is asked for.
+/// Settings of all runs, and for a method with constant steps where its step size comes from: stable for the first and the last row
+/// that have an equilibrium, and at most the spec's unless another is asked for.
 fn settings(
     timing: &Timing,
     rig: &dyn DynCrane,
@@ -153,7 +153,7 @@ fn settings(
         Ok::<_, Problem>((crane, start))
     };
     let rests = |row: &Vec<f64>| startable(row).ok();
-    // If no crane rests, the first one gives the reason.
+    // If no crane has an equilibrium, the first one gives the reason.
     let (crane, from) =
         startable(&table.rows[0]).or_else(|problem| table.rows.iter().find_map(rests).ok_or(problem))?;
     let method = timing.method.unwrap_or(if timing.step.is_some() { Method::Rk4 } else { Method::RECOMMENDED });

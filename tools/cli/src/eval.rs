@@ -73,7 +73,7 @@ fn states(options: &Eval, crane: &LiveCrane) -> Outcome<States> {
     Ok(States { q, v })
 }
 
-/// Numbers given in place or in a file, one per coordinate of each state.
+/// Numbers given inline or in a file, one per coordinate of each state.
 fn given(name: &str, given: Option<&str>, description: &Description) -> Outcome<Option<Vec<Vec<f64>>>> {
     let Some(given) = given else { return Ok(None) };
     let numbers = parse(given).map_or_else(|| parse_file(name, given), Ok)?;

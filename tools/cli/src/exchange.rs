@@ -80,7 +80,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         files::write_text(file, text)?;
         writeln!(out, "{} written", file.display())?;
     }
-    // C has the whole crane.
+    // The C code covers the whole crane.
     if let (false, Some(text)) = (options.format == Language::C, exchange::approximations(&chain)) {
         writeln!(out, "{text}")?;
     }
@@ -104,7 +104,7 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     let Imported { spec, left_out } = exchange::import(&source, &options.fixed).map_err(Problem::mistakes)?;
     let Some(file) = &options.spec else {
         out.write_all(spec.as_bytes())?;
-        // Not into the spec. A reader of standard error that has gone misses it.
+        // To standard error, not into the spec; if that is closed, the messages are lost.
         for said in &left_out {
             let _ = writeln!(io::stderr(), "{said}");
         }
@@ -112,7 +112,7 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     };
     files::write_text(file, &spec)?;
     writeln!(out, "{} written", file.display())?;
-    // What the robot's own numbers get wrong is to be mended there.
+    // Mistakes in the robot's own numbers are to be corrected in the written spec.
     let (Chain { name, bodies, coordinates, .. }, _) = own::load(file, false)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
     writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates; next: `crane run {file}`")?;
@@ -122,7 +122,7 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     Ok(writeln!(out, "joints without `drives:` swing freely: add some where a joint must not fall")?)
 }
 
-/// A problem where values of live parameters break a rule of the spec language.
+/// A problem if values of live parameters break a rule of the spec language.
 fn keep_rules(chain: &Chain, values: &[f64]) -> Outcome<()> {
     let mut bounds = chain.parameters.iter().zip(values).filter_map(|(p, value)| Some((p, p.least.as_ref()?, *value)));
     let below = bounds.find(|(_, least, value)| *value < least.value || (*value == least.value && !least.allowed));

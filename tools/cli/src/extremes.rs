@@ -1,4 +1,4 @@
-//! Least and greatest values of a run, when they occur, and how far off they may be.
+//! Minimum and maximum values of a run, when they occur, and how far off they may be.
 
 use crane_model::{
     Description,

@@ -18,7 +18,7 @@ pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
 pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
 /// See [`BLUE`].
 pub const SKY: RGBColor = RGBColor(86, 180, 233);
-/// What stands behind others.
+/// For what lies behind other curves.
 pub const GREY: RGBColor = RGBColor(150, 150, 150);
 /// Colours for curves in order.
 pub const PALETTE: [RGBColor; 6] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY];
@@ -36,7 +36,7 @@ pub fn shade(part: f64) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-/// Points stand on whole units of the drawing: this many to a pixel keep curves smooth.
+/// Units of the drawing per pixel: points are rounded to whole units, and this many keep curves smooth.
 pub const PIXEL: u32 = 10;
 /// Width of a panel.
 const WIDTH: u32 = 440 * PIXEL;
@@ -52,7 +52,7 @@ const STROKE: u32 = 2 * PIXEL;
 const DOT: u32 = 3 * PIXEL;
 /// Free space around a panel.
 pub const SPACE: u32 = 12 * PIXEL;
-/// Width of a letter, of the font size: an estimate that leaves room.
+/// Width of a letter relative to the font size: a generous estimate.
 const LETTER: f64 = 0.56;
 /// Part of the range that is left free around the curves.
 const MARGIN: f64 = 0.06;
@@ -96,7 +96,7 @@ pub struct Panel {
     pub equal: bool,
     /// Both axes are logarithmic; what is not above zero is left out.
     pub logarithmic: bool,
-    /// Curves, the legend in their order.
+    /// Curves, in the order of the legend.
     pub curves: Vec<Curve>,
 }
 
@@ -107,7 +107,7 @@ pub fn svg(panels: &[Panel], columns: usize) -> Result<String, String> {
     let scale = if panels.iter().any(|panel| panel.equal) { 2 } else { 1 };
     let count = |n: usize| u32::try_from(n).unwrap_or(1);
     let width = WIDTH * scale * count(columns);
-    // What consists of several curves is named once.
+    // Several curves with the same label share an entry.
     let mut legend: Vec<Curve> = Vec::new();
     for curve in panels.first().map_or(&[][..], |panel| &panel.curves) {
         if legend.iter().all(|known| known.label != curve.label) {

@@ -1,4 +1,4 @@
-//! Files, whole or not at all.
+//! Files, written completely or not at all.
 
 use std::{
     fs, io,
@@ -16,7 +16,7 @@ use crate::problem::{Outcome, Problem};
 /// This program, in records of runs.
 pub const PROGRAM: Program = Program { name: env!("CARGO_PKG_NAME"), version: env!("CARGO_PKG_VERSION") };
 
-/// Makes a folder where it is missing.
+/// Creates a folder if it is missing.
 ///
 /// # Errors
 /// The file system refuses.
@@ -35,7 +35,7 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
     let written = (|| {
         remove_parts_of_the_dead(path);
         let file = fs::File::create(&part)?;
-        // Held while this process lives. A file system without locks does without.
+        // Locked while this process lives. A file system without locks does without.
         let _ = file.try_lock();
         let mut file = io::BufWriter::new(file);
         content(&mut file)?;
@@ -43,15 +43,15 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
         fs::rename(&part, path)
     })();
     written.map_err(|error| {
-        // Remove the rest of the part; the first error is reported.
+        // Remove the incomplete file; the first error is reported.
         let _ = fs::remove_file(&part);
         Problem::file(path, &error)
     })
 }
 
-/// Removes what commands that were killed left of a file: parts that no living process holds.
+/// Removes incomplete files that killed commands left: those that no living process has locked.
 fn remove_parts_of_the_dead(path: &Path) {
-    /// A younger part may be one whose owner is about to lock it, s.
+    /// The owner of a younger file may be about to lock it.
     const AGE: Duration = Duration::from_secs(60);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let begin = format!("{}.", path.file_name().unwrap_or_default().to_string_lossy());

@@ -50,7 +50,7 @@ impl System {
     }
 }
 
-/// Writes a unit of a crane.
+/// Writes a crane as a functional mock-up unit.
 pub fn write(
     options: &Export,
     file: &Path,

@@ -28,11 +28,11 @@ pub fn generate(options: &Generate, registry: &Registry, out: &mut dyn Write) ->
     }
     let Compiled { code, warnings } = compile::compile(&source, analyses).map_err(Problem::mistakes)?;
     if !warnings.is_empty() {
-        // A reader of standard error that has gone misses them.
+        // If standard error is closed, the warnings are lost.
         let _ = writeln!(std::io::stderr(), "{}", warnings.to_string().trim_end());
     }
     if let Some(warning) = code.report.warning(&code.name) {
-        // A reader of standard error that has gone misses it.
+        // If standard error is closed, the warning is lost.
         let _ = writeln!(std::io::stderr(), "warning: {warning}");
     }
     let Some(file) = &options.file else { return Ok(out.write_all(code.text.as_bytes())?) };

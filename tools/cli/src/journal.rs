@@ -11,7 +11,7 @@ use crane_model::dyn_crane::DynCrane;
 
 use crate::problem::{Outcome, Problem};
 
-/// A file that grows by whole records: lines of CSV whose fields contain no line ends.
+/// A file that grows by complete records: lines of CSV whose fields contain no line ends.
 pub struct Journal {
     path: PathBuf,
     file: Mutex<File>,

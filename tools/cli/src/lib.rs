@@ -1,6 +1,6 @@
 //! The `crane` command, over any cranes.
 //!
-//! The program `crane` runs it over the shipped cranes; a crate of its own can run it over its own:
+//! The program `crane` runs it over the shipped cranes; another crate can run it over its own:
 //!
 //! ```ignore
 //! crane_model::cranes! { my_crane }
@@ -140,7 +140,7 @@ fn act(mut arguments: Arguments, mut registry: Registry, out: &mut dyn Write) ->
         Some(Action::Import(options)) => exchange::import(options, out),
         Some(Action::List(options)) => info::list(options.format, registry, out),
         Some(Action::Completions { shell }) => {
-            // Into memory first: part of a script is none.
+            // Into memory first: a partial script is of no use.
             let script = completions::script(*shell)?;
             Ok(out.write_all(&script)?)
         }

@@ -23,16 +23,16 @@ use crate::{
     start::{Variable, row},
 };
 
-/// Modes from the lowest on that people see first.
+/// Number of lowest modes that are printed by default.
 const LOWEST: usize = 10;
-/// Motions that grow more slowly than this, 1/s, are not told from rounding.
+/// Motions that grow more slowly than this, 1/s, are not distinguished from rounding.
 const GROWTH: f64 = 1e-5;
 /// Accelerations up to this, m/s² and rad/s², are those of a steady motion.
 const STEADY: f64 = 1e-3;
-/// The pose may change by this part of the rates before a motion no longer counts as steady.
+/// The pose may change by this fraction of the rates before a motion no longer counts as steady.
 const DRIFT: f64 = 1e-3;
 
-/// The motion about which motions are small.
+/// The motion about which the crane is linearised.
 struct Motion {
     /// What it is, in words.
     about: &'static str,
@@ -40,7 +40,7 @@ struct Motion {
     q: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
-    /// What holding each coordinate takes, N and N m; `None` where it is not held.
+    /// Effort that holds each coordinate, N and N m; `None` where it is not held.
     efforts: Vec<Option<f64>>,
     cautions: Vec<String>,
 }
@@ -129,7 +129,7 @@ fn of_results(crane: &LiveCrane, file: &Path, at: Option<f64>) -> Outcome<Motion
     Ok(Motion { about: "a moment of a run", t, q, v, a, efforts, cautions: cautions.into_iter().collect() })
 }
 
-/// The steady motion with drives as at a time and some coordinates held.
+/// The steady motion with the drives as at a given time and some coordinates held.
 fn of_steady(crane: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
     let rig: &dyn DynCrane = crane;
     let t = options.time.unwrap_or(0.0);
@@ -185,7 +185,7 @@ fn read_held(given: &[String], description: &Description) -> Outcome<Vec<Held>> 
         let (coordinate, position, rate) = match Variable::named(name.trim(), description)? {
             Variable::Position(index) => (index, Some(value), None),
             Variable::Rate(index) => (index, None, Some(value)),
-            // Cranes with oil were refused.
+            // Cranes with force states were refused.
             Variable::Own(_) => continue,
         };
         match held.iter_mut().find(|held| held.coordinate == coordinate) {
@@ -199,7 +199,7 @@ fn read_held(given: &[String], description: &Description) -> Outcome<Vec<Held>> 
     Ok(held)
 }
 
-/// What holds the coordinates that are held.
+/// The efforts that hold the held coordinates.
 fn held(description: &Description, motion: &Motion) -> Grid {
     let mut grid = Grid::new(
         "held",

@@ -20,7 +20,7 @@ use crate::{
     statics::Case,
 };
 
-/// Modes from the lowest on that people see first.
+/// Number of lowest modes that are printed by default.
 const LOWEST: usize = 10;
 
 /// Prints undamped and damped modes and the largest stable step.
@@ -49,7 +49,7 @@ pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outco
     report.print(options.format, out)
 }
 
-/// Undamped modes about an equilibrium as a table; `changes`: of the lowest ones with twice the sections.
+/// Undamped modes about an equilibrium as a table; `changes`: those of the lowest frequencies with twice the sections.
 pub fn undamped_modes(case: &Case<'_>, changes: Option<&[f64]>) -> Outcome<Grid> {
     let mut headers = vec!["mode", "frequency [Hz]", "omega [rad/s]", "dominated by"];
     if changes.is_some() {
@@ -78,7 +78,7 @@ pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
     for (index, mode) in modes.iter().enumerate() {
         grid.row([
             (index + 1).into(),
-            // What creeps back has no frequency.
+            // An overdamped mode has no frequency.
             (mode.eigenvalue.im != 0.0).then(|| mode.frequency()).into(),
             mode.damping_ratio().into(),
             mode.eigenvalue.re.into(),

@@ -99,7 +99,7 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
     Ok(())
 }
 
-/// Writes a folder with its files, whole or not at all.
+/// Writes a folder with its files, completely or not at all.
 fn write(folder: &Path, texts: &[(PathBuf, String)]) -> Outcome<()> {
     let part = folder.with_extension("part");
     let written = (|| {
@@ -111,7 +111,7 @@ fn write(folder: &Path, texts: &[(PathBuf, String)]) -> Outcome<()> {
         fs::rename(&part, folder).map_err(|error| Problem::file(folder, &error))
     })();
     if written.is_err() {
-        // Remove the rest of the part; the first error is reported.
+        // Remove the incomplete folder; the first error is reported.
         let _ = fs::remove_dir_all(&part);
     }
     written
@@ -135,7 +135,7 @@ fn package(folder: &Path) -> Outcome<String> {
     }
 }
 
-/// A spec with another name of the crane, and all its comments; `None` if the name is not on a line of its own.
+/// A spec with the crane renamed and all comments kept; `None` if the name is not on a line of its own.
 fn renamed(spec: &str, from: &str, to: &str) -> Option<String> {
     let mut lines: Vec<String> = spec.split_inclusive('\n').map(str::to_owned).collect();
     let name = |line: &String| {

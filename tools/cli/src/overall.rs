@@ -16,7 +16,7 @@ use crate::{
     statics::{caution_of_runs, deflection, tables},
 };
 
-/// Statics and motion of a crane, beside its rigid twin where there is one; results, figures and the report.
+/// Statics and motion of a crane, compared with its rigid twin if there is one; results, figures and the report.
 pub fn run(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     if options.ensemble.table.is_some() {
         return Err(Problem::usage("`crane run` does not support `--ensemble`", "use `crane simulate` instead"));

@@ -112,7 +112,7 @@ pub fn typed() -> String {
     })
 }
 
-/// A sound chain and its text, or every mistake. Warnings are drawn; `strict`: they are mistakes.
+/// A valid chain and its text, or every mistake. Warnings are printed, and are mistakes if `strict`.
 ///
 /// # Errors
 /// The file cannot be read, or the spec has mistakes.
@@ -120,7 +120,7 @@ pub fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
     parse(open(spec, SPEC)?, strict)
 }
 
-/// A valid chain and its text, or every mistake; warnings are drawn, and are mistakes if `strict`.
+/// A valid chain and its text, or every mistake; warnings are printed, and are mistakes if `strict`.
 fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
     let Checked { chain, warnings } = compile::check(&source).map_err(Problem::mistakes)?;
     if !warnings.is_empty() {
@@ -153,9 +153,9 @@ pub(super) fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
     })
 }
 
-/// Draws warnings on standard error.
+/// Prints warnings to standard error.
 fn drawn(warnings: &Diagnostics) -> Problem {
-    // A reader of standard error that has gone misses them.
+    // If standard error is closed, the warnings are lost.
     let _ = writeln!(io::stderr(), "{}", warnings.to_string().trim_end());
     Problem::Elsewhere(FAILED)
 }

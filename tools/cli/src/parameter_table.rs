@@ -1,4 +1,4 @@
-//! A table of parameter values, a row a crane.
+//! A table of parameter values, one row per crane.
 
 use std::path::Path;
 
@@ -11,9 +11,9 @@ use crate::{
 
 /// Values of live parameters of many cranes.
 pub struct ParameterTable {
-    /// Places of the columns' parameters in the description.
+    /// Indices of the columns' parameters in the description.
     pub columns: Vec<usize>,
-    /// Values, a row a crane; at least one.
+    /// Values, one row per crane; at least one.
     pub rows: Vec<Vec<f64>>,
 }
 
@@ -71,7 +71,7 @@ impl ParameterTable {
         Ok(Self { columns, rows })
     }
 
-    /// All live parameters of every row: what has no column is as in `rig`.
+    /// All live parameters of every row: those without a column are as in `rig`.
     pub fn parameters(&self, rig: &dyn DynCrane) -> Vec<Vec<f64>> {
         let own: Vec<f64> = (0..rig.description().parameters.len()).map(|index| rig.parameter(index)).collect();
         let row = |row: &Vec<f64>| {
@@ -84,7 +84,7 @@ impl ParameterTable {
         self.rows.iter().map(row).collect()
     }
 
-    /// The crane of a row: what has no column is as in `rig`.
+    /// The crane of a row: parameters without a column are as in `rig`.
     pub fn crane(&self, rig: &dyn DynCrane, row: &[f64]) -> Outcome<Box<dyn DynCrane>> {
         let mut crane = rig.boxed_clone();
         let settings: Vec<(usize, f64)> = self.columns.iter().copied().zip(row.iter().copied()).collect();

@@ -25,11 +25,11 @@ pub type Outcome<T> = Result<T, Problem>;
 /// What is wrong, and what to do about it.
 #[derive(Debug)]
 pub enum Problem {
-    /// The reader of our output has gone; nothing to say.
+    /// The reader of our output has gone: there is nobody to tell.
     NobodyListens,
     /// The spec has mistakes.
     Mistakes(Box<Diagnostics>),
-    /// It has been reported already, or another program has reported it; the exit code.
+    /// A problem that has been reported already, here or by another program; its exit code.
     Elsewhere(u8),
     /// Something for the user to read.
     Told {
@@ -90,13 +90,13 @@ impl Problem {
         }
     }
 
-    /// Prints the problem; the exit code it ends with.
+    /// Prints the problem; returns the exit code.
     pub fn report(&self) -> ExitCode {
         match self {
             Problem::NobodyListens => ExitCode::SUCCESS,
             Problem::Elsewhere(code) => ExitCode::from(*code),
             Problem::Mistakes(mistakes) => {
-                // A reader of standard error that has gone misses them.
+                // If standard error is closed, they are lost.
                 let _ = writeln!(io::stderr(), "{}", mistakes.to_string().trim_end());
                 ExitCode::from(FAILED)
             }
@@ -146,9 +146,9 @@ impl From<NoModes> for Problem {
     }
 }
 
-/// The word of `known` that is most like `word`, if any is like it.
+/// The word of `known` that is most similar to `word`, if any is similar.
 pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    /// Two words are alike from here on: 0 nothing in common, 1 equal.
+    /// From here on two words count as similar: 0 for nothing in common, 1 for equal.
     const ALIKE: f64 = 0.6;
     known
         .into_iter()

@@ -9,9 +9,9 @@ use crane_model::{dyn_crane::DynCrane, modes::undamped};
 
 use crate::{Registry, problem::Outcome, statics::Case};
 
-/// Most coordinates of a crane whose frequencies are computed with twice the sections too: more take seconds.
+/// Maximum number of coordinates of a crane whose frequencies are also computed with twice the sections: more take seconds.
 const MOST_COORDINATES: usize = 60;
-/// Modes from the lowest on that sections are to resolve; higher ones are those of the elements.
+/// Number of lowest modes that the sections should resolve; higher ones are modes of the elements.
 const LOWEST: usize = 6;
 /// Change of a frequency that is worth a caution.
 const CAUTION: f64 = 0.01;
@@ -66,7 +66,7 @@ pub fn spec(crane: &str, text: &str, sections: usize) -> Option<String> {
 
 /// The spec of a crane, extended under another name with other numbers of sections; `None` for a crane without sections.
 ///
-/// What a run of one crane does not need is left out: eight cranes per call take rustc as long as all the rest.
+/// The ensemble functions are left out, as a run of one crane does not need them: they take rustc as long as all the rest.
 fn with(name: &str, text: &str, sections: impl Fn(f64) -> f64) -> Option<String> {
     let base = SourceFile::new(name, text);
     let spec = read(&base).ok()?.crane;

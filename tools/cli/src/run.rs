@@ -125,7 +125,7 @@ fn unstable(rig: &dyn DynCrane, step: f64, t: f64, limit: &Limit) -> Problem {
 
 /// A progress bar in seconds of simulated time; hidden where standard error is not a terminal.
 pub fn progress(seconds: f64) -> ProgressBar {
-    /// Units of the bar a second.
+    /// Units of the bar per second.
     const MILLISECONDS: f64 = 1e3;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
     let bar = ProgressBar::new((seconds * MILLISECONDS) as u64);
@@ -144,7 +144,7 @@ pub fn styled(bar: ProgressBar) -> ProgressBar {
     bar
 }
 
-/// Shows a bar how far a run is.
+/// Advances a bar with the time of a run.
 fn show(bar: &ProgressBar) -> impl FnMut(f64) -> ControlFlow<()> {
     let mut shown = 0;
     move |t| {
@@ -187,7 +187,7 @@ pub fn runs(
     limits: Limits,
     default: Method,
 ) -> Outcome<(Vec<dynamics::Settings>, Vec<Recorded>)> {
-    // The last is the one that the arguments are about.
+    // The last crane is the one that the arguments refer to.
     let starts = cases.iter().enumerate();
     let starts =
         starts.map(|(index, case)| timing.start(case.rig, index + 1 < cases.len())).collect::<Outcome<Vec<_>>>()?;

@@ -31,7 +31,7 @@ struct Entry {
     name: String,
     /// Its spec, YAML.
     spec: Cow<'static, str>,
-    /// The crane as machine code; a live crane is made of the spec otherwise.
+    /// The crane as machine code; otherwise a live crane is made from the spec.
     compiled: Option<Box<dyn DynCrane>>,
     /// The live crane, once it is asked for: its clones share what is derived.
     live: OnceLock<LiveCrane>,
@@ -85,7 +85,7 @@ impl Registry {
         self.replace(Entry::new(name, Cow::Owned(spec)));
     }
 
-    /// As [`Self::add`], of a spec that has been read; the crane's name.
+    /// As [`Self::add`], for a spec that has been read; returns the crane's name.
     ///
     /// # Errors
     /// The crane is too large.
@@ -107,7 +107,7 @@ impl Registry {
         self.shipped
     }
 
-    /// Adds a crane whose beams do not bend, and nothing else is different; its name.
+    /// Adds the crane with rigid beams and no other difference; returns its name.
     pub(super) fn add_rigid(&mut self, name: &str) -> Outcome<String> {
         self.crane(name)?;
         let found = self.spec(name).map_or(Ok(None), |text| variants::rigid(name, text)).map_err(|link| {
@@ -198,7 +198,7 @@ impl Choice {
     }
 }
 
-/// Place of an input and its value, as in `name=value`.
+/// Index of an input and its value, as in `name=value`.
 fn input(setting: &str, description: &Description) -> Outcome<(usize, f64)> {
     let (name, value) = setting.split_once('=').ok_or_else(|| {
         Problem::usage(
@@ -228,7 +228,7 @@ fn input(setting: &str, description: &Description) -> Outcome<(usize, f64)> {
 }
 
 impl Parameters {
-    /// A crane with these parameters; `strict`: what is implausible about them is a mistake.
+    /// A crane with these parameters; `strict`: implausible values are mistakes.
     ///
     /// # Errors
     /// There is no such crane, or its parameters cannot have these values.
@@ -251,7 +251,7 @@ impl Parameters {
         Ok(rig)
     }
 
-    /// The settings of parameters that a crane has.
+    /// Only the settings of parameters that a crane has.
     #[must_use]
     pub fn known_to(&self, description: &Description) -> Self {
         let is_known = |setting: &&String| {
@@ -261,7 +261,7 @@ impl Parameters {
         Self { settings: self.settings.iter().filter(is_known).cloned().collect() }
     }
 
-    /// Places of the parameters that are set, and their values; `known`: names and units of those that the crane has.
+    /// Indices of the parameters that are set, and their values; `known`: names and units of those that the crane has.
     ///
     /// # Errors
     /// A setting is not `name=value`, or the crane has no such parameter.
@@ -287,7 +287,7 @@ impl Parameters {
     }
 }
 
-/// Sets live parameters, by their places in the description, all at once.
+/// Sets live parameters, by their indices in the description, all at once.
 pub fn set(rig: &mut dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<()> {
     let mut values: Vec<f64> = (0..rig.description().parameters.len()).map(|index| rig.parameter(index)).collect();
     for &(index, value) in settings {
@@ -315,7 +315,7 @@ fn known(description: &Description) -> Vec<(&str, &str)> {
     description.parameters.iter().map(|parameter| (parameter.name.as_str(), parameter.unit.as_str())).collect()
 }
 
-/// Place of a live parameter by its name; else what is wrong and what to write.
+/// Index of a live parameter by its name; otherwise what is wrong and what to write.
 pub fn parameter(name: &str, description: &Description) -> Result<usize, (String, String)> {
     place(name, &description.name, &known(description))
 }

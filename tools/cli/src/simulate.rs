@@ -30,7 +30,7 @@ pub struct Trace<'a> {
     pub label: &'a str,
     /// Its results.
     pub table: &'a Table,
-    /// Dashed where it lies over others.
+    /// Whether it is dashed, because it lies over others.
     pub dashed: bool,
 }
 
@@ -90,7 +90,7 @@ pub fn file_list(folder: &Path, written: &[String]) -> Grid {
     grid
 }
 
-/// Writes results and record of a run; their file names.
+/// Writes results and record of a run; returns their file names.
 pub fn write_run(
     folder: &Path,
     rig: &dyn DynCrane,
@@ -104,7 +104,7 @@ pub fn write_run(
     Ok(vec![csv, json])
 }
 
-/// Writes the path of the points in the x–y plane and the drives' torques and forces; their file names.
+/// Writes the path of the points in a plane and the drives' torques and forces; returns their file names.
 pub fn write_figures(
     folder: &Path,
     prefix: &str,
@@ -146,9 +146,9 @@ pub fn spoken(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// The path of the points in the horizontal plane, [Urbaś 2016, Fig. 8]; in a vertical one where they hardly leave it.
+/// The path of the points in the horizontal plane, [Urbaś 2016, Fig. 8]; or in a vertical plane if they hardly leave that.
 fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
-    /// A point hardly moves along an axis below this part of its way along z.
+    /// Points hardly move along an axis if their range is below this fraction of that along z.
     const HARDLY: f64 = 0.01;
     let way = |axis: &str| {
         let columns = description.points.iter().map(|point| format!("{point}_{axis}"));
@@ -206,7 +206,7 @@ fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
     description.drives.iter().map(panel).collect()
 }
 
-/// Work, energy balance and time of runs, a column each.
+/// Work, energy balance and time of runs, one column each.
 pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
     let values = runs.iter().map(|(label, _)| Heading::of(label, VALUE));
     let headings = [Heading::from("quantity")].into_iter().chain(values).chain(["unit".into()]).collect();

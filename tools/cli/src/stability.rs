@@ -85,7 +85,7 @@ fn along(description: &Description, poses: &[Pose]) -> Grid {
     grid
 }
 
-/// The region of every method that has an end, with hλ of every mode at its largest stable step and at the spec's.
+/// The stability region of every explicit method, with hλ of every mode at its largest stable step, or the spec's if none limits it.
 fn regions(modes: &[DampedMode], own: f64) -> Vec<Panel> {
     let panel = |method: Method| {
         let function = method.stability();

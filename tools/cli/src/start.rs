@@ -1,4 +1,4 @@
-//! Where a run of the command starts: at rest where the crane stands, from given values, or from the end of another run.
+//! Where a run of the command starts: at rest in equilibrium, from given values, or from the end of another run.
 
 use std::path::Path;
 
@@ -14,10 +14,10 @@ use crate::{
     problem::{Outcome, Problem, nearest},
 };
 
-/// What follows a coordinate's name in the name of its rate.
+/// Suffix of a coordinate's name in the name of its rate.
 const RATE: &str = "_rate";
 
-/// A coordinate, its rate, or a state of a force, by its place.
+/// A coordinate, its rate, or a state of a force, by its index.
 #[derive(Clone, Copy)]
 pub enum Variable {
     /// A coordinate.
@@ -29,7 +29,7 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// What a column of results is called.
+    /// The variable that a column of results contains.
     fn of(name: &str, description: &Description) -> Option<Self> {
         let place = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
         let rate = || name.strip_suffix(RATE).and_then(place).map(Self::Rate);
@@ -37,7 +37,7 @@ impl Variable {
         place(name).map(Self::Position).or_else(rate).or_else(own)
     }
 
-    /// What an option that takes coordinates and rates means.
+    /// The variable that an option names.
     ///
     /// # Errors
     /// The crane has no such coordinate.
@@ -60,7 +60,8 @@ impl Variable {
 }
 
 impl Timing {
-    /// The start that `--from` and `--start` ask for; `with_strangers`: names that this crane does not have are of another one.
+    /// The start that `--from` and `--start` ask for; `with_strangers`: skips names that this crane does not have, as they belong to
+    /// another one.
     ///
     /// # Errors
     /// An option has a value that cannot be used.
@@ -69,7 +70,7 @@ impl Timing {
             return Ok(Start::of(rig)?);
         }
         let description = rig.description();
-        // What is not given is as where the crane stands, if it stands anywhere.
+        // Values that are not given are those of the equilibrium, if there is one.
         let mut start = Start::of(rig).unwrap_or_else(|_| Start::guess(rig));
         start.rests = false;
         if let Some(file) = &self.from {
@@ -112,7 +113,7 @@ impl Timing {
             variable.set(&mut start, number);
         }
         if !start.x.is_empty() {
-            // States that are not named are those that hold the pose.
+            // States that are not given take the values that hold the pose.
             let held = OwnStates::new(description).holding(rig, 0.0, &start.q);
             start.x.resize(held.len(), f64::NAN);
             start.x.iter_mut().zip(held).filter(|(x, _)| x.is_nan()).for_each(|(x, held)| *x = held);
@@ -151,7 +152,7 @@ pub struct Row {
 
 /// Name of the column of times.
 const TIME: &str = "t";
-/// Greatest distance of a row from the time asked for, s: results are written with all digits.
+/// Maximum distance of a row from the time asked for, s: results are written with all digits.
 const SAME_TIME: f64 = 1e-9;
 
 /// The last row of the results of a run, or the row at a time, s.
@@ -170,7 +171,7 @@ pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<R
     let mut chosen: Option<csv::StringRecord> = None;
     for record in csv.records() {
         let record = record.map_err(unreadable)?;
-        // The nearest one; without a time the last.
+        // The nearest row; the last one if no time is given.
         if chosen.as_ref().is_none_or(|chosen| at.is_none() || off(&record) < off(chosen)) {
             chosen = Some(record);
         }

@@ -20,9 +20,9 @@ use crate::{
     report::{Cell, Grid, Heading, Report, VALUE},
 };
 
-/// What a crane is called beside itself with rigid beams.
+/// Label of a crane that is compared with itself with rigid beams.
 pub const FLEXIBLE: &str = "flexible";
-/// What a crane with rigid beams is called beside itself with beams that bend.
+/// Label of a crane with rigid beams that is compared with itself with beams that bend.
 pub const RIGID: &str = "rigid";
 
 /// A crane in equilibrium.
@@ -78,7 +78,7 @@ pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> 
     case.stable()
 }
 
-/// Says how statics of each crane ended: to programs whether all equilibria are stable, too.
+/// Reports how the statics of each crane ended, and for programs also whether all equilibria are stable.
 pub fn verdicts(report: &mut Report, cases: &[Case<'_>]) {
     let mut cranes = Vec::new();
     for Case { label, rig, equilibrium } in cases {
@@ -99,7 +99,7 @@ pub fn verdicts(report: &mut Report, cases: &[Case<'_>]) {
     report.value("cranes", cranes);
 }
 
-/// Tables of cranes in equilibrium, a column each.
+/// Tables of cranes in equilibrium, one column each.
 pub fn tables(cases: &[Case<'_>], limits: Limits) -> Report {
     let mut report = Report::default();
     verdicts(&mut report, cases);
@@ -137,8 +137,8 @@ pub fn caution_of_runs<'a>(report: &mut Report, runs: impl ExactSizeIterator<Ite
     }
 }
 
-/// How far the points of the second crane are from those of the first of the same name; of a crane and itself with rigid beams, that
-/// is what flexibility does.
+/// How far the points of the second crane are from those of the first with the same name; if the first is the same crane with rigid
+/// beams, this is the deflection due to flexibility.
 pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
     let title = if second.label == FLEXIBLE {
         format!("Deflection of the load points due to flexibility ({} − {})", second.label, first.label)
@@ -164,7 +164,7 @@ fn headings(first: &str, cases: &[Case<'_>]) -> Vec<Heading> {
     [first.into()].into_iter().chain(values).chain(["unit".into()]).collect()
 }
 
-/// The case with most coordinates: it has all names.
+/// The case with the most coordinates, which has all names.
 fn widest<'c, 'a>(cases: &'c [Case<'a>]) -> Option<&'c Case<'a>> {
     cases.iter().max_by_key(|case| case.coordinates().len())
 }
@@ -291,7 +291,7 @@ fn points(cases: &[Case<'_>]) -> Grid {
     grid
 }
 
-/// A table of vectors, three columns a case.
+/// A table of vectors, three columns per case.
 fn vectors(key: &'static str, title: &str, first: &str, cases: &[Case<'_>]) -> Grid {
     let axes = cases.iter().flat_map(|case| ["x", "y", "z"].map(|axis| Heading::of(case.label, axis)));
     Grid::with_headings(key, title, [first.into()].into_iter().chain(axes).chain(["unit".into()]).collect())

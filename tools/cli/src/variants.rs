@@ -1,11 +1,11 @@
-//! Specs of cranes that differ little from others, as extensions of these.
+//! Specs of cranes that differ little from others, written as extensions of them.
 
 use crane_codegen::{
     SourceFile, read,
     spec::{Beam, Crane, Sections},
 };
 
-/// What stands after the name of a crane in the name of the same crane with rigid beams.
+/// Suffix of a crane's name in the name of the same crane with rigid beams.
 const RIGID: &str = "_rigid";
 
 /// A spec under another name.
@@ -13,7 +13,7 @@ pub fn renamed(name: &str, text: &str) -> String {
     SourceFile::new(name, text).changed(&format!("name: {name}\n")).text
 }
 
-/// Name and spec of a crane whose beams do not bend, and nothing else is different; `None` for a crane without beams that bend.
+/// Name and spec of the crane with rigid beams and no other difference; `None` for a crane without beams that bend.
 ///
 /// # Errors
 /// A beam is curved or given element by element: the name of its link.
@@ -47,7 +47,7 @@ fn beams(spec: &Crane) -> impl Iterator<Item = (&str, &Beam)> {
     links.filter_map(|link| Some((link.name.value.as_deref()?, link.beam.as_ref()?.value.as_ref()?)))
 }
 
-/// Coordinates of elements of some links that the spec guesses.
+/// Coordinates of elements of some links for which the spec has a guess.
 fn guesses_of_elements<'a>(spec: &'a Crane, links: &'a [&str]) -> impl Iterator<Item = &'a str> {
     let of_element = |coordinate: &&str| {
         links.iter().any(|link| {

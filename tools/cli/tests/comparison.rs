@@ -1,4 +1,4 @@
-//! A crane beside itself with rigid beams, and beside another one; its small motions as matrices.
+//! A crane compared with itself with rigid beams, and with another one; its small motions as matrices.
 
 use std::{
     fs,
@@ -8,7 +8,7 @@ use std::{
 
 use serde_json::Value;
 
-/// A boom of two sections with a load on its tip, which hangs on a spring that is its drive.
+/// A boom of two sections with a load on its tip, held by the spring of its drive.
 const BOOM: &str = "format: 1
 name: boom
 parameters: {payload: {value: 300, unit: kg}}
@@ -49,7 +49,7 @@ fn height(said: &Value) -> f64 {
     said["points"][0]["z"].as_f64().expect("a number")
 }
 
-/// The drive's spring gives way by `m g L / k`, and nothing else does: `δ = L · (m_total g L_eff)/k`.
+/// The drive's spring gives way by `m g L / k`, and nothing else deflects: `δ = L · (m_total g L_eff)/k`.
 #[test]
 fn a_rigid_twin_bends_nowhere() {
     let folder = folder("twin");
@@ -61,7 +61,7 @@ fn a_rigid_twin_bends_nowhere() {
     assert!((height(&rigid) / expected - 1.0).abs() < 3e-5, "{} instead of {expected}", height(&rigid));
     assert_eq!(rigid["pose"].as_array().map(Vec::len), Some(1), "no elements");
 
-    // As the spec with another word in it.
+    // The same as a spec with `sections: rigid` written into it.
     let written = BOOM.replace("sections: 2", "sections: rigid").replace("guess: {boom_1_psi: 0.001}\n", "");
     fs::write(folder.join("written.yaml"), written).expect("a file");
     assert_eq!(height(&json(&folder, &["statics", "written.yaml", "--format", "json"])), height(&rigid));
@@ -84,7 +84,7 @@ fn a_crane_is_compared_with_itself_and_with_another() {
         assert!(folder.join("twins").join(file).is_file(), "{file}");
     }
 
-    // Two versions of a file, which share the name of the crane.
+    // Two versions of a file with the same crane name.
     fs::write(folder.join("longer.yaml"), BOOM.replace("length: 4", "length: 5")).expect("a file");
     let arguments =
         ["compare", "boom.yaml", "longer.yaml", "--set", "payload=100", "--format", "json", "--out", "pair"];
@@ -136,7 +136,7 @@ fn matrices_have_the_modes_of_the_table() {
     assert_eq!(other.status.code(), Some(2));
 }
 
-/// Poses are for those who ask; what matters comes first.
+/// Poses are printed only on request.
 #[test]
 fn poses_are_printed_on_request() {
     let folder = folder("text");

@@ -1,4 +1,4 @@
-//! `crane envelope` against the equilibrium of moments, and interrupted.
+//! `crane envelope` against the equilibrium of moments, and after interruptions.
 
 use std::{
     fs,
@@ -10,7 +10,7 @@ use std::{
 
 use serde_json::Value;
 
-/// A truck of 4 t, its centre amid four feet 3 m and 2 m apart, and a load on an arm without mass that slews and telescopes.
+/// A truck of 4 t, centred between four feet 3 m and 2 m apart, with a load on a massless arm that slews and telescopes.
 const TRUCK: &str = "format: 1
 name: truck
 parameters: {payload: {value: 100, unit: kg}}
@@ -48,7 +48,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     command(folder, arguments).output().expect("it starts")
 }
 
-/// Columns of the table of all poses by their heading, as texts.
+/// The header and the rows of the table of all poses, as texts.
 fn table(folder: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let mut csv = csv::Reader::from_path(folder.join("truck_envelope.csv")).expect("a table");
     let header = csv.headers().expect("a header").iter().map(str::to_owned).collect();
@@ -82,8 +82,8 @@ fn a_load_chart_is_the_equilibrium_of_moments() {
         }
         assert!((number(row, "radius [m]") - reach).abs() < 1e-3);
     }
-    // The chart: all round, over the sides, where the lines are 1 m from the slewing axis; to the next lower radius of a pose and
-    // rounded down.
+    // The chart applies all round, so the sides govern, whose lines are 1 m from the slewing axis; its loads are at least those of
+    // the next larger radius of a pose, rounded down.
     let said: Value = serde_json::from_slice(&said.stdout).expect("JSON");
     let chart = said["load_chart"].as_array().expect("a chart");
     assert!(chart.len() >= 5, "{chart:?}");
@@ -104,8 +104,8 @@ fn a_load_chart_is_the_equilibrium_of_moments() {
     assert!(!folder.join("truck_envelope.part.csv").exists());
 }
 
-/// Killed while it writes, with half a line behind what was written: the second command goes on, and the result has the bytes of
-/// one that was never interrupted.
+/// Killed while it writes, with half a line after what was written: the second command continues, and the result has the same
+/// bytes as one that was never interrupted.
 #[test]
 fn what_is_interrupted_goes_on() {
     let ranges = ["--range", "column=0:350deg:60", "--range", "arm=2:6:100", "--threads", "2"];
@@ -125,7 +125,7 @@ fn what_is_interrupted_goes_on() {
     assert!(!broken.join("truck_envelope.csv").exists(), "it was interrupted");
     fs::write(&part, format!("{written}5999,tipping,\"a")).expect("half a line");
 
-    // Other limits would mix what does not belong together.
+    // Other limits are refused: they would mix results that do not belong together.
     let other = run(&broken, &[&ranges[..], &["--tipping", "0.1"]].concat());
     assert_eq!(other.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&other.stderr).contains("--restart"));
@@ -149,7 +149,7 @@ fn what_is_kept_is_not_computed_again() {
     killed.kill().expect("it runs");
     killed.wait().expect("it ends");
     let written = fs::read_to_string(&part).expect("what was done");
-    // The first pose: its number, the limit and of what, two positions, the load.
+    // The first pose: its number, the limit and what it is a limit of, two positions, the load.
     let mut lines: Vec<String> = written.lines().map(str::to_owned).collect();
     let first = lines.iter().position(|line| line.starts_with("0,")).expect("the first pose");
     let mut fields: Vec<&str> = lines[first].split(',').collect();

@@ -10,7 +10,7 @@ use std::{
 
 use serde_json::Value;
 
-/// Enough runs that a command can be interrupted amid them.
+/// Enough runs that a command can be interrupted midway.
 const ROWS: usize = 400;
 
 /// An empty folder of a test, with a table of loads in it.
@@ -70,7 +70,7 @@ fn by_ctrl_c(child: &mut Child) {
 }
 
 /// Interrupted by Ctrl-C, killed, and with half a line after what was written: the third command continues, and the table has the
-/// bytes of one that was never interrupted. Finished rows are kept: a number that was changed in one of them stays.
+/// same bytes as one that was never interrupted. Finished rows are kept: a number that was changed in one of them stays.
 fn continues(method: &str) {
     let whole = folder(&format!("whole_{method}"));
     assert_eq!(finish(&whole, method, &[])["kept_from_before"], 0);
@@ -113,7 +113,7 @@ fn finished_rows_are_not_computed_again() {
     interrupt(&folder, "bdf", by_ctrl_c);
     let written = fs::read_to_string(&part).expect("finished rows");
     let mut lines: Vec<String> = written.lines().map(str::to_owned).collect();
-    // Its number, the load, the first of the extremes.
+    // The number of the row, the load, the first of the extremes.
     let mut fields: Vec<&str> = lines[1].split(',').collect();
     let row: usize = fields[0].parse().expect("a number");
     fields[2] = "12345.678";

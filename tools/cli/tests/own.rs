@@ -6,7 +6,7 @@ use std::{
     process::{Command, Output},
 };
 
-/// The command, with programs of cranes kept in a folder of this test's own.
+/// The command, with compiled cranes kept in a folder for this test.
 fn crane(arguments: &[&str]) -> Output {
     let cache = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("own_cranes");
     let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
@@ -74,7 +74,7 @@ fn warnings_are_drawn_and_end_a_strict_command() {
         "{message}"
     );
     assert!(text(&checked.stdout).starts_with("knuckle_boom: valid"));
-    // Also where a parameter is set to such a value.
+    // Also if a parameter is set to such a value.
     let set = crane(&["statics", "knuckle_boom", "--set", "payload=0.8"]);
     assert!(set.status.success() && text(&set.stderr).contains(warned), "{}", text(&set.stderr));
     assert_eq!(crane(&["statics", "knuckle_boom", "--set", "payload=0.8", "--strict"]).status.code(), Some(1));
@@ -91,7 +91,7 @@ fn warnings_are_drawn_and_end_a_strict_command() {
 
 #[test]
 fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
-    // Another hash, the same crane; machine code of it, which is kept.
+    // The same crane with another hash, compiled to machine code, which is kept.
     let file = spec("knuckle.yaml", "title: Planar", "title: A planar");
     let own = crane(&["eval", &file, "--compile", "--q", "0.1,0.2,0.3,0.4", "--v", "1,2,3,4"]);
     assert!(own.status.success(), "{}", text(&own.stderr));
@@ -110,7 +110,7 @@ fn a_spec_computes_to_the_bit_what_the_shipped_crane_does() {
     let refused = crane(&["statics", &file, "--set", "payload"]);
     assert_eq!(refused.status.code(), Some(2));
 
-    // It runs without cargo, and one that is spoilt is compiled again.
+    // The kept program runs without cargo, and a corrupted one is compiled again.
     let cache = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("own_cranes");
     let statics = |path: Option<&str>| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));

@@ -69,7 +69,7 @@ fn the_screws_of_a_page_move_its_frames_as_the_crane_does() {
     let scene = &data["cranes"][1]["scene"];
     let pose = numbers(&scene["pose"]);
     let screws: Vec<Vec<f64>> = scene["screws"].as_array().expect("screws").iter().map(numbers).collect();
-    // Every coordinate off the pose, by another way.
+    // Every coordinate displaced from the pose, each by a different amount.
     let q: Vec<f64> = pose.iter().enumerate().map(|(i, q)| q + 0.3 * (1.0 + i as f64).sin()).collect();
     let text = q.iter().map(|q| format!("{q:?}")).collect::<Vec<_>>().join(",");
     let exact: Value = serde_json::from_slice(&crane(&["eval", "eight_link_flexible", "--q", &text])).expect("JSON");

@@ -20,7 +20,7 @@ fn assert_close(what: &str, actual: &Value, expected: f64, tolerance: f64) {
     assert!((actual / expected - 1.0).abs() < tolerance, "{what}: {actual} instead of {expected}");
 }
 
-/// A truck of 4 t, its centre amid four feet 3 m and 2 m apart, and a load 3 m before and 5 m beside it.
+/// A truck of 4 t, centred between four feet 3 m and 2 m apart, and a load 3 m in front of its centre and 5 m to the left.
 const TRUCK: &str = "
 parameters: {payload: {value: 100, unit: kg}}
 links:
@@ -32,20 +32,20 @@ supports:
   - {name: rear_left, at: [-1.5, 1, 0], stiffness: [1e10, 1e10, 1e10]}
   - {name: rear_right, at: [-1.5, -1, 0], stiffness: [1e10, 1e10, 1e10]}
 ";
-/// Feet give way by micrometres, which moves the load by as much of its lever.
+/// The feet deflect by micrometres, which changes the lever arm of the load by about as much.
 const COMPLIANCE: f64 = 1e-5;
 
 #[test]
 fn a_truck_on_four_feet_tips_where_moments_say() {
     let said = strength("truck", TRUCK, &[]);
-    // About the line of the left feet: 4000 kg at 1 m hold 100 kg at 4 m.
+    // About the line of the left feet: 4000 kg at 1 m balance 100 kg at 4 m.
     assert_eq!(said["governing_line"], "front_left – rear_left");
     assert_close("margin", &said["tipping_margin"], 0.9, COMPLIANCE);
     let line = said["tipping"].as_array().expect("a table").iter().find(|line| line["from"] == "front_left");
     let line = line.expect("the line");
     assert_close("stabilising", &line["stabilising"], 4000.0 * 9.81, COMPLIANCE);
     assert_close("overturning", &line["overturning"], 400.0 * 9.81, COMPLIANCE);
-    // (4000 + m)/4 − 5 m/4 − 3 · 1.5 m/9 = 0 at the foot across, on springs of one stiffness.
+    // (4000 + m)/4 − 5 m/4 − 3 · 1.5 m/9 = 0 at the opposite foot, on springs of equal stiffness.
     assert_eq!(said["critical_loads"]["first_foot"]["at"], "rear_right");
     assert_close("lift", &said["critical_loads"]["first_foot"]["load"], 1000.0 / 1.5, COMPLIANCE);
     // 4000 kg · 1 m = m · 4 m
@@ -58,7 +58,7 @@ fn a_truck_on_four_feet_tips_where_moments_say() {
     assert_close("moment", &ground["Mx"], -500.0 * 9.81, COMPLIANCE);
 }
 
-/// With more load than tips it, the crane is said to tip, and the loads are found below.
+/// Above the tipping load, the crane is reported to tip, and the critical loads are found below the given one.
 #[test]
 fn a_crane_that_tips_is_told_so() {
     let said = strength("overloaded", TRUCK, &["--set", "payload=1500"]);
@@ -68,7 +68,7 @@ fn a_crane_that_tips_is_told_so() {
     assert_close("tips", &said["critical_loads"]["tipping"]["load"], 1000.0, COMPLIANCE);
 }
 
-/// A quintic of 1 m in 2 s speeds up by at most `10/√3 · 1 m/(2 s)²`, after `(3 − √3)/6` of its time.
+/// A quintic of 1 m in 2 s accelerates at most by `10/√3 · 1 m/(2 s)²`, after `(3 − √3)/6` of its time.
 #[test]
 fn a_hoist_carries_its_greatest_load_as_it_speeds_up() {
     let hoist = "
@@ -118,7 +118,7 @@ fn a_cantilever_is_stressed_by_bending_shear_and_torsion() {
     let torsion = 981.0 * 0.5 / (2.0 * wall * (width - wall) * (height - wall));
     let equivalent = (normal.powi(2) + 3.0 * (shear + torsion).powi(2)).sqrt();
     let root = &said["stresses"][0];
-    // The tip sinks by 0.3 mm, which turns the load by 2e-4 rad into a normal force.
+    // The tip sinks by 0.3 mm, which tilts the load by 2e-4 rad, so that a part of it becomes a normal force.
     for (what, stress) in [("normal", normal), ("shear", shear), ("torsion", torsion), ("equivalent", equivalent)] {
         assert_close(what, &root[what], stress / 1e6, 1e-4);
     }
@@ -127,7 +127,7 @@ fn a_cantilever_is_stressed_by_bending_shear_and_torsion() {
     assert!(said["tipping_margin"].is_null(), "the crane has no supports");
 }
 
-/// Three tons more than the boom holds.
+/// About three tonnes more than the boom can carry.
 #[test]
 fn a_boom_that_yields_is_told_so() {
     let said = strength("overstressed", &CANTILEVER.replace("mass: 100", "mass: 10000"), &[]);
@@ -147,7 +147,7 @@ fn an_unknown_load_is_refused() {
     assert!(message.contains("there is no live parameter `pay_load`") && message.contains("`payload`"), "{message}");
 }
 
-/// A pull at the side of the truck, 2 m above the ground, takes its moment from what holds the crane down.
+/// A sideways pull on the truck, 2 m above the ground, reduces the stabilising moment by its own moment.
 #[test]
 fn an_applied_load_tips() {
     let pull = "loads: [{name: pull, link: truck, at: [0, 0, 2], force: [0, 5000, 0]}]\n";

@@ -1,4 +1,4 @@
-//! Leaves out of the shared library what only a debugger reads: every FMU carries the library.
+//! Strips debug information from the shared library, since every FMU contains it.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

@@ -18,9 +18,9 @@ use crate::variables::{self, Source, Variable};
 /// Why a call did not do what it should.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Nothing has changed: a caller who asks for something else may go on.
+    /// Nothing has changed: the caller may continue with a different request.
     Discard(String),
-    /// The caller is wrong, or the crane cannot go on.
+    /// The call was invalid, or the simulation cannot continue.
     Error(String),
 }
 
@@ -67,8 +67,7 @@ struct Moment {
 }
 
 impl State {
-    /// The state as numbers: parameters, inputs, NaN where they are not set, and where there are such time, pose, rates and
-    /// states of forces.
+    /// The state as numbers: parameters; inputs, NaN if not set; and, if known, time, pose, rates and states of forces.
     pub fn numbers(&self) -> Vec<f64> {
         let moment = self.moment.iter().flat_map(|Moment { t, q, v, x }| std::iter::once(t).chain(q).chain(v).chain(x));
         let inputs = self.inputs.iter().map(|value| value.unwrap_or(f64::NAN));
@@ -76,16 +75,16 @@ impl State {
     }
 }
 
-/// Motion by an importer's integrator, or by the crane's own.
+/// A crane whose motion is integrated by the importer or by the crane's own method.
 ///
 /// A crane begins where its runs begin: in the static equilibrium if the spec asks for statics, otherwise at the guess.
 pub struct Instance {
     crane: LiveCrane,
     variables: Vec<Variable>,
-    /// Parameters at the start, and as they were set last.
+    /// Parameters at the start, and as last set.
     first: Vec<f64>,
     parameters: Vec<f64>,
-    /// Inputs as they were set last.
+    /// Inputs as last set.
     inputs: Vec<Option<f64>>,
     /// Whether the crane has the parameters and inputs that were set last.
     is_current: bool,
@@ -108,7 +107,7 @@ impl Instance {
     /// The crane of an unpacked unit. `token` is that of its description.
     ///
     /// # Errors
-    /// The spec cannot be read, or the description belongs to another version of the library: in words.
+    /// A message, if the spec cannot be read or the description belongs to another version of the library.
     pub fn new(folder: &Path, token: &str) -> Result<Self, String> {
         let Opened { crane, parameters, warnings } = resources::open(folder)?;
         let variables = variables::list(crane.description());
@@ -143,7 +142,7 @@ impl Instance {
         std::mem::take(&mut self.said)
     }
 
-    /// Sets the tolerance of the crane's own steps and the time of the start, s.
+    /// Sets the tolerance of the crane's own integrator and the start time, s.
     ///
     /// # Errors
     /// The tolerance is out of range, or the time is not finite.
@@ -163,7 +162,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Ends the initialisation: from now on parameters change the crane and leave its state.
+    /// Ends the initialisation: from now on parameters change the crane but not its state.
     ///
     /// # Errors
     /// As [`Instance::get`].
@@ -198,7 +197,7 @@ impl Instance {
         (self.quantities, self.accelerations) = (None, None);
     }
 
-    /// Gives the crane the parameters and inputs that were set, and lets it come to rest unless it is under way.
+    /// Applies the parameters and inputs last set to the crane, and computes its initial state if it has none yet.
     fn settle(&mut self) -> Result<(), Fault> {
         if !self.is_current {
             DynCrane::set_parameters(&mut self.crane, &self.parameters).map_err(Fault::error)?;
@@ -288,11 +287,11 @@ impl Instance {
         Ok(accelerations.get_or_insert_with(|| own_states::accelerations(crane, *t, (q, v), x)))
     }
 
-    /// Sets variables by their references; parameters and inputs alone can be set. What several parameters must obey together is
-    /// looked at when the crane needs them. An input that is set to the value that it has changes nothing.
+    /// Sets variables by their references; only parameters and inputs can be set. Rules that involve several parameters are
+    /// checked when the crane next needs them. Setting an input to its current value changes nothing.
     ///
     /// # Errors
-    /// A variable is neither a parameter nor an input, or a value is not allowed; those before it are set.
+    /// A variable is neither a parameter nor an input, or a value is not allowed; the variables before it have been set.
     pub fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault> {
         for (&reference, &value) in references.iter().zip(values) {
             let Variable { name, source, .. } = self.variable(reference)?;
@@ -316,13 +315,13 @@ impl Instance {
         Ok(())
     }
 
-    /// The state, to come back to.
+    /// The state, to return to later.
     pub fn state(&self) -> State {
         let Self { parameters, inputs, moment, .. } = self;
         State { parameters: parameters.clone(), inputs: inputs.clone(), moment: moment.clone() }
     }
 
-    /// Goes back to a state.
+    /// Returns to a state.
     pub fn set_state(&mut self, state: &State) {
         self.parameters.clone_from(&state.parameters);
         self.inputs.clone_from(&state.inputs);
@@ -331,7 +330,7 @@ impl Instance {
         self.forget();
     }
 
-    /// A state of this crane from its numbers, if they are as many as such a state has.
+    /// A state of this crane from its numbers; `None` if their count does not match.
     pub fn state_of(&self, numbers: &[f64]) -> Option<State> {
         let (parameters, rest) = numbers.split_at_checked(self.parameters.len())?;
         let (inputs, rest) = rest.split_at_checked(self.inputs.len())?;
@@ -359,7 +358,7 @@ impl Instance {
     /// Sets coordinates, rates and states of forces.
     ///
     /// # Errors
-    /// As [`Instance::get`]; the numbers are not as many as states.
+    /// As [`Instance::get`]; the number of values is not the number of states.
     pub fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Fault> {
         self.check_states(states.len())?;
         let (q, rest) = states.split_at(self.crane.size());
@@ -379,7 +378,7 @@ impl Instance {
     /// Coordinates, rates and states of forces.
     ///
     /// # Errors
-    /// As [`Instance::get`]; `out` is not as long as there are states.
+    /// As [`Instance::get`]; the length of `out` is not the number of states.
     pub fn continuous_states(&mut self, out: &mut [f64]) -> Result<(), Fault> {
         self.check_states(out.len())?;
         let Moment { q, v, x, .. } = self.moment()?;
@@ -390,7 +389,7 @@ impl Instance {
     /// Rates, accelerations and the rates of the forces' states.
     ///
     /// # Errors
-    /// As [`Instance::get`]; `out` is not as long as there are states; one of them is not finite.
+    /// As [`Instance::get`]; the length of `out` is not the number of states; a derivative is not finite.
     pub fn derivatives(&mut self, out: &mut [f64]) -> Result<(), Fault> {
         self.check_states(out.len())?;
         let (rates, rest) = out.split_at_mut(self.crane.size());
@@ -418,7 +417,7 @@ impl Instance {
         times.into_iter().flatten().filter(|time| *time > t && time.is_finite()).min_by(f64::total_cmp)
     }
 
-    /// How some variables change with coordinates, rates, states of forces and inputs along a direction, by central differences.
+    /// Directional derivatives of variables with respect to coordinates, rates, states of forces and inputs, by central differences.
     ///
     /// # Errors
     /// As [`Instance::get`]; a variable of the direction is neither a state nor an input, or it is an input that follows
@@ -430,7 +429,7 @@ impl Instance {
         direction: &[f64],
         out: &mut [f64],
     ) -> Result<(), Fault> {
-        /// The cube root of the accuracy of a number balances truncation and rounding of central differences.
+        /// The cube root of the machine epsilon balances truncation and rounding errors of central differences.
         const RELATIVE: f64 = 6e-6;
         let scales = OwnStates::new(self.crane.description()).scales();
         let mut greatest = 0.0_f64;
@@ -474,13 +473,13 @@ impl Instance {
         found
     }
 
-    /// A step of the crane's own motion, s. From step to step it goes on with the history that it has; a parameter that changes
-    /// begins a new one.
+    /// A step of the crane's own integrator, s. Its history continues from step to step; a change of a parameter or an input starts
+    /// a new one.
     ///
     /// # Errors
-    /// As [`Instance::get`]; the step does not begin where the crane stands, or is not positive; the motion cannot be followed.
+    /// As [`Instance::get`]; the step does not begin at the crane's current time, or is not positive; the integration fails.
     pub fn step(&mut self, from: f64, length: f64) -> Result<(), Fault> {
-        /// Accepted error of a sum of steps, as a fraction of a step.
+        /// Accepted rounding error of a time that is a sum of steps, as a fraction of a step.
         const ROUNDING: f64 = 1e-6;
         let Moment { t, q, v, x } = self.moment()?.clone();
         if !(length > 0.0 && length.is_finite()) {

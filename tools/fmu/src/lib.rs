@@ -6,11 +6,11 @@
 //!
 //! | where | what |
 //! |---|---|
-//! | [`variables`] | the list of a crane's variables, and the token by which library and description know each other |
+//! | [`variables`] | the list of a crane's variables, and the token by which library and description recognise each other |
 //! | [`description`] | `modelDescription.xml` |
 //! | [`resources`] | the spec and the parameters inside of a unit |
-//! | [`instance`] | a crane at work, in Rust: states, values, steps |
-//! | `abi` | the same for C: pointers are looked at there and nowhere else |
+//! | [`instance`] | an instance of a crane, in Rust: states, values, steps |
+//! | `abi` | the same for C: pointers are dereferenced only there |
 
 mod abi;
 pub mod description;

@@ -19,11 +19,11 @@ pub struct Opened {
     pub crane: LiveCrane,
     /// Values of its live parameters at the start, in the order of the description.
     pub parameters: Vec<f64>,
-    /// Warnings, drawn; empty without any.
+    /// Warnings as rendered text; empty if there are none.
     pub warnings: String,
 }
 
-/// Values of parameters as a file.
+/// Values of the parameters as the text of a file.
 pub fn write_parameters(crane: &dyn DynModel) -> String {
     let mut text = String::new();
     for (index, parameter) in crane.description().parameters.iter().enumerate() {
@@ -35,9 +35,9 @@ pub fn write_parameters(crane: &dyn DynModel) -> String {
 /// Reads the crane of an unpacked unit.
 ///
 /// # Errors
-/// A file cannot be read, or the spec has mistakes: in words.
+/// A message, if a file cannot be read or the spec has mistakes.
 pub fn open(folder: &Path) -> Result<Opened, String> {
-    // Not by the compiler's reader of files: the text has the specs that it extends.
+    // Not by the compiler's reader of files: the text includes the specs that it extends.
     let bytes = read(folder, SPEC)?;
     let source = SourceFile::from_bytes(SPEC, &bytes).map_err(|mistakes| mistakes.to_string())?;
     let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| mistakes.to_string())?;
@@ -57,7 +57,7 @@ fn read(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
     fs::read(&file).map_err(|error| format!("{}: {error}", file.display()))
 }
 
-/// Place and value of a parameter.
+/// Index and value of a parameter.
 fn read_line(crane: &LiveCrane, line: &str) -> Option<(usize, f64)> {
     let (name, value) = line.split_once(',')?;
     let place = crane.description().parameters.iter().position(|parameter| parameter.name == name)?;
@@ -67,7 +67,7 @@ fn read_line(crane: &LiveCrane, line: &str) -> Option<(usize, f64)> {
 /// The folder that a URI of FMI 2.0 names: `file:///folder`, `file:/folder` or `file://localhost/folder`.
 ///
 /// # Errors
-/// It is another kind of URI: in words.
+/// A message, if it is another kind of URI.
 pub fn folder_of(uri: &str) -> Result<PathBuf, String> {
     let wrong =
         || format!("the location of the resources is `{uri}`, not a folder on this machine such as file:///folder");
@@ -80,7 +80,7 @@ pub fn folder_of(uri: &str) -> Result<PathBuf, String> {
         return Err(wrong());
     }
     let path = decoded(path).ok_or_else(wrong)?;
-    // A drive of Windows, as in file:///C:/folder.
+    // A Windows drive letter, as in file:///C:/folder.
     let with_drive = path.get(2..3) == Some(":");
     Ok(PathBuf::from(if with_drive { &path[1..] } else { &path }))
 }

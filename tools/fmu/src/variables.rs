@@ -14,11 +14,11 @@ pub enum Source {
     Rate(usize),
     /// The acceleration of a coordinate.
     Acceleration(usize),
-    /// A state of a force: a pressure, where a spool is, the deflection of bristles.
+    /// A state of a force: a pressure, a spool position, the deflection of bristles.
     Own(usize),
     /// Its rate.
     OwnRate(usize),
-    /// What follows from a state, by its place in [`results::quantities`].
+    /// A derived quantity, by its index in [`results::quantities`].
     Quantity(usize),
     /// A live parameter, by its place in the description.
     Parameter(usize),
@@ -29,7 +29,7 @@ pub enum Source {
 /// A variable. Its value reference is its place in the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Variable {
-    /// Name, that of the column in results of the command.
+    /// Name, as that of the column in the command's results.
     pub name: String,
     /// Unit.
     pub unit: String,
@@ -37,15 +37,15 @@ pub struct Variable {
     pub about: String,
     /// What it is.
     pub source: Source,
-    /// Whether it is offered to what is connected to the crane.
+    /// Whether it is an output, which other units can be connected to.
     pub is_output: bool,
 }
 
-/// The variables of a crane: time, coordinates, rates, what follows from them and states of forces, accelerations,
+/// The variables of a crane: time, coordinates, rates, derived quantities and states of forces, accelerations,
 /// rates of the forces' states, parameters, inputs.
 ///
 /// Poses and rates of joints and of the base are outputs, and so are points, drives and reactions. Deformations of flexible links,
-/// their moments, energies and accelerations can be read as well, but are not offered for connections: they are many.
+/// their moments, energies and accelerations can be read as well, but are not outputs, because they are many.
 pub fn list(description: &Description) -> Vec<Variable> {
     let n = description.coordinates.len();
     let moments: Vec<String> = description
@@ -118,7 +118,7 @@ pub fn list(description: &Description) -> Vec<Variable> {
     all
 }
 
-/// What a description and a library must agree in: the spec, and every variable with its place.
+/// What a description and a library must agree on: the spec, and every variable with its place.
 pub fn token(description: &Description, variables: &[Variable]) -> String {
     let lines: Vec<String> =
         variables.iter().map(|variable| format!("{} [{}]", variable.name, variable.unit)).collect();

@@ -43,7 +43,7 @@ fn every_quick_case_goes_as_expected() {
     assert_eq!(table.lines().count(), cases.len() + 1);
     let page = fs::read_to_string(folder.join("stress.md")).expect("a page");
     assert!(page.contains("## Buckling") && page.contains("| ok |"));
-    // The page of the manual has each of these cases, with the same words: another processor may round numbers otherwise.
+    // The page of the manual has each of these cases in the same words; another processor may round numbers differently.
     let written =
         fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/stress.csv")).expect("docs/stress.csv");
     let written: BTreeSet<String> = written.lines().map(without_numbers).collect();

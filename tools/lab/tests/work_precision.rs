@@ -22,7 +22,7 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// A folder of this test's own.
+/// A separate folder for a test.
 fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&folder);
@@ -46,7 +46,7 @@ fn work_precision_of_every_method() {
     let arguments = ["work-precision", "knuckle_boom", "--quick", "--duration", "1", "--format", "json"];
     let [out, page] = [&out, &page].map(|path| path.to_str().expect("a path"));
     let report = json(&[&arguments[..], &["--out", out, "--page", page]].concat());
-    // Two methods agree to 1e-11 of the load path, so errors of the others are their own.
+    // The two reference solutions agree to 1e-11 of the load path, so the errors are those of the methods.
     let rows = report["methods"].as_array().expect("rows");
     let error = |method: &str, what: &str| -> Vec<f64> {
         let of = rows.iter().filter(|row| row["method"] == method);
@@ -59,9 +59,9 @@ fn work_precision_of_every_method() {
         }
         assert!(error(method, "wall_ms").iter().all(|wall| *wall > 0.0));
     }
-    // A hundredth of the tolerance. Efforts of the drives count in the steps' error as well, which makes the path at the coarse
-    // tolerance several times as exact as was asked for: a fifth of its error is left to gain.
-    // The path of a second is 0.08 m long, so the finer tolerance is 1.2e-4 of it.
+    // The finer tolerance is a hundredth of the coarse one. The error of a step includes the efforts of the drives, which makes the
+    // path at the coarse tolerance several times more accurate than requested: only a factor of five is required.
+    // The path within one second is 0.08 m long, so the finer tolerance is 1.2e-4 of it.
     for (method, most) in [("rosw4", 1e-4), ("bdf", 2e-4)] {
         let [coarse, fine] = error(method, "load_path")[..] else { panic!("two tolerances: {rows:?}") };
         assert!(fine < 0.2 * coarse && fine < most, "{method}: {coarse:e} {fine:e}");
@@ -100,7 +100,7 @@ fn a_chaotic_motion_has_no_reference_for_long() {
 
 #[test]
 fn the_error_of_sections_obeys_the_law_of_a_cantilever() {
-    // At the tip alone: a point on an element follows another law.
+    // At the tip only: a point on an element follows a different law.
     let changes = "extends: cantilever
 name: cantilever
 links: [{name: beam, beam: {sections: 3}}]
@@ -117,10 +117,10 @@ points: [{name: middle, remove: true}]
     for (row, n) in report["sections"].as_array().expect("rows").iter().zip([1.0, 2.0]) {
         let error = row["static_deflection"].as_f64().expect("a number");
         let law = (by_tip / 4.0 + by_own / 2.0) / (by_tip + by_own) / (n * n);
-        // Deflections are 1 % of the length, so their squares count 1e-4.
+        // Deflections are 1 % of the length, so their squares amount to 1e-4.
         assert!((error / law - 1.0).abs() < 1e-2, "{n} sections: {error} {law}");
     }
-    // The limit is extrapolated from these two, so one is off four times as far as the other.
+    // The limit is extrapolated from these two, so the error of one is four times that of the other.
     let off = |row: usize| report["sections"][row]["frequencies"].as_f64().expect("a number");
     assert!((off(0) / off(1) - 4.0).abs() < 1e-9, "{} {}", off(0), off(1));
     assert!(!report["advice"].as_array().expect("rows").is_empty());

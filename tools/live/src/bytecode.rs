@@ -1,8 +1,8 @@
 //! A function as bytecode: operations on numbered registers, in runs of one kind.
 //!
 //! Nearly all arithmetic is the one operation `a b + c`: a sum is `1 a + b`, a product `a b − 0`, a difference takes a negative,
-//! which is kept in addition to the positive value if both are needed. The numbers are those of the separate operations, except for the sign of
-//! a zero. So the inner loop has no branches to predict except the few ends of runs.
+//! which is kept in addition to the positive value if both are needed. The results are those of the separate operations, except for
+//! the sign of a zero. So the inner loop has no branches to predict except the few ends of runs.
 
 use crane_codegen::program::Argument;
 
@@ -65,7 +65,7 @@ pub struct Inputs {
 pub struct Segment {
     /// The kind of operation.
     pub kind: Kind,
-    /// Its repetitions.
+    /// The number of operations or results.
     pub length: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Results from the factors that functions leave where a result is too long to be written out.
+//! Results computed from the factors that a function returns if its result is too long to be written out.
 
 use std::ops::{Mul, Neg};
 

@@ -11,8 +11,8 @@ pub enum Entry {
     Number(f64),
 }
 
-/// The result of a function, number by number: symmetric matrices in full, column by column, one after the other, as are
-/// homogeneous matrices with their fourth row. Factors stay factors.
+/// The result of a function, number by number. Symmetric matrices are written in full, homogeneous matrices with their fourth row,
+/// both column by column, one after the other. Factors remain factors.
 pub fn layout(shape: &Shape) -> Vec<Entry> {
     let mut entries = Vec::new();
     append(shape, 0, &mut entries);

@@ -81,7 +81,7 @@ impl Library {
         &self.chain
     }
 
-    /// A function; `None` where the scene does not need it.
+    /// A function; `None` if the crane does not need it.
     ///
     /// # Panics
     /// If the crane has far more than [`LiveCrane::MOST_COORDINATES`](crate::LiveCrane::MOST_COORDINATES).

@@ -40,7 +40,7 @@ impl DynLineariseMotion for LiveCrane {
                 }
             }
         }
-        // Prescribed coordinates do not move: as about a pose at rest they oscillate separately, at 1 rad/s.
+        // Prescribed coordinates do not move: as in small motions about a pose at rest, each is a separate oscillator with 1 rad/s.
         for j in self.description().prescribed() {
             for (matrix, diagonal) in [(&mut *mass, 1.0), (&mut *stiffness, 1.0), (&mut *damping, 0.0)] {
                 for k in 0..n {

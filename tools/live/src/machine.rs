@@ -121,7 +121,7 @@ pub struct Arguments<'a, T> {
 }
 
 impl<T: Number> Arguments<'_, T> {
-    /// Nothing, at t = 0.
+    /// No arguments, at t = 0.
     #[must_use]
     pub fn none() -> Self {
         let t = T::splat(0.0);
@@ -169,7 +169,7 @@ enum File<T> {
     Large(Box<[T; SIZES[2]]>),
 }
 
-/// The registers of a function, its fixed numbers among them.
+/// The registers of a function, including its fixed numbers.
 #[derive(Clone, Debug)]
 pub struct Machine<T> {
     file: File<T>,

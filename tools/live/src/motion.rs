@@ -15,7 +15,7 @@ self_cell!(
     }
 );
 
-/// A crane that moves on from a state for as long as it is asked to, with the history of its method.
+/// A motion that continues from a state as far as requested, with the history of its method.
 pub struct Motion(Moving);
 
 impl Motion {
@@ -27,7 +27,7 @@ impl Motion {
         Moving::try_new(crane, |crane| Course::new(crane, begin, start, settings)).map(Self)
     }
 
-    /// Goes on to a later time, s. `step` receives the time after every step, and may stop the motion: then the last result stays.
+    /// Continues to a later time, s. `step` receives the time after every step, and may stop the motion: then the last result is kept.
     ///
     /// # Errors
     /// As [`Course::advance`].
@@ -45,7 +45,7 @@ impl Motion {
         self.0.borrow_dependent().sample()
     }
 
-    /// What it took so far.
+    /// Summary of the run so far.
     #[must_use]
     pub fn run(&self) -> Run {
         self.0.borrow_dependent().run()

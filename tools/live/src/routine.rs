@@ -7,7 +7,7 @@ use crate::assemble::{TooLarge, assemble, assemble_constants};
 use crate::bytecode::Code;
 use crate::machine::{Arguments, Machine, Number};
 
-/// A function as bytecode, with its constants of live parameters.
+/// A function as bytecode, with its constants computed from live parameters.
 #[derive(Clone, Debug)]
 pub struct Routine {
     shape: Shape,

@@ -1,7 +1,7 @@
 //! Quantities of many states, one state or eight at a time.
 //!
-//! A row is a state with its parameters. Its numbers are those of the functions of [`DynModel`] and its kin at that state, to the
-//! last bit, whatever the other rows contain.
+//! A row is a state with its parameters. Its results are those of [`DynModel`] and related traits at that state, to the last bit,
+//! whatever the other rows contain.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub struct Rows<'a> {
     pub parameters: &'a [f64],
 }
 
-/// Workspace to compute a quantity of many rows, as many at a time as a number of `T` holds.
+/// Workspace to compute a quantity of many rows, as many at a time as `T` has lanes.
 #[derive(Debug)]
 pub struct Evaluation<T> {
     library: Arc<Library>,
@@ -57,7 +57,7 @@ pub struct Evaluation<T> {
     lanes: Lanes<T>,
     /// The crane's inputs.
     inputs: Vec<T>,
-    /// Their results.
+    /// The results of the states.
     results: Vec<T>,
 }
 
@@ -71,7 +71,7 @@ struct Lanes<T> {
     parameters: Vec<T>,
 }
 
-/// A function with room for its calls.
+/// A function with a workspace for its calls.
 #[derive(Debug)]
 struct Call<T> {
     id: FunctionId,
@@ -82,7 +82,7 @@ struct Call<T> {
 }
 
 impl<T: Number> Evaluation<T> {
-    /// Room for a quantity of a crane, with its parameters.
+    /// Workspace for a quantity of a crane, with its parameters.
     #[must_use]
     pub fn new(crane: &LiveCrane, quantity: Quantity) -> Self {
         let ids = match quantity {
@@ -145,7 +145,7 @@ impl<T: Number> Evaluation<T> {
                     *result = row.iter().zip(&lanes.a).fold(-*result, |sum, (entry, a)| fma(*entry, *a, sum));
                 }
             }
-            // A function that the crane does not need is zero.
+            // The result of a function that the crane does not need is zero.
             _ => results.fill(T::splat(0.0)),
         }
     }
@@ -176,7 +176,7 @@ impl<T: Batch> Evaluation<T> {
 }
 
 impl<T: Batch> Lanes<T> {
-    /// Takes rows of a crane with so many coordinates and parameters; the last of them fills the lanes that are left.
+    /// Takes rows of a crane with `n` coordinates and with `parameters` parameters; the last row fills the remaining lanes.
     fn take(&mut self, [n, parameters]: [usize; 2], rows: &Rows<'_>, first: usize, count: usize) {
         let states =
             [(&mut self.t, rows.t, 1), (&mut self.q, rows.q, n), (&mut self.v, rows.v, n), (&mut self.a, rows.a, n)];
@@ -228,7 +228,7 @@ impl<T: Number> Call<T> {
     }
 }
 
-/// Numbers of a quantity for one state.
+/// How many numbers a quantity has for one state.
 fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
     let description = crane.description();
     let n = crane.size();
@@ -296,7 +296,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
     }
 }
 
-/// Where the numbers of transforms and their derivatives stand, whose matrices a function writes column by column.
+/// Where a function's result contains the numbers of transforms or their derivatives, whose matrices it writes column by column.
 fn places(description: &Description, n: usize, id: FunctionId) -> Option<Vec<Option<usize>>> {
     let bodies = &description.bodies;
     let row_by_row = |matrix: usize| (0..16).map(move |place| 16 * matrix + 4 * (place % 4) + place / 4);

@@ -1,6 +1,6 @@
 //! A number with its slopes in eight directions: exact derivatives of any function of a crane, by the rule of each operation.
 //!
-//! Eight directions fill the widest registers, so a derivative costs about half as much as a value, and nothing has to be derived.
+//! Eight directions fill the widest registers, so a derivative costs about half as much as a value, and no expressions have to be derived.
 
 use std::ops::{Div, Mul, Neg};
 
@@ -21,7 +21,7 @@ pub struct Sloped {
 }
 
 impl Sloped {
-    /// A number that grows by one per unit of a direction, and not at all where `direction` is none of the eight.
+    /// A number with slope 1 in one direction; with zero slopes only, if `direction` is none of the eight.
     pub fn along(value: f64, direction: Option<usize>) -> Self {
         let slope = |place: usize| if Some(place) == direction { 1.0 } else { 0.0 };
         Self { value, slopes: f64x8::new(std::array::from_fn(slope)) }
@@ -46,7 +46,7 @@ impl Fused for Sloped {
 }
 
 impl Function for Sloped {
-    /// What does not change has no slope, even where the root is vertical.
+    /// A zero slope stays zero, even at 0, where the root has a vertical tangent.
     fn sqrt(self) -> Self {
         let root = sqrt(self.value);
         let changes = self.slopes.simd_ne(f64x8::splat(0.0));

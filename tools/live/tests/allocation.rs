@@ -1,4 +1,4 @@
-//! A call in a loop allocates nothing, and a dropped crane leaves nothing.
+//! A call in a loop allocates nothing, and a dropped crane leaves no memory allocated.
 
 use crane_codegen::build;
 use crane_live::LiveCrane;
@@ -47,7 +47,7 @@ fn a_crane_leaves_nothing_behind() {
         crane.forward_dynamics(0.1, &crane.description().guess, &out.clone(), &mut out);
         drop(crane.clone());
     };
-    // What the libraries beneath keep for the process.
+    // The first call allocates what libraries keep for the life of the process.
     used();
     let counted = allocation_counter::measure(used);
     assert!(counted.count_total > 0);

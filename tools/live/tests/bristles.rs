@@ -1,4 +1,4 @@
-//! Friction of joints that stick against laws by hand and an integration of the same laws written a second time.
+//! Friction of joints that stick, against hand calculations and a second implementation of the same laws.
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -19,7 +19,7 @@ const STIFFNESS: f64 = 2e5;
 const DAMPING: f64 = 900.0;
 const METHODS: [Method; 4] = [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4];
 
-/// A slide without weight.
+/// A weightless slide.
 fn slide(more: &str) -> LiveCrane {
     let text = format!(
         "format: 1
@@ -64,7 +64,7 @@ fn bristles_at_rest_are_a_spring() {
     let motions = (&crane as &dyn DynCrane).small_motions_at(&[0.0]);
     assert_eq!([motions.mass[(0, 0)], motions.stiffness[(0, 0)]], [MASS, STIFFNESS]);
     assert_eq!(motions.damping[(0, 0)].to_bits(), (DAMPING + VISCOUS).to_bits());
-    // The motion itself, so slow that bristles hardly slide: over two periods.
+    // The motion itself over two periods, so slow that the bristles hardly slide.
     let omega = (STIFFNESS / MASS).sqrt();
     let zeta = (DAMPING + VISCOUS) / (2.0 * (STIFFNESS * MASS).sqrt());
     let damped = omega * (1.0 - zeta * zeta).sqrt();
@@ -79,7 +79,7 @@ fn bristles_at_rest_are_a_spring() {
         });
         run.expect("a run");
         let exact = speed / damped * (-zeta * omega * end).exp() * (damped * end).sin();
-        // Bristles slide by a share of their deflection over the breakaway one, speed √(σ₀ m)/F_b = 2e-4.
+        // Bristles slide by a share equal to the ratio of their deflection to the breakaway deflection, speed √(σ₀ m)/F_b = 2e-4.
         assert!((x - exact).abs() < 3e-4 * speed / omega, "{method:?}: {x:e} for {exact:e}");
     }
 }
@@ -87,7 +87,7 @@ fn bristles_at_rest_are_a_spring() {
 /// Pushed with less than the breakaway friction the joint does not creep; in steady sliding friction is g(v) + b v.
 #[test]
 fn a_joint_sticks_and_slides() {
-    // It overshoots by a half.
+    // The deflection overshoots by about a half.
     let push = 0.5 * BREAKAWAY;
     let crane = slide(&format!(
         "analyses: [dynamics]\nloads: [{{name: push, link: slide, at: [0, 0, 0], force: [{push}, 0, 0]}}]"
@@ -111,7 +111,7 @@ fn a_joint_sticks_and_slides() {
     }
 }
 
-/// Stick and slip on a spring that is drawn, by every method and by the same laws once more, with small steps of RK4.
+/// Stick-slip on a pulled spring, by every method and by a second implementation of the same laws with small steps of RK4.
 #[test]
 fn every_method_follows_the_laws_written_a_second_time() {
     const SPRING: f64 = 4e3;
@@ -148,14 +148,14 @@ fn every_method_follows_the_laws_written_a_second_time() {
             let off = (found[index] - y[index]).abs() / scale;
             assert!(off < 1e-4, "{method:?}, {index}: {} for {}, off by {off:.1e}", found[index], y[index]);
         }
-        // What the drive puts in is stored in springs, moves the slide, or is taken out.
+        // The work of the drive is stored in springs, moves the slide, or is dissipated.
         let balance = column(&table, "energy_balance").into_iter().fold(0.0, |worst: f64, own| worst.max(own.abs()));
         assert!(balance < 1e-5 * column(&table, "drive_work")[100], "{method:?}: {balance:e}");
     }
     assert!(least < 1e-5, "it slips without sticking: {least}");
 }
 
-/// Bristles that slide follow the joint at σ₀ |q̇|/g: `stability` names them, nine tenths of its step is right, half as much again is not.
+/// Sliding bristles follow the joint at the rate σ₀ |q̇|/g and limit the stable step: 0.9 times that step is accurate, 1.5 times is not.
 #[test]
 fn sliding_bristles_limit_the_step_of_explicit_methods() {
     const RATE: f64 = 0.5;

@@ -1,4 +1,4 @@
-//! Bytecode against the interpreter of the compiler, which is the meaning of a program.
+//! Bytecode against the interpreter of the compiler, which defines the meaning of a program.
 
 use crane_codegen::build;
 use crane_codegen::chain::{Analyses, Chain};
@@ -10,7 +10,7 @@ use crane_live::layout::{Entry, layout};
 use crane_live::machine::Arguments;
 use crane_model::rt::lanes::f64x8;
 
-/// Specs with everything that functions can have: supports, beams, drives, hinges, live parameters, prismatic joints.
+/// Specs with everything that functions can contain: supports, beams, drives, hinges, live parameters, prismatic joints.
 const SPECS: [&str; 4] = ["eight_link_flexible", "eight_link_identified", "knuckle_boom", "double_pendulum"];
 
 /// A chain and all its functions.
@@ -81,7 +81,7 @@ impl State {
     }
 }
 
-/// The slots of a result that stands as its layout has it.
+/// The slots of a result in the order of its layout.
 fn slots(shape: &Shape, result: &[f64]) -> Vec<f64> {
     let mut slots = vec![f64::NAN; shape.len()];
     for (entry, number) in layout(shape).iter().zip(result) {
@@ -93,8 +93,8 @@ fn slots(shape: &Shape, result: &[f64]) -> Vec<f64> {
     slots
 }
 
-/// The interpreter rounds products and sums apart and takes other sines, a unit in the last place off: that is what the results
-/// of 3,000 operations may differ by, in proportion to the largest of them. Solutions of `A x = r` lose digits to A's condition.
+/// The interpreter rounds products and sums separately, and its sines differ by a unit in the last place. Over 3,000 operations the
+/// results may differ accordingly, relative to the largest. Solutions of `A x = r` also lose digits to the condition of A.
 #[test]
 fn bytecode_computes_what_the_interpreter_does() {
     for name in SPECS {
@@ -116,7 +116,7 @@ fn bytecode_computes_what_the_interpreter_does() {
     }
 }
 
-/// Eight states at a time, each with its own parameters, are eight times one state: the same bits.
+/// Eight states at a time, each with its own parameters, give the same bits as one state at a time.
 #[test]
 fn a_lane_computes_what_one_state_does() {
     for name in SPECS {
@@ -160,7 +160,7 @@ fn lanes_of(states: &[State], of: fn(&State) -> &Vec<f64>) -> Vec<f64x8> {
     (0..of(&states[0]).len()).map(lane).collect()
 }
 
-/// Roots, exponentials and choices, which few cranes have: one by one and in lanes, with both signs wanted of each.
+/// Roots, exponentials and choices, which few cranes have: one by one and in lanes, with both signs of each.
 #[test]
 fn functions_of_one_number_and_choices_are_the_interpreters() {
     let symbol = |name: &str, index| Symbol { name: name.into(), argument: Argument::Position, index };
@@ -189,7 +189,7 @@ fn functions_of_one_number_and_choices_are_the_interpreters() {
         let expected = program.evaluate(&program.functions[0], &Inputs::state(0.0, q.to_vec(), vec![], vec![]));
         for ((one, eight), expected) in one.iter().zip(&eight).zip(&expected) {
             assert_eq!(one, &eight.to_array()[lane]);
-            // A product and a sum that are fused round once less.
+            // A fused product and sum is rounded once less.
             assert!((one - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{q:?}: {one} for {expected}");
         }
     }

@@ -1,4 +1,4 @@
-//! What runs say about themselves: cautions of ensembles, servos that stay behind, drives that are too weak.
+//! Cautions of runs: of ensembles, servos that fall behind, drives that are too weak.
 
 use std::ops::ControlFlow;
 
@@ -27,7 +27,7 @@ fn said(crane: &LiveCrane, settings: &Settings) -> Vec<String> {
     recorded.unwrap_or_else(|failed| panic!("{failed}")).cautions
 }
 
-/// Feet that lift, pumps and pressures: a row of an ensemble says what a run of its crane says, and has the same extremes.
+/// Feet that lift, pumps and pressures: a row of an ensemble has the same cautions and extremes as a run of its crane.
 #[test]
 fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
     for name in ["eight_link_hydraulic", "loader_tipping"] {
@@ -57,7 +57,7 @@ fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
     }
 }
 
-/// A mass that a cylinder lifts; its servo has no speed set ahead.
+/// A mass that a cylinder lifts, with a nominal valve flow and the keys of its servo.
 fn lift(flow: f64, servo: &str) -> LiveCrane {
     spec(&format!(
         "format: 1
@@ -78,8 +78,8 @@ run: {{duration: 3, output: 0.01}}
     ))
 }
 
-/// Without its speed set ahead a servo stays behind by v/(K gain), with K the speed of the fully open valve, here much more than a twentieth of
-/// the motion; with it, hardly.
+/// Without feed-forward a servo falls behind by v/(K gain), with K the speed at the fully open valve, here by much more than a twentieth
+/// of the motion; with feed-forward it hardly does.
 #[test]
 fn a_servo_that_stays_behind_says_so() {
     let behind = |crane: &LiveCrane| {
@@ -93,7 +93,7 @@ fn a_servo_that_stays_behind_says_so() {
     assert_eq!(behind(&lift(1e-3, "gain: 10")), None);
 }
 
-/// A drive that cannot carry its load is what statics that fail name, with what to change.
+/// If statics fail because a drive cannot carry its load, the message names the drive and what to change.
 #[test]
 fn statics_that_fail_name_the_drive_that_is_too_weak() {
     let lift = |limit: f64| {
@@ -109,7 +109,7 @@ drives: [{{coordinate: lift_z, stiffness: 1e5, max_effort: {limit}, motion: {{ho
     let failed = Start::of(&lift(500.0)).expect_err("it falls");
     assert!(failed.to_string().ends_with("; the drive of lift_z is at its limit"), "{failed}");
     assert!(failed.advice().starts_with("raise `max_effort`"), "{}", failed.advice());
-    // Where it can, what is close to the limit says how close: 981 of 985 N.
+    // If it can, but only just, a caution says how close it is to its limit: 981 of 985 N.
     let crane = lift(985.0);
     let start = Start::of(&crane).expect("it rests");
     let said = cautions::of_pose(&crane, &start.q, cautions::BEND);

@@ -10,7 +10,7 @@ use crane_model::nalgebra::{Matrix4, Matrix6, Vector3};
 use crane_model::{ParameterError, SectionModuli};
 use crane_model::{modes, statics};
 
-/// Whether products and sums round once: a loop of compiled code may then fuse others than bytecode does.
+/// Whether a product and a sum round once: a loop of compiled code may then fuse other pairs than bytecode does.
 const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 fn live(name: &str) -> LiveCrane {
@@ -46,7 +46,7 @@ fn assert_same(what: &str, live: &[f64], compiled: &[f64]) {
     }
 }
 
-/// Numbers that a function writes into a list as long as `count`, with something else in it before.
+/// `count` numbers that a function writes into a list with other contents.
 fn numbers(count: usize, write: impl FnOnce(&mut [f64])) -> Vec<f64> {
     let mut out = vec![f64::NAN; count];
     write(&mut out);
@@ -190,7 +190,7 @@ fn derivatives_give_the_same_bits() {
     );
 }
 
-/// Pose and rates with what is prescribed.
+/// Pose and rates with the prescribed motions.
 fn prescribed(crane: &dyn DynCrane) -> Vec<f64> {
     let (t, mut q, mut v) = state(crane);
     crane.prescribe(t, &mut q, &mut v);
@@ -214,7 +214,7 @@ fn every_function_gives_the_same_bits() {
     }
 }
 
-/// Constants made of parameters follow them, and clones have their own.
+/// Constants computed from parameters follow them, and clones have their own.
 #[test]
 fn live_parameters_count() {
     for (mut compiled, live) in both() {
@@ -233,7 +233,7 @@ fn live_parameters_count() {
     }
 }
 
-/// A wrong value is refused in the words of the spec language, and the crane stays as it is.
+/// A wrong value is refused with the message of the spec language, and the crane stays unchanged.
 #[test]
 fn parameters_keep_the_rules() {
     for (mut compiled, mut live) in both() {
@@ -248,7 +248,7 @@ fn parameters_keep_the_rules() {
     }
 }
 
-/// To 1e-10 of the largest coordinate; on targets without fused operations the same bits.
+/// To 1e-10 of the largest value; on targets without fused operations the same bits.
 #[test]
 fn statics_and_modes_agree() {
     for (compiled, live) in both().into_iter().filter(|(compiled, _)| compiled.description().statics) {
@@ -275,7 +275,7 @@ fn assert_close(live: &[f64], compiled: &[f64]) {
 #[test]
 fn a_run_of_ten_seconds_agrees() {
     for (compiled, live) in both() {
-        // Chaotic: two runs that differ in a last digit part.
+        // Chaotic: two runs that differ in a last digit diverge.
         if compiled.description().name == "double_pendulum" {
             continue;
         }
@@ -293,10 +293,10 @@ fn a_run_of_ten_seconds_agrees() {
     }
 }
 
-/// Members with parameters of their own, by blocks of eight.
+/// Members with different parameters, in blocks of eight.
 #[test]
 fn ensembles_agree() {
-    // States of forces have no lanes.
+    // Ensembles in lanes do not support states of forces.
     for (compiled, live) in both().into_iter().filter(|(_, live)| !live.description().has_own_states()) {
         let member = |factor: f64| {
             let parameters = compiled.description().parameters.iter().map(|info| info.default * factor).collect();

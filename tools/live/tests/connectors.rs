@@ -65,7 +65,7 @@ fn a_hung_weight_stretches_its_spring() {
     }
 }
 
-/// On a flap that turns about the origin, with its spring from below the hinge, `F a b cos θ/ℓ = m g r cos θ`: linear in ℓ.
+/// A flap that rotates about the origin, held by a spring from below the hinge: `F a b cos θ/ℓ = m g r cos θ` is linear in ℓ.
 #[test]
 fn a_gas_spring_carries_a_weight() {
     let [(mass, reach), (arm, below)] = [(20.0, 1.2), (1.0, 0.5)];
@@ -84,7 +84,7 @@ fn a_gas_spring_carries_a_weight() {
     assert!((force + moment * length / lever).abs() < 1e-8 * moment, "it pushes: {force} N");
 }
 
-/// `f · δq = −F δℓ` for the length by trigonometry; the joint before both points does nothing.
+/// `f · δq = −F δℓ` with the length from trigonometry; the joint before both points gets no force.
 #[test]
 fn a_spring_between_two_links_does_virtual_work() {
     let arm = |name: &str, x: f64| {
@@ -108,7 +108,7 @@ fn a_spring_between_two_links_does_virtual_work() {
         let y = 0.8 * second.sin() + 0.6 * sin - 0.1 * cos;
         (x - 0.3).hypot(y - 0.2)
     };
-    // Rounding of a length over the step, and the third derivative times its square.
+    // Rounding error of a length divided by the step, and the third derivative times the step squared.
     let (step, tolerance) = (1e-5, 1e-9);
     let slope = |j: usize| {
         let moved = |by: f64| length(std::array::from_fn(|i| q[i] + if i == j { by } else { 0.0 }));
@@ -140,7 +140,7 @@ fn a_load_on_a_rope_is_a_pendulum() {
     assert!(small.stiffness[(0, 1)].abs() < 1e-6);
 }
 
-/// At a time, a pendulum hangs from its winch as long as that leaves it: with its winch at t = 0 the rope would be slack there.
+/// At a later time a pendulum hangs from its winch by the rope length at that time: with the length at t = 0 the rope would be slack.
 #[test]
 fn a_pendulum_hangs_from_its_winch_at_any_time() {
     let crane = swinging("{rope: {stiffness: 1e5, motion: {quintic: {from: 2, to: 1.2, duration: 3}}}}");
@@ -177,7 +177,7 @@ fn a_falling_weight_is_caught_by_its_rope() {
         });
         let weight = mass * GRAVITY;
         let stretch = (weight + (weight * weight + 2.0 * stiffness * weight * fall).sqrt()) / stiffness;
-        // Results every millisecond miss the lowest point by g t²/2 at some 16 g.
+        // Results every millisecond miss the lowest point by a t²/2, with an acceleration a of some 16 g.
         assert!((lowest - (taut - stretch)).abs() < 3e-5, "{method}: {lowest}");
         assert!((highest - (taut + fall)).abs() < 1e-4, "{method}: {highest}");
         let table = recording.into_table();
@@ -202,13 +202,13 @@ fn a_winch_does_the_work_of_the_weight() {
     run(crane, &settings, &start, &mut |sample| end = (sample.q[0], sample.work));
     assert!((end.0 - start.q[0] - 1.2).abs() < 1e-6, "{}", end.0);
     let work = 50.0 * GRAVITY * 1.2;
-    // The rope's damper takes out what the acceleration by the winch leaves as vibration.
+    // The rope's damper dissipates the vibration that the winch's acceleration excites.
     assert!((end.1 / work - 1.0).abs() < 2e-3, "{} J instead of {work} J", end.1);
     let later = crane.equilibrium_at(10.0, &start.q, &statics::Settings::default());
     assert!((later.q[0] - start.q[0] - 1.2).abs() < 1e-9, "{later}");
 }
 
-/// A boom on a pin that a rope holds: the pin carries the boom's thrust and no weight, for the rope goes past it.
+/// A boom on a pin, held by a rope: the pin carries only the boom's thrust, because the rope runs past it.
 #[test]
 fn a_rope_goes_past_the_joint() {
     let (reach, height, mass) = (3.0, 2.0, 80.0);
@@ -235,7 +235,7 @@ fn a_rope_goes_past_the_joint() {
     }
 }
 
-/// A spring along a slide is the spring of its drive: the same steps, and the same motion to rounding.
+/// A spring along a slide is equivalent to the spring of a drive: the same steps, and the same motion to rounding.
 #[test]
 fn a_spring_along_a_slide_steps_like_that_of_a_drive() {
     let slide = |spring: &str| {
@@ -261,8 +261,8 @@ fn a_spring_along_a_slide_steps_like_that_of_a_drive() {
     }
 }
 
-/// Three arms in a row with a stiff spring across all joints: `bdf` knows it, and takes far fewer steps than an explicit method, which
-/// must follow its vibration.
+/// Three arms in a row with a stiff spring across all joints: `bdf` takes it into account and needs far fewer steps than an explicit
+/// method, which must follow its vibration.
 #[test]
 fn implicit_steps_know_springs_across_several_joints() {
     let arms = crane(
@@ -290,7 +290,7 @@ fn implicit_steps_know_springs_across_several_joints() {
 }
 
 /// The second stage of a telescope follows the first. The chain carries the second stage's weight, and the drive lifts both: by
-/// virtual work with `δy = δx`, and twice the way of the second stage.
+/// virtual work with `δy = δx`, it carries the second stage's weight twice.
 #[test]
 fn a_second_stage_follows_the_first() {
     let [first, second] = [30.0, 20.0];
@@ -305,7 +305,7 @@ fn a_second_stage_follows_the_first() {
     let (slip, effort) = (-second * GRAVITY / 4e6, (first + 2.0 * second) * GRAVITY);
     assert!((q[1] - q[0] - 0.3 - slip).abs() < 1e-11, "{q:?}");
     assert!((telescope.drive_efforts_at_rest(&q)[0] / effort - 1.0).abs() < 1e-9);
-    // At the end of the motion both stages have gone as far.
+    // At the end of the motion both stages have moved equally far.
     let start = InitialState { q: q.clone(), v: vec![0.0; 2], ..InitialState::default() };
     let of_spec = Settings::of(telescope.description());
     let settings = Settings { tolerance: 1e-6, duration: 6.0, output: 1.0, audit: true, ..of_spec };
@@ -318,7 +318,7 @@ fn a_second_stage_follows_the_first() {
     let table = recording.into_table();
     let last = |name: &str| table.values(name).and_then(Iterator::last).expect("a column");
     assert!((last("chain_force") + second * GRAVITY).abs() < 1e-2 && (last("chain_slip") - 0.3 - slip).abs() < 1e-8);
-    // What the drive did is the potential energy of both.
+    // The work of the drive is the potential energy gained by both.
     let work = (first + 2.0 * second) * GRAVITY * 1.2;
     assert!((last("drive_work") / work - 1.0).abs() < 1e-3, "{} J instead of {work} J", last("drive_work"));
 }

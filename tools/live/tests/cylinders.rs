@@ -1,4 +1,4 @@
-//! Cylinders between their pins against geometry, virtual work and hydraulics by hand.
+//! Cylinders between their pins against hand calculations of geometry, virtual work and hydraulics.
 
 use std::f64::consts::PI;
 
@@ -75,7 +75,7 @@ fn a_cylinder_below_an_arm_carries_its_weight() {
     assert_eq!(state.pressures[1].to_bits(), 2e5f64.to_bits());
 }
 
-/// The cylinder has the power of its drive at every time of a run, and the oil that it takes is its volume.
+/// Throughout a run the power of the cylinder equals that of its drive, and the oil that it takes in is its change of volume.
 #[test]
 fn a_run_has_the_power_of_its_drive_and_the_oil_of_its_volume() {
     let crane = arm(PLAIN);
@@ -97,8 +97,8 @@ fn a_run_has_the_power_of_its_drive_and_the_oil_of_its_volume() {
     assert_eq!(column("pump_flow"), flow);
 }
 
-/// A rocker as long as the arm's lever, and a link as long as its distance from the joint, are a parallelogram: the rocker turns with the
-/// arm. On the other branch it does not, and the derivative is still that of the length.
+/// A rocker as long as the arm's lever, and a link as long as the distance of its pivot from the joint form a parallelogram: the rocker
+/// turns with the arm. On the other branch it does not, and the derivative is still that of the length.
 #[test]
 fn a_parallelogram_turns_its_rocker_with_the_arm() {
     let linkage = |side: &str| {
@@ -184,7 +184,7 @@ cylinders:
     }
 }
 
-/// Where rocker and link do not reach, a run ends with the cylinder's name, and a pose says so.
+/// If rocker and link do not reach each other, a run ends with a message that names the cylinder, and a pose has a caution.
 #[test]
 fn a_linkage_that_does_not_reach_is_named() {
     // The pivot is 0.4 m from the joint, the link ends 0.25 m from it: 0.47 m apart at first, 0.57 m at the end of the motion upwards.
@@ -202,7 +202,7 @@ fn a_linkage_that_does_not_reach_is_named() {
     assert!(said.iter().any(|said| said.contains("lift cannot be assembled")), "{said:?}");
 }
 
-/// Strokes, pressures and flows beyond their limits are named, and drives stiffer than their oil.
+/// Cautions name strokes, pressures and flows beyond their limits, and drives stiffer than their oil.
 #[test]
 fn limits_of_cylinders_are_cautions() {
     let short = arm(&PLAIN.replace("stroke: 0.6", "stroke: 0.05").replace("21e6", "8e5"));

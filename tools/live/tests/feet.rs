@@ -19,8 +19,8 @@ const TRACK: f64 = 1.5;
 /// Where the load is, m from the truck's middle.
 const RADIUS: f64 = 7.5;
 
-/// A rigid truck on four corner feet, and a load at a radius to one side; of the height of its mass centre nothing but the second
-/// order counts.
+/// A rigid truck on four corner feet, and a load at a radius to one side; the height of its mass centre matters only to
+/// second order.
 fn truck(kinematics: &str, stiffness: f64, more: &str) -> LiveCrane {
     let foot = |name: &str, x: f64, y: f64| {
         format!(
@@ -43,7 +43,7 @@ fn truck(kinematics: &str, stiffness: f64, more: &str) -> LiveCrane {
     ))
 }
 
-/// Of the moment equilibrium about the near feet, `m (R − a) = M a`.
+/// From moment equilibrium about the near feet, `m (R − a) = M a`.
 const TIPPING: f64 = TRUCK * TRACK / (RADIUS - TRACK);
 
 #[test]
@@ -57,7 +57,7 @@ fn the_far_feet_reach_nothing_at_the_load_of_the_moment_equilibrium() {
             if stands {
                 assert!(found.is_stable(), "{kinematics}: {found}");
                 let far = rig.support_reactions_at(&found.q, &[0.0; 6])[2].z;
-                // Each far foot has half of what is left of the moment.
+                // Each far foot carries half of the remaining moment.
                 let expected = (1.0 - share) * TIPPING * 9.81 * (RADIUS - TRACK) / (2.0 * TRACK) / 2.0;
                 assert!((far / expected - 1.0).abs() < 0.1 && far > 0.0, "{kinematics}: {far} N for {expected}");
             } else {
@@ -68,7 +68,7 @@ fn the_far_feet_reach_nothing_at_the_load_of_the_moment_equilibrium() {
     }
 }
 
-/// A foot that is well pressed is one that pulls as well: forces, energies and stiffness have the same numbers.
+/// A firmly pressed foot is equivalent to one that can also pull: forces, energies and stiffness are the same.
 #[test]
 fn pressed_feet_are_anchored_feet() {
     for kinematics in ["linear", "exact"] {
@@ -111,22 +111,22 @@ fn block(b: f64, h: f64, stiffness: f64, damping: f64) -> LiveCrane {
 const BLOCK: f64 = 200.0;
 const INERTIA: f64 = 60.0;
 
-/// Turned by θ about its right foot, x, z, θ of the block.
+/// x, z and θ of the block, rotated by θ about its right foot.
 fn turned(b: f64, theta: f64) -> Vec<f64> {
     vec![b * (1.0 - theta.cos()), b * theta.sin(), theta]
 }
 
-/// What looks at time, pose and rates of every result.
+/// A callback that receives time, pose and rates of every result.
 type See<'a> = dyn FnMut(f64, &[f64], &[f64]) + 'a;
 
-/// Samples of a run; its energy balances to 0.3 % of the energy at stake.
+/// Runs a crane and passes on its samples; its energy balances to 0.3 % of the energy at stake.
 fn run(crane: &LiveCrane, start: &InitialState, settings: &Settings, at_stake: f64, see: &mut See<'_>) {
     let rig: &dyn DynCrane = crane;
     let energy = |t: f64, q: &[f64], v: &[f64]| rig.energies_at(t, q, v).total();
     let begin = energy(0.0, &start.q, &start.v);
     let run = rig.simulate(start, settings, &mut |sample: &Sample<'_>| {
         let balance = energy(sample.t, sample.q, sample.v) + sample.dissipated - sample.work - begin;
-        // A step that meets the ground has lost its order, and its integrals are not controlled.
+        // A step that meets the ground loses its order, and the errors of the energy integrals are not controlled.
         assert!(balance.abs() < 3e-3 * at_stake, "{:?} at {}: {balance} J of {at_stake}", settings.method, sample.t);
         see(sample.t, sample.q, sample.v);
         ControlFlow::Continue(())
@@ -164,8 +164,8 @@ fn a_slender_block_rocks_as_housner_says() {
     assert!((landed / expected - 1.0).abs() < alpha * alpha / 3.0, "{landed} s for {expected} s");
 }
 
-/// What rocks to and fro loses what its dampers dissipate, at every landing and lifting. The integrals of `rosw4` are not controlled and
-/// lose more at landings, which a run then says.
+/// A rocking block loses the energy that its dampers dissipate, at every landing and lifting. The errors of the energy integrals of
+/// `rosw4` are not controlled and larger at landings, which a run then reports.
 #[test]
 fn energy_balances_over_lifting_and_landing() {
     let (b, h) = (0.3, 0.8);
@@ -180,12 +180,12 @@ fn energy_balances_over_lifting_and_landing() {
                 *samples += usize::from(gap > 1e-3);
             }
         });
-        // It rocks over on either foot.
+        // Each foot lifts off for a while.
         assert!(lifted.iter().all(|samples| *samples > 100), "{method:?}: {lifted:?}");
     }
 }
 
-/// A mass falls through the gap below its foot, is thrown back by an undamped spring, and is where it began after two falls and a
+/// A mass falls through the gap below its foot, is thrown back by an undamped spring, and is back where it began after two falls and a
 /// contact of `(2/ω)(π − atan(v ω/g))`.
 #[test]
 fn free_play_is_a_gap() {

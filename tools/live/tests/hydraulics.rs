@@ -1,4 +1,4 @@
-//! Cylinders with a valve against laws by hand and against an integration of the same laws written a second time.
+//! Cylinders with a valve, against hand calculations and a second implementation of the same laws.
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -14,7 +14,7 @@ const MASS: f64 = 800.0;
 const GRAVITY: f64 = 9.81;
 const BORE: f64 = 0.08;
 const ROD: f64 = 0.045;
-/// Length of the cylinder where the coordinate is 0, and retracted, m.
+/// Length of the cylinder at coordinate 0, and retracted, m.
 const LENGTH: f64 = 1.0;
 const RETRACTED: f64 = 0.8;
 const STROKE: f64 = 0.6;
@@ -29,12 +29,12 @@ const MAX_FLOW: f64 = 1e-3;
 const VOLUME: f64 = 4e-3;
 const LARGEST: f64 = 2.5e7;
 
-/// A mass that slides upwards, on a cylinder along its way.
+/// A mass that slides upwards, on a cylinder along its path.
 fn lift(valve: &str, motion: &str, pump: f64) -> LiveCrane {
     lift_with("", valve, motion, pump)
 }
 
-/// The same with more keys.
+/// The same with additional keys.
 fn lift_with(more: &str, valve: &str, motion: &str, pump: f64) -> LiveCrane {
     let text = format!(
         "format: 1
@@ -112,7 +112,7 @@ fn trapped_oil_is_a_spring() {
     let motions = (&crane as &dyn DynCrane).small_motions_at(&rest.q);
     let found = (motions.stiffness[(0, 0)] / motions.mass[(0, 0)]).sqrt();
     assert!((found / omega - 1.0).abs() < 1e-12, "{found} against {omega}");
-    // A small motion: v/ω after a quarter of a period. The volumes change by 1e-4 of themselves on the way.
+    // A small motion: v/ω after a quarter of a period. The volumes change by 1e-4 meanwhile.
     let v = 1e-3;
     let quarter = PI / (2.0 * omega);
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
@@ -141,19 +141,19 @@ fn a_shut_valve_holds_the_crane_where_it_rests() {
     assert_eq!(column(&table, "ram_rod_pressure")[0], TANK);
 }
 
-/// An open valve lets the cylinder move as fast as both edges in series let the oil through, from whatever commands it.
+/// An open valve lets the cylinder move as fast as both edges in series let the oil through, whatever commands the valve.
 #[test]
 fn a_commanded_valve_lets_the_oil_through() {
     const OPENING: f64 = 0.25;
     let root = |difference: f64| difference / (difference * difference + 1e10).powf(0.25);
     let edge = OPENING * FLOW / root(DROP);
     let [piston, ring] = areas();
-    // The speed at which the pressures, those that the flows take, carry the weight.
+    // The speed at which the pressures, less the drops due to the flows, carry the weight.
     let (mut least, mut greatest) = (0.0, 1.0);
     for _ in 0..60 {
         let speed = 0.5 * (least + greatest);
         let back = TANK + (ring * speed / edge).powi(2);
-        // The pump's pressure falls by 5 % up to its greatest flow.
+        // The pump's pressure falls by 5 % up to its maximum flow.
         let flow = piston * speed;
         let fed = PUMP - 0.05 * PUMP * flow / MAX_FLOW - (flow / edge).powi(2);
         let spare = fed * piston - back * ring - MASS * GRAVITY;
@@ -169,13 +169,13 @@ fn a_commanded_valve_lets_the_oil_through() {
         let table = record(&crane, &settings(Method::Bdf, 1e-8, 1.0));
         let (z, spool) = (column(&table, "slide_z"), column(&table, "ram_valve"));
         let speed = (z[100] - z[90]) / 0.1;
-        // The edges are laminar below 1 bar, a share of 1e-4 of the smaller pressure drop, 1.6 MPa.
+        // The edges are laminar below 1 bar, which changes the flow by 1e-4 at the smaller pressure drop, 6.3 MPa.
         assert!((speed / least - 1.0).abs() < 1e-3, "{valve}: {speed} m/s instead of {least}");
         assert!((spool[100] - OPENING).abs() < 1e-9, "{valve}: {}", spool[100]);
     }
 }
 
-/// With its speed set ahead the cylinder moves as fast as its motion, and both edges carry the oil that the piston sweeps.
+/// With feed-forward the cylinder moves as fast as its prescribed motion, and both edges carry the oil that the piston displaces.
 #[test]
 fn a_steady_speed_opens_both_edges_in_series() {
     let speed = 0.05;
@@ -186,7 +186,7 @@ fn a_steady_speed_opens_both_edges_in_series() {
     assert!((last("ram_speed") / speed - 1.0).abs() < 1e-4, "{}", last("ram_speed"));
     let (p, rod, u) = (last("ram_piston_pressure"), last("ram_rod_pressure"), last("ram_valve"));
     let gain = FLOW / DROP.sqrt();
-    // Square roots without the laminar middle: an error of (1 bar/Δp)²/4.
+    // Square roots without the laminar range: an error of (1 bar/Δp)²/4.
     let inflow = u * gain * (last("pump_pressure") - p).sqrt();
     let outflow = u * gain * (rod - TANK).sqrt();
     assert!((inflow / (piston * speed) - 1.0).abs() < 5e-3, "{inflow}");
@@ -202,17 +202,18 @@ fn against_its_end_the_relief_valve_limits_the_pressure() {
     let (length, p) = (column(&table, "ram_length"), column(&table, "ram_piston_pressure"));
     let [piston, _] = areas();
     let (length, p) = (length[length.len() - 1], p[p.len() - 1]);
-    // The fully open valve lets in what the relief valve lets out: its nominal flow at 5 % above the greatest pressure.
+    // The fully open valve lets in what the relief valve lets out: its nominal flow at 5 % above the maximum pressure.
     let inflow = FLOW * ((column(&table, "pump_pressure").last().expect("a row") - p) / DROP).sqrt();
     let relief = FLOW * (p - LARGEST) / (0.05 * LARGEST);
     assert!(p > LARGEST && (inflow / relief - 1.0).abs() < 5e-3, "{p} Pa: {inflow} against {relief} m³/s");
-    // Into the stop by 1 mm at the greatest force.
+    // The stop yields by 1 mm at the maximum force.
     let beyond = length - RETRACTED - STROKE;
     let expected = (p * piston - MASS * GRAVITY) / (LARGEST * piston / 1e-3);
     assert!(beyond > 0.9 * expected && beyond < 1.1 * expected, "{beyond} against {expected}");
 }
 
-/// The laws a second time: z, ż, p, p′, u and the pressure of the pump, of the lift that follows a quintic motion, by the classical Runge–Kutta method.
+/// A second implementation of the laws: z, ż, p, p′, u and the pressure of the pump, of the lift that follows a quintic motion, by the
+/// classical Runge–Kutta method.
 fn by_hand(end: f64, [from, to, duration]: [f64; 3], start: [f64; 6], [gain, share]: [f64; 2]) -> [f64; 6] {
     let root = |d: f64| d / (d * d + 1e10).powf(0.25);
     let k = FLOW / root(DROP);
@@ -292,7 +293,7 @@ fn every_method_follows_the_laws_written_a_second_time() {
     }
 }
 
-/// The work of the cylinders is what the energies of the crane change by, with every method.
+/// The work of the cylinders equals the change of the crane's energies, with every method.
 #[test]
 fn energy_is_balanced() {
     let crane = lift("gain: 10", "{quintic: {from: 0.1, to: 0.4, duration: 2}}", PUMP);
@@ -326,7 +327,7 @@ fn a_run_goes_on_from_the_states_of_its_oil() {
     assert_eq!(crane.description().cylinders.len(), 1);
 }
 
-/// The largest stable step counts the oil, and a run by the classical method with nine tenths of it is right.
+/// The largest stable step accounts for the oil, and a run by the classical method with 0.9 times that step is accurate.
 #[test]
 fn oil_limits_the_step_of_explicit_methods() {
     let crane = lift("gain: 10", "{quintic: {from: 0.1, to: 0.4, duration: 2}}", PUMP);

@@ -11,7 +11,7 @@ fn crane(text: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
-/// A boom whose drive follows an input, moved aside by another one, with a load that a third one scales.
+/// A boom whose drive follows one input, offset by another, with a load scaled by a third.
 fn steered(inputs: &str, motion: &str, more: &str) -> LiveCrane {
     crane(&format!(
         "format: 1\nname: steered\n{inputs}links:\n\
@@ -23,7 +23,7 @@ fn steered(inputs: &str, motion: &str, more: &str) -> LiveCrane {
 
 const RAMP: &str = "{quintic: {from: 0, to: 60 deg, begin: 0.2, duration: 3}}";
 
-/// Drives, loads and offsets by inputs, of which the first follows a motion.
+/// Drive, offset and load given by inputs, the first of which follows a motion.
 fn with_inputs() -> LiveCrane {
     steered(
         &format!(
@@ -34,7 +34,7 @@ fn with_inputs() -> LiveCrane {
     )
 }
 
-/// What depends on inputs, at a time and a state.
+/// Quantities that depend on inputs, at a time and a state.
 fn numbers(crane: &LiveCrane, t: f64) -> Vec<f64> {
     let crane: &dyn DynCrane = crane;
     let (q, v) = ([0.3, -0.5], [0.2, 0.4]);
@@ -50,7 +50,7 @@ fn numbers(crane: &LiveCrane, t: f64) -> Vec<f64> {
 fn assert_close(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len());
     for (found, expected) in found.iter().zip(expected) {
-        // Sums in another order; the equilibrium to 1e-10 of the forces.
+        // Sums are in another order; the equilibrium is accurate to 1e-10 of the forces.
         assert!((found - expected).abs() <= 1e-11 * expected.abs().max(1.0), "{found} instead of {expected}");
     }
 }
@@ -68,7 +68,7 @@ fn an_input_that_is_not_set_follows_its_spec() {
     assert_eq!(described, [("lever", 0.0, true), ("trim", 0.1, false), ("gust", 0.0, false)]);
 }
 
-/// An input that is set is a spec that holds the value; given back, it is as before.
+/// An input that is set behaves like a spec with that constant value; released again, it is as before.
 #[test]
 fn an_input_that_is_set_is_a_number() {
     let mut crane = with_inputs();
@@ -128,7 +128,7 @@ fn a_controller_sets_inputs_between_steps() {
             (x, v) = (lever + (x - lever) * cos + v / omega * sin, v * cos - (x - lever) * omega * sin);
         }
         let off = (state.q[0] - x).abs().max((state.v[0] - v).abs());
-        // A few hundred steps of 1e-9.
+        // A few hundred steps with errors of 1e-9.
         assert!(off < 2e-6, "{method}: off by {off:.1e}");
     }
 }

@@ -10,7 +10,7 @@ use crane_model::dynamics::{InitialState, Method, Sample, Settings};
 
 const MASS: f64 = 2.0;
 
-/// The slide, with more keys.
+/// The slide, with additional keys.
 fn slide(more: &str) -> LiveCrane {
     let text = format!(
         "format: 1\nname: slide\ngravity: [0, 0, 0]\n\
@@ -29,7 +29,7 @@ fn run(crane: &LiveCrane, method: Method, tolerance: f64, duration: f64, v: f64)
     let mut samples = Vec::new();
     let run = crane.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
         samples.push([sample.t, sample.q[0], sample.v[0]]);
-        // Of at most 1 J. The control of errors leaves integrals out, and the step that meets a stop has lost its order.
+        // Of at most 1 J. Error control does not include the integrals, and the step that meets a stop loses its order.
         let balance = energy(sample) + sample.dissipated - sample.work - 0.5 * MASS * v * v;
         assert!(balance.abs() < 5e-5, "{method:?} at {}: {balance} J", sample.t);
         ControlFlow::Continue(())
@@ -49,7 +49,7 @@ fn a_stop_gives_back_the_speed() {
     {
         let samples = run(&crane, method, tolerance, 0.5, 1.0);
         let [t, q, v] = samples[samples.len() - 1];
-        // Where a step meets the stop its order is lost, for a step of the length that the tolerance asks for there.
+        // A step that meets the stop loses its order; the tolerance determines its length there.
         assert!((v + 1.0).abs() < 1e-5, "{method:?}: leaves with {v} m/s");
         let expected = at - (t - at - contact);
         assert!((q - expected).abs() < 1e-5, "{method:?}: {q} m for {expected}");
@@ -57,8 +57,8 @@ fn a_stop_gives_back_the_speed() {
     }
 }
 
-/// A damped stop keeps part of the speed: with Hunt and Crossley's law and a linear spring, `(1 − e)` solves
-/// `a v (1 + e) = ln((1 + a v)/(1 − a e v))`, whose expansion begins with `2av/3`.
+/// A damped stop keeps part of the speed: with Hunt and Crossley's law and a linear spring, e solves
+/// `a v (1 + e) = ln((1 + a v)/(1 − a e v))`, and the expansion of `1 − e` begins with `2av/3`.
 #[test]
 fn a_damped_stop_keeps_what_hunt_and_crossley_say() {
     for damping in [0.01, 0.1, 0.5] {
@@ -76,7 +76,7 @@ fn a_damped_stop_keeps_what_hunt_and_crossley_say() {
     }
 }
 
-/// A sliding mass comes to rest after `m v²/2F_c` of way, except for its creep: with `F_c tanh(v/v₀)` its way is longer by
+/// A sliding mass comes to rest after a distance of `m v²/2F_c`, plus creep: with `F_c tanh(v/v₀)` the distance is longer by
 /// `m v₀² π²/12 F_c` (from `∫ v dv/tanh(v/v₀)`), which tends to zero with the square of the width v₀.
 #[test]
 fn a_sliding_mass_stops_where_coulomb_says() {
@@ -93,8 +93,8 @@ fn a_sliding_mass_stops_where_coulomb_says() {
     }
 }
 
-/// Breaking away takes more: pulled slowly by a spring, a mass sticks until the spring has `breakaway`, and slips. Compared with the
-/// same laws written down again and integrated in steps of 1e-5 s, a third of what explicit steps may be where it sticks.
+/// Breaking away takes more force: pulled slowly by a spring, a mass sticks until the spring force reaches `breakaway`, then slips.
+/// Compared with a second implementation of the laws with steps of 1e-5 s, a third of the largest explicit step while it sticks.
 #[test]
 fn a_mass_sticks_and_slips() {
     let (coulomb, breakaway, stribeck, width, stiffness, rate) = (4.0, 6.0, 0.02, 1e-4, 100.0, 0.02);
@@ -112,7 +112,7 @@ fn a_mass_sticks_and_slips() {
     let mut slips = 0.0_f64;
     for (index, [t, q, v]) in samples.iter().enumerate() {
         slips = slips.max(*v);
-        // The slip begins where two great forces part, which magnifies errors some hundred times.
+        // The slip begins where two large forces cease to balance, which magnifies errors about a hundredfold.
         assert!((q - state[0]).abs() < 1e-5 && (v - state[1]).abs() < 1e-4, "{t} s: {q}, {v} for {state:?}");
         for step in 0..steps {
             let t = (index * steps + step) as f64 * h;
@@ -127,7 +127,7 @@ fn a_mass_sticks_and_slips() {
             state = [0, 1].map(|i| state[i] + h / 6.0 * (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]));
         }
     }
-    // It stuck for 3 s, then slipped nearly as without friction beyond `coulomb`: 2 N/√(m k) about the speed of the drive.
+    // It sticks for 3 s, then slips nearly as if friction were only `coulomb`: by 2 N/√(m k) about the speed of the drive.
     assert!(samples.iter().all(|[t, _, v]| *t > 2.9 || v.abs() < 1e-3));
     assert!((0.14..0.2).contains(&slips), "{slips} m/s");
 }
@@ -148,7 +148,7 @@ fn statics_rest_on_a_stop_and_know_no_friction() {
     assert!((crane.stop_efforts_at(&found.q, &[0.0])[0] + 98.1 * theta.cos()).abs() < 1e-6);
     assert_eq!(crane.friction_efforts_at(&[0.0]), [0.0]);
     let small = crane.small_motions_at(&found.q);
-    // Gravity's own stiffness is −m g l sin θ.
+    // The stiffness due to gravity is m g l sin θ.
     assert!((small.stiffness[(0, 0)] - (1e6 + 98.1 * theta.sin())).abs() < 1e-6);
     assert!((small.damping[(0, 0)] - (3.0 + 1e6 * 0.1 * (theta - stop))).abs() < 1e-9);
 }

@@ -13,7 +13,7 @@ fn crane(text: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("limits.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
-/// A drive that is asked for more than it has pushes with its limit: `x = ½ (M/m) t²`. The energy balances.
+/// A drive that would need more than its limit pushes with the limit: `x = ½ (M/m) t²`. The energy balances.
 #[test]
 fn a_drive_at_its_limit_accelerates_evenly() {
     let (mass, limit) = (20.0, 50.0);
@@ -32,7 +32,7 @@ fn a_drive_at_its_limit_accelerates_evenly() {
             let expected = 0.5 * limit / mass * sample.t * sample.t;
             assert!((sample.q[0] - expected).abs() < 1e-7, "{method:?} at {}: {}", sample.t, sample.q[0]);
             let energy = slide.energies_at(sample.t, sample.q, sample.v).total();
-            // Of some 400 J that the spring has at the start.
+            // Of some 400 J stored in the spring at the start.
             let balance = energy + sample.dissipated - sample.work - begin;
             assert!(balance.abs() < 1e-5, "{method:?} at {}: {balance} J", sample.t);
             ControlFlow::Continue(())
@@ -41,7 +41,7 @@ fn a_drive_at_its_limit_accelerates_evenly() {
     }
 }
 
-/// A drive at its greatest power accelerates as `v² = v₀² + 2 P t/m`; one at its greatest rate does not pass it, and brakes with all that it has.
+/// A drive at its maximum power accelerates as `v² = v₀² + 2 P t/m`; one at its maximum rate does not exceed it, and brakes at full effort.
 /// The energy balances.
 #[test]
 fn power_and_rate_of_a_drive_are_limited() {
@@ -64,7 +64,7 @@ fn power_and_rate_of_a_drive_are_limited() {
                 check(sample, slide.drive_efforts_at(sample.t, sample.q, sample.v)[0]);
                 let energy = slide.energies_at(sample.t, sample.q, sample.v).total();
                 let balance = energy + sample.dissipated - sample.work - stored;
-                // Of some kJ in the spring.
+                // Of some kJ stored in the spring.
                 assert!(balance.abs() < 1e-4, "{method:?} at {}: {balance} J", sample.t);
                 ControlFlow::Continue(())
             });
@@ -80,13 +80,13 @@ fn power_and_rate_of_a_drive_are_limited() {
     follow(&slide(&format!("max_rate: {fast}"), "{hold: 30}"), 0.0, &mut |sample, _| {
         assert!(sample.v[0] < fast && (sample.t < 1.5 || sample.v[0] > 0.9 * fast), "at {}: {}", sample.t, sample.v[0]);
     });
-    // Beyond its greatest rate it brakes in full.
+    // Beyond its maximum rate it brakes at full effort.
     follow(&slide(&format!("max_rate: {fast}, max_power: 1"), "{hold: -30}"), 20.0, &mut |sample, effort| {
         assert!((effort + limit).abs() < 1e-12, "at {}: {effort}", sample.t);
     });
 }
 
-/// An arm whose weight asks for more than the drive has sinks to where `m g l cos θ` is its limit, and statics say so.
+/// An arm whose weight exceeds the drive's limit sinks to where `m g l cos θ` equals the limit, and statics report it.
 #[test]
 fn statics_say_that_a_drive_cannot_hold() {
     let arm = |limit: f64| {
@@ -105,7 +105,7 @@ fn statics_say_that_a_drive_cannot_hold() {
         let said = cautions::of_pose(arm, &found.q, 20.0);
         assert!(said.len() == 1 && said[0].contains("is at its limit"), "{said:?}");
     }
-    // Within 95 % of the limit the drive is the one without.
+    // Below 95 % of its limit the drive behaves like one without a limit.
     let (arm, weight) = (arm(110.0), 98.1);
     let arm: &dyn DynCrane = &arm;
     let found = arm.equilibrium(&statics::Settings::default());
@@ -113,7 +113,7 @@ fn statics_say_that_a_drive_cannot_hold() {
     assert_eq!(cautions::of_pose(arm, &found.q, 20.0), [] as [String; 0]);
 }
 
-/// Poses at which a drive holds another position than at the start, where its spring seen from there would be at its limit.
+/// Poses in which a drive holds a position other than its start; its spring, measured from the start, would be at its limit.
 #[test]
 fn drives_hold_other_positions_within_their_limit() {
     let (stiffness, limit) = (1e5, 110.0);
@@ -126,13 +126,13 @@ fn drives_hold_other_positions_within_their_limit() {
         assert!(found.is_stable(), "{position}: {found}");
         let expected = position + 98.1 * found.q[0].cos() / stiffness;
         assert!((found.q[0] - expected).abs() < 1e-14, "{position}: {} for {expected}", found.q[0]);
-        // Newton's method with the exact tangent: from 1e-3 rad away by squares.
+        // Newton's method with the exact tangent converges quadratically from 1e-3 rad away.
         assert!(found.history.len() <= 5, "{found}");
     }
 }
 
-/// The effort as a function of the stretch: exactly the spring's below, the limit above, no corner between, and its integral the
-/// energy.
+/// The effort as a function of the stretch: exactly the spring's below the limit, the limit above, without a corner in between;
+/// its integral is the energy.
 #[test]
 fn efforts_are_rounded_off_at_the_limit() {
     let (stiffness, limit) = (1e3, 100.0);

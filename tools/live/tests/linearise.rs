@@ -22,7 +22,7 @@ fn assert_close(what: &str, one: &DMatrix<f64>, other: &DMatrix<f64>, tolerance:
     assert!(off <= tolerance * size, "{what}: off by {off:e} of {size:e}");
 }
 
-/// At rest both derivations give the same; they share the forces, but not the way to their derivatives.
+/// At rest both derivations give the same; they share the forces, but not the method of differentiation.
 #[test]
 fn about_a_pose_at_rest_it_is_the_linearisation_of_statics() {
     for name in ["eight_link_rigid", "eight_link_flexible", "knuckle_boom", "loader_tipping", "cantilever"] {
@@ -32,7 +32,7 @@ fn about_a_pose_at_rest_it_is_the_linearisation_of_statics() {
         let zeros = vec![0.0; q.len()];
         let (here, expected) =
             (SmallMotions::about_motion(&crane, 0.0, [&q, &zeros, &zeros]), rig.small_motions_at(&q));
-        // Some hundred roundings of the largest entry: a support's stiffness beside weights.
+        // Some hundred rounding errors of the largest entry: a support's stiffness next to terms of weights.
         assert_close(name, &here.mass, &expected.mass, 1e-13);
         assert_close(name, &here.stiffness, &expected.stiffness, 1e-13);
         assert_close(name, &here.damping, &expected.damping, 1e-13);
@@ -40,8 +40,9 @@ fn about_a_pose_at_rest_it_is_the_linearisation_of_statics() {
     }
 }
 
-/// Beyond rest the equations have no second form of K and D, but differences of `A a − e − f` have. Forces of this crane are of the second degree in
-/// the rates, so that differences over any distance are exact to rounding there; in q Richardson's extrapolation leaves h⁴.
+/// Away from rest there is no second derivation of K and D to compare with, only differences of `A a − e − f`. Forces of this crane are
+/// quadratic in the rates, so that differences over any distance are exact to rounding there; in q, Richardson extrapolation leaves an
+/// error of h⁴.
 #[test]
 fn about_any_motion_it_is_what_differences_say() {
     let crane = shipped("eight_link_flexible");
@@ -77,7 +78,7 @@ fn about_any_motion_it_is_what_differences_say() {
     });
     let of_rates = matrix(&|j| difference(true, j, 1.0));
     let here = SmallMotions::about_motion(&crane, 0.7, [&q, &v, &a]);
-    // Rounding of forces of 1e7 N over 1e-3 rad; h⁴ is below it.
+    // Rounding error of forces of 1e7 N over 1e-3 rad; the error of h⁴ is below it.
     assert_close("K", &here.stiffness, &of_pose, 1e-9);
     assert_close("D", &here.damping, &of_rates, 1e-12);
     assert!(here.gyroscopic().amax() > 1e-3 * here.mass.amax(), "the motion has gyroscopic forces");
@@ -172,7 +173,7 @@ fn a_mass_on_a_turning_disc() {
                 .min_by(|(a, _), (b, _)| a.total_cmp(b))
                 .unwrap();
             assert!(off < 1e-12, "Ω = {rate}, δ = {decay}: {modes:?}, expected {expected}");
-            // Both slides move alike, a quarter of a turn apart, with xᴴ A x = 1.
+            // Both slides move with the same amplitude, a quarter of a period apart, with xᴴ A x = 1.
             assert!((shape[0].norm() - shape[1].norm()).abs() < 1e-12 && (shape[1] / shape[0]).re.abs() < 1e-12);
             assert!((mass * shape.norm_squared() - 1.0).abs() < 1e-12);
         }
@@ -197,7 +198,7 @@ fn a_hanging_load_is_flung_outward() {
     let outward = -found.q[1];
     assert!((outward.tan() - rate * rate * (6.0 + 3.0 * outward.sin()) / GRAVITY).abs() < 1e-12, "{outward}");
     assert!(found.drift < 1e-9, "{found:?}");
-    // While the drive speeds up, the motion is not steady, and held at another angle it takes the effort of the drive's spring.
+    // While the drive speeds up, the motion is not steady; held at another angle, it requires the effort of the drive's spring.
     let held = [Held { coordinate: 0, position: Some(2.001), rate }];
     let effort = steady(&crane, 5.0, &[0.0, 0.0], &held).unwrap().efforts[0];
     assert!((effort - 1e6 * 0.001).abs() < 1e-6, "{effort}");

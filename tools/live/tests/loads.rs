@@ -12,7 +12,7 @@ fn crane(text: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"))
 }
 
-/// A flexible boom on a column with a spring, and more keys; its load hangs from the tip.
+/// A flexible boom on a column with a spring, and additional keys; its load hangs from the tip.
 fn boom(load: f64, more: &str) -> LiveCrane {
     crane(&format!(
         "format: 1\nname: boom\nlinks:\n\
@@ -25,7 +25,7 @@ fn boom(load: f64, more: &str) -> LiveCrane {
     ))
 }
 
-/// A weight that hangs from a point is a force of the world: the same pose and the same stiffness, to rounding.
+/// A weight that hangs from a point is equivalent to a force in the world frame: the same pose and the same stiffness, to rounding.
 #[test]
 fn a_hanging_weight_is_a_force() {
     let (own, weight) = (20.0, 150.0);
@@ -42,7 +42,7 @@ fn a_hanging_weight_is_a_force() {
     assert!((&one - &other).amax() < 1e-12 * one.amax(), "{}", (one - other).amax());
 }
 
-/// What holds an arm against a wrench that turns with it: the moment about its joint, wherever it points.
+/// The effort that holds an arm against a wrench that turns with it is the moment about its joint, wherever the arm points.
 #[test]
 fn a_drive_holds_a_load_that_turns_with_its_link() {
     let arm = crane(
@@ -78,14 +78,14 @@ fn the_work_of_a_load_is_kinetic_energy() {
         ControlFlow::Continue(())
     });
     run.expect("it runs");
-    // A quadratic motion, which the formulas of order 2 follow except for their start, at a tolerance of 2e-5.
+    // A quadratic motion, which formulas of order 2 reproduce except at the start, at a tolerance of 2e-5.
     for (found, expected) in last.into_iter().zip([3.0, 3.0, 18.0]) {
         assert!((found - expected).abs() < 1e-3, "{found} for {expected}");
     }
 }
 
-/// A short push on a body at rest, long after the beginning: no step passes over it. A spline through 0, 1, 0 at rest at both ends
-/// is two cubic flanks, of which each has half its duration as integral.
+/// A short push on a body at rest, long after the beginning: no step misses it. A spline through 0, 1, 0 with zero slope at both
+/// ends has two cubic flanks, each with half its duration as integral.
 #[test]
 fn no_step_misses_a_short_push() {
     let slide = crane(

@@ -35,7 +35,8 @@ fn frequencies(crane: &dyn DynCrane) -> Vec<f64> {
     modes.iter().map(|mode| mode.omega_squared.sqrt()).collect()
 }
 
-/// The same links written one by one, each on two joints: by Simpson's rule point masses at both ends and in the middle are a rod.
+/// The same links written one by one, each on two joints: by Simpson's rule, point masses at both ends and in the middle are
+/// equivalent to a rod.
 #[test]
 fn a_rope_is_its_links() {
     let d = LENGTH / 3.0;
@@ -78,7 +79,7 @@ damping: {{rope_3_psi: 7}}"
     assert!(off(one.as_slice(), other.as_slice()) < 1e-12);
 }
 
-/// One link is a rod: ω² = 3g/(2l). Many approach the heavy string, ω = j/2 √(g/l) with the zeros j of the Bessel function J₀, with the
+/// One link is a rod: ω² = 3g/(2l). Many converge to the heavy string, ω = j/2 √(g/l) with the zeros j of the Bessel function J₀, with the
 /// square of their number, in both directions.
 #[test]
 fn a_hanging_rope_swings_as_a_heavy_string() {

@@ -21,7 +21,7 @@ use crate::{
 /// Most rows of a run that a page holds; a longer one is thinned, so that the page stays small enough to mail.
 const MOST_ROWS: usize = 4000;
 
-/// Everything of one crane.
+/// All data of one crane.
 pub fn data(subject: &Subject<'_>, program: Program) -> Result<Value, NoModes> {
     let &Subject { label, rig, live, equilibrium, run } = subject;
     // Without an equilibrium there is at least a pose to look at.
@@ -39,7 +39,7 @@ pub fn data(subject: &Subject<'_>, program: Program) -> Result<Value, NoModes> {
         .coordinates
         .iter()
         .map(|coordinate| {
-            // A joint is drawn alike whether its drive gives way or not.
+            // A joint is drawn the same whether its drive is compliant or rigid.
             let role = match coordinate.role {
                 CoordinateRole::Prescribed => CoordinateRole::Driven,
                 role => role,

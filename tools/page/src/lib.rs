@@ -9,7 +9,7 @@
 //! | `scene` | what moves: frames of the bodies, and a screw for each coordinate |
 //! | `strength` | utilisation of sections and tipping margins over a run |
 //! | `history` | internal forces and tipping lines over a run |
-//! | `record` | what a run was: enough to repeat it |
+//! | `record` | the record of a run: enough to repeat it |
 
 mod crane;
 pub mod history;
@@ -56,7 +56,7 @@ pub struct Texts<'a> {
     pub spec: Option<&'a str>,
 }
 
-/// The page of some cranes; the last one is its subject, the one before it the rigid crane to compare it with.
+/// The page of some cranes; the last one is its subject, the previous one the rigid crane to compare it with.
 ///
 /// # Errors
 /// The modes of a crane could not be computed.
@@ -65,7 +65,7 @@ pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Res
     let Texts { tables, chart, command, spec } = texts;
     let data =
         json!({"cranes": cranes, "tables": tables, "chart": chart, "command": command, "spec": spec}).to_string();
-    // No text of a spec ends the script element that holds the data.
+    // No text of a spec may end the script element that contains the data.
     Ok(PAGE.replacen(PLACE, &data.replace('<', "\\u003c"), 1))
 }
 

@@ -1,4 +1,4 @@
-//! What a run was.
+//! The record of a run.
 
 use crane_model::{dyn_crane::DynCrane, dynamics::Settings, results::Verification, runs::Recorded};
 use serde_json::{Map, Value, json};
@@ -12,13 +12,13 @@ pub struct Program {
     pub version: &'static str,
 }
 
-/// Greatest difference of every column from a finer run, by name.
+/// Maximum difference of every column from a finer run, by name.
 fn differences(recorded: &Recorded, verification: &Verification) -> Map<String, Value> {
     let columns = recorded.table.columns.iter().map(|column| column.name.clone());
     columns.zip(verification.differences.iter().map(|difference| json!(difference))).collect()
 }
 
-/// What a run was: enough to repeat it.
+/// The record of a run: enough to repeat it.
 pub fn record(rig: &dyn DynCrane, settings: &Settings, recorded: &Recorded, program: Program) -> Value {
     let description = rig.description();
     let parameters: Map<String, Value> = description

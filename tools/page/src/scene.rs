@@ -80,9 +80,9 @@ fn inverse(frame: &Matrix4<f64>) -> Matrix4<f64> {
     inverse
 }
 
-/// Points of interest with the body that carries each: the one in whose frame it stays where it is when everything moves.
+/// Points of interest with the body that carries each: the one in whose frame it stays fixed when everything moves.
 fn points(rig: &dyn DynCrane, q: &[f64]) -> Vec<Value> {
-    /// Way from the pose, m and rad: any one that moves all coordinates by different amounts.
+    /// Displacement from the pose, m and rad: arbitrary, but different for every coordinate.
     const WAY: f64 = 0.1;
     let other: Vec<f64> = q.iter().enumerate().map(|(i, q)| q + WAY / (1.0 + i as f64)).collect();
     let local = |q: &[f64]| -> Vec<Vec<Vector3<f64>>> {

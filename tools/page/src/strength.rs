@@ -57,7 +57,7 @@ fn stability(description: &Description, history: &[Instant]) -> Value {
     json!({"lines": names, "data": packed(margins)})
 }
 
-/// Little-endian numbers of 32 bits in base 64, that is 7 digits.
+/// Little-endian numbers of 32 bits in base 64, which have 7 digits.
 pub fn packed(numbers: impl Iterator<Item = f64>) -> String {
     #[expect(clippy::cast_possible_truncation, reason = "more digits than anybody can see")]
     let bytes: Vec<u8> = numbers.flat_map(|number| (number as f32).to_le_bytes()).collect();

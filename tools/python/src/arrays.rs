@@ -52,7 +52,7 @@ impl Argument {
         self.shape.iter().product()
     }
 
-    /// Its rows as those of a larger shape, unless one row holds for all.
+    /// Its rows broadcast to a larger shape, unless one row applies to all.
     fn over(&self, shape: &[usize]) -> Cow<'_, [f64]> {
         if self.rows() == 1 || self.shape == shape {
             return Cow::Borrowed(&self.numbers);
@@ -74,7 +74,7 @@ impl Argument {
     }
 }
 
-/// Shape and numbers of anything that `NumPy` makes an array of.
+/// Shape and numbers of anything that `NumPy` converts to an array.
 fn read(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<usize>, Vec<f64>)> {
     if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
         && let Ok(numbers) = array.to_vec()
@@ -101,7 +101,7 @@ fn read(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<usize>, Vec<f64>
 pub struct Joined<'a> {
     /// Leading axes.
     pub shape: Vec<usize>,
-    /// Each argument, with as many rows, or with one for all.
+    /// Each argument, with that many rows, or with one for all.
     pub arguments: Vec<Cow<'a, [f64]>>,
 }
 

@@ -1,4 +1,4 @@
-//! A spec with parameters, and what it says about itself.
+//! A spec with parameters, and its description.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -30,7 +30,7 @@ pub struct Crane {
     pub parameters: Argument,
     /// Rows whose parameters break a rule.
     pub bad: Vec<BadRow>,
-    /// Room for single states, by quantity.
+    /// Workspaces for single states, by quantity.
     rooms: Mutex<HashMap<Quantity, Evaluation<f64>>>,
 }
 
@@ -81,7 +81,7 @@ impl Crane {
             Some(text) => SourceFile::new(named, text),
             None => open(py, named)?,
         };
-        // Numbers that are set are looked at for plausibility, too; whether they may be set is asked below.
+        // Numbers that are set are checked for plausibility, too; whether they may be set is checked below.
         let number = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
             Some((name.extract::<String>().ok()?, value.extract::<f64>().ok()?))
         };
@@ -248,7 +248,7 @@ impl Crane {
         picture(self.live.chain())
     }
 
-    /// The crane for other programs: "urdf", "springs" (what URDF does not hold, YAML) or "mjcf", with the present parameters.
+    /// The crane for other programs: "urdf", "springs" (what URDF cannot express, YAML) or "mjcf", with the present parameters.
     fn export(&self, format: &str) -> PyResult<String> {
         if !self.is_single() {
             return Err(PyValueError::new_err("the parameters are arrays: export a crane with one value of each"));
@@ -283,7 +283,7 @@ impl Crane {
 }
 
 impl Crane {
-    /// The same crane with some inputs set to numbers, or given back to its spec by None.
+    /// The same crane with some inputs set to numbers, or following the spec again if given as None.
     fn with_inputs(mut self, given: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let Some(given) = given else { return Ok(self) };
         let description = self.live.description();
@@ -309,7 +309,7 @@ impl Crane {
         Ok(self)
     }
 
-    /// The same crane with other parameters; what is not named keeps its values.
+    /// The same crane with other parameters; those not named keep their values.
     fn with_others(&self, py: Python<'_>, given: Option<&Bound<'_, PyDict>>, invalid: Invalid) -> PyResult<Self> {
         let all = PyDict::new(py);
         for (index, info) in self.live.description().parameters.iter().enumerate() {
@@ -380,7 +380,7 @@ impl Crane {
         self.parameters.shape.is_empty()
     }
 
-    /// Calls with room for a quantity of one state, kept from the last call.
+    /// Runs `call` with the workspace for a quantity of one state, kept from the last call.
     pub fn in_room<R>(&self, quantity: Quantity, call: impl FnOnce(&mut Evaluation<f64>) -> R) -> R {
         let kept = self.rooms.lock().unwrap_or_else(PoisonError::into_inner).remove(&quantity);
         let mut room = kept.unwrap_or_else(|| Evaluation::new(&self.live, quantity));

@@ -15,10 +15,10 @@ use crate::arrays::array;
 use crate::crane::Crane;
 use crate::parallel::{Watch, threads};
 
-/// Poses at most: some hours.
+/// Maximum number of poses: some hours of computing.
 const MOST_POSES: usize = 10_000_000;
 
-/// What is asked, as it was given.
+/// The request, as given.
 #[derive(FromPyObject)]
 pub struct Asked {
     #[pyo3(item)]

@@ -11,7 +11,7 @@ use crate::crane::Crane;
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::map_rows;
 
-/// What statics finds of a row.
+/// The result of statics for a row.
 pub struct Found {
     equilibrium: Equilibrium,
     efforts: Vec<f64>,
@@ -20,7 +20,7 @@ pub struct Found {
 }
 
 impl Found {
-    /// Solves statics of a crane, with the drives as at a time and from a pose where they are given.
+    /// Solves statics of a crane, with the drives at a time and starting from a pose, if these are given.
     fn new(crane: &LiveCrane, at: Option<f64>, from: Option<&[f64]>, settings: &Settings) -> Self {
         let crane: &dyn DynCrane = crane;
         let equilibrium = match (at, from) {

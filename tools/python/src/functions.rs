@@ -1,4 +1,4 @@
-//! What is computed of a state: arrays in, arrays out.
+//! Functions of a state: arrays in, arrays out.
 
 use crane_live::FunctionId;
 use crane_live::rows::{Evaluation, Quantity, Rows};
@@ -129,7 +129,7 @@ impl Crane {
     }
 
     /// (..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m: the negative of Pinocchio's `nle` and of
-    /// MuJoCo's `qfrc_bias`, which stand on the left.
+    /// MuJoCo's `qfrc_bias`, which are on the left-hand side.
     #[pyo3(signature = (q, v, *, invalid="raise"))]
     fn bias<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, v: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [self.live.size()];
@@ -274,7 +274,7 @@ impl Crane {
         self.compute(py, Quantity::Of(FunctionId::ConnectorTensions), state, &own, invalid)
     }
 
-    /// (..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m.
+    /// (..., n): generalized forces of the drives, including rigid ones, that hold the crane at rest at t = 0, N and N m.
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn drive_forces_at_rest<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let state = State { q: Some(q), ..State::default() };
@@ -302,7 +302,7 @@ impl Crane {
         )
     }
 
-    /// (..., supports, 2): how far one-sided supports are above the ground, m, negative where pressed in, and its rate, m/s; 0 of others.
+    /// (..., supports, 2): how far one-sided supports are above the ground, m, negative where pressed in, and its rate, m/s; 0 for others.
     #[pyo3(signature = (q, v, *, invalid="raise"))]
     fn support_gaps<'py>(
         &self,
@@ -330,8 +330,8 @@ impl Crane {
         self.compute(py, Quantity::Of(FunctionId::CylinderStates), state, &own, invalid)
     }
 
-    /// (..., drives, 2): greatest effort of each drive, N or N m, 0 if it has no limit, and its stiffness at the state, N/m or N m/rad. Zeros for a
-    /// crane without limits.
+    /// (..., drives, 2): maximum effort of each drive, N or N m, 0 if it has no limit, and its stiffness at the state, N/m or N m/rad.
+    /// Zeros for a crane without limits.
     #[pyo3(signature = (t, q, v, *, invalid="raise"))]
     fn drive_limits<'py>(
         &self,
@@ -387,7 +387,7 @@ impl Crane {
         )
     }
 
-    /// (..., n): generalized forces that a motion takes in all, `A a − e`, N and N m.
+    /// (..., n): generalized forces that a motion requires in total, `A a − e`, N and N m.
     #[pyo3(signature = (q, v, a, *, invalid="raise"))]
     fn inverse_dynamics<'py>(
         &self,
@@ -550,7 +550,7 @@ impl Crane {
         )
     }
 
-    /// (...): power that all dampers take out, W.
+    /// (...): power that all dampers dissipate, W.
     #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
     fn dissipation<'py>(
         &self,
@@ -660,7 +660,7 @@ impl Crane {
         crane
     }
 
-    /// t, q, v, a; nothing where it is not given, but t = 0.
+    /// t, q, v, a; empty if not given, which means t = 0 for the time.
     fn read(&self, state: State<'_, '_>) -> PyResult<[Argument; 4]> {
         let description = self.live.description();
         let none = || Argument { shape: Vec::new(), numbers: Vec::new(), width: 0 };

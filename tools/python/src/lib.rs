@@ -1,6 +1,6 @@
 //! The native part of the Python package `crane`: what is computed per state, over rows of states on all threads.
 //!
-//! | here | what |
+//! | module | content |
 //! |---|---|
 //! | `crane` | the class `Crane`: a spec with parameters, its names and units |
 //! | `functions` | transforms, points, mass matrix, forces, dynamics, energies: arrays in, arrays out |
@@ -8,7 +8,7 @@
 //! | `motion` | runs: of one crane, of many, step by step |
 //! | `page` | the crane in 3-D, as HTML |
 //! | `arrays` | arguments as rows, and results as arrays |
-//! | `parallel` | rows on threads, while Python's signals are looked at |
+//! | `parallel` | rows on threads, while Python's signals are checked |
 //! | `mistakes` | exceptions and warnings |
 
 mod arrays;

@@ -31,7 +31,7 @@ pub fn spec_error(py: Python<'_>, mistakes: &Diagnostics) -> PyErr {
     }
 }
 
-/// Warns of what is implausible.
+/// Warns of implausible parts of a spec.
 pub fn warn_of_spec(py: Python<'_>, warnings: &Diagnostics) -> PyResult<()> {
     if warnings.is_empty() {
         return Ok(());
@@ -39,7 +39,7 @@ pub fn warn_of_spec(py: Python<'_>, warnings: &Diagnostics) -> PyResult<()> {
     warn(py, &py.get_type::<SpecWarning>(), format!("\n{}", warnings.to_string().trim_end()))
 }
 
-/// Warns the caller of the function of the package that was called.
+/// Issues a warning at the caller of the package's function.
 pub fn warn(py: Python<'_>, category: &Bound<'_, PyAny>, message: String) -> PyResult<()> {
     let message = std::ffi::CString::new(message.replace('\0', "\u{fffd}"))?;
     PyErr::warn(py, category, &message, 1)
@@ -68,13 +68,13 @@ impl Invalid {
 /// A row that cannot be computed, and why.
 #[derive(Clone, Debug)]
 pub struct BadRow {
-    /// Its place.
+    /// Its index.
     pub row: usize,
     /// Why.
     pub reason: String,
 }
 
-/// Rows that are told one by one in a warning.
+/// Maximum number of rows that a warning lists one by one.
 const TOLD: usize = 5;
 
 /// Warns of bad rows of a batch of this shape.

@@ -1,4 +1,4 @@
-//! Runs: of one crane with all its results, of many with what is left of them, and step by step.
+//! Runs: of one crane with all its results, of many with their extremes and final states, and step by step.
 
 use std::ops::ControlFlow;
 use std::str::FromStr;
@@ -21,10 +21,10 @@ use crate::crane::Crane;
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::{Watch, threads};
 
-/// Start from a state that was given.
+/// Name of a start from a given state.
 const GIVEN: &str = "as given";
 
-/// How to run, as it was given.
+/// Options of a run, as given.
 #[derive(FromPyObject)]
 pub struct Timing {
     #[pyo3(item)]
@@ -145,7 +145,7 @@ fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'
     Ok(all)
 }
 
-/// Goes on unless the call is off.
+/// Continues unless the call has been cancelled.
 fn unless(off: bool) -> ControlFlow<()> {
     if off { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
@@ -223,7 +223,7 @@ impl Crane {
         Ok(all)
     }
 
-    /// Runs with every row of parameters, and what is left of each.
+    /// Runs with every row of parameters, with the extremes and final state of each.
     #[pyo3(signature = (timing, invalid="raise", progress=None))]
     fn run_ensemble<'py>(
         &self,
@@ -243,7 +243,7 @@ impl Crane {
         let outcomes = py.detach(|| {
             let mut settings = settings;
             if !settings.method.is_adaptive() {
-                // A step that is stable for the first and the last row that rest.
+                // A step that is stable for the first and the last row, if these have a start.
                 for row in [rows.first(), rows.last()].into_iter().flatten() {
                     let mut own = crane.boxed_clone();
                     if own.set_parameters(row).is_ok()
@@ -295,7 +295,7 @@ impl Crane {
         Ok(all)
     }
 
-    /// The crane on its way from a time, a pose and rates, with its parameters and inputs.
+    /// A motion of the crane from a time, a pose and rates, with its parameters and inputs.
     fn motion(
         &self,
         py: Python<'_>,
@@ -331,17 +331,18 @@ impl Crane {
     }
 }
 
-/// A motion that goes on from result to result, with the history of its method.
+/// A motion that continues from result to result, with the history of its method.
 #[pyclass(frozen, module = "crane._native")]
 pub struct Motion {
-    /// The crane's.
+    /// The crane's name.
     name: Text,
     moving: Mutex<crane_live::Motion>,
 }
 
 #[pymethods]
 impl Motion {
-    /// Goes on by a while, s, to its time, pose, rates, own states of forces; work of the drives, dissipated energy and work of the loads since the start.
+    /// Advances by `dt`, s; returns time, pose, rates, states of forces; work of the drives, dissipated energy and
+    /// work of the loads since the start.
     fn advance<'py>(&self, py: Python<'py>, dt: f64) -> PyResult<Bound<'py, PyTuple>> {
         let (least, greatest) = Settings::TIMES;
         if !(least..=greatest).contains(&dt) {
@@ -368,7 +369,7 @@ impl Motion {
     }
 }
 
-/// A motion that cannot be followed, as an exception.
+/// The failure of a motion, as an exception.
 fn failed(stopped: Stopped, name: &Text) -> PyErr {
     raised(&Reason::Stopped { stopped, near_singular: None, limit: None }.of(name))
 }

@@ -1,6 +1,6 @@
-//! Rows on threads, while Python's signals are looked at.
+//! Rows on threads, while Python's signals are checked.
 //!
-//! Threads live as long as a call: nothing is left for a fork to lose.
+//! Threads end with the call: none is left that a fork could lose.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -11,10 +11,10 @@ use std::time::{Duration, Instant};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// How many threads a call takes; 0: as many as the machine has.
+/// How many threads a call uses; 0: as many as the machine has.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
-/// Sets how many threads a call takes; None: as many as the machine has.
+/// Sets how many threads a call uses; None: as many as the machine has.
 #[pyfunction]
 #[pyo3(signature = (count=None))]
 pub fn set_threads(count: Option<usize>) -> PyResult<()> {
@@ -25,7 +25,7 @@ pub fn set_threads(count: Option<usize>) -> PyResult<()> {
     Ok(())
 }
 
-/// How many threads a call takes.
+/// How many threads a call uses.
 #[pyfunction]
 pub fn threads() -> usize {
     match THREADS.load(Ordering::Relaxed) {
@@ -34,43 +34,43 @@ pub fn threads() -> usize {
     }
 }
 
-/// Whether a call has been called off by a signal, such as that of Ctrl-C; and how far it is.
+/// Whether a call has been cancelled by a signal, such as that of Ctrl-C, and how many of its rows are finished.
 pub struct Watch {
     off: AtomicBool,
     looked: Mutex<(Instant, Option<PyErr>)>,
-    /// Rows that are done, and all of them.
+    /// Number of finished rows, and of all rows.
     done: AtomicUsize,
     all: usize,
-    /// Called with both.
+    /// Called with both numbers.
     report: Option<Py<PyAny>>,
 }
 
-/// Time between looks at signals.
+/// Time between checks for signals.
 const BETWEEN: Duration = Duration::from_millis(50);
 
 impl Watch {
-    /// A call that begins.
+    /// Watches a new call.
     pub fn new() -> Self {
         Self::reporting(None, 0)
     }
 
-    /// A call over rows that begins, and a Python function that receives the numbers of finished and of all rows.
+    /// Watches a new call over rows, with a Python function that receives the numbers of finished and of all rows.
     pub fn reporting(report: Option<Py<PyAny>>, all: usize) -> Self {
         let looked = Mutex::new((Instant::now(), None));
         Self { off: AtomicBool::new(false), looked, done: AtomicUsize::new(0), all, report }
     }
 
-    /// One more row is done.
+    /// Counts one more finished row.
     pub fn count(&self) {
         self.done.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Whether the call is off, without looking.
+    /// Whether the call has been cancelled, without a check for signals.
     pub fn is_off(&self) -> bool {
         self.off.load(Ordering::Relaxed)
     }
 
-    /// Whether the call is off, after a look at the signals where the last one is long ago. For the thread that was called.
+    /// Whether the call has been cancelled, after a check for signals if it is time for one. For the thread that called.
     pub fn look(&self) -> bool {
         let mut looked = self.looked.lock().unwrap_or_else(PoisonError::into_inner);
         if !self.is_off() && looked.0.elapsed() > BETWEEN {
@@ -90,7 +90,7 @@ impl Watch {
         }
     }
 
-    /// The exception that called it off: that of a signal, or of the function that receives the progress.
+    /// Returns the exception that cancelled the call, if any: that of a signal, or of the function that receives the progress.
     pub fn finish(self, py: Python<'_>) -> PyResult<()> {
         let signal = self.looked.lock().unwrap_or_else(PoisonError::into_inner).1.take();
         match signal {
@@ -100,8 +100,8 @@ impl Watch {
     }
 }
 
-/// Does `work` on pieces of up to `piece` rows of `out`, `width` numbers each, on as many threads as that is worth. Each thread has
-/// room of its own from `make`.
+/// Does `work` on pieces of up to `piece` rows of `out`, `width` numbers each, on no more threads than pieces. Each thread has its
+/// own workspace from `make`.
 pub fn for_rows<R>(
     py: Python<'_>,
     (piece, width): (usize, usize),
@@ -134,8 +134,8 @@ pub fn for_rows<R>(
     watch.finish(py)
 }
 
-/// Does `work` on every row on all threads; the results in order. A thread takes the next row when it is done with one. Work that
-/// takes long asks now and then whether it is called off.
+/// Does `work` on every row on all threads; the results are in order. A thread takes the next row when it has finished one. Work that
+/// takes long should check now and then whether it has been cancelled.
 pub fn map_rows<T: Send>(
     py: Python<'_>,
     rows: usize,

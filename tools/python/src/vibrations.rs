@@ -69,7 +69,7 @@ impl Crane {
     }
 
     /// (..., 3 n + 3): poses, rates and efforts of steady motions, drift, acceleration, part reached; `steady_motion` names them.
-    /// held: coordinates, and whether a position is given; their rates and positions stand at their places in `rates` and `positions`.
+    /// held: coordinates, and whether a position is given; their rates and positions are at the same indices in `rates` and `positions`.
     #[pyo3(signature = (held, start, rates, positions, t=None, *, invalid="raise"))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn steady_rows<'py>(
@@ -107,7 +107,7 @@ impl Crane {
         self.one_by_one(py, state, &[3 * n + 3], invalid, find)
     }
 
-    /// Modes about poses, over parameters and poses; `methods`: those whose largest stable step is told.
+    /// Modes about poses, over parameters and poses, and the largest stable step of each method.
     #[pyo3(signature = (q, invalid="raise"))]
     fn vibrations<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> PyResult<Bound<'py, PyDict>> {
         let invalid = Invalid::named(invalid)?;
@@ -187,7 +187,7 @@ impl Crane {
 }
 
 impl Crane {
-    /// Forces with states of their own do not follow from pose and rates alone.
+    /// Refuses cranes whose forces have their own states: these do not follow from pose and rates alone.
     fn refuse_own_states(&self) -> PyResult<()> {
         if self.live.description().has_own_states() {
             let message =

@@ -1,6 +1,6 @@
 //! The manual as a book: docs/SUMMARY.md lists every page, and every link leads to an existing page and heading.
 //!
-//! [`check`] reads the Markdown, of pages outside of the book too, in a second. [`site`] builds the site with mdBook and follows the
+//! [`check`] reads the Markdown, including pages outside of the book, in a second. [`site`] builds the site with mdBook and follows the
 //! links of its pages.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,10 +1,10 @@
-//! Circles of imports: files that need each other, directly or through others.
+//! Import cycles: files that need each other, directly or through others.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::workspace;
 
-/// Folders whose files import each other in one direction, except for a file and its helper.
+/// Folders whose files must not import each other in cycles, except for a file and its helper.
 const FOLDERS: [(&str, &str); 6] = [
     ("codegen/src", "codegen/src/emit"),
     ("codegen/src", "codegen/src/lower"),
@@ -13,13 +13,13 @@ const FOLDERS: [(&str, &str); 6] = [
     ("crane-model/src", "crane-model/src/statics"),
     ("tools/cli/src", "tools/cli/src"),
 ];
-/// Most files of a circle: a file and its helper.
+/// Maximum size of a permitted cycle: a file and its helper.
 const HELPED: usize = 2;
 
 /// A file and the files that it names.
 type Imports = BTreeMap<String, BTreeSet<String>>;
 
-/// Every circle, as a line that names its files.
+/// Every cycle, as a line that names its files.
 pub fn circles() -> Result<Vec<String>, String> {
     let mut found = Vec::new();
     for (root, folder) in FOLDERS {
@@ -75,7 +75,7 @@ fn parent(file: &str) -> String {
     folder_of(file).rsplit_once('/').map_or_else(String::new, |(parent, _)| parent.to_owned())
 }
 
-/// Paths at the beginning of a text, those in braces written out: `a::{b, c::d}` is `a::b` and `a::c::d`.
+/// Paths at the beginning of a text, those in braces expanded: `a::{b, c::d}` is `a::b` and `a::c::d`.
 fn paths(text: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     expand(text.trim_start(), &mut Vec::new(), &mut found);
@@ -110,7 +110,7 @@ fn expand<'t>(text: &'t str, before: &mut Vec<String>, found: &mut Vec<Vec<Strin
         let Some(deeper) = rest.strip_prefix("::") else {
             found.push(before.clone());
             before.truncate(depth);
-            // A new name for it.
+            // A renamed import.
             let renamed = rest
                 .strip_prefix(" as ")
                 .map(|rest| rest.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_'));

@@ -5,12 +5,12 @@ use std::process::Command;
 use crate::step::{cargo, finish};
 use crate::workspace;
 
-/// Tests that compare numbers of generated code with those of another making.
+/// Tests that compare results of generated code with results computed in another way.
 const TESTS: [&str; 3] = ["interpreter", "accuracy", "sin_cos"];
 
-/// Builds and runs them with AVX2 and fused multiply-adds, which no build for any machine of the kind may use.
+/// Builds and runs them with AVX2 and fused multiply-adds, which a build for all machines of the architecture may not use.
 ///
-/// With a target named, flags are for the target alone: the compiler, which runs in build scripts, is not built again.
+/// With an explicit target, flags apply to the target only: the compiler, which runs in build scripts, is not built again.
 pub fn check() -> Result<(), String> {
     if !has_fma() {
         println!("this machine has no AVX2 with fused multiply-adds");

@@ -57,7 +57,7 @@ const MAY_NOT_NAME: [(&str, &str, &[&str], &str); 9] = [
     ),
 ];
 
-/// Modules of the compiler that alone may touch files, the environment or the process.
+/// The only modules of the compiler that may access files, the environment or the process.
 const MAY_TOUCH_THE_WORLD: [&str; 1] = ["codegen/src/build.rs"];
 
 /// Every breach of the rules.

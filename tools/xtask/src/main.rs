@@ -1,6 +1,6 @@
 //! Everything a developer runs.
 //!
-//! `cargo xtask test` runs every check there is; the others are its parts, for the time in between.
+//! `cargo xtask test` runs all checks; other tasks run parts of it, for use during development.
 
 mod book;
 mod circles;
@@ -60,7 +60,7 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    // Some of them, by words of their titles; `performance` has options of its own.
+    // A selection, by words in their titles; `performance` has its own options.
     let words: &[String] = if task == "performance" { &[] } else { &arguments[1..] };
     let chosen: Vec<Step> = steps
         .into_iter()
@@ -73,7 +73,7 @@ fn main() -> ExitCode {
     run(&chosen)
 }
 
-/// With diffsol beside our methods.
+/// With diffsol for comparison.
 const ERROR_VS_RUNTIME: [&str; 12] = [
     "run",
     "--release",
@@ -132,7 +132,7 @@ fn lint() -> Vec<Step> {
         Step::check("docs/EQUATIONS.md is current", equations::check),
         Step::cargo("clippy", &["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
             .with(SECTIONS, "0"),
-        // A workspace of its own, which no other step would notice.
+        // A separate workspace, which no other step checks.
         Step::cargo("fuzz target", &["check", "--release", "--manifest-path", "codegen/fuzz/Cargo.toml"]),
         Step::cargo("documentation", &["doc", "--release", "--workspace", "--no-deps"])
             .with("RUSTDOCFLAGS", "-D warnings")
@@ -140,11 +140,11 @@ fn lint() -> Vec<Step> {
     ]
 }
 
-/// Which cranes the benchmarks compile: to look at them the smallest will do.
+/// Which cranes the benchmarks compile: for a check the smallest are enough.
 const SECTIONS: &str = "CRANE_BENCH_SECTIONS";
 
-/// All packages together, as the tests build them: alone, a package would choose other features of what it builds on. With
-/// them the library of functional mock-up units.
+/// All packages together, as the tests build them: alone, a package would select other features of its dependencies. This
+/// includes the library of functional mock-up units.
 fn programs() -> Step {
     Step::cargo("all programs", &["build", "--release", "--workspace", "--exclude", "crane-bench", "--bins", "--lib"])
 }
@@ -165,7 +165,7 @@ fn tests() -> Vec<Step> {
         Step::check("pages of the Python package in a browser", report::in_notebook),
         Step::check("functional mock-up units", outside::units),
         Step::check("what the command prints as JSON", outside::output),
-        // A static library with its own panic handler: no crate beneath it may link std or a heap.
+        // A static library with its own panic handler: no crate that it depends on may link std or need a heap.
         Step::cargo(
             "a crane without std and heap",
             &[
@@ -197,7 +197,7 @@ fn bless() -> Vec<Step> {
             .with("UPDATE_SCHEMA", "1")
             .with("INSTA_UPDATE", "always")
     };
-    // The test that compares them compiles them, so the command writes them.
+    // The test that compares these files also compiles them, so the command writes them.
     let golden = |title, spec, module| Step::cargo(title, &["run", "--release", "--", "generate", spec, "-o", module]);
     vec![
         golden("double pendulum", "specs/double_pendulum.yaml", "tests/golden/double_pendulum.rs"),

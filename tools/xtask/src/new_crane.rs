@@ -1,4 +1,4 @@
-//! Your own crane as `crane new` begins it: made, tested, run.
+//! A new crane as `crane new` creates it: made, tested, run.
 
 use std::process::Command;
 use std::{fs, io};
@@ -8,7 +8,7 @@ use crate::{step, workspace};
 /// Where the new crate is made, under cargo's target folder.
 const FOLDER: &str = "new-crane";
 
-/// The profile of the workspace, so that what it has built serves again; a user's crate has a simpler one.
+/// The profile of the workspace, so that what is already built is reused; a user's crate has a simpler one.
 const PROFILE: [&str; 11] = [
     "debug=\"line-tables-only\"",
     "build-override.opt-level=3",

@@ -1,16 +1,16 @@
-//! Cranes without panics: a program that links only where the optimiser finds every path to a panic impossible.
+//! Cranes without panics: a program that links only if the optimiser proves every path to a panic impossible.
 
 use std::process::Command;
 
 use crate::step::{cargo, finish};
 use crate::workspace;
 
-/// Every crate keeps what the optimiser of the whole program reads, and is compiled in one piece.
+/// Every crate keeps its bitcode for link-time optimisation, and is compiled as one unit.
 const PARTS: &str = "-C embed-bitcode=yes -C codegen-units=1";
 
 /// Builds it, all crates optimised as one: a function is free of panics only if those it calls are.
 ///
-/// With a target named, flags are for the target alone: the compiler, which runs in build scripts, is not built again.
+/// With an explicit target, flags apply to the target only: the compiler, which runs in build scripts, is not built again.
 pub fn check() -> Result<(), String> {
     let mut command = Command::new(cargo());
     command.args(["rustc", "--release", "--package", "no-std-crane", "--features", "no-panic", "--bin", "no-panic"]);

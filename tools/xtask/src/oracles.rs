@@ -46,7 +46,7 @@ pub fn exchange() -> Result<(), String> {
     step::finish(command.arg("--crane").arg(program("crane")).arg("--evaluate").arg(program("evaluate")))
 }
 
-/// Runs of shipped cranes beside `SciPy`'s Radau on `CasADi`'s equations of motion.
+/// Runs of shipped cranes against `SciPy`'s Radau on `CasADi`'s equations of motion.
 pub fn motion() -> Result<(), String> {
     step::finish(script(&CHECKS, MOTION).arg("--command").arg(workspace::target().join("release/crane")))
 }

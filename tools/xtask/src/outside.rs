@@ -15,7 +15,7 @@ pub fn output() -> Result<(), String> {
     run("tools/cli/tests/output")
 }
 
-/// Runs tests of a folder with the command that is built.
+/// Runs the tests of a folder with the built command.
 fn run(tests: &str) -> Result<(), String> {
     let mut command = Command::new(CHECKS.python());
     command

@@ -50,10 +50,10 @@ const TEXTS: [(&str, &str); 24] = [
     ("tools/xtask", "rs"),
 ];
 const DOCUMENTS: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
-/// This file names them.
+/// This file, which contains the words itself.
 const HERE: &str = "tools/xtask/src/prose.rs";
 
-/// Every place where one stands.
+/// Every place where one occurs.
 pub fn check() -> Result<(), String> {
     let mut files: Vec<String> = DOCUMENTS.map(str::to_owned).to_vec();
     for (folder, extension) in TEXTS {

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::{step, workspace};
 
-/// An environment: its folder at the workspace's root, and the lists of what it has.
+/// An environment: its folder at the workspace's root, and the lists of its packages.
 pub struct Environment {
     folder: &'static str,
     requirements: &'static [&'static str],
@@ -24,7 +24,7 @@ pub const CHECKS: Environment = Environment {
     ],
 };
 
-/// For the measurement beside other libraries.
+/// For the measurement against other libraries.
 pub const PERFORMANCE: Environment = Environment {
     folder: ".venv-performance",
     requirements: &[
@@ -35,12 +35,12 @@ pub const PERFORMANCE: Environment = Environment {
 };
 
 impl Environment {
-    /// Its Python.
+    /// Its Python interpreter.
     pub fn python(&self) -> PathBuf {
         workspace::root().join(self.folder).join("bin/python")
     }
 
-    /// Makes it, unless it has what is required already.
+    /// Makes it, unless it already has what is required.
     pub fn prepare(&self) -> Result<(), String> {
         let folder = workspace::root().join(self.folder);
         let requirements = self.requirements.iter().map(|file| workspace::read(file)).collect::<Result<String, _>>()?;

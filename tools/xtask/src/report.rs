@@ -1,4 +1,4 @@
-//! The report page, in `tools/report`: whether the command has the newest, and how a browser shows it.
+//! The report page, in `tools/report`: whether the command includes the newest, and how a browser shows it.
 
 use std::fs;
 use std::process::Command;
@@ -22,7 +22,7 @@ fn in_folder(program: &str) -> Command {
     command
 }
 
-/// Installs the pinned packages, unless they are there.
+/// Installs the pinned packages, unless they are installed.
 pub fn prepare() -> Result<(), String> {
     let lock = workspace::read(&format!("{FOLDER}/package-lock.json"))?;
     let stamp = workspace::root().join(FOLDER).join("node_modules/installed.json");
@@ -35,7 +35,7 @@ pub fn prepare() -> Result<(), String> {
     fs::write(&stamp, lock).map_err(|error| format!("{}: {error}", stamp.display()))
 }
 
-/// The page that the command includes is what its sources make.
+/// Checks that the page included in the command is the one built from its sources.
 pub fn is_current() -> Result<(), String> {
     step::finish(in_folder("node").args(["build.js", "--check"]))
 }

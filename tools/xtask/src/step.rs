@@ -31,7 +31,7 @@ impl Step {
         Step { title, action: Action::Check(check) }
     }
 
-    /// Runs a program of the workspace, which is built, at the workspace's root.
+    /// Runs a program of the workspace that is already built, at the workspace's root.
     pub fn program(title: &'static str, name: &'static str) -> Self {
         Step { title, action: Action::Program(name) }
     }
@@ -61,7 +61,7 @@ impl Step {
     }
 }
 
-/// The cargo that runs this.
+/// The cargo that runs this program.
 pub fn cargo() -> String {
     std::env::var("CARGO").unwrap_or_else(|_| "cargo".into())
 }

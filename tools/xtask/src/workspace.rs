@@ -39,7 +39,7 @@ pub fn files(folder: &str, extension: &str) -> Result<Vec<String>, String> {
     Ok(found)
 }
 
-/// The target that this machine is.
+/// The target triple of this machine.
 pub fn host() -> Result<String, String> {
     let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let output = Command::new(rustc).arg("-vV").output().map_err(|error| format!("rustc: {error}"))?;

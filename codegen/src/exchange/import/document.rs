@@ -8,7 +8,7 @@ use super::mistakes::rule;
 use super::robot::Named;
 use crate::diagnostic::{Mistake, SourceFile, Span};
 
-/// No robot has more elements and attributes.
+/// Maximum number of elements and attributes; no robot has more.
 const MOST_NODES: u32 = 200_000;
 
 /// The elements of a file.
@@ -37,13 +37,13 @@ impl Reader {
         Some(Named { name: attribute.value().to_owned(), span: value_span(attribute) })
     }
 
-    /// A given number of finite numbers of an attribute, or a mistake.
+    /// `N` finite numbers of a required attribute, or a mistake.
     pub(super) fn numbers<const N: usize>(&mut self, node: Node, key: &str, place: &str) -> Option<[f64; N]> {
         self.required(node, key, place)?;
         self.exact_numbers(node.attribute_node(key)?, place)
     }
 
-    /// The same of an attribute that is there.
+    /// The same for an attribute that is present.
     pub(super) fn exact_numbers<const N: usize>(&mut self, attribute: Attribute, place: &str) -> Option<[f64; N]> {
         let found = finite_numbers(attribute.value()).and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
         if found.is_none() {
@@ -54,7 +54,7 @@ impl Reader {
         found
     }
 
-    /// Any count of finite numbers of an attribute, or a mistake.
+    /// Any number of finite numbers of an attribute, or a mistake.
     pub(super) fn some_numbers(&mut self, attribute: Attribute, place: &str) -> Option<Vec<f64>> {
         let found = finite_numbers(attribute.value());
         if found.is_none() {
@@ -63,7 +63,7 @@ impl Reader {
         found
     }
 
-    /// Notes that an attribute is not what it should be.
+    /// Reports an attribute that is not as `expected`.
     pub(super) fn wrong_numbers(&mut self, attribute: Attribute, place: &str, expected: impl Display) {
         self.mistakes.push(rule::wrong_numbers(value_span(attribute), place, attribute.value(), expected));
     }
@@ -73,7 +73,7 @@ fn finite_numbers(text: &str) -> Option<Vec<f64>> {
     text.split_whitespace().map(|word| word.parse().ok().filter(|n: &f64| n.is_finite())).collect()
 }
 
-/// The first child of a name.
+/// The first child with a name.
 pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|child| child.has_tag_name(name))
 }

@@ -11,12 +11,12 @@ use crate::exchange::rotation::along_z;
 /// A link of a spec.
 pub(super) struct SpecLink<'r> {
     pub(super) name: String,
-    /// Name of the robot's link, and of the joint that moves it.
+    /// Name of the robot's link; `joint` is the joint that moves it.
     pub(super) was: &'r str,
     pub(super) joint: Option<&'r Joint>,
     /// Joints without mass before it that are part of a free base, in order.
     pub(super) before: Vec<&'r Joint>,
-    /// In the frame of the link before.
+    /// Pose in the frame of the previous link.
     pub(super) placement: Frame,
     pub(super) motion: SpecMotion,
     pub(super) bodies: Vec<(String, Lump)>,
@@ -62,7 +62,7 @@ impl SpecMotion {
 pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
     let mut names = Names::default();
     let mut links: Vec<SpecLink> = Vec::new();
-    // The frame of the spec's link in that of the robot's.
+    // The frame of the spec's link, expressed in the frame of the robot's link.
     let mut rotated = Frame::WORLD;
     for group in groups {
         let Some((carrier, _)) = group.links.first() else { continue };
@@ -154,8 +154,8 @@ fn free_base(links: &mut Vec<SpecLink>) {
     }
 }
 
-/// The axis x, y or z of a frame that lies along a direction, and the frame, in that of the direction: the same one where
-/// it can be.
+/// A frame with an axis along a direction, and which axis that is: x, y or z. The frame is expressed in the frame of the
+/// direction, and is the identity where possible.
 fn onto_an_axis(direction: Vector) -> (Axis, Frame) {
     for (index, axis) in [Axis::X, Axis::Y, Axis::Z].into_iter().enumerate() {
         // Half a turn about another axis makes a negative direction positive.
@@ -174,12 +174,12 @@ fn onto_an_axis(direction: Vector) -> (Axis, Frame) {
 struct Names(BTreeSet<String>);
 
 impl Names {
-    /// An identifier derived from a name that is not in use yet.
+    /// An identifier derived from a name, not in use yet.
     fn unique(&mut self, name: &str) -> String {
         self.free(identifier(name), |_, _| true)
     }
 
-    /// The same for a point, whose columns of results, `<point>_x` …, must not be those of a coordinate.
+    /// The same for a point, whose result columns, `<point>_x` …, must differ from those of the coordinates.
     fn unique_point(&mut self, name: &str) -> String {
         let fits = |taken: &BTreeSet<String>, name: &str| {
             ["x", "y", "z"].iter().all(|letter| !taken.contains(&format!("{name}_{letter}")))

@@ -25,11 +25,11 @@ use crate::diagnostic::{Diagnostics, SourceFile};
 pub struct Imported {
     /// The spec, commented YAML.
     pub spec: String,
-    /// What the robot has and the spec has not, one sentence each.
+    /// What the robot has and the spec does not, one sentence each.
     pub left_out: Vec<String>,
 }
 
-/// The spec of a robot in URDF or MJCF; the root of the file says which. `fixed`: joints that are held at zero.
+/// The spec of a robot in URDF or MJCF; the root of the file tells which. `fixed`: joints that are held at zero.
 ///
 /// Masses and inertias are passed on unchanged; the validation of the spec checks them.
 ///

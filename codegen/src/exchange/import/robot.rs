@@ -11,7 +11,7 @@ pub(super) struct Robot {
     pub(super) joints: Vec<Joint>,
     /// Acceleration of gravity, m/s², if the file gives it.
     pub(super) gravity: Option<Vector>,
-    /// What the file says and a spec made from it does not, one sentence each.
+    /// What the file contains and a spec made from it does not, one sentence each.
     pub(super) left_out: Vec<String>,
     /// Why joints move freely, if none has a spring.
     pub(super) no_drives: &'static str,
@@ -31,7 +31,7 @@ pub(super) struct Joint {
     pub(super) motion: Motion,
     pub(super) parent: Named,
     pub(super) child: Named,
-    /// Pose of the child on the parent at zero.
+    /// Pose of the child in the frame of the parent, at zero.
     pub(super) placement: Frame,
     /// Unit vector in the frame of the child.
     pub(super) axis: Vector,
@@ -46,16 +46,16 @@ pub(super) struct Joint {
     pub(super) spring: Option<Spring>,
     /// Inertia of its rotor, kg m² or kg.
     pub(super) armature: f64,
-    /// The position that it never leaves, m or rad.
+    /// The position at which it is held, m or rad.
     pub(super) held: Option<f64>,
     /// Where it starts, m or rad.
     pub(super) start: Option<f64>,
-    /// Its position in the file's own pose, m or rad.
+    /// Its position in the pose in which the file describes the robot, m or rad.
     pub(super) reference: f64,
 }
 
 impl Joint {
-    /// A joint that nothing moves and nothing brakes.
+    /// A joint on which nothing acts.
     pub(super) fn new(name: &str, span: Span, motion: Motion, [parent, child]: [Named; 2]) -> Self {
         Joint {
             name: name.to_owned(),
@@ -77,7 +77,7 @@ impl Joint {
         }
     }
 
-    /// Whether no force acts in it.
+    /// Whether nothing acts on it: it has no force, rotor or constraint.
     pub(super) fn is_plain(&self) -> bool {
         let forces = self.damping != 0.0 || self.friction != 0.0 || self.armature != 0.0;
         !forces && self.spring.is_none() && self.held.is_none() && self.follows.is_none()

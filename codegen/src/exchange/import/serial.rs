@@ -66,7 +66,7 @@ pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<
     if mistakes.is_empty() { Ok(groups) } else { Err(mistakes) }
 }
 
-/// Names are unique and known.
+/// Checks that names are unique and known.
 fn names(robot: &Robot, fixed: &[String], mistakes: &mut Vec<Mistake>) {
     let mut links = BTreeSet::new();
     for link in &robot.links {
@@ -107,7 +107,7 @@ fn root<'r>(robot: &'r Robot, mistakes: &mut Vec<Mistake>) -> Option<&'r Link> {
         [] => (Span::START, if robot.links.is_empty() { "there are none" } else { "they form a closed loop" }.into()),
         [first, other, ..] => (other.span, format!("neither `{}` nor `{}` has a parent", first.name, other.name)),
     };
-    // A wrong name disconnects the tree, and is reported already.
+    // A wrong name disconnects the tree, but has already been reported.
     if mistakes.is_empty() {
         mistakes.push(rule::not_a_tree(problem.0, problem.1));
     }
@@ -128,14 +128,14 @@ fn unreachable<'r>(robot: &'r Robot, root: &Link) -> Option<&'r Link> {
     }
 }
 
-/// Notes a joint with a motion that cranes do not support.
+/// Reports a joint with a motion that cranes do not support.
 fn cannot_move(joint: &Joint, mistakes: &mut Vec<Mistake>) {
     if let Motion::Other(kind) = &joint.motion {
         mistakes.push(rule::unsupported(kind.span, &joint.name, &kind.name));
     }
 }
 
-/// Notes joints that follow one which does not move.
+/// Reports joints that follow a joint that does not move.
 fn follow_in_vain(groups: &[Group], mistakes: &mut Vec<Mistake>) {
     let moving = || groups.iter().filter_map(|group| group.joint.map(|(joint, _)| joint));
     for joint in moving() {

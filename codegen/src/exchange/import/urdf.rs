@@ -85,7 +85,7 @@ impl Reader {
             "prismatic" => Motion::Prismatic,
             _ => Motion::Other(kind),
         };
-        // A fixed joint has no axis, whatever is written.
+        // A fixed joint has no axis, even if one is written.
         let axis = if matches!(motion, Motion::Fixed) { None } else { child(node, "axis") };
         let axis = axis.map_or([1.0, 0.0, 0.0], |given| self.direction(given, &name));
         let (damping, friction) = (damping.unwrap_or(0.0), friction.unwrap_or(0.0));

@@ -65,7 +65,7 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
     text
 }
 
-/// A key with a comment and lines of its own; nothing if there are none.
+/// A key with a comment and the lines under it; empty if there are none.
 fn section(key: &str, comment: &str, lines: &[String]) -> String {
     if lines.is_empty() {
         return String::new();
@@ -73,7 +73,7 @@ fn section(key: &str, comment: &str, lines: &[String]) -> String {
     format!("{:<31} # {comment}\n  {}\n\n", format!("{key}:"), lines.join("\n  "))
 }
 
-/// The spring of a joint as a drive that holds it where the spring is relaxed; a joint that stands still as a rigid drive.
+/// The spring of a joint as a drive that holds it where the spring is relaxed; a joint that is held as a rigid drive.
 fn drive(joint: &Joint, coordinate: &str) -> Option<String> {
     let rotor = if joint.armature == 0.0 { String::new() } else { format!(", armature: {}", decimal(joint.armature)) };
     let law = match (&joint.spring, joint.held) {

@@ -99,7 +99,8 @@ impl<'g> Derivation<'g> {
         efforts
     }
 
-    /// Operations for efforts of rigid drives are in the order of the recursion that computes them.
+    /// Runs `derive`. If there are rigid drives, also records the recursion that computes their efforts, whose order the operations
+    /// then follow.
     pub(super) fn recorded_if_rigid<T>(&self, derive: impl FnOnce() -> T) -> (T, SweepTrace) {
         if self.rigid { self.model.graph.recorded(derive) } else { (derive(), SweepTrace::default()) }
     }

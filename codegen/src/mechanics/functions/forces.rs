@@ -6,7 +6,7 @@ use crate::program::Argument::{Position, Time, Velocity};
 use crate::program::{Argument, Function, FunctionId, Shape, Struct};
 use crate::symbolic::Expr;
 
-/// A part of the forces: which, documentation, equation and arguments of its function, and its expressions.
+/// A part of the forces: identifier, documentation, equation and arguments of its function, and its expressions.
 type Part<'g> = (FunctionId, &'static str, &'static str, &'static [Argument], Vec<Expr<'g>>);
 
 impl<'g> Derivation<'g> {
@@ -127,7 +127,7 @@ impl<'g> Derivation<'g> {
         functions
     }
 
-    /// Forces in joints besides drives and viscous damping, if the crane has any.
+    /// Forces in joints other than those of drives and viscous damping, if the crane has any.
     fn joint_forces(&self) -> Vec<Part<'g>> {
         let model = &self.model;
         let mut parts: Vec<Part<'g>> = Vec::new();

@@ -1,4 +1,4 @@
-//! What joints, sections and the ground transmit, and what stresses of beams follow from.
+//! Forces and moments that joints, sections and the ground transmit, and the section moduli from which the stresses of beams follow.
 
 use super::{Derivation, function};
 use crate::chain::{Beam, Moduli};

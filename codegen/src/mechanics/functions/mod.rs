@@ -142,7 +142,7 @@ impl<'g> Derivation<'g> {
         let (solution, solution_trace) = model.graph.recorded(|| self.hybrid_dynamics(&at_rest).accelerations);
         let (columns, mass_trace) = model.graph.recorded(|| columns(model, &self.factors));
         let (bias, bias_trace) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
-        // The loop handles only bodies.
+        // The loop does not include rotors.
         let looped = model.chain.loops.fill_mass_matrix(model.size()) && model.chain.rotors.is_empty();
         let (mass_shape, both_shape, mass, mut both) = if looped {
             let slots = columns.slots();
@@ -329,7 +329,7 @@ impl<'g> Derivation<'g> {
         (stiffness, damping)
     }
 
-    /// The same for implicit steps: of one-sided supports at the present state, nowhere negative.
+    /// The same for implicit steps: one-sided supports at the present state, with a stiffness that is never negative.
     fn step_stiffness_and_damping(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
         let model = &self.model;
         if !model.chain.has_one_sided_supports() {

@@ -63,7 +63,7 @@ impl<'g> Derivation<'g> {
         residual
     }
 
-    /// Rigid drives hold what the other forces leave.
+    /// Forces of all drives at rest; rigid drives balance the sum of all other forces.
     fn drive_forces_at_rest(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
         let mut forces = drives::forces_at_rest(model);
@@ -74,8 +74,8 @@ impl<'g> Derivation<'g> {
         forces
     }
 
-    /// A matrix of small motions with nothing but `diagonal` in the rows and columns of prescribed coordinates, which do not
-    /// move.
+    /// A matrix of small motions. In the rows and columns of prescribed coordinates, which do not move, it is zero except for
+    /// `diagonal` on the diagonal.
     fn unknowns(&self, matrix: SymmetricMatrix<'g>, diagonal: f64) -> SymmetricMatrix<'g> {
         let diagonal = self.model.graph.constant(diagonal);
         self.model.chain.rigid_drives().fold(matrix, |matrix, drive| matrix.without(drive.coordinate.0, diagonal))
@@ -104,14 +104,14 @@ impl<'g> Derivation<'g> {
         gravity.into_iter().zip(forces).map(|(g, f)| g - f).collect()
     }
 
-    /// With the springs that stand for oil at rest.
+    /// The stiffness including the springs that represent oil at rest.
     fn tangent_stiffness(&self) -> SymmetricMatrix<'g> {
         let mut matrix = self.stiffness();
         drives::holding_stiffness(&self.model, &mut matrix);
         matrix
     }
 
-    /// Without what oil moves, whose stiffness follows from its volumes.
+    /// The stiffness without that of hydraulic drives, which follows from their oil volumes.
     fn stiffness(&self) -> SymmetricMatrix<'g> {
         let model = &self.model;
         let mut matrix = self.stiffness_and_damping().0;

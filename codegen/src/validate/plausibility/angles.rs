@@ -58,7 +58,7 @@ impl<'a> Look<'a> {
         if let Motion::Input(name) = motion {
             return self.input(name, coordinate);
         }
-        // The first implausible number is reported for the motion.
+        // Only the first implausible number of a motion is reported.
         let before = self.warnings.len();
         if let Motion::Speed(speed) = motion {
             self.speed(&speed.rate, coordinate);
@@ -83,7 +83,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// The input of a name.
+    /// The input with this name.
     pub(super) fn named_input(&self, name: &Spanned<String>) -> Option<&'a Input> {
         let entries = &self.crane.inputs.as_ref()?.value.as_ref()?.0;
         entries.iter().find(|(known, _)| known.value == name.value)?.1.value.as_ref()
@@ -135,7 +135,7 @@ impl<'a> Look<'a> {
         match scalar? {
             Scalar::Number(number) => Some(*number),
             Scalar::Angle(_) => None,
-            // A parameter that was set is a number in radians.
+            // A parameter whose value was set is a number in radians.
             Scalar::Name(name) => match (self.parameter(name)?, self.set(name)) {
                 (Scalar::Angle(_), false) => None,
                 _ => self.value(name),
@@ -144,7 +144,7 @@ impl<'a> Look<'a> {
     }
 }
 
-/// The positions that a motion names, and where; an input names none.
+/// The positions in a motion, and their locations in the text; an input has none.
 pub(super) fn positions(motion: &Motion) -> Vec<(Option<&Scalar>, Span)> {
     match motion {
         Motion::Hold(at) => vec![written(at)],

@@ -5,9 +5,9 @@ use crate::chain::CoordinateKind;
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Beam, Either, Link, Material, Number, Section, Sections, Spanned};
 
-/// Moduli of beam materials, from plastics (2e9 Pa) to tungsten (4e11 Pa), with room to spare. Pa.
+/// Moduli of beam materials, from plastics (2e9 Pa) to tungsten (4e11 Pa), with a margin, Pa.
 const YOUNGS_MODULUS: std::ops::RangeInclusive<f64> = 1e9..=1e12;
-/// Shear moduli, including wood (5e8 Pa). Pa.
+/// Shear moduli, down to that of wood (5e8 Pa), with a margin, Pa.
 const SHEAR_MODULUS: std::ops::RangeInclusive<f64> = 1e8..=5e11;
 /// Yield stresses, from soft plastics to piano wire, Pa.
 const YIELD_STRESS: std::ops::RangeInclusive<f64> = 1e6..=5e9;
@@ -21,12 +21,12 @@ const LARGEST_AREA: f64 = 4.0;
 const LARGEST_MOMENT: f64 = 10.0;
 /// Rounding of a second moment of area written with a few digits.
 const WRITTEN: f64 = 0.01;
-/// `β ω` of the lowest bending vibration beyond which the damping is a slip: the vibration is overdamped from 2 on.
+/// `β ω` of the lowest bending vibration beyond which the damping is probably a mistake: from 2 on, the vibration is overdamped.
 const MOST_DAMPED: f64 = 10.0;
 /// `λ²` of the lowest bending vibration of a cantilever, `ω = λ² √(EJ/μl⁴)`, `cos λ cosh λ = −1`.
 const LOWEST_BENDING: f64 = 3.516;
 
-/// Help for a modulus by its size: a larger unit than Pa makes the number too small.
+/// Help for a modulus, depending on its magnitude: in a unit larger than Pa, the number is too small.
 fn in_pascal(given: f64) -> String {
     let unit =
         [("GPa", 1e9, 1.0..1e3), ("MPa", 1e6, 1e3..1e6)].into_iter().find(|(_, _, range)| range.contains(&given));
@@ -65,7 +65,7 @@ impl Look<'_> {
         }
     }
 
-    /// Parts of a beam without a section's spring: their stresses are not computed.
+    /// Parts of a beam that contain no spring of a section: their stresses are not computed.
     pub(super) fn parts(&mut self) {
         for link in items(Some(&self.crane.links)) {
             let Some(beam) = link.beam.as_ref().and_then(|beam| beam.value.as_ref()) else { continue };
@@ -76,7 +76,7 @@ impl Look<'_> {
             let mut begin = 0.0;
             for (number, part) in items(Some(parts)).enumerate() {
                 let (length, at) = self.number(&part.length);
-                // Springs are in the middle of sections; the next one behind the part's beginning.
+                // Springs are at the middle of sections; this is the next one after the beginning of the part.
                 let next = ((begin / section - 0.5).ceil().max(0.0) + 0.5) * section;
                 if next > begin + length {
                     let sections = (count * section / length).ceil();
@@ -136,7 +136,7 @@ impl Look<'_> {
             Section::Tube { diameter, .. } | Section::Circle { diameter } => vec![("diameter", diameter)],
             Section::Numbers { area, jy, jz, jo, .. } => return self.section_numbers([area, jy, jz, jo], place),
         };
-        // The first implausible side is reported for all.
+        // Only the first implausible side is reported.
         for (key, given) in sides {
             let (side, at) = self.number(given);
             if side > LONGEST_SIDE {

@@ -1,12 +1,12 @@
-//! Lengths of connectors beside the distance of their points.
+//! Lengths of connectors compared with the distance between their points.
 
 use super::{Look, items, rounded};
 use crate::chain::{ConnectorLaw, Strain};
 use crate::diagnostic::rule;
 
-/// Usual lengths without force, in parts of the distance of the points at the guess.
+/// Usual lengths without force, as fractions of the distance between the points at the guess.
 const USUAL: [f64; 2] = [0.1, 10.0];
-/// A rope at the guess is at most so many times as long as without force: steel breaks long before.
+/// Maximum ratio of the length of a rope at the guess to its length without force: steel breaks long before.
 const STRETCHED: f64 = 1.2;
 
 impl Look<'_> {

@@ -1,10 +1,10 @@
-//! One-sided supports beside the weight that they carry.
+//! One-sided supports compared with the weight that they carry.
 
 use super::{Look, items, rounded};
 use crate::diagnostic::rule;
 
 impl Look<'_> {
-    /// A support that never presses as much as its full hold holds the crane in part only.
+    /// Supports whose full hold exceeds their share of the crane's weight: they hold the crane only in part.
     pub(super) fn feet(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
         let mass: f64 = chain.bodies.iter().filter_map(|body| Some(body.inertia.as_ref()?.mass.at(&self.values))).sum();

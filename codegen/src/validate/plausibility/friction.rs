@@ -8,7 +8,7 @@ use crate::diagnostic::rule;
 const USUAL: [f64; 2] = [1e-8, 0.1];
 
 impl Look<'_> {
-    /// Bristles that slide after a way which no surface has: steps become tiny, or the joint springs instead of sticking.
+    /// Bristles that slide at a deflection that no real surface has: steps become tiny, or the joint acts as a spring instead of sticking.
     pub(super) fn bristles(&mut self) {
         let entries = self.crane.friction.as_ref().and_then(|friction| friction.value.as_ref());
         for (name, given) in entries.into_iter().flat_map(|entries| &entries.0) {

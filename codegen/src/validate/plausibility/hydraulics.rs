@@ -1,4 +1,4 @@
-//! Cylinders, valves, oil and the pump: pressures in bar, flows in l/min, diameters in mm, and cylinders that their poses overstretch.
+//! Cylinders, valves, oil and the pump: pressures in bar, flows in l/min, diameters in mm, and cylinders that are beyond their stroke.
 
 use std::ops::RangeInclusive;
 
@@ -7,7 +7,7 @@ use crate::chain::{Attachment, Pin};
 use crate::diagnostic::rule;
 use crate::spec::{Constant, Cylinder, Motion, Pump, Spanned, Valve};
 
-/// A quantity of hydraulics: unit, usual numbers, and how to write one that is given in another unit.
+/// A hydraulic quantity: its unit, its usual range, and how to write a number that was given in another unit.
 struct Usual {
     unit: &'static str,
     range: RangeInclusive<f64>,
@@ -63,7 +63,7 @@ impl Look<'_> {
             let flow = ("the greatest flow of the pump", &pump.max_flow, &FLOW);
             self.usual([Some(flow), pressure, volume]);
         }
-        // What such numbers lead to would be reported a second time.
+        // The consequences of such numbers would be reported as well.
         if self.warnings.len() == before {
             if let Some(pump) = pump {
                 self.reliefs(pump);
@@ -101,7 +101,7 @@ impl Look<'_> {
         }
     }
 
-    /// The command of a valve; the first opening beyond the ends of its spool is reported for all.
+    /// The command of a valve; only the first opening beyond the ends of the spool's travel is reported.
     fn opening(&mut self, motion: &Motion, cylinder: &str) {
         if let Motion::Input(name) = motion {
             let input = self.named_input(name);
@@ -125,7 +125,7 @@ impl Look<'_> {
         }
     }
 
-    /// Warns of numbers that are not usual.
+    /// Warns of numbers outside the usual range.
     fn usual<const N: usize>(&mut self, numbers: [Option<(&str, &Spanned<Constant>, &Usual)>; N]) {
         for (what, given, usual) in numbers.into_iter().flatten() {
             let Some(number) = given.value.as_ref().map(|number| self.scalar(&number.0)) else { continue };
@@ -135,7 +135,7 @@ impl Look<'_> {
         }
     }
 
-    /// Relief valves that open before the pump has its pressure.
+    /// Relief valves that open before the pump reaches its pressure.
     fn reliefs(&mut self, pump: &Pump) {
         let Some(pressure) = pump.pressure.as_ref() else { return };
         let of_pump = pressure.value.as_ref().map_or(f64::NAN, |number| self.scalar(&number.0));
@@ -151,7 +151,7 @@ impl Look<'_> {
         }
     }
 
-    /// Cylinders that are too short or too long where their drives start. Those over a linkage are left to statics.
+    /// Cylinders that are too short or too long where their drives start. Cylinders that act through a linkage are left to statics.
     fn strokes(&mut self) {
         let chain = self.chain;
         let mut q = chain.guess.clone();

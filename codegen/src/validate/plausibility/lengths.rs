@@ -25,7 +25,7 @@ impl Look<'_> {
         for connector in items(crane.connectors.as_ref()) {
             let name = connector.name.value.as_deref().unwrap_or_default();
             for end in [&connector.from, &connector.to].into_iter().filter_map(|end| end.value.as_ref()) {
-                // Where the crane stands in the world says nothing.
+                // Points of the world are not checked: the crane may stand anywhere.
                 if end.link.is_some() {
                     self.place(Some(&end.at), &format!("connector `{name}`"));
                 }
@@ -64,7 +64,7 @@ impl Look<'_> {
         }
     }
 
-    /// Three lengths; the first that is too long is reported for all.
+    /// Three lengths; only the first that is too long is reported.
     fn place(&mut self, given: Option<&Spanned<Vector>>, what: &str) {
         let Some(numbers) = given.and_then(|given| given.value.as_ref()) else { return };
         let far = numbers.each_ref().map(|number| self.number(number)).into_iter().find(|(number, _)| is_far(*number));
@@ -80,7 +80,7 @@ impl Look<'_> {
         }
     }
 
-    /// A length that is too long.
+    /// Warns of a length that is too long.
     pub(super) fn far(&mut self, number: f64, at: Span, what: &str) {
         self.warn(rule::far(at, what, rounded(number), in_metres(number)));
     }

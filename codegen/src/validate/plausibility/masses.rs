@@ -4,11 +4,11 @@ use super::{Look, items, rounded};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Number, Scalar, Spanned};
 
-/// A live mass, probably the payload, below this fraction of the mass that carries it is in tonnes.
+/// A live mass, probably the payload, below this fraction of the mass that carries it is probably in tonnes.
 const LIGHTEST_LIVE: f64 = 1.0 / 300.0;
-/// A constant mass at the crane's end may be a light tool: the last link of a PUMA 560 is 1/260 of the arm.
+/// The same for a constant mass at the crane's tip, which may be a light tool: the last link of a PUMA 560 is 1/260 of the arm.
 const LIGHTEST: f64 = 1.0 / 1000.0;
-/// A payload beyond this multiple of the mass that carries it: the crane is in tonnes, or the payload in g.
+/// Beyond this ratio of the payload to the mass that carries it, the crane is in tonnes or the payload in g.
 const HEAVIEST: f64 = 100.0;
 
 impl Look<'_> {
@@ -35,13 +35,13 @@ impl Look<'_> {
         }
     }
 
-    /// Compares a payload with everything else, except a base that moves: the mass of a truck says nothing about its crane.
+    /// Compares a payload with the rest of the crane, except for a moving base: the mass of a truck says nothing about its crane.
     fn payload(&mut self, place: &str, mass: f64, at: Span, lightest: f64) {
         let chain = self.chain;
         let base = chain.base.iter().any(Option::is_some);
         let carried = chain.bodies.iter().skip(usize::from(base)).filter_map(|body| body.inertia.as_ref());
         let crane: f64 = carried.map(|inertia| inertia.mass.at(&self.values)).sum::<f64>() - mass;
-        // Zero means that there is none.
+        // Zero means that there is no payload.
         if mass == 0.0 || crane <= 0.0 {
             return;
         }

@@ -1,6 +1,6 @@
-//! Plausibility: numbers that no rule refuses, but that look like another unit than SI or like a slip.
+//! Plausibility: numbers that no rule refuses, but that look like a non-SI unit or a slip.
 //!
-//! They are looked for in a crane without mistakes, at the default values of its parameters or at others. Each finding is a
+//! The checks run on a crane without mistakes, at the default values of its parameters or at others. Each finding is a
 //! warning: the crane is compiled as it is written.
 
 mod angles;
@@ -23,7 +23,7 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     look.lengths();
     look.hydraulics();
     look.bristles();
-    // Frequencies and masses that follow from such numbers would be reported a second time.
+    // Consequences of such numbers, such as frequencies and masses, would be reported as well.
     if look.warnings.is_empty() {
         look.parts();
         look.damping();
@@ -67,7 +67,7 @@ impl<'a> Look<'a> {
         self.values.get(place).copied()
     }
 
-    /// Whether a parameter has another value than in the spec.
+    /// Whether a parameter has a value other than in the spec.
     fn set(&self, name: &str) -> bool {
         let parameter = self.chain.parameters.iter().find(|parameter| parameter.name == name);
         parameter.is_some_and(|parameter| self.value(name) != Some(parameter.default))

@@ -52,7 +52,7 @@ impl<'a> Correction<'a> {
         self.system.factorise(self.t, equations.state(self.t, &self.end), x, self.c);
     }
 
-    /// One step of the iteration. Integrals follow at its end.
+    /// One step of the iteration, without the integrals: [`integrate`](Self::integrate) follows at its end.
     pub fn improve(&mut self, equations: &mut Equations<'_>) -> Result<(), NotFinite> {
         let Self { past, end, d, rhs, improvement, .. } = self;
         let integrals = equations.integrals();
@@ -67,7 +67,7 @@ impl<'a> Correction<'a> {
         Ok(())
     }
 
-    /// Integrals over the step from the state found: at the prediction stiff springs are far from balance.
+    /// Computes the integrals over the step from the converged state: at the prediction, stiff springs are far from equilibrium.
     pub fn integrate(&mut self, equations: &mut Equations<'_>) {
         equations.powers(self.t, &self.end, &mut self.rhs);
         for i in equations.integrals()..self.end.len() {

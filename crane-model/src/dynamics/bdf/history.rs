@@ -8,7 +8,7 @@ pub(super) type Weights = [f64; ORDER + 1];
 
 /// The last states at equal time intervals, as backward differences.
 pub(super) struct History {
-    /// `∇ᵐy`, m = 0 … k; beyond, the difference for the error of the next higher order.
+    /// `∇ᵐy`, m = 0 … k; then `∇ᵏ⁺¹y` and `∇ᵏ⁺²y`, for the error estimates of orders k and k + 1.
     pub differences: [Vec<f64>; ORDER + 3],
     /// k.
     pub order: usize,
@@ -52,7 +52,7 @@ impl History {
         self.order = 1;
     }
 
-    /// Starts with several states, the last first.
+    /// Starts with several states, the most recent first.
     pub fn through(&mut self, past: &[Vec<f64>], t: f64, h: f64) {
         (self.order, self.t, self.h) = (past.len().clamp(1, ORDER), t, h);
         let values = &mut self.differences[..self.order];
@@ -99,10 +99,10 @@ impl History {
         self.sum(&newton_polynomials((t - self.t) / self.h), out);
     }
 
-    /// Changes to states at another interval, on the same polynomial.
+    /// Changes to another time interval: the states are new, the polynomial stays the same.
     pub fn rescale(&mut self, factor: f64) {
         let k = self.order;
-        // The polynomial's values at the new times, from the weights of the old differences, and their differences.
+        // The polynomial's values at the new times, as weights of the old differences, and the differences of these values.
         let mut weights: [Weights; ORDER + 1] = std::array::from_fn(|m| newton_polynomials(-factor * m as f64));
         for m in 1..=k {
             for place in (m..=k).rev() {

@@ -7,7 +7,7 @@
 //! c f(tₙ₊₁, y⁰ + d) = ψ + d,     c = h/γₖ,     γₖ = Σ 1/j  (j = 1 … k),     γₖ ψ = Σ γₘ ∇ᵐyₙ  (m = 1 … k)
 //! ```
 //!
-//! Newton's iteration uses stiffness and damping of springs and dampers as Jacobian, one structured system of half the size. The
+//! Newton's iteration uses stiffness and damping of springs and dampers as its Jacobian: one structured system of half the size. The
 //! neglected terms are `c²` times the square of the load's swing frequency, so usually the first iterate suffices and a step costs
 //! one evaluation. The error of a step is `d/(k+1)`; those of the neighbouring orders are available as well, and the order with
 //! the longest step is chosen. Orders 1 and 2 are L-stable, order 3 is A(α)-stable with α = 86.0°, order 4 with 73.4°: for modes
@@ -44,19 +44,19 @@ const GAMMAS: [f64; ORDER + 1] = [0.0, 1.0, 1.5, 11.0 / 6.0, 25.0 / 12.0];
 const SHARE: f64 = 0.1;
 /// Maximum number of Newton steps.
 const NEWTON: usize = 4;
-/// Remaining error of Newton's iteration relative to a step's error.
+/// Allowed remaining error of Newton's iteration, relative to the allowed error of a step.
 const LEFT: f64 = 0.05;
 /// Smallest and largest ratio of a step to the previous one.
 const RATIO: (f64, f64) = (0.2, 3.0);
-/// Largest ratio of a step to one that failed.
+/// Largest ratio of a step to the previous one after repeated failure.
 const AGAIN: f64 = 0.5;
-/// After this many consecutive failures the history does not predict the motion, for example because a drive jumped.
+/// After this many consecutive failures, the history is discarded: it does not predict the motion, for example because a drive jumped.
 const PATIENCE: usize = 3;
 
 /// A step of order `past.len()` from `t` to `t + h`, from the states at `t`, `t − h`, …: the state at `t + h`, by Newton's iteration to
-/// rounding.
+/// rounding accuracy.
 ///
-/// Of more states than the highest order only the last count.
+/// Of more states than the highest order, only the most recent are used.
 ///
 /// # Errors
 /// An acceleration is not finite, or the iteration does not converge.
@@ -66,9 +66,9 @@ pub fn step<const N: usize, C: Implicit<N>>(
     h: f64,
     past: &[State<N>],
 ) -> Result<State<N>, NotFinite> {
-    /// Newton steps: even with a poor Jacobian each one gains a digit.
+    /// Maximum number of Newton steps: even with a poor Jacobian, each one gains a digit.
     const MANY: usize = 30;
-    /// Remaining increment, relative to 1 m and rad and to the new state.
+    /// Allowed last increment, relative to 1 m or rad plus the size of the new state.
     const EXACT: f64 = 1e-14;
     let crane = Instance::<N, _>(crane);
     let mut equations = Equations::new(&crane, Guides::of(&crane), false);
@@ -99,7 +99,7 @@ pub fn step<const N: usize, C: Implicit<N>>(
 /// Convergence rate of Newton's iteration, measured whenever there was a second step.
 #[derive(Clone, Copy, Debug)]
 struct Contraction {
-    /// Ratio of two steps.
+    /// Ratio of two successive increments.
     ratio: f64,
     /// Length of the time step of the measurement, s.
     h: f64,
@@ -110,7 +110,7 @@ struct Contraction {
 impl Contraction {
     /// Number of time steps for which a measurement is valid.
     const LIFETIME: usize = 10;
-    /// Assumption without a measurement.
+    /// Assumed ratio without a measurement.
     const UNKNOWN: f64 = 0.3;
     /// A measured ratio may be wrong by this factor.
     const CAUTION: f64 = 3.0;
@@ -151,7 +151,7 @@ struct Control {
 }
 
 impl<'a> Bdf<'a> {
-    /// With the tolerance of the settings.
+    /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
         let equations = Equations::new(crane, Guides::of(crane), settings.audit);
         let norm = Norm::with_efforts(crane, SHARE * settings.tolerance);
@@ -170,7 +170,7 @@ impl<'a> Bdf<'a> {
         }
     }
 
-    /// No further step is possible from the last state.
+    /// The error that no further step is possible from the last state.
     fn stuck(&self) -> Stopped {
         let History { t, h, .. } = &self.history;
         let q = &self.motion[..self.equations.n];
@@ -200,8 +200,8 @@ impl<'a> Bdf<'a> {
         self.control.norm.note_rounding(q, v);
     }
 
-    /// Tries a step, and returns whether it meets the tolerance; chooses order and length of the next in any case. `again` is a step
-    /// that was shortened already.
+    /// Tries a step, and returns whether it meets the tolerance; chooses order and length of the next in any case. `again`: the step
+    /// has been shortened already.
     fn attempt(&mut self, again: bool) -> bool {
         let Self { equations, history, correction, control, .. } = self;
         let order = history.order;
@@ -321,13 +321,13 @@ impl Control {
         false
     }
 
-    /// Error of a step of some order to `end`, with `∇ᵏ⁺¹` of that order, in units of the allowed error.
+    /// Error of a step of order k that ends at `end`, with `∇ᵏ⁺¹y` in `next`, in units of the allowed error.
     fn error(&self, end: &[f64], next: &[f64], order: usize) -> f64 {
         self.norm.size(end, next) / (order + 1) as f64
     }
 }
 
-/// Ratio of steps that would just meet the tolerance, minus a margin.
+/// Ratio of the step that would just meet the tolerance to the current one, with a safety margin.
 fn ideal(error: f64, order: usize) -> f64 {
     SAFETY * error.powf(-1.0 / (order + 1) as f64)
 }

@@ -45,7 +45,7 @@ pub struct Choice {
     /// Value of an input in place of what the spec says, in the unit that `crane info` shows; may be given several times
     #[arg(long = "input", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub inputs: Vec<String>,
-    /// Limits of what the model holds for.
+    /// Limits of the validity of the model.
     #[command(flatten)]
     pub limits: Limits,
     /// Replace beams that bend by rigid ones
@@ -66,10 +66,10 @@ impl Choice {
 /// The crane of a command that names none.
 pub const DEFAULT_CRANE: &str = "eight_link_flexible";
 
-/// What stands for the standard input in place of a file.
+/// Name of the standard input, in place of a file.
 pub const STANDARD_INPUT: &str = "-";
 
-/// The YAML file, or the standard input, that stands in place of a crane's name.
+/// The YAML file, or the standard input, that is given in place of a crane's name.
 pub fn spec_file(name: &str) -> Option<&Path> {
     let path = Path::new(name);
     let yaml = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");

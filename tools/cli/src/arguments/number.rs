@@ -5,12 +5,12 @@ use std::num::NonZeroUsize;
 /// A length of time.
 ///
 /// # Errors
-/// What to write instead.
+/// It is not a number; the message tells what to write instead.
 pub fn seconds(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "write a number of seconds, such as 0.5".to_owned())
 }
 
-/// An error that is allowed.
+/// An error tolerance.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "write a number, such as 1e-4".to_owned())
 }

@@ -8,7 +8,7 @@ use super::surface::{Knot, Sheet, Surface};
 pub const NOTE: &str = "The load chart holds for the model and the limits above: loads at rest, rounded down to three digits, at any slewing \
      angle looked at. No dynamic factor, no factor of a design code.";
 
-/// Rows of a chart at most.
+/// Upper limit of the number of rows of a chart.
 const ROWS: f64 = 12.5;
 
 const KEY: &str = "load_chart";
@@ -20,7 +20,7 @@ pub fn empty() -> Grid {
     Grid::new(KEY, TITLE, &[])
 }
 
-/// Loads over the radius: of all poses that bring the load there, the largest and the least.
+/// Loads over the radius: of all poses that bring the load there, the largest and the smallest.
 pub fn table(surface: &Surface) -> Grid {
     let greatest = surface.knots().map(|knot| knot.radius).fold(0.0, f64::max);
     let step = step(greatest / ROWS);
@@ -51,11 +51,11 @@ pub fn table(surface: &Surface) -> Grid {
     grid
 }
 
-/// Of all neighbouring poses between which the load is at a radius, those with the largest and the least load that both bear.
+/// Of all neighbouring poses between which the load is at a radius, those with the largest and the smallest load that both bear.
 fn best_and_worst(sheet: &Sheet, radius: f64) -> Option<[Knot; 2]> {
     let meets = |[a, b]: [Knot; 2]| {
         let part = (radius - a.radius) / (b.radius - a.radius);
-        // Not on edges along which the radius stays, nor between poses that do not rest.
+        // Not on edges of constant radius, nor next to poses without an equilibrium.
         (0.0..=1.0).contains(&part).then(|| Knot {
             radius,
             height: a.height + part * (b.height - a.height),
@@ -68,13 +68,13 @@ fn best_and_worst(sheet: &Sheet, radius: f64) -> Option<[Knot; 2]> {
     Some([best, worst])
 }
 
-/// The least of 1, 2, 5 times a power of ten that is not below a number.
+/// The smallest of 1, 2, 5 times a power of ten that is at least `least`.
 fn step(least: f64) -> f64 {
     let power = 10_f64.powf(least.max(1e-6).log10().floor());
     [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter().find(|step| *step >= least).unwrap_or(10.0 * power)
 }
 
-/// To three digits, never up.
+/// Rounded down to three digits.
 pub fn rounded_down(load: f64) -> f64 {
     if load <= 0.0 {
         return 0.0;
@@ -89,7 +89,7 @@ pub fn rounded_down(load: f64) -> f64 {
     }
 }
 
-/// To the next centimetre.
+/// Rounded to the nearest centimetre.
 fn centimetres(height: f64) -> f64 {
     (height * 100.0).round() / 100.0
 }
@@ -114,7 +114,7 @@ mod tests {
         assert_eq!([step(0.83), step(1.0), step(2.1), step(0.07)], [1.0, 1.0, 5.0, 0.1]);
     }
 
-    /// Two poses at 2 m and 4 m: between them the chart has what both bear.
+    /// Two poses at 2 m and 4 m: between them the chart has the load that both bear.
     #[test]
     fn a_chart_has_what_both_neighbours_bear() {
         let knot = |radius, load| Knot { radius, height: radius / 2.0, load };

@@ -17,12 +17,12 @@ use super::{
     surface::{Knot, Sheet, Surface, evenly, levels, short},
 };
 
-/// Curves of a diagram at most.
+/// Maximum number of curves of a diagram.
 const MOST_CURVES: usize = 6;
-/// Curves of equal load at most.
+/// Maximum number of curves of equal load.
 const MOST_LEVELS: usize = 8;
 
-/// Writes the figures that there are; their names.
+/// Writes the figures that apply; returns their names.
 pub fn write(
     folder: &Path,
     name: &str,
@@ -60,7 +60,7 @@ pub fn write(
     Ok(written)
 }
 
-/// Curves of equal load over radius and height; over the radius alone where one drive moves.
+/// Curves of equal load over radius and height; over the radius alone if only one drive moves.
 fn load_chart(surface: &Surface) -> Vec<Panel> {
     let unit = &surface.unit;
     let of = |sheet: &Sheet| if sheet.label.is_empty() { String::new() } else { format!(", {}", sheet.label) };
@@ -117,9 +117,9 @@ fn outline(sheet: &Sheet) -> Vec<Vec<(f64, f64)>> {
     sides.to_vec()
 }
 
-/// Pieces of the curve on which the largest load is `level`: through both triangles of each cell. Between poses `1/load` is taken as
-/// linear: it is where the load times its distance from a tipping line is constant, and below the truth where the boom's own weight
-/// counts.
+/// Pieces of the curve on which the largest load is `level`: through both triangles of each cell. Between poses `1/load` is
+/// interpolated linearly: exact where the load times its distance from a tipping line is constant, and an underestimate of the load
+/// where the boom's own weight matters.
 fn contour(sheet: &Sheet, level: f64) -> Vec<Vec<(f64, f64)>> {
     let crossing = |a: &Knot, b: &Knot| {
         // A pose without load counts as one with a thousandth of the level.
@@ -145,7 +145,7 @@ fn contour(sheet: &Sheet, level: f64) -> Vec<Vec<(f64, f64)>> {
     pieces
 }
 
-/// Places of everything else on its axis, and loads over the slewing angle.
+/// Indices of everything else on its axis, and loads over the slewing angle.
 type Group = (Vec<usize>, Vec<(f64, f64)>);
 
 /// The largest load over the slewing angle, with everything else at some of its values.
@@ -187,7 +187,7 @@ fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[Row], slewing: usize)
     }
 }
 
-/// A quantity over two axes; over the others `worst` of two.
+/// A quantity over two axes, reduced over the others by `worst`.
 fn map(
     asked: &Envelope,
     layout: &Layout,

@@ -37,10 +37,10 @@ use crate::{
 pub use ranges::number;
 use rows::{Layout, Row};
 
-/// Poses at most: some hours.
+/// Maximum number of poses: they take some hours.
 const MOST_POSES: usize = 10_000_000;
 
-/// Rates all poses and writes what follows from them.
+/// Rates all poses and writes the results.
 pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let begin = Instant::now();
     let rig = options.analysis.crane.open(registry)?;
@@ -149,7 +149,7 @@ fn kept(records: &[Vec<String>], asked: &crane_model::envelope::Envelope, layout
     kept
 }
 
-/// Rates what the journal does not have yet; all rows, in order.
+/// Rates the poses that the journal does not have yet; returns all rows, in order.
 fn rate(
     asked: &crane_model::envelope::Envelope,
     layout: &Layout,

@@ -10,7 +10,7 @@ use crane_model::{
 
 use crate::problem::{Outcome, Problem, nearest};
 
-/// Values of a range at most.
+/// Maximum number of values of a range.
 const MOST: usize = 100_000;
 
 /// What `--range NAME=FROM:TO:COUNT` and `--range NAME=VALUE` ask for.
@@ -37,7 +37,7 @@ pub fn varies(axes: &Axes, parameter: usize) -> bool {
     axes.0.iter().any(|axis| axis.varied == Varied::Parameter(parameter))
 }
 
-/// Place of a drive by its coordinate or by its link, if that has one drive alone, or of a live parameter.
+/// A drive by its coordinate, or by its link if that has only one drive, or a live parameter.
 fn varied(name: &str, description: &Description) -> Outcome<Varied> {
     if let Some(varied) = Varied::named(name, description) {
         return Ok(varied);
@@ -69,7 +69,7 @@ fn values_of(name: &str, text: &str) -> Outcome<Vec<f64>> {
     match parts[..] {
         [value] => Ok(vec![number(value).ok_or_else(|| wrong(&format!("`{value}` is not a number")))?]),
         [from, to, count] => {
-            // A unit behind the second number holds for both.
+            // A unit after the second number applies to both.
             let unit = if to.ends_with("deg") { "deg" } else { "" };
             let from_with_unit = if from.parse::<f64>().is_ok() { format!("{from}{unit}") } else { from.to_owned() };
             let from = number(&from_with_unit).ok_or_else(|| wrong(&format!("`{from}` is not a number")))?;
@@ -124,7 +124,7 @@ pub fn point(name: Option<&str>, description: &Description) -> Outcome<Option<us
     })
 }
 
-/// Name and unit of what an axis varies, for people: angles in degrees; and what its values are multiplied by.
+/// Name and unit of what an axis varies, for people (angles in degrees), and the factor for its values.
 pub fn shown(axis: &Axis, description: &Description) -> (String, String, f64) {
     match axis.varied {
         Varied::Drive(drive) => {

@@ -21,7 +21,7 @@ use crate::{
 pub struct Row {
     /// One per column of the layout; NaN where there is none.
     pub numbers: Vec<f64>,
-    /// Kind of the limit that governs, and of what it is one; empty where none does.
+    /// Kind of the governing limit, and what it is a limit of; empty if none governs.
     pub governing: [String; 2],
 }
 
@@ -34,11 +34,11 @@ impl Row {
     }
 }
 
-/// What stands in which column, and what rows are made with.
+/// The columns of a row, and what is needed to make one.
 pub struct Layout {
     /// Names and units of the numbers.
     pub columns: Vec<Column>,
-    /// The point whose radius and height are shown; the last link's origin without.
+    /// The point whose radius and height are shown; the last link's origin if `None`.
     pub point: Option<usize>,
     /// From where the radius is measured.
     pub slew: SlewAxis,
@@ -105,7 +105,7 @@ impl Layout {
         self.axes + 4
     }
 
-    /// Largest load of a row; 0 where not even the least is within the limits.
+    /// Largest load of a row; 0 if not even the smallest is within the limits.
     pub fn load_of(&self, row: &Row) -> f64 {
         let load = row.numbers[self.load()];
         if load.is_nan() { 0.0 } else { load }
@@ -152,12 +152,12 @@ impl Layout {
     }
 }
 
-/// A field of a file: empty for what there is none of.
+/// A field of a file: empty for a number that is not finite.
 pub fn field(number: f64) -> String {
     if number.is_finite() { files::number(number) } else { String::new() }
 }
 
-/// Writes all rows as CSV and as arrays; names of the files.
+/// Writes all rows as CSV and as arrays; returns the names of the files.
 pub fn write(folder: &Path, name: &str, asked: &Envelope, layout: &Layout, rows: &[Row]) -> Outcome<Vec<String>> {
     let csv = format!("{name}.csv");
     let header = layout.columns.iter().map(ToString::to_string);

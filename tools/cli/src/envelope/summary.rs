@@ -14,7 +14,7 @@ use super::{
     surface::short,
 };
 
-/// The crane, limits, and the poses that bear most and least.
+/// The crane, the limits, and the poses that bear the most and the least.
 pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description: &Description, rows: &[Row]) {
     report.fact("crane", description.name.as_str(), "");
     report.fact("load", description.parameters[asked.load].name.as_str(), "");

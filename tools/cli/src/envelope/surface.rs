@@ -7,10 +7,10 @@ use super::{
     rows::{Layout, Row},
 };
 
-/// Sheets that are shown at most.
+/// Maximum number of sheets shown.
 const MOST_SHEETS: usize = 6;
 
-/// A pose: where the load hangs, and the largest load there all round.
+/// A pose: where the load hangs, and the largest load there at every slewing angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knot {
     /// Horizontal distance from the slewing axis, m.
@@ -24,7 +24,7 @@ pub struct Knot {
 /// Poses of one or two drives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// Where everything else stands; empty where there is only this sheet.
+    /// The values of everything else; empty if this is the only sheet.
     pub label: String,
     /// Rows of knots; neighbours are neighbouring poses.
     pub knots: Vec<Vec<Knot>>,
@@ -33,14 +33,14 @@ pub struct Sheet {
 /// Sheets of knots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// One per combination of what the knots do not vary.
+    /// One per combination of the values that the knots do not vary.
     pub sheets: Vec<Sheet>,
     /// Unit of the loads.
     pub unit: String,
 }
 
 impl Surface {
-    /// The poses of an envelope; `None` where no drive moves the load in or out. A knot has the least of the loads of all slewing
+    /// The poses of an envelope; `None` where no drive moves the load in or out. A knot has the smallest load over all slewing
     /// angles.
     pub fn of(asked: &Envelope, layout: &Layout, rows: &[Row]) -> Option<Self> {
         let axes = &asked.axes.0;
@@ -86,7 +86,7 @@ impl Surface {
         Some(Self { sheets: sheets.collect(), unit: layout.columns[layout.load()].unit.clone() })
     }
 
-    /// Knots that rest.
+    /// Knots whose poses have an equilibrium.
     pub fn knots(&self) -> impl Iterator<Item = &Knot> {
         self.sheets.iter().flat_map(|sheet| sheet.knots.iter().flatten()).filter(|knot| knot.radius.is_finite())
     }
@@ -101,7 +101,7 @@ impl Sheet {
     }
 }
 
-/// Some of so many things, evenly.
+/// At most `most` of `count` indices, evenly spaced.
 pub fn evenly(count: usize, most: usize) -> Vec<usize> {
     if count <= most {
         return (0..count).collect();
@@ -109,14 +109,14 @@ pub fn evenly(count: usize, most: usize) -> Vec<usize> {
     (0..most).map(|place| place * (count - 1) / (most - 1)).collect()
 }
 
-/// A number with three digits at most.
+/// A number with at most two decimals.
 pub fn short(number: f64) -> String {
     let text = format!("{number:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// Round numbers within a range, about so many of them, evenly.
+/// At most `most` round numbers within a range, evenly chosen.
 pub fn levels(least: f64, greatest: f64, most: usize) -> Vec<f64> {
     let mut levels = Vec::new();
     if !(least > 0.0 && greatest.is_finite()) {

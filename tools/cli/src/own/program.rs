@@ -22,12 +22,12 @@ const FILES: [(&str, &str); 3] = [
     ("build.rs", include_str!("build.rs.template")),
     ("src/main.rs", include_str!("main.rs.template")),
 ];
-/// Variable of the environment with the folder where programs are kept.
+/// Environment variable with the folder where programs are kept.
 const CACHE: &str = "CRANE_CACHE";
 /// File that says which `crane` compiled the program beside it; written last, so that no half-built program counts.
 const STAMP: &str = "compiled-by";
 
-/// Runs the program of some cranes, names and specs: the kept one, or one that is compiled now.
+/// Runs the program of some cranes, given by names and specs: the kept one, or one that is compiled now.
 pub fn run(
     library: &Library,
     package: &str,
@@ -48,7 +48,7 @@ pub fn run(
     }
     let begin = Instant::now();
     let lock = wait_for_other_compiles(&cache)?;
-    // Another command may have compiled it meanwhile; one that does not start is of no use.
+    // Even if another command has compiled it meanwhile: that program may be the one that does not start.
     let built = compile(library, package, cranes, &cache, lock)?;
     let _ = fs::remove_file(folder.join(STAMP));
     copy(&built, &program)?;
@@ -60,7 +60,7 @@ pub fn run(
     })
 }
 
-/// Runs a program to its end, which is ours too; nothing where it is not a program.
+/// Runs a program to its end and takes over its exit code; `None` if it does not start.
 fn start(program: &Path, arguments: &impl Fn(&mut Command)) -> Option<Outcome<()>> {
     let mut command = Command::new(program);
     arguments(&mut command);
@@ -68,7 +68,7 @@ fn start(program: &Path, arguments: &impl Fn(&mut Command)) -> Option<Outcome<()
     Some(if code == 0 { Ok(()) } else { Err(Problem::Elsewhere(code)) })
 }
 
-/// Builds the program with cargo; the file that cargo made.
+/// Builds the program with cargo; returns the file that cargo made.
 ///
 /// The lock passes to cargo: should this command be killed, it lasts until cargo has ended too.
 fn compile(
@@ -114,7 +114,7 @@ fn compile(
     let mut build = Command::new(&cargo);
     build.args(["build", "--release", "--manifest-path"]).arg(folder.join("Cargo.toml"));
     build.arg("--target-dir").arg(&target).stdin(Stdio::from(lock)).stdout(Stdio::null());
-    // Cargo's own progress bar in a terminal.
+    // In a terminal, cargo shows its own progress bar.
     if !io::stderr().is_terminal() {
         build.arg("--quiet");
     }
@@ -130,7 +130,7 @@ fn compile(
     Ok(target.join("release").join(package).with_extension(env::consts::EXE_EXTENSION))
 }
 
-/// The lock of the cache; says so where another command holds it.
+/// Takes the lock of the cache, with a message if another command holds it.
 fn wait_for_other_compiles(cache: &Path) -> Outcome<File> {
     files::folder(cache)?;
     let path = cache.join("compiling");
@@ -147,7 +147,7 @@ fn wait_for_other_compiles(cache: &Path) -> Outcome<File> {
     Ok(file)
 }
 
-/// Copies a program, whole or not at all.
+/// Copies a program, completely or not at all.
 fn copy(from: &Path, to: &Path) -> Outcome<()> {
     let part = to.with_extension("part");
     let copied = fs::copy(from, &part).and_then(|_| fs::rename(&part, to));
@@ -164,7 +164,7 @@ fn this_command() -> String {
     format!("crane {}, built {}.{:09}\n", env!("CARGO_PKG_VERSION"), modified.as_secs(), modified.subsec_nanos())
 }
 
-/// Writes a file unless it says so already: what is newer is compiled again.
+/// Writes a file unless it already has this text: cargo compiles again what is newer.
 fn keep(file: &Path, text: &str) -> Outcome<()> {
     if fs::read_to_string(file).is_ok_and(|kept| kept == text) {
         return Ok(());
@@ -173,7 +173,7 @@ fn keep(file: &Path, text: &str) -> Outcome<()> {
     files::write_text(file, text)
 }
 
-/// Folder where programs are kept: never one where others may write.
+/// Folder where programs are kept: never one where other users may write.
 fn cache() -> Outcome<PathBuf> {
     let variable = |name: &str| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     variable(CACHE)
@@ -194,7 +194,7 @@ fn target() -> Option<PathBuf> {
         .then(|| target.to_owned())
 }
 
-/// Tells the user something beside the results.
+/// Tells the user something that is not part of the results.
 fn say(text: &str) {
     // Not eprintln: it panics where standard error is closed.
     let _ = writeln!(io::stderr(), "{text}");

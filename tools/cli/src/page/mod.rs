@@ -1,6 +1,6 @@
 //! `crane report`: statics, motion and modes of a crane as one HTML page, which needs no network.
 //!
-//! `crane-page` makes the page; here it gets tables, load charts and the rigid crane beside a flexible one.
+//! `crane-page` makes the page; this module adds tables, load charts and the rigid crane to compare a flexible one with.
 
 mod chart;
 pub mod twin;
@@ -32,7 +32,7 @@ use crate::{
 /// Coordinates of the largest crane whose modes are computed at all [`POSES`] along the manoeuvre.
 const AFFORDABLE: usize = 100;
 
-/// Computes a crane, and its rigid twin where there is one, and writes the page.
+/// Computes a crane, and its rigid twin if there is one, and writes the page.
 pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let rig = options.crane.open(registry)?;
     let twin = twin::rigid(rig.as_ref(), registry);
@@ -120,8 +120,8 @@ fn all_tables(registry: &Registry, cases: &[Case<'_>], limits: Limits, runs: &[R
     Ok(report)
 }
 
-/// Number of poses along the manoeuvre whose modes take no longer than all of them for a crane of [`AFFORDABLE`] coordinates: the
-/// time of the eigenvalue iteration grows with n³.
+/// Number of poses along the manoeuvre whose modes take no longer than those at all [`POSES`] for a crane of [`AFFORDABLE`]
+/// coordinates: the time of the eigenvalue iteration grows with n³.
 fn affordable_poses(coordinates: usize) -> u16 {
     let most = usize::from(POSES) * AFFORDABLE.pow(3) / coordinates.saturating_pow(3).max(1);
     u16::try_from(most).map_or(POSES, |most| most.min(POSES))

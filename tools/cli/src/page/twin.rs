@@ -22,9 +22,9 @@ pub fn rigid(rig: &dyn DynCrane, registry: &Registry) -> Option<Box<dyn DynCrane
 }
 
 /// Whether `other` has the joints, drives, supports and points of `rig`, in the same places and with the same laws, and no
-/// elements: compared at a pose off the drives' positions.
+/// elements: compared at a pose away from the drives' positions.
 fn is_rigid(rig: &dyn DynCrane, other: &dyn DynCrane) -> bool {
-    /// Way off the guess, m and rad.
+    /// Displacement from the guess, m and rad.
     const OFF: f64 = 0.1;
     let (own, rigid) = (rig.description(), other.description());
     let joints: Vec<usize> =

@@ -80,7 +80,7 @@ impl Cell {
         }
     }
 
-    /// All digits, and angles in degrees as on the screen; nothing where that says no more than the text.
+    /// All digits, and angles in degrees as on the screen; empty where the text has everything already.
     pub(super) fn exact(&self) -> String {
         match self {
             Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) | Cell::Change(number) => {
@@ -121,8 +121,8 @@ const DIGITS: i32 = 4;
 /// Significant digits in documents.
 pub(super) const DIGITS_OF_DOCUMENTS: i32 = 6;
 
-/// A number with some significant digits, in powers of ten where it is very large or small; digits before the point are whole. What is
-/// below 1e-10 of a unit is what rounding left of zero.
+/// A number with some significant digits, in powers of ten where it is very large or small; digits before the point are never
+/// dropped. Anything below 1e-10 of a unit counts as a rounded zero.
 fn readable(number: f64, digits: i32) -> String {
     let size = number.abs();
     let plain = number.to_string();

@@ -17,11 +17,11 @@ pub struct Heading {
     unit: String,
 }
 
-/// Name of a column about which its label says everything, and label of a crane that is alone.
+/// Name of a column that its label describes completely, and label of a single crane.
 pub const VALUE: &str = "value";
 
 impl Heading {
-    /// The heading of a column about one of several things; [`VALUE`] as label: about the only one.
+    /// The heading of a column about one of several things; about the only one if the label is [`VALUE`].
     pub fn of(label: &str, name: &str) -> Self {
         let label = if label == VALUE { "" } else { label };
         Self { label: label.to_owned(), ..name.into() }
@@ -115,7 +115,7 @@ impl Grid {
         with_unit.map(|heading| (heading.key(), heading.unit.as_str().into())).collect()
     }
 
-    /// Whether a column holds numbers alone.
+    /// Whether a column contains only numbers.
     fn numeric(&self, column: usize) -> bool {
         self.rows.iter().all(|row| !matches!(row.get(column), Some(Cell::Text(_) | Cell::AngleUnit)))
             && !self.rows.is_empty()

@@ -81,7 +81,7 @@ impl Report {
         self.grids.iter().filter(|(grid, _)| !grid.is_empty())
     }
 
-    /// Whether people want to see all tables whole.
+    /// Sets whether all tables are printed in full.
     pub fn show_all(&mut self, all: bool) {
         self.all = all;
     }
@@ -129,7 +129,7 @@ impl Report {
                     grid.print(seen(*rows), out)?;
                 }
                 let hidden = self.filled().filter(|(_, rows)| seen(*rows) == 0);
-                // What it is, without how to read it.
+                // What the table is, without how to read it.
                 let hidden: Vec<&str> =
                     hidden.map(|(grid, _)| grid.title.split([',', ':']).next().unwrap_or_default()).collect();
                 if !hidden.is_empty() {
@@ -165,7 +165,7 @@ impl Report {
     }
 }
 
-/// Version of the form of JSON: it grows when a key changes its meaning or goes.
+/// Version of the form of JSON: it increases when a key changes its meaning or is removed.
 pub const FORMAT: u32 = 1;
 
 #[cfg(test)]

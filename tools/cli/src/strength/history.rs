@@ -14,13 +14,13 @@ pub const OF_SECTIONS: [&str; 6] = ["N", "Qy", "Qz", "Mx", "My", "Mz"];
 /// Their units.
 pub const UNITS: [&str; 6] = ["N", "N", "N", "N m", "N m", "N m"];
 
-/// The moment nearest to tipping, or the first.
+/// The instant nearest to tipping, or the first one.
 pub fn least_margin(history: &[Instant]) -> Option<&Instant> {
     let margin = |instant: &Instant| governing(&instant.lines).map_or(f64::INFINITY, TippingLine::margin);
     history.iter().min_by(|a, b| margin(a).total_cmp(&margin(b)))
 }
 
-/// What the columns of a cut are called, and their components; nothing of a rigid link, whose joint shows the same.
+/// Prefix and components of the columns of a cut; `None` for a rigid link, whose joint shows the same.
 pub fn prefix(description: &Description, cut: Cut) -> Option<(String, [&'static str; 6])> {
     match cut {
         Cut::Ground => Some(("ground".to_owned(), OF_JOINTS)),
@@ -30,8 +30,8 @@ pub fn prefix(description: &Description, cut: Cut) -> Option<(String, [&'static 
     }
 }
 
-/// All of it in columns: `t`; of a tipping line `<from>_<to>_stabilising` and `_overturning`; of the ground, joints and sections
-/// the six components.
+/// The history in columns: `t`; for a tipping line `<from>_<to>_stabilising` and `_overturning`; for the ground, joints and
+/// sections the six components.
 pub fn table(description: &Description, history: &[Instant]) -> Table {
     let mut table = Table::default();
     table.add("t", "s");

@@ -15,16 +15,16 @@ use crate::{
     report::Report,
 };
 
-/// Part of the load to which it is found: an equilibrium leaves some 1e-13 of the forces.
+/// Relative accuracy of the load: an equilibrium leaves a residual of about 1e-13 of the forces.
 const ACCURACY: f64 = 1e-10;
-/// Steps that find a load: halving alone would take some forty.
+/// Maximum number of steps to find a load: bisection alone would take about forty.
 const MOST_STEPS: usize = 100;
-/// The first step towards a greater load, as a part of the crane's mass; it is doubled until something gives.
+/// The first step towards a larger load, as a fraction of the crane's mass; it is doubled until the limit is passed.
 const FIRST_STEP: f64 = 0.1;
-/// How often: up to a thousand times the crane's mass.
+/// Maximum number of steps, each twice the one before: up to more than a thousand times the crane's mass.
 const DOUBLINGS: usize = 14;
 
-/// Place of the parameter that is the load: the one of this name, or else the only one in kg.
+/// Index of the parameter that is the load: the one of this name, or else the only one in kg.
 pub fn parameter(rig: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usize>> {
     let parameters = &rig.description().parameters;
     let Some(name) = name else { return Ok(only_mass(rig.description())) };
@@ -39,7 +39,7 @@ pub fn parameter(rig: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usize
     })
 }
 
-/// How far the crane is from something at rest with a load, negative beyond, and where; −∞ where no pose stands.
+/// How far a crane at rest is from a limit, negative beyond it, and where the limit is reached; −∞ if the crane tips over.
 type Distance = fn(&dyn DynCrane, &[f64]) -> Option<(f64, String)>;
 
 /// Adds the loads at which the first foot carries nothing, and at which the crane tips.
@@ -65,8 +65,8 @@ pub fn critical(report: &mut Report, rig: &mut dyn DynCrane, index: usize) -> Ou
     Ok(())
 }
 
-/// Vertical force of the foot that presses least, N; of feet that have lifted, which carry nothing, the gap that is widest takes its
-/// place, m, with the opposite sign.
+/// The smallest vertical force of a foot, N; if feet have lifted, so that they carry nothing, the widest gap, m, with the opposite
+/// sign.
 fn least_reaction(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
     let reactions = rig.support_reactions_at(q, &vec![0.0; q.len()]);
     let feet = rig.description().supports.iter().zip(&reactions).zip(rig.support_gaps_at(q));
@@ -75,7 +75,7 @@ fn least_reaction(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
     Some((distance, foot.name.as_str().to_owned()))
 }
 
-/// What is left to hold the crane down about the line that tips first, N m.
+/// Stabilising minus overturning moment about the line that tips first, N m.
 fn least_balance(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
     let rest = vec![0.0; q.len()];
     let lines = lines(rig, 0.0, q, &rest, &rest);
@@ -89,8 +89,8 @@ fn feet(description: &Description, line: &TippingLine) -> String {
     format!("{from} – {to}")
 }
 
-/// The least load beyond `from` at which a distance is zero, or the greatest below where it is negative already. Nothing where
-/// there is none, or the crane finds no rest before.
+/// The smallest load above `from` at which a distance is zero, or the largest below if it is negative there already. `None` if
+/// there is none, or if the crane has no equilibrium on the way.
 fn root(rig: &mut dyn DynCrane, index: usize, from: f64, distance: Distance) -> Option<(f64, String)> {
     let mass: f64 = rig.description().bodies.iter().map(|body| body.mass).sum();
     let mut at = |load: f64| {
@@ -98,7 +98,7 @@ fn root(rig: &mut dyn DynCrane, index: usize, from: f64, distance: Distance) -> 
         let equilibrium = rig.equilibrium(&Settings::default());
         match &equilibrium.status {
             Status::Converged => distance(rig, &equilibrium.q),
-            // Beyond whatever is looked for; the line is named as it is known from poses that stand.
+            // Beyond any limit; the line is named as for poses in equilibrium.
             Status::TipsOver { feet } => Some((f64::NEG_INFINITY, feet.join(" – "))),
             _ => None,
         }
@@ -124,7 +124,7 @@ fn root(rig: &mut dyn DynCrane, index: usize, from: f64, distance: Distance) -> 
 }
 
 /// Where a function is zero between a place where it is positive and one where it is not: by the Illinois form of regula falsi,
-/// as distances are nearly linear in the load, and by halving as long as nothing stands at the upper end.
+/// as distances are nearly linear in the load, and by bisection as long as the crane does not stand at the upper end.
 fn between(
     at: &mut impl FnMut(f64) -> Option<(f64, String)>,
     mut low: (f64, f64),
@@ -154,7 +154,7 @@ fn between(
 mod tests {
     use super::*;
 
-    /// Feet stand up to the load that is looked for, and nothing stands beyond.
+    /// The crane stands up to the load that is looked for, and not beyond.
     #[test]
     fn a_root_at_the_end_of_what_stands_is_found() {
         let mut at = |x: f64| Some((if x < 2.0 { 2.0 - x } else { f64::NEG_INFINITY }, String::new()));

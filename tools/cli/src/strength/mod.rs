@@ -65,7 +65,7 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     report.print(options.analysis.format, out)
 }
 
-/// What the manoeuvre asks of the crane, result by result.
+/// Loads and stability along the manoeuvre, one entry per result.
 fn along(options: &Strength, rig: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
     let start = options.timing.start(rig, false)?;
     let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;

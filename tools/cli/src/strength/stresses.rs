@@ -11,7 +11,7 @@ use crate::report::{Cell, Grid, Report};
 /// Pascals in a newton per square millimetre.
 const MEGA: f64 = 1e6;
 
-/// Says which section is used most, at rest or of all moments of a run.
+/// Reports the section with the highest utilisation, at rest or over a run.
 pub fn verdict(
     report: &mut Report,
     description: &Description,

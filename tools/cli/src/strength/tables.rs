@@ -69,7 +69,7 @@ pub fn sections(description: &Description, wrenches: &[Wrench]) -> Grid {
     grid
 }
 
-/// Least and greatest loads of the ground and the joints over a run.
+/// Minimum and maximum loads of the ground and the joints over a run.
 pub fn extremes_of_joints(description: &Description, table: &Table) -> Grid {
     let title = "Extremes of the loads along the manoeuvre, frames as at rest, times in s";
     let headers = ["joint", "component", "minimum", "time of minimum", "maximum", "time of maximum", "unit"];
@@ -95,7 +95,7 @@ pub fn extremes_of_joints(description: &Description, table: &Table) -> Grid {
     grid
 }
 
-/// Least and greatest section forces of every beam over a run, and where.
+/// Minimum and maximum section forces of every beam over a run, and where.
 pub fn extremes_of_sections(description: &Description, table: &Table) -> Grid {
     let title = "Extremes of the section forces along the manoeuvre, times in s, places along the beam in m";
     let headers = [

@@ -6,7 +6,7 @@ use super::{crane, folder, json, text};
 
 const README: &str = include_str!("../../../../README.md");
 
-/// Whether two words are the same, or numbers that differ by no more than another processor's rounding does: errors are estimated
+/// Whether two words are the same, or numbers that differ by no more than the rounding of another processor may: errors are estimated
 /// from differences, to a few percent, and a residual of zero is any small number.
 fn alike(one: &str, other: &str) -> bool {
     match [one, other].map(|word| word.parse::<f64>().ok()) {

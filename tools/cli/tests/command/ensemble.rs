@@ -42,7 +42,7 @@ fn a_table_with_mistakes_is_refused_with_its_place() {
 fn an_ensemble_writes_a_row_for_every_crane() {
     let out = folder("ensemble");
     let file = out.join("peaks.csv");
-    // Nine cranes: a batch, and one more. The fifth has a load that its drives cannot hold.
+    // Nine cranes: a batch of eight, and one more. The fifth has a load that its drives cannot hold.
     let loads = ["0", "100", "200", "300", "1e12", "500", "600", "700", "800"];
     let loads_file = table("loads.csv", &format!("payload [kg]\n{}\n", loads.join("\n")));
     let arguments = ["simulate", "knuckle_boom", "--ensemble", &loads_file, "--duration", "0.5", "--format", "json"];
@@ -76,7 +76,7 @@ fn an_ensemble_writes_a_row_for_every_crane() {
             before = peak;
         }
     }
-    // The last row is the spec's crane: as its own run.
+    // The last row is the crane of the spec, so it equals that crane's own run.
     json(&[
         "simulate",
         "knuckle_boom",
@@ -96,7 +96,7 @@ fn an_ensemble_writes_a_row_for_every_crane() {
         .records()
         .map(|row| row.expect("a row")[place].parse().expect("a number"))
         .fold(0.0_f64, |m, x: f64| m.max(x.abs()));
-    // One crane and eight lanes by the same method: roundings.
+    // One crane and eight lanes, by the same method, differ only by rounding.
     assert!((single - before).abs() < 1e-8 * single, "{single} {before}");
 }
 
@@ -121,7 +121,7 @@ fn an_ensemble_by_the_default_method_is_its_single_runs() {
         let run = json(&[&arguments[..], &["--out", out.to_str().expect("a path")]].concat());
         let extremes = run["extremes"].as_array().expect("a table");
         let torque = extremes.iter().find(|row| row["quantity"] == "main_boom_theta_drive_torque").expect("a row");
-        // The same steps of the same crane: not a bit differs, but in the rounding of times.
+        // The same steps of the same crane: equal to the bit, except for the rounding of times.
         for (column, key) in [("min", "minimum"), ("max", "maximum")] {
             assert_eq!(number(&format!("main_boom_theta_drive_torque_{column} [N m]")), torque[key], "{load} {key}");
         }

@@ -28,14 +28,14 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// A folder of this test's own.
+/// A folder for one test.
 fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&folder);
     folder
 }
 
-/// Wrong arguments end with code 2 and say what was meant.
+/// Wrong arguments end with code 2 and a message that contains `said`.
 fn refused(arguments: &[&str], said: &[&str]) {
     let output = crane(arguments);
     let message = text(&output.stderr);
@@ -93,13 +93,13 @@ fn statics_of_the_reference_crane_as_json() {
         ["x", "y", "z"].map(|axis| row[axis].as_f64().expect("a number"))
     };
     let (sum, weight) = (forces(&report, "Σ supports"), forces(&report, "weight"));
-    // Newton's tolerance: 1e-10 of the greatest force.
+    // Newton's tolerance: 1e-10 of the largest force.
     assert!(sum.iter().zip(&weight).all(|(sum, weight)| (sum + weight).abs() < 1e-10 * 1.7e5), "{sum:?} {weight:?}");
     let empty = json(&["statics", "--set", "load_mass=0", "--format", "json"]);
-    // The log weighs 500 kg; likewise.
+    // The log weighs 500 kg, to a similar tolerance.
     let log = sum[2] - forces(&empty, "Σ supports")[2];
     assert!((log - 500.0 * 9.81).abs() < 1e-4, "{log}");
-    // Mass times gravity, of the log as well.
+    // The weight of the log is its mass times gravity.
     let log = forces(&empty, "weight")[2] - weight[2];
     assert!((log - 500.0 * 9.81).abs() < 1e-9, "{log}");
 }
@@ -114,7 +114,7 @@ fn a_crane_goes_to_other_programs_and_comes_back() {
     for (format, target) in [("urdf", &urdf), ("mjcf", &mjcf)] {
         let output = crane(&[&["export", "knuckle_boom", "--format", format, "-o", target][..], &set].concat());
         assert!(output.status.success(), "{}", text(&output.stderr));
-        // The hook's block weighs 25 kg.
+        // The hook block weighs 25 kg.
         assert!(fs::read_to_string(target).expect("a file").contains("\"925\""), "{target}");
     }
     assert!(
@@ -128,7 +128,7 @@ fn a_crane_goes_to_other_programs_and_comes_back() {
     let output = crane(&["import", &mjcf, "-o", &again]);
     assert!(text(&output.stdout).contains("knuckle_boom: valid; 4 bodies, 4 coordinates"), "{}", text(&output.stdout));
     assert!(fs::read_to_string(&again).expect("a spec").contains("stiffness: 4000000"));
-    // To standard output goes the spec alone.
+    // Only the spec goes to standard output.
     let output = crane(&["import", "../../codegen/tests/robots/arm.xml"]);
     assert!(text(&output.stdout).starts_with("# The robot arm") && !text(&output.stdout).contains("left out"));
     assert!(text(&output.stderr).contains("2 actuators are left out."), "{}", text(&output.stderr));
@@ -218,7 +218,7 @@ fn evaluation_is_shaped_as_announced() {
     assert!(npz.stdout.windows(6).any(|bytes| bytes == b"\x93NUMPY"));
 }
 
-/// The motion in a row of results, with its accelerations; about a motion the state matrix has their derivatives.
+/// Linearised about a row of results, the motion has its accelerations, and the matrices have their derivatives.
 #[test]
 fn a_moment_of_a_run_is_linearised() {
     let folder = folder("moment").display().to_string();
@@ -282,7 +282,7 @@ fn a_moment_of_a_run_is_linearised() {
     refused(&["linearise", sticking.to_str().expect("a path")], &["bristles of its joints", "`crane modes`"]);
 }
 
-/// A state of many is what it is alone, and nothing is there that was not asked for.
+/// A state gives the same results among many as alone, and only the requested quantities are returned.
 #[test]
 fn many_states_are_evaluated_at_once() {
     let names = "points,point_velocities,forces,accelerations,static_residual,tangent_stiffness,energies,drive_efforts";

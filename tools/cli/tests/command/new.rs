@@ -6,7 +6,7 @@ use super::{crane, folder, refused, text};
 
 #[test]
 fn a_new_crane_is_a_crate_with_the_comments_of_its_spec() {
-    // The folder stands in one of the test's own; its name is the crane's.
+    // The folder is inside that of the test; its name becomes the crane's.
     let parent = folder("new");
     let path = parent.join("my-crane");
     let arguments = ["new", path.to_str().expect("a path"), "--from", "knuckle-boom"];
@@ -29,7 +29,7 @@ fn a_new_crane_is_a_crate_with_the_comments_of_its_spec() {
     refused(&["new", "other", "--from", "cantilver"], &["no crane `cantilver`", "`cantilever`"]);
 }
 
-/// With what it depends on, a crate names no path outside of its folder, and cargo can read all of its manifests.
+/// A crate with copies of its dependencies names no path outside of its folder, and cargo can read all of its manifests.
 #[test]
 fn a_new_crate_can_have_what_it_depends_on() {
     let folder = folder("new_vendored").join("mine");

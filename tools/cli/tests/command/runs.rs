@@ -79,7 +79,7 @@ fn a_run_estimates_its_error_and_names_feet_that_pull() {
     let verified = run(&["--tolerance", "1e-5"]);
     let finer = run(&["--tolerance", "1e-6", "--no-verify"]);
     assert_eq!(error(&finer, "boom_psi_drive_torque"), None);
-    // The estimate is the difference of just these two runs, which is not less than that of their peaks.
+    // The estimate is the largest difference between these same two runs, which is at least that of their peaks.
     let peak = |report: &Value| {
         let rows = report["extremes"].as_array().expect("a table").clone();
         rows.iter().find(|row| row["quantity"] == "boom_psi_drive_torque").expect("a row")["maximum"].as_f64()
@@ -113,7 +113,7 @@ fn a_step_beyond_stability_ends_with_advice() {
     assert!(!out.join("eight_link_flexible.csv").exists());
 }
 
-/// A run in two halves ends where one of the same length does, to the tolerance, where nothing is driven.
+/// Without drives, a run in two halves ends in the same state as one of the same total length, to the tolerance.
 #[test]
 fn a_run_goes_on_from_the_end_of_another() {
     let folder = folder("in_two_halves");
@@ -150,7 +150,7 @@ fn a_run_goes_on_from_the_end_of_another() {
         &["simulate", "eight_link_hydraulic", "--start", "boom_cylinder_valve=7"],
         &["`boom_cylinder_valve` is 7", "give an opening from −1"],
     );
-    // The end of a run without oil has no pressures to go on with.
+    // Results without pressures give no force states to continue with.
     let csv = folder.join("pose.csv");
     fs::write(&csv, "t [s],column_psi_rate [rad/s]\n0,0.01\n").expect("a file");
     let from = ["--from", csv.to_str().expect("a path"), "--duration", "0.01", "--output", "0.01"];
@@ -159,7 +159,7 @@ fn a_run_goes_on_from_the_end_of_another() {
     assert!(text(&run.stdout).contains("pose.csv, forces with states as they hold this pose"), "{}", text(&run.stdout));
 }
 
-/// One of several states of forces: the others are those that hold the pose.
+/// One of several force states is given: the others take the values that hold the pose.
 #[test]
 fn a_start_may_name_one_state() {
     let out = folder("one_state");
@@ -193,7 +193,7 @@ fn an_unstable_step_is_refused_unless_forced() {
     assert!(message.contains("the run is unstable: at t = ") && message.contains("telescope_z"), "{message}");
     assert!(!out.join("eight_link_rigid.csv").exists());
     let report = json(&["simulate", "eight_link_rigid", "--step", "auto", "--out", path, "--format", "json"]);
-    // 90 % of 4.57e-3 s, and a whole number of times in 0.01 s.
+    // At most 90 % of 4.57e-3 s, and a whole number of steps in 0.01 s.
     assert!((report["step"].as_f64().expect("a number") - 0.01 / 3.0).abs() < 1e-12, "{}", report["step"]);
 }
 
@@ -205,7 +205,7 @@ fn stability_names_what_limits_the_step_and_draws_it() {
     let limits = report["limits"].as_array().expect("a table");
     let rk4 = limits.iter().find(|row| row["method"] == "rk4").expect("a row");
     let step = rk4["step"].as_f64().expect("a number");
-    // 2.785/22,921 rad/s.
+    // 2.785/(22,921 rad/s).
     assert!((step - 1.2152e-4).abs() < 1e-8, "{step}");
     assert!(rk4["limited_by"].as_str().is_some_and(|words| words.starts_with("torsion of boom elements 3, 2; 22,9")));
     let svg = fs::read_to_string(out.join("eight_link_flexible_stability.svg")).expect("a figure");

@@ -36,12 +36,12 @@ struct EventInfo {
     next_event_time: c_double,
 }
 
-/// The importer's messages.
+/// Messages to the importer.
 fn host(callbacks: Option<Callbacks>, name: &str, logs: bool) -> Host {
     let name = CString::new(name).unwrap_or_default();
     let say = move |status, category: &str, text: &str| {
         let Some(Callbacks { logger: Some(logger), environment, .. }) = callbacks else { return };
-        // The importer prints it by a format of C.
+        // The importer uses the text as a format string of C.
         let text = text.replace('\0', " ").replace('%', "%%");
         if let (Ok(category), Ok(text)) = (CString::new(category), CString::new(text)) {
             // SAFETY: the importer's logger takes these types and a format that asks for no further arguments.
@@ -68,7 +68,7 @@ unsafe extern "C" fn fmi2SetDebugLogging(
     _count: usize,
     _categories: *const *const c_char,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             unit.host.logs = on != FALSE;
@@ -87,7 +87,7 @@ unsafe extern "C" fn fmi2Instantiate(
     _visible: Boolean,
     logs: Boolean,
 ) -> Component {
-    // SAFETY: texts and callbacks are there, as the standard has it.
+    // SAFETY: texts and callbacks are valid, as the FMI standard guarantees.
     let (name, guid, uri, callbacks) =
         unsafe { (words(name), words(guid), words(resources), callbacks.as_ref().copied()) };
     Unit::make(resources::folder_of(uri), guid, host(callbacks, name, logs != FALSE))
@@ -95,7 +95,7 @@ unsafe extern "C" fn fmi2Instantiate(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2FreeInstance(component: Component) {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { free(component) }
 }
 
@@ -108,7 +108,7 @@ unsafe extern "C" fn fmi2SetupExperiment(
     _has_stop: Boolean,
     _stop: c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             unit.last = start;
@@ -119,13 +119,13 @@ unsafe extern "C" fn fmi2SetupExperiment(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2ExitInitializationMode(component: Component) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.start()) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2Reset(component: Component) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             unit.instance.reset();
@@ -134,12 +134,12 @@ unsafe extern "C" fn fmi2Reset(component: Component) -> Status {
     }
 }
 
-/// Calls that ask for nothing: modes differ in what an importer may do, not in what the crane does.
+/// Calls that require no action: modes differ in what an importer may do, not in what the crane does.
 macro_rules! accept {
     ($($name:ident),* $(,)?) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component) -> Status {
-            // SAFETY: as the standard has it.
+            // SAFETY: as the FMI standard guarantees.
             unsafe { with(component, |_| Ok(())) }
         }
     )*};
@@ -159,7 +159,7 @@ unsafe extern "C" fn fmi2GetReal(
     count: usize,
     values: *mut c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.get(array(references, count), array_mut(values, count))) }
 }
 
@@ -170,16 +170,16 @@ unsafe extern "C" fn fmi2SetReal(
     count: usize,
     values: *const c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.set(array(references, count), array(values, count))) }
 }
 
-/// Reading and writing variables of types that a crane has none of.
+/// Reading and writing variables of types that a crane does not have.
 macro_rules! no_variables {
     ($($name:ident: $value:ty, $kind:literal;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, _: *const c_uint, count: usize, _: $value) -> Status {
-            // SAFETY: as the standard has it.
+            // SAFETY: as the FMI standard guarantees.
             unsafe { with(component, |_| none_of(count, $kind, "Real")) }
         }
     )*};
@@ -196,19 +196,19 @@ no_variables! {
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetFMUstate(component: Component, state: *mut Pointer) -> Status {
-    // SAFETY: as the standard has it; a state that is there already was made here, and is used again.
+    // SAFETY: as the FMI standard guarantees; an existing state was made here, and is reused.
     unsafe { with(component, |unit| states::keep(unit, state)) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SetFMUstate(component: Component, state: Pointer) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| states::restore(unit, state)) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2FreeFMUstate(component: Component, state: *mut Pointer) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| {
             states::free(state);
@@ -219,7 +219,7 @@ unsafe extern "C" fn fmi2FreeFMUstate(component: Component, state: *mut Pointer)
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SerializedFMUstateSize(component: Component, state: Pointer, size: *mut usize) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| states::measure(state, size)) }
 }
 
@@ -230,7 +230,7 @@ unsafe extern "C" fn fmi2SerializeFMUstate(
     bytes: *mut u8,
     size: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| states::to_bytes(state, bytes, size)) }
 }
 
@@ -241,7 +241,7 @@ unsafe extern "C" fn fmi2DeSerializeFMUstate(
     size: usize,
     state: *mut Pointer,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| states::from_bytes(unit, bytes, size, state)) }
 }
 
@@ -255,7 +255,7 @@ unsafe extern "C" fn fmi2GetDirectionalDerivative(
     direction: *const c_double,
     derivative: *mut c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             unit.instance.directional_derivative(
@@ -270,7 +270,7 @@ unsafe extern "C" fn fmi2GetDirectionalDerivative(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2NewDiscreteStates(component: Component, info: *mut EventInfo) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             let next = unit.instance.next_event();
@@ -295,7 +295,7 @@ unsafe extern "C" fn fmi2CompletedIntegratorStep(
     enter_event_mode: *mut Boolean,
     terminate: *mut Boolean,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| {
             write(enter_event_mode, FALSE);
@@ -307,25 +307,25 @@ unsafe extern "C" fn fmi2CompletedIntegratorStep(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SetTime(component: Component, time: c_double) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.set_time(time)) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SetContinuousStates(component: Component, states: *const c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.set_continuous_states(array(states, count))) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetDerivatives(component: Component, derivatives: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.derivatives(array_mut(derivatives, count))) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetEventIndicators(component: Component, _: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| match count {
             0 => Ok(()),
@@ -336,7 +336,7 @@ unsafe extern "C" fn fmi2GetEventIndicators(component: Component, _: *mut c_doub
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetContinuousStates(component: Component, states: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.continuous_states(array_mut(states, count))) }
 }
 
@@ -347,7 +347,7 @@ unsafe extern "C" fn fmi2GetNominalsOfContinuousStates(
     nominals: *mut c_double,
     count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| {
             array_mut(nominals, count).fill(1.0);
@@ -367,7 +367,7 @@ macro_rules! no_time_derivatives {
             _orders: *const c_int,
             _values: $value,
         ) -> Status {
-            // SAFETY: as the standard has it.
+            // SAFETY: as the FMI standard guarantees.
             unsafe {
                 with(component, |_| match count {
                     0 => Ok(()),
@@ -385,7 +385,7 @@ no_time_derivatives! {
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2DoStep(component: Component, from: c_double, length: c_double, _keep: Boolean) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             unit.instance.step(from, length)?;
@@ -397,7 +397,7 @@ unsafe extern "C" fn fmi2DoStep(component: Component, from: c_double, length: c_
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2CancelStep(component: Component) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| Err(Fault::Error("there is no step under way: steps are done at once".to_owned()))) }
 }
 
@@ -406,7 +406,7 @@ const LAST_SUCCESSFUL_TIME: c_int = 2;
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetRealStatus(component: Component, kind: c_int, value: *mut c_double) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| match value.as_mut() {
             Some(place) if kind == LAST_SUCCESSFUL_TIME => {
@@ -422,12 +422,12 @@ fn nothing_pending() -> Fault {
     Fault::Discard("no step is pending: steps are done at once".to_owned())
 }
 
-/// Questions about a step that is still under way: there is none.
+/// Queries about a step that is still under way: there is none.
 macro_rules! no_status {
     ($($name:ident: $value:ty;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, _: c_int, _: $value) -> Status {
-            // SAFETY: as the standard has it.
+            // SAFETY: as the FMI standard guarantees.
             unsafe { with(component, |_| Err(nothing_pending())) }
         }
     )*};
@@ -441,10 +441,10 @@ no_status! {
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetBooleanStatus(component: Component, _: c_int, value: *mut Boolean) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| {
-            // `fmi2Terminated`, the one kind of this type: no step asks for an end.
+            // `fmi2Terminated`, the only status of this type: no step requests termination.
             write(value, FALSE);
             Ok(())
         })

@@ -28,7 +28,7 @@ unsafe extern "C" fn fmi3SetDebugLogging(
     _count: usize,
     _categories: *const *const c_char,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             unit.host.logs = on != FALSE;
@@ -37,7 +37,7 @@ unsafe extern "C" fn fmi3SetDebugLogging(
     }
 }
 
-/// The importer's messages.
+/// Messages to the importer.
 fn host(environment: *mut c_void, log: Option<LogMessage>, logs: Boolean) -> Host {
     let say = move |status, category: &str, text: &str| {
         let Some(log) = log else { return };
@@ -64,7 +64,7 @@ unsafe extern "C" fn fmi3InstantiateModelExchange(
     environment: *mut c_void,
     log: Option<LogMessage>,
 ) -> Component {
-    // SAFETY: texts are there, as the standard has it.
+    // SAFETY: texts are valid, as the FMI standard guarantees.
     let (token, path) = unsafe { (words(token), words(resources)) };
     Unit::make(folder(path), token, host(environment, log, logs))
 }
@@ -84,7 +84,7 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
     log: Option<LogMessage>,
     _intermediate_update: *const c_void,
 ) -> Component {
-    // SAFETY: texts are there, as the standard has it.
+    // SAFETY: texts are valid, as the FMI standard guarantees.
     let (token, path) = unsafe { (words(token), words(resources)) };
     Unit::make(folder(path), token, host(environment, log, logs))
 }
@@ -109,7 +109,7 @@ unsafe extern "C" fn fmi3InstantiateScheduledExecution(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3FreeInstance(component: Component) {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { free(component) }
 }
 
@@ -122,7 +122,7 @@ unsafe extern "C" fn fmi3EnterInitializationMode(
     _has_stop: Boolean,
     _stop: c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             unit.last = start;
@@ -133,13 +133,13 @@ unsafe extern "C" fn fmi3EnterInitializationMode(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3ExitInitializationMode(component: Component) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.start()) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3Reset(component: Component) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             unit.instance.reset();
@@ -148,12 +148,12 @@ unsafe extern "C" fn fmi3Reset(component: Component) -> Status {
     }
 }
 
-/// Calls that ask for nothing: modes differ in what an importer may do, not in what the crane does.
+/// Calls that require no action: modes differ in what an importer may do, not in what the crane does.
 macro_rules! accept {
     ($($name:ident),* $(,)?) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component) -> Status {
-            // SAFETY: as the standard has it.
+            // SAFETY: as the FMI standard guarantees.
             unsafe { with(component, |_| Ok(())) }
         }
     )*};
@@ -177,7 +177,7 @@ unsafe extern "C" fn fmi3GetFloat64(
     values: *mut c_double,
     value_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             as_many(count, value_count)?;
@@ -194,7 +194,7 @@ unsafe extern "C" fn fmi3SetFloat64(
     values: *const c_double,
     value_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             as_many(count, value_count)?;
@@ -203,7 +203,7 @@ unsafe extern "C" fn fmi3SetFloat64(
     }
 }
 
-/// Variables are numbers, not arrays.
+/// As many values as variables: these are numbers, not arrays.
 fn as_many(count: usize, value_count: usize) -> Result<(), Fault> {
     if count == value_count {
         Ok(())
@@ -212,12 +212,12 @@ fn as_many(count: usize, value_count: usize) -> Result<(), Fault> {
     }
 }
 
-/// Reading and writing variables of types that a crane has none of.
+/// Reading and writing variables of types that a crane does not have.
 macro_rules! no_variables {
     ($($name:ident: ($($value:ty),+), $kind:literal;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, _: *const c_uint, count: usize, $(_: $value),+) -> Status {
-            // SAFETY: as the standard has it.
+            // SAFETY: as the FMI standard guarantees.
             unsafe { with(component, |_| none_of(count, $kind, "Float64")) }
         }
     )*};
@@ -267,7 +267,7 @@ unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
     _reference: c_uint,
     _count: *mut usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| Err(no_dependencies())) }
 }
 
@@ -281,7 +281,7 @@ unsafe extern "C" fn fmi3GetVariableDependencies(
     _kinds: *mut c_int,
     _count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| Err(no_dependencies())) }
 }
 
@@ -291,19 +291,19 @@ fn no_dependencies() -> Fault {
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3GetFMUState(component: Component, state: *mut Pointer) -> Status {
-    // SAFETY: as the standard has it; a state that is there already was made here, and is used again.
+    // SAFETY: as the FMI standard guarantees; an existing state was made here, and is reused.
     unsafe { with(component, |unit| states::keep(unit, state)) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SetFMUState(component: Component, state: Pointer) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| states::restore(unit, state)) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3FreeFMUState(component: Component, state: *mut Pointer) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| {
             states::free(state);
@@ -314,7 +314,7 @@ unsafe extern "C" fn fmi3FreeFMUState(component: Component, state: *mut Pointer)
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SerializedFMUStateSize(component: Component, state: Pointer, size: *mut usize) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| states::measure(state, size)) }
 }
 
@@ -325,7 +325,7 @@ unsafe extern "C" fn fmi3SerializeFMUState(
     bytes: *mut u8,
     size: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| states::to_bytes(state, bytes, size)) }
 }
 
@@ -336,7 +336,7 @@ unsafe extern "C" fn fmi3DeserializeFMUState(
     size: usize,
     state: *mut Pointer,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| states::from_bytes(unit, bytes, size, state)) }
 }
 
@@ -352,7 +352,7 @@ unsafe extern "C" fn fmi3GetDirectionalDerivative(
     sensitivity: *mut c_double,
     sensitivity_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             as_many(known_count, seed_count)?;
@@ -379,7 +379,7 @@ unsafe extern "C" fn fmi3GetAdjointDerivative(
     _sensitivity: *mut c_double,
     _sensitivity_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| Err(Fault::Error("a crane has no adjoint derivatives: use directional ones".to_owned())))
     }
@@ -395,7 +395,7 @@ unsafe extern "C" fn fmi3UpdateDiscreteStates(
     next_event_time_defined: *mut Boolean,
     next_event_time: *mut c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             let next = unit.instance.next_event();
@@ -416,7 +416,7 @@ unsafe extern "C" fn fmi3CompletedIntegratorStep(
     enter_event_mode: *mut Boolean,
     terminate: *mut Boolean,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| {
             write(enter_event_mode, FALSE);
@@ -428,13 +428,13 @@ unsafe extern "C" fn fmi3CompletedIntegratorStep(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SetTime(component: Component, time: c_double) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.set_time(time)) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SetContinuousStates(component: Component, states: *const c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.set_continuous_states(array(states, count))) }
 }
 
@@ -444,13 +444,13 @@ unsafe extern "C" fn fmi3GetContinuousStateDerivatives(
     derivatives: *mut c_double,
     count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.derivatives(array_mut(derivatives, count))) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3GetEventIndicators(component: Component, _: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| match count {
             0 => Ok(()),
@@ -461,7 +461,7 @@ unsafe extern "C" fn fmi3GetEventIndicators(component: Component, _: *mut c_doub
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3GetContinuousStates(component: Component, states: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |unit| unit.instance.continuous_states(array_mut(states, count))) }
 }
 
@@ -472,7 +472,7 @@ unsafe extern "C" fn fmi3GetNominalsOfContinuousStates(
     nominals: *mut c_double,
     count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| {
             array_mut(nominals, count).fill(1.0);
@@ -481,13 +481,13 @@ unsafe extern "C" fn fmi3GetNominalsOfContinuousStates(
     }
 }
 
-/// Numbers of something that an importer asks for.
+/// Counts that an importer asks for.
 macro_rules! counts {
     ($($name:ident: $count:expr;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, count: *mut usize) -> Status {
             let own: fn(&Instance) -> usize = $count;
-            // SAFETY: as the standard has it.
+            // SAFETY: as the FMI standard guarantees.
             unsafe {
                 with(component, |unit| {
                     write(count, own(&unit.instance));
@@ -512,7 +512,7 @@ unsafe extern "C" fn fmi3GetOutputDerivatives(
     _values: *mut c_double,
     _value_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| match count {
             0 => Ok(()),
@@ -532,7 +532,7 @@ unsafe extern "C" fn fmi3DoStep(
     early_return: *mut Boolean,
     last: *mut c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             for place in [event_handling_needed, terminate, early_return] {
@@ -549,6 +549,6 @@ unsafe extern "C" fn fmi3DoStep(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3ActivateModelPartition(component: Component, _clock: c_uint, _time: c_double) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| Err(Fault::Error("a crane has no clocks".to_owned()))) }
 }

@@ -1,4 +1,4 @@
-//! The interface for C. Pointers of the importer are looked at here and nowhere else; no panic gets out.
+//! The interface for C. Pointers of the importer are dereferenced here and nowhere else; no panic gets out.
 
 #![allow(unsafe_code, non_snake_case)]
 
@@ -14,7 +14,7 @@ use std::slice;
 
 use crate::instance::Fault;
 
-/// What went wrong inside of a call, in words.
+/// Does the work of a call; a panic becomes an error with its message.
 fn guarded<R>(work: impl FnOnce() -> Result<R, Fault>) -> Result<R, Fault> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(Fault::Error(words_of(&*panic))))
 }
@@ -24,10 +24,10 @@ fn words_of(panic: &(dyn Any + Send)) -> String {
     format!("the crane's library has failed, please report it: {}", words.unwrap_or("no reason given"))
 }
 
-/// An array of the importer; empty where there is none.
+/// An array of the importer; empty if it is null.
 ///
 /// # Safety
-/// `count` values stand at `first` as long as the slice is used.
+/// `first` is null, or `count` values are valid at `first` as long as the slice is used.
 unsafe fn array<'a, T>(first: *const T, count: usize) -> &'a [T] {
     if first.is_null() || count == 0 {
         return &[];
@@ -36,10 +36,10 @@ unsafe fn array<'a, T>(first: *const T, count: usize) -> &'a [T] {
     unsafe { slice::from_raw_parts(first, count) }
 }
 
-/// An array of the importer to be written to; empty where there is none.
+/// An array of the importer to be written to; empty if it is null.
 ///
 /// # Safety
-/// There is room for `count` values at `first`, which nobody else looks at as long as the slice is used.
+/// `first` is null, or `count` values are valid at `first` and accessed by nobody else as long as the slice is used.
 unsafe fn array_mut<'a, T>(first: *mut T, count: usize) -> &'a mut [T] {
     if first.is_null() || count == 0 {
         return &mut [];
@@ -48,10 +48,10 @@ unsafe fn array_mut<'a, T>(first: *mut T, count: usize) -> &'a mut [T] {
     unsafe { slice::from_raw_parts_mut(first, count) }
 }
 
-/// A text of the importer; empty where there is none or it is not UTF-8.
+/// A text of the importer; empty if it is null or not UTF-8.
 ///
 /// # Safety
-/// `text` ends with a zero and stays as long as it is used.
+/// `text` is null, or ends with a zero and stays valid as long as it is used.
 unsafe fn words<'a>(text: *const c_char) -> &'a str {
     if text.is_null() {
         return "";

@@ -6,17 +6,17 @@ use super::unit::{Pointer, Unit};
 use super::{array, array_mut};
 use crate::instance::{Fault, State};
 
-/// Bytes of a number of a state.
+/// Bytes per number of a state.
 const BYTES: usize = size_of::<f64>();
 
 fn no_state() -> Fault {
     Fault::Error("no state was given".to_owned())
 }
 
-/// Keeps the state, in the place of an earlier one if there is one.
+/// Saves the state, replacing an earlier one if there is one.
 ///
 /// # Safety
-/// There is a pointer at `state`: null, or to a state that was made here.
+/// `state` is null, or there is a pointer at `state` that is null or points to a state that was made here.
 pub(super) unsafe fn keep(unit: &Unit, state: *mut Pointer) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
     let place = unsafe { state.as_mut() }.ok_or_else(no_state)?;
@@ -28,7 +28,7 @@ pub(super) unsafe fn keep(unit: &Unit, state: *mut Pointer) -> Result<(), Fault>
     Ok(())
 }
 
-/// Goes back to a state.
+/// Restores a state.
 ///
 /// # Safety
 /// The state was made here, or is null.
@@ -39,10 +39,10 @@ pub(super) unsafe fn restore(unit: &mut Unit, state: Pointer) -> Result<(), Faul
     Ok(())
 }
 
-/// Takes a state back.
+/// Frees a state.
 ///
 /// # Safety
-/// The state at `state` was made here, and is given back once.
+/// The state at `state` was made here, and is freed only once.
 pub(super) unsafe fn free(state: *mut Pointer) {
     // SAFETY: as the caller promises.
     unsafe {
@@ -81,7 +81,7 @@ pub(super) unsafe fn to_bytes(state: Pointer, bytes: *mut u8, size: usize) -> Re
     Ok(())
 }
 
-/// Makes a state of bytes.
+/// Makes a state from bytes.
 ///
 /// # Safety
 /// There are `size` bytes; there is room for a pointer at `state`.

@@ -7,7 +7,7 @@ use std::ptr;
 use super::guarded;
 use crate::instance::{Fault, Instance};
 
-/// A pointer of the importer to something that was made here.
+/// An opaque pointer handed to the importer.
 pub(super) type Pointer = *mut c_void;
 
 /// `fmi2Status` and `fmi3Status`.
@@ -20,11 +20,11 @@ pub(super) enum Status {
     Error = 3,
 }
 
-/// What a component points to.
+/// What the importer's component pointer points to.
 pub(super) struct Unit {
     pub(super) instance: Instance,
     pub(super) host: Host,
-    /// Time of the last step that was done, s.
+    /// Time reached by the last successful step, s.
     pub(super) last: f64,
 }
 
@@ -48,7 +48,7 @@ impl Unit {
     }
 }
 
-/// Says a text of a category.
+/// Reports a message: status, category and text.
 pub(super) type Logger = Box<dyn Fn(Status, &str, &str)>;
 
 /// Where messages go.
@@ -75,10 +75,10 @@ impl Host {
     }
 }
 
-/// Does some work on a component, and says what there is to say.
+/// Runs `work` on a component and reports its warnings and errors.
 ///
 /// # Safety
-/// The component is one that [`Unit::make`] has returned and [`free`] has not taken back; no other call is at it.
+/// The component was returned by [`Unit::make`] and has not been passed to [`free`]; no other call is using it.
 pub(super) unsafe fn with(component: Pointer, work: impl FnOnce(&mut Unit) -> Result<(), Fault>) -> Status {
     // SAFETY: as the caller promises.
     let Some(unit) = (unsafe { component.cast::<Unit>().as_mut() }) else { return Status::Error };
@@ -90,10 +90,10 @@ pub(super) unsafe fn with(component: Pointer, work: impl FnOnce(&mut Unit) -> Re
     }
 }
 
-/// Takes a component back.
+/// Frees a component.
 ///
 /// # Safety
-/// The component was made by [`Unit::make`], and is given back once; or it is null.
+/// The component was made by [`Unit::make`] and is freed only once; or it is null.
 pub(super) unsafe fn free(component: Pointer) {
     if !component.is_null() {
         // SAFETY: as the caller promises.
@@ -101,10 +101,10 @@ pub(super) unsafe fn free(component: Pointer) {
     }
 }
 
-/// Writes to a place of the importer, if there is one.
+/// Writes a value to memory of the importer, unless the pointer is null.
 ///
 /// # Safety
-/// There is room for a value at `place`, which nobody else looks at; or it is null.
+/// `place` points to memory for one value that nothing else accesses meanwhile; or it is null.
 pub(super) unsafe fn write<T>(place: *mut T, value: T) {
     // SAFETY: as the caller promises.
     if let Some(place) = unsafe { place.as_mut() } {
@@ -112,7 +112,7 @@ pub(super) unsafe fn write<T>(place: *mut T, value: T) {
     }
 }
 
-/// Variables of a type that a crane does not have.
+/// Refuses a request for variables of a type that a crane does not have.
 pub(super) fn none_of(count: usize, kind: &str, own: &str) -> Result<(), Fault> {
     if count == 0 {
         Ok(())

@@ -5,7 +5,7 @@ use crane_model::dyn_crane::DynModel;
 
 use super::Subject;
 
-/// `modelDescription.xml` of a crane with the parameters that it has.
+/// `modelDescription.xml` of a crane with its current parameters.
 pub fn write(crane: &dyn DynModel) -> String {
     let subject = Subject::new(crane);
     let name = crane.description().name.to_string();
@@ -65,7 +65,7 @@ fn write_structure(subject: &Subject, xml: &mut Xml) {
     xml.close();
 }
 
-/// The place of a variable in the list, from 1.
+/// Index of a variable in the list, counted from 1.
 fn index(reference: usize) -> String {
     (reference + 1).to_string()
 }

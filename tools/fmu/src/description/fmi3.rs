@@ -5,7 +5,7 @@ use crane_model::dyn_crane::DynModel;
 
 use super::Subject;
 
-/// `modelDescription.xml` of a crane with the parameters that it has.
+/// `modelDescription.xml` of a crane with its current parameters.
 pub fn write(crane: &dyn DynModel) -> String {
     let subject = Subject::new(crane);
     let mut xml = Xml::new("Units: SI, rad.");

@@ -1,4 +1,4 @@
-//! `modelDescription.xml`: what an importer knows of a crane.
+//! `modelDescription.xml`: what an importer learns about a crane.
 
 mod fmi2;
 mod fmi3;
@@ -16,7 +16,7 @@ use crate::variables::{self, Source, Variable};
 pub use fmi2::write as write_fmi2;
 pub use fmi3::write as write_fmi3;
 
-/// Categories of messages, and what they hold.
+/// Categories of messages, and what they contain.
 const CATEGORIES: [(&str, &str); 2] = [
     ("logStatusWarning", "What is implausible about the crane, and what the model does not hold for"),
     ("logStatusError", "Why a call failed, and what to do about it"),
@@ -85,7 +85,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Attributes that say which variable it is: name, value reference, description, causality and variability.
+    /// Attributes that identify a variable: name, value reference, description, causality and variability.
     fn identity(variable: &Variable, reference: usize) -> Vec<(&'static str, String)> {
         let [causality, variability] = Self::nature(variable);
         let mut attributes = vec![("name", variable.name.clone()), ("valueReference", reference.to_string())];
@@ -96,7 +96,7 @@ impl<'a> Subject<'a> {
         attributes
     }
 
-    /// Attributes of a variable's numbers: unit, start.
+    /// Attributes of a variable's values: unit and start value.
     fn attributes(&self, variable: &Variable) -> Vec<(&'static str, String)> {
         let mut attributes = Vec::new();
         if !variable.unit.is_empty() {
@@ -150,7 +150,7 @@ impl<'a> Subject<'a> {
         );
     }
 
-    /// What the unit says of where it comes from.
+    /// Attributes that describe the origin of the unit.
     fn origin(&self) -> [(&'static str, String); 3] {
         let description = self.crane.description();
         [

@@ -1,9 +1,9 @@
-//! Units in terms of those that the interface knows.
+//! Units in terms of the base units of the interface.
 
 /// Exponents of kg, m, s and rad.
 pub type Exponents = [i32; 4];
 
-/// Names of the attributes that exponents stand in.
+/// Names of the attributes for the exponents.
 pub const NAMES: [&str; 4] = ["kg", "m", "s", "rad"];
 
 /// Units by symbol.
@@ -20,7 +20,7 @@ const SYMBOLS: [(&str, Exponents); 10] = [
     ("W", [1, 2, -3, 0]),
 ];
 
-/// Exponents of a unit such as `N m/rad` or `m/s2`: what stands after a slash divides. None where a symbol is unknown.
+/// Exponents of a unit such as `N m/rad` or `m/s2`: units after a slash divide. `None` if a symbol is unknown.
 pub fn exponents(unit: &str) -> Option<Exponents> {
     let mut sum = [0; 4];
     for (index, part) in unit.split('/').enumerate() {
@@ -39,7 +39,7 @@ pub fn exponents(unit: &str) -> Option<Exponents> {
     Some(sum)
 }
 
-/// Bytes of the last character.
+/// Length of the last character in bytes.
 fn last_length(text: &str) -> usize {
     text.chars().last().map_or(0, char::len_utf8)
 }

@@ -1,4 +1,4 @@
-//! Angles θ of a base near ±90°, where ψ and φ turn about one axis.
+//! Angles θ of a base near ±90°, where ψ and φ rotate about the same axis.
 
 use std::{f64::consts::FRAC_PI_2, fmt::Write};
 
@@ -15,7 +15,8 @@ pub fn cases() -> Vec<Case> {
     angles.into_iter().flat_map(of).chain([passing()]).collect()
 }
 
-/// A block on four supports whose rest is turned about y: 1 m × 1 m, 100 kg, its centre in the plane of the supports.
+/// A block on four supports that are unloaded when it is rotated by an angle about y: 1 m × 1 m, 100 kg, its centre in the plane of
+/// the supports.
 fn base(angle: f64, exact: bool) -> Case {
     let near = (FRAC_PI_2 - angle).abs() < NEAR_SINGULAR;
     let kinematics = if exact { "exact" } else { "linear" };
@@ -61,7 +62,7 @@ supports:
     })
 }
 
-/// A free body that starts at θ near 90°, at rest and without forces: it must stay, or be refused with that angle named.
+/// A free body that starts at θ near 90°, at rest and without forces: it must stay, or be refused with a message that names that angle.
 fn tumbling(angle: f64) -> Case {
     let expected = if angle == FRAC_PI_2 {
         "refused or stopped, block_theta named"
@@ -93,7 +94,7 @@ run: {{duration: 1}}
     })
 }
 
-/// A free block that tumbles through θ = 90° and on.
+/// A free block that tumbles through θ = 90° and beyond.
 fn passing() -> Case {
     let expected = "passes with energy constant to 0.1 %, or stops and reports that block_theta is near ±90°";
     Case::new("angles near ±90°", "free block, turning through θ = 90°", expected, move || {

@@ -1,4 +1,4 @@
-//! Beams of 1 to 50 sections, and columns about their buckling load.
+//! Beams of 1 to 50 sections, and columns near their buckling load.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -28,7 +28,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     cases
 }
 
-/// `δ = F l³/3EI (1 − 1/4n²) + μ g l⁴/8EI (1 − 1/2n²)`, exact for rigid elements of small deflection.
+/// `δ = F l³/3EI (1 − 1/4n²) + μ g l⁴/8EI (1 − 1/2n²)`, exact for rigid elements at small deflections.
 fn deflection(spec: Spec, sections: usize) -> Case {
     const LENGTH: f64 = 2.0;
     const RIGIDITY: f64 = MODULUS * 0.06 * 0.04 * 0.04 * 0.04 / 12.0;
@@ -41,7 +41,7 @@ fn deflection(spec: Spec, sections: usize) -> Case {
         let subject = Subject::new(&spec)?;
         let rest = subject.rest()?;
         let tip = subject.rig.points_at(&rest.q)[1].z;
-        // Deflection by 0.7 % of the length: its square is what the linear law leaves out.
+        // The deflection is 0.7 % of the length; the linear law neglects its square.
         expect((tip / sunk + 1.0).abs() < 1e-4, format!("{rest}; {:.4} mm", -tip * 1e3))
     })
 }
@@ -56,7 +56,7 @@ fn motion(spec: Spec, sections: usize) -> Case {
     if sections < 16 { case } else { case.long() }
 }
 
-/// A column of `n` sections, EI = 1e4 N m² and 4 m long, of 4 g, with a load on its head.
+/// A column of `n` sections, EI = 1e4 N m², 4 m long and of 4 g, with a load on its top.
 fn column(sections: usize, load: f64, lean: f64) -> Spec {
     let guess =
         (1..=sections).map(|section| format!("column_{section}_theta: {lean:e}")).collect::<Vec<_>>().join(", ");
@@ -83,7 +83,7 @@ guess: {{{guess}}}
 }
 
 /// `P = 4 EI n²/l² sin²(π/4n)`: the chain's difference equation `α₊ − (2 − P d/s) α + α₋ = 0` with a clamped and a free end.
-/// π² EI/4l², Euler's, for many sections.
+/// For many sections it tends to Euler's π² EI/4l².
 fn critical(sections: usize) -> f64 {
     const RIGIDITY: f64 = 1e10 * 1e-6;
     const LENGTH: f64 = 4.0;
@@ -108,7 +108,7 @@ fn buckling(sections: usize, part: f64) -> Case {
     })
 }
 
-/// A column beyond its buckling load, from a guess that leans: it stands bent. One section is a rod on one spring,
+/// A column beyond its buckling load, from a leaning guess: it comes to rest bent. One section is a rod on one spring,
 /// `s θ = P l/2 sin θ`.
 fn buckled(sections: usize) -> Case {
     let load = 1.2 * critical(sections);
@@ -128,7 +128,7 @@ fn buckled(sections: usize) -> Case {
         let subject = Subject::new(&column(sections, load, 0.8 / sections as f64))?;
         let rest = subject.rest()?;
         let turned = rest.q[subject.index("column_1_theta")?];
-        // Four grams of column against a load of a kilonewton.
+        // The column's four grams are neglected against a load of a kilonewton.
         let right = angle.map_or(turned.abs() > 0.1, |angle| (turned.abs() - angle).abs() < 1e-3);
         expect(right, format!("{rest}; {turned:.4} rad"))
     })

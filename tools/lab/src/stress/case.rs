@@ -8,9 +8,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Longest time of a case: what takes longer counts as an endless loop. The longest takes some seconds.
+/// Time limit of a case: one that takes longer counts as an endless loop. The longest takes a few seconds.
 const LONGEST: Duration = Duration::from_secs(300);
-/// Stack of a case: matrices of 150 coordinates are 180 kB each, and stand on it.
+/// Stack size of a case: matrices of 150 coordinates take 180 kB each on the stack.
 const STACK: usize = 64 << 20;
 
 /// What happened: as expected, or otherwise.
@@ -24,12 +24,12 @@ pub struct Case {
     pub name: String,
     /// What must happen.
     pub expected: String,
-    /// Whether it takes so little that every build can do it.
+    /// Whether it is short enough to run in every build.
     pub quick: bool,
     check: Box<dyn FnOnce() -> Finding + Send>,
 }
 
-/// A case that is over.
+/// A finished case.
 pub struct Verdict {
     /// What it belongs to.
     pub group: &'static str,
@@ -46,7 +46,7 @@ pub struct Verdict {
 }
 
 impl Case {
-    /// A case that every build does.
+    /// A case that runs in every build.
     pub fn new(
         group: &'static str,
         name: impl Into<String>,
@@ -56,18 +56,18 @@ impl Case {
         Self { group, name: name.into(), expected: expected.into(), quick: true, check: Box::new(check) }
     }
 
-    /// The same, only for whom asks for all.
+    /// The same, run only if all cases are requested.
     pub fn long(self) -> Self {
         Self { quick: false, ..self }
     }
 
-    /// Checks it: a panic and an endless loop are findings too.
+    /// Runs the check: a panic and an endless loop are findings, too.
     pub fn judge(self) -> Verdict {
         let Self { group, name, expected, check, .. } = self;
         let begin = Instant::now();
         let (send, receive) = mpsc::channel();
         let started = thread::Builder::new().stack_size(STACK).spawn(move || {
-            // Nobody listens any more where the time is over.
+            // After the time limit nobody receives the result.
             let _ = send.send(catch_unwind(AssertUnwindSafe(check)));
         });
         let finding = match started {
@@ -84,7 +84,7 @@ impl Case {
     }
 }
 
-/// What a panic said.
+/// Message of a panic.
 fn words(panic: &(dyn Any + Send)) -> &str {
     panic
         .downcast_ref::<String>()

@@ -11,7 +11,7 @@ use super::{
 use crane_model::{dynamics::Method, statics::Status};
 
 const GROUP: &str = "feet that lift";
-/// Mass of the truck, kg, half its track and wheelbase, and where its load is, m.
+/// Mass of the truck, kg, half its track, m, and distance of its load, m.
 const TRUCK: f64 = 8000.0;
 const TRACK: f64 = 1.5;
 const RADIUS: f64 = 7.5;
@@ -35,7 +35,7 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// A truck on four corner feet: the near left one and on anticlockwise, and a live load to its right side.
+/// A truck on four corner feet, anticlockwise from (x, y) = (1.5, 2) m, with the load as a live parameter on its +x side.
 fn truck(kinematics: &str, stiffness: f64, damping: f64, gaps: [f64; 4]) -> Spec {
     let mut text = format!(
         "format: 1
@@ -59,12 +59,12 @@ supports:
     Spec::new(text)
 }
 
-/// The load at which the moment about the near feet is nothing.
+/// The load at which the moment about the near feet is zero.
 fn tipping() -> f64 {
     TRUCK * (TRACK - 0.2) / (RADIUS - TRACK)
 }
 
-/// Below its tipping load the truck stands, and beyond it tips over the line between the near feet.
+/// Below its tipping load the truck stands; above it, it tips over the line between the near feet.
 fn loaded(kinematics: &'static str, stiffness: f64, share: f64) -> Case {
     let stands = share < 1.0;
     let expected =
@@ -84,7 +84,7 @@ fn loaded(kinematics: &'static str, stiffness: f64, share: f64) -> Case {
     })
 }
 
-/// The ground is lower than the feet where the search starts: nothing holds the truck there.
+/// The ground is below the feet at the guess: nothing supports the truck there.
 fn sunk(kinematics: &'static str, gap: f64) -> Case {
     const STIFFNESS: f64 = 1e7;
     let height = -gap - TRUCK * GRAVITY / (4.0 * STIFFNESS);
@@ -95,9 +95,9 @@ fn sunk(kinematics: &'static str, gap: f64) -> Case {
     })
 }
 
-/// One leg is 20 mm short, and stays off the ground: the moments about the lines between the three others give their forces.
+/// One leg is 20 mm short, and stays off the ground: the moments about the lines between the other three give their forces.
 fn short_leg(kinematics: &'static str) -> Case {
-    // s2 is short: s1 and s3 carry by their levers, s0 what is left.
+    // s2 is short: s1 and s3 carry shares given by their levers, s0 the rest.
     let weight = TRUCK * GRAVITY;
     let (front, right) = ((2.0 + 0.3) / 4.0, (TRACK + 0.2) / (2.0 * TRACK));
     let forces = [weight * (front + right - 1.0), weight * (1.0 - right), 0.0, weight * (1.0 - front)];
@@ -113,7 +113,7 @@ fn short_leg(kinematics: &'static str) -> Case {
     })
 }
 
-/// From half a metre above the ground, a quarter of its weight off its middle: it bounces and rocks.
+/// Dropped from half a metre above the ground with its mass centre off the middle: it bounces and rocks.
 fn dropped(kinematics: &'static str, damping: f64) -> Case {
     let name = format!("truck dropped by 0.5 m onto {kinematics} feet with {damping:e} N s/m");
     Case::new(GROUP, name, "2 s to the end, energy balanced to 0.1 %", move || {

@@ -35,7 +35,7 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// A slide without weight, with more keys.
+/// A weightless slide with additional keys.
 fn slide(more: &str) -> Spec {
     Spec::new(format!(
         "format: 1
@@ -48,13 +48,13 @@ links: [{{name: slide, joint: {{prismatic: {{axis: x}}}}, mass: {MASS}, com: [0,
     ))
 }
 
-/// A slide that moves from the start on.
+/// Options of a run in which the slide moves from the start.
 fn moving(method: Method, tolerance: f64, duration: f64) -> Timing {
     let start = vec![format!("slide_x_rate={SPEED}")];
     Timing { start, ..timing(method, tolerance, duration) }
 }
 
-/// An undamped stop gives the speed back, `π √(m/k)` after it was met.
+/// An undamped stop gives the speed back, `π √(m/k)` after first contact.
 fn stopped(stiffness: f64, method: Method) -> Case {
     let at = 0.2;
     let back = at - SPEED * (0.5 - at / SPEED - PI * (MASS / stiffness).sqrt());
@@ -67,7 +67,7 @@ fn stopped(stiffness: f64, method: Method) -> Case {
     })
 }
 
-/// Coulomb friction stops it after `m v²/2F_c` and `m π² v₀²/12F_c` more of creeping.
+/// Coulomb friction stops it after `m v²/2F_c`, plus `m π² v₀²/12F_c` of creep.
 fn rubbed(width: f64, method: Method) -> Case {
     let force = 100.0;
     let way = MASS / (2.0 * force) * (SPEED * SPEED + PI * PI * width * width / 6.0);
@@ -80,7 +80,7 @@ fn rubbed(width: f64, method: Method) -> Case {
     })
 }
 
-/// An arm of 1 m and 100 kg on a drive that would hold it level, far too weak: it hangs where the spring's moment and the weight's
+/// An arm of 1 m and 100 kg on a drive that is far too weak to hold it level: it hangs where the moments of spring and weight
 /// balance, `s (π/2 − α) = m g sin α` for the angle α from hanging down.
 fn arm(stiffness: f64) -> Spec {
     Spec::new(format!(
@@ -95,7 +95,7 @@ run: {{duration: 2}}
 }
 
 fn sagging(stiffness: f64) -> Case {
-    // Newton's method on the scalar balance, from the middle.
+    // Newton's method for the scalar balance, from 1 rad.
     let weight = 100.0 * GRAVITY;
     let mut theta = 1.0_f64;
     for _ in 0..100 {

@@ -1,4 +1,4 @@
-//! Loads from nothing to a hundred tonnes, neighbours of very different mass, links of hardly any.
+//! Loads from zero to a hundred tonnes, adjacent links of very different mass, nearly massless links.
 
 use super::{
     GRAVITY, Specs,
@@ -48,7 +48,7 @@ fn motion(spec: Spec, load: f64) -> Case {
     })
 }
 
-/// A mass that no crane has, as `--set` would take it.
+/// A mass that no crane has, set as by `--set`.
 fn senseless(spec: Spec, mass: f64) -> Case {
     let expected = "refused with a reason; all numbers finite";
     Case::new("load", format!("eight_link_flexible with {mass:e} kg"), expected, move || {
@@ -88,7 +88,7 @@ run: {{duration: 10, step: 1e-4}}
 fn pendulum(upper: f64, lower: f64) -> Case {
     let ratio = lower / upper;
     let split = (ratio / (1.0 + ratio)).sqrt();
-    // 1 − split without cancelling.
+    // 1 − split without cancellation.
     let slow = GRAVITY * (1.0 + ratio) * (1.0 / (1.0 + ratio)) / (1.0 + split);
     let omegas = [slow.sqrt(), (GRAVITY * (1.0 + ratio) * (1.0 + split)).sqrt()];
     let expected = format!("stable; ω = {:.6e} and {:.6e} rad/s", omegas[0], omegas[1]);
@@ -97,7 +97,7 @@ fn pendulum(upper: f64, lower: f64) -> Case {
         let rest = subject.rest()?;
         let modes = undamped(&subject.rig.small_motions_at(&rest.q)).map_err(|error| error.to_string())?;
         let found: Vec<f64> = modes.iter().map(|mode| mode.omega_squared.abs().sqrt()).collect();
-        // The condition of A is the ratio, and squares are what is solved for.
+        // The condition number of A is the mass ratio, and the eigenvalues are the squares of ω.
         let tolerance = 1e-15 * (1.0 + ratio.max(1.0 / ratio)) + 1e-9;
         let off = found.iter().zip(&omegas).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
         expect(off < tolerance, format!("{rest}; {:.6e} and {:.6e} rad/s", found[0], found[1]))
@@ -105,7 +105,7 @@ fn pendulum(upper: f64, lower: f64) -> Case {
 }
 
 fn swing(upper: f64, lower: f64) -> Case {
-    // The fast mode of a string of hardly any mass, in rad/s: undamped, so that no method may jump over it.
+    // The fast mode of a nearly massless string, in rad/s: undamped, so that no method may step over it.
     let stiff = (GRAVITY * (1.0 + lower / upper)).sqrt() > 1e4;
     if stiff {
         let expected = "every method stops early and reports that a very light link vibrates too fast for any step";
@@ -135,7 +135,7 @@ fn swing(upper: f64, lower: f64) -> Case {
     })
 }
 
-/// A crank of hardly any mass between a heavy arm and its load: the load hangs and swings as from a massless one.
+/// A crank of hardly any mass between the ground and a load: the load hangs and swings as if from a massless one.
 fn nearly_massless(mass: f64) -> Case {
     let expected = "stable; slowest ω within 1e-4 of the massless link's √(g/l), l = 2 m";
     Case::new("nearly massless links", format!("link of {mass:e} kg over 100 kg"), expected, move || {

@@ -36,9 +36,9 @@ use spec::Spec;
 
 /// Gravity of the shipped specs, m/s².
 const GRAVITY: f64 = 9.81;
-/// Changes of a spec that take gravity away.
+/// Change of a spec that removes gravity.
 const WEIGHTLESS: &str = "gravity: [0, 0, 0]";
-/// What the tables say of a case that went as expected, and of one that did not.
+/// Verdicts in the tables: of a case that did not go as expected, and of one that did.
 const VERDICTS: [&str; 2] = ["FAILED", "ok"];
 
 /// The shipped specs that cases are derived from.
@@ -48,7 +48,7 @@ struct Specs<'a> {
 
 impl Specs<'_> {
     fn shipped(&self, name: &str) -> Spec {
-        // Without the crane, its cases are refused: the spec is empty.
+        // If the crane is missing, the spec is empty and its cases are refused.
         Spec::new(self.registry.spec(name).unwrap_or_default())
     }
 
@@ -57,7 +57,7 @@ impl Specs<'_> {
         self.shipped("eight_link_flexible")
     }
 
-    /// The cantilever, in so many sections.
+    /// The cantilever with a number of sections.
     fn cantilever(&self, sections: usize) -> Spec {
         self.shipped("cantilever").changed(&format!("links: [{{name: beam, beam: {{sections: {sections}}}}}]"))
     }
@@ -69,12 +69,12 @@ const DRIVES: [(&str, f64); 5] =
 /// Stiffness of its eight supports along x, y and z, N/m.
 const SUPPORT: [f64; 3] = [3e6, 3e6, 1e7];
 
-/// The reference crane with other keys of its boom's beam.
+/// The reference crane with other keys for its boom's beam.
 fn with_boom(reference: &Spec, keys: &str) -> Spec {
     reference.changed(&format!("links: [{{name: boom, beam: {{{keys}}}}}]"))
 }
 
-/// The reference crane with other keys of each drive, which depend on its stiffness.
+/// The reference crane with other keys for each drive, which depend on the drive's stiffness.
 fn with_drives(reference: &Spec, keys: impl Fn(f64) -> String) -> Spec {
     let drive = |(coordinate, stiffness)| format!("  - {{coordinate: {coordinate}, {}}}\n", keys(stiffness));
     reference.changed(&format!("drives:\n{}", DRIVES.map(drive).concat()))
@@ -86,7 +86,7 @@ fn with_supports(reference: &Spec, stiffness: [f64; 3]) -> Spec {
     reference.changed(&format!("supports:\n{}", [1, 2, 3, 4, 5, 6, 7, 8].map(support).concat()))
 }
 
-/// Runs the suite, prints it and writes it.
+/// Runs the suite, prints the results and writes them.
 pub fn stress(options: &Stress, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let specs = Specs { registry };
     let mut cases = stiffness::cases(&specs);
@@ -130,7 +130,7 @@ pub fn stress(options: &Stress, registry: &Registry, out: &mut dyn Write) -> Out
     Err(Problem::failed(format!("{failed} of {} cases differ from what is expected", verdicts.len()), worst.join("; ")))
 }
 
-/// All verdicts in the order of the cases, by as many threads as the machine has.
+/// All verdicts in the order of the cases, computed by as many threads as the machine has.
 fn judge(cases: Vec<Case>, bar: &ProgressBar) -> Vec<Verdict> {
     let count = cases.len();
     let queue = Mutex::new(cases.into_iter().enumerate());
@@ -171,7 +171,7 @@ fn grid(verdicts: &[Verdict]) -> Grid {
     grid
 }
 
-/// Writes the suite as CSV and as a page of Markdown; without times, so that both stay what they are.
+/// Writes the results as CSV and as a Markdown page; without times, so that both files are reproducible.
 fn write(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
     let header = ["group", "case", "expected", "happened", "verdict"];
     let fields = |verdict: &Verdict| {

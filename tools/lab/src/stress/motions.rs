@@ -1,4 +1,4 @@
-//! Motions in no time, steps of a drive, and runs that take very long.
+//! Very short motions, steps of a drive, and very long runs.
 
 use super::{
     Specs,
@@ -9,7 +9,7 @@ use super::{
 };
 use crane_model::dynamics::Method;
 
-/// Accuracies of a run by every method: a step of rk4, s, and tolerances of the others.
+/// Accuracy of a run by each method: a step for rk4, s, and tolerances for the others.
 const METHODS: [(Method, f64); 4] =
     [(Method::Rk4, 1e-4), (Method::DormandPrince, 1e-8), (Method::Rosenbrock, 1e-8), (Method::Bdf, 1e-8)];
 
@@ -28,19 +28,19 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     cases
 }
 
-/// A carriage of 100 kg on a drive of 1e4 N/m and 400 N s/m, moved by 1 m in a time: for a step `x = 1 − e^{−δt} (cos ωt +
-/// δ/ω sin ωt)`, δ = d/2m, ω² = s/m − δ², except for the damper, which adds the impulse d: x gains `d/(mω) e^{−δt} sin ωt`.
+/// A carriage of 100 kg on a drive of 1e4 N/m and 400 N s/m, moved by 1 m within a duration. For a step, the spring alone
+/// gives `x = 1 − e^{−δt} (cos ωt + δ/ω sin ωt)`, δ = d/2m, ω² = s/m − δ²; the damper's impulse d adds `d/(mω) e^{−δt} sin ωt`.
 fn step(method: Method, accuracy: f64, duration: f64) -> Case {
     let (mass, stiffness, damping, end) = (100.0, 1e4, 400.0, 0.5_f64);
     let decay: f64 = damping / (2.0 * mass);
     let omega = (stiffness / mass - decay * decay).sqrt();
-    // The quintic's middle stands for the whole of a short motion.
+    // A short motion acts like a step at the middle of the quintic.
     let t = end - duration / 2.0;
     let (sin, cos) = (omega * t).sin_cos();
     let shrunk = (-decay * t).exp();
     let exact = 1.0 - shrunk * (cos + decay / omega * sin) + damping / (mass * omega) * shrunk * sin;
     let sharp = duration < 0.01;
-    // Steps of 1e-4 s see nothing of it.
+    // Steps of 1e-4 s may miss it entirely.
     let missed = duration < 1e-6;
     let expected = if missed {
         format!("x = {exact:.6} m at 0.5 s, the closed form of a step, or a caution that it was missed")
@@ -61,7 +61,7 @@ drives:
         ));
         let recorded = match Subject::new(&spec)?.run(&timing(method, accuracy, end)) {
             Ok(recorded) => recorded,
-            // A run that ends with a reason does not mislead.
+            // A run that ends with a stated reason does not mislead.
             Err(said) => return expect(missed, said),
         };
         let last = recorded.table.rows.last().map_or(f64::NAN, |row| row[1]);
@@ -85,7 +85,7 @@ fn sagging() -> Case {
     })
 }
 
-/// An undamped beam of one section with a weight at its end, of a modulus in Pa.
+/// An undamped beam of one section with a weight at its end; `modulus` in Pa.
 fn soft_beam(modulus: f64) -> Spec {
     Spec::new(format!(
         "format: 1
@@ -106,7 +106,7 @@ guess: {{beam_1_psi: 0.1}}
     ))
 }
 
-/// The whole manoeuvre of the reference crane in a time.
+/// The whole manoeuvre of the reference crane within a duration.
 fn sudden(spec: Spec, duration: f64) -> Case {
     let expected = "1 s to the end, energy balanced to 1 %";
     Case::new("short motions", format!("eight_link_flexible, manoeuvre of {duration} s"), expected, move || {
@@ -132,7 +132,7 @@ fn tumble(spec: Spec, method: Method) -> Case {
     })
 }
 
-/// A soft, undamped beam of two sections that vibrates for 600 s.
+/// A soft, undamped beam of one section that vibrates for 600 s.
 fn vibration(method: Method) -> Case {
     let (accuracy, kept) = match method {
         Method::Rk4 => (5e-4, 1e-4),

@@ -58,7 +58,7 @@ const OPTIONS: [(&str, Set); 4] = [
     ("output", |timing, value| timing.output = Some(value)),
 ];
 
-/// An option of a run that means nothing: refused at once, or harmless.
+/// A run option with a meaningless value: refused at once, or harmless.
 fn option(spec: Spec, name: &'static str, set: Set, value: f64) -> Case {
     let expected = "refused with its name or the reason, or a run with finite results; never endless";
     Case::new("limits of numbers", format!("knuckle_boom with --{name} {value:e}"), expected, move || {
@@ -104,7 +104,7 @@ fn accepted(number: &'static str) -> Case {
     })
 }
 
-/// A mass as great or small as the language allows swings as any.
+/// A mass as large or small as the language allows swings like any other.
 fn heavy(mass: f64) -> Case {
     let expected = "stable, hanging; 0.1 s to the end";
     Case::new("limits of numbers", format!("spec with a mass of {mass:e}"), expected, move || {
@@ -115,7 +115,7 @@ fn heavy(mass: f64) -> Case {
     })
 }
 
-/// A payload as `--set` takes it.
+/// A payload, set as by `--set`.
 fn parameter(spec: Spec, load: f64) -> Case {
     let expected = "a stable pose and a run, or a clear message; all numbers finite";
     Case::new("limits of numbers", format!("knuckle_boom with payload={load:e}"), expected, move || {

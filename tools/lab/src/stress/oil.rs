@@ -1,4 +1,4 @@
-//! Oil: stiff and soft, next to nothing of it, valves shut, wide open and slow, pumps far too weak, loads far too heavy.
+//! Oil: stiff and soft, tiny volumes, valves shut, wide open and slow, pumps far too weak, loads far too heavy.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use super::{
 use crane_model::{dynamics::Method, runs::Recorded};
 
 const GROUP: &str = "oil";
-/// Of the cylinder: diameters of piston and rod, length where the coordinate is 0, length retracted, stroke, m.
+/// Cylinder: diameters of piston and rod, length at coordinate 0, retracted length, stroke, m.
 const BORE: f64 = 0.08;
 const ROD: f64 = 0.045;
 const LENGTH: f64 = 1.1;
@@ -124,7 +124,7 @@ pump: {{max_flow: {max_flow:e}, pressure: {pump:e}}}
         ))
     }
 
-    /// A run, and where the slide is and how fast at its begin and its end.
+    /// A run, the slide's positions at its start and end, and its speed at the end.
     fn run(&self, method: Method, duration: f64) -> Result<(Recorded, [f64; 2], f64), String> {
         let recorded = Subject::new(&self.spec())?.run(&timing(method, 1e-6, duration))?;
         let places: Vec<f64> = column(&recorded, "slide_z");
@@ -142,7 +142,7 @@ fn piston() -> f64 {
     PI / 4.0 * BORE * BORE
 }
 
-/// Nothing moves the oil.
+/// The valve stays shut, so no oil flows.
 fn shut(lift: Lift, name: &str, method: Method) -> Case {
     Case::new(GROUP, format!("shut valve, {name}"), "holds to 1e-6 m for 2 s", move || {
         let (_, [begin, end], _) = lift.run(method, 2.0)?;
@@ -162,7 +162,7 @@ fn too_heavy(share: f64, method: Method) -> Case {
     })
 }
 
-/// The valve opens, and nothing comes but what the oil between pump and valve expands to; check valves hold the load.
+/// The valve opens, and only the expansion of the oil between pump and valve moves the load; check valves hold it.
 fn too_weak(lift: Lift, name: &str, method: Method) -> Case {
     let lift = Lift { opening: "{table: {times: [0.1, 0.2], values: [0, 1]}}", ..lift };
     // 5 l, unless the spec says otherwise.
@@ -190,7 +190,7 @@ fn lifted(lift: Lift, name: &str, method: Method) -> Case {
     })
 }
 
-/// The piston meets its end with the valve wide open.
+/// The piston reaches the end of its stroke with the valve wide open.
 fn at_the_end(method: Method) -> Case {
     let name = format!("open valve against the end of the stroke, {method}");
     Case::new(GROUP, name, "stays within 3 mm of its end, pressure of the pump", move || {

@@ -1,4 +1,4 @@
-//! Poses that no crane should be in: upside down, without gravity, without what holds them.
+//! Poses that no crane should be in: upside down, without gravity, with nothing to hold it.
 
 use std::f64::consts::PI;
 
@@ -56,7 +56,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
         Expected::Loose(&["column_psi"]),
         slewing("drives: [{coordinate: column_psi, stiffness: 0, damping: 7e3, motion: {hold: 0}}]"),
     ));
-    // Its supports give way and let the truck tilt towards the load: slewing has a lowest place.
+    // Its supports give way and let the truck tilt towards the load: slewing has a lowest position.
     cases.push(named(
         group,
         "eight_link_flexible, slewing drive of zero stiffness",
@@ -72,7 +72,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
         Expected::Loose(&["truck_x"]),
         with_supports(&reference(), [0.0, SUPPORT[1], SUPPORT[2]]),
     ));
-    // It rests where its axis is level, and slides on wherever it is pushed.
+    // It rests where its axis is level, and slides away when pushed.
     cases.push(named(
         group,
         "eight_link_flexible, telescope drive of zero stiffness",
@@ -83,7 +83,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
     cases
 }
 
-/// A crane on the ground that slews about the vertical: gravity does nothing about it.
+/// A crane on the ground that slews about the vertical: gravity exerts no moment about that axis.
 fn slewing(drives: &str) -> Spec {
     Spec::new(format!(
         "format: 1
@@ -96,7 +96,7 @@ links:
     ))
 }
 
-/// What statics must say.
+/// What statics must report.
 #[derive(Clone, Copy)]
 enum Expected {
     Stable,
@@ -131,7 +131,7 @@ fn named(group: &'static str, name: &str, expected: Expected, spec: Spec) -> Cas
     })
 }
 
-/// Without weight the hinges hang nowhere; the motion itself is well posed from the guess.
+/// Without gravity the hinges have no definite rest position; the motion from the guess is still well posed.
 fn floating(spec: Spec) -> Case {
     let expected = "1 s from the guess, energy balanced to 0.1 %";
     Case::new("zero gravity", "eight_link_flexible, motion", expected, move || {

@@ -26,11 +26,11 @@ const BOOM_DRIVE: f64 = DRIVES[1].1;
 const WEIGHT: f64 = GRAVITY * (15000.0 + 515.5 + 408.1 + 335.0 + 224.0 + 846.0);
 /// Vertical stiffness of its eight supports, N/m.
 const GROUND: f64 = 8.0 * SUPPORT[2];
-/// The rotation of a base from which linear supports are off by more than half a percent, rad.
+/// Rotation of a base above which linear supports are off by more than half a percent, rad.
 const SMALL: f64 = 0.1;
 /// Simulated time of a run, s: the beginning of the manoeuvre.
 const DURATION: f64 = 1.0;
-/// Part of the energy turned over that a run at tolerance 1e-4 may lose or gain.
+/// Fraction of the energy exchanged that a run at tolerance 1e-4 may lose or gain.
 const BALANCE: f64 = 1e-3;
 
 pub fn cases(specs: &Specs) -> Vec<Case> {
@@ -41,7 +41,7 @@ pub fn cases(specs: &Specs) -> Vec<Case> {
         cases.push(single_element(specs.cantilever(1), factor));
         cases.push(run("stiffness of elements", stiffened_steel(&specs.reference(), factor), factor));
         cases.push(supports(specs.reference(), factor));
-        // Below, the crane turns over.
+        // With softer supports the crane overturns.
         if factor >= 1e-2 {
             cases.push(run("stiffness of supports", stiffened_supports(&specs.reference(), factor), factor));
         }
@@ -58,7 +58,7 @@ fn stiffened_drives(spec: &Spec, factor: f64) -> Spec {
     with_drives(spec, |stiffness| format!("stiffness: {:e}", factor * stiffness))
 }
 
-/// A crane of another steel.
+/// A crane whose steel has its moduli scaled.
 fn stiffened_steel(spec: &Spec, factor: f64) -> Spec {
     spec.changed(&format!("materials: {{steel: {{E: {:e}, G: {:e}}}}}", factor * 2.1e11, factor * 8.1e10))
 }
@@ -67,7 +67,7 @@ fn stiffened_supports(spec: &Spec, factor: f64) -> Spec {
     with_supports(spec, SUPPORT.map(|stiffness| factor * stiffness))
 }
 
-/// A run as the command does it by default.
+/// A run as the command performs it by default.
 fn run(group: &'static str, spec: Spec, factor: f64) -> Case {
     let what = if group.starts_with("damping") { "β = " } else { "× " };
     let expected = format!("{DURATION} s to the end, energy balanced to {:.1} %", BALANCE * 100.0);
@@ -100,7 +100,7 @@ fn drives(spec: Spec, factor: f64) -> Case {
         let torque = subject.rig.drive_efforts_at(0.0, &rest.q, &vec![0.0; rest.q.len()])[place];
         // Sag of some centimetres and tilt of the truck shorten and lengthen the levers by about a percent.
         let carried = torque / LEVEL_MOMENT;
-        // A boom that sinks keeps pulling downwards, until it hangs; a drive at 0 rad carries what its spring does.
+        // The weight pulls a sinking boom downwards until it hangs; a drive held at 0 rad carries the moment of its spring.
         let spring = -factor * BOOM_DRIVE * rest.q[boom] / torque;
         let right = if stiff {
             (carried - 1.0).abs() < 0.02
@@ -162,14 +162,14 @@ fn supports(spec: Spec, factor: f64) -> Case {
         let rest = subject.rest()?;
         let reactions = subject.rig.support_reactions_at(&rest.q, &vec![0.0; rest.q.len()]);
         let pressed = reactions.iter().map(|force| force.z).sum::<f64>() / (factor * GROUND);
-        // Newton leaves 1e-10 of the forces.
+        // Newton's method leaves a residual of 1e-10 of the forces.
         expect((pressed / sunk - 1.0).abs() < 1e-8, format!("{rest}; {pressed:.4e} m"))
     })
 }
 
 /// Damping in proportion to stiffness, `D = β K`: mode by mode `ζ = β ω/2`.
 fn damping(spec: &Spec, beta: f64) -> Case {
-    // Gravity's stiffness is not damped.
+    // The stiffness due to gravity is not damped.
     let changes = format!("links: [{{name: beam, beam: {{damping: {{beta: {beta:e}}}}}}}]\n");
     let spec = spec.changed(&(changes + WEIGHTLESS));
     let expected = "every underdamped mode has ζ = β ω/2 to 1e-6, all others decay without oscillating";

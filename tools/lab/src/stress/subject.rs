@@ -46,12 +46,12 @@ impl Subject {
         coordinates.iter().position(|c| c.name == name).ok_or_else(|| format!("no coordinate {name}"))
     }
 
-    /// Where statics end, whatever that is.
+    /// The result of statics, whatever its status.
     pub fn equilibrium(&self) -> Equilibrium {
         self.rig.equilibrium(&Settings::default())
     }
 
-    /// The stable pose, or what statics said instead.
+    /// The stable pose, or the message of statics if there is none.
     pub fn rest(&self) -> Result<Equilibrium, String> {
         let equilibrium = self.equilibrium();
         if !equilibrium.is_stable() {
@@ -60,7 +60,7 @@ impl Subject {
         if equilibrium.q.iter().all(|x| x.is_finite()) { Ok(equilibrium) } else { Err("a pose of NaN".to_owned()) }
     }
 
-    /// A run as the command does it; its message where it refuses or ends early. All numbers of its results are finite.
+    /// A run as the command performs it, or its message if it is refused or ends early. All numbers of the results are finite.
     pub fn run(&self, timing: &Timing) -> Result<Recorded, String> {
         let rig = self.rig.as_ref();
         let told = |problem: Problem| problem.message();
@@ -77,7 +77,7 @@ impl Subject {
     }
 }
 
-/// A run of so many seconds by a method at its tolerance, or its step.
+/// Options of a run by a method with a tolerance or step, and of a duration in s.
 pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
     let adaptive = method.is_adaptive();
     Timing {
@@ -93,12 +93,12 @@ pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
     }
 }
 
-/// Greatest error of the energy balance over the greatest energy that was turned over.
+/// Maximum error of the energy balance over the maximum energy exchanged.
 pub fn imbalance(recorded: &Recorded) -> f64 {
     runs::imbalance(&recorded.table)
 }
 
-/// What the command says of a run besides its results, after a semicolon each.
+/// Cautions of the command about a run, each after a semicolon.
 pub fn cautions(recorded: &Recorded) -> String {
     appended(&recorded.cautions)
 }
@@ -108,7 +108,7 @@ pub fn appended<'a>(sentences: impl IntoIterator<Item = &'a String>) -> String {
     sentences.into_iter().fold(String::new(), |text, sentence| text + "; " + sentence)
 }
 
-/// As expected if a run kept its energy to a part of what it turned over.
+/// As expected if the energy error of a run is below a fraction of the energy exchanged.
 pub fn balanced(recorded: &Recorded, part: f64) -> Finding {
     let (off, steps) = (imbalance(recorded), recorded.run.statistics.steps);
     expect(off < part, format!("{steps} steps, energy off by {off:.1e}{}", cautions(recorded)))

@@ -45,7 +45,7 @@ supports:
     Spec::new(text)
 }
 
-/// All four springs at rest at the same height δ: the block sits at `δ − m g/4s` and each carries a quarter of it.
+/// All four springs unloaded at the same height δ: the block rests at `δ − m g/4s` and each carries a quarter of its weight.
 fn lifted(kinematics: &'static str, play: f64) -> Case {
     let height = play - MASS * GRAVITY / (4.0 * STIFFNESS);
     let each = MASS * GRAVITY / 4.0;
@@ -62,8 +62,8 @@ fn lifted(kinematics: &'static str, play: f64) -> Case {
     })
 }
 
-/// One diagonal 10 mm higher than the other: it cannot be met by a plane, so it preloads the block by `± s δ/4 · …`:
-/// the springs at rest at δ carry `m g/4 + s δ/2`, the others as much less.
+/// One diagonal is 10 mm higher than the other. No plane meets both, so the block is preloaded: the springs unloaded at δ
+/// carry `m g/4 + s δ/2`, the others `m g/4 − s δ/2`.
 fn clamped(kinematics: &'static str) -> Case {
     const PLAY: f64 = 0.01;
     let (quarter, more) = (MASS * GRAVITY / 4.0, STIFFNESS * PLAY / 2.0);
@@ -84,7 +84,7 @@ fn clamped(kinematics: &'static str) -> Case {
     )
 }
 
-/// Springs at rest 1 m above where the block starts pull it up with 4 s δ: it shoots up and comes to rest.
+/// Springs unloaded 1 m above the start of the block pull it up with 4 s δ: it shoots up and comes to rest.
 fn dropped(kinematics: &'static str) -> Case {
     let height = 1.0 - MASS * GRAVITY / (4.0 * STIFFNESS);
     let expected = format!("2 s; at rest at z = {height:.4} m, energy balanced to 0.1 %");

@@ -49,7 +49,7 @@ pub fn sections(variants: &[Variant], limit: &Limit) -> Vec<Panel> {
 
 /// Errors of model and method together over time, for some numbers of sections.
 pub fn times(variants: &[Variant], limit: &Limit) -> Vec<Panel> {
-    // As many as there are colours.
+    // At most as many curves as there are colours.
     let every = variants.len().div_ceil(PALETTE.len());
     let curve = |variant: &Variant| {
         (format!("{} sections, {}", variant.sections, Method::RECOMMENDED), limit.curve(variant, Method::RECOMMENDED))

@@ -11,11 +11,11 @@ use crane_cli::toolbox::{Cell, Grid};
 
 use super::trace::{Errors, Timed, Trace, timed};
 
-/// A series ends when a run takes longer, s: the rest would cost more than it is worth.
+/// A series ends when a run takes longer than this, s: the rest would cost more than it is worth.
 const LONG: f64 = 2.0;
-/// A series ends where the error of the load path is below this: next come rounding and the reference.
+/// A series ends when the error of the load path is below this: rounding and the error of the reference come next.
 const EXACT: f64 = 1e-10;
-/// Most runs of one setting.
+/// Maximum number of runs of one setting.
 pub const REPEATS: usize = 5;
 
 /// A run of a method with one setting.
@@ -62,9 +62,9 @@ impl Setting {
     }
 }
 
-/// Settings of a method from coarse to fine: the largest safe step and its halves, or tolerances.
+/// Settings of a method from coarse to fine: the largest safe step halved repeatedly, or tolerances.
 pub fn settings(method: Method, safe: f64, quick: bool) -> Vec<Setting> {
-    /// Halvings of the step; a series ends before where it is exact or takes long.
+    /// Maximum number of halvings of the step; a series ends earlier when it is exact or takes long.
     const HALVINGS: i32 = 16;
     if !method.is_adaptive() {
         return (0..HALVINGS).map(|k| Setting::Step(safe * 0.5_f64.powi(k))).collect();
@@ -73,7 +73,7 @@ pub fn settings(method: Method, safe: f64, quick: bool) -> Vec<Setting> {
     tolerances.iter().copied().map(Setting::Tolerance).collect()
 }
 
-/// Three a decade where engineers look, fewer below.
+/// Three per decade in the range that matters to engineers, fewer below.
 const TOLERANCES: [f64; 18] =
     [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 
@@ -84,7 +84,7 @@ pub fn with(base: &Settings, method: Method, setting: Setting) -> Settings {
     Settings { method, step, tolerance, ..*base }
 }
 
-/// Runs of every method with every setting, as far as they end.
+/// Runs of every method with every setting, except those that fail.
 pub fn series(
     rig: &dyn DynCrane,
     start: &[f64],
@@ -99,7 +99,7 @@ pub fn series(
     for method in Method::ALL {
         bar.set_message(method.name());
         for setting in settings(method, safe, quick) {
-            // A step that is too long for the tolerance of nothing, or a run that grows: the next is finer.
+            // The run failed, because its step is too long or its motion grows: the next setting is finer.
             let Ok(Timed { trace, run: Run { statistics, .. }, wall }) =
                 timed(rig, start, &with(base, method, setting), repeats)
             else {
@@ -151,10 +151,10 @@ pub fn table(points: &[Measurement]) -> Grid {
     grid
 }
 
-/// Errors that users ask for, of the load path relative to its size.
+/// Errors that users ask for: of the load path, relative to its size.
 pub const TARGETS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
-/// The least time in which each method meets each error that users ask for.
+/// The shortest time in which each method meets each error that users ask for.
 pub fn least(points: &[Measurement], duration: f64) -> Grid {
     let headers = ["load path", "method", "step s", "tolerance", "wall ms", "times real time", "times rk4"];
     let mut grid = Grid::new("least", "Least time for an error of the load path, relative to its size", &headers);

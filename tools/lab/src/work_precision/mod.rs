@@ -30,7 +30,7 @@ use methods::{REPEATS, least, series, table};
 use reference::reference;
 use sections::{Limit, Variant, announce, variant};
 
-/// What the programs of compiled cranes run.
+/// The library that programs of compiled cranes run.
 const LIBRARY: Library = Library {
     name: "crane-lab",
     folder: env!("CARGO_MANIFEST_DIR"),
@@ -74,13 +74,13 @@ pub fn work_precision(options: &WorkPrecision, registry: &Registry, out: &mut dy
     run_with(&LIBRARY, &package, choice.name.as_ref(), &cranes)
 }
 
-/// Names and specs of a crane with other numbers of sections; none of a crane without flexible links.
+/// Names and specs of a crane with other numbers of sections; empty for a crane without flexible links.
 fn others(crane: &str, text: &str, counts: &[usize]) -> Vec<(String, String)> {
     let other = |&count: &usize| Some((refinement::name(crane, count), refinement::spec(crane, text, count)?));
     counts.iter().filter_map(other).collect()
 }
 
-/// What was found, with everything that is written.
+/// The results, with everything that is written to files.
 struct Found<'a> {
     description: &'a Description,
     facts: Report,
@@ -149,7 +149,7 @@ fn study(
     deliver(options, found, out)
 }
 
-/// Where runs start: at rest in equilibrium, or at the guess where no drive would move the crane from there.
+/// Where runs start: at rest in equilibrium, or at the guess if there is no drive to move the crane out of equilibrium.
 fn start(rig: &dyn DynCrane) -> Outcome<Start> {
     if rig.description().drives.is_empty() { Ok(Start::guess(rig)) } else { Ok(Start::of(rig)?) }
 }
@@ -167,7 +167,7 @@ fn base(options: &WorkPrecision, description: &Description) -> Outcome<Settings>
     Ok(Settings { duration, output: own.output.min(duration), ..own })
 }
 
-/// Writes tables and figures, and prints what was found.
+/// Writes tables and figures, and prints the results.
 fn deliver(options: &WorkPrecision, found: Found<'_>, out: &mut dyn Write) -> Outcome<()> {
     let name = &found.description.name;
     files::folder(&options.out)?;

@@ -1,4 +1,4 @@
-//! What was found as a Markdown page.
+//! The results as a Markdown page.
 
 use std::{fmt::Write as _, fs, path::Path};
 
@@ -9,7 +9,7 @@ use crane_cli::{
 
 use super::Found;
 
-/// Above each table and figure, by its name.
+/// Texts above each table and figure, by its name.
 const TEXTS: [(&str, &str, &str); 5] = [
     (
         "least",

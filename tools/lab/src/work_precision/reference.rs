@@ -9,30 +9,30 @@ use crane_cli::toolbox::{Outcome, Problem};
 
 use super::trace::{Errors, Timed, timed};
 
-/// The load paths of the two solutions agree to this, relative.
+/// Relative difference allowed between the load paths of the two solutions.
 const PATH: f64 = 1e-11;
-/// Torques and energies agree to this, relative: a stiff spring of 1e7 N m/rad turns the rounding of an angle into 1e-9 N m.
+/// Relative difference allowed between torques and energies: a stiff spring of 1e7 N m/rad turns the rounding of an angle into 1e-9 N m.
 const FORCES: f64 = 1e-9;
 /// Tolerances of the adaptive solution. Below the last, rounding decides.
 const TOLERANCES: [f64; 3] = [1e-11, 1e-12, 1e-13];
-/// Most steps of the solution by constant steps: beyond them rounding adds up to more than is asked for.
+/// Maximum number of steps of the solution by constant steps: beyond it, rounding adds up to more than is allowed.
 const MOST_STEPS: f64 = 1e6;
 
-/// A solution, and how near another method comes to it.
+/// A solution, and how closely another method agrees with it.
 pub struct Reference {
-    /// By the explicit pair.
+    /// Solution by the explicit pair.
     pub solution: Timed,
-    /// Distance of the classical Runge–Kutta method.
+    /// Difference from the solution by the classical Runge–Kutta method.
     pub agreement: Errors,
-    /// Tolerance of the first and step of the second, m and rad, s.
+    /// Tolerance of the explicit pair, m and rad, and step of the classical method, s.
     pub settings: (f64, f64),
 }
 
-/// The motion of a crane from `start` at rest by the explicit pair and by the classical Runge–Kutta method, with steps from `step`
-/// on, until both agree.
+/// The motion of a crane from `start` at rest by the explicit pair and by the classical Runge–Kutta method, refined
+/// from the step `step` until both agree.
 ///
 /// # Errors
-/// They do not agree with any of their settings.
+/// They do not agree for any of their settings.
 pub fn reference(rig: &dyn DynCrane, start: &[f64], base: &Settings, step: f64) -> Outcome<Reference> {
     let by = |method, tolerance, step| timed(rig, start, &Settings { method, step, tolerance, ..*base }, 1);
     let mut step = step;
@@ -68,12 +68,12 @@ pub fn reference(rig: &dyn DynCrane, start: &[f64], base: &Settings, step: f64) 
 struct Nearest {
     agreement: Errors,
     settings: (f64, f64),
-    /// So many results agree.
+    /// Number of results that agree.
     results: usize,
 }
 
 fn disagreement(name: &str, base: &Settings, nearest: Option<&Nearest>) -> Problem {
-    /// Part of the time of agreement that is proposed: another step may end a little earlier.
+    /// Fraction of the time of agreement that is proposed: with another step, agreement may end a little earlier.
     const CAREFUL: f64 = 0.9;
     let Some(Nearest { agreement, settings: (tolerance, step), results }) = nearest else {
         return Problem::failed(format!("{name}: no reference"), "");

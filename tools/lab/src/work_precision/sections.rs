@@ -18,13 +18,13 @@ use super::{
     trace::{Timed, Trace, timed},
 };
 
-/// Tolerance of a run whose error is the model's alone.
+/// Tolerance of a run whose only significant error is the model's.
 const TIGHT: f64 = 1e-7;
 /// Tolerances to choose from.
 const TOLERANCES: [f64; 7] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5];
-/// Tolerances to choose from for the explicit pair: its stable step decides, not they.
+/// Tolerances for the explicit pair, whose step is limited by stability, not by accuracy.
 const EXPLICIT: [f64; 1] = [1e-4];
-/// Runs that would take longer are not tried, s: others are cheaper.
+/// Runs that would take longer than this are not tried, s: others are cheaper.
 const LONG: f64 = 3.0;
 /// Frequencies that are compared.
 const FREQUENCIES: usize = 8;
@@ -36,11 +36,11 @@ pub struct Variant {
     coordinates: usize,
     /// Points in the pose at rest, m.
     rest: Vec<Vector3<f64>>,
-    /// How far they are from the pose before loads deform the crane, m.
+    /// Maximum distance of these points from their positions before loads deform the crane, m.
     deflection: f64,
     /// Lowest frequencies, Hz.
     frequencies: Vec<f64>,
-    /// A run as good as exact.
+    /// A practically exact run.
     motion: Trace,
     runs: Vec<Candidate>,
 }
@@ -49,12 +49,12 @@ pub struct Variant {
 pub struct Candidate {
     method: Method,
     setting: Setting,
-    /// s.
+    /// Wall time, s.
     wall: f64,
     trace: Trace,
 }
 
-/// Statics, modes and runs of a crane. A run may start elsewhere than where the crane rests.
+/// Statics, modes and runs of a crane. A run need not start where the crane rests.
 pub fn variant(
     rig: &dyn DynCrane,
     start: &Start,
@@ -81,13 +81,13 @@ pub fn variant(
             Method::DormandPrince => EXPLICIT.map(Setting::Tolerance).to_vec(),
             Method::Rosenbrock | Method::Bdf => TOLERANCES.map(Setting::Tolerance).to_vec(),
         };
-        // An explicit method needs as many steps as are stable; six evaluations a step are the most that one takes.
+        // Stability determines the number of steps of an explicit method; each takes at most six evaluations.
         let estimate = base.duration / limit * evaluation * 6.0;
         if method.is_explicit() && estimate > LONG {
             continue;
         }
         for setting in settings {
-            // Where no step meets a tolerance others are left.
+            // If no step meets a tolerance, the other runs remain.
             if let Ok(Timed { wall, trace, .. }) = timed(rig, &start.q, &with(base, method, setting), repeats) {
                 runs.push(Candidate { method, setting, wall, trace });
             }
@@ -97,7 +97,7 @@ pub fn variant(
     Ok(Variant { sections, coordinates, rest, deflection, frequencies, motion: tight.trace, runs })
 }
 
-/// What all variants come to, of the two finest by extrapolation: the error of rigid elements goes with 1/n².
+/// The limit of many sections, extrapolated from the two finest variants: the error of rigid elements is proportional to 1/n².
 pub struct Limit {
     rest: Vec<Vector3<f64>>,
     deflection: f64,
@@ -208,7 +208,7 @@ fn all(variants: &[Variant]) -> impl Iterator<Item = (&Variant, &Candidate)> {
     variants.iter().flat_map(|variant| variant.runs.iter().map(move |run| (variant, run)))
 }
 
-/// Ticks of the bar for one variant.
+/// Shows the progress to the next variant.
 pub fn announce(bar: &ProgressBar, sections: usize) {
     bar.set_message(format!("{sections} sections"));
     bar.tick();

@@ -1,4 +1,4 @@
-//! What of a run its error is measured by, and how far two runs are from each other.
+//! The quantities by which the error of a run is measured, and the differences between two runs.
 
 use std::{ops::ControlFlow, time::Instant};
 
@@ -9,32 +9,32 @@ use crane_model::{
     dynamics::{InitialState, Run, Sample, Settings, Stopped},
 };
 
-/// A run at its results.
+/// A run, sampled at its results.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// Positions of the points of interest, result by result; without any, of the last body. m.
+    /// Positions of the points of interest, result by result; if there are none, of the last body. m.
     pub path: Vec<Vec<Vector3<f64>>>,
     /// Torques and forces of the drives, result by result. N m and N.
     pub efforts: Vec<Vec<f64>>,
     /// Mechanical energy, result by result. J.
     pub energy: Vec<f64>,
-    /// The greatest kinetic energy, J.
+    /// Maximum kinetic energy, J.
     pub kinetic: f64,
 }
 
-/// Greatest differences of two runs over all results.
+/// Maximum differences between two runs over all results.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// Of the points' positions, relative to the longest way of one from its start.
+    /// Of the points' positions, relative to the maximum distance of one from its start.
     pub path: f64,
-    /// Of a drive's torque or force, relative to its greatest; `None` without drives.
+    /// Of a drive's torque or force, relative to its maximum; `None` without drives.
     pub efforts: Option<f64>,
-    /// Of the mechanical energy, relative to the greatest kinetic energy.
+    /// Of the mechanical energy, relative to the maximum kinetic energy.
     pub energy: f64,
 }
 
 impl Errors {
-    /// The greater of those of torques and energy.
+    /// The larger of the errors of torques and energy.
     pub fn of_forces(&self) -> f64 {
         self.efforts.unwrap_or(0.0).max(self.energy)
     }
@@ -51,7 +51,7 @@ impl Trace {
         }
     }
 
-    /// The run of a crane from what it showed, t, q and v of every result.
+    /// The run of a crane from t, q and v of every result.
     pub fn of(rig: &dyn DynCrane, samples: &[(f64, Vec<f64>, Vec<f64>)]) -> Self {
         let energies: Vec<Energies> = samples.iter().map(|(t, q, v)| rig.energies_at(*t, q, v)).collect();
         Self {
@@ -90,14 +90,14 @@ impl Trace {
         }
     }
 
-    /// Number of results up to which the load path of `other` is within `limit` of its size.
+    /// Number of results up to which the load path of `other` differs by at most `limit`, relative to its size.
     pub fn agrees_for(&self, other: &Self, limit: f64) -> usize {
         let part = |results: usize| {
             let part = |trace: &Self| Self { path: trace.path[..results].to_vec(), ..Self::default() };
             part(self).errors(&part(other)).path
         };
         let all = self.path.len().min(other.path.len());
-        // The part that agrees is followed by one that does not.
+        // Bisection: the runs agree up to some result and differ from then on.
         let (mut agrees, mut differs) = (0, all + 1);
         while differs - agrees > 1 {
             let middle = agrees.midpoint(differs);
@@ -106,20 +106,20 @@ impl Trace {
         agrees
     }
 
-    /// The longest way of a point from its start, m.
+    /// The maximum distance of a point from its start, m.
     pub fn size(&self) -> f64 {
         let Some(start) = self.path.first() else { return 0.0 };
         greatest(self.path.iter().flat_map(|points| points.iter().zip(start)).map(|(a, b)| (a - b).norm()))
     }
 
-    /// Greatest torque or force of every drive.
+    /// Maximum torque or force of every drive.
     pub fn peaks(&self) -> Vec<f64> {
         let drives = self.efforts.first().map_or(0, Vec::len);
         (0..drives).map(|drive| greatest(self.efforts.iter().map(|efforts| efforts[drive].abs()))).collect()
     }
 }
 
-/// The greatest number; NaN where there is one, because such a run has failed.
+/// The maximum; NaN if any number is NaN, because such a run has failed.
 fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(f64::NEG_INFINITY, |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
 }
@@ -127,15 +127,15 @@ fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
 /// A run that was timed.
 #[derive(Clone, Debug)]
 pub struct Timed {
-    /// What came out.
+    /// Its results.
     pub trace: Trace,
-    /// What it did.
+    /// Its summary.
     pub run: Run,
     /// Wall time, the median over repeated runs, s.
     pub wall: f64,
 }
 
-/// Most time that repeated runs of one setting take together, s: a longer run scatters less.
+/// Maximum total time of repeated runs of one setting, s: times of long runs scatter less.
 const REPEATED: f64 = 1.0;
 
 /// Runs a crane from `start` at rest up to `repeats` times.

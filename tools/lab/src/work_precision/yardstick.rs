@@ -1,5 +1,5 @@
 //! The same runs by diffsol, a general library for stiff equations, as a yardstick: BDF of variable order and an ESDIRK method,
-//! with the generated linearisation as Jacobian and dense factors of twice the size.
+//! with the generated linearisation as Jacobian and dense factorisations of twice the size.
 
 use std::{
     cell::{Cell, RefCell},
@@ -23,10 +23,10 @@ use super::{
 const METHODS: [&str; 2] = ["diffsol bdf", "diffsol esdirk34"];
 /// Tolerances, both absolute and relative, of each component of q and v.
 const TOLERANCES: [f64; 10] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6, 1e-7, 1e-8];
-/// Failures of Newton's iteration and of the error test that a run may have: by default it would end after 50, for a Jacobian without
-/// velocities.
+/// Maximum number of failures of Newton's iteration and of the error test in a run. The default of 50 would end it early, because the
+/// Jacobian neglects velocities.
 const FAILURES: usize = 100_000;
-/// A series ends where a run takes longer, s.
+/// A series ends when a run takes longer than this, s.
 const LONG: f64 = 3.0;
 
 /// A run from `start` at rest by a method of the library: results, wall time and counts.
@@ -39,7 +39,7 @@ fn run(
 ) -> Result<(Trace, f64, Statistics), DiffsolError> {
     let n = start.len();
     let evaluations = Cell::new(0);
-    // The library multiplies the Jacobian of one state by every unit vector.
+    // Kept, because the library multiplies the Jacobian at one state by every unit vector.
     let linearised = RefCell::new((Vec::new(), DMatrix::zeros(0, 0)));
     let slopes = |y: &[f64], _: &[f64], t: f64, slope: &mut [f64]| {
         evaluations.set(evaluations.get() + 1);
@@ -50,7 +50,7 @@ fn run(
     let multiply = |y: &[f64], _: &[f64], _: f64, x: &[f64], product: &mut [f64]| {
         let mut linearised = linearised.borrow_mut();
         if linearised.0 != y[..n] {
-            // At rest in the same pose; zero where the mass matrix is not positive definite.
+            // Linearised at rest in the same pose; zero if the mass matrix is not positive definite.
             let matrix = rig.small_motions_at(&y[..n]).state_matrix();
             *linearised = (y[..n].to_vec(), matrix.unwrap_or_else(|_| DMatrix::zeros(2 * n, 2 * n)));
         }
@@ -95,7 +95,7 @@ fn run(
     Ok((Trace::of(rig, &samples), wall, statistics))
 }
 
-/// Runs of the library's methods with every tolerance, as far as they end.
+/// Runs of the library's methods with every tolerance, except those that fail.
 pub fn series(
     rig: &dyn DynCrane,
     start: &[f64],

@@ -26,9 +26,9 @@ pub struct LiveCrane {
     library: Arc<Library>,
     description: Description,
     parameters: Vec<f64>,
-    /// Of every input its value while it is set, else 0; and 0 while it is set, else 1.
+    /// Two numbers per input: its value if it is set, else 0; and 0 if it is set, else 1.
     inputs: Vec<f64>,
-    /// Room for a call of every function, kept from the last; cranes that differ in their inputs alone share it.
+    /// Workspaces for calls, one per function, kept from the last call; cranes that differ only in their inputs share them.
     rooms: Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]>,
 }
 
@@ -65,7 +65,7 @@ impl LiveCrane {
         self.library.chain()
     }
 
-    /// Calls a function and passes on its results; nothing if the crane does not need it.
+    /// Calls a function and passes its results to `show`; `None` if the crane does not need the function.
     fn call<R>(
         &self,
         id: FunctionId,
@@ -88,13 +88,13 @@ impl LiveCrane {
         &self.parameters
     }
 
-    /// The inputs: of each its value while it is set, else 0; and 0 while it is set, else 1.
+    /// The inputs, two numbers each: its value if it is set, else 0; and 0 if it is set, else 1.
     pub(crate) fn inputs(&self) -> &[f64] {
         &self.inputs
     }
 
-    /// The same crane with other inputs, in the order of the description: what is not set is as the spec says. Nothing is computed
-    /// again, and the rooms are shared.
+    /// The same crane with other inputs, in the order of the description: those not set follow the spec. Nothing is computed
+    /// again, and the workspaces are shared.
     #[must_use]
     pub fn with_inputs(&self, values: &[Option<f64>]) -> Self {
         let mut inputs = not_set(self.chain());
@@ -130,7 +130,7 @@ impl LiveCrane {
         }
     }
 
-    /// All parameters, of which the first have these values.
+    /// All parameters, the first of them with these values.
     fn with_first(&self, values: &[f64]) -> Result<Vec<f64>, ParameterError> {
         let mut parameters = self.parameters.clone();
         copy(values, &mut parameters);
@@ -186,12 +186,12 @@ fn no_rooms() -> Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]> {
     Arc::new(std::array::from_fn(|_| Mutex::new(None)))
 }
 
-/// Inputs of which none is set.
+/// The inputs if none is set.
 fn not_set(chain: &Chain) -> Vec<f64> {
     chain.inputs.iter().flat_map(|_| Input::NOT_SET).collect()
 }
 
-/// Sets the numbers of an input, or gives it back to its spec.
+/// Sets the numbers of an input, or lets it follow the spec again.
 fn set(slots: &mut [f64], value: Option<f64>) {
     slots.copy_from_slice(&value.map_or(Input::NOT_SET, |value| [value, 0.0]));
 }

@@ -1,4 +1,4 @@
-//! What keeps numbers between its calls: linear systems of implicit steps, and eight cranes at a time.
+//! Computations that keep numbers between calls: linear systems of implicit steps, and eight cranes at a time.
 
 use crane_codegen::program::FunctionId;
 use crane_model::ParameterError;
@@ -41,10 +41,10 @@ impl DynImplicit for LiveCrane {
     }
 }
 
-/// A function and room for its calls.
+/// A function and the machine for its calls.
 type Ready<'a, T> = Option<(&'a Routine, Machine<T>)>;
 
-/// Systems with the factors of the last one.
+/// Linear systems, with the factors of the last one.
 struct System<'a> {
     factorise: Ready<'a, f64>,
     solve: Ready<'a, f64>,

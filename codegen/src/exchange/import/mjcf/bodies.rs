@@ -19,13 +19,13 @@ use crate::exchange::rotation::about;
 const WORLD: &str = "world";
 /// Elements that move a body.
 const JOINTS: [&str; 2] = ["joint", "freejoint"];
-/// `MuJoCo` refuses moving bodies without mass: what has less than this, kg, has none.
+/// `MuJoCo` refuses moving bodies without mass: a body with less than this, kg, is taken as massless.
 const LEAST_MASS: f64 = 1e-12;
 
 /// An element in a body, and what it inherits from the elements around it.
 pub(super) struct Placed<'a, 'i> {
     pub(super) node: Node<'a, 'i>,
-    /// Pose in the frame of the body of the `<frame>` elements around it.
+    /// Pose of the `<frame>` elements around it, in the frame of the body.
     pub(super) frame: Frame,
     pub(super) class: Option<&'a str>,
 }
@@ -33,7 +33,7 @@ pub(super) struct Placed<'a, 'i> {
 /// A body that is still to be read.
 struct Open<'a, 'i> {
     body: Placed<'a, 'i>,
-    /// Its link's parent, and the pose of the body in its frame.
+    /// The parent of its link; the frame in `body` is given in the frame of this parent.
     parent: String,
     /// Whether no joint is between it and the world.
     stands: bool,
@@ -55,7 +55,7 @@ impl<'a, 'i> File<'a, 'i> {
         }
     }
 
-    /// A body with its joints; the bodies in it are opened.
+    /// Reads a body with its joints; the bodies in it are added to `open`.
     fn body(&mut self, Open { body, parent, stands }: Open<'a, 'i>, count: usize, open: &mut Vec<Open<'a, 'i>>) {
         let node = body.node;
         let named = node.attribute_node("name");
@@ -89,7 +89,7 @@ impl<'a, 'i> File<'a, 'i> {
         }
         if joints.is_empty() {
             let ends = [&carrier, &name].map(|end| Named { name: end.clone(), span });
-            // Not a name that `--fix` could mean.
+            // A name that `--fix` cannot refer to.
             let fixed = Joint::new(&format!("{name} is fixed"), span, Motion::Fixed, ends);
             self.robot.joints.push(Joint { placement, ..fixed });
         }
@@ -100,7 +100,7 @@ impl<'a, 'i> File<'a, 'i> {
         self.contents(inside, &within, (&name, stands), open);
     }
 
-    /// Elements of a body or of the world, also those in `<frame>` elements.
+    /// Elements of a body or of the world, including those in `<frame>` elements.
     fn elements(&mut self, node: Node<'a, 'i>, class: Option<&'a str>) -> Vec<Placed<'a, 'i>> {
         let children = |of: Node<'a, 'i>| of.children().filter(Node::is_element).rev();
         let placed = |frame, class| move |node| Placed { node, frame, class };
@@ -118,7 +118,8 @@ impl<'a, 'i> File<'a, 'i> {
         found
     }
 
-    /// Sites among the elements of a link as frames without mass, and the bodies among them. `within`: pose of the elements in the link.
+    /// Reads the sites among the elements of a link as massless frames, and adds the bodies among them to `open`. `within`: pose of the
+    /// elements in the link.
     fn contents(
         &mut self,
         inside: Vec<Placed<'a, 'i>>,
@@ -126,7 +127,7 @@ impl<'a, 'i> File<'a, 'i> {
         (link, stands): (&str, bool),
         open: &mut Vec<Open<'a, 'i>>,
     ) {
-        // The first body is on top of the stack.
+        // In reverse, so that the first body is on top of the stack.
         for inner in inside.into_iter().rev() {
             let placed = Placed { frame: within.outer(&inner.frame), ..inner };
             match name_of(placed.node) {
@@ -150,7 +151,7 @@ impl<'a, 'i> File<'a, 'i> {
         self.robot.links.push(Link { name: own, span, lump: None });
     }
 
-    /// A joint, and its anchor in the frame of its body. `here`: pose of the body, as far as earlier joints moved it, in the link before.
+    /// A joint, and its anchor in the frame of its body. `here`: pose of the body, before this joint moves it, in the previous link.
     fn joint(
         &mut self,
         joint: &Placed<'a, 'i>,
@@ -175,7 +176,7 @@ impl<'a, 'i> File<'a, 'i> {
             other => Motion::Other(Named { name: other.to_owned(), span }),
         };
         let turns = matches!(motion, Motion::Revolute);
-        // Angles of the file in rad.
+        // Conversion of the file's angles to rad.
         let angle = if turns { self.angles.unit } else { 1.0 };
         let direction = self.numbers(node, class, "axis", &owner).unwrap_or([0.0, 0.0, 1.0]);
         let axis = unit(direction).unwrap_or_else(|| {

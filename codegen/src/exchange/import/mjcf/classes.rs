@@ -23,13 +23,13 @@ struct Class<'a, 'i> {
 }
 
 impl<'a, 'i> Classes<'a, 'i> {
-    /// Reads all `<default>` sections, and notes names of classes that are nowhere.
+    /// Reads all `<default>` sections, and reports names of classes that are not defined.
     pub(super) fn read(root: Node<'a, 'i>, reader: &mut Reader) -> Self {
         let mut classes = Classes::default();
         let defaults = |node: Node<'a, 'i>| node.children().filter(|node| node.has_tag_name("default"));
         let mut open: Vec<(Node<'a, 'i>, Option<&'a str>)> = defaults(root).map(|node| (node, None)).collect();
         while let Some((node, parent)) = open.pop() {
-            // The outermost class may have any name, and is that of elements without one.
+            // The outermost class may have any name, and applies to elements without a class.
             let name = if parent.is_none() { MAIN } else { node.attribute("class").unwrap_or(MAIN) };
             let class = classes.0.entry(name).or_default();
             class.nodes.push(node);
@@ -68,7 +68,7 @@ impl<'a, 'i> Classes<'a, 'i> {
     /// An element, then the defaults for it, innermost first.
     fn of_class(&self, node: Node<'a, 'i>, inherited: Option<&str>) -> impl Iterator<Item = Node<'a, 'i>> {
         let named = node.attribute("class").or(inherited).unwrap_or(MAIN);
-        // The outermost class under its own name.
+        // A name that is not found is the outermost class's own name.
         let first = self.0.get_key_value(named).or_else(|| self.0.get_key_value(MAIN));
         let classes = std::iter::successors(first, |(_, class)| self.0.get_key_value(class.parent?));
         let element = node.tag_name().name();

@@ -1,6 +1,6 @@
 //! Masses of bodies from their shapes.
 //!
-//! Inertias of solid shapes about their centres: any book on mechanics; of a capsule, a cylinder and two halves of a ball.
+//! Inertias of solid shapes about their centres are as in any book on mechanics; a capsule is a cylinder and two half balls.
 
 use std::f64::consts::PI;
 
@@ -18,7 +18,7 @@ const WATER: f64 = 1000.0;
 const MASSLESS: [&str; 2] = ["plane", "hfield"];
 
 impl<'a, 'i> File<'a, 'i> {
-    /// A shape in the frame of its body; `None` if it has no mass. `stands`: what stands still may have any mass.
+    /// A shape in the frame of its body; `None` if it has no mass. `stands`: whether the body is fixed, so that its mass does not matter.
     pub(super) fn shape(&mut self, shape: &Placed<'a, 'i>, body: &str, stands: bool) -> Option<Lump> {
         let &Placed { node, ref frame, class } = shape;
         let owner = format!("a geom of body `{body}`");
@@ -56,7 +56,7 @@ impl<'a, 'i> File<'a, 'i> {
 
 /// A solid about its centre, z along its axis.
 enum Solid {
-    /// By its three half axes, m.
+    /// By its three semi-axes, m.
     Ellipsoid(Vector),
     /// By half its sides, m.
     Block(Vector),
@@ -67,11 +67,11 @@ enum Solid {
 }
 
 impl Solid {
-    /// A solid of the language; `None` if its mass is not known.
+    /// The solid of a `<geom>`; `None` if its mass is not known.
     fn new(kind: &str, size: &[f64], ends: Option<[f64; 6]>) -> Option<Self> {
         let along = ends.map(|[a, b, c, d, e, f]| 0.5 * length([d - a, e - b, f - c]));
         let radius = *size.first()?;
-        // Between two points, the first size is that across.
+        // With `fromto`, the first size is the one across the axis.
         let half_length = || along.or_else(|| size.get(1).copied());
         let half_sides = || match along {
             Some(along) => Some([radius, radius, along]),
@@ -88,7 +88,7 @@ impl Solid {
         Some(solid)
     }
 
-    /// m³.
+    /// Volume, m³.
     fn volume(&self) -> f64 {
         match *self {
             Solid::Ellipsoid([a, b, c]) => 4.0 / 3.0 * PI * a * b * c,
@@ -110,7 +110,7 @@ impl Solid {
                 [across, across, 0.5 * r * r]
             }
             Solid::Capsule(r, h) => {
-                // Parts of the volume.
+                // Fractions of the volume.
                 let ball = 4.0 / 3.0 * r / (2.0 * h + 4.0 / 3.0 * r);
                 let cylinder = 1.0 - ball;
                 let along = cylinder * 0.5 * r * r + ball * 0.4 * r * r;
@@ -122,7 +122,7 @@ impl Solid {
     }
 }
 
-/// Masses that move together, as one.
+/// Masses that move together, combined into one.
 pub(super) fn together(lumps: &[Lump]) -> Option<Lump> {
     let mass: f64 = lumps.iter().map(|lump| lump.mass).sum();
     if mass <= 0.0 {

@@ -6,7 +6,7 @@
 //! | `classes` | attributes with the defaults of their classes |
 //! | `pose` | positions and the five ways to write an orientation |
 //! | `geoms` | masses of bodies from their shapes |
-//! | `others` | gravity, equalities, key frames; what a spec does not have |
+//! | `others` | gravity, equalities, key frames; elements that a spec cannot express |
 
 mod bodies;
 mod classes;
@@ -26,7 +26,7 @@ use pose::Angles;
 
 /// Elements that `MuJoCo` expands to others when it loads a file.
 const EXPANDED: [&str; 6] = ["include", "composite", "flexcomp", "replicate", "attach", "model"];
-/// Settings of the compiler that change masses, and the values with which they do not.
+/// Settings of `<compiler>` that change masses, and the values with which they do not.
 const OF_MASSES: [(&str, &str); 5] = [
     ("boundmass", "0"),
     ("boundinertia", "0"),
@@ -62,7 +62,7 @@ pub(super) fn read(root: Node) -> Result<Robot, Vec<Mistake>> {
     if file.reader.mistakes.is_empty() { Ok(file.robot) } else { Err(file.reader.mistakes) }
 }
 
-/// Which bodies have the masses of their shapes.
+/// Which bodies take their masses from their shapes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Inertia {
     /// Those without an inertial frame.
@@ -83,7 +83,7 @@ struct File<'a, 'i> {
 }
 
 impl File<'_, '_> {
-    /// `<compiler>`: how numbers are meant.
+    /// `<compiler>`: how numbers are interpreted.
     fn compiler(&mut self, node: Node) {
         for (key, harmless) in OF_MASSES {
             let given = node.attribute(key).map(|given| given.split_whitespace().collect::<Vec<_>>().join(" "));
@@ -116,7 +116,7 @@ impl File<'_, '_> {
         }
     }
 
-    /// A given number of numbers.
+    /// Exactly `N` numbers.
     fn numbers<const N: usize>(&mut self, node: Node, class: Option<&str>, key: &str, owner: &str) -> Option<[f64; N]> {
         let attribute = self.classes.find(node, class, key)?;
         self.reader.exact_numbers(attribute, &format!("`{key}` of {owner}"))

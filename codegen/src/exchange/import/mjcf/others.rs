@@ -1,4 +1,4 @@
-//! What is not a body: gravity, equalities, key frames, and what a spec does not have.
+//! Everything except bodies: gravity, equalities, key frames, and elements that a spec cannot express.
 
 use roxmltree::Node;
 
@@ -8,14 +8,14 @@ use crate::exchange::import::document::{child, name_of, tag};
 use crate::exchange::import::mistakes::rule;
 use crate::exchange::import::robot::{Follows, Joint, Motion, Named};
 
-/// Gravity unless a file says otherwise, m/s².
+/// Default acceleration of gravity, m/s².
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
-/// Sections whose elements a spec does not have.
+/// Sections whose elements a spec cannot express.
 const LEFT_OUT: [(&str, &str); 4] =
     [("actuator", "actuators"), ("tendon", "tendons"), ("contact", "pairs of contact"), ("extension", "plugins")];
 
 impl<'a, 'i> File<'a, 'i> {
-    /// All sections besides settings, defaults and the world.
+    /// All sections except settings, defaults and the world.
     pub(super) fn others(&mut self, root: Node<'a, 'i>) {
         let sections = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
         let elements = |name: &'static str| sections(name).flat_map(|node| node.children()).filter(Node::is_element);
@@ -62,7 +62,7 @@ impl<'a, 'i> File<'a, 'i> {
         }
     }
 
-    /// A joint that stands still or follows another one; nothing else.
+    /// Reads an equality that holds a joint or lets it follow another one; no other kind is supported.
     fn equality(&mut self, node: Node<'a, 'i>) {
         if self.classes.text(node, None, "active") == Some("false") {
             return;

@@ -12,7 +12,7 @@ use crate::exchange::rotation::{about, from_quaternion, length};
 pub(super) struct Angles {
     /// Radians in a unit of angle.
     pub(super) unit: f64,
-    /// Axes of Euler's angles; of lower-case ones the rotated frame, of upper-case ones the first one.
+    /// Axes of the Euler angles: lower-case letters are axes of the rotated frame, upper-case letters axes of the initial frame.
     sequence: [char; 3],
 }
 
@@ -56,7 +56,7 @@ impl<'a, 'i> File<'a, 'i> {
             self.reader.mistakes.push(rule::two_orientations(tag(given), owner, both));
             return Frame::WORLD;
         };
-        // Numbers that could not be read are a mistake already; a direction without length is one here.
+        // Numbers that could not be read are already reported; a direction without length is reported here.
         let frame = match *key {
             "quat" => self.own::<4>(given, key, owner).map(from_quaternion),
             "axisangle" => self.own::<4>(given, key, owner).map(|[x, y, z, angle]| {
@@ -78,7 +78,7 @@ impl<'a, 'i> File<'a, 'i> {
         self.reader.exact_numbers(node.attribute_node(key)?, &format!("`{key}` of {owner}"))
     }
 
-    /// Rotations about three axes in turn.
+    /// Rotations about three axes, one after the other.
     fn euler(&self, angles: Vector) -> Frame {
         self.angles.sequence.iter().zip(angles).fold(Frame::WORLD, |frame, (letter, angle)| {
             let axis = match letter.to_ascii_lowercase() {
@@ -108,7 +108,7 @@ fn from_x_and_y(x: Vector, y: Vector) -> Option<Frame> {
     Some(Frame { axes: [x, y, cross(x, y)], origin: [0.0; 3] })
 }
 
-/// A frame with z along a direction, rotated about the axis across both; half a turn is about x.
+/// A frame with z along a direction, rotated about the axis perpendicular to both; half a turn is about x.
 fn with_z_along(direction: Vector) -> Option<Frame> {
     let [x, y, z] = unit(direction)?;
     let across = x.hypot(y);
