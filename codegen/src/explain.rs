@@ -18,7 +18,7 @@ pub fn explain(chain: &Chain, report: &Report) -> String {
 
 fn bodies(chain: &Chain) -> String {
     let defaults = chain.parameter_defaults();
-    let mut text = format!("{:<20} {:>12} {:>6}  {}\n", "body", "mass [kg]", "n_dof", "path from the body before it");
+    let mut text = format!("{:<20} {:>12} {:>6}  {}\n", "body", "mass [kg]", "n_dof", "path from the previous body");
     for (p, body) in chain.bodies.iter().enumerate() {
         let mass = body.inertia.as_ref().map_or(0.0, |inertia| inertia.mass.at(&defaults));
         let path: Vec<String> = body.path.iter().map(|step| describe(chain, step, &defaults)).collect();
@@ -69,7 +69,7 @@ fn coordinates(chain: &Chain) -> String {
 fn left_out(report: &Report) -> String {
     let mut text = String::from("left out\n");
     if report.left_out.is_empty() {
-        text.push_str("  nothing: the scene needs everything\n");
+        text.push_str("  nothing: the crane needs everything\n");
     }
     for (what, why) in &report.left_out {
         let _ = writeln!(text, "  {what}: {why}");

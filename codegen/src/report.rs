@@ -94,7 +94,7 @@ impl Report {
         let longest = self.costs.iter().max_by_key(|cost| cost.statements).filter(|_| seconds > COMPILE_BUDGET)?;
         Some(format!(
             "`{crane}` is {statements} statements, about {seconds:.0} s of rustc, {} of them in `{}`: list fewer `analyses`, \
-             take fewer sections, or say `loops: auto` where it says `never`",
+             use fewer sections, or write `loops: auto` instead of `never`",
             longest.statements, longest.function
         ))
     }

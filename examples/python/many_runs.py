@@ -4,8 +4,8 @@
     python many_runs.py 100000 --folder study   # all; continues after an interruption
     python many_runs.py 100000 --folder study --scheduler tcp://head:8786   # on the workers of a Dask cluster
 
-Each case is a manoeuvre of 10 s of the eight-link crane with its flexible boom, 25 coordinates, with another load and another Young's modulus
-of the boom.
+Each case is a manoeuvre of 10 s of the eight-link crane with its flexible boom (25 coordinates), with its own load and its own Young's
+modulus of the boom.
 """
 
 import argparse
@@ -44,7 +44,7 @@ reached = sum(status == "done" for status in table["status"].to_pylist())
 print(f"{reached} of {given.cases} runs reached their end")
 computed = min(given.cases, done.computed * done.manifest["cases_per_part"])
 if computed:
-    # Of a core: what this process used, or what the workers' cores had.
+    # Core seconds per case: CPU time of this process, or elapsed time times the number of the workers' cores.
     cost = (wall * cores if engine else used) / computed
     print(f"{wall:.1f} s for {computed} runs on {cores} cores: {1e3 * cost:.1f} ms of a core per run")
     print(f"{ALL} runs: {ALL * cost / cores / 60:.1f} min on {cores} cores, {ALL * cost / 1000:.1f} s on 1000 of them")

@@ -626,7 +626,7 @@ pub fn kinetic_energy(q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
 /// The factors that [`factorise`] computes for [`solve`].
 pub type Factors = [f64; 6];
 
-/// Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, but `base` in the base's rows and columns.
+/// Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, and `base` in the base's rows and columns.
 ///
 /// `A + D̂, by articulated bodies at rest`
 ///

@@ -718,7 +718,7 @@ pub fn drive_motions(t: f64) -> [[f64; 2]; 3] {
     out
 }
 
-/// Begin and end of the intervals in which the motions and valves' commands of drives are smooth, drive by drive, s.
+/// Start and end of the intervals in which the motions and valve commands of drives are smooth, drive by drive, s.
 ///
 /// `t_begin, t_end`
 ///
@@ -2126,7 +2126,7 @@ pub fn kinetic_energy(q: &SVector<f64, N>, v: &SVector<f64, N>, c: &Constants) -
 /// The factors that [`factorise`] computes for [`solve`].
 pub type Factors = [f64; 25];
 
-/// Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, but `base` in the base's rows and columns.
+/// Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, and `base` in the base's rows and columns.
 ///
 /// `A + D̂, by articulated bodies at rest`
 ///
@@ -2697,7 +2697,7 @@ impl Crane {
     /// The crane with these values of its live parameters.
     ///
     /// # Errors
-    /// They break a rule of the spec language.
+    /// The values break a rule of the spec language.
     pub fn new(params: Params) -> Result<Self, ParameterError> {
         params.check()?;
         Ok(Crane {

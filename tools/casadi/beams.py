@@ -9,7 +9,7 @@ import numpy as np
 from inertias import pseudo_inertia, read_pseudo_inertia
 
 DIRECTIONS = ("psi", "theta", "phi")
-# ζ(5)·31/32: the sum of 1/n⁵ over odd n, to which the torsion series of a rectangle tends for a thin one.
+# ζ(5)·31/32: the sum of 1/n⁵ over odd n, the limit of the torsion series for a thin rectangle.
 ODD_RECIPROCAL_FIFTH_POWERS = 31 / 32 * 1.0369277551433699263313654865
 
 
@@ -25,9 +25,9 @@ class Section:
 
 
 def section_moduli(shape, size, section):
-    """A, Wy, Wz, Wt, Ay, Az of a shape, and 1 if it has corners: stresses are N/A, M/W and Q/A where they are greatest.
+    """A, Wy, Wz, Wt, Ay, Az of a shape, and 1 if it has corners: maximum stresses are N/A, M/W and Q/A.
 
-    Bending: J over the distance of the outermost fibre. Shear: Q S/(J t) at the neutral axis, S the first moment of half
+    Bending: J over the distance to the outermost fibre. Shear: Q S/(J t) at the neutral axis, S the first moment of half
     of the section, t the width there. Torsion: Bredt for the box, J over the radius for the round ones, Saint-Venant's series for
     the rectangle.
     """
@@ -77,8 +77,8 @@ class Beam:
 def rectangle_torsion(one_side, other_side):
     """Saint-Venant's torsion constant of a solid rectangle a ≥ b, from the exact series.
 
-    `J = a b³ (1/3 - 64/π⁵ b/a Σ tanh(nπa/2b)/n⁵)`, n odd. As tanh x = 1 - 2/(e²ˣ + 1), what is left after the sum
-    of 1/n⁵ falls by e^(-2π) a term: ten terms are beyond double precision.
+    `J = a b³ (1/3 - 64/π⁵ b/a Σ tanh(nπa/2b)/n⁵)`, n odd. As tanh x = 1 - 2/(e²ˣ + 1), the remainder after the sum
+    of 1/n⁵ decreases by at least e^(-2π) per term: ten terms exceed double precision.
     """
     a, b = ca.fmax(one_side, other_side), ca.fmin(one_side, other_side)
     rest = sum(2 / (ca.exp(n * math.pi * a / b) + 1) / n**5 for n in range(1, 20, 2))
@@ -188,7 +188,7 @@ class Parts:
         return section_of(shape, {key: (1 - share) * first[key] + share * last[key] for key in first})
 
     def slices(self, begin, end):
-        """Places, lengths and sections of thin slices between two places: Gauss's formula with 24 points in each part."""
+        """Positions, lengths and sections of thin slices between two positions: Gauss-Legendre quadrature, 24 points per part."""
         places, weights = np.polynomial.legendre.leggauss(24)
         for part in self.parts:
             low, high = max(begin, part[0]), min(end, part[1])
@@ -198,7 +198,7 @@ class Parts:
                     yield x, (high - low) / 2 * weight, self.section(x, part)
 
     def inertia(self, begin, end, density, extra):
-        """H about the begin of what is between two places."""
+        """H of the beam between two positions, about the first."""
         total = ca.SX(4, 4)
         for x, length, section in self.slices(begin, end):
             mass = (density * section.area + extra) * length
@@ -209,7 +209,7 @@ class Parts:
         return total
 
     def stiffness(self, begin, end, E, G):
-        """A section's springs in a row: each slice turns by M dx/(E J)."""
+        """Stiffness of a section: its slices are springs in series, each turning by M dx/(E J)."""
         compliance = {direction: 0 for direction in DIRECTIONS}
         for _, length, section in self.slices(begin, end):
             for direction, rigidity in zip(DIRECTIONS, (E * section.Jz, E * section.Jy, G * section.Jo)):
@@ -218,7 +218,7 @@ class Parts:
 
 
 def prism(mass, length, section):
-    """H of a prismatic element along x whose mass is spread like its section."""
+    """H of a prismatic element along x whose mass is distributed like its section."""
     slender = length**2 / 12
     tensor = ca.diag(
         ca.vertcat(

@@ -3,7 +3,7 @@
     python check.py --evaluate target/release/evaluate [--crane NAME]... [--states 100] [--seed 1] [--json FILE]
     python check.py --self-test [SPEC.yaml]...
 
-Exit code 0 if every quantity of every crane agrees, 1 if one does not, 2 if the command makes no sense.
+Exit code 0 if every quantity of every crane agrees, 1 if one does not, 2 if the command line is invalid.
 """
 
 import json
@@ -37,7 +37,7 @@ def main():
 
 
 def check(options):
-    """Checks all cranes, a table each."""
+    """Checks all cranes and prints a table for each."""
     evaluate = Evaluate(options.evaluate)
     names = options.crane or evaluate.names()
     quantities = [quantity["name"] for name in names[:1] for quantity in evaluate.layout(name)["quantities"]]
@@ -89,7 +89,7 @@ def check_crane(name, options):
 
 
 def describe_differences(crane, derivations, layout):
-    """Where the description that was compiled in differs from the YAML."""
+    """Differences between the compiled-in description and the YAML."""
     index = {coordinate.name: i for i, coordinate in enumerate(crane.coordinates)}
     expected = {
         "name": crane.name,
@@ -105,7 +105,7 @@ def describe_differences(crane, derivations, layout):
     ]
     offered = {quantity["name"]: quantity["length"] for quantity in layout["quantities"]}
     wanted = derivations.sizes()
-    if "file" in layout:  # interpreted: some of the quantities
+    if "file" in layout:  # interpreted: only some of the quantities
         wanted = {name: size for name, size in wanted.items() if name in offered}
     for name in sorted(offered.keys() | wanted.keys()):
         if offered.get(name) != wanted.get(name):
@@ -114,12 +114,12 @@ def describe_differences(crane, derivations, layout):
 
 
 def seeded_states(crane, options):
-    """The same states for a crane whatever else is checked."""
+    """The states of a crane, which do not depend on what else is checked."""
     return random_states(crane, options.states, [options.seed, zlib.crc32(crane.name.encode())])
 
 
 def print_report(report):
-    """A crane's table."""
+    """Prints the table of a crane."""
     print(f"{report['crane']}: {report['coordinates']} coordinates, {report['states']} states, {report['seconds']} s")
     for difference in report["differences"]:
         print(f"  FAILED: {difference}")
@@ -128,7 +128,7 @@ def print_report(report):
 
 
 def self_test(options):
-    """Laws that the derivations must obey, and errors put in on purpose that the comparison must notice."""
+    """Checks laws that the derivations must obey, and that the comparison detects errors introduced on purpose."""
     failed = False
     for path in options.self_test or sorted(WORKSPACE.glob("specs/*.yaml")):
         crane = read_crane(path)

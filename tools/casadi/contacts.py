@@ -1,8 +1,8 @@
-"""One-sided supports: what presses on the ground and never pulls.
+"""One-sided supports, which press on the ground and never pull.
 
-Written down is the energy over the elongation e and what the damper adds; the rest is differentiated. With `d = max(0, -e_z)` how far
-a support is pressed in, it holds sideways and damps in the share `w = x² (3 - 2x)`, x = s_z d over the pressing force of full hold, at
-most 1.
+Only the energy as a function of the elongation e and the force of the damper are written down; the rest is differentiated. With the
+penetration `d = max(0, -e_z)`, lateral stiffness and all damping are scaled by `w = x² (3 - 2x)`, where x is s_z d over the pressing
+force of full hold, at most 1.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import casadi as ca
 
 @dataclass
 class Contact:
-    """A one-sided support at a state: elongation and its Jacobian, force on the crane, energy, lost power, what an implicit step takes."""
+    """A one-sided support at a state: Jacobian of its elongation, energy, force on the crane, lost power, matrices for linearisation."""
 
     jacobian: ca.SX
     energy: ca.SX
@@ -24,7 +24,7 @@ class Contact:
 
 
 def contact(support, q, v):
-    """The law of a one-sided support; `at_rest` is its damping over q at rest, the last two what implicit steps take over q."""
+    """The law of a one-sided support; `at_rest` is its damping in q at rest, the last two are for implicit steps."""
     e, rate = ca.SX.sym("e", 3), ca.SX.sym("rate", 3)
     pressed = ca.if_else(e[2] <= 0, -e[2], 0)
     x = ca.fmin(1, support.stiffness[2] * pressed / support.full_hold)
@@ -35,9 +35,9 @@ def contact(support, q, v):
     total = spring + damper
     presses = total[2] > 0
     force = ca.vertcat(total[:2], ca.if_else(presses, total[2], 0))
-    # What is not the spring's: of the damper, and of the spring where both together would pull.
+    # Power not stored in the spring: that of the damper, and of the spring where both together would pull.
     lost = -ca.dot(ca.vertcat(damper[:2], ca.if_else(presses, damper[2], -spring[2])), rate)
-    # Nowhere negative: along z as the force grows, sideways as the share is.
+    # Never negative: the slope of the force along z, the scaled stiffness sideways.
     normal = ca.if_else(presses, ca.fmax(0, -ca.jacobian(total[2], e[2])), 0)
     stiffness = ca.vertcat(share * support.stiffness[:2], normal)
     damping = share * support.damping

@@ -14,14 +14,14 @@ from transforms import classic_dh, modified_dh, place, rotate, rotate_by_vector,
 ROTATIONS = {"psi": "z", "theta": "y", "phi": "x"}
 TRANSLATIONS = {"x": "x", "y": "y", "z": "z"}
 ROTATION_NAMES = {axis: name for name, axis in ROTATIONS.items()}
-# Two places along a beam are one if they differ by less than this share of its length: rounding of decimals.
+# Two positions along a beam coincide if they differ by less than this fraction of its length: rounding of decimals.
 SAME_PLACE = 1e-12
 FREE = ["x", "y", "z", "psi", "theta", "phi"]
 
 
 @dataclass
 class Coordinate:
-    """A generalized coordinate: its symbol, what it is named, and whose it is."""
+    """A generalized coordinate: its name, its symbols, and what it belongs to."""
 
     name: str
     q: ca.SX
@@ -44,7 +44,7 @@ class Body:
 
 @dataclass
 class Cut:
-    """A cut through the chain: the pose of its frame in the world, and the place of the first body beyond it."""
+    """A cut through the chain: the pose of its frame in the world, and the index of the first body beyond it."""
 
     frame: ca.SX
     beyond: int
@@ -52,7 +52,7 @@ class Cut:
 
 @dataclass
 class Spring:
-    """Spring and damper on one coordinate: an element's, or with a motion a drive's; a rigid drive has neither. One by oil
+    """Spring and damper on one coordinate: of an element or, with a motion, of a drive. A rigid drive has neither; a drive by oil
     has its spring at rest only."""
 
     coordinate: Coordinate
@@ -70,7 +70,7 @@ class Spring:
 
 @dataclass
 class Stop:
-    """An end stop: the joint is beyond it where `sign * (q - at)` is above zero."""
+    """An end stop: the joint is beyond it where `sign * (q - at)` is positive."""
 
     coordinate: Coordinate
     at: object
@@ -81,7 +81,7 @@ class Stop:
 
 @dataclass
 class Friction:
-    """Friction of a joint; `breakaway` is as `coulomb` where the spec says nothing, `bristle` stiffness and damping of bristles."""
+    """Friction of a joint; `breakaway` equals `coulomb` unless given, `bristle` is stiffness and damping of bristles."""
 
     coordinate: Coordinate
     coulomb: object
@@ -94,7 +94,7 @@ class Friction:
 
 @dataclass
 class Load:
-    """A load applied from outside: the place of its body, where it acts, that body's rotation, both along the world's axes."""
+    """An applied load: index of its body, point of action, that body's rotation; force and moment along the world's axes."""
 
     body: int
     position: ca.SX
@@ -105,7 +105,7 @@ class Load:
 
 @dataclass
 class Connector:
-    """An element whose force follows from its length; between points the bodies that it pulls by their places, and the points."""
+    """An element whose force follows from its length; if it is between points, the indices of the bodies that it pulls, and the points."""
 
     bodies: list
     points: list
@@ -119,7 +119,7 @@ class Connector:
 
 @dataclass
 class Support:
-    """Springs and dampers along the world's axes; `elongation` and its columns for x, y, z. `full_hold` is None if it pulls, too."""
+    """Springs and dampers along the world's axes; one entry each for x, y, z. `full_hold` is None if the support also pulls."""
 
     name: str
     position: ca.SX
@@ -131,7 +131,7 @@ class Support:
 
 @dataclass
 class Span:
-    """A link as bodies in a row: where each begins along the undeformed link, and the pose of the tip."""
+    """A link as bodies in a row, and where each begins along the undeformed link."""
 
     bodies: list
     starts: list
@@ -175,7 +175,7 @@ class Crane:
 
     @property
     def has_rotation_vectors(self):
-        """Whether elements turn by rotation vectors, which no chain of hinges has."""
+        """Whether elements turn by rotation vectors, which a chain of hinges cannot represent."""
         return any(coordinate.is_in_vector for coordinate in self.coordinates)
 
     @property
@@ -185,7 +185,7 @@ class Crane:
 
     @property
     def rigid_drives(self):
-        """Rigid drives by the place of their coordinate, which they prescribe."""
+        """Rigid drives by the index of the coordinate that they prescribe."""
         places = {coordinate.name: place for place, coordinate in enumerate(self.coordinates)}
         return {places[drive.coordinate.name]: drive for drive in self.drives if drive.is_rigid}
 
@@ -224,7 +224,7 @@ def read_crane(path):
         crane.rotors.append((crane.drives[-1].coordinate, spec.number(written.get("armature", 0))))
     for name, damping in spec.get("damping", {}).items():
         crane.joint_dampers.append(Spring(crane.coordinate(name), 0, spec.number(damping)))
-    # An entry of its own replaces what the rope gives all its joints.
+    # A joint's own entry replaces the damping that the rope gives all its joints.
     crane.joint_dampers += [damper for damper in crane.rope_dampers if damper.coordinate.name not in spec.get("damping", {})]
     for name, armature in spec.get("armature", {}).items():
         crane.rotors.append((crane.coordinate(name), spec.number(armature)))
@@ -273,7 +273,7 @@ def read_links(crane):
 
 
 def read_link_inertia(spec, link):
-    """H of a rigid link: of its only body, of all its bodies together, or nothing."""
+    """H of a rigid link: of its only body, of all its bodies together, or zero."""
     written = link.get("bodies") or ([link] if "mass" in link else [])
     return sum((read_pseudo_inertia(spec, body) for body in written), ca.SX(4, 4))
 
@@ -314,7 +314,7 @@ def swing(crane, name):
 
 
 def read_rope_bodies(crane, name, transform, written):
-    """Adds the links of a rope, the first behind its joint; returns its span and the pose of its end."""
+    """Adds the links of a rope, whose first joint is in `transform`; returns its span and the pose of its end."""
     count = int(written["links"])
     length = crane.spec.number(written["length"]) / count
     mass = crane.spec.number(written["mass_per_length"]) * length
@@ -336,7 +336,7 @@ def read_rope_bodies(crane, name, transform, written):
 
 
 def read_joint(crane, link, is_base):
-    """Where a link's joint and the link are after the joint's motions, in the frame that the link hangs on."""
+    """Poses of a link's joint and of the link after the joint's motions, in the frame that the link is attached to."""
     joint = link.get("joint", "fixed")
     kind, written = next(iter(joint.items())) if isinstance(joint, dict) else (joint, None)
     placement = link.get("placement") or {"transform": {}}
@@ -359,7 +359,7 @@ def read_joint(crane, link, is_base):
     placement = read_placement(crane.spec, convention, row or {}, {offset: crane.coordinates[-1].q})
     if convention == "modified_dh":
         return placement, placement
-    # In a classic row the motion comes before the way to the link.
+    # In a classic D-H row, the motion comes before the offset to the link.
     return rotate("z", crane.spec.angle((row or {}).get("theta", 0))) @ motion, placement
 
 
@@ -380,7 +380,7 @@ def read_placement(spec, convention, row, variable=None):
 
 
 def read_support(crane, written, base):
-    """A support: how far its point is from where it is at q̃(1) = 0, less the free play [Urbaś 2016, Eq. (16)].
+    """A support: the displacement of its point from q̃(1) = 0, less the free play [Urbaś 2016, Eq. (16)].
 
     The linear support is the first-order expansion of the exact one in the base's coordinates; U is not written down.
     """
@@ -402,7 +402,7 @@ def read_support(crane, written, base):
 
 
 def read_drive(crane, written):
-    """A drive: spring and damper from a prescribed motion to its coordinate [Urbaś 2016, Eqs. (19)-(21)], or nothing between."""
+    """A drive: spring and damper between a prescribed motion and its coordinate [Urbaś 2016, Eqs. (19)-(21)], or neither."""
     spec = crane.spec
     coordinate = crane.coordinate(written["coordinate"])
     motion, interval = read_profile(spec, written["motion"], coordinate.is_rotation, crane.time)
@@ -442,7 +442,7 @@ def read_friction(spec, written, coordinate):
 
 
 def read_load(crane, written, span):
-    """A load: along the link's axes it turns with the element that carries it."""
+    """A load; if it acts along the link's axes, it turns with the element that carries it."""
     spec = crane.spec
     at, force, moment = (spec.vector(written.get(key, [0, 0, 0])) for key in ("at", "force", "moment"))
     body, local = carrier(spec, at, span)
@@ -454,14 +454,14 @@ def read_load(crane, written, span):
 
 
 def read_cylinder(crane, written, spans):
-    """A cylinder, with its length over the coordinates."""
+    """A cylinder, with its length as a function of the coordinates."""
     spec = crane.spec
     coordinate = crane.coordinate(written["coordinate"])
     foot, head = (carrier(spec, spec.vector(written[key]["at"]), spans[written[key]["link"]]) for key in ("foot", "head"))
     start, end = place(foot[0].transform, foot[1]), place(head[0].transform, head[1])
     linkage = written.get("linkage")
     if linkage is not None:
-        # The pivot moves with the body that carries the foot, which begins at the foot's place along a beam.
+        # The pivot moves with the body that carries the foot: along a beam, the element there.
         local = spec.vector(linkage["pivot"]) - (spec.vector(written["foot"]["at"]) - foot[1])
         pivot = place(foot[0].transform, local)
         axis = turning_axis(head[0].transform[:3, :3], coordinate.q)
@@ -501,16 +501,16 @@ def read_coupling(crane, written):
 
 
 def read_point(spec, written, span):
-    """Where a point of a link is in the world; on a beam, the element that holds its x carries it.
+    """Where a point of a link is in the world; on a beam, the element that contains its x carries it.
 
-    On a spring, that is the element that begins there, to within rounding of written and added lengths.
+    At a spring, that is the element that begins there, up to rounding of the lengths.
     """
     body, local = carrier(spec, spec.vector(written["at"]), span)
     return place(body.transform, local)
 
 
 def carrier(spec, at, span):
-    """The body of a link that carries a point of it, and where."""
+    """The body of a link that carries one of its points, and the point in that body's frame."""
     starts = [spec.default(start) for start in span.starts]
     reach = spec.default(at[0]) + SAME_PLACE * starts[-1]
     index = max((i for i, start in enumerate(starts) if start <= reach), default=0)

@@ -1,4 +1,4 @@
-"""Cylinders between their pins: lengths written down in the world, by the law of cosines where there is a linkage; the rest is differentiated."""
+"""Cylinders between their pins: lengths in the world frame, by the law of cosines where there is a linkage; the rest is differentiated."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,7 @@ def turning_axis(rotation, angle):
 
 
 def pin_of_rocker(pivot, head, axis, lengths, side):
-    """Where rocker and link meet: by the angle of the triangle pivot, pin, head at the pivot."""
+    """Where rocker and link meet: from the angle at the pivot in the triangle pivot, pin, head."""
     rocker, link = lengths
     distance = ca.norm_2(head - pivot)
     cosine = (distance**2 + rocker**2 - link**2) / (2 * distance * rocker)

@@ -65,10 +65,10 @@ class Derivations:
         }
 
     def internal_forces(self):
-        """What the part beyond each cut exerts on the part before it: minus the rate of its momenta, its weight, and the loads on it.
+        """What the part beyond each cut exerts on the part before it: its weight and the loads on it, minus the rate of its momenta.
 
         With H the pseudo-inertia, `∫ ẍ dm` is the last column of `T̈ H`, and `∫ x × ẍ dm` the axial vector of `T̈ H Tᵀ`. The
-        rates stand for accelerations, too.
+        rates are used as accelerations, too.
         """
         q, v, gravity = self.crane.q, self.crane.v, self.crane.gravity
         force, moment, sums = ca.SX(3, 1), ca.SX(3, 1), {}
@@ -103,7 +103,7 @@ class Derivations:
         return {"internal_forces": ca.vertcat(*wrenches), "support_positions": ca.vertcat(ca.SX(0, 1), *positions), **self.section_moduli()}
 
     def section_moduli(self):
-        """What stresses of beams follow from, and the allowable stress; zeros where the spec does not say."""
+        """Section moduli of beams, and the allowable stress; zeros where the spec does not give them."""
         rows = [
             ca.vertcat(*moduli, beam.allowable_stress) if moduli else ca.SX.zeros(8)
             for beam in self.crane.beams
@@ -112,7 +112,7 @@ class Derivations:
         return {"section_moduli": ca.vertcat(ca.SX(0, 1), *rows)}
 
     def kinetic_energy(self):
-        """`½ Σ tr(Ṫ H Ṫᵀ)` [Urbaś 2016, Eq. (4)], and of rotors, whose armature is reflected to the joint, `½ Σ I q̇²`."""
+        """`½ Σ tr(Ṫ H Ṫᵀ)` [Urbaś 2016, Eq. (4)], plus `½ Σ I q̇²` for rotors, whose armature is reflected to the joint."""
         energy = sum((armature * coordinate.v**2 / 2 for coordinate, armature in self.crane.rotors), ca.SX(0))
         for body in self.crane.bodies:
             rate = self.rate(body.transform)
@@ -141,7 +141,10 @@ class Derivations:
         }
 
     def potentials(self):
-        """Potential energy and Rayleigh's function by part, one-sided supports and drives with a limit apart [Urbaś 2016, Eqs. (14), (16), (17), (19)]."""
+        """Potential energy and Rayleigh's function by part [Urbaś 2016, Eqs. (14), (16), (17), (19)].
+
+        One-sided supports, drives with a limit and drives by oil are not included.
+        """
         crane = self.crane
 
         def sum_of(terms):
@@ -166,10 +169,10 @@ class Derivations:
         }
 
     def joint_forces(self):
-        """End stops and friction: generalized forces of either, energy of the stops, damping of both at rest.
+        """End stops and friction: generalized forces of both, energy of the stops, damping of both at rest.
 
-        A stop is a spring that acts one way, times `1 + a δ̇` as long as that pushes [Hunt and Crossley 1975]; friction is Coulomb's
-        with Stribeck's decline, smooth by a hyperbolic tangent.
+        A stop is a one-way spring times `1 + a δ̇` where that is positive [Hunt and Crossley 1975]; friction is Coulomb's with
+        the Stribeck effect, smoothed by a hyperbolic tangent.
         """
         crane = self.crane
         places = {coordinate.name: place for place, coordinate in enumerate(crane.coordinates)}
@@ -186,14 +189,14 @@ class Derivations:
         for friction in crane.frictions:
             place, rate = places[friction.coordinate.name], friction.coordinate.v
             more = (friction.breakaway - friction.coulomb) * ca.exp(-((rate / friction.stribeck) ** 2))
-            # That of bristles depends on a state besides.
+            # Dry friction of bristles depends on an additional state.
             dry = (friction.coulomb + more) * ca.tanh(rate / friction.width) if friction.bristle is None else 0
             friction_forces[place] -= dry + friction.viscous * rate
             damping[place] += friction.viscous
         return stop_forces, friction_forces, energy, damping
 
     def load_forces(self):
-        """Generalized forces of the loads: virtual work of force and moment, the rotation's by `δR Rᵀ`."""
+        """Generalized forces of the loads: virtual work of force and moment, with `δR Rᵀ` for the rotation."""
         q = self.crane.q
         forces = ca.SX.zeros(q.shape)
         for load in self.crane.loads:
@@ -207,7 +210,7 @@ class Derivations:
     def connector(self, connector, moving=True):
         """Length, its rate, the force that pulls its points together, and the energy, of an element between two points.
 
-        At rest nothing has a rate, not even a winch.
+        At rest all rates are zero, even that of a winch.
         """
         length = connector.strain
         rate = self.rate(length) if moving else ca.SX(0)
@@ -221,7 +224,7 @@ class Derivations:
         return length, rate, force, connector.stiffness * stretch**2 / 2 - connector.push * stretch
 
     def connector_forces(self):
-        """Generalized forces of elements between two points by virtual work, what winches put in, energies and damping at rest."""
+        """Generalized forces of elements between two points by virtual work, power of winches, energies and damping at rest."""
         q, v = self.crane.q, self.crane.v
         forces, at_rest = ca.SX.zeros(q.shape), ca.SX.zeros(q.shape)
         energy, power, lost, damping = ca.SX(0), ca.SX(0), ca.SX(0), ca.SX(q.numel(), q.numel())
@@ -236,7 +239,7 @@ class Derivations:
             wound = -force * self.rate(ca.SX(connector.length)) if connector.is_rope else 0
             power += wound
             lost += wound + force * rate - self.rate(stored)
-            # Of a rope the slope is taken where it is taut, of F(ℓ, ℓ̇) by symbols in their places.
+            # Slopes of F(ℓ, ℓ̇) by symbols for length and rate; those of a rope where it is taut.
             stretched, running = ca.SX.sym("length"), ca.SX.sym("rate")
             taut = stretched > connector.length
             if connector.is_rope:
@@ -267,7 +270,7 @@ class Derivations:
         }, lost, damping
 
     def forces(self):
-        """Generalized forces `-∂E_p/∂q - ∂R/∂q̇` by part and in all; power lost 2R; D = ∂²R/∂q̇²."""
+        """Generalized forces `-∂E_p/∂q - ∂R/∂q̇` by part and in total; power lost 2R; D = ∂²R/∂q̇²."""
         q, v = self.crane.q, self.crane.v
         parts = self.potentials()
         energies = {part: energy for part, (energy, _) in parts.items()}
@@ -281,7 +284,7 @@ class Derivations:
         contacts, contact_energy, contact_damping = self.contact_forces()
         by_part["support"] += contacts
         energies["support"] += contact_energy
-        # What is neither in the stops' energy nor at rest.
+        # Power of stops and friction that does not go into the stops' energy.
         lost = -ca.dot(stops + friction, v) - ca.jtimes(stop_energy, q, v)
         lost += sum((c.lost for c in self.contacts.values()), ca.SX(0))
         drives, drive_energy, drive_lost, drive_damping, _ = self.limited_drives()
@@ -313,7 +316,7 @@ class Derivations:
 
     def limited_drives(self):
         """Drives with a limit: their generalized forces, energy, lost power, damping at rest and t = 0, and
-        power that the motions put in beyond their efforts, which slips."""
+        power that their motions put in beyond the delivered efforts, lost by slipping."""
         places = {coordinate.name: place for place, coordinate in enumerate(self.crane.coordinates)}
         forces, damping = (ca.SX.zeros(self.crane.q.shape) for _ in range(2))
         energy, lost, slipping = ca.SX(0), ca.SX(0), ca.SX(0)
@@ -335,7 +338,7 @@ class Derivations:
         return forces, sum((c.energy for c in contacts), ca.SX(0)), sum((c.at_rest for c in contacts), ca.SX(size, size))
 
     def unknowns(self, matrix, diagonal):
-        """A matrix of small motions, row by row: where a coordinate is prescribed, nothing but a number on the diagonal."""
+        """A matrix of small motions, row by row: rows and columns of prescribed coordinates are zero except for the given diagonal."""
         matrix = ca.densify(matrix)
         for place in self.crane.rigid_drives:
             matrix[place, :] = 0
@@ -344,7 +347,7 @@ class Derivations:
         return row_major(matrix)
 
     def prescribed(self):
-        """Coordinates and rates with those set that rigid drives prescribe, and the accelerations that they prescribe."""
+        """Coordinates and rates, with those of rigid drives replaced by their motions, and the prescribed accelerations."""
         q, v, acceleration = ca.SX(self.crane.q), ca.SX(self.crane.v), ca.SX.zeros(self.crane.q.shape)
         for place, drive in self.crane.rigid_drives.items():
             motion = ca.SX(drive.motion)
@@ -353,7 +356,7 @@ class Derivations:
         return {"prescribed": ca.vertcat(q, v), PRESCRIBED: acceleration}
 
     def driving_forces(self):
-        """`t_dr` of each drive with a spring: the generalized force of all drives on its own coordinate."""
+        """`t_dr` of each drive: the generalized force of the drives' springs and dampers on its coordinate."""
         energy, lost = self.potentials()["drive"]
         forces = self.limited_drives()[0]
         places = {coordinate.name: place for place, coordinate in enumerate(self.crane.coordinates)}
@@ -398,7 +401,7 @@ class Derivations:
         return ca.densify(ca.substitute(-ca.gradient(energy, self.crane.q), self.crane.time, 0))
 
     def motions(self):
-        """Points and their velocities, reactions of the supports, and what the drives prescribe and deliver."""
+        """Points and their velocities, reactions of the supports, cylinders, and the drives' motions, limits and power."""
         crane = self.crane
         points = ca.vertcat(*crane.points.values())
         prescribed = ca.vertcat(*[ca.SX(drive.motion) for drive in crane.drives])
@@ -417,7 +420,7 @@ class Derivations:
         }
 
     def drive_limits(self):
-        """Greatest effort of each drive and its stiffness; zeros for a crane without limits."""
+        """Maximum effort of each drive and its stiffness; zeros for a crane without limits."""
         drives = self.crane.drives
         if all(drive.max_effort is None for drive in drives):
             return ca.SX.zeros(2 * len(drives))
@@ -433,7 +436,7 @@ class Derivations:
         return -support.stiffness * support.elongation - support.damping * self.rate(support.elongation)
 
     def gap(self, support):
-        """How far a one-sided support is above the ground, and the rate of that; zeros of others."""
+        """How far a one-sided support is above the ground, and its rate; zeros for others."""
         if support.full_hold is None:
             return ca.SX.zeros(2)
         return ca.vertcat(support.elongation[2], self.rate(support.elongation[2]))
@@ -444,7 +447,7 @@ class Derivations:
         return own | dict.fromkeys(SOLUTIONS, self.crane.q.numel())
 
     def evaluate(self, states):
-        """All quantities at all states: name -> array with a row a state."""
+        """All quantities at all states: name -> array with one row per state."""
         columns = [states.time[None, :], states.q.T, states.v.T, states.parameters.T]
         names = list(self.quantities)
         function = ca.Function("quantities", self.arguments, [ca.densify(self.quantities[name]) for name in names])
@@ -453,15 +456,15 @@ class Derivations:
         return values | solutions(values, states.v, list(self.crane.rigid_drives))
 
 
-# Step of `implicit_solution`, s; that of the program that evaluates.
+# Step size of `implicit_solution`, s; that of the program `evaluate`.
 IMPLICIT_STEP = 0.01
-# Found from the other quantities at each state.
+# Computed from the other quantities at each state.
 SOLUTIONS = ["forward_dynamics", "lane_forward_dynamics", "mass_solution", "implicit_solution"]
-# The stiffness of all springs that implicit steps take, for these alone: nothing generated has it by itself.
+# The stiffness of all springs in implicit steps, needed only for these: no generated function returns it.
 SPRINGS = "linear_stiffness"
 # The accelerations of coordinates that rigid drives prescribe, likewise.
 PRESCRIBED = "prescribed_acceleration"
-# The damping that implicit steps take, likewise.
+# The damping in implicit steps, likewise.
 LINEAR_DAMPING = "linear_damping"
 INTERNAL = [SPRINGS, PRESCRIBED, LINEAR_DAMPING]
 
@@ -470,7 +473,7 @@ def solutions(values, v, prescribed):
     """Accelerations and solutions of linear systems, by dense factors of the derived matrices; efforts of rigid drives.
 
     Prescribed coordinates are not unknowns: with P these and U the others, `A_UU q̈_U = (e + f)_U - A_UP q̈_P`. What the motion
-    takes, `(A q̈ - e - f)_P`, joins the forces.
+    requires, `(A q̈ - e - f)_P`, is added to the forces.
     """
     count = v.shape[1]
     mass, damping, stiffness = (
@@ -491,7 +494,7 @@ def solutions(values, v, prescribed):
 
 
 def solve_unknown(matrices, right, prescribed):
-    """`A x = r` without the rows and columns of what is prescribed, where x = 0."""
+    """`A x = r` without the rows and columns of prescribed coordinates, where x = 0."""
     matrices, right = matrices.copy(), right.copy()
     matrices[:, prescribed, :] = 0
     matrices[:, :, prescribed] = 0
@@ -501,7 +504,7 @@ def solve_unknown(matrices, right, prescribed):
 
 
 def solve_scaled(matrices, right):
-    """`A x = r` for positive definite A, with unit diagonal by scaling: less of A's condition is lost."""
+    """`A x = r` for positive definite A, scaled to a unit diagonal, which improves its condition."""
     scale = 1 / np.sqrt(np.einsum("sii->si", matrices))
     scaled = matrices * scale[:, :, None] * scale[:, None, :]
     return scale * np.linalg.solve(scaled, (scale * right)[:, :, None])[:, :, 0]

@@ -13,7 +13,7 @@ class Evaluate:
         self.program = program
 
     def run(self, *arguments, records=b""):
-        """What the program writes; a failure carries what it says."""
+        """The output of the program; an exception contains its error message."""
         result = subprocess.run([self.program, *arguments], input=records, capture_output=True, check=False)
         if result.returncode != 0:
             raise RuntimeError(f"{self.program} {' '.join(arguments)}: {result.stderr.decode(errors='replace')}")
@@ -24,11 +24,11 @@ class Evaluate:
         return self.run("list").decode().split()
 
     def layout(self, name):
-        """What a crane, or that of a YAML file, says about itself, and the order and shape of its quantities."""
+        """Description of a crane, compiled in or from a YAML file, with the order and shape of its quantities."""
         return json.loads(self.run("layout", name))
 
     def values(self, layout, states):
-        """All quantities at all states: name -> array with a row a state."""
+        """All quantities at all states: name -> array with one row per state."""
         records = np.ascontiguousarray(states.records(), dtype="<f8")
         lengths = [quantity["length"] for quantity in layout["quantities"]]
         numbers = np.frombuffer(self.run("values", layout.get("file", layout["name"]), records=records.tobytes()), dtype="<f8")

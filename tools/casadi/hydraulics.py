@@ -1,4 +1,4 @@
-"""Cylinders that oil moves: pressures of chambers, spools and the pump, from balances of volume."""
+"""Cylinders moved by oil: pressures of chambers and pump from volume balances, and positions of spools."""
 
 import math
 
@@ -6,11 +6,11 @@ import casadi as ca
 
 # Pressure difference below which the flow through an edge is laminar, Pa.
 LAMINAR = 1e5
-# Relief valves pass the nominal flow at this share above their pressure; the pump delivers all it can this far below its own.
+# Relief valves pass the nominal flow this fraction above their pressure; the pump delivers its maximum flow this far below its own.
 BAND = 0.05
 # Suction valves pass the nominal flow this far below the pressure of the tank, Pa.
 SUCTION = 1e5
-# A stop gives way by this much under the cylinder's greatest force, m, and is damped, s/m.
+# An end stop yields by this much under the cylinder's maximum force, m; its damping, s/m.
 STOP, STOP_DAMPING = 1e-3, 3.0
 
 
@@ -60,7 +60,7 @@ class Chambers:
         self.written, self.valve, self.spool, self.pump, self.pressures = written, written["valve"], spool, pump, pressures
         joint = cylinder.coordinate
         self.lever = ca.jacobian(cylinder.length, joint.q)
-        # Only the joint takes the force, and only its motion moves oil.
+        # The force acts only on the joint, and only its motion moves oil.
         self.lengths = ca.vertcat(cylinder.length, self.lever * joint.v)
         bore, rod = float(written["bore"]), float(written["rod"])
         self.areas = math.pi / 4 * bore**2, math.pi / 4 * (bore**2 - rod**2)
@@ -77,7 +77,7 @@ class Chambers:
         self.force = pressures[0] * self.areas[0] - pressures[1] * self.areas[1] - self.stop()
 
     def stop(self):
-        """What the ends of the stroke push back with."""
+        """The force of the ends of the stroke, positive against extension."""
         extension, stroke = self.lengths[0] - float(self.written["retracted"]), float(self.written["stroke"])
         stiffness = self.areas[0] * self.limit / STOP
         ahead, behind = ca.fmax(0, extension - stroke), ca.fmax(0, -extension)
@@ -85,7 +85,7 @@ class Chambers:
         return stiffness * (ahead * damped[0] - behind * damped[1])
 
     def rates(self, target, opening):
-        """Rates of both pressures and of the spool; `target` has length and speed where the drive's motion is, `opening` the command of a
+        """Rates of both pressures and of the spool; `target` is length and speed at the drive's motion, `opening` the command of a
         valve without a servo."""
         stroke = float(self.written["stroke"])
         extension = ca.fmax(0, ca.fmin(stroke, self.lengths[0] - float(self.written["retracted"])))
@@ -101,13 +101,13 @@ class Chambers:
         return [*rates, (command - self.spool) / float(self.valve["lag"])]
 
     def guard(self, pressure):
-        """What relief and suction valves let in."""
+        """Flow into a chamber through relief and suction valves."""
         flow = float(self.valve["flow"])
         relief = ca.fmax(0, pressure - self.limit) * flow / (BAND * self.limit)
         return ca.fmax(0, self.tank - pressure) * flow / SUCTION - relief
 
     def command(self, target):
-        """The opening that the servo wants."""
+        """The opening that the servo commands."""
         drop = float(self.valve["pressure_drop"])
         ahead = target[1] > 0
         area, pressure = (ca.if_else(ahead, *pair) for pair in (self.areas, self.pressures))
@@ -117,17 +117,17 @@ class Chambers:
 
 
 def opening_of(crane, cylinder):
-    """The command over time of a cylinder's valve."""
+    """The command of a cylinder's valve over time."""
     return next(drive.opening for drive in crane.drives if drive.coordinate is cylinder.coordinate)
 
 
 def root(difference):
-    """A square root with its sign, laminar in the middle."""
+    """A signed square root, linear near zero: laminar flow."""
     return difference / (difference**2 + LAMINAR**2) ** 0.25
 
 
 def wanted_motions(crane, moved, rate):
-    """Coordinates and rates that oil moves, and what their drives want of both."""
+    """Coordinates and rates that oil moves, and their drives' target values."""
     moving = [cylinder.coordinate for _, cylinder in moved]
     motions = [next(drive.motion for drive in crane.drives if drive.coordinate is joint) for joint in moving]
     positions = [ca.SX(motion) for motion in motions]

@@ -10,14 +10,14 @@ from comparison import TOLERANCE
 
 @dataclass
 class Identity:
-    """How far a law is from being kept, relative to the size of its terms."""
+    """The violation of a law, relative to the size of its terms."""
 
     law: str
     error: float
 
     @property
     def passed(self):
-        """Within the tolerance; NaN is not."""
+        """Whether the error is within the tolerance; NaN is not."""
         return self.error <= TOLERANCE
 
     def row(self):
@@ -58,7 +58,7 @@ def parts_of(derived):
 
 
 def evaluate(derivations, expression, states):
-    """An expression at all states, a row a state."""
+    """An expression at all states, one row per state."""
     function = ca.Function("identity", derivations.arguments, [ca.densify(expression)])
     return function(states.time[None, :], states.q.T, states.v.T, states.parameters.T).full().T
 
@@ -76,7 +76,7 @@ def power_of_inertia(derivations, states, derived):
 
 
 def power_balance(derivations, states, derived):
-    """With q̈ from `A q̈ = e + f`: the energies' rate is what the drives put in less what the dampers take out."""
+    """With q̈ from `A q̈ = e + f`: the rate of the energies is the power of drives, loads and winches minus dissipation."""
     crane, quantities = derivations.crane, derivations.quantities
     size = len(crane.coordinates)
     mass = derived["mass_matrix"].reshape(-1, size, size)

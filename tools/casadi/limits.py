@@ -28,7 +28,7 @@ def stored(stiffness, stretch, limit):
 
 
 def delivered(drive, effort, speed):
-    """What a drive delivers of an effort at a speed of its joint: while it drives, no more than its power and its rate allow."""
+    """What a drive delivers of an effort at a speed of its joint: while driving, no more than its maximum power and rate allow."""
     driving = effort
     if drive.max_power is not None:
         driving = saturated(driving, drive.max_power / ca.fmax(ca.fabs(speed), drive.max_power / (2 * drive.max_effort)))
@@ -39,7 +39,7 @@ def delivered(drive, effort, speed):
 
 
 def limited_drive(drive, rate):
-    """Effort, energy, lost power of a drive with a limit, and power that slips; `rate` takes the time derivative of its motion."""
+    """Effort, energy, lost power of a drive with a limit, and power lost by slipping; `rate` takes the time derivative of its motion."""
     coordinate = drive.coordinate
     stretch, speed = drive.motion - coordinate.q, rate(ca.SX(drive.motion)) - coordinate.v
     spring = saturated(drive.stiffness * stretch, drive.max_effort)
@@ -51,7 +51,7 @@ def limited_drive(drive, rate):
 
 
 def slope_at_rest(drive):
-    """How much of a growing effort a drive at rest still delivers, from 1 down to 0."""
+    """The fraction of an increase in effort that a drive at rest delivers, from 1 down to 0."""
     effort = ca.SX.sym("effort")
     slope = ca.jacobian(saturated(effort, drive.max_effort), effort)
     return ca.substitute(slope, effort, drive.stiffness * (drive.motion - drive.coordinate.q))

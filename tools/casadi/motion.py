@@ -2,7 +2,8 @@
 
     python motion.py --command target/release/crane [--crane NAME]... [--duration 0.5]
 
-Neither the model nor the method is shared with the generated code and its integrators: only the YAML file, and the states that `crane simulate` writes. Exit code 0 if every method agrees on every crane, 1 if one does not.
+Neither the model nor the method is shared with the generated code and its integrators: only the YAML file, and the states that
+`crane simulate` writes. Exit code 0 if every method agrees on every crane, 1 if one does not.
 """
 
 import argparse
@@ -22,10 +23,10 @@ from own_states import OwnStates
 
 WORKSPACE = Path(__file__).resolve().parents[2]
 CRANES = ["double_pendulum", "eight_link_flexible", "eight_link_hydraulic", "knuckle_boom"]
-# Of Radau: an error per step, m and rad.
+# Radau's error per step, m and rad.
 TOLERANCE = 1e-9
-# Of our adaptive methods likewise, and how far both sides may be apart, which add up the errors of some hundred steps, relative to the
-# greatest state in its scale, at least 1. bdf, of order 4 at most, adds up more steps; dopri5 steps blindly across where joints stick.
+# The same for our adaptive methods, and the allowed difference, since both sides accumulate the errors of some hundred steps: relative
+# to the largest scaled state, at least 1. bdf, of order 4 at most, takes more steps; dopri5 does not notice where joints stick.
 METHODS = {"bdf": (1e-10, 1e-8), "rosw4": (1e-9, 1e-8), "dopri5": (1e-9, 1e-7)}
 
 
@@ -55,7 +56,7 @@ def compare(name, options):
         if exact is None:
             start = np.concatenate([states[0, : len(names)], rates, states[0, len(names) :]])
             span = (times[0], times[-1])
-            # An error of a rate counts less than one of a coordinate, as it lasts.
+            # The same tolerance for rates: an error of a rate matters less than one of a coordinate, by the time that it lasts.
             exact = solve_ivp(slope, span, start, "Radau", times, jac=jacobian, rtol=TOLERANCE, atol=TOLERANCE)
         error = np.abs(states - exact.y[places].T).max() / max(1.0, np.abs(states).max())
         moved = np.abs(states - states[0]).max()
@@ -67,10 +68,10 @@ def compare(name, options):
 
 
 def equations(crane):
-    """Slopes of (q, v, x) and their Jacobian as functions of t and (q, v, x), the rates at t = 0, and the forces with states x, which are in
-    parts of their scales.
+    """Slopes of (q, v, x) and their Jacobian as functions of t and (q, v, x), the rates at t = 0, and the states x of
+    forces, which are scaled.
 
-    Where a rigid drive prescribes a coordinate, its acceleration is given: it is integrated along, as a check of the motion too.
+    Where a rigid drive prescribes a coordinate, its acceleration is given and integrated with the others, which also checks the motion.
     """
     derivations = Derivations(crane)
     quantities = derivations.quantities
@@ -99,7 +100,7 @@ def equations(crane):
         return np.concatenate([y[count : 2 * count], given + others, of_own])
 
     def jacobian(t, y):
-        """Without the change of the mass matrix: Newton's iteration needs no more, and its result does not depend on it."""
+        """Without the derivative of the mass matrix: Newton's iteration converges without it, to the same result."""
         mass, *_, slopes, slopes_of_own = values(t, y)
         upper = np.hstack([np.zeros((count, count)), np.eye(count), np.zeros((count, len(own.names)))])
         columns = [solve_unknown(mass[None], column[None], prescribed)[0] for column in slopes.T]

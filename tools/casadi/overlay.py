@@ -9,9 +9,9 @@ IDENTITIES = ("name", "coordinate")
 
 
 def read_whole(path):
-    """The keys of a spec over those of all specs that it extends.
+    """The keys of a spec, merged over those of all specs that it extends.
 
-    A file of several documents holds a spec after those that it extends.
+    In a file of several documents, a spec comes after those that it extends.
     """
     path = Path(path)
     documents = list(YAML(typ="safe", pure=True).load_all(path.read_text(encoding="utf-8")))

@@ -1,4 +1,4 @@
-"""Forces with states besides pose and rates: the oil of cylinders with valves, and bristles of joints that stick."""
+"""Forces with states in addition to pose and rates: the oil of cylinders with valves, and bristles of joints that stick."""
 
 import casadi as ca
 

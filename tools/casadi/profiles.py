@@ -7,7 +7,7 @@ import numpy as np
 
 
 def clamp(time, begin, duration):
-    """The share of a motion that has passed, 0…1."""
+    """The elapsed fraction of a motion, 0…1."""
     return ca.fmin(ca.fmax((time - begin) / duration, 0), 1)
 
 
@@ -27,7 +27,7 @@ def cycloid(tau):
 
 
 def trapezoid(tau, blend):
-    """Velocity rises over the first `blend` of the time, stays, and falls over the last: the integral of it.
+    """The integral of a velocity that rises over the first `blend` of the time, stays constant, and falls over the last.
 
     The area of a trapezoid of height v is `v (1 - blend) = 1`.
     """
@@ -39,7 +39,7 @@ def trapezoid(tau, blend):
 
 
 def speed(time, rate, begin, ramp):
-    """The way at a constant speed that is reached over `ramp` seconds, `rate (3τ² - 2τ³)`; without, at once."""
+    """The distance at a constant speed that is reached over `ramp` seconds, `rate (3τ² - 2τ³)`; without a ramp, at once."""
     if ramp is None:
         return ca.if_else(time < begin, 0, rate * (time - begin))
     tau = (time - begin) / ramp
@@ -79,7 +79,7 @@ def read_profile(spec, motion, is_rotation, time):
     """`q_dr(t)` and the interval in which it moves, from a drive's `motion:`."""
     ((kind, written),) = motion.items()
     if kind == "input":
-        # Not set: a value, or a motion.
+        # The default of an input: a value or a motion.
         unless_set = spec.get("inputs", {})[written]
         return read_profile(spec, unless_set.get("motion", {"hold": unless_set.get("value", 0)}), is_rotation, time)
     if kind == "hold":

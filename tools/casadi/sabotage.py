@@ -1,17 +1,17 @@
-"""Errors put in on purpose, to see that the check can fail."""
+"""Errors introduced on purpose, to verify that the check can fail."""
 
 import numpy as np
 
 from comparison import compare, negligible_entry
 
-# A hundred tolerances: what a wrong digit in the eighth place of one entry would be.
+# A hundred times the tolerance: a wrong eighth digit of one entry.
 PERTURBATION = 1e-8
 
 
 def perturb(quantity, values, rng, perturbation=PERTURBATION):
-    """The values with one entry, picked at random, wrong by the perturbation in the state where it is largest.
+    """The values with one random entry, not a negligible one, perturbed in the state where it is largest.
 
-    Where all is zero, an entry is not.
+    If all values are zero, one becomes the perturbation.
     """
     size = np.abs(values).max(axis=0)
     entry = rng.choice(np.flatnonzero(size >= negligible_entry(quantity) * size.max()))

@@ -38,7 +38,7 @@ def random_states(crane, count, seed):
 
     q = guess + np.where(far[:, None], reach(crane, far=True), reach(crane, far=False)) * signed(rng, count, size)
     v = np.where(far[:, None], 2.0, 0.1) * signed(rng, count, size)
-    # A parameter that is 0 has no scale of its own; up to half a unit, never negative.
+    # A parameter whose default is 0 has no scale: up to half a unit, never negative.
     vary = np.where(defaults == 0, 0.5, 0.5 * defaults) * signed(rng, count, defaults.size)
     vary[:, defaults == 0] = np.abs(vary[:, defaults == 0])
     parameters = defaults + np.where(far[:, None], vary, 0)
@@ -46,7 +46,7 @@ def random_states(crane, count, seed):
     end = max((drive.moves_within[1] for drive in crane.drives), default=1.0)
     time = rng.uniform(begin - 1, end + 1, count)
     if count:
-        # Just after the start: at it accelerations of motions jump, and either value is right.
+        # Just after the start, where accelerations of motions jump and either value is correct.
         time[0], q[0], v[0], parameters[0] = 1e-9, guess, 0, defaults
     return States(time, q, v, parameters)
 
@@ -55,7 +55,7 @@ def reach(crane, far):
     """How far each coordinate strays from the guess, m and rad."""
     if not far:
         return np.array([5e-3 if c.is_element or not c.is_rotation else 2e-2 for c in crane.coordinates])
-    # Within ±0.5 an element is bent far beyond any use; θ of a base within ±1.2 keeps clear of its singularity at π/2.
+    # At ±0.5, an element is bent far beyond any practical case; θ of a base within ±1.2 stays clear of its singularity at π/2.
     return np.array(
         [
             0.5 if c.is_element

@@ -28,8 +28,8 @@ def rotate(axis, angle):
 def rotate_by_vector(rho):
     """exp of the cross product with a vector, by the unit quaternion (cos |ρ|/2, ρ sin(|ρ|/2)/|ρ|).
 
-    Both functions are even in |ρ|. Below `SMALL` they are series in ρ·ρ, so that derivatives exist where ρ vanishes; what
-    stands beside a series is taken at `SMALL`, or its derivative would not be a number.
+    Both functions are even in |ρ|. Below `SMALL` they are series in ρ·ρ, so that derivatives exist where ρ vanishes; the
+    closed form is then evaluated at `SMALL`, or its derivative would be NaN.
     """
     squared = ca.dot(rho, rho)
     length = ca.sqrt(ca.fmax(squared, SMALL))
@@ -57,12 +57,12 @@ def even_series(x, order):
 
 
 def modified_dh(a, alpha, d, theta):
-    """Craig's row: Rx(alpha) Tx(a) Rz(theta) Tz(d)."""
+    """Craig's convention: Rx(alpha) Tx(a) Rz(theta) Tz(d)."""
     return rotate("x", alpha) @ translate(x=a) @ rotate("z", theta) @ translate(z=d)
 
 
 def classic_dh(a, alpha, d, theta):
-    """Denavit's and Hartenberg's own row: Rz(theta) Tz(d) Tx(a) Rx(alpha)."""
+    """Denavit and Hartenberg's original convention: Rz(theta) Tz(d) Tx(a) Rx(alpha)."""
     return rotate("z", theta) @ translate(z=d) @ translate(x=a) @ rotate("x", alpha)
 
 

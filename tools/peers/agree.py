@@ -1,4 +1,4 @@
-"""Compares A, e, q̈ and joint wrenches of the generated Rust functions with what Pinocchio and MuJoCo compute of the same YAML file.
+"""Compares A, e, q̈ and joint wrenches of the generated Rust functions with what Pinocchio and MuJoCo compute from the same YAML file.
 
     python agree.py --evaluate target/release/evaluate [--crane NAME]... [--states 100] [--seed 1]
     python agree.py --self-test [SPEC.yaml]...
@@ -25,9 +25,9 @@ from states import random_states
 
 # A solve with the dense A loses cond(A) ε: 2e6 · 2e-16 for the shipped cranes. Their own recursion, and ours, do not.
 TOLERANCES = {"mass_matrix": TOLERANCE, "bias": TOLERANCE, "forward_dynamics": 1e-9}
-# Poses of frames and wrenches are carried along the chain by another way.
+# Poses of frames and wrenches are propagated along the chain in a different way.
 TOLERANCE_OF_WRENCHES = 1e-9
-# What the self-test puts in: a hundred of the largest tolerance.
+# The error introduced by the self-test: a hundred times the largest tolerance.
 PERTURBATION = 1e-7
 
 
@@ -37,7 +37,7 @@ def main():
 
 
 def agree(options):
-    """Compares all cranes, a table each."""
+    """Compares all cranes and prints a table for each."""
     evaluate = Evaluate(options.evaluate)
     names = options.crane or evaluate.names()
     failed = [name for name in names if not agree_on(name, evaluate, options)]
@@ -48,7 +48,7 @@ def agree(options):
 
 
 def agree_on(name, evaluate, options):
-    """Compares one crane with each library; whether all agrees."""
+    """Compares one crane with each library; returns whether all quantities agree."""
     started = time.perf_counter()
     layout = evaluate.layout(name)
     crane = read_crane(TOOLS.parent / layout["spec"])
@@ -74,14 +74,14 @@ def agree_on(name, evaluate, options):
 
 
 def seeded_states(crane, options):
-    """The same states for a crane whatever else is compared; parameters at their defaults, as the chain has them."""
+    """The states of a crane, which do not depend on what else is compared; parameters at their defaults, as the chain has them."""
     states = random_states(crane, options.states, [options.seed, zlib.crc32(crane.name.encode())])
     states.parameters[:] = list(crane.spec.defaults.values())
     return states
 
 
 def computed(library, states, forces):
-    """A, e and q̈ of a library at all states: name -> array with a row a state."""
+    """A, e and q̈ of a library at all states: name -> array with one row per state."""
     rows = [library.evaluate(*state) for state in zip(states.q, states.v, forces)]
     return {name: np.array([row[i].ravel() for row in rows]) for i, name in enumerate(TOLERANCES)}
 
@@ -94,7 +94,7 @@ def dense_solution(values):
 
 
 def compare_all(expected, generated, states):
-    """A comparison a quantity."""
+    """One comparison per quantity."""
     return [
         compare(name, expected[name], generated[name], states.groups, tolerance)
         for name, tolerance in TOLERANCES.items()
@@ -102,7 +102,7 @@ def compare_all(expected, generated, states):
 
 
 def compare_wrenches(crane, generated, states):
-    """What joints and sections transmit, with the rates for accelerations, against Pinocchio's recursion."""
+    """Compares the wrenches in joints and sections, with the rates as accelerations, with Pinocchio's recursion."""
     first_moved = {}
     for place, body in enumerate(crane.bodies):
         first_moved.setdefault(body.degrees_of_freedom, place)
@@ -113,7 +113,7 @@ def compare_wrenches(crane, generated, states):
         if place > 0 and first_moved[crane.bodies[cut.beyond].degrees_of_freedom] == cut.beyond
     ]
     cuts = [cut for cut in cuts if cut[2] >= 0]
-    # The joints of a chain do not carry what loads and connectors apply past them.
+    # The joint wrenches of a chain do not include loads and connectors.
     if not cuts or crane.loads or crane.connectors:
         return []
     poses = ca.Function("poses", [crane.q, crane.parameters], [frame for _, frame, _ in cuts])
@@ -128,7 +128,7 @@ def compare_wrenches(crane, generated, states):
 
 
 def self_test(options):
-    """Both libraries agree with each other, and an error of 1e-7 in any quantity is noticed."""
+    """Checks that both libraries agree, and that an error of 1e-7 in any quantity is detected."""
     failed = False
     for path in options.self_test or sorted(TOOLS.parent.glob("specs/*.yaml")):
         crane = read_crane(path)

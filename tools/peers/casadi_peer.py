@@ -25,7 +25,7 @@ def functions(chain):
 
 
 def write_c(functions_of_chain, path):
-    """Writes them as C."""
+    """Writes the functions as C."""
     generator = ca.CodeGenerator(path.name)
     for function in functions_of_chain:
         generator.add(function)
@@ -62,12 +62,12 @@ class Inertia:
         return Inertia(ca.SX(step.mass * ca.DM.eye(3)), ca.SX(G), ca.SX(step.tensor - step.mass * com @ com))
 
     def turned(self, rotation):
-        """In a frame in which this one is turned."""
+        """The same in a frame in which this one has the orientation `rotation`."""
         M, G, J = (rotation @ block @ rotation.T for block in (self.M, self.G, self.J))
         return Inertia(symmetric(M), G, symmetric(J))
 
     def shifted(self, offset):
-        """About a point from which this origin lies at `offset`."""
+        """The same about a point from which this origin is at `offset`."""
         if ca.SX(offset).is_zero():
             return self
         p = ca.skew(offset)

@@ -1,7 +1,7 @@
-"""A crane as a chain of rigid links in plain numbers: what any library of multibody dynamics takes.
+"""A crane as a chain of rigid links in plain numbers, as any library of multibody dynamics accepts it.
 
-The reader is that of the check with CasADi. Its transforms are taken apart numerically: a link's pose in the frame of the
-link before is `M exp(B_1 q_1) exp(B_2 q_2) …`, a product of exponentials with constant M and constant axes B in the link's
+The reader is that of the check with CasADi. Its transforms are decomposed numerically: a link's pose in the frame of the
+previous link is `M exp(B_1 q_1) exp(B_2 q_2) …`, a product of exponentials with constant M and constant axes B in the link's
 own frame, whatever D-H rows, placements and massless frames it was written with.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 TOOLS = Path(__file__).resolve().parents[1]
 sys.path.append(str(TOOLS / "casadi"))
 
-# cos 90° is 6e-17: an entry this close to a whole number is that number, so that libraries can leave zeros out.
+# cos 90° is 6e-17: an entry this close to an integer is replaced by it, so that libraries can leave zeros out.
 ROUND_OFF = 4e-15
 
 
@@ -40,7 +40,7 @@ class Joint:
 
     @property
     def frame(self):
-        """A frame at `point` that has the axis for its x, y or z, in the link's frame at q = 0."""
+        """A frame at `point` whose x, y or z is the axis, in the link's frame at q = 0."""
         frame = np.eye(4)
         if not self.is_along_frame:
             across = np.cross(np.eye(3)[np.argmin(np.abs(self.axis))], self.axis)
@@ -52,7 +52,7 @@ class Joint:
 
 @dataclass
 class Link:
-    """A rigid body: its pose M at q = 0 in the frame of the link before, its joints in their order, its inertia.
+    """A rigid body: its pose M at q = 0 in the frame of the previous link, its joints in order, its inertia.
 
     `com` and `tensor`: centre of mass, and inertia about it, in the link's frame.
     """
@@ -66,10 +66,10 @@ class Link:
 
 @dataclass
 class Step:
-    """A joint that turns about or slides along `axis`, x, y or z, of its own frame, and what sits on it.
+    """A joint that turns about or slides along `axis`, x, y or z, of its own frame, and the inertia that it carries.
 
-    `placement`: the frame's pose at q = 0 in the frame of the joint before. `mass`, `com`, `tensor`: of the link that the
-    joint completes, in its frame; zero before.
+    `placement`: the frame's pose at q = 0 in the frame of the previous joint. `mass`, `com`, `tensor`: of the link that the
+    joint completes, in its frame; zero for the joints before it.
     """
 
     is_rotation: bool
@@ -114,8 +114,8 @@ class Chain:
 def read_chain(crane):
     """The chain of a crane with its parameters at their defaults.
 
-    Bodies that move together become one link; massless bodies pass their coordinates on to the next, bodies that do not
-    move are left out.
+    Bodies that move together become one link; massless bodies pass their coordinates on to the next; bodies that do not
+    move are omitted.
     """
     heavy = [body for body in at_zero(crane) if body.inertia[3, 3] != 0 and body.motions]
     links, before, passed = [], np.eye(4), 0
@@ -183,13 +183,13 @@ def mass_com_tensor(pseudo_inertia):
 
 
 def whole(numbers):
-    """The numbers; those that are whole up to round-off become integers."""
+    """The numbers, with those that are integers up to round-off made exact."""
     rounded = np.round(numbers)
     return np.where(np.abs(numbers - rounded) < ROUND_OFF, rounded, numbers) + 0.0
 
 
 def as_text(chain):
-    """Gravity, then a line a joint: is_rotation axis, rotation and translation of its placement, mass, com, tensor."""
+    """Gravity, then one line per joint: is_rotation axis, rotation and translation of its placement, mass, com, tensor."""
     lines = [chain.gravity]
     for step in chain.steps():
         rotation, translation = step.placement[:3, :3], step.placement[:3, 3]

@@ -25,7 +25,7 @@ PINOCCHIO_ALGORITHMS = {
     "forward_dynamics": ["aba_local", "aba_world", "dense_local", "dense_world", "llt_local", "llt_world"],
     "mass_matrix_and_bias": ["terms_local", "terms_world"],
 }
-# Coordinates; a step takes 5 ms with 73.
+# Maximum number of coordinates; with 73, a step takes 5 ms.
 EXUDYN_UP_TO = 25
 # Our kernels that compute the same quantities as the others.
 SHARED = {
@@ -57,7 +57,7 @@ class Contestant:
     times: list = field(default_factory=list)
 
     def run(self, task, *further):
-        """What its program writes."""
+        """The output of its program."""
         command = [*map(str, self.program), task, *map(str, self.arguments), *map(str, further)]
         result = subprocess.run(command, capture_output=True, check=False)
         if result.returncode != 0:
@@ -65,11 +65,11 @@ class Contestant:
         return result.stdout
 
     def values(self, states):
-        """What it computes, a row a state."""
+        """What it computes, one row per state."""
         return np.frombuffer(self.run("values")).reshape(states, -1)
 
     def time(self, seconds):
-        """Nanoseconds for one crane, measured for so long."""
+        """Nanoseconds for one crane, measured for this many seconds."""
         return float(self.run("time", seconds)) / self.lanes
 
 
@@ -82,13 +82,13 @@ class Arena:
         self.states = builds.write(f"states_{coordinates}", self.ask("states", coordinates))
         self.records = np.fromfile(self.states).reshape(-1, 1 + 3 * coordinates)
         self.chain = read_chain(crane)
-        # The states are before any drive moves.
+        # The times of the states are before any drive moves.
         self.springs = read_springs(crane, self.records[0, 0])
         self.functions = casadi_peer.functions(self.chain)
         self.step = float(self.ask("step"))
 
     def ask(self, *words):
-        """What the program of crane-bench answers."""
+        """The output of the program of crane-bench."""
         return subprocess.run([self.bench, *map(str, words)], capture_output=True, check=True).stdout
 
     def contestants(self):
@@ -104,7 +104,7 @@ class Arena:
             yield Contestant(quantity, OURS, kernel, self.coordinates, [self.bench], arguments, int(lanes))
 
     def pinocchio(self):
-        """All joint models and algorithms. A crane without elements has no joint models for them."""
+        """All joint models and algorithms. A crane without elements has only one joint model for them."""
         chain = self.builds.write(f"chain_{self.coordinates}.txt", as_text(self.chain))
         flexible = any(len(link.joints) == 3 for link in self.chain.links)
         models = list(product(PINOCCHIO_BASES, PINOCCHIO_ELEMENTS if flexible else PINOCCHIO_ELEMENTS[:1]))
@@ -118,14 +118,14 @@ class Arena:
                     yield replace(found, compiler=compiler.name)
 
     def sources(self):
-        """Each function of CasADi as C of its own."""
+        """Each function of CasADi as a separate C file."""
         for function in self.functions:
             path = self.builds.folder / f"casadi_{function.name()}_{self.coordinates}.c"
             casadi_peer.write_c([function], path)
             yield function, path
 
     def casadi(self):
-        """These, with each compiler."""
+        """The functions of CasADi, with each compiler."""
         for (function, source), compiler in product(self.sources(), self.compilers):
             library = self.builds.shared_library(source, compiler)
             program = self.builds.program("casadi", compiler)
@@ -147,7 +147,7 @@ class Arena:
             yield Contestant(quantity, "MuJoCo", kernel, self.coordinates, [program], arguments)
 
     def exudyn(self):
-        """An RK44 step, of cranes on which a run does not take minutes."""
+        """An RK44 step, for cranes for which a run does not take minutes."""
         if self.coordinates > EXUDYN_UP_TO:
             return
         crane = self.builds.write(f"exudyn_{self.coordinates}", pickle.dumps((self.chain, self.springs, self.step)))
@@ -155,7 +155,7 @@ class Arena:
         yield Contestant("rk4_step", "Exudyn", "RK44", self.coordinates, program, [crane, self.states])
 
     def reference(self):
-        """What is right, by quantity: recursions in 80-bit numbers; the step by our own kernel."""
+        """Reference values, by quantity: recursions in 80-bit numbers; the step by our own kernel."""
         n = self.coordinates
         q, v, f = (self.records[:, 1 + k * n : 1 + (k + 1) * n] for k in range(3))
         right = {
@@ -166,7 +166,7 @@ class Arena:
         return right | {"rk4_step": step.values(len(self.records)) - self.records[:, 1 : 1 + 2 * n]}
 
     def error(self, contestant, reference):
-        """The largest error of any state over its largest entry; none if no other program computes the same."""
+        """The maximum over the states of the largest error over the largest entry; None if no other program computes the same."""
         if contestant.quantity not in reference:
             return None
         right = reference[contestant.quantity]

@@ -2,9 +2,9 @@
 
     python exchange.py --crane target/release/crane --evaluate target/release/evaluate [--states 20] [--seed 1]
 
-Every compiled crane is exported as URDF, which Pinocchio reads, with its springs from the file beside it, and as MJCF, which
-MuJoCo reads, springs included; both files are imported again. Robots of example-robot-data are imported from URDF and evaluated by the
-compiler's interpreter, against what Pinocchio reads of the same file, and random robots from MJCF, against MuJoCo.
+Every compiled crane without symmetric section joints is exported as URDF, which Pinocchio reads, with its springs from a separate file,
+and as MJCF, which MuJoCo reads, springs included; both files are imported again. Robots of example-robot-data are imported from URDF
+and evaluated by the compiler's interpreter, compared with Pinocchio on the same file, and random robots from MJCF, compared with MuJoCo.
 Exit code 0 if all agrees, 1 if something does not.
 """
 
@@ -30,7 +30,7 @@ from mujoco_peer import MuJoCo
 from pinocchio_peer import Pinocchio
 from states import States
 
-# What has been written as text and read back: the last digits of angles.
+# For numbers written as text and read back: the last digits of angles.
 TOLERANCE = 1e-9
 # Serial arms of example-robot-data, and their joints that are held at zero: fingers, which would be branches.
 ROBOTS = {
@@ -46,7 +46,7 @@ ROBOTS = {
 
 
 class Urdf(Pinocchio):
-    """What Pinocchio makes of a URDF file; joints of `fixed` stand still at 0."""
+    """A URDF file in Pinocchio; joints in `fixed` are held at 0."""
 
     def __init__(self, path, gravity, fixed=()):
         self.model = pin.buildModelFromUrdf(str(path))
@@ -57,16 +57,16 @@ class Urdf(Pinocchio):
         self.data = self.model.createData()
 
     def evaluate(self, q, v, force):
-        """A, e and q̈ at a state with generalized forces; a continuous joint is a point of a circle to Pinocchio."""
+        """A, e and q̈ at a state with generalized forces; to Pinocchio, a continuous joint is a point on a circle."""
         return super().evaluate(pin.integrate(self.model, pin.neutral(self.model), q), v, force)
 
 
 class Mjcf(MuJoCo):
-    """What MuJoCo makes of an MJCF file, with its own springs and dampers."""
+    """An MJCF file in MuJoCo, with its own springs and dampers."""
 
     def __init__(self, path):
         self.model = mujoco.MjModel.from_xml_path(str(path))
-        # What rigid drives take is applied instead of what their equalities find, which give way a little.
+        # The efforts of rigid drives are applied instead of their equality constraints, which yield slightly.
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EQUALITY
         self.data = mujoco.MjData(self.model)
 
@@ -120,7 +120,7 @@ def main():
     evaluate = Evaluate(options.evaluate)
     print(HEADER)
     with tempfile.TemporaryDirectory() as folder:
-        # A symmetric section joint is exported as three hinges, which is another crane at second order.
+        # A symmetric section joint is exported as three hinges, which differs at second order.
         exact = [
             name
             for name in evaluate.names()
@@ -136,7 +136,7 @@ def main():
 
 
 class Exported:
-    """A compiled crane, and its files for others in a folder."""
+    """A compiled crane, and its exported files in a folder."""
 
     def __init__(self, name, evaluate, folder, options):
         self.name, self.evaluate, self.folder, self.options = name, evaluate, folder, options
@@ -149,7 +149,7 @@ class Exported:
             self.ours["forward_dynamics"] = dense_solution(self.ours)
 
     def agrees(self):
-        """Exports both ways, imports again, and compares all."""
+        """Exports to both formats, imports again, and compares everything."""
         urdf, mjcf = (self.folder / f"{self.name}.{suffix}" for suffix in ("urdf", "xml"))
         crane(self.options, "export", self.spec, "--format", "urdf", "-o", urdf)
         springs = Springs(urdf.with_suffix(".springs.yaml"), self.layout["coordinates"])
@@ -176,14 +176,14 @@ class Exported:
         return self.compare(library, forces + efforts, applied=efforts) and passed
 
     def compare(self, library, forces, applied):
-        """Compares A, e, the forces and q̈ of a library, some of the forces applied to it, the others its own."""
+        """Compares A, e, the forces and q̈ of a library; `applied` are the forces that it does not compute itself."""
         theirs = computed(library, self.states, applied)
         comparisons = compare_all(theirs, self.ours, self.states)
         comparisons.append(compare("forces", forces, self.ours["forces"], self.states.groups))
         return told(f"{self.name}, {type(library).__name__}", comparisons)
 
     def again(self, file, springs, rotors=True):
-        """Compares A and e of the spec that comes of its own file. URDF knows neither gravity nor `rotors`: both are added."""
+        """Compares A and e of the spec imported from an exported file. `rotors`: adds gravity and rotors, which URDF lacks."""
         spec = self.folder / f"{self.name}_again.yaml"
         crane(self.options, "import", file, "-o", spec)
         if rotors:
@@ -199,7 +199,7 @@ class Exported:
 
 
 def robot_agrees(name, fixed, evaluate, folder, options):
-    """Imports a robot and compares what the interpreter makes of the spec with what Pinocchio makes of the URDF file."""
+    """Imports a robot and compares the interpreter's results for the spec with Pinocchio's for the URDF file."""
     urdf = next(path for path in files("example-robot-data") if path.name == name).locate()
     spec = folder / f"{Path(name).stem}.yaml"
     crane(options, "import", urdf, "-o", spec, *[word for joint in fixed for word in ("--fix", joint)])
@@ -213,7 +213,7 @@ def robot_agrees(name, fixed, evaluate, folder, options):
 
 
 def told(subject, comparisons):
-    """Prints the worst of some comparisons, and all that failed; whether none did."""
+    """Prints the worst of some comparisons, and all that failed; returns whether none did."""
     for comparison in comparisons:
         comparison.tolerance = TOLERANCE
     worst = max(comparisons, key=lambda comparison: comparison.by_entry)

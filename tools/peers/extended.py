@@ -1,4 +1,4 @@
-"""CasADi functions in 80-bit numbers: what double precision is measured by."""
+"""CasADi functions in 80-bit numbers: the reference for double precision."""
 
 import casadi as ca
 import numpy as np
@@ -16,7 +16,7 @@ BINARY = {ca.OP_ADD: np.add, ca.OP_SUB: np.subtract, ca.OP_MUL: np.multiply, ca.
 
 
 def evaluate(function, *arguments):
-    """Results of an SX function at many states: arguments and results with a row a state, results column by column."""
+    """Results of an SX function at many states: arguments and results with one row per state, results column by column."""
     arguments = [np.asarray(argument, dtype=np.longdouble) for argument in arguments]
     states = len(arguments[0])
     results = [np.zeros((states, function.numel_out(k)), dtype=np.longdouble) for k in range(function.n_out())]

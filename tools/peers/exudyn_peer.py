@@ -3,7 +3,7 @@
     python exudyn_peer.py values|time CHAIN STATES [SECONDS]
 
 CHAIN is a pickled pair of chain and springs. Exudyn has a kinematic tree with joints of one degree of freedom, springs and
-dampers in the joints; a general second-order object on the same coordinates is the supports.
+dampers in the joints; a general second-order object on the same coordinates represents the supports.
 """
 
 import pickle
@@ -22,7 +22,7 @@ KINDS = {
     (False, "y"): exu.JointType.PrismaticY,
     (False, "z"): exu.JointType.PrismaticZ,
 }
-# A run takes so many steps, another thrice as many: what a run costs once vanishes in the difference.
+# A run takes this many steps, another three times as many: the fixed cost of a run cancels in the difference.
 STEPS = 200
 
 
@@ -71,7 +71,7 @@ class Exudyn:
         self.system.Assemble()
 
     def run(self, q, v, steps):
-        """State after so many steps, and the seconds that they took."""
+        """State after this many steps, and the seconds that they took."""
         system, settings = self.system, exu.SimulationSettings()
         system.systemData.SetODE2Coordinates(q, configuration=exu.ConfigurationType.Initial)
         system.systemData.SetODE2Coordinates_t(v, configuration=exu.ConfigurationType.Initial)
@@ -88,7 +88,7 @@ class Exudyn:
 
 
 def main():
-    """As the programs of timing.hpp."""
+    """The same command line as that of the programs with timing.hpp."""
     task, chain_file, states_file, *seconds = sys.argv[1:]
     with open(chain_file, "rb") as file:
         chain, springs, step = pickle.load(file)

@@ -24,8 +24,8 @@ PANELS = {
 
 
 def draw(times, path, series):
-    """A panel a quantity."""
-    # The same file from the same numbers; text stays text.
+    """Draws one panel per quantity."""
+    # The same numbers give the same file; text stays text.
     matplotlib.use("svg")
     matplotlib.rcParams.update({"svg.hashsalt": "crane", "svg.fonttype": "none", "font.size": 9})
     drawing, axes = plt.subplots(1, len(PANELS), figsize=(11, 4.2), layout="constrained")

@@ -1,4 +1,4 @@
-"""Facts about the machine, the versions and the functions that the document states beside the times."""
+"""Facts about the machine, the versions and the functions that the document states in addition to the times."""
 
 import os
 import platform
@@ -32,20 +32,20 @@ def describe(compilers):
 
 
 def output_of(*command):
-    """What a command writes."""
+    """The output of a command."""
     words = [str(word) for word in command]
     return subprocess.run(words, cwd=WORKSPACE, capture_output=True, text=True, check=True).stdout
 
 
 def target_cpu():
-    """What rustc takes this processor for."""
+    """Rustc's name for this processor."""
     lines = output_of("rustc", "--print", "target-cpus").splitlines()
     native = next((line for line in lines if line.strip().startswith("native")), "")
     return native.split("currently ")[-1].rstrip(").") if "currently" in native else "native"
 
 
 def peak(programs):
-    """The most operations a second, 1e9/s, of one core on scalars and on vectors: the best of any compiler."""
+    """Maximum operations per second, 1e9/s, of one core on scalars and on vectors: the best of any compiler."""
     runs = [output_of(program).split() for program in programs]
     return {kind: max(float(run[k]) for run in runs) for k, kind in enumerate(("scalar", "vector"))}
 
@@ -60,7 +60,7 @@ def operations(builds, coordinates):
 
 
 def counters(bench, coordinates):
-    """Instructions and L1 misses a call of our kernels; empty where the machine does not count them."""
+    """Instructions and L1 misses per call of our kernels; empty where the machine does not count them."""
     kernels = output_of(bench, "kernels", coordinates)
     counted = {}
     for kernel in [line.split()[0] for line in kernels.splitlines()]:
@@ -72,7 +72,7 @@ def counters(bench, coordinates):
 
 
 def count(bench, coordinates, kernel, calls):
-    """Events of a run with so many calls; None where there is no perf or it cannot count."""
+    """Events of a run with this many calls; None where there is no perf or it cannot count."""
     command = ["perf", "stat", "-x", ",", "-e", ",".join(EVENTS), bench, "repeat", str(coordinates), kernel, str(calls)]
     try:
         lines = subprocess.run(command, capture_output=True, text=True, check=True).stderr.splitlines()

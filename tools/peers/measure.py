@@ -4,7 +4,7 @@
     python measure.py --report
 
 First all results are compared: those with an error above 1e-8 are excluded. What has been built once is not built again; results
-are kept after every round, and `--report` writes the document from what there is.
+are kept after every round, and `--report` writes the document from the results so far.
 """
 
 import argparse
@@ -22,9 +22,9 @@ from programs import TARGET, WORKSPACE, Builds, compilers, crane_bench
 
 # Sections of the boom; 13 + 3 n coordinates.
 SECTIONS, SECTIONS_QUICK = [0, 4, 10, 20, 30], [0, 4]
-# Whoever is further off does not count.
+# Contestants with larger errors are excluded.
 RIGHT = 1e-8
-# So many variants of a library and compiler take part in the rounds: the best of a first look.
+# This many variants per library and compiler take part in the rounds: the fastest in a short trial.
 VARIANTS = 2
 FIRST_LOOK = 0.01
 
@@ -53,7 +53,7 @@ def main():
 
 
 def measure(options, builds, results):
-    """Everything up to the results as a file."""
+    """Everything up to writing the results file."""
     sections = SECTIONS_QUICK if options.quick else SECTIONS
     print("building", flush=True)
     bench = crane_bench(sections)
@@ -85,7 +85,7 @@ def measure(options, builds, results):
 
 
 def compile_all(builds, arenas, tools):
-    """Compiles on all cores what takes long, the longest first."""
+    """Compiles the slow sources on all cores, the slowest first."""
     sources = [source for arena in reversed(arenas) for _, source in arena.sources()]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         jobs = [pool.submit(builds.program, "pinocchio", compiler) for compiler in tools]
@@ -95,7 +95,7 @@ def compile_all(builds, arenas, tools):
 
 
 def compare(arena):
-    """Those that are right, and those that are not."""
+    """The contestants with correct results, and the others."""
     print(f"{arena.coordinates} coordinates: comparing", flush=True)
     reference = arena.reference()
     right, wrong = [], []
@@ -111,7 +111,7 @@ def compare(arena):
 
 
 def shortlist(contestants):
-    """All our kernels, and the best variants of every library and compiler by a first look, in turns."""
+    """All our kernels, and the fastest variants of every library and compiler in a short trial."""
     chosen = []
     for quantity in dict.fromkeys(c.quantity for c in contestants):
         rivals = [c for c in contestants if c.quantity == quantity]
@@ -124,7 +124,7 @@ def shortlist(contestants):
 
 
 def asdict_of(contestant: Contestant):
-    """Without paths."""
+    """A contestant as a dict, without paths."""
     return {key: value for key, value in asdict(contestant).items() if key not in ("program", "arguments")}
 
 

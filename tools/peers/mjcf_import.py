@@ -1,4 +1,4 @@
-"""Robots in MJCF as the compiler imports them, against what MuJoCo makes of the same files."""
+"""Robots in MJCF as the compiler imports them, compared with MuJoCo on the same files."""
 
 import mujoco
 import numpy as np
@@ -41,7 +41,7 @@ def random_robots_agree(evaluate, folder, options, import_to, told):
 
 
 def compare_import(path, spec, evaluate, options):
-    """A, e, forces and q̈ of a spec that comes of an MJCF file, and of that file."""
+    """Compares A, e, forces and q̈ of a spec imported from an MJCF file with those of that file."""
     layout, library = evaluate.layout(str(spec)), Loaded(path)
     rng, shape = np.random.default_rng(options.seed), (options.states, library.model.nv)
     q, v = rng.uniform(-np.pi, np.pi, shape), rng.uniform(-2, 2, shape)

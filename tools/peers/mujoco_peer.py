@@ -1,4 +1,4 @@
-"""A chain in MuJoCo: one body a link, its joints in a row in it."""
+"""A chain in MuJoCo: one body per link, which contains its joints in order."""
 
 import mujoco
 import numpy as np
@@ -16,7 +16,7 @@ DISABLED = (
     | FLAGS.mjDSBL_EULERDAMP
     | FLAGS.mjDSBL_WARMSTART
 )
-# MuJoCo refuses what has no inertia at all; a point mass gets this much, kg m².
+# MuJoCo rejects bodies without inertia; a point mass gets this much, kg m².
 LEAST_INERTIA = 1e-14
 
 
@@ -48,7 +48,7 @@ def with_springs(chain, springs, step):
         joint.name = f"joint_{index}"
         joint.stiffness, joint.damping = linear(springs.stiffness[index]), linear(springs.damping[index])
         joint.springref = springs.rest[index]
-    # A fixed tendon has for its length a linear combination of joint positions: a linear support.
+    # The length of a fixed tendon is a linear combination of joint positions, like that of a linear support.
     for row, rest, stiffness, damping in springs.principal_rows():
         tendon = spec.add_tendon(stiffness=linear(stiffness), damping=linear(damping), springlength=[rest, rest])
         for index in np.flatnonzero(row):
@@ -74,7 +74,7 @@ def build(chain):
         for joint in link.joints:
             kind = mujoco.mjtJoint.mjJNT_HINGE if joint.is_rotation else mujoco.mjtJoint.mjJNT_SLIDE
             body.add_joint(type=kind, axis=joint.axis, pos=joint.point, armature=next(armature), limited=False)
-        # Principal axes from here: MuJoCo's own are good to 1e-12 only.
+        # Principal axes are computed here: MuJoCo's own are accurate only to 1e-12.
         moments, axes = principal(link.tensor)
         body.mass, body.ipos, body.iquat = link.mass, link.com, quaternion(axes)
         body.inertia = np.maximum(moments, LEAST_INERTIA)
@@ -83,7 +83,7 @@ def build(chain):
 
 
 def principal(tensor):
-    """Principal moments and axes; the axes of the frame where they are principal."""
+    """Principal moments and axes; the axes of the frame if they are principal."""
     if np.count_nonzero(tensor - np.diag(np.diagonal(tensor))) == 0:
         return np.diagonal(tensor), np.eye(3)
     moments, axes = np.linalg.eigh(tensor)

@@ -36,7 +36,7 @@ class Pinocchio:
         return mass_matrix, bias, pin.aba(self.model, self.data, q, v, force).copy()
 
     def transmitted(self, q, v, acceleration, frames):
-        """What the part beyond a joint exerts on the part before it, force and moment, in other frames.
+        """Force and moment that the part beyond a joint exerts on the part before it, in other frames.
 
         `frames`: the coordinate of each joint, and the pose in the world of the frame.
         """

@@ -39,7 +39,7 @@ class Compiler:
 
 
 def compilers():
-    """gcc, and the newest clang there is."""
+    """gcc, and the newest clang, if installed."""
     found = [Compiler("gcc", "gcc", "g++")] if shutil.which("g++") else []
     names = {
         Path(folder, file).name for folder in os.get_exec_path() if Path(folder).is_dir() for file in os.listdir(folder)
@@ -61,7 +61,7 @@ class Builds:
         folder.mkdir(parents=True, exist_ok=True)
 
     def write(self, name, content):
-        """A file in the folder."""
+        """Writes a file into the folder."""
         path = self.folder / name
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         return path
@@ -96,11 +96,11 @@ def package(name):
 
 
 def options_of_pinocchio():
-    """Headers of the wheel, of Boost and of Eigen; everything is a template. More joints than Boost is made for."""
+    """Headers of the wheel, of Boost and of Eigen; everything is a template. More joint types than Boost's default limit."""
     include = next(Path(folder) for folder in sys.path if (Path(folder) / "cmeel.prefix/include").is_dir())
     include = include / "cmeel.prefix/include"
     limits = ["-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS"]
-    # gcc warns about what it inlines from there.
+    # gcc warns about code that it inlines from these headers.
     return [*limits, "-w", "-isystem", include, "-isystem", include / "eigen3"]
 
 

@@ -1,4 +1,4 @@
-"""Random robots in MJCF that use what the language has: joints in a row, frames, classes, all orientations, shapes with masses."""
+"""Random robots in MJCF with most features of the language: several joints per body, frames, classes, orientations, shapes."""
 
 from xml.etree import ElementTree
 
@@ -8,7 +8,7 @@ LETTERS = "xyzXYZ"
 
 
 class RandomRobot:
-    """A serial robot of a seed."""
+    """A serial robot from a seed."""
 
     def __init__(self, seed):
         self.rng = np.random.default_rng(seed)
@@ -32,7 +32,7 @@ class RandomRobot:
         return ElementTree.tostring(self.root, encoding="unicode")
 
     def body(self, parent, number):
-        """A body in another one, at times in a frame."""
+        """A body in another one, sometimes in a frame."""
         if self.rng.random() < 0.3:
             parent = ElementTree.SubElement(parent, "frame", self.pose())
         body = ElementTree.SubElement(parent, "body", {"name": f"part_{number}", **self.pose()})
@@ -47,10 +47,10 @@ class RandomRobot:
         return body
 
     def joint(self, body):
-        """A hinge or a slide, at times with an anchor, a spring, a rotor."""
+        """A hinge or a slide, sometimes with an anchor, a spring, a rotor."""
         joint = ElementTree.SubElement(body, "joint", name=f"joint_{self.joints}")
         self.joints += 1
-        # Two joints of a body along one axis would be one too many.
+        # Two joints of a body along the same axis would be redundant.
         first = len(body.findall("joint")) == 1
         if body.get("childclass") is None or not first or self.rng.random() < 0.5:
             joint.set("type", self.rng.choice(["hinge", "slide"]))
@@ -74,12 +74,12 @@ class RandomRobot:
         """An inertial frame, or shapes."""
         if self.rng.random() < 0.5:
             inertial = ElementTree.SubElement(body, "inertial", mass=text(self.rng.uniform(1, 20)), **self.pose())
-            # Of some points: physically possible.
+            # The inertia of some point masses, hence physically possible.
             points = self.rng.normal(size=(4, 3))
             second = points.T @ points
             tensor = np.trace(second) * np.eye(3) - second
             if self.rng.random() < 0.5:
-                # MuJoCo has no orientation beside a full tensor.
+                # MuJoCo allows no orientation together with a full tensor.
                 for key in ("quat", "axisangle", "xyaxes", "zaxis", "euler"):
                     inertial.attrib.pop(key, None)
                 inertial.set("fullinertia", text(tensor[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]))

@@ -13,7 +13,7 @@ SERIES = {
     "MuJoCo": ("MuJoCo", ""),
     "Exudyn": ("Exudyn", ""),
 }
-# Our kernel that stands for a quantity, the first that there is.
+# Our kernel for each quantity: the first that exists.
 BEST_OF_OURS = {
     "forward_dynamics": ["forward_dynamics", "dense_forward_dynamics"],
     "mass_matrix_and_bias": ["mass_matrix_and_bias"],
@@ -31,26 +31,26 @@ class Times:
         self.coordinates = sorted({c["coordinates"] for c in self.contestants})
 
     def ours(self, coordinates, kernel):
-        """Of one of our kernels; None if there is none."""
+        """Median of one of our kernels; None if there is none."""
         return self.fastest(coordinates, library=OURS, variant=kernel)[0]
 
     def of_quantity(self, coordinates, quantity):
-        """Of our kernel for a quantity."""
+        """Median of our kernel for a quantity."""
         return next((t for kernel in BEST_OF_OURS[quantity] if (t := self.ours(coordinates, kernel))), None)
 
     def fastest(self, coordinates, **properties):
-        """The least median of those with the properties, and its contestant; (None, None) if there is none."""
+        """The minimum median of contestants with these properties, and its contestant; (None, None) if there is none."""
         wanted = {"coordinates": coordinates, **properties}
         found = [c for c in self.contestants if all(c[key] == value for key, value in wanted.items())]
         return min(((median(c["times"]), c) for c in found), key=lambda pair: pair[0], default=(None, None))
 
     def series(self, coordinates, quantity, series):
-        """Of a library and compiler."""
+        """Minimum median of a library and compiler."""
         library, compiler = SERIES[series]
         return self.fastest(coordinates, quantity=quantity, library=library, compiler=compiler)[0]
 
     def spread(self):
-        """The middle half of a contestant's times over its median, at the median contestant."""
+        """The interquartile range of a contestant's times over their median; the median over all contestants."""
         widths = []
         for contestant in self.contestants:
             times = sorted(contestant["times"])
@@ -59,7 +59,7 @@ class Times:
 
 
 def write(results, document, drawing):
-    """The document and its figure."""
+    """Writes the document and its figure."""
     times = Times(results)
     figure.draw(times, drawing, SERIES)
     document.write_text(text(results, times, drawing.relative_to(document.parent)), encoding="utf-8")
@@ -142,13 +142,13 @@ def microseconds(nanoseconds):
 
 
 def table(heading, rows):
-    """A Markdown table, numbers to the right."""
+    """A Markdown table, aligned right."""
     lines = [heading, ["---:"] * len(heading), *rows]
     return "\n" + "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def times_table(times, quantity, series, *further):
-    """µs, ours and others'."""
+    """Times in µs, ours and others'."""
     rows = [
         [
             str(n),
@@ -162,7 +162,7 @@ def times_table(times, quantity, series, *further):
 
 
 def ratio_table(times):
-    """How many times as long the best of each library takes."""
+    """How many times as long as ours the best of each library takes."""
 
     def ratio(n, quantity, library, ours):
         theirs = times.fastest(n, quantity=quantity, library=library)[0]
@@ -201,7 +201,7 @@ def winners(times):
 
 
 def wrong(results):
-    """Who was not right."""
+    """The contestants that were excluded for their errors."""
     found = results["wrong"]
     if not found:
         return "All variants of all libraries were correct."
@@ -226,14 +226,14 @@ def wrong(results):
 
 
 def kernels(times):
-    """Our kernels."""
+    """Times of our kernels."""
     names = list(dict.fromkeys(c["variant"] for c in times.contestants if c["library"] == OURS))
     rows = [[f"`{name}`", *(number(times.ours(n, name)) for n in times.coordinates)] for name in names]
     return table(["kernel", *map(str, times.coordinates)], rows)
 
 
 def operations(results, times):
-    """Operations a call and their share of the peak: of the vector peak for eight cranes at once, else of the scalar one."""
+    """Operations per call and their share of the peak: of the vector peak for eight cranes at once, else of the scalar one."""
     rows = []
     for kernel in dict.fromkeys(c["variant"] for c in times.contestants if c["library"] == OURS):
         peak = results["peak"]["vector" if kernel.endswith(LANES_SUFFIX) else "scalar"]
@@ -248,7 +248,7 @@ def operations(results, times):
 
 
 def counters_heading(results):
-    """Whether counters follow."""
+    """Part of a heading that announces counters, if any."""
     return "; what the processor counted follows below" if any(results["counters"].values()) else ""
 
 

@@ -22,7 +22,7 @@ class Springs:
     row_damping: np.ndarray
 
     def principal_rows(self):
-        """As few rows as do the same: those with one ratio of damping to stiffness, along their principal axes.
+        """The fewest equivalent rows: for each ratio of damping to stiffness, those along the principal axes.
 
         Returns (row, rest length, stiffness, damping) of each.
         """

@@ -1,4 +1,4 @@
-// Builds the page into one file, which the command includes: `node build.js`; with `--check`, only says whether that file
+// Builds the page into one file, which the command includes: `node build.js`; with `--check`, only reports whether that file
 // is current.
 import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
@@ -19,7 +19,7 @@ const { outputFiles } = await build({
   outdir: "out",
 });
 const output = (ending) => outputFiles.find(({ path }) => path.endsWith(ending)).text.trim();
-// An element's text ends at its closing tag, wherever that stands.
+// The text of an element ends at the first closing tag, even within a string.
 const script = output(".js").replaceAll("</script", "<\\/script");
 const style = output(".css");
 const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
@@ -31,7 +31,7 @@ const licences = await Promise.all(["three", "uplot"].map(async (name) => {
   return `${name} ${version}\n\n${(await file(`node_modules/${name}/LICENSE`)).trim()}`;
 }));
 const parts = {
-  // Nothing from anywhere: only this script, this style and what they draw.
+  // No external resources: only this script, this style and what they draw.
   policy: `default-src 'none'; script-src ${hash(script)}; style-src ${hash(style)}; img-src data: blob:; base-uri 'none'; form-action 'none'`,
   style,
   script,

@@ -1,4 +1,4 @@
-// Pages inside a notebook, as a browser shows them: `node notebook.js FILE`, of the file that notebook.py wrote. A picture goes beside it.
+// Pages inside a notebook, as a browser shows them: `node notebook.js FILE`, with the FILE from notebook.py. A picture goes next to it.
 import assert from "node:assert/strict";
 import { resolve } from "node:path";
 import { chromium } from "playwright-core";
@@ -22,7 +22,7 @@ for (const element of await page.$$("iframe")) {
   await element.scrollIntoViewIfNeeded();
   frames.push(await element.contentFrame());
 }
-// A frame out of sight draws nothing, so time instead of drawings sets the pace of questions.
+// A frame out of sight draws nothing, so poll by time instead of by animation frame.
 const until = (frame, question) => frame.waitForFunction(question, null, { timeout: PATIENCE, polling: 100 });
 for (const frame of frames) await until(frame, () => document.documentElement.dataset.ready === "yes");
 const [atRest, moving] = frames;
@@ -35,7 +35,7 @@ assert(["stage", "motion", "drives", "supports", "energy", "repeat"].every((id) 
 assert(!run.includes("tables"));
 assert((await moving.locator("figure.panel").count()) > 10);
 
-// A mode moves what is at rest.
+// A mode moves the crane at rest.
 await atRest.locator("#view canvas").scrollIntoViewIfNeeded();
 const look = () => atRest.locator("#view canvas").screenshot();
 const still = await look();
@@ -43,7 +43,7 @@ await atRest.selectOption("#mode", "0");
 await until(atRest, () => globalThis.report.player.t > 0.2);
 assert(!still.equals(await look()), "the mode does not move");
 
-// A link goes to its section, and not to the notebook.
+// A link leads to its section, not to the notebook.
 await moving.click('nav a[href="#energy"]');
 await until(moving, () => Math.abs(document.querySelector("#energy").getBoundingClientRect().top) < 200);
 assert.equal(await moving.evaluate(() => globalThis.report.data.cranes.length), 1);

@@ -1,5 +1,5 @@
 // The page as a browser shows it: `node test.js PAGE [CSV …]`. The CSV files are those of the page's runs; without them,
-// values are not compared. Pictures go beside the page.
+// values are not compared. Pictures are written next to the page.
 import assert from "node:assert/strict";
 import { readFile, stat } from "node:fs/promises";
 import { basename, resolve } from "node:path";
@@ -8,11 +8,11 @@ import { FLAGS, PATIENCE, executablePath } from "./browser.js";
 
 /** Rounding to 32 bits, and once more to the shortest text that reads back as the same. */
 const ROUNDING = 2 * 2 ** -24;
-/** Least number of 32 bits with all its digits. */
+/** Smallest 32-bit number with full precision. */
 const LEAST = 2 ** -126;
 /** Rounding to the digits shown. */
 const SHOWN = 0.5e-5;
-/** Most bytes of a page, so that it can be mailed. */
+/** Maximum size of a page, bytes, so that it can be mailed. */
 const MOST_BYTES = 6e6;
 
 const [file, ...csvFiles] = process.argv.slice(2).map((path) => resolve(path));
@@ -27,14 +27,14 @@ function columns(text) {
 /** Longest wait for something to be drawn, ms. */
 const MOMENT = 20_000;
 
-/** Opens the page; `check` looks at it; what it says or asks for besides is an error. */
+/** Opens the page; `check` examines it; messages and network requests are returned as errors. */
 async function open(browser, options, check) {
   const context = await browser.newContext({ offline: true, reducedMotion: "reduce", acceptDownloads: true, ...options });
   const page = await context.newPage();
   // Software rendering on a busy machine.
   page.setDefaultTimeout(PATIENCE);
   const said = [];
-  // That of reading pixels is about this test, not about the page.
+  // The one on reading pixels concerns this test, not the page.
   page.on("console", (message) => message.text().includes("getImageData") || said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.stack}`));
   page.on("request", (request) => {
@@ -52,7 +52,7 @@ const seek = async (page, t) => {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 };
 
-/** Looks again and again until what is drawn is right: drawing takes as long as the machine needs. */
+/** Repeats a check until it passes: drawing takes as long as the machine needs. */
 async function eventually(page, check) {
   for (const begin = Date.now(); ; ) {
     try {
@@ -95,7 +95,7 @@ async function panels(page) {
   return ids;
 }
 
-/** What is shown at some times is what the CSV files say. */
+/** Values shown at some times are those of the CSV files. */
 async function values(page, files) {
   const [main] = files;
   const { t, drives, points, crane } = await page.evaluate(() => {
@@ -195,7 +195,7 @@ async function plots(page) {
   assert(csv.has("t [s]") && csv.size >= 2);
 }
 
-/** Utilisation is drawn on the beams and over time, margins are there where the crane has feet, and what is to be signed has its hash. */
+/** Utilisation is drawn on the beams and over time, margins if the crane has feet, and the page to sign has the hash of the spec. */
 async function strength(page) {
   const { beams, lines, hash } = await page.evaluate(() => {
     const { crane } = globalThis.report.data;
@@ -214,7 +214,7 @@ async function strength(page) {
   assert.equal(await painted(), 0);
 }
 
-/** Each path has a dot where its point is now, in its colour; the tipping line is on the ground between two feet; pictures and films are files. */
+/** Each path has a dot at its point, in its colour; the tipping line is on the ground between two feet; pictures and films are files. */
 async function marks(page) {
   const { paths, lines, feet, duration } = await page.evaluate(() => {
     const { data: { crane }, plots, viewer, player } = globalThis.report;
@@ -246,7 +246,7 @@ async function marks(page) {
 
 /** Paper is narrower than the screen: plots fit it, and nothing on it is folded. */
 async function paper(page) {
-  // In one go: this is not paper, and plots that are observed would take the screen's width again.
+  // In one call: this is not paper, and observed plots would take the screen's width again.
   const sizes = (after) => page.evaluate((after) => {
     if (after) dispatchEvent(new Event(after));
     return { widths: globalThis.report.plots.map(({ plot }) => plot.width), folded: document.querySelectorAll("details.table:not([open])").length };

@@ -53,7 +53,7 @@ pub(crate) use catalogue;
 
 catalogue! {
     // The file.
-    /// A file holds at most 4 MiB.
+    /// A file has at most 4 MiB.
     E001 too_large(size, limit) "the file is too large for a crane: {size} bytes", "a spec is at most {limit} bytes",
         "check that this is the right file; a typical spec has a few thousand bytes";
     /// A file is UTF-8 text.
@@ -71,7 +71,7 @@ catalogue! {
     E006 wrong_format(given) "format {given} is not supported", "this compiler reads format 1", "write `format: 1`";
     /// A file has at most 131072 values; values that an alias repeats count each time.
     E007 too_many_values(most) "the file has more than {most} values", "the limit is exceeded here",
-        "an alias (`*name`) repeats everything its anchor holds: write out only what differs, and give beams `sections` instead of `elements`";
+        "an alias (`*name`) repeats everything its anchor contains: write out only what differs, and give beams `sections` instead of `elements`";
     /// `extends` names a spec that can be read: a file, relative to this one, or a shipped crane.
     E008 no_base(base, problem) "`extends: {base}` cannot be read: {problem}", "the spec to start from",
         "give a YAML file, relative to this one, or a shipped crane such as eight_link_flexible";
@@ -230,8 +230,8 @@ catalogue! {
     /// A one-sided support presses with its vertical spring.
     E073 nothing_to_press(support) "one-sided support `{support}` has nothing to press with", "its vertical stiffness is 0 N/m",
         "give `stiffness` a third number above zero, in N/m, or remove `one_sided`";
-    /// What depends on the pressing force needs a support that only presses.
-    E074 hold_of_two_sided(support) "`full_hold` of support `{support}` has no effect", "the support pulls as well as it presses",
+    /// Only a support that never pulls can depend on its pressing force.
+    E074 hold_of_two_sided(support) "`full_hold` of support `{support}` has no effect", "the support pulls as well as presses",
         "add `one_sided: true`, or remove `full_hold`";
 
     // Drives, damping, profiles.
@@ -252,11 +252,11 @@ catalogue! {
     E085 not_passive(coordinate, owner) "coordinate `{coordinate}` is not passive", "it belongs to {owner}",
         "give the damping there";
     /// Rotors turn with joints; the rotor of a driven joint belongs to its drive.
-    E086 no_rotor(coordinate, owner, help) "coordinate `{coordinate}` has no rotor of its own", "it belongs to {owner}",
+    E086 no_rotor(coordinate, owner, help) "coordinate `{coordinate}` has no rotor", "it belongs to {owner}",
         "{help}";
     /// A drive has a stiffness, or is rigid.
     E087 no_transmission(coordinate) "drive `{coordinate}` has no stiffness", "neither `stiffness` nor `rigid: true`",
-        "write its `stiffness:`, or `rigid: true` where the coordinate follows the motion exactly";
+        "write its `stiffness:`, or `rigid: true` if the coordinate follows the motion exactly";
     /// A rigid drive has neither stiffness nor damping.
     E088 rigid_spring(coordinate, key) "drive `{coordinate}` is rigid and has a `{key}`", "a rigid drive has no spring and no damper",
         "remove either `{key}` or `rigid: true`";
@@ -273,8 +273,8 @@ catalogue! {
     /// The guess of a coordinate is not prescribed by a rigid drive.
     E092 prescribed_guess(coordinate) "the guess of `{coordinate}` has no effect", "its rigid drive prescribes its position",
         "remove it";
-    /// A drive with a greatest effort has a stiffness.
-    E093 limited_without_spring(coordinate) "the drive of `{coordinate}` has a greatest effort but no spring", "its stiffness is 0",
+    /// A drive with a maximum effort has a stiffness.
+    E093 limited_without_spring(coordinate) "the drive of `{coordinate}` has a maximum effort but no spring", "its stiffness is 0",
         "give it a stiffness above zero, or remove `max_effort`";
 
     // Stops and friction of joints.
@@ -305,7 +305,7 @@ catalogue! {
         "leave `bend` out, or divide the beam into sections";
 
     // Joints that stick.
-    /// Friction by bristles has constants, since their deflection is a state of the motion.
+    /// The parameters of bristle friction are constants, since the deflection of bristles is a state of the motion.
     E101 live_bristles(coordinate) "the friction of `{coordinate}` has bristles, so it cannot use a live parameter", "`coulomb`, `breakaway` or `stribeck` is a parameter",
         "write numbers there, or remove `bristle`";
     /// Bristles have a Coulomb friction above zero.
@@ -313,9 +313,9 @@ catalogue! {
     /// A joint whose motion is prescribed does not stick.
     E103 prescribed_bristles(coordinate) "the friction of `{coordinate}` has bristles, but its drive is rigid", "a joint that follows its motion exactly does not stick",
         "remove `bristle`, or give the drive a `stiffness`";
-    /// A drive with a greatest rate or power has a greatest effort.
+    /// A drive with a maximum rate or power has a maximum effort.
     E104 limit_without_effort(coordinate, key) "the drive of `{coordinate}` has `{key}` but no `max_effort`", "a real drive has all of them",
-        "add `max_effort:`, the greatest torque or force of the drive, N m or N";
+        "add `max_effort:`, the maximum torque or force of the drive, N m or N";
     /// Bristles stick: their friction has no width.
     E105 width_of_bristles(coordinate) "the friction of `{coordinate}` has a `width` and a `bristle`", "bristles stick without creeping",
         "remove `width`, or `bristle`";
@@ -345,24 +345,24 @@ catalogue! {
         "put `foot` on a link before the joint and `head` on the link that it moves, or name another coordinate";
     /// A cylinder moves a single joint.
     E117 spans_more(cylinder, coordinate, other) "cylinder `{cylinder}` spans `{other}` besides `{coordinate}`", "two joints between its pins",
-        "put its pins on links that only `{coordinate}` moves against each other";
+        "put its pins on links that only `{coordinate}` moves relative to each other";
     /// The joint of a cylinder has a drive, whose effort is the cylinder's.
     E118 undriven(cylinder, coordinate) "cylinder `{cylinder}` has no drive", "`{coordinate}` is not driven",
         "add a drive for `{coordinate}` that prescribes the motion of the cylinder";
-    /// A joint has one cylinder; two side by side are one with twice the area.
+    /// A joint has one cylinder; two in parallel are given as one with twice the area.
     E119 second_cylinder(coordinate, other) "`{coordinate}` has two cylinders", "moved by cylinder `{other}` already",
-        "give one cylinder: two equal ones side by side have √2 times the `bore` and `rod` of each";
-    /// The oil of a cylinder with a valve is compressible, stands on both sides and is kept below some pressure.
+        "give one cylinder: two equal ones in parallel act as one with √2 times the `bore` and `rod`";
+    /// A cylinder with a valve has compressible oil on both sides, and a maximum pressure.
     E120 valve_without_oil(cylinder, missing) "the valve of cylinder `{cylinder}` needs {missing}", "pressures follow from the oil's volumes and stiffness",
         "typical: `bulk_modulus: 1.2e9` Pa, `max_pressure: 28e6` Pa and `hose_volumes: [5e-4, 5e-4]` m³";
     /// A pump supplies the valves with pressure.
     E121 valve_without_pressure(cylinder) "nothing supplies the valve of cylinder `{cylinder}`", "the spec gives no pressure of a pump",
         "add `pump: {{max_flow: 1.5e-3, pressure: 22e6}}` with the data of your pump, in m³/s and Pa";
-    /// A joint that oil moves has a drive with a stiffness and without a limit of its own.
+    /// A joint that oil moves has a drive with a stiffness and without a limit.
     E122 valve_of_another_drive(cylinder, coordinate) "cylinder `{cylinder}` has a valve, but the drive of `{coordinate}` is rigid or limited",
         "oil moves this joint: the cylinder's pressures limit its force",
         "give the drive a `stiffness`, which holds the crane at rest before the run, and neither `rigid` nor `max_effort`";
-    /// A valve opens before its spool has gone all the way.
+    /// A valve opens before its spool reaches the end of its travel.
     E123 covered_valve(cylinder, overlap) "the valve of cylinder `{cylinder}` never opens", "an overlap of {overlap} covers the whole travel of the spool",
         "`overlap` is a fraction of the spool's travel below 1, such as 0.05";
     /// Oil remains on both sides at the ends of the stroke.
@@ -378,21 +378,21 @@ catalogue! {
         "write `gain:`, 1/m, for a servo that follows the drive's motion, or `opening:`, a motion or an input from -1 to 1";
     /// A valve has one command: a servo or an opening over time.
     E128 valve_commanded_twice(cylinder, other) "the valve of cylinder `{cylinder}` has two commands", "`opening`, and {other}",
-        "with `opening`, remove `gain` and `feed_forward` (in a spec that extends another: `gain: ~`), and let the drive's motion `hold` where the crane stands before the run";
+        "with `opening`, remove `gain` and `feed_forward` (in a spec that extends another: `gain: ~`), and let the drive's motion `hold` the position of the crane before the run";
 
     // Connectors.
-    /// Some coordinate changes the length of a connector.
+    /// At least one coordinate changes the length of a connector.
     E130 rigid_connector(connector) "connector `{connector}` cannot change its length", "there is no joint between its points",
         "attach it to links on both sides of a joint, or to a link and the world";
     /// A rope has a length or a motion of its winch.
-    E131 rope_length(connector) "rope `{connector}` needs exactly one of `length` and `motion`", "one of them is its length without force",
+    E131 rope_length(connector) "rope `{connector}` needs exactly one of `length` and `motion`", "one of them gives its free length",
         "write `length:` in m, or `motion:` for a winch";
     /// The two points of a connector are apart.
     E132 meeting_points(connector) "the two points of connector `{connector}` coincide", "the line between them has no direction",
         "attach it to points that are apart at the `guess` and remain so while the crane moves";
     /// A coupling joins two coordinates.
     E133 own_leader(coupling) "coupling `{coupling}` makes a coordinate follow itself", "the same as `coordinate`",
-        "write under `follows` the other coordinate, the one that leads";
+        "write the other coordinate, the one that leads, under `follows`";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
@@ -408,7 +408,7 @@ catalogue! {
     W005 far(what, given, help) "{what} is {given} m", "larger than any crane", "{help}";
     /// A beam is longer than its section is high or wide.
     W006 stubby(place, key, side, length) "{place} is shorter than its section is high or wide", "`{key}` is {side} m, the beam {length} m long",
-        "check both units; a body this short does not bend as a beam: use `sections: rigid`";
+        "check both units; a body this short does not bend like a beam: use `sections: rigid`";
     /// The torsion constant of a section is at most the sum of its two second moments of area.
     W007 torsion_constant(place, given, polar) "the torsion constant `Jo` of {place} exceeds Jy + Jz", "{given} m⁴ exceeds {polar} m⁴",
         "write the torsion constant: Jy + Jz for circles and tubes, less for boxes, far less for open sections";
@@ -422,13 +422,13 @@ catalogue! {
     /// Principal moments satisfy the triangle inequality; measured ones may exceed it by up to 25 % (beyond: E051).
     W011 slight_triangle(place, largest, others) "{place} slightly violates the triangle inequality", "{largest} kg m² exceeds {others} kg m², the sum of the other two principal moments",
         "no principal moment about the centre of mass exceeds the sum of the other two; rounded or identified data may violate this slightly";
-    /// A one-sided support carries more than the pressing force from which it holds in full.
+    /// A one-sided support carries more than the pressing force above which it holds fully.
     W020 hold_beyond_weight(support, force, share) "`full_hold` of support `{support}` is {force} N",
         "its share of the crane's weight is {share} N", "write a force below its load at rest, in N; under a smaller load the support gives only a part of its lateral stiffness and damping";
-    /// The length of a connector without force fits the distance of its points at the guess.
-    W021 connector_length(connector, length, distance) "connector `{connector}` is {length} m long without force", "its points are {distance} m apart at the guess",
+    /// The free length of a connector is consistent with the distance between its points at the guess.
+    W021 connector_length(connector, length, distance) "connector `{connector}` has a free length of {length} m", "its points are {distance} m apart at the guess",
         "check the unit, the points and the `guess`: its force is its stiffness times the difference; a rope only pulls";
-    /// Diameters, lengths, pressures, flows, volumes and times of hydraulics are usual in SI units.
+    /// Diameters, lengths, pressures, flows, volumes and times of hydraulics have usual magnitudes in SI units.
     W022 hydraulics(what, given, unit, usual, help) "{what} is {given} {unit}", "usual: {usual}", "{help}";
     /// The relief valves of a cylinder open above the pressure of the pump.
     W023 relief_below_pump(pressure, cylinder, relief) "the pump supplies {pressure} Pa, more than the relief pressure of cylinder `{cylinder}`",
@@ -436,10 +436,10 @@ catalogue! {
     /// The command of a valve is from −1 to 1.
     W024 opening_beyond(cylinder, opening) "the valve of cylinder `{cylinder}` has an opening of {opening}", "−1 and 1 are fully open; beyond them nothing changes",
         "write a fraction: 50 % is 0.5";
-    /// Where its drive starts, the pins of a cylinder are as far apart as its stroke allows.
+    /// When its drive starts, the distance between the pins of a cylinder is within its stroke.
     W025 out_of_stroke(cylinder, length, least, most) "cylinder `{cylinder}` is {length} m long at the start of its drive's motion", "its stroke is from {least} m to {most} m",
         "check `retracted`, `stroke`, the pins and the motion of the drive";
-    /// Bristles of a joint that sticks slide after 1e-8 to 0.1 m or rad.
+    /// Bristles of a joint that sticks slide after a deflection of 1e-8 to 0.1 m or rad.
     W026 odd_bristles(coordinate, deflection, unit) "the bristles of `{coordinate}` slide after a deflection of {deflection} {unit}", "breakaway friction over stiffness; usual: 1e-8 to 0.1 {unit}",
         "check the unit of `stiffness`: bristles that are too stiff force very small steps, and bristles that are too soft act as a spring";
     /// Each part of a beam contains the spring of a section, where stresses are computed.

@@ -25,7 +25,7 @@ pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
         let slots = integer(Input::SLOTS * chain.inputs.len());
         let not_set = chain.inputs.iter().flat_map(|_| Input::NOT_SET).map(literal);
         items.push(parse_quote!(
-            #[doc = " Of every input its value while it is set, else 0; and 0 while it is set, else 1."]
+            #[doc = " Two numbers per input: its value while it is set, else 0; and 0 while it is set, else 1."]
             pub type Inputs = [f64; #slots];
         ));
         items.push(parse_quote!(
@@ -43,7 +43,7 @@ pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
                 #[doc = " The crane with these values of its live parameters."]
                 #[doc = ""]
                 #[doc = " # Errors"]
-                #[doc = " They break a rule of the spec language."]
+                #[doc = " The values break a rule of the spec language."]
                 pub fn new(params: Params) -> Result<Self, ParameterError> {
                     params.check()?;
                     Ok(Crane { constants: Constants::of(&params) #inputs })

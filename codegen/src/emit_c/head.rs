@@ -39,13 +39,13 @@ pub fn header(writer: &Writer) -> String {
 fn about(precision: Precision) -> &'static str {
     match precision {
         Precision::Double => {
-            "/* C99. No heap, no global data, no recursion; of the library sin and cos, sqrt where sections turn far or points are\n   \
-             connected, exp where joints have friction. All functions may be called from several threads. SI units, rad. */"
+            "/* C99. No heap, no global data, no recursion. Library functions: sin, cos; sqrt if sections rotate far or points are\n   \
+             connected; exp if joints have friction. All functions may be called from several threads. SI units, rad. */"
         }
         Precision::Single => {
-            "/* C99, single precision: about six digits, fewer where large numbers cancel. No heap, no global data, no recursion; of\n   \
-             the library sinf and cosf, sqrtf where sections turn far or points are connected, expf where joints have friction. All functions\n   \
-             may be called from several threads. SI units, rad. */"
+            "/* C99, single precision: about six digits, fewer where large numbers cancel. No heap, no global data, no recursion.\n   \
+             Library functions: sinf, cosf; sqrtf if sections rotate far or points are connected; expf if joints have friction. All\n   \
+             functions may be called from several threads. SI units, rad. */"
         }
     }
 }
@@ -54,7 +54,7 @@ fn about(precision: Precision) -> &'static str {
 fn coordinates(chain: &Chain) -> String {
     let prefix = chain.name.to_uppercase();
     let mut text = format!(
-        "/* Number of coordinates, and their places in q, v and all results per coordinate. */\n\
+        "/* Number of coordinates, and their indices in q, v and all results per coordinate. */\n\
          #define {prefix}_N {}\n\nenum {{\n",
         chain.coordinates.len()
     );
@@ -92,7 +92,7 @@ fn parameters(writer: &Writer) -> String {
     let _ = write!(text, "}} {params};\n\n#define {} {{{}}}\n", macro_name(chain), values.join(", "));
     let _ = write!(
         text,
-        "\n/* Live parameters, and what depends on them alone; made by {}. */\ntypedef struct {{\n    {params} params;\n",
+        "\n/* Live parameters, and constants that depend only on them; set by {}. */\ntypedef struct {{\n    {params} params;\n",
         writer.name("set_params")
     );
     for id in &lowered.constants.stored {
@@ -100,8 +100,8 @@ fn parameters(writer: &Writer) -> String {
     }
     let _ = write!(
         text,
-        "}} {constants};\n\n/* Computes the constants of some parameters, once after they change. The rules of the spec language are not checked\n   \
-         here: masses and stiffnesses must be as the spec allows them. */\nvoid {}(const {params} *params, {constants} *c);\n\n",
+        "}} {constants};\n\n/* Computes the constants for given parameters; call it after they change. The rules of the spec language are not\n   \
+         checked here: masses and stiffnesses must be within the limits of the spec. */\nvoid {}(const {params} *params, {constants} *c);\n\n",
         writer.name("set_params")
     );
     text
@@ -127,7 +127,7 @@ fn inputs(writer: &Writer) -> String {
     let (name, slots) = (writer.name("inputs"), Input::SLOTS * chain.inputs.len());
     let _ = write!(
         text,
-        "}};\n\n/* Values of the inputs; {prefix}_INPUTS, in which all are as the spec says, is the beginning. */\n\
+        "}};\n\n/* Values of the inputs; start from {prefix}_INPUTS, in which all follow the spec. */\n\
          typedef struct {{\n    {} slots[{slots}];\n}} {name};\n\n#define {prefix}_INPUTS {{{{{}}}}}\n\n",
         precision.name(),
         not_set.join(", ")
@@ -135,7 +135,7 @@ fn inputs(writer: &Writer) -> String {
     let [set, unset] = writer.input_functions();
     let _ = write!(
         text,
-        "/* Sets an input of the list above to a value. */\n{set};\n\n/* Gives an input back to what the spec says. */\n{unset};\n\n"
+        "/* Sets one of the inputs listed above to a value. */\n{set};\n\n/* Lets an input follow the spec again. */\n{unset};\n\n"
     );
     text
 }
@@ -164,8 +164,8 @@ fn of_argument(argument: Argument) -> &'static str {
         Argument::Acceleration => "a: their accelerations, m/s2 and rad/s2",
         Argument::RightHandSide => "r: generalized forces, N and N m",
         Argument::AddedInertia => "added_inertia: added to the diagonal of the mass matrix, one number per coordinate",
-        Argument::BaseAddedInertia => "base: added to the mass matrix over the base's coordinates, symmetric, 6 x 6",
-        Argument::Factors => "f: what factorise has left",
+        Argument::BaseAddedInertia => "base: added to the mass matrix in the rows and columns of the base's coordinates, symmetric, 6 x 6",
+        Argument::Factors => "f: result of factorise",
         Argument::Parameters | Argument::Inputs | Argument::LoopVarying | Argument::LiveOut => "",
     }
 }
@@ -182,36 +182,36 @@ fn result(chain: &Chain, shape: &Shape) -> String {
         Shape::Scalar => "Returns the number".to_owned(),
         Shape::Vector(_) => "out: one number per coordinate".to_owned(),
         Shape::Symmetric(_) => format!("out: {n} x {n}, symmetric"),
-        Shape::Base => "out: 6 x 6, symmetric, over x, y, z, psi, theta, phi of the base".to_owned(),
+        Shape::Base => "out: 6 x 6, symmetric, in the order x, y, z, psi, theta, phi of the base".to_owned(),
         Shape::MassAndBias(_) => format!("out: {n} x {n}, symmetric, then one number per coordinate"),
         Shape::Vectors(count) if *count == chain.points.len() => {
             let points = chain.points.iter().map(|point| point.name.as_str()).collect();
-            format!("out: x, y, z one after the other of {}", names(points))
+            format!("out: x, y, z of each of {}", names(points))
         }
-        Shape::Vectors(count) => format!("out: x, y, z of {count} supports, one after the other"),
+        Shape::Vectors(count) => format!("out: x, y, z of each of {count} supports"),
         Shape::Pairs(count) => format!("out: {count} pairs"),
         Shape::Rows { count, n } => {
             format!("out: {count} x {n}, row by row, of the connectors {}", names(connectors(chain)))
         }
         Shape::Structs(Struct::Tension, _) => {
-            format!("out: force, slope by length, slope by rate of the connectors {}", names(connectors(chain)))
+            format!("out: force and its derivatives with respect to length and rate, of the connectors {}", names(connectors(chain)))
         }
         Shape::Structs(Struct::Wrench, count) => {
             format!(
-                "out: force x, y, z and moment x, y, z of {count} cuts from the ground to the tip, one after the other"
+                "out: force x, y, z and moment x, y, z of each of {count} cuts, from the ground to the tip"
             )
         }
         Shape::Structs(Struct::SectionModuli, count) => {
             format!(
                 "out: area, moduli of bending about y and z and of torsion, shear areas along y and z, whether there are corners, \
-                 allowable stress of {count} beams"
+                 allowable stress, of each of {count} beams"
             )
         }
         Shape::Transforms { counts, .. } => {
             let bodies = chain.bodies.iter().map(|body| body.name.as_str()).collect();
             let matrices: usize = counts.iter().sum();
             format!(
-                "out: the upper three rows of {matrices} matrices 4 x 4, row by row, of the bodies {}",
+                "out: the upper three rows of {matrices} 4 x 4 matrices, row by row, of the bodies {}",
                 names(bodies)
             )
         }

@@ -45,21 +45,21 @@ impl std::error::Error for Inexpressible {}
 pub fn mjcf(chain: &Chain, parameters: &[f64]) -> Result<String, Inexpressible> {
     if let Some(support) = chain.supports.iter().find(|support| support.kinematics == SupportKinematics::Exact) {
         return Err(Inexpressible {
-            title: format!("MJCF has no springs along the world's axes, as support `{}` has them", support.name),
+            title: format!("MJCF has no springs along the world's axes, which support `{}` needs", support.name),
             help: "write `kinematics: linear` for small rotations of the base, or export URDF with its file of springs"
                 .into(),
         });
     }
     if let Some(support) = chain.supports.iter().find(|support| support.full_hold.is_some()) {
         return Err(Inexpressible {
-            title: format!("MJCF has no support that lifts off, as `{}` does", support.name),
+            title: format!("MJCF has no supports that lift off, such as `{}`", support.name),
             help: "remove `one_sided` for a crane whose feet are anchored, or export URDF with its file of springs"
                 .into(),
         });
     }
     if chain.bodies.iter().any(|body| body.name == "world") {
         return Err(Inexpressible {
-            title: "MuJoCo calls the ground `world`, as a link of this crane is called".into(),
+            title: "MuJoCo calls the ground `world`, but a link of this crane has that name".into(),
             help: "give the link another name".into(),
         });
     }

@@ -47,7 +47,7 @@ pub fn approximations(chain: &Chain) -> Option<String> {
     let count = chain.bodies.iter().filter(symmetric).count();
     let hinges = (count > 0).then(|| {
         format!(
-            "{count} symmetric section joints are three hinges each, psi, theta, phi in this order: the same pose up to \
+            "{count} symmetric section joints become three hinges each, psi, theta, phi in this order: the same pose up to \
              products of their angles. Write `section_joint: paper` for a crane that is exported exactly."
         )
     });
@@ -56,7 +56,7 @@ pub fn approximations(chain: &Chain) -> Option<String> {
     let connectors = (!chain.connectors.is_empty())
         .then(|| "Springs and ropes between points and couplings of coordinates are left out.".to_owned());
     let oil = chain.has_valves().then(|| {
-        "Cylinders with valves are left out: their joints have no drive and fall; write one there.".to_owned()
+        "Cylinders with valves are left out: their joints have no drive and fall; add drives for them.".to_owned()
     });
     let limits = chain.has_limited_drives().then(|| "Limits of drives are left out.".to_owned());
     let lost: Vec<String> = [hinges, joints, loads, connectors, oil, limits].into_iter().flatten().collect();

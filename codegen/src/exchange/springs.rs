@@ -79,15 +79,15 @@ pub fn springs(chain: &Chain, parameters: &[f64]) -> String {
         let _ = write!(
             text,
             "\n# Springs and dampers along x, y, z of the world between the ground and points of `{}`, N/m, N s/m, m:\n\
-             # force on the point: -stiffness * elongation - damping * rate of elongation, each axis by itself.\n\
+             # force on the point: -stiffness * elongation - damping * rate of elongation, each axis separately.\n\
              # linear: elongation = U q - free_play, with the base's coordinates q = (x, y, z, psi, theta, phi) and rows of U\n\
              #   (1, 0, 0, -y, z, 0), (0, 1, 0, x, 0, -z), (0, 0, 1, 0, -x, y) for a point at (x, y, z).\n\
-             # exact: elongation = way of the point from where it is at q = 0, less free_play.\nsupports:\n",
+             # exact: elongation = displacement of the point from its position at q = 0, minus free_play.\nsupports:\n",
             base.name
         );
         if chain.has_one_sided_supports() {
-            text += "  # one_sided: presses along z and never pulls; holds sideways and damps in full from the pressing force full_hold on, N,\n\
-                     # and below it in the share x^2 (3 - 2 x), x = pressing force / full_hold.\n";
+            text += "  # one_sided: presses along z and never pulls; below a pressing force of full_hold, N, lateral stiffness and\n\
+                     # damping are multiplied by x^2 (3 - 2 x), x = force of the vertical spring / full_hold.\n";
         }
         for support in &chain.supports {
             let kinematics = if support.kinematics == SupportKinematics::Linear { "linear" } else { "exact" };

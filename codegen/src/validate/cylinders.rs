@@ -35,7 +35,7 @@ impl<'a> Check<'a> {
             self.report(rule::pump_alone(given.span));
         }
         let pump = given.value.as_ref()?;
-        let max_flow = self.constant(&pump.max_flow, "the greatest flow of the pump", "m³/s", Limit::Positive);
+        let max_flow = self.constant(&pump.max_flow, "the maximum flow of the pump", "m³/s", Limit::Positive);
         let pressure = pump.pressure.as_ref();
         let pressure = pressure.map(|given| self.constant(given, "the pressure of the pump", "Pa", Limit::Positive));
         let volume = pump
@@ -151,7 +151,7 @@ impl<'a> Check<'a> {
         let mut pressure = |given: Option<&Spanned<Constant>>, what: &str, limit| {
             given.map(|given| self.constant(given, &place(what), "Pa", limit))
         };
-        let max_pressure = pressure(given.max_pressure.as_ref(), "greatest pressure", Limit::Positive);
+        let max_pressure = pressure(given.max_pressure.as_ref(), "maximum pressure", Limit::Positive);
         let back_pressure = pressure(given.back_pressure.as_ref(), "back pressure", Limit::NotNegative).unwrap_or(0.0);
         let bulk_modulus = pressure(given.bulk_modulus.as_ref(), "bulk modulus", Limit::Positive);
         let hose_volumes = match given.hose_volumes.as_ref().map(|volumes| &volumes.value) {

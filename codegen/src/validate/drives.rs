@@ -99,7 +99,7 @@ impl<'a> Check<'a> {
             self.report(rule::no_transmission(span, name));
         }
         let max_effort = drive.max_effort.as_ref().map(|given| {
-            let place = format!("the greatest effort of drive `{name}`");
+            let place = format!("the maximum effort of drive `{name}`");
             let unit = if kind == Some(CoordinateKind::Translation) { "N" } else { "N m" };
             self.number(given, &place, unit, Limit::Positive)
         });
@@ -119,7 +119,7 @@ impl<'a> Check<'a> {
                 if max_effort.is_none() {
                     self.report(rule::limit_without_effort(given.span, name, format!("max_{what}")));
                 }
-                Some(self.constant(given, &format!("the greatest {what} of drive `{name}`"), unit, Limit::Positive))
+                Some(self.constant(given, &format!("the maximum {what} of drive `{name}`"), unit, Limit::Positive))
             });
         Transmission::Flexible { stiffness, damping: damping.unwrap_or(Value::ZERO), max_effort, max_rate, max_power }
     }

@@ -105,7 +105,7 @@ impl Description {
                     format!("{body}_psi and {body}_phi turn about the same axis")
                 }
                 // A link of a rope.
-                CoordinateRole::Passive if turns("psi") => format!("{body}_psi turns {body} about itself"),
+                CoordinateRole::Passive if turns("psi") => format!("{body}_psi turns {body} about its own axis"),
                 _ => return None,
             };
             let degrees = angle.to_degrees();

@@ -110,7 +110,7 @@ impl Stopped {
             ),
             Cause::Steps => "use a longer step or a shorter duration; the setting `most_steps` is the limit".to_owned(),
             Cause::MassMatrix => format!(
-                "give the links that {} moves a `mass` above zero, in kg, and if it only rotates them an `inertia`, in kg m², or \
+                "give the links that {} moves a `mass` above zero, in kg, and an `inertia`, in kg m², if it only rotates them, or \
                  write `joint: fixed`; a parameter may have been set to zero",
                 self.coordinate
             ),
@@ -129,7 +129,7 @@ impl fmt::Display for Stopped {
             Cause::Tolerance => {
                 write!(f, "no step from t = {time:.6} s meets the tolerance; {coordinate} is {value:.3e} {unit}")
             }
-            Cause::Steps => write!(f, "the run used up its number of steps at t = {time:.6} s"),
+            Cause::Steps => write!(f, "the run reached its maximum number of steps at t = {time:.6} s"),
             Cause::MassMatrix => write!(
                 f,
                 "the mass matrix is not positive definite at t = {time:.6} s: {coordinate} ({value:.3e} {unit}) moves nothing \

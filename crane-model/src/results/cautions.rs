@@ -81,7 +81,7 @@ fn bent_beyond<'a>(angles: impl Iterator<Item = (&'a str, f64)>, limit: f64) -> 
     let degrees = angle.to_degrees();
     (degrees.abs() > limit).then(|| {
         format!(
-            "{name} turns by {degrees:.0}° in one section, beyond {limit}°: check E, G, the cross-section and their units; \
+            "{name} turns by {degrees:.0}° in one section, more than {limit}°: check E, G, the cross-section and their units; \
              if they are right, use more sections"
         )
     })

@@ -240,7 +240,7 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
     };
     (way > 0.0 && most > FOLLOWS * way).then(|| {
         format!(
-            "{} falls behind: {} is up to {most:.4} {} from its motion, {:.0} % of the way it moves, at {:.2} s; {valve}",
+            "{} falls behind: {} is up to {most:.4} {} from its motion, {:.0} % of its travel, at {:.2} s; {valve}",
             info.name,
             coordinate.name,
             coordinate.kind.unit(),

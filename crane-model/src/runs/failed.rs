@@ -81,11 +81,11 @@ impl Reason {
                 "change `guess:` in its spec to a pose near a stable equilibrium, or add a drive or spring to the coordinates named".to_owned()
             }
             Reason::MassMatrix => {
-                "give every link a mass in kg and an inertia in kg m² that are not negligible beside those of the others".to_owned()
+                "give every link a mass in kg and an inertia in kg m² that are not negligible compared with those of the others".to_owned()
             }
             Reason::Modes(_) => "check masses and inertias in the spec".to_owned(),
             Reason::Unassembled { .. } => {
-                "lengthen its `rocker` or `link`, check the places of its pins, or keep the joint where they reach".to_owned()
+                "lengthen its `rocker` or `link`, check the positions of its pins, or keep the joint where they reach each other".to_owned()
             }
             Reason::Stopped { stopped, limit, .. } => {
                 let light = match stopped.cause {

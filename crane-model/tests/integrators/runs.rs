@@ -234,7 +234,7 @@ fn a_run_ends_at_its_limit_of_steps() {
         assert!(stopped.time > 0.0 && stopped.time < 10.0, "{stopped:?}");
         let (message, advice) = (stopped.to_string(), stopped.advice());
         assert!(
-            message.contains("used up its number of steps") && advice.contains("most_steps"),
+            message.contains("reached its maximum number of steps") && advice.contains("most_steps"),
             "{message}; {advice}"
         );
         assert_eq!(advice.contains("tolerance"), method.is_adaptive(), "{advice}");

@@ -54,7 +54,7 @@ fn run(words: &[&str]) -> Result<Vec<u8>, String> {
             kernel(n, name)?.time(calls.parse().map_err(|error| format!("{calls}: {error}"))?);
             Ok(Vec::new())
         }
-        _ => Err("no such command; the first lines of its source list all".into()),
+        _ => Err("no such command; the comment at the top of the source lists all".into()),
     }
 }
 

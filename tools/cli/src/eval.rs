@@ -31,7 +31,7 @@ pub fn eval(options: &Eval, registry: &Registry, out: &mut dyn Write) -> Outcome
                 quantity.name(),
                 crane.description().name
             ),
-            "ask for other `--quantities`, or simulate: results have these states and the forces",
+            "ask for other `--quantities`, or simulate: results contain these states and the forces",
         ));
     }
     let states = states(options, &crane)?;

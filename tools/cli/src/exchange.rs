@@ -65,7 +65,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             {
                 return Err(Problem::usage(
                     format!(
-                        "`{name}` of {} in C would lack its forces with states: of cylinders with valves, of joints that stick",
+                        "`{name}` of {} in C would lack the forces that have states: of cylinders with valves and of joints that stick",
                         chain.name
                     ),
                     "export `bias` and `solve_mass`, and add those forces there; or remove `valve` from the cylinders and `bristle` from the friction",

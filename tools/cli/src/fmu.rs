@@ -60,7 +60,7 @@ pub fn write(
     out: &mut dyn Write,
 ) -> Outcome<()> {
     if options.crane.compile {
-        return Err(Problem::usage("an FMU is not compiled: its library is ready made", "leave `--compile` out"));
+        return Err(Problem::usage("an FMU needs no compilation: it contains a ready-made library", "leave `--compile` out"));
     }
     let libraries = match options.libraries.as_slice() {
         [] => vec![read(&beside_the_command()?)?],
@@ -126,6 +126,6 @@ fn beside_the_command() -> Outcome<PathBuf> {
     let place = folder.join(&name);
     place.is_file().then_some(place).ok_or_else(|| {
         let title = format!("there is no {name} in {}", folder.display());
-        Problem::failed(title, "build it with `cargo build --release -p crane-fmu-library` and keep it beside the command, or name it by `--library FILE`")
+        Problem::failed(title, "build it with `cargo build --release -p crane-fmu-library` and keep it next to the command, or name it with `--library FILE`")
     })
 }

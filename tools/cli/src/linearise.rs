@@ -58,7 +58,7 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
                 "the forces of {} follow from the pressures of its cylinders or bristles of its joints",
                 description.name
             ),
-            "`crane modes` has the small motions about rest, with shut valves and joints that stick",
+            "`crane modes` gives the small motions about rest, with shut valves and joints that stick",
         ));
     }
     let motion = match &options.from {
@@ -124,7 +124,7 @@ fn of_results(crane: &LiveCrane, file: &Path, at: Option<f64>) -> Outcome<Motion
     let a = rig.accelerations_at(t, &q, &v).as_slice().to_vec();
     let greatest = a.iter().fold(0.0, |greatest: f64, a| greatest.max(a.abs()));
     let cautions = (greatest > STEADY)
-        .then(|| format!("not steady: accelerations reach {greatest:.2e} m/s² or rad/s², so that matrices and modes hold for this moment"));
+        .then(|| format!("not steady: accelerations reach {greatest:.2e} m/s² or rad/s², so matrices and modes are valid only at this moment"));
     let efforts = vec![None; q.len()];
     Ok(Motion { about: "a moment of a run", t, q, v, a, efforts, cautions: cautions.into_iter().collect() })
 }
@@ -143,15 +143,15 @@ fn of_steady(crane: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
     let found = steady(crane, t, &start, &held).map_err(|refused| {
         Problem::failed(
             format!("{}: {refused}", rig.description().name),
-            "hold what nothing constrains, `--hold NAME=VALUE`, or hold rates that are smaller",
+            "hold what nothing constrains, `--hold NAME=VALUE`, or use smaller rates",
         )
     })?;
     let greatest = found.v.iter().fold(0.0, |greatest: f64, v| greatest.max(v.abs()));
     let mut cautions = Vec::new();
     if found.drift > DRIFT * greatest && found.drift > GROWTH {
         cautions.push(format!(
-            "not steady: the pose changes by up to {:.2e} rad/s or m/s as the motion goes on, so that matrices and modes hold for \
-             this moment",
+            "not steady: the pose changes by up to {:.2e} rad/s or m/s as the motion goes on, so matrices and modes are valid \
+             only at this moment",
             found.drift
         ));
     }
@@ -203,7 +203,7 @@ fn read_held(given: &[String], description: &Description) -> Outcome<Vec<Held>> 
 fn held(description: &Description, motion: &Motion) -> Grid {
     let mut grid = Grid::new(
         "held",
-        "Torques and forces that hold coordinates, besides drives",
+        "Torques and forces that hold coordinates, in addition to drives",
         &["coordinate", "effort", "unit"],
     );
     for (info, effort) in description.coordinates.iter().zip(&motion.efforts) {

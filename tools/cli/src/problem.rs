@@ -66,7 +66,7 @@ impl Problem {
             }
             io::ErrorKind::IsADirectory | io::ErrorKind::ResourceBusy => "name a file, not a folder",
             io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "name a folder, not a file",
-            io::ErrorKind::NotFound => "check the path: a folder on the way to it does not exist",
+            io::ErrorKind::NotFound => "check the path: a folder in it does not exist",
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "name a place where you may write",
             _ => "check that the path exists and that you may write there",
         };

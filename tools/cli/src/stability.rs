@@ -51,7 +51,7 @@ pub fn limits(description: &Description, poses: &[Pose]) -> Grid {
     let headers = ["method", "order", "step [s]", "safe step [s]", "at t [s]", "limited by"];
     let title = match poses.len() {
         0 | 1 => "Largest stable steps at the static pose".to_owned(),
-        count => format!("Largest stable steps, the least at {count} poses during the manoeuvre"),
+        count => format!("Largest stable steps, the smallest of {count} poses during the manoeuvre"),
     };
     let mut grid = Grid::new("limits", title, &headers);
     for method in Method::ALL {

@@ -83,11 +83,11 @@ impl Timing {
                 let title = format!("{} has no column {}", file.display(), states[place]);
                 return Err(Problem::usage(
                     title,
-                    "a run that goes on needs all pressures, valves and bristles of the earlier run",
+                    "to continue a run, give all pressures, valves and bristles of the earlier run",
                 ));
             }
             let held = if start.x.is_empty() && !states.is_empty() {
-                ", forces with states as they hold this pose"
+                ", pressures and bristles as they hold this pose"
             } else {
                 ""
             };

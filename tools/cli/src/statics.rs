@@ -143,7 +143,7 @@ pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
     let title = if second.label == FLEXIBLE {
         format!("Deflection of the load points due to flexibility ({} − {})", second.label, first.label)
     } else {
-        format!("How far the points of interest are apart ({} − {})", second.label, first.label)
+        format!("Distances between the points of interest ({} − {})", second.label, first.label)
     };
     let mut grid = Grid::new("deflection", title, &["point", "x", "y", "z", "distance", "unit"]);
     let [from, to] = [first, second].map(|case| case.rig.points_at(&case.equilibrium.q));
@@ -259,7 +259,7 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
     let first = cases.iter().find(|case| !case.rig.description().connectors.is_empty())?;
     let mut headings = headings("connector", cases);
     headings.insert(1, "quantity".into());
-    let title = "Connectors: lengths, and forces, positive where they pull";
+    let title = "Connectors: lengths, and forces, positive in tension";
     let mut grid = Grid::with_headings("connectors", title, headings);
     let at_rest = |case: &Case<'_>| {
         let (q, rest) = (&case.equilibrium.q, case.rest());

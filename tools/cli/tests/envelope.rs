@@ -168,7 +168,7 @@ fn mistakes_are_told() {
     for (arguments, told) in [
         (&["--range", "truck_x=0:1:3"][..], "truck_x has no drive"),
         (&["--range", "colum_psi=0:1:3"], "did you mean `column_psi`"),
-        (&["--range", "arm=0:1"], "has not one or three parts"),
+        (&["--range", "arm=0:1"], "does not have one or three parts"),
         (&["--range", "arm=0:1:3", "--range", "arm_x=0:1:3"], "has two ranges"),
         (&["--range", "payload=0:1:3"], "payload is the load"),
         (&["--range", "arm=0:1:3", "--effort", "arm_y=3"], "there is no drive `arm_y`"),

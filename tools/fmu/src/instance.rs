@@ -486,7 +486,7 @@ impl Instance {
             return Err(Fault::Error(format!("a step of {length} s: choose one above 0")));
         }
         if (from - t).abs() > ROUNDING * length {
-            return Err(Fault::Error(format!("a step from t = {from} s, but the crane stands at t = {t} s")));
+            return Err(Fault::Error(format!("a step from t = {from} s, but the crane is at t = {t} s")));
         }
         let mut motion = match self.motion.take() {
             Some(motion) => motion,

@@ -1,4 +1,4 @@
-"""What the tests share: units made by the command, runs of the command to compare with, and units at work."""
+"""What the tests share: units exported by the command, runs of the command to compare with, and running units."""
 
 import csv
 import subprocess

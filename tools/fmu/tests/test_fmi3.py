@@ -1,4 +1,4 @@
-"""Units of FMI 3.0: valid, with the numbers of FMI 2.0, and with what version 3 has besides."""
+"""Units of FMI 3.0: valid, with the same numbers as FMI 2.0, and with the additions of version 3."""
 
 import ctypes
 import subprocess
@@ -73,13 +73,13 @@ def test_co_simulation_is_the_run_of_the_command(name_of_crane, export, simulate
     result = simulate_fmu(file, stop_time=1, step_size=0.01, output_interval=0.01, output=names)
     assert len(result) == len(own["t"]) == 101
     for name in names:
-        # The same steps by the same library: what is left is rounding of the times, which FMPy sums up.
+        # The same steps by the same library: the difference is rounding of the times, which FMPy accumulates.
         size = max(1.0, np.abs(own[name]).max())
         assert np.abs(result[name] - own[name]).max() < 1e-9 * size, name
 
 
 def test_model_exchange_is_that_of_version_2(export):
-    """The same solver asks the same library: the same numbers, at events too."""
+    """The same solver with the same library gives the same numbers, at events too."""
     names = ["load_centre_x", "load_centre_z", "hook_theta", "hook_theta_rate", "main_boom_theta_drive_torque"]
     options = {"fmi_type": "ModelExchange", "stop_time": 3, "output_interval": 0.1, "relative_tolerance": 1e-9, "output": names}
     new = simulate_fmu(export("knuckle_boom", *VERSION, name="3"), **options)
@@ -87,7 +87,7 @@ def test_model_exchange_is_that_of_version_2(export):
     assert len(new) == len(old) > 31
     for name in ("time", *names):
         size = 4e6 if name.endswith("torque") else 1.0
-        # Where FMPy handles an event at another rounding of its time, the solver begins other steps within 1e-9.
+        # Where FMPy rounds the time of an event differently, the solver takes different steps, within its tolerance of 1e-9.
         assert np.abs(new[name] - old[name]).max() < 1e-7 * size, name
 
 
@@ -107,7 +107,7 @@ def test_parameters_states_and_derivatives(export, open_unit, tmp_path):
     assert abs(before - acceleration(angle, 2)) < 1e-12
     unit.setFloat64([unit.references["bob"]], [50.0])
     assert abs(get(unit, "rod_theta_acceleration")[0] - acceleration(angle, 50)) < 1e-12
-    # Back and forth, and through bytes.
+    # Back and forth, and serialised.
     state = unit.getFMUState()
     follow(unit, 0.2, 0.4, 2)
     went_on = get(unit, "rod_theta", "rod_theta_rate")
@@ -118,7 +118,7 @@ def test_parameters_states_and_derivatives(export, open_unit, tmp_path):
     for one in (unit, other):
         follow(one, 0.2, 0.4, 2)
     assert (get(unit, "rod_theta", "rod_theta_rate") == get(other, "rod_theta", "rod_theta_rate")).all()
-    # A motion that is taken up again has no history: apart by the tolerance of 2e-5.
+    # A restored motion has no history: it differs by a few times the tolerance of 2e-5.
     assert np.abs(get(unit, "rod_theta", "rod_theta_rate") - went_on).max() < 1e-4
     unit.freeFMUState(state)
     here = get(unit, "rod_theta")[0]
@@ -150,7 +150,7 @@ def test_mistakes_of_the_importer_are_refused_with_words(export, open_unit):
     refused(lambda: unit.getClock([0]), "Clock")
     refused(lambda: unit.doStep(0.5, 0.1), "t = 0.5", "stands at t = 0")
     refused(lambda: unit.getAdjointDerivative(payload, payload, [1.0]), "directional")
-    # None of it has hurt the crane.
+    # None of this has damaged the crane.
     assert get(unit, "payload") == [800]
     follow(unit, 0, 0.1, 1)
     messages = []

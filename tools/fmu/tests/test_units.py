@@ -1,4 +1,4 @@
-"""Units in FMPy: valid, and the same motion as the command's own."""
+"""Units in FMPy: valid, and with the same motion as that of the command."""
 
 import csv
 
@@ -70,7 +70,7 @@ def pendulum(export, tmp_path_factory):
 
 
 def acceleration(angle, bob):
-    """Of the pendulum, rad/s²."""
+    """Acceleration of the pendulum, rad/s²."""
     return -bob * 9.81 * 1.5 * np.sin(angle) / (0.05 + bob * 1.5**2)
 
 
@@ -105,7 +105,7 @@ def test_co_simulation_is_the_run_of_the_command(name_of_crane, export, simulate
     result = simulate_fmu(export(name_of_crane), stop_time=3, step_size=0.01, output_interval=0.01, output=names)
     assert len(result) == len(own["t"]) == 301
     for name in names:
-        # The same steps by the same library: what is left is rounding of the times, which FMPy sums up.
+        # The same steps by the same library: the difference is rounding of the times, which FMPy accumulates.
         size = max(1.0, np.abs(own[name]).max())
         assert np.abs(result[name] - own[name]).max() < 1e-9 * size, name
 
@@ -127,7 +127,7 @@ def test_model_exchange_by_another_solver_is_the_same_motion(export, simulate):
     rows = rows[np.isin(time, own["t"].round(9))]
     assert len(rows) == len(own["t"]) == 101
     for name in names:
-        # Both solvers are set to 1e-9 a step; the torque is a stiff spring's, 4e6 N m/rad.
+        # Both solvers are set to 1e-9 per step; the torque is that of a stiff spring, 4e6 N m/rad.
         size = 4e6 if name.endswith("torque") else 1.0
         assert np.abs(result[name][rows] - own[name]).max() < 1e-6 * size, name
 
@@ -148,7 +148,7 @@ def test_pressures_are_states_of_model_exchange(export, simulate):
     assert len(rows) == len(own["t"]) == 6
     for name, scale in scales.items():
         assert np.abs(np.diff(own[name])).max() > 1e-3 * scale, name
-        # Both solvers are set to 1e-9 a step.
+        # Both solvers are set to 1e-9 per step.
         assert np.abs(result[name][rows] - own[name]).max() < 1e-6 * scale, name
 
 
@@ -162,7 +162,7 @@ def test_a_state_has_the_oil(export, slave):
     unit.setFMUstate(state)
     assert (unit.get(*names) == here).all()
     unit.follow(1, 1.5, 10)
-    # A motion that is taken up again begins with short steps: apart by the tolerance, of a pressure that of a share of the pump's.
+    # A restored motion begins with short steps: it differs by the tolerance, for a pressure by that fraction of the pump's.
     assert np.allclose(unit.get(*names), went_on, rtol=0, atol=[1e-4, 24e2, 1e-3, 24e2])
     unit.freeFMUstate(state)
 
@@ -177,7 +177,7 @@ def test_parameters_of_the_importer_and_of_the_export_are_those_of_the_command(e
 
 
 def test_inputs_of_the_importer_are_those_of_the_command(steered, crane, tmp_path, slave):
-    """Set before the start, and not at all."""
+    """Inputs that are set before the start, and inputs that are not set."""
     file, unit = steered
     assert validate_fmu(unit) == []
     inputs = {variable.name: variable for variable in read_model_description(unit).modelVariables if variable.causality == "input"}
@@ -215,7 +215,7 @@ def test_an_input_moves_the_crane_from_when_it_is_set(steered, slave):
     assert other.get("lever") == [0.3] and other.get("boom_psi_prescribed") == [0.3]
     other.setFMUstate(state)
     assert other.get("boom_psi_prescribed") == one.get("boom_psi_prescribed")
-    # Accelerations are linear in the wind: the derivative along it is the difference for 1 N.
+    # Accelerations are linear in the wind: the derivative with respect to it is the difference for 1 N.
     references = [other.references[name] for name in names]
     derivative = other.getDirectionalDerivative(references, [other.references["gust"]], [1.0])
     before = other.get(*names)
@@ -252,9 +252,9 @@ def test_a_state_is_kept_and_brought_back(export, slave):
         unit.follow(1, 2, 20)
         again.append(unit.get(*names))
     assert (again[0] == again[1]).all()
-    # A motion that is taken up again has no history: its first steps are others, within the tolerance of 2e-5.
+    # A restored motion has no history: its first steps differ, within a few times the tolerance of 2e-5.
     assert 0 < np.abs(again[0] - went_on).max() < 1e-4
-    # As bytes, in another instance with another payload.
+    # Serialised, in another instance with another payload.
     unit.setFMUstate(state)
     unit.set(payload=500)
     other = slave(file, payload=100)
@@ -320,7 +320,7 @@ def test_mistakes_of_the_importer_are_refused_with_words(export, slave, tmp_path
     refused(lambda: unit.getInteger([0]), "Integer")
     refused(lambda: unit.doStep(0.5, 0.1), "t = 0.5", "stands at t = 0")
     refused(lambda: unit.doStep(0.0, -1.0), "-1", "above 0")
-    # None of it has hurt the crane.
+    # None of this has damaged the crane.
     assert unit.get("payload") == [800]
     unit.follow(0, 0.1, 1)
     stranger = Slave(file, tmp_path / "stranger", guid="another")
@@ -330,7 +330,7 @@ def test_mistakes_of_the_importer_are_refused_with_words(export, slave, tmp_path
 
 
 def test_a_crane_that_cannot_rest_says_why(export, slave, tmp_path):
-    """Statics of a pendulum that stands on its head."""
+    """Statics of an inverted pendulum."""
     spec = tmp_path / "loose.yaml"
     spec.write_text(PENDULUM.replace("[dynamics]", "[statics, dynamics]").replace("0.5", "3.1415"))
     unit = Slave(export(str(spec), name="loose"), tmp_path / "loose")

@@ -29,17 +29,17 @@ def shipped() -> list[str]:
     """Names of the cranes that come with the package."""
 
 def set_threads(count: int | None = None) -> None:
-    """Sets how many threads a call takes; None: as many as the machine has."""
+    """Sets how many threads a call uses; None: as many as the machine has."""
 
 def threads() -> int:
-    """How many threads a call takes."""
+    """How many threads a call uses."""
 
 class Motion:
-    """A motion that goes on from result to result, with the history of its method."""
+    """A motion that continues from result to result, with the history of its method."""
 
     def advance(self, dt: float) -> tuple[float, Array, Array, Array, tuple[float, float, float]]:
-        """Goes on by a while, s, to its time, pose, rates and own states of forces; work of the drives, energy that dampers dissipated and work of the loads
-        since the start, J."""
+        """Advances by `dt`, s; returns time, pose, rates, states of forces; work of the drives, dissipated energy and
+        work of the loads since the start, J."""
     def statistics(self) -> dict[str, int]:
         """Steps, rejections, evaluations and factorisations so far."""
 
@@ -69,7 +69,7 @@ class Crane:
         """Hash of the spec."""
     @property
     def source(self) -> str:
-        """Where the spec is from, as messages say."""
+        """Origin of the spec, as shown in messages."""
     @property
     def shape(self) -> list[int]:
         """Leading axes of the parameters; empty where all are numbers."""
@@ -80,7 +80,7 @@ class Crane:
     def page_with(self, run: dict[str, Any] | None = None) -> str:
         """The crane in 3-D as an HTML page: at rest, or with a run of it."""
     def export(self, format: str) -> str:
-        """The crane for other programs: "urdf", "springs" (what URDF does not hold, YAML) or "mjcf", with the present parameters."""
+        """The crane for other programs: "urdf", "springs" (what URDF cannot express, YAML) or "mjcf", with the present parameters."""
     def parameter_rows(self, index: int) -> Any:
         """Values of a live parameter, by its place, over the leading axes."""
     def guess_rows(self) -> Array:
@@ -110,7 +110,7 @@ class Crane:
     ) -> dict[str, Any]:
         """Runs over parameters: `Crane.simulate_ensemble` makes an `Ensemble` of them."""
     def motion(self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike, x: ArrayLike) -> Motion:
-        """The crane on its way from a time, s, a pose, rates and own states of forces, with its parameters and inputs."""
+        """A motion of the crane from a time, s, a pose, rates and states of forces, with its parameters and inputs."""
     @property
     def inputs(self) -> dict[str, float]:
         """Inputs that are set, by name."""
@@ -152,7 +152,7 @@ class Crane:
         """(..., n, n): the mass matrix A, symmetric positive definite; kg, kg m, kg m²."""
     def bias(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): velocity and gravity forces e of `A q̈ = e + f`, N and N m: the negative of Pinocchio's `nle` and of
-        MuJoCo's `qfrc_bias`, which stand on the left."""
+        MuJoCo's `qfrc_bias`, which are on the left-hand side."""
     def forces(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., n): generalized forces f of supports, elements, drives and joint dampers, N and N m. t: s, 0 unless given."""
     def element_forces(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
@@ -170,18 +170,20 @@ class Crane:
     def connector_lengths(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., connectors, 2): lengths of the connectors, m, and their rates, m/s."""
     def connector_tensions(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(..., connectors, 3): forces of the connectors, N, positive where they pull, and their derivatives by length, N/m, and rate, N s/m."""
+        """(..., connectors, 3): forces of the connectors, N, positive in tension, and their derivatives with respect to length, N/m, and
+        rate, N s/m."""
     def drive_forces_at_rest(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n): those that hold the crane at rest at t = 0, of rigid drives too, N and N m."""
+        """(..., n): generalized forces of the drives, including rigid ones, that hold the crane at rest at t = 0, N and N m."""
     def support_reactions(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., supports, 3): forces of the supports on the crane, world frame, N."""
     def support_gaps(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., supports, 2): how far one-sided supports are above the ground, m, negative where pressed in, and its rate, m/s; 0 of others."""
+        """(..., supports, 2): how far one-sided supports are above the ground, m, negative where pressed in, and its rate, m/s; 0 for others."""
     def cylinder_states(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., cylinders, 3): length of each cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m."""
+        """(..., cylinders, 3): length of each cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate,
+        m/rad or m/m."""
     def drive_limits(self, t: ArrayLike, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., drives, 2): greatest effort of each drive, N or N m, 0 if it has no limit, and its stiffness at the state, N/m or N m/rad. Zeros for a
-        crane without limits."""
+        """(..., drives, 2): maximum effort of each drive, N or N m, 0 if it has no limit, and its stiffness at the state, N/m or N m/rad.
+        Zeros for a crane without limits."""
     def drive_motions(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., drives, 2): prescribed positions and rates of the drives at times t, m and rad, m/s and rad/s."""
     def valve_openings(self, t: ArrayLike, *, invalid: str = "raise") -> Array:
@@ -189,7 +191,7 @@ class Crane:
     def forward_dynamics(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(..., n): accelerations q̈ of `A q̈ = e + f`, m/s² and rad/s²."""
     def inverse_dynamics(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., n): generalized forces that a motion takes in all, `A a − e`, N and N m."""
+        """(..., n): generalized forces that a motion requires in total, `A a − e`, N and N m."""
     def static_residual(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n): `∂E_p/∂q` at t = 0, zero in equilibrium, N and N m."""
     def tangent_stiffness(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
@@ -211,7 +213,7 @@ class Crane:
         invalid: str = "raise",
     ) -> Array:
         """(..., 3 n + 3): poses, rates and efforts of steady motions, drift, acceleration, part reached; `steady_motion` names them.
-        held: coordinates, and whether a position is given; their rates and positions stand at their places in `rates` and `positions`."""
+        held: coordinates, and whether a position is given; their rates and positions are at the same indices in `rates` and `positions`."""
     def kinetic_energy(self, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(...): kinetic energy, J."""
     def gravity_energy(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
@@ -229,4 +231,4 @@ class Crane:
     def drive_power(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
         """(...): power that the drives' motions put in, W."""
     def dissipation(self, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> Array:
-        """(...): power that all dampers take out, W."""
+        """(...): power that all dampers dissipate, W."""

@@ -39,19 +39,19 @@ def load(
 ) -> "Crane":
     """Loads a crane: a shipped one by its name (`crane.shipped()` lists them), or that of a YAML file.
 
-    text: the spec itself; `source` is then what messages call it.
+    text: the spec itself; `source` is then its name in messages.
     parameters: live parameters by name, in the units that `Crane.info` shows. Arrays of them make a batch: their axes are leading
-    axes of all that is computed.
-    invalid: "raise" raises where parameters of an array break a rule, "nan" makes results of those rows NaN and warns.
-    inputs: inputs of the spec by name, in the units that `Crane.info` shows; the others are as the spec says.
+    axes of all results.
+    invalid: "raise" raises if parameters of an array break a rule, "nan" makes results of those rows NaN and warns.
+    inputs: inputs of the spec by name, in the units that `Crane.info` shows; the others are as in the spec.
 
-    Raises SpecError, which prints every mistake with its place and remedy; warns with SpecWarning of what is implausible.
+    Raises SpecError, which prints every mistake with its place and remedy; warns of anything implausible with SpecWarning.
     """
     return Crane(os.fspath(source), text=text, parameters=parameters, invalid=invalid, inputs=inputs)
 
 
 def _load_again(source: str, text: str, parameters: dict[str, Any], inputs: dict[str, float]) -> "Crane":
-    """A crane out of a pickle: what was warned of once is not warned of again."""
+    """A crane from a pickle, without repeating its warnings."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return Crane(source, text=text, parameters=parameters, invalid="nan", inputs=inputs)
@@ -104,9 +104,9 @@ class Crane(_native.Crane):
     def replace(
         self, *, invalid: str = "raise", inputs: dict[str, float | None] | None = None, **parameters: ArrayLike
     ) -> Self:
-        """The same crane with other live parameters and inputs; the others keep their values. Nothing is derived again.
+        """The same crane with other live parameters and inputs; the others keep their values. Nothing is recompiled.
 
-        inputs: by name; None gives an input back to its spec. All functions of the crane use them.
+        inputs: by name; None lets an input follow the spec again. All functions of the crane use them.
         """
         return type(self)(self.source, parameters=parameters, invalid=invalid, like=self, inputs=inputs)
 
@@ -143,7 +143,7 @@ class Crane(_native.Crane):
         """Stresses of beams and the tipping margin, over the leading axes.
 
         q: poses, the static equilibrium unless given; v: rates, at rest unless given.
-        a: accelerations; unless given, those with which the crane moves on from v, or none at rest. t: times of applied loads, s.
+        a: accelerations; unless given, those that follow from q, v and t, or zero at rest. t: times of applied loads, s.
         """
         q = self.statics(invalid=invalid).q if q is None else q
         if a is None and v is not None:
@@ -196,13 +196,13 @@ class Crane(_native.Crane):
         start: ArrayLike | None = None,
         invalid: str = "raise",
     ) -> SteadyMotion:
-        """The motion at constant rates in which all coordinates that do not move stay where they are.
+        """The motion at constant rates in which all other coordinates stay where they are.
 
         rates, m/s and rad/s, and positions, m and rad: of coordinates that are held, by name; numbers, or arrays, whose axes are leading axes
-        of the result. Driven coordinates that are not held have the rates of their motions at times t, s, all others none.
-        start: (..., n), pose without motion from which the rates are increased; the equilibrium unless given.
+        of the result. Driven coordinates that are not held have the rates of their motions at times t, s, all others zero.
+        start: (..., n), pose at rest from which the rates are increased; the equilibrium unless given.
 
-        Raises NoEquilibrium where a row has no steady motion; with invalid="nan" its numbers are NaN and `reached` is below 1.
+        Raises NoEquilibrium if a row has no steady motion; with invalid="nan" its numbers are NaN and `reached` is below 1.
         """
         rates, positions = dict(rates or {}), dict(positions or {})
         for name in (*rates, *positions):
@@ -230,7 +230,7 @@ class Crane(_native.Crane):
         if invalid == "raise" and np.any(reached < 1.0):
             least = 100.0 * np.min(reached)
             raise NoEquilibrium(
-                f"no steady motion: the search ends at {least:.1f} % of the rates; hold what nothing constrains, or smaller rates"
+                f"no steady motion: the search ends at {least:.1f} % of the rates; hold what nothing constrains, or use smaller rates"
             )
         return SteadyMotion(q, v, efforts, drift, acceleration, reached)
 
@@ -256,12 +256,12 @@ class Crane(_native.Crane):
         load_steps: int | None = None,
         invalid: str = "raise",
     ) -> Equilibrium:
-        """Static equilibrium by Newton's method, and by continuation where that fails.
+        """Static equilibrium by Newton's method, and by continuation if that fails.
 
-        t: times at which the drives' motions stop, s; guess: (..., n), where to begin. Both are leading axes of the result.
-        tolerance: the part of the balancing forces that may be left over; iterations: Newton's steps; load_steps: of the continuation.
+        t: times at which the drives' motions stop, s; guess: (..., n), where to begin. The axes of both are leading axes of the result.
+        tolerance: residual relative to the balancing forces; iterations: Newton steps; load_steps: steps of the continuation.
 
-        Raises NoEquilibrium where a row has no stable one; with invalid="nan" it warns, and `status` says why.
+        Raises NoEquilibrium if a row has no stable one; with invalid="nan" it warns, and `status` says why.
         """
         found = self.equilibria(t, guess, tolerance, iterations, load_steps, invalid)
         shape = tuple(found.pop("shape"))
@@ -283,13 +283,13 @@ class Crane(_native.Crane):
     ) -> Envelope:
         """The largest load within limits, at rest, for all combinations of positions of drives, m and rad, and live parameters.
 
-        ranges: values by the name of a coordinate, of its link if that has one drive alone, or of a live parameter; each is an axis of the
-        result. What is not named stands as at the start.
-        load: live parameter that is the load, the only one in kg unless given. greatest_load: the greatest one looked at.
-        tipping: least tipping margin; utilisation: greatest one of beams with a yield stress; None: no such limit.
-        efforts: greatest torque or force of drives, N m and N. deflections: how far the load may move points of interest, m.
+        ranges: values by the name of a coordinate, of its link if that has only one drive, or of a live parameter; each is an axis of the
+        result. What is not named keeps its initial value.
+        load: live parameter that is the load, the only one in kg unless given. greatest_load: the maximum considered.
+        tipping: minimum tipping margin; utilisation: maximum utilisation of beams with a yield stress; None: no such limit.
+        efforts: maximum torque or force of drives, N m and N. deflections: how far the load may move points of interest, m.
         point: the one whose radius and height are given; the only one, or the origin of the last link unless given.
-        `progress(done, all)` is called now and then.
+        `progress(done, all)` is called from time to time.
         """
         axes = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in ranges.items()}
         for name, values in axes.items():
@@ -350,11 +350,11 @@ class Crane(_native.Crane):
 
         duration: s; output: interval of results, s; the spec's unless given.
         method: "bdf" (default), "rosw4", "dopri5", or "rk4" with constant `step` in s ("auto": the largest safe one).
-        tolerance: error that an adaptive method allows a step, m and rad (2e-5).
-        force: run even where the step is beyond the largest stable one.
-        verify: run once more, finer, to estimate the error of every column.
-        bend_limit: degrees by which a section of a beam may turn before a caution says so.
-        inputs: of the spec, by name; held throughout the run.
+        tolerance: error per step that an adaptive method accepts, m and rad (2e-5).
+        force: run even if the step exceeds the largest stable step.
+        verify: repeat the run more finely to estimate the error of every column.
+        bend_limit: bending or torsion of a beam section, degrees, beyond which there is a caution.
+        inputs: of the spec, by name; constant throughout the run.
 
         Ctrl-C ends it with KeyboardInterrupt.
         """
@@ -382,7 +382,7 @@ class Crane(_native.Crane):
         """A run for every row of the parameters, each from its own static equilibrium, on all threads.
 
         Arguments are those of `simulate`. Adaptive methods run every crane as it would run alone. `progress(done, all)` is called
-        now and then. With invalid="nan" runs that fail leave NaN, and `status` says why.
+        from time to time. With invalid="nan" runs that fail leave NaN, and `status` says why.
         """
         found = self.run_ensemble(_timing(method, duration, output, tolerance, step, force), invalid, progress)
         shape = tuple(found.pop("shape"))
@@ -417,7 +417,7 @@ def _timing(
 
 
 def _shown(value: Any) -> str:
-    """A parameter in few characters: an array by its shape and range."""
+    """A parameter in a few characters: an array by its shape and range."""
     if isinstance(value, str):
         return value
     if np.ndim(value) == 0:

@@ -67,11 +67,11 @@ class SteadyMotion:
     """Motions at constant rates, over the leading axes; NaN where there is none.
 
     q, v: (..., n), pose, m and rad, and rates, m/s and rad/s.
-    efforts: (..., n), what holding a coordinate takes besides its drive, N and N m; 0 for coordinates that are not held.
-    drift: (...), the greatest rate at which the pose of the other coordinates would have to change for the motion to remain steady, m/s
+    efforts: (..., n), forces that hold coordinates in addition to their drives, N and N m; 0 for coordinates that are not held.
+    drift: (...), the maximum rate at which the pose of the other coordinates would have to change for the motion to remain steady, m/s
     and rad/s: 0 if it does.
-    acceleration: (...), the greatest acceleration of a drive's motion whose coordinate is not held, m/s² and rad/s².
-    reached: (...), the part of the rates up to which there is one: 1 if it was found.
+    acceleration: (...), the maximum acceleration of a drive's motion whose coordinate is not held, m/s² and rad/s².
+    reached: (...), the fraction of the rates up to which there is a steady motion: 1 if it was found.
     """
 
     q: Array
@@ -88,9 +88,9 @@ class Equilibrium:
 
     q: (..., n), m and rad; NaN where there is no equilibrium.
     status: "stable", "tips over", "unstable", "singular", "not converged" or "overflow".
-    residual: (...), the part of the balancing forces left over.
-    steps: (...), Newton's steps.
-    drive_efforts: (..., drives), N m and N, what the drives hold.
+    residual: (...), relative to the balancing forces.
+    steps: (...), Newton steps.
+    drive_efforts: (..., drives), N m and N, efforts with which the drives hold the pose.
     support_reactions: (..., supports, 3), N, world frame.
     points: (..., points, 3), m, world frame.
     """
@@ -112,7 +112,7 @@ class Equilibrium:
 
 @dataclass(frozen=True)
 class Modes:
-    """Small vibrations about poses at rest, lowest first, over the leading axes; NaN behind the last mode of a row.
+    """Small vibrations about poses at rest, lowest first, over the leading axes; NaN after the last mode of a row.
 
     omega_squared: (..., modes), rad²/s² of undamped modes; negative where the pose is unstable.
     shapes: (..., modes, n), shapes in generalized coordinates, `xᵀ A x = 1`.
@@ -158,11 +158,11 @@ class Envelope:
     """The largest load within limits over positions of drives and live parameters: a load chart as arrays.
 
     axes: values of each axis, by name; all arrays have these axes first.
-    load: (...), the largest load, in `unit`, up to which every smaller one is within all limits; NaN where not even the least one is.
+    load: (...), the largest load, in `unit`, up to which every smaller one is within all limits; NaN where not even the minimum load is.
     parameter, unit: the live parameter that is the load, and its unit.
-    governing: (...), the limit that governs: "tipping", "utilisation", "effort", "deflection", "equilibrium", or "" up to the greatest load
-    looked at. governing_of: (...), the tipping line, section, drive or point.
-    radius, height: (...), m, of the point, from the slewing axis and above the world's origin, with the largest load; with the least load
+    governing: (...), the limit that governs: "tipping", "utilisation", "effort", "deflection", "equilibrium", or "" up to the maximum load
+    considered. governing_of: (...), the tipping line, section, drive or point.
+    radius, height: (...), m, of the point, from the slewing axis and above the world's origin, with the largest load; with the minimum load
     where there is no largest one.
     q: (..., n), pose with the same load, m and rad.
     tipping_margin, utilisation: (...), with the crane's own load. drive_efforts: (..., drives), N m and N, with that load.
@@ -191,7 +191,7 @@ class Strength:
     internal_forces: (..., cuts, 6), force, N, and moment, N m, that the part beyond each cut of `Crane.info["cuts"]` exerts on the part
     before it: of the ground in the world frame about its origin, of a joint in the frame after it about its origin, of a section of a beam
     in the section's frame, x along the beam.
-    normal, shear, torsion, equivalent: (..., sections), Pa, greatest stresses at the sections of `Crane.info["sections"]`: of normal force
+    normal, shear, torsion, equivalent: (..., sections), Pa, maximum stresses at the sections of `Crane.info["sections"]`: of normal force
     and bending, of shear forces, of torsion, and von Mises' equivalent of all three; NaN where moduli of the section are unknown.
     utilisation: (..., sections), equivalent stress over yield stress divided by safety factor; NaN without a yield stress.
     tipping_margin: (...), 1 − overturning / stabilising about the governing tipping line: 1 where nothing overturns the crane, 0 where it
@@ -219,9 +219,9 @@ class Run(Mapping[str, Array]):
     units: unit of every column, by name.
     table: (times, columns), all of them in the order of `units`.
     start: what it started from. method, tolerance, step (s; the mean of an adaptive method), statistics: how it ran.
-    errors: greatest difference of every column from a finer run, in the column's unit; None where that was not asked for.
-    divergence: time in which small differences grow by a factor e, s, where the motion is chaotic.
-    cautions: what the run did that the model or the method does not hold for.
+    errors: largest difference of every column from a finer run, in the column's unit; None if that was not requested.
+    divergence: time in which small differences grow by a factor e, s, if the motion is chaotic.
+    cautions: where the run was outside the validity of the model or the method.
     crane: the crane with the parameters and inputs of the run.
     """
 

@@ -15,11 +15,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class State:
-    """A moment of a simulation, to come back to.
+    """A state of a simulation, to return to.
 
     t: s. q, v: (n), m and rad, m/s and rad/s. work, dissipated, load_work: J since the start. parameters: live parameters.
     inputs: those that are set. x: states of the oil of cylinders with a valve (pressures on the sides of piston and rod, Pa, and opening of
-    each, then the pump's pressure, Pa), then deflections of bristles in joints that stick (rad or m); empty before the first step, which begins with those that hold the pose.
+    each, then the pump's pressure, Pa), then deflections of bristles in joints that stick (rad or m); empty before the first step,
+    which begins with those that hold the pose.
     """
 
     t: float
@@ -44,9 +45,9 @@ class Simulation:
 
     Inputs of the spec are set by name, `simulation.step(0.01, inputs={"pull": 300.0})`.
 
-    Steps of the method go on across calls with their history, so that short calls cost no more than long ones. A new value of an
-    input or of a parameter, and `restore`, begin a new history from the present state: from then on the same calls give the same
-    numbers, to the last bit.
+    The method keeps its history across calls, so that short calls cost no more than long ones. A new value of an input or of a
+    parameter, and `restore`, begin a new history from the present state: from then on the same calls give the same numbers, to the
+    last bit.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class Simulation:
         v = np.zeros_like(q) if v is None else np.array(v, dtype=float)
         self._state = State(float(t), q, v, parameters=crane.parameters, inputs=crane.inputs)
         self._counted = dict.fromkeys(("steps", "rejections", "evaluations", "factorisations"), 0)
-        # The method on its way, and the state from which it began.
+        # The running method, and the state from which it began.
         self._motion: Motion | None = None
         self._begin = self._state
 
@@ -109,15 +110,15 @@ class Simulation:
 
     @property
     def load_work(self) -> float:
-        """Work that loads applied from outside put in since the start, J."""
+        """Work of the loads applied from outside since the start, J."""
         return self._state.load_work
 
     def step(self, dt: float, inputs: dict[str, float | None] | None = None, **parameters: float) -> State:
-        """Moves the crane on by dt, s, with new values of inputs and live parameters from now on. Returns the state reached.
+        """Advances the crane by dt, s, with new values of inputs and live parameters from now on. Returns the new state.
 
-        inputs: by name, in the units that `Crane.info` shows; None gives an input back to its spec.
+        inputs: by name, in the units that `Crane.info` shows; None lets an input follow the spec again.
 
-        Where it fails or is interrupted, the simulation stays where it was.
+        If it fails or is interrupted, the simulation stays where it was.
         """
         if parameters or inputs:
             self._change(self.crane.replace(inputs=inputs, **parameters))
@@ -152,7 +153,7 @@ class Simulation:
             self._state = replace(self._state, **changed)
 
     def _forget(self) -> None:
-        """Ends the history; what it took counts."""
+        """Ends the history; its steps are counted."""
         self._counted = self.statistics
         self._motion = None
 

@@ -1,13 +1,13 @@
-"""Studies: a crane over many values of its parameters, in parts that are kept, on this machine or on many.
+"""Studies: a crane over many values of its parameters, in parts that are kept on disk, computed on this machine or on many.
 
 >>> from crane import study
 >>> cases = study.grid(load_mass=[0, 200, 400])
 >>> done = study.run("eight_link_flexible", cases, "loads", duration=5)      # doctest: +SKIP
 >>> done.to_pandas()[["load_mass", "boom_psi_drive_torque_max"]]             # doctest: +SKIP
 
-The cases are split into parts. Each finished part is a Parquet file, written whole or not at all; `manifest.json` says what the
-study is. The same study in the same folder goes on where it ended: what is finished is never computed again. With a Dask client as
-`engine` the parts run on its workers; one that dies costs the part that it was at, which another one repeats.
+The cases are split into parts. Each finished part is a Parquet file, written whole or not at all; `manifest.json` describes the
+study. The same study in the same folder continues where it ended: finished parts are never computed again. With a Dask client as
+`engine` the parts run on its workers; if one dies, another repeats the part that it was computing.
 """
 
 import hashlib
@@ -34,11 +34,11 @@ except ImportError as error:
 
 Cases = dict[str, np.ndarray]
 MANIFEST = "manifest.json"
-# Cases of a part: some seconds of runs.
+# Cases per part: some seconds of runs.
 PART = 200
 # Version of the folder's layout.
 FORMAT = 2
-# Key of a part's metadata that says which study it is of.
+# Key of a part's metadata that identifies its study.
 DIGEST = b"crane_study"
 
 
@@ -85,7 +85,7 @@ def _scaled(samples: np.ndarray, ranges: dict[str, tuple[float, float]]) -> Case
 class Study:
     """A finished study.
 
-    folder: where its parts are. manifest: what it is. computed: parts that were computed now; the others were there.
+    folder: where its parts are. manifest: its description. computed: parts that were computed now; the others existed already.
     """
 
     folder: Path
@@ -134,19 +134,20 @@ def run(
     progress: bool | None = None,
     **settings: Any,
 ) -> Study:
-    """Computes every case, but those of parts that the folder has already.
+    """Computes every case, except those of parts that the folder contains already.
 
-    spec: a crane, with its parameters and inputs, its YAML file, or the name of a shipped one. cases: values of live parameters, columns of equal length.
-    what: "simulate": extremes, ends and status of a run of each case; `settings` are those of `Crane.simulate_ensemble`.
+    spec: a crane, with its parameters and inputs, its YAML file, or the name of a shipped one.
+    cases: values of live parameters, columns of equal length.
+    what: "simulate": extremes, final values and status of a run of each case; `settings` are those of `Crane.simulate_ensemble`.
         "statics": pose, efforts of the drives, reactions, points and status; `settings` are those of `Crane.statics`.
-        A function: it gets a crane with the cases of a part as arrays of parameters and returns columns, each as long as those;
+        A function: it receives a crane with the cases of a part as arrays of parameters and returns columns of the same length;
         its name identifies it, so give a changed one another name or folder.
     part: cases per part. engine: None for the threads of this machine, or a `distributed.Client`.
-    retries: how often a worker's part that failed is repeated. progress: whether to write a line on standard error; by default
-        where that is a terminal.
+    retries: how often a part that failed on a worker is repeated. progress: whether to write a line on standard error; by default
+        if that is a terminal.
 
-    Raises ValueError where the folder has another study. Where it is interrupted or the disk is full, finished parts stay, and the
-    same call goes on from there.
+    Raises ValueError if the folder contains another study. If it is interrupted or the disk is full, finished parts stay, and the
+    same call continues from there.
     """
     if not callable(what) and what not in _RESULTS:
         raise ValueError(f'what={what!r}: write "simulate", "statics" or give a function')
@@ -211,7 +212,7 @@ def _on_workers(client: Any, retries: int) -> Callable:
     from distributed import as_completed
 
     def compute(missing: Sequence[int], part_of: Callable[[int], _Part]) -> Iterable[tuple[int, Any]]:
-        # Some parts ahead of the workers: the cases of a large study are not all on their way at once.
+        # Only some parts ahead of the workers: the cases of a large study are not all sent at once.
         waiting = iter(missing)
         places: dict[str, int] = {}
 
@@ -238,7 +239,7 @@ def _compute(part: _Part) -> Any:
     from . import _native
 
     if part.threads:
-        # A worker has its own threads.
+        # A Dask worker runs several tasks on its own threads.
         _native.set_threads(part.threads)
     crane = load(part.source, text=part.text, invalid="nan", inputs=part.inputs, **part.cases)
     if callable(part.what):
@@ -289,7 +290,7 @@ _RESULTS = {"simulate": _simulate, "statics": _statics}
 
 
 def _digest(crane: Crane, cases: Cases, fixed: dict, what: Any, settings: dict, part: int) -> str:
-    """What distinguishes a study from another one."""
+    """A hash that distinguishes a study from another one."""
     said = [FORMAT, crane.spec_hash, fixed, crane.inputs, list(cases), _name(what), settings, part]
     digest = hashlib.sha256(json.dumps(said, sort_keys=True).encode())
     for column in cases.values():
@@ -298,7 +299,7 @@ def _digest(crane: Crane, cases: Cases, fixed: dict, what: Any, settings: dict, 
 
 
 def _name(what: Any) -> str:
-    """The computations, by name."""
+    """The name of a computation."""
     if isinstance(what, str):
         return what
     kind = what if hasattr(what, "__qualname__") else type(what)
@@ -322,7 +323,7 @@ def _claim(folder: Path, manifest: dict[str, Any]) -> None:
         differs = [key for key in ("crane", "spec_hash", "what", "settings", "parameters", "inputs", "columns", "cases", "cases_per_part")
                    if known.get(key) != manifest[key]]
         why = ", ".join(differs) or "cases"
-        raise ValueError(f"{folder} has another study, which differs in: {why}; use another folder, or remove that study")
+        raise ValueError(f"{folder} contains another study, which differs in: {why}; use another folder, or remove that study")
     if known is None:
         _replace(path, lambda file: file.write((json.dumps(manifest, indent=2) + "\n").encode()))
 
@@ -341,7 +342,7 @@ def _write(path: Path, part: Any) -> None:
 
 
 def _replace(path: Path, write: Callable[[Any], Any]) -> None:
-    """Writes a file under another name and renames it when it is whole and on the disk: nobody ever sees half a file."""
+    """Writes a file under another name and renames it when it is complete and on the disk: nobody ever sees a partial file."""
     unfinished = path.with_name(f"{path.name}.{os.getpid()}.unfinished")
     try:
         with open(unfinished, "wb") as file:
@@ -350,19 +351,19 @@ def _replace(path: Path, write: Callable[[Any], Any]) -> None:
             os.fsync(file.fileno())
         os.replace(unfinished, path)
     except OSError as error:
-        # What is finished stays; the first error is the one to tell.
+        # Finished parts stay; the first error is the one to report.
         try:
             unfinished.unlink(missing_ok=True)
         except OSError:
             pass
-        raise OSError(error.errno, f"{error.strerror}: finished parts are kept, and the same call goes on from them", str(path)) from error
+        raise OSError(error.errno, f"{error.strerror}: finished parts are kept, and the same call continues there", str(path)) from error
     except BaseException:
         unfinished.unlink(missing_ok=True)
         raise
 
 
 class _Line:
-    """A line on standard error that says how far a study is."""
+    """A line on standard error that shows the progress of a study."""
 
     def __init__(self, missing: int, parts: int, shown: bool) -> None:
         self.missing, self.parts, self.shown = missing, parts, shown

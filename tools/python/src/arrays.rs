@@ -122,7 +122,7 @@ impl<'a> Joined<'a> {
                     (_, 1) => {}
                     (size, own) => {
                         return Err(PyValueError::new_err(format!(
-                            "the leading axes of {name} do not fit those of the other arguments: {own} and {size}"
+                            "the leading axes of {name} do not match those of the other arguments: {own} and {size}"
                         )));
                     }
                 }

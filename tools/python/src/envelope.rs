@@ -111,7 +111,7 @@ impl Asked {
             None => only_mass(description).ok_or_else(|| {
                 let name = &description.name;
                 PyValueError::new_err(format!(
-                    "{name} has not exactly one live parameter in kg to vary as the load: name it with `load`"
+                    "{name} does not have exactly one live parameter in kg to vary as the load: name it with `load`"
                 ))
             })?,
         };

@@ -259,7 +259,8 @@ impl Crane {
         self.compute(py, Quantity::Of(FunctionId::ConnectorLengths), state, &own, invalid)
     }
 
-    /// (..., connectors, 3): forces of the connectors, N, positive where they pull, and their derivatives by length, N/m, and rate, N s/m.
+    /// (..., connectors, 3): forces of the connectors, N, positive in tension, and their derivatives with respect to length, N/m, and
+    /// rate, N s/m.
     #[pyo3(signature = (q, v, t=None, *, invalid="raise"))]
     fn connector_tensions<'py>(
         &self,
@@ -316,7 +317,8 @@ impl Crane {
         self.compute(py, Quantity::Of(FunctionId::SupportGaps), state, &own, invalid)
     }
 
-    /// (..., cylinders, 3): length of each cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m.
+    /// (..., cylinders, 3): length of each cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate,
+    /// m/rad or m/m.
     #[pyo3(signature = (q, v, *, invalid="raise"))]
     fn cylinder_states<'py>(
         &self,

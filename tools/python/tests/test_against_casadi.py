@@ -1,4 +1,4 @@
-"""Every quantity beside CasADi's derivation from the YAML alone, which shares no code with the compiler."""
+"""Every quantity compared with CasADi's derivation from the YAML alone, which shares no code with the compiler."""
 
 import crane
 import numpy as np
@@ -39,7 +39,7 @@ def on_paper(c, t, q, v):
         "support_gaps": c.support_gaps(q, v),
         "cylinder_states": c.cylinder_states(q, v),
         "drive_limits": c.drive_limits(t, q, v),
-        # The derivation takes the rates for the accelerations, too.
+        # The derivation uses the rates as accelerations, too.
         "internal_forces": c.internal_forces(q, v, v, t),
         "drive_motions": c.drive_motions(t),
         "valve_openings": c.valve_openings(t),
@@ -65,7 +65,7 @@ def on_paper(c, t, q, v):
 
 @pytest.mark.parametrize("name", ["eight_link_rigid", "eight_link_identified", "knuckle_boom", "double_pendulum"])
 def test_quantities(name):
-    """States near the guess and far from it, each with parameters of its own: one batch, each row a lane of eight."""
+    """States near the guess and far from it, each with its own parameters: one batch, each row a lane of eight."""
     from comparison import compare
     from crane_model import read_crane
     from derivations import Derivations
@@ -88,7 +88,7 @@ def test_quantities(name):
 
 @pytest.mark.parametrize("name", ["eight_link_rigid", "knuckle_boom", "double_pendulum"])
 def test_small_motions_about_any_motion(name):
-    """K and D beside CasADi's Jacobians of what a motion requires, `A a − e − f`, by its own A, e and f."""
+    """K and D compared with CasADi's Jacobians of the required forces `A a − e − f`, from its own A, e and f."""
     import casadi as ca
     from crane_model import read_crane
     from derivations import Derivations
@@ -112,12 +112,12 @@ def test_small_motions_about_any_motion(name):
         )
         for found, expected in ((small.stiffness[row], stiffness), (small.damping[row], damping)):
             expected = expected.full()
-            # Some hundred roundings of the largest entry, a support's stiffness or what the acceleration of all masses takes.
+            # Some hundred roundings of the largest entry, a support's stiffness or that of the inertia of all masses.
             np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
 def test_a_beam_of_parts(tmp_path):
-    """A stepped, tapered and curved beam with a live dimension: CasADi integrates over 24 places in each part, we over ten or in closed form."""
+    """A stepped, tapered, curved beam with a live dimension: CasADi integrates with 24 points per part, we with ten or in closed form."""
     from comparison import compare
     from crane_model import read_crane
     from derivations import Derivations

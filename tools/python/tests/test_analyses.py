@@ -30,7 +30,7 @@ def test_statics_along_the_manoeuvre(flexible):
     times = np.linspace(0, 5, 4)
     rest = flexible.statics(t=times)
     np.testing.assert_allclose(rest.q[0], flexible.statics().q, atol=1e-9)
-    # Where the drives stand at the end, the crane rests as far from there as their springs give.
+    # At the end, the crane rests as far from the positions of the drives as their springs yield.
     psi = flexible.coordinates.index("column_psi")
     assert abs(rest.q[-1, psi] - flexible.drive_motions(5.0)[0, 0]) < 1e-3
 
@@ -58,7 +58,7 @@ def test_modes_solve_the_eigenproblem(flexible):
     rest = flexible.statics()
     modes, small = flexible.modes(rest.q), flexible.linearise(rest.q)
     left = modes.shapes @ small.stiffness @ modes.shapes.T
-    # Shapes are orthonormal in A and diagonalise K, to rounding of the greatest eigenvalue.
+    # Shapes are orthonormal in A and diagonalise K, to rounding of the largest eigenvalue.
     np.testing.assert_allclose(left, np.diag(modes.omega_squared), atol=1e-8 * modes.omega_squared[-1])
     np.testing.assert_allclose(modes.shapes @ small.mass @ modes.shapes.T, np.eye(25), atol=1e-9)
     stable = flexible.stability(rest.q)
@@ -76,7 +76,7 @@ def test_a_run_is_recorded_with_its_errors(knuckle):
     np.testing.assert_allclose(run["energy_balance"], 0, atol=1e-3 * np.ptp(run["drive_work"]))
     finer = knuckle.simulate(duration=1.0, output=0.01, tolerance=1e-9, verify=False)
     assert finer.errors is None
-    # The difference from a much finer run is what was estimated, up to a small part of it.
+    # The difference from a much finer run is the estimated one, except for a small part of it.
     difference = np.abs(run["main_boom_theta"] - finer["main_boom_theta"]).max()
     assert difference < 1.5 * run.errors["main_boom_theta"] + 1e-9
     with pytest.raises(KeyError, match="did you mean"):
@@ -134,7 +134,7 @@ def test_a_bad_row_of_an_ensemble_is_named_or_nan(knuckle):
 
 
 def test_a_simulation_comes_back_to_the_last_bit(knuckle):
-    """Each time it is restored, and in another simulation; within the tolerance of what went on with the history."""
+    """Each time it is restored, and in another simulation; it agrees within the tolerance with the one that kept its history."""
     simulation = knuckle.simulation()
     for _ in range(5):
         simulation.step(0.05)
@@ -154,7 +154,7 @@ def test_a_simulation_comes_back_to_the_last_bit(knuckle):
 
 @pytest.mark.parametrize("method", ["bdf", "rosw4"])
 def test_short_calls_cost_no_more_than_a_run(flexible, method):
-    """Two seconds in 200 calls take the evaluations of one call. A value that is set to what it is begins nothing new; others do."""
+    """Two seconds in 200 calls take the evaluations of one call. Setting a parameter to its present value does not end the history."""
     one = flexible.simulation(method=method)
     one.step(2.0)
     many = flexible.simulation(method=method)
@@ -202,7 +202,7 @@ def test_parameters_change_between_steps(knuckle):
 
 
 def test_inputs_are_set_between_steps():
-    """A mass on a spring whose far end jumps: it swings about where the spring rests."""
+    """A mass on a spring whose far end jumps: it oscillates about the position where the spring is relaxed."""
     text = (
         "format: 1\nname: slide\ngravity: [0, 0, 0]\ninputs: {lever: {unit: m}}\n"
         "links: [{name: slide, joint: {prismatic: {axis: x}}, mass: 4, com: [0, 0, 0]}]\n"
@@ -257,7 +257,7 @@ def test_a_pendulum_swings_in_time(pendulum):
 
 
 def test_oil_moves_a_crane_and_its_states_are_saved():
-    """Pressures and valves go on where they were; functions that would lack the cylinders' forces refuse."""
+    """Pressures and valves continue from their saved states; functions that would lack the cylinders' forces raise an error."""
     boom = crane.load("eight_link_hydraulic")
     with pytest.raises(ValueError, match="pressures"):
         boom.forward_dynamics(boom.statics().q, np.zeros(boom.n))
@@ -269,13 +269,13 @@ def test_oil_moves_a_crane_and_its_states_are_saved():
     simulation.restore(saved)
     second = simulation.step(0.1)
     np.testing.assert_allclose(second.x, first.x, rtol=1e-3, atol=1e-3)
-    # At rest it would hold the boom with the torque that statics give.
+    # At first, the cylinder holds the boom with the torque that statics reports.
     run = boom.simulate(duration=0.1)
     np.testing.assert_allclose(run["boom_psi_drive_torque"][0], boom.statics().drive_efforts[1], rtol=1e-9)
 
 
 def test_a_pendulum_on_a_turning_shaft():
-    """At rates Ω of a shaft that turns freely a pendulum keeps `cos θ = g/(l Ω²)`, and swings with `ω² = Ω² (1 + 3 cos² θ)`."""
+    """On a shaft that turns freely at a rate Ω, a pendulum keeps `cos θ = g/(l Ω²)`, and swings with `ω² = Ω² (1 + 3 cos² θ)`."""
     text = """
 format: 1
 name: pendulum

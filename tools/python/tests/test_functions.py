@@ -83,7 +83,7 @@ def test_jacobians_are_derivatives_of_positions(flexible, states):
     _, q, v = states
     jacobians = flexible.point_jacobians(q)
     np.testing.assert_allclose(np.einsum("...pij,...j->...pi", jacobians, v), flexible.point_velocities(q, v), atol=1e-12)
-    # Central differences: third derivatives of some metres, (1e-6)² of them, and rounding 1e-16/1e-6.
+    # Central differences: errors of (1e-6)² times third derivatives of some metres, and rounding of 1e-16/1e-6.
     step = 1e-6 * np.eye(flexible.n)
     difference = (flexible.points(q[0] + step) - flexible.points(q[0] - step)) / 2e-6
     np.testing.assert_allclose(np.moveaxis(difference, 0, -1), jacobians[0], atol=1e-8)
@@ -97,7 +97,7 @@ def test_energies_and_powers_balance(flexible, states):
     energy = [flexible.energies(q + s * h * v + s * s * h * h / 2 * a, v + s * h * a, t + s * h).total for s in (-1, 1)]
     rate = (energy[1] - energy[0]) / (2 * h)
     expected = flexible.drive_power(q, v, t) - flexible.dissipation(q, v, t)
-    # The difference is off by h² ω² of the powers within, ω some 1e4 rad/s of the stiffest springs.
+    # The difference quotient has an error of h² ω² of the internal powers, with ω some 1e4 rad/s of the stiffest springs.
     scale = np.abs(flexible.forces(q, v, t) * v).sum(axis=-1)
     assert np.all(np.abs(rate - expected) < 1e-3 * scale)
 
@@ -108,7 +108,7 @@ def test_broadcasting_is_that_of_numpy(flexible, states):
     assert flexible.bias(q[0], v).shape == (7, 25)
     assert flexible.mass_matrix(q[:0]).shape == (0, 25, 25)
     assert flexible.points(q[None]).shape == (1, 7, 2, 3) or len(flexible.info["points"]) != 2
-    with pytest.raises(ValueError, match="do not fit"):
+    with pytest.raises(ValueError, match="do not match"):
         flexible.bias(q, v[:3])
 
 

@@ -20,12 +20,12 @@ def data(page):
 
 
 def embedded(shown):
-    """The page inside what a notebook gets."""
+    """The page inside the output for a notebook."""
     return html.unescape(re.search(r'srcdoc="(.*?)"', shown, re.DOTALL)[1])
 
 
 def numbers(columns):
-    """Numbers of 32 bits, column by column."""
+    """32-bit numbers, column by column."""
     return np.frombuffer(base64.b64decode(columns["data"]), "<f4").reshape(len(columns["columns"]), columns["rows"])
 
 
@@ -43,7 +43,7 @@ def test_a_notebook_shows_a_crane_at_rest(knuckle):
     assert [mode["frequency"] for mode in at_rest["modes"]] == knuckle.modes().frequencies.tolist()
     results = dict(zip((column["name"] for column in at_rest["run"]["columns"]), numbers(at_rest["run"]), strict=True))
     efforts = [results[name] for name in results if name.endswith(("_drive_torque", "_drive_force"))]
-    # At rest, not at the end of the manoeuvre; of 32 bits.
+    # At rest, not at the end of the manoeuvre; 32-bit numbers.
     np.testing.assert_allclose(np.ravel(efforts), knuckle.statics().drive_efforts, rtol=2**-23, atol=1e-6)
 
 
@@ -84,7 +84,7 @@ def test_a_table_of_another_crane_is_refused(knuckle, pendulum):
 
 
 def test_a_crane_that_does_not_rest_has_a_page(pendulum):
-    """Upside down it has no stable equilibrium: modes are missing, the crane is there."""
+    """Upside down it has no stable equilibrium: modes are missing, the crane is shown."""
     falling = crane.load("falling.yaml", text=PENDULUM.replace("run:", "gravity: [0, 0, 9.81]\nrun:"))
     with pytest.raises(crane.NoEquilibrium):
         falling.statics()

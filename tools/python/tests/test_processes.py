@@ -52,7 +52,7 @@ def test_a_batch_leaves_the_lock_to_others(flexible):
     done.set()
     thread.join()
     within = [tick for tick in ticks if begin < tick < end]
-    # Held for the whole call, the lock would let nobody tick.
+    # If the lock were held for the whole call, the thread could not tick.
     assert len(within) > 5
 
 
@@ -103,7 +103,7 @@ def test_ctrl_c_ends_a_long_call(call):
     begin = time.monotonic()
     os.kill(program.pid, signal.SIGINT)
     out, _ = program.communicate(timeout=60)
-    # The interpreter goes on, soon.
+    # The interpreter continues, and soon.
     assert out == "interrupted\n(25, 25)\n"
     assert time.monotonic() - begin < 15
 

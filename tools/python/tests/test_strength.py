@@ -4,7 +4,7 @@ import crane
 import numpy as np
 import pytest
 
-# A truck of 4 t, its centre amid four stiff feet 3 m and 2 m apart, and a load on an arm without mass that slews and telescopes.
+# A truck of 4 t, centred between four stiff feet 3 m and 2 m apart, and a load on a massless arm that slews and telescopes.
 TRUCK = """
 format: 1
 name: truck
@@ -60,7 +60,7 @@ def test_the_ground_carries_the_weight(truck):
     assert forces.shape == (3, len(truck.info["cuts"]), 6)
     ground = [cut["kind"] for cut in truck.info["cuts"]].index("ground")
     np.testing.assert_allclose(forces[:, ground, 2], -9.81 * (4001.0 + loads), rtol=1e-12)
-    # Springs of 1e10 N/m give way by some 1e-6 m.
+    # Springs of 1e10 N/m yield by some 1e-6 m.
     np.testing.assert_allclose(forces[:, ground, 3], -9.81 * 3.0 * loads, rtol=1e-5, atol=0.1)
 
 
@@ -78,7 +78,7 @@ def test_tipping_is_the_balance_of_moments(truck):
 
 
 def test_a_clamped_beam_bends_as_a_lever(arm):
-    """σ = M/W with M = (m L + ρ A L²/2) g about y, the flat way; von Mises' equivalent with the shear forces; over loads as a batch."""
+    """σ = M/W with M = (m L + ρ A L²/2) g about y, the weak axis; von Mises' equivalent with the shear forces; over loads as a batch."""
     height, width, wall, length = 0.2, 0.1, 0.008, 3.0
     inner = (height - 2 * wall) * (width - 2 * wall)
     area = height * width - inner
@@ -90,7 +90,7 @@ def test_a_clamped_beam_bends_as_a_lever(arm):
     x = arm.info["sections"][root]["x"]
     reach, mass = length - x, 7850.0 * area
     moment = 9.81 * (loads * reach + mass * reach**2 / 2.0)
-    # The pose sinks by centimetres in metres, which shortens the lever by some 1e-4.
+    # The tip sinks by centimetres over a length of metres, which shortens the lever by some 1e-4.
     np.testing.assert_allclose(np.abs(found.normal[:, root]), moment * width / 2.0 / inertia, rtol=1e-3)
     np.testing.assert_allclose(found.utilisation, found.equivalent * 1.5 / 3.55e8, rtol=1e-12)
     von_mises = np.sqrt(found.normal**2 + 3.0 * (np.abs(found.shear) + np.abs(found.torsion)) ** 2)
@@ -99,7 +99,7 @@ def test_a_clamped_beam_bends_as_a_lever(arm):
 
 
 def test_inertia_adds_to_weight(arm):
-    """What a section carries is linear in the accelerations, and greater than at rest where these are not zero."""
+    """What a section carries is linear in the accelerations, and differs from that at rest where these are not zero."""
     q = arm.statics().q
     still = arm.internal_forces(q)
     root = [cut["kind"] for cut in arm.info["cuts"]].index("section")
@@ -111,7 +111,7 @@ def test_inertia_adds_to_weight(arm):
 
 
 def test_at_rest_nothing_but_weight_acts(arm):
-    """A crane let go in its equilibrium does not accelerate: with rates of zero it carries what it carries at rest."""
+    """A crane released in its equilibrium does not accelerate: with zero rates, stresses are those at rest."""
     q = arm.statics().q
     let_go = arm.strength(q, np.zeros(arm.n))
     np.testing.assert_allclose(let_go.equivalent, arm.strength(q).equivalent, rtol=1e-6)
@@ -128,7 +128,7 @@ def test_bad_rows_are_named(arm):
 
 
 def test_a_load_chart_is_the_balance_of_moments(truck):
-    """About each line: load · (distance beyond) = 0.8 · 4001 kg · (distance within), all round."""
+    """About each line: load · (distance beyond) = 0.8 · 4001 kg · (distance within), over half a turn."""
     angles, reaches = np.linspace(0.0, np.pi, 7), np.linspace(2.0, 6.0, 5)
     calls = []
     chart = truck.envelope({"column": angles, "arm_x": reaches}, tipping=0.2, progress=lambda done, all: calls.append((done, all)))
@@ -166,6 +166,6 @@ def test_limits_of_a_load_chart(truck, knuckle):
             truck.envelope(**wrong)
     with pytest.raises(ValueError, match="parameters are arrays"):
         truck.replace(payload=[1.0, 2.0]).envelope({"arm": [3.0]})
-    # As the command does: without a polygon and yield stresses nothing limits the load but the drives.
+    # As in the command: without a support polygon and yield stresses, only the drives limit the load.
     free = knuckle.envelope({"main_boom_theta": [-0.5, 0.0]}, greatest_load=1000.0)
     assert np.isnan(free.tipping_margin).all() and (free.load == 1000.0).all()

@@ -189,7 +189,7 @@ def test_a_killed_worker_costs_only_its_part(tmp_path):
         distributed.Client(cluster) as client,
     ):
         killed = study.run("knuckle_boom", cases(), tmp_path / "there", part=3, what=_Murderous(marker), engine=client)
-        # Ten parts, one of whose workers died at it: complete, and equal to the local result.
+        # Ten parts, one of which killed its worker: complete, and equal to the local result.
         assert marker.exists() and killed.computed == 10
         table = killed.table()
         assert table["main_boom_theta_drive_torque_max"].equals(here["main_boom_theta_drive_torque_max"])
@@ -215,14 +215,14 @@ class _Once:
 
 
 class _Murderous(_Once):
-    """The first worker that comes to the fifth part is killed at it."""
+    """Kills the first worker that computes the fifth part."""
 
     def fail(self):
         os.kill(os.getpid(), 9)
 
 
 class _Greedy(_Once):
-    """The first time that the fifth part is computed, it asks for more memory than there is."""
+    """Asks for more memory than there is, the first time that the fifth part is computed."""
 
     def fail(self):
         bytearray(2**62)

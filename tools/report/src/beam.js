@@ -1,4 +1,4 @@
-// A beam along a curve, boxed or round: a flexible link as bent as its elements are.
+// A beam along a curve, with a box or a round outline: a flexible link, bent like its elements.
 import { BufferAttribute, BufferGeometry, Vector3 } from "three";
 
 /** Stations of the drawn curve in each half of an element. */
@@ -16,7 +16,7 @@ const ROUND = Array.from({ length: 24 }, (_, face) => {
   return { normal: towards(face), corners: [towards(face - 0.5), towards(face + 0.5)] };
 });
 
-/** Height and width at a place, from `[x, height, width]` along the beam: linear between places, and at a step what begins there. */
+/** Height and width at a position, from `[x, height, width]` along the beam: linear in between; at a step, those that begin there. */
 export function sizeAt(along, x) {
   const next = along.findIndex(([place]) => place > x);
   if (next < 1) return along.at(next).slice(1);
@@ -25,7 +25,7 @@ export function sizeAt(along, x) {
   return [1, 2].map((side) => a[side] + share * (b[side] - a[side]));
 }
 
-/** Places of the rings along a beam, m: evenly from middle to middle of the elements, and to both ends. */
+/** Positions of the rings along a beam, m: evenly from middle to middle of the elements, and to both ends. */
 function places(lengths) {
   const total = lengths.reduce((sum, length) => sum + length, 0);
   let end = 0;

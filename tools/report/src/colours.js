@@ -17,19 +17,19 @@ export const style = (name) => getComputedStyle(document.documentElement).getPro
 
 /** viridis (S. van der Walt, N. Smith, 2015), sampled. */
 const VIRIDIS = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
-/** A foot that pulls. */
+/** Colour of a foot that pulls. */
 export const PULLS = "#e0559b";
 
-/** Colour of a share from 0 to 1; below 0, a support that pulls. */
+/** Colour of a fraction from 0 to 1; below 0, that of a support that pulls. */
 export function scale(share) {
   if (share < 0) return PULLS;
   return VIRIDIS[Math.min(Math.round(share * (VIRIDIS.length - 1)), VIRIDIS.length - 1)];
 }
 
-/** What is used beyond what is allowed. */
+/** Colour of a limit that is exceeded. */
 export const BEYOND = "#d62728";
 
-/** Colour of a share from 0 to 1 without steps, as `[r, g, b]` from 0 to 1 in linear light; above 1 it is red. */
+/** Continuous colour of a fraction from 0 to 1, as `[r, g, b]` from 0 to 1 in linear light; red above 1. */
 export function smooth(share) {
   const parts = (colour) => [1, 3, 5].map((at) => (parseInt(colour.slice(at, at + 2), 16) / 255) ** 2.2);
   if (!(share <= 1)) return parts(BEYOND);

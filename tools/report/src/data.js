@@ -1,6 +1,6 @@
 // The data that the command put into the page.
 
-/** Everything of the page: cranes, tables, spec, command. The crane the page is about comes last. */
+/** All data of the page: cranes, tables, spec, command. The crane the page is about comes last. */
 export function read() {
   const data = JSON.parse(document.getElementById("data").textContent);
   for (const crane of data.cranes) crane.run = run(crane.run);
@@ -17,7 +17,7 @@ function run({ columns, rows, every, data }) {
   return { list, rows, every, t: list[0].values, column: (name) => byName.get(name) };
 }
 
-/** Place of time `t` among the samples: index before it and part of the way to the next. */
+/** Position of time `t` among the samples: indices before and after it, and the fraction of the way between them. */
 export function place(times, t) {
   let low = 0;
   let high = times.length - 1;
@@ -34,7 +34,7 @@ export function place(times, t) {
 /** Value of a column between samples. */
 export const at = (values, { low, high, part }) => values[low] + (values[high] - values[low]) * part;
 
-/** Least and greatest of numbers. */
+/** Minimum and maximum of numbers. */
 export function range(values) {
   let low = Infinity;
   let high = -Infinity;
@@ -65,7 +65,7 @@ export function scaled(unit, values) {
   return { unit, factor: 1 };
 }
 
-/** A name for a reader: blanks for underscores. */
+/** A name for readers: spaces instead of underscores. */
 export const spoken = (name) => name.replaceAll("_", " ");
 
 /** Text of a tick: without the digits that rounding leaves. */

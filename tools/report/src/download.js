@@ -1,4 +1,4 @@
-// Files that the page gives away.
+// Files to download from the page.
 
 /** Offers text, or a blob, as a file. */
 export function save(name, text, type) {
@@ -8,7 +8,7 @@ export function save(name, text, type) {
   setTimeout(() => URL.revokeObjectURL(url), 1000);
 }
 
-/** The shortest text of a number of 32 bits: the digits that the page has. */
+/** The shortest text of a 32-bit number: the digits that the page has. */
 const exact = (value) => {
   for (let digits = 6; digits <= 9; digits += 1) {
     const text = value.toPrecision(digits);

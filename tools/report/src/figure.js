@@ -1,21 +1,21 @@
-// A crane in three dimensions, drawn from its chain: links from frame to frame, as thick as their mass makes likely,
-// flexible links bent, in the outline of their section where the spec gives one, pins where joints turn, legs where it stands, and
-// springs and ropes between their points.
+// A crane in three dimensions, drawn from its chain: links from frame to frame, with a thickness estimated from
+// their mass, flexible links bent, with the outline of their section if the spec gives one, pins at revolute joints, legs at the supports,
+// and springs and ropes between their points.
 import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
 import { BeamGeometry, sizeAt } from "./beam.js";
 import { Kinematics, links } from "./kinematics.js";
 
-/** Mass per volume of what a link fills with its outline, kg/m³: about a third of steel's. */
+/** Mass per volume within the outline of a link, kg/m³: about a third of steel's. */
 const FILLING = 2400;
-/** Least and greatest thickness of a link, of the crane's size. */
+/** Minimum and maximum thickness of a link, relative to the crane's size. */
 const THICKNESS = [0.012, 0.06];
-/** A length below this part of the crane's size is none. */
+/** A length below this fraction of the crane's size counts as zero. */
 const NOTHING = 1e-3;
 
-/** Radius of a spring and of a rope as drawn, of the crane's size. */
+/** Radius of a spring and of a rope as drawn, relative to the crane's size. */
 const RADIUS = { spring: 0.004, rope: 0.0015 };
 
-/** Room around the axes of the links, of the crane's size. */
+/** Room around the axes of the links, relative to the crane's size. */
 const MARGIN = 0.03;
 
 export const COLOURS = {
@@ -24,7 +24,7 @@ export const COLOURS = {
 };
 
 export class Figure {
-  /** `ghost`: one pale colour, to stand behind another figure. */
+  /** `ghost`: one pale colour, to be shown behind another figure. */
   constructor(crane, size, { ghost = false } = {}) {
     this.crane = crane;
     this.size = size;
@@ -116,7 +116,7 @@ export class Figure {
       const [h, w] = sizeAt(along, begin);
       const s = Math.max(h, w);
       const ring = this.mesh(outline?.round ? new CylinderGeometry(0.56 * s, 0.56 * s, 0.12 * s, 32) : new BoxGeometry(0.12 * s, h + 0.12 * s, w + 0.12 * s), COLOURS.pin);
-      // A cylinder stands along y.
+      // The cylinder's axis is y.
       this.part(p, ring, outline?.round ? new Matrix4().makeRotationZ(Math.PI / 2) : new Matrix4());
     });
     this.usual ??= side;
@@ -165,12 +165,12 @@ export class Figure {
     const back = new Vector3(...screws[j].slice(3)).transformDirection(frames[p + 1].clone().invert()).negate();
     const [least, most] = this.travel(j);
     const side = 0.7 * (this.usual ?? this.thickness(next.mass, 1));
-    // From its frame back into the beam, far enough to stay in it at the far end of its travel; on to the next link it draws itself.
+    // From its frame back into the beam, far enough to stay in it at the far end of its travel; its part outside is drawn as a link.
     const reach = Math.max(Math.abs(most), Math.abs(least), Math.abs(reference[j])) + 0.5 * side;
     this.box(p + 1, new Vector3(), back.multiplyScalar(reach), side, COLOURS.slide);
   }
 
-  /** Least and greatest value of a coordinate over the run. */
+  /** Minimum and maximum of a coordinate over the run. */
   travel(j) {
     const values = this.crane.run.column(this.crane.coordinates[j].name).values;
     return [Math.min(...values), Math.max(...values)];
@@ -218,14 +218,14 @@ export class Figure {
   }
 
   stand() {
-    // A ghost differs above its base.
+    // A ghost differs only above its base.
     if (this.ghost) return;
     const supports = this.crane.scene.supports.map(({ at }) => new Vector3(...at));
     if (supports.length) this.feet(supports);
     else if (this.crane.coordinates[0]?.role !== "base") this.pedestal();
   }
 
-  /** What a crane stands on that stands fixed: a plate at the world's origin, a pillar to where its first body begins. */
+  /** The base of a fixed crane: a plate at the world's origin, and a pillar to where its first body begins. */
   pedestal() {
     const { bodies, frames } = this.kinematics;
     if (!bodies.length) return;
@@ -288,7 +288,7 @@ export class Figure {
     });
   }
 
-  /** Takes a pose. */
+  /** Moves the figure to a pose. */
   pose(q, factor) {
     const frames = this.kinematics.pose(q, factor);
     for (const { body, mesh, local } of this.parts) {
@@ -305,7 +305,7 @@ export class Figure {
     }
   }
 
-  /** Colours the beams along their lengths: `colours(name)` is a function of the place, m, or nothing; `null`: as they were. */
+  /** Colours the beams along their lengths: `colours(name)` is a function of the position, m, or nothing; `null`: plain. */
   colour(colours) {
     for (const { name, geometry, mesh, plain } of this.beams) {
       const colour = colours?.(name);
@@ -324,7 +324,7 @@ export class Figure {
     this.legs.forEach((paint, index) => paint.color.set(colours[index]));
   }
 
-  /** Places that the crane reaches in a pose. */
+  /** Points that the crane reaches in a pose. */
   outline() {
     const { frames, points } = this.kinematics;
     const origins = frames.map((frame) => new Vector3().setFromMatrixPosition(frame));

@@ -70,7 +70,7 @@ export class Kinematics {
     return this.frames;
   }
 
-  /** Place of a point of interest at the pose taken last. */
+  /** Position of a point of interest at the latest pose. */
   point(index, out = new Vector3()) {
     const { body, at } = this.points[index];
     return out.copy(at).applyMatrix4(this.frames[body]);
@@ -80,7 +80,7 @@ export class Kinematics {
 /** End of a rigid element. */
 const tip = (body, motion) => new Vector3(body.length, 0, 0).applyMatrix4(body.reference).applyMatrix4(motion);
 
-/** Sum of the deformation of a flexible link's tip, m: what its elements' coordinates do to it. */
+/** Flexible links, each with the indices of its bodies. */
 export function links(kinematics) {
   const found = [];
   kinematics.bodies.forEach((body, p) => {

@@ -16,7 +16,7 @@ import { Viewer } from "./viewer.js";
 const PAPER = 660;
 /** Time in which a crane at rest shows a mode, s. */
 const REST = 10;
-/** Way of the arrow keys in time, s. */
+/** Time step of the arrow keys, s. */
 const STEP = 0.1;
 
 const $ = (selector) => document.querySelector(selector);
@@ -38,7 +38,7 @@ chart(data);
 document.documentElement.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 const shown = [];
 const { plots, along } = atRest ? { plots: [], along: [] } : panels(data, player);
-// What this crane does not have.
+// Sections that do not apply to this crane.
 const missing = [...document.querySelectorAll("section:has(> .panels:empty)")];
 if (!data.tables) missing.push($("#tables"));
 if (atRest) missing.push($("#repeat"), $("#sign"));
@@ -59,7 +59,7 @@ player.follow((t) => {
   $("#time").value = t;
   $("#clock").textContent = `${t.toFixed(2)} s`;
   if (waiting) return;
-  // Plots follow at the pace of the screen, however often time is set.
+  // Plots are updated once per frame of the screen, however often time is set.
   waiting = true;
   requestAnimationFrame(() => {
     waiting = false;
@@ -67,14 +67,14 @@ player.follow((t) => {
   });
   readings(here);
 });
-// What comes into view has missed what time did meanwhile.
+// Plots that come into view have missed changes of time.
 addEventListener("scroll", plotsFollow, { passive: true });
 // For the console of the browser, and for the test.
 globalThis.report = { data, player, plots, viewer };
 document.documentElement.dataset.ready = "yes";
 if (!matchMedia("(prefers-reduced-motion: reduce)").matches && viewer && !atRest) player.play(true);
 
-/** Sections by script: in the frame of a notebook, a fragment would open the notebook itself. */
+/** Scrolls to sections by script: in the frame of a notebook, a fragment would open the notebook itself. */
 function navigation() {
   for (const link of document.querySelectorAll("nav a")) {
     link.addEventListener("click", (event) => {
@@ -84,7 +84,7 @@ function navigation() {
   }
 }
 
-/** Says so where a run has more samples than the page. */
+/** Adds a note if a run has more samples than the page. */
 function thinned() {
   const { every, rows } = crane.run;
   if (every === 1) return;
@@ -105,7 +105,7 @@ function seen(element) {
   return bottom > 0 && top < innerHeight;
 }
 
-/** The view in three dimensions; without WebGL, a word in its place. */
+/** The view in three dimensions; without WebGL, a message instead. */
 function threeD() {
   try {
     return new Viewer($("#view canvas"), data, player);
@@ -162,13 +162,13 @@ function controls() {
   document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => viewer.look(button.dataset.view)));
   const mode = $("#mode");
   crane.modes.forEach((one, index) => mode.append(new Option(modeText(one, index), index)));
-  // Of what is at rest, only a mode moves.
+  // A crane at rest moves only in a mode.
   if (atRest) mode.options[0].textContent = "at rest";
   mode.addEventListener("change", () => {
     viewer.vibrate(mode.value === "" ? null : crane.modes[Number(mode.value)]);
     $("#mode_note").hidden = mode.value === "";
     if (mode.value !== "") $("#mode_note").textContent = `mode ${modeText(crane.modes[Number(mode.value)], Number(mode.value))}: about the static pose, not to scale, slowed down`;
-    // Values and time are those of the motion.
+    // Values and time are those of the motion, not of the mode.
     $("#now").classList.toggle("idle", mode.value !== "");
     if (mode.value !== "") player.play(true);
   });
@@ -202,7 +202,7 @@ function recording() {
   });
 }
 
-/** Values beside the view, at the present time. */
+/** Values next to the view, at the present time. */
 function now() {
   const list = $("#now dl");
   const value = (label, name, from = crane) => {

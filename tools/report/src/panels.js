@@ -5,9 +5,9 @@ import { Kinematics, links } from "./kinematics.js";
 import { Plot } from "./plot.js";
 import { envelope, margins, used } from "./strength.js";
 
-/** A point hardly moves along an axis below this part of its way along z. */
+/** A point hardly moves along an axis if it does so by less than this fraction of its travel along z. */
 const HARDLY = 0.01;
-/** A shorter way is none, m. */
+/** Shorter travel counts as none, m. */
 const STILL = 1e-6;
 /** Angles of an element and what bends or twists: ψ about z, θ about y, φ about x. */
 const MOMENTS = [
@@ -63,7 +63,7 @@ export function panels(data, player) {
   return { plots, along };
 }
 
-/** Curves of all columns whose names end so. */
+/** Curves of all columns whose names have this ending. */
 function named(crane, ending) {
   const found = crane.run.list.filter(({ name }) => name.endsWith(ending));
   return found.map(({ name }, colour) => ({
@@ -192,7 +192,7 @@ function moments(add, overTime, crane, time) {
   return along;
 }
 
-/** How far the sections of beams are used: along each beam now and at most, and over time. */
+/** Utilisation of the sections of beams: along each beam, now and maximum, and over time. */
 function strength(add, overTime, crane) {
   const { beams, unit } = used(crane);
   const label = unit === "1" ? "utilisation" : "equivalent stress";
@@ -210,7 +210,7 @@ function strength(add, overTime, crane) {
   const curves = beams.map(({ name, sections }, colour) => ({
     label: spoken(name), colour, values: envelope(sections.map(({ values }) => values)),
   }));
-  if (curves.length) overTime("strength", "use", `Greatest ${label} of each beam`, label, unit, curves);
+  if (curves.length) overTime("strength", "use", `Maximum ${label} of each beam`, label, unit, curves);
   return along;
 }
 
@@ -257,7 +257,7 @@ function explorer(add, crane, rigid, plots) {
   show();
 }
 
-/** Shows the moments along flexible links at a place of the run. */
+/** Shows the moments along flexible links at a time of the run. */
 export function follow(along, { low, high, part }) {
   for (const { plot, joints } of along) {
     const now = joints.map(({ values }) => values[low] + (values[high] - values[low]) * part);

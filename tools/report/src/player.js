@@ -35,7 +35,7 @@ export class Player {
     this.changed?.();
   }
 
-  /** Plays from the start to the end, stops there, and calls `done`; also where someone stops it before. */
+  /** Plays from the start to the end, stops there, and calls `done`, also if it is stopped before. */
   once(done) {
     this.seek(0);
     this.done = done;
@@ -44,7 +44,7 @@ export class Player {
 
   tick(now) {
     if (!this.playing) return;
-    // A page that was away goes on where it was.
+    // A page that was hidden continues where it was.
     const passed = this.last ? Math.min((now - this.last) / 1000, 0.1) : 0;
     this.last = now;
     const t = this.t + passed * this.speed;

@@ -5,7 +5,7 @@ import { at, range, readable, tickText } from "./data.js";
 import { csv, save } from "./download.js";
 import { svg } from "./svg.js";
 
-/** Part of the range by which a key zooms. */
+/** Factor on the range by which a key zooms. */
 const ZOOM = 0.7;
 
 /** Font of the axes. */
@@ -21,7 +21,7 @@ export class Plot {
   /**
    * `x`: `{label, unit, values}`; `curves`: `{label, values, dashed, colour}`, colour an index of the palette;
    * `y`: `{label, unit, factor}`, values are shown times the factor. `kind`: `time` for curves over time, which share
-   * their cursor and zoom and follow the player; `path` for curves of places, each with values of its own along x;
+   * their cursor and zoom and follow the player; `path` for curves of places, each with its own values along x;
    * `along` for other curves.
    */
   constructor(host, options) {
@@ -41,7 +41,7 @@ export class Plot {
     );
     this.head = element("figcaption", {}, element("span", { textContent: this.title }), this.tools);
     this.body = element("div", { className: "plot" });
-    // A line at the present time, or a dot where each path is then.
+    // A line at the present time, or a dot on each path.
     const mark = (className) => element("div", { className, hidden: this.kind === "along" });
     this.marks = this.kind === "path" ? this.curves.map(() => mark("dot")) : [mark("marker")];
     this.frame.append(this.head, this.body);
@@ -113,7 +113,7 @@ export class Plot {
     if (path) this.reset();
   }
 
-  /** Takes the width that there is, or another. */
+  /** Takes the available width, or another one. */
   resize(width = this.body.clientWidth) {
     if (!width || width === this.plot.width) return;
     this.plot.setSize({ width, height: this.height });
@@ -121,7 +121,7 @@ export class Plot {
     this.mark();
   }
 
-  /** Everything in view. */
+  /** Shows everything. */
   reset() {
     if (this.kind === "path") {
       const [x, y] = ["x", "values"].map((key) => this.curves.map((one) => range(one[key])));
@@ -136,7 +136,7 @@ export class Plot {
     if (max > min) this.plot.setScale("x", { min, max });
   }
 
-  /** Shows this window of a path, wider or higher where needed: a metre along x is as long as one along y. */
+  /** Shows this window of a path, wider or higher if needed, so that a metre is equally long along x and y. */
   fit(window) {
     this.window = window;
     const { width, height } = this.plot.bbox;
@@ -244,7 +244,7 @@ function drawPath(u, seriesIdx) {
   return { stroke: path, fill: null, clip: null, band: null, gaps: null, flags: 0 };
 }
 
-/** Place of a path that is nearest to the cursor. */
+/** Point of a path that is nearest to the cursor. */
 function nearest(u, seriesIdx) {
   const { left, top } = u.cursor;
   if (seriesIdx === 0 || left < 0) return null;

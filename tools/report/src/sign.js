@@ -7,7 +7,7 @@ const element = (name, attributes = {}, ...children) => {
   return made;
 };
 
-/** Greatest differences from a finer run, of the quantities of a unit. */
+/** Largest differences from a finer run, for each unit. */
 function errors(crane) {
   const differences = crane.record.differences_from_a_finer_run;
   if (!differences) return "not estimated";
@@ -38,7 +38,7 @@ export function sign({ crane, command }) {
       row("analysis", `${record.duration_s} s from the ${record.start}; ${record.method}${tolerance}`),
       row("limits", "utilisation 1: equivalent stress of beam theory equals yield stress over the safety factor of the spec; tipping margin 0: overturning equals stabilising moment"),
       ...results,
-      row("greatest difference from a finer run", errors(crane)),
+      row("largest difference from a finer run", errors(crane)),
       row("cautions", record.cautions.join("; ") || "none"),
       row("program", `${spoken(record.program)} ${record.version}`),
       row("hash of the spec", record.spec_hash),

@@ -1,18 +1,18 @@
 // Utilisation of the beams and margins against tipping over, as the command computed them along the run.
 
-/** Numbers of 32 bits in base 64. */
+/** 32-bit numbers from base 64. */
 export function unpacked(data) {
   return new Float32Array(Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0)).buffer);
 }
 
-/** Columns of a table that stands row by row. */
+/** Columns of a table that is stored row by row. */
 function columns(data, count) {
   const numbers = unpacked(data);
   const rows = numbers.length / count;
   return Array.from({ length: count }, (_, column) => Float32Array.from({ length: rows }, (_, row) => numbers[row * count + column]));
 }
 
-/** Beams with their sections, `{name, sections: [{x, values}]}`; none where nothing is known of their stresses. */
+/** Beams with their sections, `{name, sections: [{x, values}]}`; empty if their stresses are not known. */
 export function used(crane) {
   const sections = crane.strength?.sections;
   if (!sections) return { beams: [], unit: "1" };
@@ -22,7 +22,7 @@ export function used(crane) {
     if (beams.at(-1)?.name !== beam) beams.push({ name: beam, sections: [] });
     beams.at(-1).sections.push({ x, values: values[index] });
   });
-  // A beam without yield stress beside one that has one.
+  // Without beams that have no yield stress, if others have one.
   return { beams: beams.filter(({ sections: of }) => of.every((section) => Number.isFinite(section.values[0]))), unit: sections.unit };
 }
 
@@ -34,5 +34,5 @@ export function margins(crane) {
   return stability.lines.map((name, index) => ({ name, values: values[index] }));
 }
 
-/** Greatest of some columns, row by row. */
+/** Maximum of some columns, row by row. */
 export const envelope = (columns, pick = Math.max) => columns[0].map((_, row) => pick(...columns.map((values) => values[row])));

@@ -10,7 +10,7 @@ const element = (name, attributes = {}, ...children) => {
 /** Tables of this many rows and more are folded. */
 const LONG = 14;
 
-/** Tables of this many columns and more take two places. */
+/** Tables of this many columns and more span two columns of the layout. */
 const WIDE = 6;
 
 /** A table of the command as it prints it. */

@@ -2,7 +2,7 @@
 import { range, readable, scaled, spoken } from "./data.js";
 import { margins, used } from "./strength.js";
 
-/** Greatest size among columns, where it is, and in which column. */
+/** Largest magnitude in some columns, with its time and the other properties of its column. */
 function greatest(columns, t) {
   let best = { size: -1 };
   for (const { values, ...rest } of columns) {
@@ -59,7 +59,7 @@ export function tiles({ crane, rigid }) {
   const { beams, unit: of } = used(crane);
   if (beams.length) {
     const most = greatest(beams.flatMap(({ name, sections }) => sections.map(({ x, values }) => ({ name, x, values }))), t);
-    const what = of === "1" ? "greatest utilisation" : "greatest equivalent stress";
+    const what = of === "1" ? "maximum utilisation" : "maximum equivalent stress";
     const value = of === "1" ? `${Number((100 * most.value).toPrecision(3))} %` : `${Number(most.value.toPrecision(4))} MPa`;
     add(what, value, `${spoken(most.name)}, ${Number(most.x.toFixed(2))} m from its start, ${when(most.t)}`);
   }
@@ -67,7 +67,7 @@ export function tiles({ crane, rigid }) {
   if (lines.length) {
     const least = greatest(lines.map(({ name, values }) => ({ name, values: values.map((margin) => 2e3 - margin) })), t);
     const margin = 2e3 - least.value;
-    add("least tipping margin", `${Number(margin.toFixed(3))}`, `${margin <= 0 ? "it tips over" : "about"} ${spoken(least.name)}, ${when(least.t)}`);
+    add("minimum tipping margin", `${Number(margin.toFixed(3))}`, `${margin <= 0 ? "it tips over" : "about"} ${spoken(least.name)}, ${when(least.t)}`);
   }
   if (modes.length && modes[0].frequency !== null) {
     add("lowest frequency", `${readable(Number(modes[0].frequency.toPrecision(4)))} Hz`, modes[0].moves.slice(0, 2).map(spoken).join(", "));

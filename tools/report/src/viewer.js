@@ -12,16 +12,16 @@ import { at, place, range } from "./data.js";
 import { Figure, extent } from "./figure.js";
 import { margins, used } from "./strength.js";
 
-/** Largest motion of a mode as drawn, of the crane's size. */
+/** Largest motion of a mode as drawn, relative to the crane's size. */
 const SWING = 0.012;
-/** Waves a second of a mode as drawn, about. */
+/** Approximate oscillations per second of a mode as drawn. */
 const WAVES = 0.5;
-/** Room around the crane, of what it takes up, and of its size for the thickness of its links. */
+/** Room around the crane, relative to what it occupies, and for the thickness of its links, relative to its size. */
 const ROOM = 1.04;
 const MARGIN = 0.03;
-/** Length of the greatest reaction as drawn, of the crane's size. */
+/** Length of the largest reaction as drawn, relative to the crane's size. */
 const ARROW = 0.22;
-/** Part of the greatest reaction below which a pull is rounding. */
+/** Fraction of the largest reaction below which a pull is rounding. */
 const ROUNDING = 1e-9;
 
 export const VIEWS = {
@@ -59,7 +59,7 @@ export class Viewer {
     }
     this.rigid = rigid;
     this.used = used(crane);
-    /** What the end of the colour scale stands for. */
+    /** Value at the end of the colour scale. */
     this.full = this.used.unit === "1" ? 1 : Math.max(...this.used.beams.flatMap(({ sections }) => sections.map(({ values }) => range(values)[1])), 1e-9);
     this.runs = new Map([crane, rigid].filter(Boolean).map((one) => [one, one.coordinates.map((c) => one.run.column(c.name).values)]));
     this.lights();
@@ -107,7 +107,7 @@ export class Viewer {
     this.square = square;
   }
 
-  /** The way of each point of interest: whole, and as far as it has come. */
+  /** The path of each point of interest: in full, and up to the present time. */
   traces() {
     const { crane } = this;
     // A crane at rest has none.
@@ -149,7 +149,7 @@ export class Viewer {
     const foot = (name) => this.reactions[this.crane.scene.supports.findIndex((support) => support.name === name)];
     const known = margins(this.crane).map(({ name, values }) => ({ values, feet: name.split(" – ").map(foot) }));
     this.lines = known.filter(({ feet }) => feet.length === 2 && feet.every(Boolean));
-    // Seen through the truck.
+    // Visible through the truck.
     const material = new LineMaterial({ linewidth: 4, worldUnits: false, depthTest: false, transparent: true });
     this.tipping = new Line2(new LineGeometry().setPositions([0, 0, 0, 1, 0, 0]), material);
     this.tipping.frustumCulled = false;
@@ -175,7 +175,7 @@ export class Viewer {
     this.camera.position.copy(centre).addScaledVector(from, size);
     this.camera.lookAt(centre);
     this.camera.updateMatrixWorld();
-    // Aims at the middle of what is seen, as near as leaves every place in view: its way off against the angle of view.
+    // Aims at the middle of what is visible, from as near as keeps every point within the angle of view.
     const seen = this.extent.places.map((place) => place.clone().applyMatrix4(this.camera.matrixWorldInverse));
     const [across, up] = ["x", "y"].map((axis) => {
       const [least, most] = range(seen.map((place) => place[axis]));
@@ -228,7 +228,7 @@ export class Viewer {
       const rest = crane.scene.pose;
       figure.pose(rest, 1);
       const places = figure.outline();
-      // The way per unit of the shape, by a pose nearby: small enough that everything moves in proportion.
+      // Displacement per unit of the shape, from a nearby pose: near enough for linear motion.
       const small = 1e-4 / Math.max(...mode.shape.map(Math.abs));
       figure.pose(rest.map((q, i) => q + small * mode.shape[i]), 1);
       const ways = figure.outline().map((place, i) => place.distanceTo(places[i]));
@@ -304,7 +304,7 @@ export class Viewer {
     if (colours.length) this.figure.paint(colours);
   }
 
-  /** Draws once, however often it is asked for before the next picture. */
+  /** Draws once, however often it is called before the next frame. */
   draw() {
     if (this.asked || !this.renderer) return;
     this.asked = true;
@@ -316,7 +316,7 @@ export class Viewer {
 
   /** The view as it is now, a PNG image. */
   picture() {
-    // What is drawn is gone when the browser has shown it.
+    // The drawing is discarded once the browser has shown it.
     this.paint();
     return new Promise((done) => this.canvas.toBlob(done, "image/png"));
   }

@@ -14,7 +14,7 @@ catalogue! {
     U004 wrong_numbers(place, given, expected) "{place} cannot be `{given}`", "not {expected}", "write {expected}, in SI units";
     /// Names of links and of joints are unique.
     U005 duplicate(kind, name) "two {kind}s are called `{name}`", "already used by another {kind}", "rename one of the two";
-    /// Joints connect links of the file.
+    /// Joints connect links that are in the file.
     U006 unknown_link(joint, name, help) "joint `{joint}` names link `{name}`, which is not in the file", "no such link", "{help}";
     /// A link is the child of one joint.
     U007 two_parents(link, other) "link `{link}` is the child of two joints", "also the child of joint `{other}`",
@@ -23,13 +23,13 @@ catalogue! {
     U008 not_a_tree(problem) "the links are not a tree: {problem}", "every link but the root is the child of one joint", "make every link but one the child of exactly one joint";
     /// Joints rotate about an axis, slide along it, or are fixed.
     U009 unsupported(joint, kind) "joint `{joint}` is {kind}, which is not supported", "supported: revolute, continuous, prismatic, fixed; hinge and slide in MJCF",
-        "hold it at zero with `--fix {joint}`, or replace it by joints of one axis each; for a free base write `joint: free` in the spec";
+        "hold it at zero with `--fix {joint}`, or replace it with joints of one axis each; for a free base write `joint: free` in the spec";
     /// A joint follows another one that moves.
     U010 mimic(joint, leader) "joint `{joint}` follows joint `{leader}`, which does not move", "no moving joint of this name",
         "hold it, too, with `--fix {joint}`, or remove `mimic` or the equality";
     /// Moving joints follow each other in a chain.
     U011 branches(link, first, second) "the chain branches after link `{link}`: joints `{first}` and `{second}` both move on it", "the second branch",
-        "hold one of them at zero, with everything behind it: `--fix {second}` or `--fix {first}`";
+        "hold one of them at zero, with everything beyond it: `--fix {second}` or `--fix {first}`";
     /// Something moves.
     U012 nothing_moves() "nothing in the robot can move", "no joint that rotates or slides", "leave a joint out of `--fix`";
     /// A joint to be held is in the file.
@@ -42,20 +42,20 @@ catalogue! {
     U016 to_expand(what) "{what} is not read", "MuJoCo replaces this when it loads the file",
         "let MuJoCo write the complete file: `mujoco.mj_saveLastXML(\"complete.xml\", mujoco.MjModel.from_xml_path(\"robot.xml\"))`";
     /// Bodies have an inertial frame, or shapes whose masses are known.
-    U017 unknown_mass(body, shape) "the mass of body `{body}` is not in the file", "the mass of a {shape} is known to MuJoCo alone",
+    U017 unknown_mass(body, shape) "the mass of body `{body}` is not in the file", "only MuJoCo knows the mass of a {shape}",
         "add `<inertial>` to the body: `mujoco.mj_saveLastXML` writes it; or give the shape `mass=\"0\"`";
     /// Equalities hold joints or let them follow others.
     U018 closed_loop(found) "the equality {found} is not supported", "it constrains bodies of an open chain",
-        "remove it, or write `active=\"false\"`; replace a cylinder by a drive of the joint that it moves";
+        "remove it, or write `active=\"false\"`; replace a cylinder with a drive of the joint that it moves";
     /// A joint follows another one in proportion.
     U019 not_linear(joint) "joint `{joint}` does not follow its leader in proportion", "powers of the leader's position are not supported",
         "write `polycoef` with two numbers other than 0: offset and ratio";
-    /// An equality names a joint of the file.
+    /// An equality names a joint that is in the file.
     U020 equality(joint) "an equality names joint `{joint}`, which is not in the file", "no such joint", "correct the name of the joint";
     /// Classes of defaults are in the file.
     U021 unknown_class(class, help) "there is no class `{class}` of defaults", "no <default> of this name", "{help}";
     /// An orientation is written in one way.
     U022 two_orientations(owner, both) "{owner} has {both}", "two orientations", "keep one of them";
-    /// An orientation has directions of some length that are not parallel.
+    /// An orientation has directions of nonzero length that are not parallel.
     U023 no_orientation(owner, key) "`{key}` of {owner} gives no orientation", "a direction has no length, or two are parallel", "write other numbers";
 }

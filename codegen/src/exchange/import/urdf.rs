@@ -19,7 +19,7 @@ pub(super) fn read(root: Node) -> Result<Robot, Vec<Mistake>> {
         joints: Vec::new(),
         gravity: None,
         left_out: Vec::new(),
-        no_drives: "URDF knows no drives: every joint swings freely.",
+        no_drives: "URDF has no drives: every joint swings freely.",
     };
     for node in root.children().filter(Node::is_element) {
         match (node.tag_name().namespace(), node.tag_name().name()) {

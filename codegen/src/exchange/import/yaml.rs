@@ -29,7 +29,7 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
     }
     let joints = || links.iter().flat_map(SpecLink::joints);
     let drives: Vec<String> = joints().filter_map(|(joint, name)| drive(joint, &name)).collect();
-    text += &section("drives", "springs of joints, and joints that stand still", &drives);
+    text += &section("drives", "springs of joints, and joints that are held", &drives);
     let undriven = || joints().filter(|(joint, _)| joint.spring.is_none() && joint.held.is_none());
     let numbers = |given: &dyn Fn(&Joint) -> f64| -> Vec<String> {
         let found = undriven().map(|(joint, name)| (name, given(joint))).filter(|(_, number)| *number != 0.0);
@@ -56,7 +56,7 @@ pub(super) fn write(robot: &Robot, links: &[SpecLink], source: &SourceFile) -> S
     if let (true, Some((_, name))) = (drives.is_empty(), joints().next()) {
         let _ = write!(
             text,
-            "# {} A spring and a damper hold or move one:\n\
+            "# {} To hold or move a joint, give it a spring and a damper:\n\
              # drives:\n\
              #   - {{coordinate: {name}, stiffness: 1e6, damping: 1e4, motion: {{quintic: {{from: 0, to: 0.5, duration: 2}}}}}}\n",
             robot.no_drives

@@ -37,7 +37,7 @@ impl<'g> Derivation<'g> {
         if chain.has_limited_drives() {
             functions.push(function(
                 FunctionId::DriveLimits,
-                "Greatest effort of every drive, N m or N, 0 without a limit, and its stiffness at the state, N m/rad or N/m.",
+                "Maximum effort of every drive, N m or N, 0 without a limit, and its stiffness at the state, N m/rad or N/m.",
                 "M, −∂t_dr/∂q",
                 &[Time, Position, Velocity],
                 Shape::Pairs(chain.drives.len()),
@@ -58,7 +58,7 @@ impl<'g> Derivation<'g> {
         if !pieces.is_empty() {
             functions.push(function(
                 FunctionId::DrivePieces,
-                "Begin and end of the intervals in which the motions and valves' commands of drives are smooth, drive by drive, s.",
+                "Start and end of the intervals in which the motions and valve commands of drives are smooth, drive by drive, s.",
                 "t_begin, t_end",
                 &[],
                 Shape::Pairs(pieces.len() / 2),

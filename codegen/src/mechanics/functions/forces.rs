@@ -16,7 +16,7 @@ impl<'g> Derivation<'g> {
         chain.has_one_sided_supports().then(|| {
             function(
                 FunctionId::SupportGaps,
-                "How far one-sided supports are above the ground, m, negative where they are pressed in, and its rate, m/s; 0 of others.",
+                "How far one-sided supports are above the ground, m, negative where they are pressed in, and its rate, m/s; 0 for others.",
                 "e_z, ė_z [Urbaś 2016, Eq. (16)]",
                 &[Position, Velocity],
                 Shape::Pairs(chain.supports.len()),
@@ -99,7 +99,7 @@ impl<'g> Derivation<'g> {
             if !pieces.is_empty() {
                 functions.push(function(
                     FunctionId::LoadPieces,
-                    "Begin and end of the pieces in which the scales of loads are smooth, load by load, s.",
+                    "Start and end of the intervals in which the scales of loads are smooth, load by load, s.",
                     "t_begin, t_end",
                     &[],
                     Shape::Pairs(pieces.len() / 2),
@@ -183,7 +183,7 @@ impl<'g> Derivation<'g> {
             ),
             function(
                 FunctionId::ConnectorTensions,
-                "Force F of every connector (N), positive where it pulls, and its slopes ∂F/∂ℓ (N/m) and ∂F/∂ℓ̇ (N s/m).",
+                "Force F of every connector (N), positive where it pulls, and its derivatives ∂F/∂ℓ (N/m) and ∂F/∂ℓ̇ (N s/m).",
                 "k (ℓ − ℓ₀) + d ℓ̇ − P; k σ max(0, 1 + a σ̇)",
                 &[Time, Position, Velocity],
                 Shape::Structs(Struct::Tension, count),
@@ -202,7 +202,7 @@ impl<'g> Derivation<'g> {
         if !pieces.is_empty() {
             functions.push(function(
                 FunctionId::WinchPieces,
-                "Begin and end of the intervals in which winches move smoothly, connector by connector, s.",
+                "Start and end of the intervals in which winches move smoothly, connector by connector, s.",
                 "t_begin, t_end",
                 &[],
                 Shape::Pairs(pieces.len() / 2),

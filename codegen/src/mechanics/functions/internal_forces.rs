@@ -16,7 +16,7 @@ impl Derivation<'_> {
         let mut functions = vec![
             function(
                 FunctionId::InternalForces,
-                "Force (N) and moment (N m) that what is beyond a cut exerts on what is before it, cut by cut.",
+                "Force (N) and moment (N m) that the part beyond a cut exerts on the part before it, cut by cut.",
                 "Σ F − Σ ∫ (ẍ − γ) dm, Σ (M + r × F) − Σ ∫ r × (ẍ − γ) dm over everything beyond, by Newton and Euler",
                 &[Time, Position, Velocity, Acceleration],
                 Shape::Structs(Struct::Wrench, model.chain.cuts().len()),
@@ -38,7 +38,7 @@ impl Derivation<'_> {
         if sections > 0 {
             functions.push(function(
                 FunctionId::SectionModuli,
-                "What stresses of beams follow from, section by section: areas (m²), moduli (m³), the allowable stress (Pa); 0 where not known.",
+                "Section properties for the stresses of beams: areas (m²), moduli (m³), allowable stress (Pa); 0 where unknown.",
                 "A, W_y, W_z, W_t, A_y, A_z; yield stress over safety factor",
                 &[],
                 Shape::Structs(Struct::SectionModuli, sections),

@@ -119,7 +119,7 @@ impl<'g> Derivation<'g> {
         if !chain.cylinders.is_empty() {
             functions.push(function(
                 FunctionId::CylinderStates,
-                "Length of every cylinder, m, its rate, m/s, and its derivative by the joint's coordinate, m/rad or m/m.",
+                "Length of every cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate, m/rad or m/m.",
                 "ℓ, ℓ̇, ∂ℓ/∂q_j",
                 &[Position, Velocity],
                 Shape::Vectors(chain.cylinders.len()),
@@ -245,7 +245,7 @@ impl<'g> Derivation<'g> {
         let mut functions = vec![
             function(
                 FunctionId::Factorise,
-                "Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, but `base` in the base's rows and columns.",
+                "Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, and `base` in the base's rows and columns.",
                 "A + D̂, by articulated bodies at rest",
                 &[Position, AddedInertia, BaseAddedInertia],
                 Shape::Factors(factors.len()),

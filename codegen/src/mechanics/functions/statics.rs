@@ -44,7 +44,7 @@ impl<'g> Derivation<'g> {
             connectors::stiffness(&self.model, &self.kinematics, self.model.t, &mut stiffness);
             functions.push(function(
                 FunctionId::ConnectorStiffness,
-                "The part of connectors in the tangent stiffness, with winches at time t; N/m, N and N m.",
+                "Contribution of connectors to the tangent stiffness, with winches at time t; N/m, N and N m.",
                 "∂²E/∂q∂q",
                 &[Time, Position],
                 Shape::Symmetric(self.model.size()),

@@ -60,7 +60,7 @@ impl Look<'_> {
         if let Some(pump) = pump {
             let pressure = pump.pressure.as_ref().map(|given| ("the pressure of the pump", given, &PRESSURE));
             let volume = pump.volume.as_ref().map(|given| ("the volume between pump and valves", given, &VOLUME));
-            let flow = ("the greatest flow of the pump", &pump.max_flow, &FLOW);
+            let flow = ("the maximum flow of the pump", &pump.max_flow, &FLOW);
             self.usual([Some(flow), pressure, volume]);
         }
         // The consequences of such numbers would be reported as well.
@@ -77,7 +77,7 @@ impl Look<'_> {
         let of = |what: &str| format!("the {what} of cylinder `{name}`");
         let [bore, rod] = [of("bore"), of("rod")];
         let [retracted, stroke] = [of("retracted length"), of("stroke")];
-        let [most, modulus, hoses] = [of("greatest pressure"), of("bulk modulus"), of("hose volume")];
+        let [most, modulus, hoses] = [of("maximum pressure"), of("bulk modulus"), of("hose volume")];
         self.usual([Some((&bore, &cylinder.bore, &DIAMETER)), Some((&rod, &cylinder.rod, &DIAMETER))]);
         self.usual([Some((&retracted, &cylinder.retracted, &LENGTH)), Some((&stroke, &cylinder.stroke, &LENGTH))]);
         self.usual([cylinder.max_pressure.as_ref().map(|given| (most.as_str(), given, &PRESSURE))]);

@@ -44,16 +44,16 @@ pub struct Envelope {
     /// Upper limit of the search for the load, in the unit of its parameter [default: a hundred times the crane's mass]
     #[arg(long, value_name = "NUMBER")]
     pub greatest_load: Option<f64>,
-    /// Least tipping margin, 1 − overturning / stabilising moment about each tipping line
+    /// Minimum tipping margin, 1 − overturning / stabilising moment about each tipping line
     #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = margin)]
     pub tipping: f64,
-    /// Greatest utilisation of beams with a yield stress
+    /// Maximum utilisation of beams with a yield stress
     #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = above_zero)]
     pub utilisation: f64,
-    /// Greatest torque or force of a drive, in either direction, N m or N, as in `boom_psi=80000`; may be given several times
+    /// Maximum torque or force of a drive, in either direction, N m or N, as in `boom_psi=80000`; may be given several times
     #[arg(long = "effort", value_name = "DRIVE=NUMBER")]
     pub efforts: Vec<String>,
-    /// How far the load may move a point of interest, m, as in `hook=0.1`; may be given several times
+    /// Maximum displacement of a point of interest by the load, m, as in `hook=0.1`; may be given several times
     #[arg(long = "deflection", value_name = "POINT=METRES")]
     pub deflections: Vec<String>,
     /// Point whose radius and height are shown [default: the only point of interest, otherwise the origin of the last link]
@@ -170,7 +170,7 @@ pub struct Eval {
     /// [default: the spec's guess]
     #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
     pub q: Option<String>,
-    /// Velocities in m/s and rad/s, given likewise, per state or once for all states [default: 0]
+    /// Velocities in m/s and rad/s, given in the same way, per state or once for all states [default: 0]
     #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
     pub v: Option<String>,
     /// Time at which the drive motions are evaluated, s

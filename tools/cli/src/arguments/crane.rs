@@ -42,13 +42,13 @@ pub struct Choice {
     /// Values of its live parameters.
     #[command(flatten)]
     pub parameters: Parameters,
-    /// Value of an input in place of what the spec says, in the unit that `crane info` shows; may be given several times
+    /// Value of an input instead of that of the spec, in the unit that `crane info` shows; may be given several times
     #[arg(long = "input", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub inputs: Vec<String>,
     /// Limits of the validity of the model.
     #[command(flatten)]
     pub limits: Limits,
-    /// Replace beams that bend by rigid ones
+    /// Replace beams that bend with rigid ones
     #[arg(long, conflicts_with = "compile")]
     pub rigid: bool,
     /// Compile the crane to machine code first (needs cargo) and keep it: about five times faster, for long studies
@@ -101,7 +101,7 @@ pub struct Analysis {
     /// Output format
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-    /// Print all tables whole: the pose, all modes, all sections
+    /// Print all tables in full: the pose, all modes, all sections
     #[arg(long)]
     pub all: bool,
 }

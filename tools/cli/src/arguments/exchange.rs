@@ -62,7 +62,7 @@ pub struct Export {
     /// File to write [default: the crane's name with .urdf, .xml, .c or .fmu]
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
-    /// Functions to write in C, with commas between; a wrong name lists all
+    /// Functions to write in C, separated by commas; a wrong name lists all
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "mass_matrix,bias,forward_dynamics")]
     pub functions: Vec<String>,
     /// Type of numbers in C
@@ -72,7 +72,7 @@ pub struct Export {
     #[arg(long, value_enum, default_value_t, value_name = "VERSION")]
     pub fmi: Fmi,
     /// Shared library to put into an FMU, .so, .dll or .dylib; repeat the option to include several systems
-    /// [default: the one beside the command]
+    /// [default: the one next to the command]
     #[arg(long = "library", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub libraries: Vec<PathBuf>,
 }

@@ -83,7 +83,7 @@ pub struct Compare {
     /// Output format
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-    /// Print all tables whole: the poses, too
+    /// Print all tables in full, including the poses
     #[arg(long)]
     pub all: bool,
     #[command(flatten)]
@@ -101,7 +101,7 @@ pub struct ComparePair {
     /// Another crane, or its YAML file [default: the first is compared with itself with beams that do not bend]
     #[arg(value_name = "OTHER")]
     pub second: Option<String>,
-    /// Fail where a YAML file has warnings
+    /// Fail if a YAML file has warnings
     #[arg(long)]
     pub strict: bool,
     #[command(flatten)]

@@ -5,8 +5,8 @@ use crate::report::{Cell, Grid, Heading};
 use super::surface::{Knot, Sheet, Surface};
 
 /// How to read it.
-pub const NOTE: &str = "The load chart holds for the model and the limits above: loads at rest, rounded down to three digits, at any slewing \
-     angle looked at. No dynamic factor, no factor of a design code.";
+pub const NOTE: &str = "The load chart is valid for the model and the limits above: loads at rest, rounded down to three digits, at every \
+     slewing angle considered. No dynamic factor, no factor of a design code.";
 
 /// Upper limit of the number of rows of a chart.
 const ROWS: f64 = 12.5;

@@ -49,11 +49,11 @@ pub fn write(
     let varying: Vec<usize> = (0..asked.axes.0.len()).filter(|place| asked.axes.0[*place].values.len() > 1).collect();
     if let [.., y, x] = varying[..] {
         let load = &layout.columns[layout.load()];
-        let title = format!("Largest load [{}], the smallest over everything else that varies", load.unit);
+        let title = format!("Largest load [{}], the minimum over everything else that varies", load.unit);
         save("largest_load_map", svg(&map(asked, layout, rows, [x, y], &title, |row| layout.load_of(row), f64::min)))?;
         let used = |row: &Row| row.numbers[layout.utilisation()];
         if rows.iter().any(|row| used(row).is_finite()) {
-            let title = "Utilisation with the crane's own load, the greatest over everything else that varies";
+            let title = "Utilisation with the crane's own load, the maximum over everything else that varies";
             save("utilisation_map", svg(&map(asked, layout, rows, [x, y], title, used, f64::max)))?;
         }
     }

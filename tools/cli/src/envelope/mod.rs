@@ -95,7 +95,7 @@ fn ask(options: &Envelope, rig: &dyn DynCrane) -> Outcome<(crane_model::envelope
     }
     let load = load_parameter(rig, options.load.as_deref())?.ok_or_else(|| {
         Problem::usage(
-            format!("{} has not exactly one live parameter in kg to vary as the load", description.name),
+            format!("{} does not have exactly one live parameter in kg to vary as the load", description.name),
             "name the live parameter that is the load, as in `--load payload`; `crane info` lists them",
         )
     })?;
@@ -109,7 +109,7 @@ fn ask(options: &Envelope, rig: &dyn DynCrane) -> Outcome<(crane_model::envelope
     let [least, greatest] = range_of_loads(description, load, options.greatest_load);
     if greatest.is_nan() || greatest <= least {
         return Err(Problem::usage(
-            format!("`--greatest-load {greatest}` is not above the least load, {least}"),
+            format!("`--greatest-load {greatest}` is not above the minimum load, {least}"),
             format!("write a number above {least}, in {}", info.unit),
         ));
     }

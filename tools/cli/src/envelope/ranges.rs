@@ -81,7 +81,7 @@ fn values_of(name: &str, text: &str) -> Outcome<Vec<f64>> {
             let steps = (count - 1) as f64;
             Ok((0..count).map(|place| from + (to - from) * (place as f64 / steps)).collect())
         }
-        _ => Err(wrong("it has not one or three parts")),
+        _ => Err(wrong("it does not have one or three parts")),
     }
 }
 

@@ -36,7 +36,7 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description
     let rated = || rows.iter().filter(|row| row.numbers[layout.load()].is_finite());
     if let (Some(least), Some(greatest)) = (rated().min_by(by_load), rated().max_by(by_load)) {
         for (key, name, row) in
-            [("least", "least of the largest loads", least), ("greatest", "greatest of the largest loads", greatest)]
+            [("least", "minimum of the largest loads", least), ("greatest", "maximum of the largest loads", greatest)]
         {
             report.line(name, told(row, asked, layout), "");
             report.value(key, rating_of(row, asked, layout));
@@ -45,7 +45,7 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description
     let none = rows.len() - rated().count();
     if none > 0 {
         report.caution(Some(format!(
-            "{none} of {} poses are beyond a limit with the least load, {} {}, or have no stable equilibrium: they have no \
+            "{none} of {} poses are beyond a limit with the minimum load, {} {}, or have no stable equilibrium: they have no \
              largest load, and count as 0 in charts",
             rows.len(),
             asked.loads[0],
@@ -53,10 +53,10 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description
         )));
     }
     if limits.tipping.is_some() && rows.iter().all(|row| row.numbers[layout.margin()].is_nan()) {
-        report.caution(Some("tipping limits nothing: the supports make no polygon, or there are none"));
+        report.caution(Some("tipping limits nothing: there are no supports, or they form no polygon"));
     }
     if limits.utilisation.is_some() && rows.iter().all(|row| row.numbers[layout.utilisation()].is_nan()) {
-        report.caution(Some("utilisation limits nothing: no beam has a section of known moduli and a `yield_stress`"));
+        report.caution(Some("utilisation limits nothing: no beam has a section with known moduli and a `yield_stress`"));
     }
 }
 
@@ -101,7 +101,7 @@ fn told(row: &Row, asked: &Envelope, layout: &Layout) -> String {
         format!("{name} {}{blank}{unit}", short(value * factor))
     });
     let limit = match row.governing.each_ref().map(String::as_str) {
-        ["", _] => "up to the greatest load looked at".to_owned(),
+        ["", _] => "up to the maximum load considered".to_owned(),
         ["equilibrium", _] => "limited by equilibrium: there is none beyond".to_owned(),
         [kind, of] => format!("limited by {kind}, {of}"),
     };
@@ -133,7 +133,7 @@ pub fn governing(asked: &Envelope, layout: &Layout, rows: &[Row]) -> Grid {
     for limit in limits {
         let governed = || rows.iter().filter(|row| row.governing == *limit);
         let loads = || governed().map(|row| layout.load_of(row));
-        let kind = if limit[0].is_empty() { "none up to the greatest load" } else { limit[0].as_str() };
+        let kind = if limit[0].is_empty() { "none up to the maximum load" } else { limit[0].as_str() };
         grid.row([
             Cell::from(kind),
             limit[1].as_str().into(),

@@ -81,7 +81,7 @@ fn along(options: &Strength, rig: &dyn DynCrane, report: &mut Report) -> Outcome
     verdict(report, rig, worst, " of the run");
     stresses::verdict(report, rig.description(), &rig.section_moduli_at(), &history, " of the run");
     if !worst.lines.is_empty() {
-        report.fact("time of the least tipping margin", worst.t, "s");
+        report.fact_as("time_of_the_least_tipping_margin", "time of the minimum tipping margin", worst.t, "s");
     }
     Ok(history)
 }

@@ -27,8 +27,9 @@ pub fn verdict(
     let Some((t, section)) = greatest else { return };
     let StressedSection { x, stress, utilisation, .. } = section;
     let place = format!("{}, {x:.3} m from its start", section.beam(description));
+    let key = |name: &str| format!("{name}{of_what}").replace(' ', "_");
     if let Some(utilisation) = utilisation {
-        report.fact(format!("greatest utilisation{of_what}"), utilisation, "");
+        report.fact_as(&key("greatest utilisation"), format!("maximum utilisation{of_what}"), utilisation, "");
         if utilisation > 1.0 {
             report.caution(Some(format!(
                 "{place}{of_what}: the equivalent stress of {:.0} MPa is {:.2} times the allowable stress",
@@ -37,17 +38,18 @@ pub fn verdict(
             )));
         }
     }
-    report.fact(format!("greatest equivalent stress{of_what}"), stress.equivalent / MEGA, "MPa");
-    report.fact(format!("place of the greatest stress{of_what}"), place, "");
+    let equivalent = format!("maximum equivalent stress{of_what}");
+    report.fact_as(&key("greatest equivalent stress"), equivalent, stress.equivalent / MEGA, "MPa");
+    report.fact_as(&key("place of the greatest stress"), format!("place of the maximum stress{of_what}"), place, "");
     if !of_what.is_empty() {
-        report.fact("time of the greatest stress", t, "s");
+        report.fact_as("time_of_the_greatest_stress", "time of the maximum stress", t, "s");
     }
 }
 
 /// Stresses of all sections at rest.
 pub fn table(description: &Description, moduli: &[SectionModuli], wrenches: &[Wrench]) -> Grid {
-    let title = "Stresses of beams at rest: greatest of normal force and bending, of shear forces, of torsion; von Mises' equivalent of \
-                 all three, and its part of yield stress over safety factor";
+    let title = "Stresses of beams at rest: maximum of normal force and bending, of shear forces, of torsion; von Mises' equivalent of \
+                 all three, and its ratio to yield stress over safety factor";
     let headers = ["beam", "x [m]", "normal [MPa]", "shear [MPa]", "torsion [MPa]", "equivalent [MPa]", "utilisation"];
     let mut grid = Grid::new("stresses", title, &headers);
     for section in stressed_sections(description, moduli, wrenches) {

@@ -12,7 +12,7 @@ use super::history::{OF_JOINTS, OF_SECTIONS, UNITS, numbers, prefix};
 
 /// Moments about the tipping lines.
 pub fn tipping(description: &Description, lines: &[TippingLine]) -> Grid {
-    let title = "Moments of weight and loads about the tipping lines at rest, anticlockwise seen from above";
+    let title = "Moments of weight and loads at rest about the tipping lines, in anticlockwise order seen from above";
     let mut grid = Grid::new("tipping", title, &["from", "to", "stabilising", "overturning", "unit", "margin"]);
     for line in lines {
         let [from, to] = line.feet.map(|foot| description.supports[foot].name.as_str());
@@ -40,7 +40,7 @@ fn borrowed(words: &[String]) -> Vec<&str> {
 
 /// What the ground and the joints carry.
 pub fn joints(description: &Description, wrenches: &[Wrench]) -> Grid {
-    let title = "Loads at rest: of the ground in the world frame about its origin, of a joint what its link exerts on the link before, \
+    let title = "Loads at rest: of the ground, in the world frame about its origin; of a joint, exerted by its link on the previous link, \
                  in the frame after the joint about its origin";
     let mut grid = Grid::new("loads", title, &borrowed(&headings(&["joint"], OF_JOINTS)));
     for (cut, wrench) in description.cuts().into_iter().zip(wrenches) {
@@ -56,8 +56,8 @@ pub fn joints(description: &Description, wrenches: &[Wrench]) -> Grid {
 
 /// What the sections of beams carry.
 pub fn sections(description: &Description, wrenches: &[Wrench]) -> Grid {
-    let title = "Section forces of beams at rest, in the section's frame, x along the beam: N pulls where positive, Mx twists, My and \
-                 Mz bend as theta and psi do";
+    let title = "Section forces of beams at rest, in the section's frame, x along the beam: N is positive in tension, Mx twists, My \
+                 and Mz bend as theta and psi do";
     let mut grid = Grid::new("sections", title, &borrowed(&headings(&["beam", "x [m]"], OF_SECTIONS)));
     for (cut, wrench) in description.cuts().into_iter().zip(wrenches) {
         if let Cut::Body { body, x: Some(x) } = cut {

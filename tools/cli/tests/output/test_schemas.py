@@ -1,4 +1,4 @@
-"""What commands print as JSON, against the schemas in tools/cli/schemas; jsonschema is the judge."""
+"""Validates the JSON that commands print against the schemas in tools/cli/schemas, with jsonschema."""
 
 import json
 from pathlib import Path
@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[4]
 CRANES = ["eight_link_flexible", "cantilever", "knuckle_boom", "double_pendulum"]
 SHORT = ["--duration", "0.2"]
 
-# A mass that stands on its head: statics finds no stable pose.
+# An inverted pendulum: statics finds no stable pose.
 UPSIDE_DOWN = """
 format: 1
 name: upside_down
@@ -152,7 +152,7 @@ def test_check_of_a_mistake(output, crane, tmp_path):
     assert (mistake["line"], mistake["column"]) == (4, line.index("masss") + 1)
     assert (mistake["end_line"], mistake["end_column"]) == (4, line.index("masss") + 6)
     assert "masss" in mistake["message"] and "mass" in mistake["help"]
-    # The same, for people: everything is on standard error.
+    # The same for human readers: everything goes to standard error.
     code, out, err = crane("check", spec)
     assert code == 1 and out == "" and mistake["code"] in err and mistake["message"] in err
 

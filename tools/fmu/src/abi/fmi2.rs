@@ -371,7 +371,7 @@ macro_rules! no_time_derivatives {
             unsafe {
                 with(component, |_| match count {
                     0 => Ok(()),
-                    _ => Err(Fault::Error("a crane takes and gives no derivatives of inputs and outputs".to_owned())),
+                    _ => Err(Fault::Error("a crane does not support derivatives of inputs and outputs".to_owned())),
                 })
             }
         }
@@ -398,7 +398,7 @@ unsafe extern "C" fn fmi2DoStep(component: Component, from: c_double, length: c_
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2CancelStep(component: Component) -> Status {
     // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |_| Err(Fault::Error("there is no step under way: steps are done at once".to_owned()))) }
+    unsafe { with(component, |_| Err(Fault::Error("there is no step under way: a call returns when its step is done".to_owned()))) }
 }
 
 /// `fmi2LastSuccessfulTime`.
@@ -419,7 +419,7 @@ unsafe extern "C" fn fmi2GetRealStatus(component: Component, kind: c_int, value:
 }
 
 fn nothing_pending() -> Fault {
-    Fault::Discard("no step is pending: steps are done at once".to_owned())
+    Fault::Discard("no step is pending: a call returns when its step is done".to_owned())
 }
 
 /// Queries about a step that is still under way: there is none.

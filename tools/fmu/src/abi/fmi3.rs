@@ -51,7 +51,7 @@ fn host(environment: *mut c_void, log: Option<LogMessage>, logs: Boolean) -> Hos
 
 /// The folder of the resources: in FMI 3.0 a path.
 fn folder(path: &str) -> Result<PathBuf, String> {
-    if path.is_empty() { Err("the importer names no folder of resources".to_owned()) } else { Ok(PathBuf::from(path)) }
+    if path.is_empty() { Err("the importer gives no folder of resources".to_owned()) } else { Ok(PathBuf::from(path)) }
 }
 
 #[unsafe(no_mangle)]
@@ -516,7 +516,7 @@ unsafe extern "C" fn fmi3GetOutputDerivatives(
     unsafe {
         with(component, |_| match count {
             0 => Ok(()),
-            _ => Err(Fault::Error("a crane gives no derivatives of outputs".to_owned())),
+            _ => Err(Fault::Error("a crane does not support derivatives of outputs".to_owned())),
         })
     }
 }

@@ -18,7 +18,7 @@ pub use fmi3::write as write_fmi3;
 
 /// Categories of messages, and what they contain.
 const CATEGORIES: [(&str, &str); 2] = [
-    ("logStatusWarning", "What is implausible about the crane, and what the model does not hold for"),
+    ("logStatusWarning", "What is implausible about the crane, and where the model is not valid"),
     ("logStatusError", "Why a call failed, and what to do about it"),
 ];
 

@@ -23,7 +23,7 @@ fn base(angle: f64, exact: bool) -> Case {
     let expected = if near {
         "a caution that block_theta is near ±90°".to_owned()
     } else if exact || angle < LARGE_TILT {
-        "a pose, none of it NaN, nothing said of ±90°".to_owned()
+        "a pose without NaN, no caution about ±90°".to_owned()
     } else {
         "a caution about linear supports".to_owned()
     };
@@ -65,9 +65,9 @@ supports:
 /// A free body that starts at θ near 90°, at rest and without forces: it must stay, or be refused with a message that names that angle.
 fn tumbling(angle: f64) -> Case {
     let expected = if angle == FRAC_PI_2 {
-        "refused or stopped, block_theta named"
+        "refused or stopped, naming block_theta"
     } else {
-        "stays where it is, or block_theta named"
+        "stays where it is, or a message names block_theta"
     };
     Case::new("angles near ±90°", format!("free block, run from θ = {angle:.6} rad"), expected, move || {
         let text = format!(

@@ -212,6 +212,6 @@ fn sucked(method: Method) -> Case {
         let (recorded, [begin, end], _) = lift.run(method, 1.0)?;
         let least = column(&recorded, "ram_piston_pressure").into_iter().fold(f64::INFINITY, f64::min);
         let holds = least > -1e5 && end - begin > 0.01;
-        expect(holds, format!("least {least:.3e} Pa, pulled out by {:.4} m", end - begin))
+        expect(holds, format!("minimum {least:.3e} Pa, pulled out by {:.4} m", end - begin))
     })
 }

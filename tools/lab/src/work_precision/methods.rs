@@ -157,7 +157,7 @@ pub const TARGETS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// The shortest time in which each method meets each error that users ask for.
 pub fn least(points: &[Measurement], duration: f64) -> Grid {
     let headers = ["load path", "method", "step s", "tolerance", "wall ms", "times real time", "times rk4"];
-    let mut grid = Grid::new("least", "Least time for an error of the load path, relative to its size", &headers);
+    let mut grid = Grid::new("least", "Shortest time for an error of the load path, relative to its size", &headers);
     for target in TARGETS {
         let best = |method: &str| {
             let meets = points.iter().filter(|point| point.method == method && point.errors.path <= target);

@@ -116,7 +116,8 @@ fn study(
     facts.fact("code", if registry.is_compiled(crane) { "compiled" } else { "interpreted" }, "");
     facts.fact("start", start.what.as_str(), "");
     facts.fact("duration", base.duration, "s");
-    facts.fact("longest way of a point", reference.solution.trace.size(), "m");
+    let size = reference.solution.trace.size();
+    facts.fact_as("longest_way_of_a_point", "largest distance of a point from its start", size, "m");
     let (tolerance, step) = reference.settings;
     facts.fact("reference", format!("dopri5, tolerance {tolerance:.0e}; rk4, step {step:.3e} s"), "");
     let agreement = format!("{:.1e}, {:.1e}", reference.agreement.path, reference.agreement.of_forces());

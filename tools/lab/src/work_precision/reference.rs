@@ -82,14 +82,14 @@ fn disagreement(name: &str, base: &Settings, nearest: Option<&Nearest>) -> Probl
     Problem::failed(
         format!(
             "{name}: no reference: {} with a tolerance of {tolerance:.0e} and {} with a step of {step:.1e} s differ by {:.1e} of the \
-             load path and {:.1e} of torques and energy; {PATH:.0e} and {FORCES:.0e} are asked for",
+             load path and {:.1e} of torques and energy; {PATH:.0e} and {FORCES:.0e} are required",
             Method::DormandPrince,
             Method::Rk4,
             agreement.path,
             agreement.of_forces(),
         ),
         format!(
-            "a motion that amplifies rounding is known for a short time only: shorten it to where both agree, `--duration {agrees:.2}`, \
+            "a motion that amplifies rounding is computable only for a short time: shorten it to where both agree, `--duration {agrees:.2}`, \
              in s"
         ),
     )

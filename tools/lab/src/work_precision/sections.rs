@@ -179,7 +179,7 @@ impl Limit {
     /// What is cheapest for each error that users ask for.
     pub fn advice(&self, variants: &[Variant], duration: f64) -> Grid {
         let headers = ["load path", "sections", "method", "option", "error", "wall ms", "times real time"];
-        let title = "Least time for an error of the load path, of model and method together";
+        let title = "Shortest time for an error of the load path, of model and method together";
         let mut grid = Grid::new("advice", title, &headers);
         for target in TARGETS {
             let errors = all(variants).map(|(variant, run)| (variant, run, self.motion.errors(&run.trace).path));

@@ -42,7 +42,7 @@ impl<'a, 'i> File<'a, 'i> {
             self.robot.left_out.push("Contacts of geoms are left out.".to_owned());
         }
         if self.robot.joints.iter().any(|joint| joint.limits.is_some()) {
-            let limits = "Ranges of joints are comments: write `stops` for those that the crane reaches.";
+            let limits = "Ranges of joints become comments: write `stops` for those that the crane reaches.";
             self.robot.left_out.push(limits.to_owned());
         }
     }
@@ -58,7 +58,7 @@ impl<'a, 'i> File<'a, 'i> {
             .iter()
             .any(|key| option.attribute(*key).is_some_and(|given| given.parse() != Ok(0.0)));
         if flows {
-            self.robot.left_out.push("Forces of the medium around the robot are left out.".to_owned());
+            self.robot.left_out.push("Forces of the surrounding medium are left out.".to_owned());
         }
     }
 
