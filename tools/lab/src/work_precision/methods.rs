@@ -1,4 +1,4 @@
-//! Every method over its steps or tolerances: what a run costs and how far off it is.
+//! Every method for its steps or tolerances: the cost and the error of a run.
 
 use indicatif::ProgressBar;
 

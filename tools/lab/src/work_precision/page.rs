@@ -19,7 +19,7 @@ const TEXTS: [(&str, &str, &str); 5] = [
     ),
     (
         "methods",
-        "Every method over its steps or tolerances",
+        "Every method for its steps or tolerances",
         "Errors are the largest over all results: of the points' positions relative to the largest distance of a point from its \
          start, of a drive's torque or force relative to its maximum, of the mechanical energy relative to the maximum kinetic \
          energy. A tolerance limits the error of a step, in m and rad; this table shows the resulting error of the run.",
