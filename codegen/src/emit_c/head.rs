@@ -164,7 +164,9 @@ fn of_argument(argument: Argument) -> &'static str {
         Argument::Acceleration => "a: their accelerations, m/s2 and rad/s2",
         Argument::RightHandSide => "r: generalized forces, N and N m",
         Argument::AddedInertia => "added_inertia: added to the diagonal of the mass matrix, one number per coordinate",
-        Argument::BaseAddedInertia => "base: added to the mass matrix in the rows and columns of the base's coordinates, symmetric, 6 x 6",
+        Argument::BaseAddedInertia => {
+            "base: added to the mass matrix in the rows and columns of the base's coordinates, symmetric, 6 x 6"
+        }
         Argument::Factors => "f: result of factorise",
         Argument::Parameters | Argument::Inputs | Argument::LoopVarying | Argument::LiveOut => "",
     }
@@ -194,12 +196,13 @@ fn result(chain: &Chain, shape: &Shape) -> String {
             format!("out: {count} x {n}, row by row, of the connectors {}", names(connectors(chain)))
         }
         Shape::Structs(Struct::Tension, _) => {
-            format!("out: force and its derivatives with respect to length and rate, of the connectors {}", names(connectors(chain)))
+            format!(
+                "out: force and its derivatives with respect to length and rate, of the connectors {}",
+                names(connectors(chain))
+            )
         }
         Shape::Structs(Struct::Wrench, count) => {
-            format!(
-                "out: force x, y, z and moment x, y, z of each of {count} cuts, from the ground to the tip"
-            )
+            format!("out: force x, y, z and moment x, y, z of each of {count} cuts, from the ground to the tip")
         }
         Shape::Structs(Struct::SectionModuli, count) => {
             format!(

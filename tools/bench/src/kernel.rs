@@ -7,7 +7,7 @@ use crane_model::nalgebra::{Dim, Matrix, Matrix4, RawStorage, SMatrix, SVector};
 use crane_model::rt::lanes::f64x8;
 
 /// A function of a state, with the states that it is called on, one after the other: the compiler knows none of them,
-/// and no call can reuse results of the one before.
+/// and no call can reuse results of the previous one.
 pub struct Kernel {
     /// What it computes.
     pub name: &'static str,

@@ -60,7 +60,10 @@ pub fn write(
     out: &mut dyn Write,
 ) -> Outcome<()> {
     if options.crane.compile {
-        return Err(Problem::usage("an FMU needs no compilation: it contains a ready-made library", "leave `--compile` out"));
+        return Err(Problem::usage(
+            "an FMU needs no compilation: it contains a ready-made library",
+            "leave `--compile` out",
+        ));
     }
     let libraries = match options.libraries.as_slice() {
         [] => vec![read(&beside_the_command()?)?],

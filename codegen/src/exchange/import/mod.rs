@@ -29,7 +29,7 @@ pub struct Imported {
     pub left_out: Vec<String>,
 }
 
-/// The spec of a robot in URDF or MJCF; the root of the file tells which. `fixed`: joints that are held at zero.
+/// The spec of a robot in URDF or MJCF; the root of the file decides which. `fixed`: joints that are held at zero.
 ///
 /// Masses and inertias are passed on unchanged; the validation of the spec checks them.
 ///

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 /// A length of time.
 ///
 /// # Errors
-/// It is not a number; the message tells what to write instead.
+/// It is not a number; the message says what to write instead.
 pub fn seconds(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "write a number of seconds, such as 0.5".to_owned())
 }

@@ -56,7 +56,8 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, description
         report.caution(Some("tipping limits nothing: there are no supports, or they form no polygon"));
     }
     if limits.utilisation.is_some() && rows.iter().all(|row| row.numbers[layout.utilisation()].is_nan()) {
-        report.caution(Some("utilisation limits nothing: no beam has a section with known moduli and a `yield_stress`"));
+        report
+            .caution(Some("utilisation limits nothing: no beam has a section with known moduli and a `yield_stress`"));
     }
 }
 

@@ -21,7 +21,7 @@ const ACCURACY: f64 = 1e-10;
 const MOST_STEPS: usize = 100;
 /// The first step towards a larger load, as a fraction of the crane's mass; it is doubled until the limit is passed.
 const FIRST_STEP: f64 = 0.1;
-/// Maximum number of steps, each twice the one before: up to more than a thousand times the crane's mass.
+/// Maximum number of steps, each twice the previous one: up to more than a thousand times the crane's mass.
 const DOUBLINGS: usize = 14;
 
 /// Index of the parameter that is the load: the one of this name, or else the only one in kg.

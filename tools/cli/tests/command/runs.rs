@@ -156,7 +156,11 @@ fn a_run_goes_on_from_the_end_of_another() {
     let from = ["--from", csv.to_str().expect("a path"), "--duration", "0.01", "--output", "0.01"];
     let out = folder.display().to_string();
     let run = crane(&[&["simulate", "eight_link_hydraulic", "--out", &out], &from[..]].concat());
-    assert!(text(&run.stdout).contains("pose.csv, pressures and bristles as they hold this pose"), "{}", text(&run.stdout));
+    assert!(
+        text(&run.stdout).contains("pose.csv, pressures and bristles as they hold this pose"),
+        "{}",
+        text(&run.stdout)
+    );
 }
 
 /// One of several force states is given: the others take the values that hold the pose.

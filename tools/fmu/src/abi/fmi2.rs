@@ -398,7 +398,11 @@ unsafe extern "C" fn fmi2DoStep(component: Component, from: c_double, length: c_
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2CancelStep(component: Component) -> Status {
     // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |_| Err(Fault::Error("there is no step under way: a call returns when its step is done".to_owned()))) }
+    unsafe {
+        with(component, |_| {
+            Err(Fault::Error("there is no step under way: a call returns when its step is done".to_owned()))
+        })
+    }
 }
 
 /// `fmi2LastSuccessfulTime`.
