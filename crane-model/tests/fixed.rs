@@ -12,18 +12,19 @@ use crane_model::{
 
 #[test]
 fn a_crane_without_coordinates_rests_and_does_not_vibrate() {
-    let rig: Box<dyn DynCrane> = Box::new(Instance(Box::new(Fixed)));
-    let equilibrium = rig.equilibrium(&statics::Settings::default());
+    let crane: Box<dyn DynCrane> = Box::new(Instance(Box::new(Fixed)));
+    let equilibrium = crane.equilibrium(&statics::Settings::default());
     assert!(equilibrium.is_stable() && equilibrium.q.is_empty() && equilibrium.steps() == 0);
-    assert_eq!(modes::undamped(&rig.small_motions_at(&[])), Ok(Vec::new()));
-    assert_eq!(modes::damped(&rig.small_motions_at(&[])), Ok(Vec::new()));
-    assert_eq!(rig.weight_at(&[]), [None; 3]);
+    assert_eq!(modes::undamped(&crane.small_motions_at(&[])), Ok(Vec::new()));
+    assert_eq!(modes::damped(&crane.small_motions_at(&[])), Ok(Vec::new()));
+    assert_eq!(crane.weight_at(&[]), [None; 3]);
     let settings = dynamics::Settings {
         method: dynamics::Method::Rk4,
         duration: 0.01,
-        ..dynamics::Settings::of(rig.description())
+        ..dynamics::Settings::of(crane.description())
     };
-    let run =
-        rig.simulate(&dynamics::InitialState::default(), &settings, &mut |_| ControlFlow::Continue(())).expect("a run");
+    let run = crane
+        .simulate(&dynamics::InitialState::default(), &settings, &mut |_| ControlFlow::Continue(()))
+        .expect("a run");
     assert_eq!(run.statistics.steps, 10);
 }

@@ -15,12 +15,13 @@ use nalgebra::{SVector, Vector3};
 
 #[test]
 fn every_crane_rests_in_a_stable_equilibrium_within_five_steps() {
-    for rig in cranes::all() {
-        let equilibrium = rig.equilibrium(&statics::Settings::default());
-        let name = &rig.description().name;
+    for crane in cranes::all() {
+        let equilibrium = crane.equilibrium(&statics::Settings::default());
+        let name = &crane.description().name;
         assert!(equilibrium.is_stable(), "{name}: {}: {:?}", equilibrium.status, equilibrium.history);
         assert!(equilibrium.steps() <= 5, "{name}: {:?}", equilibrium.history);
-        let at_rest = modes::undamped(&rig.small_motions_at(&equilibrium.q)).expect("a positive definite mass matrix");
+        let at_rest =
+            modes::undamped(&crane.small_motions_at(&equilibrium.q)).expect("a positive definite mass matrix");
         assert!(at_rest.iter().all(|mode| mode.omega_squared > 0.0), "{name}");
     }
 }
@@ -48,11 +49,11 @@ fn live_parameters_keep_the_rules_of_the_spec() {
 
 #[test]
 fn every_spec_asks_for_a_stable_step() {
-    for rig in cranes::all() {
-        let q = rig.equilibrium(&statics::Settings::default()).q;
-        let modes = modes::damped(&rig.small_motions_at(&q)).expect("modes");
+    for crane in cranes::all() {
+        let q = crane.equilibrium(&statics::Settings::default()).q;
+        let modes = modes::damped(&crane.small_motions_at(&q)).expect("modes");
         let limit = limit(&modes, &Method::Rk4.stability()).expect("a limit").step;
-        let description = rig.description();
+        let description = crane.description();
         assert!(description.step < limit, "{}: step {}, limit {limit}", description.name, description.step);
     }
 }
@@ -63,11 +64,11 @@ fn steps_of_the_reference_crane_allocate_nothing() {
     let crane = Crane::default();
     let equilibrium = statics::solve(&crane, &statics::Settings::default());
     let start = rk4::State::at_rest(SVector::<f64, N>::from_column_slice(&equilibrium.q));
-    let rig = dyn_crane::boxed::<N, Crane>();
+    let description = CraneModel::<N>::description(&crane);
     for method in Method::ALL {
         // Memory is allocated once per run: a run ten times as long allocates as often.
         let [short, long] = [0.02, 0.2].map(|duration| {
-            let settings = Settings { method, duration, audit: true, ..Settings::of(rig.description()) };
+            let settings = Settings { method, duration, audit: true, ..Settings::of(description) };
             let run = || simulate(&crane, start, &settings, |_| ControlFlow::Continue(())).expect("a stable run");
             allocation_counter::measure(|| _ = run()).count_total
         });
@@ -76,13 +77,13 @@ fn steps_of_the_reference_crane_allocate_nothing() {
 }
 
 /// Path of the points of a run, m, point by point, and its statistics.
-fn path(rig: &dyn DynCrane, method: Method, tolerance: f64) -> (Vec<Vec<Vector3<f64>>>, Statistics) {
-    let start = rig.equilibrium(&statics::Settings::default()).q;
-    let settings = Settings { method, tolerance, step: 1e-4, ..Settings::of(rig.description()) };
+fn path(crane: &dyn DynCrane, method: Method, tolerance: f64) -> (Vec<Vec<Vector3<f64>>>, Statistics) {
+    let start = crane.equilibrium(&statics::Settings::default()).q;
+    let settings = Settings { method, tolerance, step: 1e-4, ..Settings::of(crane.description()) };
     let mut path = Vec::new();
-    let run = rig
+    let run = crane
         .simulate(&InitialState::at_rest(start), &settings, &mut |sample| {
-            path.push(rig.points_at(sample.q));
+            path.push(crane.points_at(sample.q));
             ControlFlow::Continue(())
         })
         .expect("a stable run");
@@ -92,9 +93,9 @@ fn path(rig: &dyn DynCrane, method: Method, tolerance: f64) -> (Vec<Vec<Vector3<
 #[test]
 fn implicit_methods_hold_their_tolerance_on_the_reference_crane() {
     use cranes::eight_link_flexible::{Crane, N};
-    let rig = dyn_crane::boxed::<N, Crane>();
+    let crane = dyn_crane::boxed::<N, Crane>();
     // The error of this reference is 1e-13 of the path.
-    let (reference, constant) = path(rig.as_ref(), Method::Rk4, f64::NAN);
+    let (reference, constant) = path(crane.as_ref(), Method::Rk4, f64::NAN);
     // Diagonal of the box around the paths, m.
     let all = || reference.iter().flatten();
     let [low, high] = [f64::min, f64::max]
@@ -102,7 +103,7 @@ fn implicit_methods_hold_their_tolerance_on_the_reference_crane() {
     let size = (high - low).norm();
     let tolerances = [1e-4, 1e-5, 1e-6];
     for (method, tolerance) in [Method::Rosenbrock, Method::Bdf].into_iter().flat_map(|m| tolerances.map(|t| (m, t))) {
-        let (path, statistics) = path(rig.as_ref(), method, tolerance);
+        let (path, statistics) = path(crane.as_ref(), method, tolerance);
         let distances = reference.iter().flatten().zip(path.iter().flatten()).map(|(a, b)| (a - b).norm());
         let error = distances.fold(0.0, f64::max) / size;
         println!("{method} {tolerance:e}: {error:.2e} of {size:.1} m, {statistics:?}");
@@ -113,28 +114,29 @@ fn implicit_methods_hold_their_tolerance_on_the_reference_crane() {
 }
 
 /// Maximum effort of each drive over the run that the spec requests, N or N m.
-fn peaks(rig: &dyn DynCrane, method: Method, tolerance: f64) -> Vec<f64> {
-    let start = InitialState::at_rest(rig.equilibrium(&statics::Settings::default()).q);
-    let own = Settings::of(rig.description());
+fn peaks(crane: &dyn DynCrane, method: Method, tolerance: f64) -> Vec<f64> {
+    let start = InitialState::at_rest(crane.equilibrium(&statics::Settings::default()).q);
+    let own = Settings::of(crane.description());
     let settings = Settings { method, tolerance, ..own };
-    let mut peaks = vec![0.0_f64; rig.description().drives.len()];
-    rig.simulate(&start, &settings, &mut |sample| {
-        for (peak, effort) in peaks.iter_mut().zip(rig.drive_efforts_of(sample)) {
-            *peak = peak.max(effort.abs());
-        }
-        ControlFlow::Continue(())
-    })
-    .expect("a stable run");
+    let mut peaks = vec![0.0_f64; crane.description().drives.len()];
+    crane
+        .simulate(&start, &settings, &mut |sample| {
+            for (peak, effort) in peaks.iter_mut().zip(crane.drive_efforts_of(sample)) {
+                *peak = peak.max(effort.abs());
+            }
+            ControlFlow::Continue(())
+        })
+        .expect("a stable run");
     peaks
 }
 
 #[test]
 fn efforts_of_drives_are_right_to_a_thousandth_at_the_default_tolerance() {
-    for rig in cranes::all() {
-        let description = rig.description();
-        let exact = peaks(rig.as_ref(), Method::Bdf, 1e-8);
+    for crane in cranes::all() {
+        let description = crane.description();
+        let exact = peaks(crane.as_ref(), Method::Bdf, 1e-8);
         for method in [Method::Bdf, Method::Rosenbrock] {
-            let found = peaks(rig.as_ref(), method, Settings::of(description).tolerance);
+            let found = peaks(crane.as_ref(), method, Settings::of(description).tolerance);
             let errors: Vec<f64> = found.iter().zip(&exact).map(|(found, exact)| found / exact - 1.0).collect();
             println!("{} {method}: {errors:?}", description.name);
             // Where feet lift, joints rub and valves open, forces have kinks.

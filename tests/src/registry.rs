@@ -19,7 +19,7 @@ pub struct Entry {
     /// All quantities at a state, with the given parameters.
     pub evaluate: fn(&State, &[f64]) -> Vec<f64>,
     /// The crane behind one pointer, with the parameters of its spec.
-    pub rig: fn() -> Box<dyn DynCrane>,
+    pub crane: fn() -> Box<dyn DynCrane>,
 }
 
 impl Entry {
@@ -49,7 +49,7 @@ macro_rules! entry {
                 let crane: module::Crane = with_parameters::<{ module::N }, _>(parameters);
                 quantities::evaluate::<{ module::N }, _>(&crane, state)
             },
-            rig: || crane_model::dyn_crane::boxed::<{ module::N }, module::Crane>(),
+            crane: || crane_model::dyn_crane::boxed::<{ module::N }, module::Crane>(),
         }
     }};
 }

@@ -112,7 +112,7 @@ macro_rules! every_crane {
 
         #[test]
         fn none_is_missing() {
-            let names: Vec<String> = cranes::all().iter().map(|rig| rig.description().name.to_string()).collect();
+            let names: Vec<String> = cranes::all().iter().map(|crane| crane.description().name.to_string()).collect();
             assert_eq!(names, [$(stringify!($name)),*]);
         }
     };

@@ -18,7 +18,7 @@ struct Moment {
 
 /// Random cranes with rigid drives, and the indices of the prescribed coordinates.
 fn cranes() -> Vec<(Box<dyn DynCrane>, Vec<usize>)> {
-    let cranes = registry::all().into_iter().filter(|entry| entry.random).map(|entry| (entry.rig)());
+    let cranes = registry::all().into_iter().filter(|entry| entry.random).map(|entry| (entry.crane)());
     let cranes = cranes.map(|crane| {
         let prescribed = crane.description().prescribed();
         (crane, prescribed)

@@ -30,7 +30,7 @@ fn the_runtime_finds_the_same_equilibria() {
     // A plain Newton method does not find which feet are in contact.
     let lifts = |name: &str| name == "eight_link_hydraulic";
     for entry in registry::all().into_iter().filter(|e| e.name.starts_with("eight_link") && !lifts(e.name)) {
-        let found = (entry.rig)().equilibrium(&crane_model::statics::Settings::default());
+        let found = (entry.crane)().equilibrium(&crane_model::statics::Settings::default());
         let expected = Interpreted::new(workspace::chain(entry.name)).equilibrium();
         for (a, b) in found.q.iter().zip(&expected.q) {
             // The error is a residual of rounding size over the smallest stiffness.

@@ -8,27 +8,27 @@ use crate::{Description, dyn_crane::DynCrane};
 pub const BEND: f64 = 20.0;
 
 /// Feet that pull the crane down or have lifted, joints on their stops, slack ropes, and elements bent beyond `bend` degrees, at a pose at rest.
-pub fn of_pose(rig: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
-    let description = rig.description();
+pub fn of_pose(crane: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
+    let description = crane.description();
     let angles = description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role.is_element());
     let bent = angles.map(|(coordinate, angle)| (coordinate.name.as_str(), *angle));
-    let stopped = description.stops.iter().zip(rig.stop_efforts_at(q, &vec![0.0; q.len()]));
+    let stopped = description.stops.iter().zip(crane.stop_efforts_at(q, &vec![0.0; q.len()]));
     let stopped = stopped.filter(|(_, effort)| *effort != 0.0).map(|(&coordinate, effort)| {
         let coordinate = &description.coordinates[coordinate];
         format!("{} rests on its stop with {:.1} {}", coordinate.name, effort.abs(), coordinate.kind.force_unit())
     });
-    feet::of_pose(rig, q)
-        .chain(limits::of_pose(rig, q))
-        .chain(cylinders::of_pose(rig, q))
+    feet::of_pose(crane, q)
+        .chain(limits::of_pose(crane, q))
+        .chain(cylinders::of_pose(crane, q))
         .chain(stopped)
-        .chain(connectors::of_pose(rig, q))
+        .chain(connectors::of_pose(crane, q))
         .chain(bent_beyond(bent, bend))
         .collect()
 }
 
 /// The same over a run.
-pub fn of_run(rig: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
-    let description = rig.description();
+pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
+    let description = crane.description();
     let elements = description.coordinates.iter().filter(|coordinate| coordinate.role.is_element());
     let bent = elements.map(|coordinate| {
         let Extremes { minimum, maximum, .. } = Extremes::of(table, &coordinate.name);
@@ -36,7 +36,7 @@ pub fn of_run(rig: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
     });
     let stopped = description.stops.iter().filter_map(|&coordinate| on_stop(description, table, coordinate));
     feet::of_run(description, table)
-        .chain(limits::of_run(rig, table))
+        .chain(limits::of_run(crane, table))
         .chain(cylinders::of_run(description, table))
         .chain(stopped)
         .chain(connectors::of_run(description, table))

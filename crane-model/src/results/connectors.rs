@@ -4,9 +4,9 @@ use super::{Extremes, Table, connector_force};
 use crate::{ConnectorInfo, Description, dyn_crane::DynCrane};
 
 /// Ropes that are slack at a pose at rest.
-pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> Vec<String> {
-    let tensions = rig.connector_tensions_at(0.0, q, &vec![0.0; q.len()]);
-    let connectors = rig.description().connectors.iter().zip(tensions);
+pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
+    let tensions = crane.connector_tensions_at(0.0, q, &vec![0.0; q.len()]);
+    let connectors = crane.description().connectors.iter().zip(tensions);
     let slack = connectors.filter(|(connector, tension)| connector.is_rope && tension.force == 0.0);
     slack.map(|(rope, _)| format!("rope {} is slack", rope.name)).collect()
 }

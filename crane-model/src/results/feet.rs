@@ -9,14 +9,14 @@ use crate::{Description, TIPPED, dyn_crane::DynCrane};
 const ROUNDING: f64 = 1e-9;
 
 /// Feet at a pose at rest: those that pull the crane down, and those that have lifted off.
-pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = String> {
-    let description = rig.description();
-    let reactions = rig.support_reactions_at(q, &vec![0.0; q.len()]);
+pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = String> {
+    let description = crane.description();
+    let reactions = crane.support_reactions_at(q, &vec![0.0; q.len()]);
     let greatest = reactions.iter().map(Vector3::amax).fold(0.0, f64::max);
     let forces =
         description.supports.iter().zip(&reactions).map(|(support, force)| (support.name.as_str(), force.z, None));
     let pulls: Vec<_> = forces.filter(|(_, force, _)| *force < -ROUNDING * greatest).collect();
-    let gaps = description.supports.iter().zip(rig.support_gaps_at(q));
+    let gaps = description.supports.iter().zip(crane.support_gaps_at(q));
     let lifted = gaps.filter(|(support, gap)| support.one_sided && *gap > 0.0);
     let lifted: Vec<_> = lifted.map(|(support, gap)| format!("{} by {} mm", support.name, millimetres(gap))).collect();
     let lifted = (!lifted.is_empty()).then(|| format!("feet off the ground: {}", lifted.join(", ")));

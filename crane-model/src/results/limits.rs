@@ -7,10 +7,10 @@ use crate::{Text, dyn_crane::DynCrane};
 const REACHED: f64 = 0.985;
 
 /// Drives at their limits in a pose at rest, and how far the joints are from the drives' positions.
-pub(super) fn of_pose(rig: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = String> {
-    let motions = rig.drive_motions_at(0.0);
-    let description = rig.description();
-    reached(rig, q).into_iter().map(move |Reached { drive, effort, limit }| {
+pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = String> {
+    let motions = crane.drive_motions_at(0.0);
+    let description = crane.description();
+    reached(crane, q).into_iter().map(move |Reached { drive, effort, limit }| {
         let place = description.drives[drive].coordinate;
         let coordinate = &description.coordinates[place];
         let [position, _] = motions[drive];
@@ -34,8 +34,8 @@ struct Reached {
 }
 
 /// Drives at their limits in a pose at rest.
-fn reached(rig: &dyn DynCrane, q: &[f64]) -> Vec<Reached> {
-    let drives = rig.drive_limits_at().into_iter().zip(rig.drive_efforts_at_rest(q)).enumerate();
+fn reached(crane: &dyn DynCrane, q: &[f64]) -> Vec<Reached> {
+    let drives = crane.drive_limits_at().into_iter().zip(crane.drive_efforts_at_rest(q)).enumerate();
     drives
         .filter_map(|(drive, (limit, effort))| {
             let limit = limit?;
@@ -45,19 +45,19 @@ fn reached(rig: &dyn DynCrane, q: &[f64]) -> Vec<Reached> {
 }
 
 /// Names of the coordinates whose drives are at their limits in a pose at rest.
-pub(crate) fn overloaded(rig: &dyn DynCrane, q: &[f64]) -> Vec<Text> {
-    let description = rig.description();
+pub(crate) fn overloaded(crane: &dyn DynCrane, q: &[f64]) -> Vec<Text> {
+    let description = crane.description();
     let name = |reached: Reached| description.coordinates[description.drives[reached.drive].coordinate].name.clone();
-    reached(rig, q).into_iter().map(name).collect()
+    reached(crane, q).into_iter().map(name).collect()
 }
 
 /// Fraction of its maximum rate from which the effort of a drive is reported to fade: it has fallen by a tenth.
 const FADED: f64 = 0.92;
 
 /// Drives that reach their limits in a run: when first, for how long, and how far the joints fall behind.
-pub(super) fn of_run(rig: &dyn DynCrane, table: &Table) -> Vec<String> {
-    let description = rig.description();
-    let limits = description.drives.iter().zip(rig.drive_limits_at());
+pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
+    let description = crane.description();
+    let limits = description.drives.iter().zip(crane.drive_limits_at());
     let said = limits.filter_map(|(drive, limit)| {
         let (limit, coordinate) = (limit?, &description.coordinates[drive.coordinate]);
         let place = |name: &str| table.columns.iter().position(|column| column.name == name);

@@ -110,7 +110,7 @@ fn side_by_side(
 
     let mut written = Vec::new();
     for ((case, settings), run) in cases.iter().zip(&settings).zip(&runs) {
-        written.extend(write_run(folder, case.rig, settings, run)?);
+        written.extend(write_run(folder, case.crane, settings, run)?);
     }
     let description = other.description();
     let traces = [

@@ -45,11 +45,11 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
             "leave them out, or simulate the rows one by one",
         ));
     }
-    let rig = options.analysis.crane.open(registry)?;
-    let rig = rig.as_ref();
-    let description = rig.description();
+    let crane = options.analysis.crane.open(registry)?;
+    let crane = crane.as_ref();
+    let description = crane.description();
     let table = ParameterTable::read(table, description)?;
-    let (settings, step) = settings(&options.timing, rig, &table)?;
+    let (settings, step) = settings(&options.timing, crane, &table)?;
     let Ensemble { threads, results, restart, .. } = &options.ensemble;
     let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
     let path = results.clone().unwrap_or_else(|| options.folder.out.join(format!("{}_ensemble.csv", description.name)));
@@ -57,14 +57,14 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
 
     let begin = Instant::now();
     let (journal, records) =
-        Journal::open(&path.with_extension("part.csv"), &request(rig, &settings, &table), *restart)?;
+        Journal::open(&path.with_extension("part.csv"), &request(crane, &settings, &table), *restart)?;
     let header = header(description, &table);
     let kept = kept(&records, table.rows.len(), header.len());
     let fresh: Vec<usize> = (0..kept.len()).filter(|row| kept[*row].is_none()).collect();
     let bar = batches(kept.len());
     bar.inc((kept.len() - fresh.len()) as u64);
     let state = Mutex::new((kept, Ok(())));
-    let parameters = table.parameters(rig);
+    let parameters = table.parameters(crane);
     let parameters: Vec<Vec<f64>> = fresh.iter().map(|row| parameters[*row].clone()).collect();
     let done = |place: usize, outcome: &Row| {
         let row = fresh[place];
@@ -78,7 +78,7 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
     };
     let failed = |_| state.lock().unwrap_or_else(PoisonError::into_inner).1.is_err();
     let conduct = Conduct { threads, done: &done, called_off: &failed };
-    let simulated: f64 = ensemble::run(rig, &parameters, &settings, &conduct).iter().map(Row::time).sum();
+    let simulated: f64 = ensemble::run(crane, &parameters, &settings, &conduct).iter().map(Row::time).sum();
     bar.finish_and_clear();
     let wall = begin.elapsed().as_secs_f64();
     let (rows, written) = state.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -117,10 +117,10 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
 }
 
 /// What the rows depend on: the crane, the settings of the runs, and the table.
-fn request(rig: &dyn DynCrane, settings: &dynamics::Settings, table: &ParameterTable) -> Request<'static> {
+fn request(crane: &dyn DynCrane, settings: &dynamics::Settings, table: &ParameterTable) -> Request<'static> {
     let cases = SourceFile::new("table", format!("{settings:?} {:?} {:?}", table.columns, table.rows)).hash();
     Request {
-        line: format!("{} {cases}", journal::identity(rig)),
+        line: format!("{} {cases}", journal::identity(crane)),
         of: "an ensemble",
         elsewhere: "choose another file with `--file`",
     }
@@ -144,11 +144,11 @@ fn kept(records: &[Vec<String>], rows: usize, width: usize) -> Vec<Option<Vec<St
 /// that have an equilibrium, and at most the spec's unless another is asked for.
 fn settings(
     timing: &Timing,
-    rig: &dyn DynCrane,
+    base: &dyn DynCrane,
     table: &ParameterTable,
 ) -> Outcome<(dynamics::Settings, &'static str)> {
     let startable = |row: &Vec<f64>| {
-        let crane = table.crane(rig, row)?;
+        let crane = table.crane(base, row)?;
         let start = Start::of(crane.as_ref())?;
         Ok::<_, Problem>((crane, start))
     };
@@ -167,7 +167,7 @@ fn settings(
     if let Some((crane, from)) = table.rows.iter().rev().find_map(rests) {
         settings.step = settings.step.min(safe_for(crane.as_ref(), &from)?.step);
     }
-    let own = rig.description().step;
+    let own = base.description().step;
     let (step, from) = match timing.step {
         Some(Step::Seconds(step)) => (step, "`--step`"),
         None if own <= settings.step => (own, "the spec; safe for the first and last row"),

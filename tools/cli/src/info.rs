@@ -14,9 +14,9 @@ use crate::{
 /// Prints the available cranes.
 pub fn list(format: Format, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let mut grid = Grid::new("cranes", "Cranes", &["name", "coordinates", "title"]);
-    for rig in registry.all() {
-        let rig = rig?;
-        let description = rig.description();
+    for crane in registry.all() {
+        let crane = crane?;
+        let description = crane.description();
         grid.row([
             description.name.as_str().into(),
             description.coordinates.len().into(),
@@ -30,8 +30,8 @@ pub fn list(format: Format, registry: &Registry, out: &mut dyn Write) -> Outcome
 
 /// Prints the parts of a crane.
 pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open(registry)?;
-    let description = rig.description();
+    let crane = options.crane.open(registry)?;
+    let description = crane.description();
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
     report.fact("title", description.title.as_str(), "");
@@ -47,7 +47,7 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
     for (index, parameter) in description.parameters.iter().enumerate() {
         parameters.row([
             parameter.name.as_str().into(),
-            rig.parameter(index).into(),
+            crane.parameter(index).into(),
             parameter.default.into(),
             parameter.unit.as_str().into(),
             parameter.about.as_str().into(),
@@ -61,13 +61,13 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
         for (index, input) in description.inputs.iter().enumerate() {
             let otherwise = if input.moves { "a motion".into() } else { Cell::from(input.default) };
             let (unit, about) = (input.unit.as_str().into(), input.about.as_str().into());
-            inputs.row([input.name.as_str().into(), rig.input(index).into(), otherwise, unit, about]);
+            inputs.row([input.name.as_str().into(), crane.input(index).into(), otherwise, unit, about]);
         }
         report.grid(inputs);
     }
 
     let mut coordinates = Grid::new("q", "Coordinates", &["index", "name", "unit", "role", "guess"]);
-    let guess = rig.guess();
+    let guess = crane.guess();
     for (index, coordinate) in description.coordinates.iter().enumerate() {
         coordinates.row([
             index.into(),
@@ -104,7 +104,7 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
     report.grid(supports);
 
     let mut drives = Grid::new("drives", "Drives at t = 0", &["coordinate", "position", "unit"]);
-    for (drive, [position, _]) in description.drives.iter().zip(rig.drive_motions_at(0.0)) {
+    for (drive, [position, _]) in description.drives.iter().zip(crane.drive_motions_at(0.0)) {
         let coordinate = &description.coordinates[drive.coordinate];
         drives.row([coordinate.name.as_str().into(), position.into(), coordinate.kind.unit().into()]);
     }

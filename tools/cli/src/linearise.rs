@@ -99,16 +99,15 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
 }
 
 /// The motion in a row of results, with the accelerations that follow from it.
-fn of_results(crane: &LiveCrane, file: &Path, at: Option<f64>) -> Outcome<Motion> {
-    let rig: &dyn DynCrane = crane;
-    let found = row(file, rig.description(), at)?;
-    let (mut q, mut v) = (rig.guess(), vec![0.0; rig.size()]);
-    let mut missing: Vec<&str> = rig.description().coordinates.iter().map(|info| info.name.as_str()).collect();
+fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<Motion> {
+    let found = row(file, crane.description(), at)?;
+    let (mut q, mut v) = (crane.guess(), vec![0.0; crane.size()]);
+    let mut missing: Vec<&str> = crane.description().coordinates.iter().map(|info| info.name.as_str()).collect();
     for (variable, value) in found.values {
         match variable {
             Variable::Position(index) => {
                 q[index] = value;
-                missing.retain(|name| **name != *rig.description().coordinates[index].name);
+                missing.retain(|name| **name != *crane.description().coordinates[index].name);
             }
             Variable::Rate(index) => v[index] = value,
             Variable::Own(_) => {}
@@ -116,12 +115,12 @@ fn of_results(crane: &LiveCrane, file: &Path, at: Option<f64>) -> Outcome<Motion
     }
     if !missing.is_empty() {
         return Err(Problem::usage(
-            format!("{} lacks coordinates of {}: {}", file.display(), rig.description().name, missing.join(", ")),
+            format!("{} lacks coordinates of {}: {}", file.display(), crane.description().name, missing.join(", ")),
             "give results of the same crane",
         ));
     }
     let t = at.or(found.time).unwrap_or(0.0);
-    let a = rig.accelerations_at(t, &q, &v).as_slice().to_vec();
+    let a = crane.accelerations_at(t, &q, &v).as_slice().to_vec();
     let greatest = a.iter().fold(0.0, |greatest: f64, a| greatest.max(a.abs()));
     let cautions = (greatest > STEADY)
         .then(|| format!("not steady: accelerations reach {greatest:.2e} m/s² or rad/s², so matrices and modes are valid only at this moment"));
@@ -130,19 +129,19 @@ fn of_results(crane: &LiveCrane, file: &Path, at: Option<f64>) -> Outcome<Motion
 }
 
 /// The steady motion with the drives as at a given time and some coordinates held.
-fn of_steady(crane: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
-    let rig: &dyn DynCrane = crane;
+fn of_steady(live: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
+    let crane: &dyn DynCrane = live;
     let t = options.time.unwrap_or(0.0);
-    let held = read_held(&options.held, rig.description())?;
+    let held = read_held(&options.held, crane.description())?;
     let settings = statics::Settings::default();
-    let mut rest = rig.equilibrium(&settings);
+    let mut rest = crane.equilibrium(&settings);
     if t != 0.0 {
-        rest = rig.equilibrium_at(t, &rest.q, &settings);
+        rest = crane.equilibrium_at(t, &rest.q, &settings);
     }
-    let start = if rest.status == statics::Status::NotConverged { rig.guess() } else { rest.q };
-    let found = steady(crane, t, &start, &held).map_err(|refused| {
+    let start = if rest.status == statics::Status::NotConverged { crane.guess() } else { rest.q };
+    let found = steady(live, t, &start, &held).map_err(|refused| {
         Problem::failed(
-            format!("{}: {refused}", rig.description().name),
+            format!("{}: {refused}", crane.description().name),
             "hold what nothing constrains, `--hold NAME=VALUE`, or use smaller rates",
         )
     })?;

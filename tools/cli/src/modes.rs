@@ -26,18 +26,18 @@ const LOWEST: usize = 10;
 /// Prints undamped and damped modes and the largest stable step.
 pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let Modes { analysis: options, matrices } = options;
-    let rig = options.crane.open(registry)?;
-    let description = rig.description();
-    let case = Case::new(&description.name, rig.as_ref());
+    let crane = options.crane.open(registry)?;
+    let description = crane.description();
+    let case = Case::new(&description.name, crane.as_ref());
     case.stable()?;
-    let motions = rig.small_motions_at(&case.equilibrium.q);
+    let motions = crane.small_motions_at(&case.equilibrium.q);
     let modes = damped(&motions)?;
     if let Some(file) = matrices {
         linearisation::write(file, description, &case.equilibrium.q, &motions)?;
     }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
-    let limiting = limiting_modes(rig.as_ref(), 0.0, &case.equilibrium.q, &modes);
+    let limiting = limiting_modes(crane.as_ref(), 0.0, &case.equilibrium.q, &modes);
     let step = limit(&limiting, &Method::Rk4.stability()).map(|limit| limit.step);
     report.value("stable", true);
     report.fact("largest stable step", Cell::from(step), "s");
@@ -56,9 +56,9 @@ pub fn undamped_modes(case: &Case<'_>, changes: Option<&[f64]>) -> Outcome<Grid>
         headers.insert(2, "with twice the sections [%]");
     }
     let mut grid = Grid::new("undamped", "Undamped modes", &headers);
-    for (index, mode) in undamped(&case.rig.small_motions_at(&case.equilibrium.q))?.iter().enumerate() {
+    for (index, mode) in undamped(&case.crane.small_motions_at(&case.equilibrium.q))?.iter().enumerate() {
         let omega = mode.frequency().map(|_| mode.omega_squared.sqrt());
-        let names = names(case.rig.description(), &mode.dominating);
+        let names = names(case.crane.description(), &mode.dominating);
         let mut row = vec![(index + 1).into(), mode.frequency().into(), omega.into(), names];
         if let Some(changes) = changes {
             row.insert(2, changes.get(index).map_or(Cell::Empty, |change| Cell::Change(100.0 * change)));

@@ -21,9 +21,9 @@ pub fn run(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outc
     if options.ensemble.table.is_some() {
         return Err(Problem::usage("`crane run` does not support `--ensemble`", "use `crane simulate` instead"));
     }
-    let rig = options.analysis.crane.open(registry)?;
-    let (rig, twin) = (rig.as_ref(), twin::rigid(rig.as_ref(), registry));
-    let cases = cases(rig, twin.as_deref());
+    let crane = options.analysis.crane.open(registry)?;
+    let (crane, twin) = (crane.as_ref(), twin::rigid(crane.as_ref(), registry));
+    let cases = cases(crane, twin.as_deref());
     let mut report = tables(&cases, options.analysis.crane.limits);
     if let [rigid, flexible] = cases.as_slice() {
         report.grid(deflection(rigid, flexible));
@@ -35,14 +35,14 @@ pub fn run(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outc
     files::folder(folder)?;
     let mut written = Vec::new();
     for ((case, settings), run) in cases.iter().zip(&settings).zip(&runs) {
-        written.extend(write_run(folder, case.rig, settings, run)?);
+        written.extend(write_run(folder, case.crane, settings, run)?);
     }
     let traces = labels.clone().zip(&runs).enumerate();
     let traces: Vec<Trace<'_>> = traces
         .map(|(index, (label, run))| Trace { label, table: &run.table, dashed: index + 1 < cases.len() })
         .collect();
     caution_of_runs(&mut report, labels.clone().zip(&runs));
-    let description = rig.description();
+    let description = crane.description();
     written.extend(write_figures(folder, &format!("{}_", description.name), description, &traces)?);
     let page = format!("{}.html", description.name);
     write(&folder.join(&page), registry, (&cases, options.analysis.crane.limits), &settings, &runs)?;

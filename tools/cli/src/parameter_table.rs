@@ -71,9 +71,9 @@ impl ParameterTable {
         Ok(Self { columns, rows })
     }
 
-    /// All live parameters of every row: those without a column are as in `rig`.
-    pub fn parameters(&self, rig: &dyn DynCrane) -> Vec<Vec<f64>> {
-        let own: Vec<f64> = (0..rig.description().parameters.len()).map(|index| rig.parameter(index)).collect();
+    /// All live parameters of every row: those without a column are as in `base`.
+    pub fn parameters(&self, base: &dyn DynCrane) -> Vec<Vec<f64>> {
+        let own: Vec<f64> = (0..base.description().parameters.len()).map(|index| base.parameter(index)).collect();
         let row = |row: &Vec<f64>| {
             let mut values = own.clone();
             for (&index, &value) in self.columns.iter().zip(row) {
@@ -84,9 +84,9 @@ impl ParameterTable {
         self.rows.iter().map(row).collect()
     }
 
-    /// The crane of a row: parameters without a column are as in `rig`.
-    pub fn crane(&self, rig: &dyn DynCrane, row: &[f64]) -> Outcome<Box<dyn DynCrane>> {
-        let mut crane = rig.boxed_clone();
+    /// The crane of a row: parameters without a column are as in `base`.
+    pub fn crane(&self, base: &dyn DynCrane, row: &[f64]) -> Outcome<Box<dyn DynCrane>> {
+        let mut crane = base.boxed_clone();
         let settings: Vec<(usize, f64)> = self.columns.iter().copied().zip(row.iter().copied()).collect();
         set(crane.as_mut(), &settings)?;
         Ok(crane)

@@ -22,13 +22,13 @@ const CAUTION: f64 = 0.01;
 /// # Errors
 /// The modes of one of the cranes cannot be computed.
 pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>> {
-    let description = case.rig.description();
+    let description = case.crane.description();
     let text = registry.spec(&description.name).filter(|_| description.coordinates.len() <= MOST_COORDINATES);
     let Some(text) = text.and_then(|text| with(&description.name, text, |count| 2.0 * count)) else { return Ok(None) };
     let Ok(mut finer) = LiveCrane::from_spec(&SourceFile::new(description.name.to_string(), text)) else {
         return Ok(None);
     };
-    let values: Vec<f64> = (0..description.parameters.len()).map(|index| case.rig.parameter(index)).collect();
+    let values: Vec<f64> = (0..description.parameters.len()).map(|index| case.crane.parameter(index)).collect();
     if DynCrane::set_parameters(&mut finer, &values).is_err() {
         return Ok(None);
     }
@@ -37,7 +37,7 @@ pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>
         return Ok(None);
     }
     let frequencies = |case: &Case<'_>| -> Outcome<Vec<Option<f64>>> {
-        let modes = undamped(&case.rig.small_motions_at(&case.equilibrium.q))?;
+        let modes = undamped(&case.crane.small_motions_at(&case.equilibrium.q))?;
         Ok(modes.iter().take(LOWEST).map(crane_model::modes::Mode::frequency).collect())
     };
     let pairs = frequencies(case)?.into_iter().zip(frequencies(&finer)?);

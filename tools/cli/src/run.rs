@@ -21,8 +21,8 @@ impl Timing {
     ///
     /// # Errors
     /// An option has a value that cannot be used.
-    pub fn settings(&self, rig: &dyn DynCrane, start: &Start, default: Method) -> Outcome<dynamics::Settings> {
-        let own = dynamics::Settings::of(rig.description());
+    pub fn settings(&self, crane: &dyn DynCrane, start: &Start, default: Method) -> Outcome<dynamics::Settings> {
+        let own = dynamics::Settings::of(crane.description());
         let method = self.method.unwrap_or(if self.step.is_some() { Method::Rk4 } else { default });
         let mut settings = dynamics::Settings { method, audit: true, ..own };
         let given = [("step", self.step.is_some(), false), ("tolerance", self.tolerance.is_some(), true)];
@@ -32,7 +32,7 @@ impl Timing {
                 if method.is_adaptive() { ("tolerance", Method::Rk4) } else { ("step", Method::RECOMMENDED) };
             return Err(Problem::usage(title, format!("write `--{option}` or `--method {other}`")));
         }
-        let limit = if method.is_adaptive() { None } else { step_limit(rig, start) };
+        let limit = if method.is_adaptive() { None } else { step_limit(crane, start) };
         let step = match self.step {
             None => None,
             Some(Step::Seconds(step)) => Some(step),
@@ -97,7 +97,7 @@ impl Timing {
         match limit {
             // The step of a run is never longer than the interval of its results.
             Some(Bound { t, limit }) if settings.step.min(settings.output) > limit.step && !self.force => {
-                Err(unstable(rig, settings.step, t, &limit))
+                Err(unstable(crane, settings.step, t, &limit))
             }
             _ => Ok(settings),
         }
@@ -105,8 +105,8 @@ impl Timing {
 }
 
 /// A step beyond the limit that holds at time `t`.
-fn unstable(rig: &dyn DynCrane, step: f64, t: f64, limit: &Limit) -> Problem {
-    let description = rig.description();
+fn unstable(crane: &dyn DynCrane, step: f64, t: f64, limit: &Limit) -> Problem {
+    let description = crane.description();
     Problem::failed(
         format!(
             "{}: a step of {step:e} s is unstable; {} is stable up to {:.3e} s, limited at t = {t} s by {}",
@@ -161,23 +161,23 @@ fn show(bar: &ProgressBar) -> impl FnMut(f64) -> ControlFlow<()> {
 /// # Errors
 /// The run cannot be started as asked for.
 pub fn record(
-    rig: &dyn DynCrane,
+    crane: &dyn DynCrane,
     start: &Start,
     settings: &dynamics::Settings,
     bar: &ProgressBar,
 ) -> Outcome<Recorded> {
-    Ok(runs::record(rig, start, settings, &mut show(bar))?)
+    Ok(runs::record(crane, start, settings, &mut show(bar))?)
 }
 
 /// Runs from `start`, once more to estimate the error if `verify`: [`runs::record_checked`].
 pub fn record_checked(
-    rig: &dyn DynCrane,
+    crane: &dyn DynCrane,
     start: &Start,
     settings: &dynamics::Settings,
     (verify, limits): (bool, Limits),
     bar: &ProgressBar,
 ) -> Outcome<Recorded> {
-    Ok(runs::record_checked(rig, start, settings, (verify, limits.bend), &mut show(bar))?)
+    Ok(runs::record_checked(crane, start, settings, (verify, limits.bend), &mut show(bar))?)
 }
 
 /// Runs cranes side by side, each from its own start; `default`: the method unless one is asked for.
@@ -190,11 +190,11 @@ pub fn runs(
     // The last crane is the one that the arguments refer to.
     let starts = cases.iter().enumerate();
     let starts =
-        starts.map(|(index, case)| timing.start(case.rig, index + 1 < cases.len())).collect::<Outcome<Vec<_>>>()?;
+        starts.map(|(index, case)| timing.start(case.crane, index + 1 < cases.len())).collect::<Outcome<Vec<_>>>()?;
     let settings = cases
         .iter()
         .zip(&starts)
-        .map(|(case, start)| timing.settings(case.rig, start, default))
+        .map(|(case, start)| timing.settings(case.crane, start, default))
         .collect::<Outcome<Vec<_>>>()?;
     let bar = progress(settings.iter().map(|settings| settings.duration).sum());
     bar.set_message("simulating");
@@ -204,7 +204,7 @@ pub fn runs(
             .zip(&starts)
             .zip(&settings)
             .map(|((case, start), settings)| {
-                scope.spawn(|| record_checked(case.rig, start, settings, (!timing.no_verify, limits), &bar))
+                scope.spawn(|| record_checked(case.crane, start, settings, (!timing.no_verify, limits), &bar))
             })
             .collect();
         let broken = |_| Err(Problem::failed("a simulation broke off", "please report this as a bug"));

@@ -189,12 +189,12 @@ impl Choice {
     /// # Errors
     /// There is no such crane or input, or its parameters cannot have these values.
     pub fn open(&self, registry: &Registry) -> Outcome<Box<dyn DynCrane>> {
-        let mut rig = self.parameters.crane(&self.name, self.strict, registry)?;
+        let mut crane = self.parameters.crane(&self.name, self.strict, registry)?;
         for setting in &self.inputs {
-            let (index, value) = input(setting, rig.description())?;
-            rig.set_input(index, Some(value));
+            let (index, value) = input(setting, crane.description())?;
+            crane.set_input(index, Some(value));
         }
-        Ok(rig)
+        Ok(crane)
     }
 }
 
@@ -233,22 +233,22 @@ impl Parameters {
     /// # Errors
     /// There is no such crane, or its parameters cannot have these values.
     pub fn crane(&self, name: &str, strict: bool, registry: &Registry) -> Outcome<Box<dyn DynCrane>> {
-        let mut rig = registry.crane(name)?;
-        let description = rig.description();
+        let mut crane = registry.crane(name)?;
+        let description = crane.description();
         let settings = self.read(&description.name, &known(description))?;
         if settings.is_empty() {
-            return Ok(rig);
+            return Ok(crane);
         }
         let values: Vec<(String, f64)> =
             settings.iter().map(|&(index, value)| (description.parameters[index].name.to_string(), value)).collect();
-        set(rig.as_mut(), &settings)?;
+        set(crane.as_mut(), &settings)?;
         if let Some(spec) = registry.spec(name) {
             let warned = own::warn_of(&SourceFile::new(format!("{name}.yaml"), spec), &values);
             if let (true, Some(problem)) = (strict, warned) {
                 return Err(problem);
             }
         }
-        Ok(rig)
+        Ok(crane)
     }
 
     /// Only the settings of parameters that a crane has.
@@ -288,12 +288,12 @@ impl Parameters {
 }
 
 /// Sets live parameters, by their indices in the description, all at once.
-pub fn set(rig: &mut dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<()> {
-    let mut values: Vec<f64> = (0..rig.description().parameters.len()).map(|index| rig.parameter(index)).collect();
+pub fn set(crane: &mut dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<()> {
+    let mut values: Vec<f64> = (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
     for &(index, value) in settings {
         values[index] = value;
     }
-    rig.set_parameters(&values).map_err(|refused| {
+    crane.set_parameters(&values).map_err(|refused| {
         let (title, help) = told(&refused);
         Problem::usage(title, help)
     })

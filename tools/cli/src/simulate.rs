@@ -36,20 +36,20 @@ pub struct Trace<'a> {
 
 /// Runs a crane and writes its results.
 pub fn simulate(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.analysis.crane.open(registry)?;
-    let rig = rig.as_ref();
-    let name = &rig.description().name;
-    let start = options.timing.start(rig, false)?;
-    let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;
+    let crane = options.analysis.crane.open(registry)?;
+    let crane = crane.as_ref();
+    let name = &crane.description().name;
+    let start = options.timing.start(crane, false)?;
+    let settings = options.timing.settings(crane, &start, Method::RECOMMENDED)?;
     files::folder(&options.folder.out)?;
     let bar = progress(settings.duration);
     let checks = (!options.timing.no_verify, options.analysis.crane.limits);
-    let recorded = record_checked(rig, &start, &settings, checks, &bar)?;
+    let recorded = record_checked(crane, &start, &settings, checks, &bar)?;
     bar.finish_and_clear();
 
-    let mut written = write_run(&options.folder.out, rig, &settings, &recorded)?;
+    let mut written = write_run(&options.folder.out, crane, &settings, &recorded)?;
     let traces = [Trace { label: name, table: &recorded.table, dashed: false }];
-    written.extend(write_figures(&options.folder.out, &format!("{name}_"), rig.description(), &traces)?);
+    written.extend(write_figures(&options.folder.out, &format!("{name}_"), crane.description(), &traces)?);
 
     let mut report = Report::default();
     report.fact("crane", name.as_str(), "");
@@ -64,7 +64,7 @@ pub fn simulate(options: &Simulate, registry: &Registry, out: &mut dyn Write) ->
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));
     }
-    report.grid(extremes(rig.description(), &[(name, &recorded)]));
+    report.grid(extremes(crane.description(), &[(name, &recorded)]));
     report.grid(summary(&[(VALUE, &recorded)]));
     report.grid(file_list(&options.folder.out, &written));
     report.print(options.analysis.format, out)
@@ -93,14 +93,14 @@ pub fn file_list(folder: &Path, written: &[String]) -> Grid {
 /// Writes results and record of a run; returns their file names.
 pub fn write_run(
     folder: &Path,
-    rig: &dyn DynCrane,
+    crane: &dyn DynCrane,
     settings: &dynamics::Settings,
     recorded: &Recorded,
 ) -> Outcome<Vec<String>> {
-    let name = &rig.description().name;
+    let name = &crane.description().name;
     let (csv, json) = (format!("{name}.csv"), format!("{name}.json"));
     files::write_csv(&folder.join(&csv), &recorded.table)?;
-    files::write_text(&folder.join(&json), &format!("{:#}\n", record(rig, settings, recorded, files::PROGRAM)))?;
+    files::write_text(&folder.join(&json), &format!("{:#}\n", record(crane, settings, recorded, files::PROGRAM)))?;
     Ok(vec![csv, json])
 }
 

@@ -23,11 +23,11 @@ use crate::{
 
 /// Prints limits and modes, and draws the regions.
 pub fn stability(options: &Stability, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.analysis.crane.open(registry)?;
-    let rig = rig.as_ref();
-    let description = rig.description();
-    let start = Start::of(rig)?;
-    let poses = manoeuvre(rig, &start, options.along)?;
+    let crane = options.analysis.crane.open(registry)?;
+    let crane = crane.as_ref();
+    let description = crane.description();
+    let start = Start::of(crane)?;
+    let poses = manoeuvre(crane, &start, options.along)?;
     let modes = poses.first().map_or(&[][..], |pose| &pose.modes);
 
     let mut report = Report::default();

@@ -65,13 +65,13 @@ impl Timing {
     ///
     /// # Errors
     /// An option has a value that cannot be used.
-    pub fn start(&self, rig: &dyn DynCrane, with_strangers: bool) -> Outcome<Start> {
+    pub fn start(&self, crane: &dyn DynCrane, with_strangers: bool) -> Outcome<Start> {
         if self.from.is_none() && self.start.is_empty() {
-            return Ok(Start::of(rig)?);
+            return Ok(Start::of(crane)?);
         }
-        let description = rig.description();
+        let description = crane.description();
         // Values that are not given are those of the equilibrium, if there is one.
-        let mut start = Start::of(rig).unwrap_or_else(|_| Start::guess(rig));
+        let mut start = Start::of(crane).unwrap_or_else(|_| Start::guess(crane));
         start.rests = false;
         if let Some(file) = &self.from {
             for (variable, value) in row(file, description, None)?.values {
@@ -114,7 +114,7 @@ impl Timing {
         }
         if !start.x.is_empty() {
             // States that are not given take the values that hold the pose.
-            let held = OwnStates::new(description).holding(rig, 0.0, &start.q);
+            let held = OwnStates::new(description).holding(crane, 0.0, &start.q);
             start.x.resize(held.len(), f64::NAN);
             start.x.iter_mut().zip(held).filter(|(x, _)| x.is_nan()).for_each(|(x, held)| *x = held);
         }

@@ -30,15 +30,15 @@ pub struct Case<'a> {
     /// Heading of its column.
     pub label: &'a str,
     /// The crane.
-    pub rig: &'a dyn DynCrane,
+    pub crane: &'a dyn DynCrane,
     /// Where it rests.
     pub equilibrium: Equilibrium,
 }
 
 impl<'a> Case<'a> {
     /// Solves statics.
-    pub fn new(label: &'a str, rig: &'a dyn DynCrane) -> Self {
-        Self { label, rig, equilibrium: rig.equilibrium(&Settings::default()) }
+    pub fn new(label: &'a str, crane: &'a dyn DynCrane) -> Self {
+        Self { label, crane, equilibrium: crane.equilibrium(&Settings::default()) }
     }
 
     /// A problem unless the equilibrium is stable.
@@ -46,12 +46,12 @@ impl<'a> Case<'a> {
         if self.equilibrium.is_stable() {
             Ok(())
         } else {
-            Err(Reason::no_equilibrium(self.rig, &self.equilibrium).of(&self.rig.description().name).into())
+            Err(Reason::no_equilibrium(self.crane, &self.equilibrium).of(&self.crane.description().name).into())
         }
     }
 
     fn coordinates(&self) -> &[CoordinateInfo] {
-        &self.rig.description().coordinates
+        &self.crane.description().coordinates
     }
 
     /// Velocity at rest.
@@ -67,8 +67,8 @@ impl<'a> Case<'a> {
 
 /// Prints the equilibrium of a crane.
 pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open(registry)?;
-    let case = Case::new(VALUE, rig.as_ref());
+    let crane = options.crane.open(registry)?;
+    let case = Case::new(VALUE, crane.as_ref());
     let mut report = tables(std::slice::from_ref(&case), options.crane.limits);
     if options.format == Format::Json {
         report.grid(history(&case.equilibrium));
@@ -81,8 +81,8 @@ pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> 
 /// Reports how the statics of each crane ended, and for programs also whether all equilibria are stable.
 pub fn verdicts(report: &mut Report, cases: &[Case<'_>]) {
     let mut cranes = Vec::new();
-    for Case { label, rig, equilibrium } in cases {
-        let (name, residual) = (rig.description().name.as_str(), equilibrium.residual());
+    for Case { label, crane, equilibrium } in cases {
+        let (name, residual) = (crane.description().name.as_str(), equilibrium.residual());
         report.line(name, format!("{equilibrium}, relative residual {residual:.1e}"), "");
         cranes.push(json!({
             "label": label,
@@ -105,11 +105,11 @@ pub fn tables(cases: &[Case<'_>], limits: Limits) -> Report {
     verdicts(&mut report, cases);
     for case in cases {
         let Case { equilibrium, .. } = case;
-        let description = case.rig.description();
+        let description = case.crane.description();
         for caution in [description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q)] {
             report.caution(caution);
         }
-        for caution in cautions::of_pose(case.rig, &equilibrium.q, limits.bend) {
+        for caution in cautions::of_pose(case.crane, &equilibrium.q, limits.bend) {
             let label = if cases.len() > 1 { format!("{}: ", case.label) } else { String::new() };
             report.caution(Some(label + &caution));
         }
@@ -146,9 +146,9 @@ pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
         format!("Distances between the points of interest ({} − {})", second.label, first.label)
     };
     let mut grid = Grid::new("deflection", title, &["point", "x", "y", "z", "distance", "unit"]);
-    let [from, to] = [first, second].map(|case| case.rig.points_at(&case.equilibrium.q));
-    let names = &first.rig.description().points;
-    for (name, to) in second.rig.description().points.iter().zip(&to) {
+    let [from, to] = [first, second].map(|case| case.crane.points_at(&case.equilibrium.q));
+    let names = &first.crane.description().points;
+    for (name, to) in second.crane.description().points.iter().zip(&to) {
         let Some(from) = names.iter().zip(&from).find_map(|(other, from)| (other == name).then_some(from)) else {
             continue;
         };
@@ -186,9 +186,10 @@ fn pose(cases: &[Case<'_>]) -> Grid {
 
 fn drives(cases: &[Case<'_>]) -> Grid {
     let mut grid = Grid::with_headings("drives", "Torques and forces of the drives", headings("drive", cases));
-    let efforts: Vec<Vec<f64>> = cases.iter().map(|case| case.rig.drive_efforts_at_rest(&case.equilibrium.q)).collect();
+    let efforts: Vec<Vec<f64>> =
+        cases.iter().map(|case| case.crane.drive_efforts_at_rest(&case.equilibrium.q)).collect();
     let Some(first) = cases.first() else { return grid };
-    for (index, drive) in first.rig.description().drives.iter().enumerate() {
+    for (index, drive) in first.crane.description().drives.iter().enumerate() {
         let coordinate = &first.coordinates()[drive.coordinate];
         let values = efforts.iter().map(|efforts| Cell::from(efforts.get(index).copied()));
         let unit = coordinate.kind.force_unit();
@@ -200,18 +201,18 @@ fn drives(cases: &[Case<'_>]) -> Grid {
 
 /// Lengths, forces and pressures of the cylinders.
 fn cylinders(cases: &[Case<'_>]) -> Option<Grid> {
-    let first = cases.iter().find(|case| !case.rig.description().cylinders.is_empty())?;
+    let first = cases.iter().find(|case| !case.crane.description().cylinders.is_empty())?;
     let headings = headings("cylinder", cases);
     let [name, others @ ..] = headings.as_slice() else { return None };
     let headings = [&[name.clone(), "quantity".into()], others].concat();
     let mut grid = Grid::with_headings("cylinders", "Cylinders", headings);
     let of = |case: &Case<'_>| {
         let q = &case.equilibrium.q;
-        cylinders_at(case.rig, q, &case.rest(), &case.rig.drive_efforts_at_rest(q))
+        cylinders_at(case.crane, q, &case.rest(), &case.crane.drive_efforts_at_rest(q))
     };
     let states: Vec<Vec<CylinderState>> = cases.iter().map(of).collect();
-    for (index, info) in first.rig.description().cylinders.iter().enumerate() {
-        let kind = first.coordinates()[first.rig.description().drives[info.drive].coordinate].kind;
+    for (index, info) in first.crane.description().cylinders.iter().enumerate() {
+        let kind = first.coordinates()[first.crane.description().drives[info.drive].coordinate].kind;
         let oil = format!("{}/{}", kind.force_unit(), kind.unit());
         let mut row = |quantity: &str, unit: &str, value: &dyn Fn(&CylinderState) -> Option<f64>| {
             let values = states.iter().map(|states| Cell::from(states.get(index).and_then(value)));
@@ -233,8 +234,8 @@ fn cylinders(cases: &[Case<'_>]) -> Option<Grid> {
 fn reactions(cases: &[Case<'_>]) -> Grid {
     let mut grid = vectors("reactions", "Support reactions", "support", cases);
     let reactions: Vec<_> =
-        cases.iter().map(|case| case.rig.support_reactions_at(&case.equilibrium.q, &case.rest())).collect();
-    let supports = cases.first().map_or(&[][..], |case| case.rig.description().supports.as_slice());
+        cases.iter().map(|case| case.crane.support_reactions_at(&case.equilibrium.q, &case.rest())).collect();
+    let supports = cases.first().map_or(&[][..], |case| case.crane.description().supports.as_slice());
     for (index, support) in supports.iter().enumerate() {
         let forces = reactions.iter().map(|of| of.get(index).map_or([None; 3], |force| (*force).map(Some).into()));
         grid.row(vector_row(&support.name, forces, "N"));
@@ -242,12 +243,12 @@ fn reactions(cases: &[Case<'_>]) -> Grid {
     if !supports.is_empty() {
         let sums = reactions.iter().map(|of| <[f64; 3]>::from(of.iter().sum::<Vector3<f64>>()));
         grid.row(vector_row("Σ supports", sums, "N"));
-        grid.row(vector_row("weight", cases.iter().map(|case| case.rig.weight_at(&case.equilibrium.q)), "N"));
+        grid.row(vector_row("weight", cases.iter().map(|case| case.crane.weight_at(&case.equilibrium.q)), "N"));
         let is_loaded = |description: &Description| {
             !description.loads.is_empty() || description.connectors.iter().any(ConnectorInfo::holds_to_world)
         };
-        if cases.iter().any(|case| is_loaded(case.rig.description())) {
-            let loads = cases.iter().map(|case| case.rig.applied_force_at(0.0, &case.equilibrium.q));
+        if cases.iter().any(|case| is_loaded(case.crane.description())) {
+            let loads = cases.iter().map(|case| case.crane.applied_force_at(0.0, &case.equilibrium.q));
             grid.row(vector_row("applied loads", loads, "N"));
         }
     }
@@ -256,18 +257,18 @@ fn reactions(cases: &[Case<'_>]) -> Grid {
 
 /// Lengths and forces of connectors.
 fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
-    let first = cases.iter().find(|case| !case.rig.description().connectors.is_empty())?;
+    let first = cases.iter().find(|case| !case.crane.description().connectors.is_empty())?;
     let mut headings = headings("connector", cases);
     headings.insert(1, "quantity".into());
     let title = "Connectors: lengths, and forces, positive in tension";
     let mut grid = Grid::with_headings("connectors", title, headings);
     let at_rest = |case: &Case<'_>| {
         let (q, rest) = (&case.equilibrium.q, case.rest());
-        let lengths = case.rig.connector_lengths_at(q, &rest).into_iter().map(|[length, _]| length);
-        lengths.zip(case.rig.connector_tensions_at(0.0, q, &rest)).collect::<Vec<_>>()
+        let lengths = case.crane.connector_lengths_at(q, &rest).into_iter().map(|[length, _]| length);
+        lengths.zip(case.crane.connector_tensions_at(0.0, q, &rest)).collect::<Vec<_>>()
     };
     let values: Vec<_> = cases.iter().map(at_rest).collect();
-    for (index, connector) in first.rig.description().connectors.iter().enumerate() {
+    for (index, connector) in first.crane.description().connectors.iter().enumerate() {
         let mut row = |quantity: &str, unit: &str, of: fn(&(f64, Tension)) -> f64| {
             let cells = values.iter().map(|values| Cell::from(values.get(index).map(of)));
             let words = [connector.name.as_str().into(), quantity.into()];
@@ -281,9 +282,9 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
 
 fn points(cases: &[Case<'_>]) -> Grid {
     let mut grid = vectors("points", "Points of interest", "point", cases);
-    let positions: Vec<_> = cases.iter().map(|case| case.rig.points_at(&case.equilibrium.q)).collect();
+    let positions: Vec<_> = cases.iter().map(|case| case.crane.points_at(&case.equilibrium.q)).collect();
     for (index, name) in
-        cases.first().map_or(&[][..], |case| case.rig.description().points.as_slice()).iter().enumerate()
+        cases.first().map_or(&[][..], |case| case.crane.description().points.as_slice()).iter().enumerate()
     {
         let places = positions.iter().map(|of| of.get(index).map_or([None; 3], |place| (*place).map(Some).into()));
         grid.row(vector_row(name, places, "m"));

@@ -50,13 +50,13 @@ const TIPPING: f64 = TRUCK * TRACK / (RADIUS - TRACK);
 fn the_far_feet_reach_nothing_at_the_load_of_the_moment_equilibrium() {
     for kinematics in ["linear", "exact"] {
         let mut truck = truck(kinematics, 1e13, ", one_sided: true");
-        let rig: &mut dyn DynCrane = &mut truck;
+        let crane: &mut dyn DynCrane = &mut truck;
         for (share, stands) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
-            rig.set_parameter(0, share * TIPPING).unwrap();
-            let found = rig.equilibrium(&Statics::default());
+            crane.set_parameter(0, share * TIPPING).unwrap();
+            let found = crane.equilibrium(&Statics::default());
             if stands {
                 assert!(found.is_stable(), "{kinematics}: {found}");
-                let far = rig.support_reactions_at(&found.q, &[0.0; 6])[2].z;
+                let far = crane.support_reactions_at(&found.q, &[0.0; 6])[2].z;
                 // Each far foot carries half of the remaining moment.
                 let expected = (1.0 - share) * TIPPING * 9.81 * (RADIUS - TRACK) / (2.0 * TRACK) / 2.0;
                 assert!((far / expected - 1.0).abs() < 0.1 && far > 0.0, "{kinematics}: {far} N for {expected}");
@@ -74,7 +74,7 @@ fn pressed_feet_are_anchored_feet() {
     for kinematics in ["linear", "exact"] {
         let [one, two] = ["", ", one_sided: true"].map(|more| truck(kinematics, 1e7, more));
         let [one, two]: [&dyn DynCrane; 2] = [&one, &two];
-        let found = [one, two].map(|rig| rig.equilibrium(&Statics::default()));
+        let found = [one, two].map(|crane| crane.equilibrium(&Statics::default()));
         for (a, b) in found[0].q.iter().zip(&found[1].q) {
             assert!((a - b).abs() < 1e-15, "{kinematics}: {a} {b}");
         }
@@ -83,7 +83,7 @@ fn pressed_feet_are_anchored_feet() {
         for (a, b) in one.support_reactions_at(q, &v).iter().zip(two.support_reactions_at(q, &v)) {
             assert!((a - b).amax() < 1e-12 * a.amax(), "{kinematics}: {a} {b}");
         }
-        let [a, b] = [one, two].map(|rig| rig.small_motions_at(q));
+        let [a, b] = [one, two].map(|crane| crane.small_motions_at(q));
         assert!((&a.stiffness - &b.stiffness).amax() < 1e-12 * a.stiffness.amax());
         assert!((&a.damping - &b.damping).amax() < 1e-12 * a.damping.amax());
         assert!((one.support_energy(q) / two.support_energy(q) - 1.0).abs() < 1e-12);
@@ -121,10 +121,10 @@ type See<'a> = dyn FnMut(f64, &[f64], &[f64]) + 'a;
 
 /// Runs a crane and passes on its samples; its energy balances to 0.3 % of the energy at stake.
 fn run(crane: &LiveCrane, start: &InitialState, settings: &Settings, at_stake: f64, see: &mut See<'_>) {
-    let rig: &dyn DynCrane = crane;
-    let energy = |t: f64, q: &[f64], v: &[f64]| rig.energies_at(t, q, v).total();
+    let crane: &dyn DynCrane = crane;
+    let energy = |t: f64, q: &[f64], v: &[f64]| crane.energies_at(t, q, v).total();
     let begin = energy(0.0, &start.q, &start.v);
-    let run = rig.simulate(start, settings, &mut |sample: &Sample<'_>| {
+    let run = crane.simulate(start, settings, &mut |sample: &Sample<'_>| {
         let balance = energy(sample.t, sample.q, sample.v) + sample.dissipated - sample.work - begin;
         // A step that meets the ground loses its order, and the errors of the energy integrals are not controlled.
         assert!(balance.abs() < 3e-3 * at_stake, "{:?} at {}: {balance} J of {at_stake}", settings.method, sample.t);
@@ -134,9 +134,9 @@ fn run(crane: &LiveCrane, start: &InitialState, settings: &Settings, at_stake: f
     run.unwrap_or_else(|stopped| panic!("{:?}: {stopped}", settings.method));
 }
 
-fn settings(rig: &LiveCrane, method: Method, tolerance: f64, duration: f64, output: f64) -> Settings {
-    let rig: &dyn DynCrane = rig;
-    Settings { method, tolerance, duration, output, step: 1e-5, audit: true, ..Settings::of(rig.description()) }
+fn settings(crane: &LiveCrane, method: Method, tolerance: f64, duration: f64, output: f64) -> Settings {
+    let crane: &dyn DynCrane = crane;
+    Settings { method, tolerance, duration, output, step: 1e-5, audit: true, ..Settings::of(crane.description()) }
 }
 
 /// Released at θ₀ about one foot, a slender block lands on the other after a quarter of Housner's period, `arcosh(1/(1 − θ₀/α))/p` with
@@ -153,9 +153,9 @@ fn a_slender_block_rocks_as_housner_says() {
     let start = InitialState { q: turned(b, theta), v: vec![0.0; 3], ..InitialState::default() };
     let at_stake = BLOCK * 9.81 * radius * ((alpha - theta).cos() - alpha.cos()).abs();
     let mut landed = None;
-    let rig: &dyn DynCrane = &block;
+    let crane: &dyn DynCrane = &block;
     run(&block, &start, &settings(&block, Method::Bdf, 1e-7, 1.2 * expected, 1e-4), at_stake, &mut |t, q, _| {
-        if rig.support_gaps_at(q)[0] < 0.0 {
+        if crane.support_gaps_at(q)[0] < 0.0 {
             landed.get_or_insert(t);
         }
     });
@@ -173,10 +173,10 @@ fn energy_balances_over_lifting_and_landing() {
     let start = InitialState { q: turned(b, 0.2), v: vec![0.0; 3], ..InitialState::default() };
     let at_stake = BLOCK * 9.81 * b * 0.2;
     for (method, tolerance) in [(Method::Bdf, 1e-8), (Method::Rosenbrock, 1e-8), (Method::DormandPrince, 1e-7)] {
-        let rig: &dyn DynCrane = &block;
+        let crane: &dyn DynCrane = &block;
         let mut lifted = [0; 2];
         run(&block, &start, &settings(&block, method, tolerance, 2.0, 1e-3), at_stake, &mut |_, q, _| {
-            for (samples, gap) in lifted.iter_mut().zip(rig.support_gaps_at(q)) {
+            for (samples, gap) in lifted.iter_mut().zip(crane.support_gaps_at(q)) {
                 *samples += usize::from(gap > 1e-3);
             }
         });

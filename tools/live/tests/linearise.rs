@@ -26,12 +26,12 @@ fn assert_close(what: &str, one: &DMatrix<f64>, other: &DMatrix<f64>, tolerance:
 #[test]
 fn about_a_pose_at_rest_it_is_the_linearisation_of_statics() {
     for name in ["eight_link_rigid", "eight_link_flexible", "knuckle_boom", "loader_tipping", "cantilever"] {
-        let crane = shipped(name);
-        let rig: &dyn DynCrane = &crane;
-        let q = rig.equilibrium(&Settings::default()).q;
+        let live = shipped(name);
+        let crane: &dyn DynCrane = &live;
+        let q = crane.equilibrium(&Settings::default()).q;
         let zeros = vec![0.0; q.len()];
         let (here, expected) =
-            (SmallMotions::about_motion(&crane, 0.0, [&q, &zeros, &zeros]), rig.small_motions_at(&q));
+            (SmallMotions::about_motion(&live, 0.0, [&q, &zeros, &zeros]), crane.small_motions_at(&q));
         // Some hundred rounding errors of the largest entry: a support's stiffness next to terms of weights.
         assert_close(name, &here.mass, &expected.mass, 1e-13);
         assert_close(name, &here.stiffness, &expected.stiffness, 1e-13);
@@ -45,18 +45,18 @@ fn about_a_pose_at_rest_it_is_the_linearisation_of_statics() {
 /// error of h⁴.
 #[test]
 fn about_any_motion_it_is_what_differences_say() {
-    let crane = shipped("eight_link_flexible");
-    let n = crane.size();
+    let live = shipped("eight_link_flexible");
+    let n = live.size();
     let wave = |scale: f64, rate: f64| move |i: usize| scale * (rate * (i as f64 + 1.0)).sin();
-    let rig: &dyn DynCrane = &crane;
-    let q: Vec<f64> = rig.guess().iter().zip((0..n).map(wave(0.03, 1.3))).map(|(guess, wave)| guess + wave).collect();
+    let crane: &dyn DynCrane = &live;
+    let q: Vec<f64> = crane.guess().iter().zip((0..n).map(wave(0.03, 1.3))).map(|(guess, wave)| guess + wave).collect();
     let v: Vec<f64> = (0..n).map(wave(0.4, 0.7)).collect();
     let a: Vec<f64> = (0..n).map(wave(0.9, 1.9)).collect();
     let required = |q: &[f64], v: &[f64]| {
         let (mut bias, mut forces) = (vec![0.0; n], vec![0.0; n]);
-        crane.bias(q, v, &mut bias);
-        crane.forces(0.7, q, v, &mut forces);
-        let inertia = rig.mass_matrix_at(q) * crane_model::nalgebra::DVector::from_column_slice(&a);
+        live.bias(q, v, &mut bias);
+        live.forces(0.7, q, v, &mut forces);
+        let inertia = crane.mass_matrix_at(q) * crane_model::nalgebra::DVector::from_column_slice(&a);
         (0..n).map(|i| inertia[i] - bias[i] - forces[i]).collect::<Vec<f64>>()
     };
     let difference = |of_rates: bool, j: usize, h: f64| -> Vec<f64> {
@@ -77,7 +77,7 @@ fn about_any_motion_it_is_what_differences_say() {
         coarse.iter().zip(&fine).map(|(coarse, fine)| (4.0 * fine - coarse) / 3.0).collect()
     });
     let of_rates = matrix(&|j| difference(true, j, 1.0));
-    let here = SmallMotions::about_motion(&crane, 0.7, [&q, &v, &a]);
+    let here = SmallMotions::about_motion(&live, 0.7, [&q, &v, &a]);
     // Rounding error of forces of 1e7 N over 1e-3 rad; the error of h⁴ is below it.
     assert_close("K", &here.stiffness, &of_pose, 1e-9);
     assert_close("D", &here.damping, &of_rates, 1e-12);

@@ -43,20 +43,20 @@ const MOST_POSES: usize = 10_000_000;
 /// Rates all poses and writes the results.
 pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let begin = Instant::now();
-    let rig = options.analysis.crane.open(registry)?;
-    let (asked, layout) = ask(options, rig.as_ref())?;
-    let description = rig.description();
+    let crane = options.analysis.crane.open(registry)?;
+    let (asked, layout) = ask(options, crane.as_ref())?;
+    let description = crane.description();
     files::folder(&options.folder.out)?;
     let name = format!("{}_envelope", description.name);
     let journal = options.folder.out.join(format!("{name}.part.csv"));
     let request = Request {
-        line: format!("{} {asked:?} {:?}", journal::identity(rig.as_ref()), layout.point),
+        line: format!("{} {asked:?} {:?}", journal::identity(crane.as_ref()), layout.point),
         of: "an envelope",
         elsewhere: "choose another folder with `--out`",
     };
     let (journal, records) = Journal::open(&journal, &request, options.restart)?;
     let kept = kept(&records, &asked, &layout);
-    let rows = rate(&asked, &layout, rig.as_ref(), options.threads, &journal, kept)?;
+    let rows = rate(&asked, &layout, crane.as_ref(), options.threads, &journal, kept)?;
     let seconds = begin.elapsed().as_secs_f64();
 
     let mut report = Report::default();
@@ -84,8 +84,8 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
 }
 
 /// What the arguments ask for.
-fn ask(options: &Envelope, rig: &dyn DynCrane) -> Outcome<(crane_model::envelope::Envelope, Layout)> {
-    let description = rig.description();
+fn ask(options: &Envelope, crane: &dyn DynCrane) -> Outcome<(crane_model::envelope::Envelope, Layout)> {
+    let description = crane.description();
     let axes = ranges::read(&options.ranges, description)?;
     if axes.poses() > MOST_POSES {
         return Err(Problem::usage(
@@ -93,7 +93,7 @@ fn ask(options: &Envelope, rig: &dyn DynCrane) -> Outcome<(crane_model::envelope
             "write smaller counts in `--range NAME=FROM:TO:COUNT`",
         ));
     }
-    let load = load_parameter(rig, options.load.as_deref())?.ok_or_else(|| {
+    let load = load_parameter(crane, options.load.as_deref())?.ok_or_else(|| {
         Problem::usage(
             format!("{} does not have exactly one live parameter in kg to vary as the load", description.name),
             "name the live parameter that is the load, as in `--load payload`; `crane info` lists them",
@@ -121,7 +121,7 @@ fn ask(options: &Envelope, rig: &dyn DynCrane) -> Outcome<(crane_model::envelope
     };
     let point = ranges::point(options.point.as_deref(), description)?;
     let asked = crane_model::envelope::Envelope { axes, load, loads: [least, greatest], limits };
-    let layout = Layout::new(&asked, rig, point);
+    let layout = Layout::new(&asked, crane, point);
     Ok((asked, layout))
 }
 
@@ -153,7 +153,7 @@ fn kept(records: &[Vec<String>], asked: &crane_model::envelope::Envelope, layout
 fn rate(
     asked: &crane_model::envelope::Envelope,
     layout: &Layout,
-    rig: &dyn DynCrane,
+    crane: &dyn DynCrane,
     threads: Option<NonZeroUsize>,
     journal: &Journal,
     kept: Vec<Option<Row>>,
@@ -178,7 +178,7 @@ fn rate(
         bar.inc(ratings.len() as u64);
     };
     let failed = || state.lock().unwrap_or_else(PoisonError::into_inner).1.is_err();
-    let run = asked.run(rig, &pieces, &Conduct { threads, done: &done, called_off: &failed });
+    let run = asked.run(crane, &pieces, &Conduct { threads, done: &done, called_off: &failed });
     bar.finish_and_clear();
     run.map_err(|refused| {
         let (title, help) = told(&refused);

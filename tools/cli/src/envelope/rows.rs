@@ -49,8 +49,8 @@ pub struct Layout {
 
 impl Layout {
     /// The columns: axes, load, place, condition with the crane's own load.
-    pub fn new(asked: &Envelope, rig: &dyn DynCrane, point: Option<usize>) -> Self {
-        let description = rig.description().clone();
+    pub fn new(asked: &Envelope, crane: &dyn DynCrane, point: Option<usize>) -> Self {
+        let description = crane.description().clone();
         let mut columns = Vec::new();
         let mut column = |name: String, unit: &str| columns.push(Column { name, unit: unit.to_owned() });
         for axis in &asked.axes.0 {
@@ -77,7 +77,7 @@ impl Layout {
         for point in &description.points {
             column(format!("{point}_deflection"), "m");
         }
-        Self { columns, point, slew: SlewAxis::of(rig), axes: asked.axes.0.len(), description }
+        Self { columns, point, slew: SlewAxis::of(crane), axes: asked.axes.0.len(), description }
     }
 
     /// Column of the largest load; radius, height, tipping margin and utilisation follow.

@@ -34,9 +34,9 @@ const AFFORDABLE: usize = 100;
 
 /// Computes a crane, and its rigid twin if there is one, and writes the page.
 pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let rig = options.crane.open(registry)?;
-    let twin = twin::rigid(rig.as_ref(), registry);
-    let cases = cases(rig.as_ref(), twin.as_deref());
+    let crane = options.crane.open(registry)?;
+    let twin = twin::rigid(crane.as_ref(), registry);
+    let cases = cases(crane.as_ref(), twin.as_deref());
     let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, Method::RECOMMENDED)?;
     let chart = options.envelope.as_deref().map(chart::figures).transpose()?;
     write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, chart)?;
@@ -45,10 +45,10 @@ pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outco
 }
 
 /// A crane and its rigid twin in equilibrium, the twin first.
-pub fn cases<'a>(rig: &'a dyn DynCrane, twin: Option<&'a dyn DynCrane>) -> Vec<Case<'a>> {
+pub fn cases<'a>(crane: &'a dyn DynCrane, twin: Option<&'a dyn DynCrane>) -> Vec<Case<'a>> {
     match twin {
-        Some(twin) => vec![Case::new(RIGID, twin), Case::new(FLEXIBLE, rig)],
-        None => vec![Case::new(&rig.description().name, rig)],
+        Some(twin) => vec![Case::new(RIGID, twin), Case::new(FLEXIBLE, crane)],
+        None => vec![Case::new(&crane.description().name, crane)],
     }
 }
 
@@ -73,14 +73,14 @@ fn write_with(
     chart: Option<Value>,
 ) -> Outcome<()> {
     let (cases, limits) = cases;
-    let lives = cases.iter().map(|case| registry.live(case.rig)).collect::<Outcome<Vec<_>>>()?;
+    let lives = cases.iter().map(|case| registry.live(case.crane)).collect::<Outcome<Vec<_>>>()?;
     let subjects: Vec<Subject<'_>> = cases
         .iter()
         .zip(&lives)
         .zip(settings.iter().zip(runs))
         .map(|((case, live), run)| Subject {
             label: case.label,
-            rig: case.rig,
+            rig: case.crane,
             live,
             equilibrium: &case.equilibrium,
             run: Some(run),
@@ -90,7 +90,7 @@ fn write_with(
         tables: all_tables(registry, cases, limits, runs)?.page(),
         chart: chart.unwrap_or_default(),
         command: Some(own::typed()),
-        spec: cases.last().and_then(|case| registry.spec(&case.rig.description().name)),
+        spec: cases.last().and_then(|case| registry.spec(&case.crane.description().name)),
     };
     if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         files::folder(folder)?;
@@ -106,15 +106,15 @@ fn all_tables(registry: &Registry, cases: &[Case<'_>], limits: Limits, runs: &[R
     }
     if let Some(case) = cases.last() {
         let labelled: Vec<(&str, &Recorded)> = cases.iter().map(|case| case.label).zip(runs).collect();
-        report.grid(extremes(case.rig.description(), &labelled));
+        report.grid(extremes(case.crane.description(), &labelled));
         report.grid(summary(&labelled));
         if case.equilibrium.is_stable() {
             let changes = refinement::changes(case, registry)?;
             report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
             report.grid(modes::undamped_modes(case, changes.as_deref())?);
-            let poses = manoeuvre(case.rig, &Start::of(case.rig)?, affordable_poses(case.rig.size()))?;
-            report.grid(modes::damped_modes(case.rig.description(), poses.first().map_or(&[], |pose| &pose.modes)));
-            report.grid(stability::limits(case.rig.description(), &poses));
+            let poses = manoeuvre(case.crane, &Start::of(case.crane)?, affordable_poses(case.crane.size()))?;
+            report.grid(modes::damped_modes(case.crane.description(), poses.first().map_or(&[], |pose| &pose.modes)));
+            report.grid(stability::limits(case.crane.description(), &poses));
         }
     }
     Ok(report)

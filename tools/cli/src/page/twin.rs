@@ -4,29 +4,29 @@ use crane_model::{ParameterInfo, dyn_crane::DynCrane};
 
 use crate::Registry;
 
-/// The crane of the registry that equals `rig` except for its elements, with the same parameters.
-pub fn rigid(rig: &dyn DynCrane, registry: &Registry) -> Option<Box<dyn DynCrane>> {
-    let parameters = &rig.description().parameters;
+/// The crane of the registry that equals `crane` except for its elements, with the same parameters.
+pub fn rigid(crane: &dyn DynCrane, registry: &Registry) -> Option<Box<dyn DynCrane>> {
+    let parameters = &crane.description().parameters;
     registry.all().flatten().find_map(|mut other| {
         let own = |(index, parameter): (usize, &ParameterInfo)| match parameters
             .iter()
             .position(|own| own.name == parameter.name)
         {
-            Some(own) => rig.parameter(own),
+            Some(own) => crane.parameter(own),
             None => other.parameter(index),
         };
         let values: Vec<f64> = other.description().parameters.iter().enumerate().map(own).collect();
         other.set_parameters(&values).ok()?;
-        is_rigid(rig, other.as_ref()).then_some(other)
+        is_rigid(crane, other.as_ref()).then_some(other)
     })
 }
 
-/// Whether `other` has the joints, drives, supports and points of `rig`, in the same places and with the same laws, and no
+/// Whether `other` has the joints, drives, supports and points of `crane`, in the same places and with the same laws, and no
 /// elements: compared at a pose away from the drives' positions.
-fn is_rigid(rig: &dyn DynCrane, other: &dyn DynCrane) -> bool {
+fn is_rigid(crane: &dyn DynCrane, other: &dyn DynCrane) -> bool {
     /// Displacement from the guess, m and rad.
     const OFF: f64 = 0.1;
-    let (own, rigid) = (rig.description(), other.description());
+    let (own, rigid) = (crane.description(), other.description());
     let joints: Vec<usize> =
         (0..own.coordinates.len()).filter(|&index| !own.coordinates[index].role.is_element()).collect();
     let same_joints = joints.iter().map(|&index| &own.coordinates[index]).eq(&rigid.coordinates);
@@ -39,12 +39,12 @@ fn is_rigid(rig: &dyn DynCrane, other: &dyn DynCrane) -> bool {
     for (&index, &value) in joints.iter().zip(&pose) {
         straight[index] = value;
     }
-    let numbers = |rig: &dyn DynCrane, q: &[f64]| -> Vec<f64> {
+    let numbers = |crane: &dyn DynCrane, q: &[f64]| -> Vec<f64> {
         let rest = vec![0.0; q.len()];
-        let places = rig.points_at(q).into_iter().chain(rig.support_reactions_at(q, &rest));
-        places.flat_map(<[f64; 3]>::from).chain(rig.drive_efforts_at(0.0, q, &rest)).collect()
+        let places = crane.points_at(q).into_iter().chain(crane.support_reactions_at(q, &rest));
+        places.flat_map(<[f64; 3]>::from).chain(crane.drive_efforts_at(0.0, q, &rest)).collect()
     };
-    alike(&numbers(rig, &straight), &numbers(other, &pose))
+    alike(&numbers(crane, &straight), &numbers(other, &pose))
 }
 
 /// Equal up to rounding.

@@ -25,9 +25,9 @@ const FIRST_STEP: f64 = 0.1;
 const DOUBLINGS: usize = 14;
 
 /// Index of the parameter that is the load: the one of this name, or else the only one in kg.
-pub fn parameter(rig: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usize>> {
-    let parameters = &rig.description().parameters;
-    let Some(name) = name else { return Ok(only_mass(rig.description())) };
+pub fn parameter(crane: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usize>> {
+    let parameters = &crane.description().parameters;
+    let Some(name) = name else { return Ok(only_mass(crane.description())) };
     let found = parameters.iter().position(|parameter| parameter.name.as_str() == name);
     found.map(Some).ok_or_else(|| {
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
@@ -43,17 +43,17 @@ pub fn parameter(rig: &dyn DynCrane, name: Option<&str>) -> Outcome<Option<usize
 type Distance = fn(&dyn DynCrane, &[f64]) -> Option<(f64, String)>;
 
 /// Adds the loads at which the first foot carries nothing, and at which the crane tips.
-pub fn critical(report: &mut Report, rig: &mut dyn DynCrane, index: usize) -> Outcome<()> {
-    let before = rig.parameter(index);
-    let parameter = &rig.description().parameters[index];
+pub fn critical(report: &mut Report, crane: &mut dyn DynCrane, index: usize) -> Outcome<()> {
+    let before = crane.parameter(index);
+    let parameter = &crane.description().parameters[index];
     let (name, unit) = (parameter.name.to_string(), parameter.unit.to_string());
     let mut critical = Map::new();
     for (key, what, place, distance) in [
         ("first_foot", "lifts the first foot", "first foot to lift", least_reaction as Distance),
         ("tipping", "tips the crane", "line that it tips over", least_balance),
     ] {
-        let found = root(rig, index, before, distance);
-        rig.set_parameter(index, before).map_err(|refused| Problem::failed(refused.to_string(), ""))?;
+        let found = root(crane, index, before, distance);
+        crane.set_parameter(index, before).map_err(|refused| Problem::failed(refused.to_string(), ""))?;
         if let Some((load, at)) = &found {
             report.line(format!("{name} that {what}"), *load, &unit);
             report.line(place, at.as_str(), "");
@@ -67,20 +67,20 @@ pub fn critical(report: &mut Report, rig: &mut dyn DynCrane, index: usize) -> Ou
 
 /// The smallest vertical force of a foot, N; if feet have lifted, so that they carry nothing, the widest gap, m, with the opposite
 /// sign.
-fn least_reaction(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
-    let reactions = rig.support_reactions_at(q, &vec![0.0; q.len()]);
-    let feet = rig.description().supports.iter().zip(&reactions).zip(rig.support_gaps_at(q));
+fn least_reaction(crane: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
+    let reactions = crane.support_reactions_at(q, &vec![0.0; q.len()]);
+    let feet = crane.description().supports.iter().zip(&reactions).zip(crane.support_gaps_at(q));
     let distances = feet.map(|((foot, force), gap)| (if gap > 0.0 { -gap } else { force.z }, foot));
     let (distance, foot) = distances.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
     Some((distance, foot.name.as_str().to_owned()))
 }
 
 /// Stabilising minus overturning moment about the line that tips first, N m.
-fn least_balance(rig: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
+fn least_balance(crane: &dyn DynCrane, q: &[f64]) -> Option<(f64, String)> {
     let rest = vec![0.0; q.len()];
-    let lines = lines(rig, 0.0, q, &rest, &rest);
+    let lines = lines(crane, 0.0, q, &rest, &rest);
     let line = lines.iter().min_by(|a, b| a.balance().total_cmp(&b.balance()))?;
-    Some((line.balance(), feet(rig.description(), line)))
+    Some((line.balance(), feet(crane.description(), line)))
 }
 
 /// The feet of a tipping line.
@@ -91,13 +91,13 @@ fn feet(description: &Description, line: &TippingLine) -> String {
 
 /// The smallest load above `from` at which a distance is zero, or the largest below if it is negative there already. `None` if
 /// there is none, or if the crane has no equilibrium on the way.
-fn root(rig: &mut dyn DynCrane, index: usize, from: f64, distance: Distance) -> Option<(f64, String)> {
-    let mass: f64 = rig.description().bodies.iter().map(|body| body.mass).sum();
+fn root(crane: &mut dyn DynCrane, index: usize, from: f64, distance: Distance) -> Option<(f64, String)> {
+    let mass: f64 = crane.description().bodies.iter().map(|body| body.mass).sum();
     let mut at = |load: f64| {
-        rig.set_parameter(index, load).ok()?;
-        let equilibrium = rig.equilibrium(&Settings::default());
+        crane.set_parameter(index, load).ok()?;
+        let equilibrium = crane.equilibrium(&Settings::default());
         match &equilibrium.status {
-            Status::Converged => distance(rig, &equilibrium.q),
+            Status::Converged => distance(crane, &equilibrium.q),
             // Beyond any limit; the line is named as for poses in equilibrium.
             Status::TipsOver { feet } => Some((f64::NEG_INFINITY, feet.join(" – "))),
             _ => None,

@@ -27,9 +27,9 @@ pub use loads::parameter as load_parameter;
 
 /// Prints loads and stability at rest, and along the manoeuvre if asked for.
 pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let mut rig = options.analysis.crane.open(registry)?;
-    let load = loads::parameter(rig.as_ref(), options.load.as_deref())?;
-    let case = Case::new(VALUE, rig.as_ref());
+    let mut crane = options.analysis.crane.open(registry)?;
+    let load = loads::parameter(crane.as_ref(), options.load.as_deref())?;
+    let case = Case::new(VALUE, crane.as_ref());
     let q = case.equilibrium.q.clone();
     let mut report = Report::default();
     verdicts(&mut report, std::slice::from_ref(&case));
@@ -37,49 +37,49 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
         report.print(options.analysis.format, out)?;
         return case.stable();
     }
-    let rest = Instant::at_rest(rig.as_ref(), &q);
-    verdict(&mut report, rig.as_ref(), &rest, "");
-    let moduli = rig.section_moduli_at();
-    stresses::verdict(&mut report, rig.description(), &moduli, std::slice::from_ref(&rest), "");
-    let history = if options.run { Some(along(options, rig.as_ref(), &mut report)?) } else { None };
-    for caution in cautions::of_pose(rig.as_ref(), &q, options.analysis.crane.limits.bend) {
+    let rest = Instant::at_rest(crane.as_ref(), &q);
+    verdict(&mut report, crane.as_ref(), &rest, "");
+    let moduli = crane.section_moduli_at();
+    stresses::verdict(&mut report, crane.description(), &moduli, std::slice::from_ref(&rest), "");
+    let history = if options.run { Some(along(options, crane.as_ref(), &mut report)?) } else { None };
+    for caution in cautions::of_pose(crane.as_ref(), &q, options.analysis.crane.limits.bend) {
         report.caution(Some(caution));
     }
     if let Some(index) = load {
-        loads::critical(&mut report, rig.as_mut(), index)?;
+        loads::critical(&mut report, crane.as_mut(), index)?;
     }
-    let rig = rig.as_ref();
-    report.grid(stresses::table(rig.description(), &moduli, &rest.wrenches));
-    report.grid(tables::tipping(rig.description(), &rest.lines));
+    let crane = crane.as_ref();
+    report.grid(stresses::table(crane.description(), &moduli, &rest.wrenches));
+    report.grid(tables::tipping(crane.description(), &rest.lines));
     if let Some(history) = &history {
-        let table = history::table(rig.description(), history);
-        report.grid(tables::extremes_of_joints(rig.description(), &table));
-        report.grid(tables::extremes_of_sections(rig.description(), &table));
+        let table = history::table(crane.description(), history);
+        report.grid(tables::extremes_of_joints(crane.description(), &table));
+        report.grid(tables::extremes_of_sections(crane.description(), &table));
         if let Some(file) = &options.results {
             files::write_csv(file, &table)?;
         }
     }
-    report.grid(tables::joints(rig.description(), &rest.wrenches));
-    report.excerpt(tables::sections(rig.description(), &rest.wrenches), 0);
+    report.grid(tables::joints(crane.description(), &rest.wrenches));
+    report.excerpt(tables::sections(crane.description(), &rest.wrenches), 0);
     report.show_all(options.analysis.all);
     report.print(options.analysis.format, out)
 }
 
 /// Loads and stability along the manoeuvre, one entry per result.
-fn along(options: &Strength, rig: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
-    let start = options.timing.start(rig, false)?;
-    let settings = options.timing.settings(rig, &start, Method::RECOMMENDED)?;
+fn along(options: &Strength, crane: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
+    let start = options.timing.start(crane, false)?;
+    let settings = options.timing.settings(crane, &start, Method::RECOMMENDED)?;
     let bar = progress(settings.duration);
     let checks = (!options.timing.no_verify, options.analysis.crane.limits);
-    let recorded = record_checked(rig, &start, &settings, checks, &bar)?;
+    let recorded = record_checked(crane, &start, &settings, checks, &bar)?;
     bar.finish_and_clear();
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));
     }
-    let history = instants(rig, recorded.table.rows.iter());
+    let history = instants(crane, recorded.table.rows.iter());
     let worst = least_margin(&history).ok_or_else(|| Problem::failed("the run has no results", ""))?;
-    verdict(report, rig, worst, " of the run");
-    stresses::verdict(report, rig.description(), &rig.section_moduli_at(), &history, " of the run");
+    verdict(report, crane, worst, " of the run");
+    stresses::verdict(report, crane.description(), &crane.section_moduli_at(), &history, " of the run");
     if !worst.lines.is_empty() {
         report.fact_as("time_of_the_least_tipping_margin", "time of the minimum tipping margin", worst.t, "s");
     }
@@ -87,8 +87,8 @@ fn along(options: &Strength, rig: &dyn DynCrane, report: &mut Report) -> Outcome
 }
 
 /// How far the crane is from tipping.
-fn verdict(report: &mut Report, rig: &dyn DynCrane, instant: &Instant, of: &str) {
-    let description = rig.description();
+fn verdict(report: &mut Report, crane: &dyn DynCrane, instant: &Instant, of: &str) {
+    let description = crane.description();
     let Some(line) = governing(&instant.lines) else {
         let why = if description.supports.is_empty() {
             "not computed: the crane has no supports"

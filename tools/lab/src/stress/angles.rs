@@ -52,7 +52,7 @@ supports:
         }
         let subject = Subject::new(&Spec::new(text))?;
         let equilibrium = subject.equilibrium();
-        let description = subject.rig.description();
+        let description = subject.crane.description();
         let finite = equilibrium.q.iter().all(|x| x.is_finite());
         let (singular, tilted) = (description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q));
         let right = if near { singular.is_some() } else { singular.is_none() };

@@ -40,7 +40,7 @@ fn deflection(spec: Spec, sections: usize) -> Case {
     Case::new("number of sections", format!("cantilever of {sections}, statics"), expected, move || {
         let subject = Subject::new(&spec)?;
         let rest = subject.rest()?;
-        let tip = subject.rig.points_at(&rest.q)[1].z;
+        let tip = subject.crane.points_at(&rest.q)[1].z;
         // The deflection is 0.7 % of the length; the linear law neglects its square.
         expect((tip / sunk + 1.0).abs() < 1e-4, format!("{rest}; {:.4} mm", -tip * 1e3))
     })

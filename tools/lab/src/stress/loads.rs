@@ -33,9 +33,9 @@ fn statics(spec: Spec, load: f64) -> Case {
     Case::new("load", format!("eight_link_flexible with {load:e} kg, statics"), expected, move || {
         let subject = Subject::new(&spec)?.set("load_mass", load)?;
         let rest = subject.rest()?;
-        let reactions = subject.rig.support_reactions_at(&rest.q, &vec![0.0; rest.q.len()]);
+        let reactions = subject.crane.support_reactions_at(&rest.q, &vec![0.0; rest.q.len()]);
         let carried = reactions.iter().map(|force| force.z).sum::<f64>();
-        let tilted = subject.rig.description().large_tilt(&rest.q).map_or(String::new(), |said| format!("; {said}"));
+        let tilted = subject.crane.description().large_tilt(&rest.q).map_or(String::new(), |said| format!("; {said}"));
         expect((carried / weight - 1.0).abs() < 1e-8, format!("{rest}; {carried:.6e} N{tilted}"))
     })
 }
@@ -95,7 +95,7 @@ fn pendulum(upper: f64, lower: f64) -> Case {
     Case::new("mass ratio", format!("pendulum of {upper:e} and {lower:e} kg, modes"), expected, move || {
         let subject = Subject::new(&rods(upper, lower, [0.1, -0.1]))?;
         let rest = subject.rest()?;
-        let modes = undamped(&subject.rig.small_motions_at(&rest.q)).map_err(|error| error.to_string())?;
+        let modes = undamped(&subject.crane.small_motions_at(&rest.q)).map_err(|error| error.to_string())?;
         let found: Vec<f64> = modes.iter().map(|mode| mode.omega_squared.abs().sqrt()).collect();
         // The condition number of A is the mass ratio, and the eigenvalues are the squares of ω.
         let tolerance = 1e-15 * (1.0 + ratio.max(1.0 / ratio)) + 1e-9;
@@ -157,7 +157,7 @@ guess: {{crank_theta: 0.2, load_theta: 0.1}}
         if equilibrium.status != Status::Converged {
             return Err(equilibrium.to_string());
         }
-        let modes = undamped(&subject.rig.small_motions_at(&equilibrium.q)).map_err(|error| error.to_string())?;
+        let modes = undamped(&subject.crane.small_motions_at(&equilibrium.q)).map_err(|error| error.to_string())?;
         let omega = modes.first().map_or(f64::NAN, |mode| mode.omega_squared.sqrt());
         let right = (omega / (GRAVITY / 2.0).sqrt() - 1.0).abs() < 1e-4;
         expect(right, format!("{equilibrium}; {omega:.6} rad/s"))

@@ -148,7 +148,7 @@ fn fallen(spec: Spec) -> Case {
         let subject = Subject::new(&spec)?;
         let rest = subject.rest()?;
         let boom = subject.index("boom_psi")?;
-        let weights = subject.rig.bias_at(&rest.q, &vec![0.0; rest.q.len()]);
+        let weights = subject.crane.bias_at(&rest.q, &vec![0.0; rest.q.len()]);
         let turned = (rest.q[boom] + PI).rem_euclid(2.0 * PI) - PI;
         // Gravity's moment about the pin is zero: the common centre of mass is below it.
         let right = weights[boom].abs() < 1e-4 * GRAVITY * 1e4 && turned < 0.0;

@@ -95,9 +95,9 @@ fn drives(spec: Spec, factor: f64) -> Case {
         let subject = Subject::new(&stiffened_drives(&spec, factor))?;
         let rest = subject.rest()?;
         let boom = subject.index("boom_psi")?;
-        let drives = &subject.rig.description().drives;
+        let drives = &subject.crane.description().drives;
         let place = drives.iter().position(|drive| drive.coordinate == boom).ok_or("no drive of the boom")?;
-        let torque = subject.rig.drive_efforts_at(0.0, &rest.q, &vec![0.0; rest.q.len()])[place];
+        let torque = subject.crane.drive_efforts_at(0.0, &rest.q, &vec![0.0; rest.q.len()])[place];
         // Sag of some centimetres and tilt of the truck shorten and lengthen the levers by about a percent.
         let carried = torque / LEVEL_MOMENT;
         // The weight pulls a sinking boom downwards until it hangs; a drive held at 0 rad carries the moment of its spring.
@@ -131,8 +131,8 @@ fn single_element(spec: Spec, factor: f64) -> Case {
     Case::new("stiffness of elements", format!("cantilever of 1 section × {factor:e}, statics"), expected, move || {
         let subject = Subject::new(&stiffened_steel(&spec, factor))?;
         let rest = subject.rest()?;
-        let description = subject.rig.description();
-        let tip = subject.rig.points_at(&rest.q)[1];
+        let description = subject.crane.description();
+        let tip = subject.crane.points_at(&rest.q)[1];
         let found = rest.q[subject.index("beam_1_theta")?];
         let caution = description.near_singular(&rest.q);
         let right = (tip.z + sunk).abs() < 1e-8 && (found - angle).abs() < 1e-8 && caution.is_none();
@@ -155,12 +155,12 @@ fn supports(spec: Spec, factor: f64) -> Case {
         let subject = Subject::new(&stiffened_supports(&spec, factor))?;
         let equilibrium = subject.equilibrium();
         if !small {
-            let caution = subject.rig.description().large_tilt(&equilibrium.q);
+            let caution = subject.crane.description().large_tilt(&equilibrium.q);
             let happened = caution.as_ref().map_or(String::new(), |caution| format!("; {caution}"));
             return expect(caution.is_some(), format!("{equilibrium}{happened}"));
         }
         let rest = subject.rest()?;
-        let reactions = subject.rig.support_reactions_at(&rest.q, &vec![0.0; rest.q.len()]);
+        let reactions = subject.crane.support_reactions_at(&rest.q, &vec![0.0; rest.q.len()]);
         let pressed = reactions.iter().map(|force| force.z).sum::<f64>() / (factor * GROUND);
         // Newton's method leaves a residual of 1e-10 of the forces.
         expect((pressed / sunk - 1.0).abs() < 1e-8, format!("{rest}; {pressed:.4e} m"))
@@ -175,7 +175,7 @@ fn damping(spec: &Spec, beta: f64) -> Case {
     let expected = "every underdamped mode has ζ = β ω/2 to 1e-6, all others decay without oscillating";
     Case::new("damping of elements", format!("cantilever β = {beta:e}, modes"), expected, move || {
         let subject = Subject::new(&spec)?;
-        let motions = subject.rig.small_motions_at(&subject.rest()?.q);
+        let motions = subject.crane.small_motions_at(&subject.rest()?.q);
         let (free, modes) = (undamped(&motions), damped(&motions));
         let (free, modes) = (free.map_err(|e| e.to_string())?, modes.map_err(|e| e.to_string())?);
         let below: Vec<f64> =

@@ -19,7 +19,7 @@ use crane_cli::toolbox::{Problem, Timing, record};
 /// A crane under test.
 pub struct Subject {
     /// The crane.
-    pub rig: Box<dyn DynCrane>,
+    pub crane: Box<dyn DynCrane>,
 }
 
 impl Subject {
@@ -29,26 +29,26 @@ impl Subject {
             let told = mistakes.mistakes().iter().map(|mistake| format!("{}: {}", mistake.code, mistake.title));
             format!("refused, {}", told.collect::<Vec<_>>().join("; "))
         })?;
-        Ok(Self { rig: Box::new(crane) })
+        Ok(Self { crane: Box::new(crane) })
     }
 
     /// With another value of a live parameter.
     pub fn set(mut self, name: &str, value: f64) -> Result<Self, String> {
-        let index = self.rig.description().parameters.iter().position(|parameter| parameter.name == name);
+        let index = self.crane.description().parameters.iter().position(|parameter| parameter.name == name);
         let index = index.ok_or_else(|| format!("no parameter {name}"))?;
-        self.rig.set_parameter(index, value).map_err(|refused| refused.to_string())?;
+        self.crane.set_parameter(index, value).map_err(|refused| refused.to_string())?;
         Ok(self)
     }
 
     /// Index of a coordinate.
     pub fn index(&self, name: &str) -> Result<usize, String> {
-        let coordinates = &self.rig.description().coordinates;
+        let coordinates = &self.crane.description().coordinates;
         coordinates.iter().position(|c| c.name == name).ok_or_else(|| format!("no coordinate {name}"))
     }
 
     /// The result of statics, whatever its status.
     pub fn equilibrium(&self) -> Equilibrium {
-        self.rig.equilibrium(&Settings::default())
+        self.crane.equilibrium(&Settings::default())
     }
 
     /// The stable pose, or the message of statics if there is none.
@@ -62,11 +62,11 @@ impl Subject {
 
     /// A run as the command performs it, or its message if it is refused or ends early. All numbers of the results are finite.
     pub fn run(&self, timing: &Timing) -> Result<Recorded, String> {
-        let rig = self.rig.as_ref();
+        let crane = self.crane.as_ref();
         let told = |problem: Problem| problem.message();
-        let start = timing.start(rig, false).map_err(told)?;
-        let settings = timing.settings(rig, &start, Method::RECOMMENDED).map_err(told)?;
-        let recorded = record(rig, &start, &settings, &ProgressBar::hidden()).map_err(told)?;
+        let start = timing.start(crane, false).map_err(told)?;
+        let settings = timing.settings(crane, &start, Method::RECOMMENDED).map_err(told)?;
+        let recorded = record(crane, &start, &settings, &ProgressBar::hidden()).map_err(told)?;
         let table = &recorded.table;
         match table.not_finite() {
             Some((row, column)) => {

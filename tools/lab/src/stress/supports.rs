@@ -54,7 +54,7 @@ fn lifted(kinematics: &'static str, play: f64) -> Case {
     Case::new("preload and free play", name, expected, move || {
         let subject = Subject::new(&block(kinematics, [play; 4], 0.0))?;
         let rest = subject.rest()?;
-        let reactions = subject.rig.support_reactions_at(&rest.q, &[0.0; 6]);
+        let reactions = subject.crane.support_reactions_at(&rest.q, &[0.0; 6]);
         let off = reactions.iter().map(|force| (force.z / each - 1.0).abs()).fold(0.0, f64::max);
         // Forces are s times rounded heights.
         let right = (rest.q[2] - height).abs() < 1e-9 && off < 1e-6;
@@ -75,7 +75,7 @@ fn clamped(kinematics: &'static str) -> Case {
         move || {
             let subject = Subject::new(&block(kinematics, [PLAY, 0.0, 0.0, PLAY], 0.0))?;
             let rest = subject.rest()?;
-            let reactions = subject.rig.support_reactions_at(&rest.q, &[0.0; 6]);
+            let reactions = subject.crane.support_reactions_at(&rest.q, &[0.0; 6]);
             let signs = [1.0, -1.0, -1.0, 1.0];
             let off = reactions.iter().zip(signs).map(|(force, sign)| (force.z - quarter - sign * more).abs());
             let off = off.fold(0.0, f64::max);

@@ -86,7 +86,7 @@ pub fn with(base: &Settings, method: Method, setting: Setting) -> Settings {
 
 /// Runs of every method with every setting, except those that fail.
 pub fn series(
-    rig: &dyn DynCrane,
+    crane: &dyn DynCrane,
     start: &[f64],
     base: &Settings,
     reference: &Trace,
@@ -101,7 +101,7 @@ pub fn series(
         for setting in settings(method, safe, quick) {
             // The run failed, because its step is too long or its motion grows: the next setting is finer.
             let Ok(Timed { trace, run: Run { statistics, .. }, wall }) =
-                timed(rig, start, &with(base, method, setting), repeats)
+                timed(crane, start, &with(base, method, setting), repeats)
             else {
                 continue;
             };

@@ -91,29 +91,29 @@ struct Found<'a> {
 /// The study itself, with the cranes of a registry.
 fn study(
     options: &WorkPrecision,
-    crane: &str,
+    name: &str,
     counts: &[usize],
     registry: &Registry,
     out: &mut dyn Write,
 ) -> Outcome<()> {
-    let rig = options.analysis.crane.parameters.crane(crane, options.analysis.crane.strict, registry)?;
-    let rig = rig.as_ref();
-    let description = rig.description();
-    let start = start(rig)?;
+    let crane = options.analysis.crane.parameters.crane(name, options.analysis.crane.strict, registry)?;
+    let crane = crane.as_ref();
+    let description = crane.description();
+    let start = start(crane)?;
     let base = base(options, description)?;
     let bar = progress(0.0);
     bar.set_message("reference");
-    let poses = manoeuvre(rig, &start, POSES)?;
+    let poses = manoeuvre(crane, &start, POSES)?;
     let safe = Bound::of(&poses, Method::Rk4).map_or(base.output, |bound| SAFE * bound.limit.step).min(base.output);
-    let reference = reference(rig, &start.q, &base, safe)?;
+    let reference = reference(crane, &start.q, &base, safe)?;
     let repeats = if options.quick { 1 } else { REPEATS };
-    let points = series(rig, &start.q, &base, &reference.solution.trace, safe, options.quick, &bar);
+    let points = series(crane, &start.q, &base, &reference.solution.trace, safe, options.quick, &bar);
     #[cfg(feature = "yardstick")]
-    let points = [points, yardstick::series(rig, &start.q, &base, &reference.solution.trace, repeats)].concat();
+    let points = [points, yardstick::series(crane, &start.q, &base, &reference.solution.trace, repeats)].concat();
 
     let mut facts = Report::default();
     facts.fact("crane", description.name.as_str(), "");
-    facts.fact("code", if registry.is_compiled(crane) { "compiled" } else { "interpreted" }, "");
+    facts.fact("code", if registry.is_compiled(name) { "compiled" } else { "interpreted" }, "");
     facts.fact("start", start.what.as_str(), "");
     facts.fact("duration", base.duration, "s");
     let size = reference.solution.trace.size();
@@ -131,12 +131,12 @@ fn study(
     if !counts.is_empty() {
         let variants = counts.iter().map(|&count| {
             announce(&bar, count);
-            let rig = options.analysis.crane.parameters.crane(
+            let crane = options.analysis.crane.parameters.crane(
                 &refinement::name(&description.name, count),
                 false,
                 registry,
             )?;
-            variant(rig.as_ref(), &self::start(rig.as_ref())?, &base, count, repeats)
+            variant(crane.as_ref(), &self::start(crane.as_ref())?, &base, count, repeats)
         });
         let variants: Vec<Variant> = variants.collect::<Outcome<_>>()?;
         if let Some(limit) = Limit::of(&variants) {
@@ -151,8 +151,8 @@ fn study(
 }
 
 /// Where runs start: at rest in equilibrium, or at the guess if there is no drive to move the crane out of equilibrium.
-fn start(rig: &dyn DynCrane) -> Outcome<Start> {
-    if rig.description().drives.is_empty() { Ok(Start::guess(rig)) } else { Ok(Start::of(rig)?) }
+fn start(crane: &dyn DynCrane) -> Outcome<Start> {
+    if crane.description().drives.is_empty() { Ok(Start::guess(crane)) } else { Ok(Start::of(crane)?) }
 }
 
 /// The run to be studied.

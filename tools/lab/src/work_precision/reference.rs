@@ -33,8 +33,8 @@ pub struct Reference {
 ///
 /// # Errors
 /// They do not agree for any of their settings.
-pub fn reference(rig: &dyn DynCrane, start: &[f64], base: &Settings, step: f64) -> Outcome<Reference> {
-    let by = |method, tolerance, step| timed(rig, start, &Settings { method, step, tolerance, ..*base }, 1);
+pub fn reference(crane: &dyn DynCrane, start: &[f64], base: &Settings, step: f64) -> Outcome<Reference> {
+    let by = |method, tolerance, step| timed(crane, start, &Settings { method, step, tolerance, ..*base }, 1);
     let mut step = step;
     let mut classical = by(Method::Rk4, f64::NAN, step)?;
     let mut tolerances = TOLERANCES.into_iter();
@@ -49,7 +49,7 @@ pub fn reference(rig: &dyn DynCrane, start: &[f64], base: &Settings, step: f64) 
                 classical = by(Method::Rk4, f64::NAN, step)?;
                 pair
             }
-            (None, _) => return Err(disagreement(&rig.description().name, base, nearest.as_ref())),
+            (None, _) => return Err(disagreement(&crane.description().name, base, nearest.as_ref())),
         };
         if let Some((tolerance, solution)) = &pair {
             let agreement = solution.trace.errors(&classical.trace);

@@ -56,23 +56,23 @@ pub struct Candidate {
 
 /// Statics, modes and runs of a crane. A run need not start where the crane rests.
 pub fn variant(
-    rig: &dyn DynCrane,
+    crane: &dyn DynCrane,
     start: &Start,
     base: &Settings,
     sections: usize,
     repeats: usize,
 ) -> Outcome<Variant> {
-    let equilibrium = Start::of(rig)?;
-    let small = rig.small_motions_at(&equilibrium.q);
+    let equilibrium = Start::of(crane)?;
+    let small = crane.small_motions_at(&equilibrium.q);
     let modes = undamped(&small).map_err(|error: NoModes| Problem::from(error))?;
     let frequencies = modes.iter().filter_map(crane_model::modes::Mode::frequency).take(FREQUENCIES).collect();
-    let rest = Trace::points(rig, &equilibrium.q);
-    let guess = Trace::points(rig, &rig.guess());
+    let rest = Trace::points(crane, &equilibrium.q);
+    let guess = Trace::points(crane, &crane.guess());
     let deflection = rest.iter().zip(&guess).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
 
-    let tight = timed(rig, &start.q, &with(base, Method::RECOMMENDED, Setting::Tolerance(TIGHT)), 1)?;
+    let tight = timed(crane, &start.q, &with(base, Method::RECOMMENDED, Setting::Tolerance(TIGHT)), 1)?;
     let evaluation = tight.wall / tight.run.statistics.evaluations as f64;
-    let damped = damped(&rig.small_motions_at(&start.q))?;
+    let damped = damped(&crane.small_motions_at(&start.q))?;
     let mut runs = Vec::new();
     for method in Method::ALL {
         let limit = limit(&damped, &method.stability()).map_or(base.output, |limit| limit.step);
@@ -88,7 +88,7 @@ pub fn variant(
         }
         for setting in settings {
             // If no step meets a tolerance, the other runs remain.
-            if let Ok(Timed { wall, trace, .. }) = timed(rig, &start.q, &with(base, method, setting), repeats) {
+            if let Ok(Timed { wall, trace, .. }) = timed(crane, &start.q, &with(base, method, setting), repeats) {
                 runs.push(Candidate { method, setting, wall, trace });
             }
         }

@@ -42,21 +42,21 @@ impl Errors {
 
 impl Trace {
     /// Positions of the points of interest.
-    pub fn points(rig: &dyn DynCrane, q: &[f64]) -> Vec<Vector3<f64>> {
-        let points = rig.points_at(q);
+    pub fn points(crane: &dyn DynCrane, q: &[f64]) -> Vec<Vector3<f64>> {
+        let points = crane.points_at(q);
         if points.is_empty() {
-            rig.transforms_at(q).last().map(|frame| frame.fixed_view::<3, 1>(0, 3).into_owned()).into_iter().collect()
+            crane.transforms_at(q).last().map(|frame| frame.fixed_view::<3, 1>(0, 3).into_owned()).into_iter().collect()
         } else {
             points
         }
     }
 
     /// The run of a crane from t, q and v of every result.
-    pub fn of(rig: &dyn DynCrane, samples: &[(f64, Vec<f64>, Vec<f64>)]) -> Self {
-        let energies: Vec<Energies> = samples.iter().map(|(t, q, v)| rig.energies_at(*t, q, v)).collect();
+    pub fn of(crane: &dyn DynCrane, samples: &[(f64, Vec<f64>, Vec<f64>)]) -> Self {
+        let energies: Vec<Energies> = samples.iter().map(|(t, q, v)| crane.energies_at(*t, q, v)).collect();
         Self {
-            path: samples.iter().map(|(_, q, _)| Self::points(rig, q)).collect(),
-            efforts: samples.iter().map(|(t, q, v)| rig.drive_efforts_at(*t, q, v)).collect(),
+            path: samples.iter().map(|(_, q, _)| Self::points(crane, q)).collect(),
+            efforts: samples.iter().map(|(t, q, v)| crane.drive_efforts_at(*t, q, v)).collect(),
             energy: energies.iter().map(Energies::total).collect(),
             kinetic: greatest(energies.iter().map(|energies| energies.kinetic)),
         }
@@ -139,14 +139,14 @@ pub struct Timed {
 const REPEATED: f64 = 1.0;
 
 /// Runs a crane from `start` at rest up to `repeats` times.
-pub fn timed(rig: &dyn DynCrane, start: &[f64], settings: &Settings, repeats: usize) -> Result<Timed, Stopped> {
+pub fn timed(crane: &dyn DynCrane, start: &[f64], settings: &Settings, repeats: usize) -> Result<Timed, Stopped> {
     let start = InitialState::at_rest(start.to_vec());
     let mut samples = Vec::new();
     let mut walls = Vec::new();
     let run = loop {
         samples.clear();
         let begin = Instant::now();
-        let run = rig.simulate(&start, settings, &mut |&Sample { t, q, v, .. }| {
+        let run = crane.simulate(&start, settings, &mut |&Sample { t, q, v, .. }| {
             samples.push((t, q.to_vec(), v.to_vec()));
             ControlFlow::Continue(())
         })?;
@@ -156,5 +156,5 @@ pub fn timed(rig: &dyn DynCrane, start: &[f64], settings: &Settings, repeats: us
         }
     };
     walls.sort_unstable_by(f64::total_cmp);
-    Ok(Timed { trace: Trace::of(rig, &samples), run, wall: walls[walls.len() / 2] })
+    Ok(Timed { trace: Trace::of(crane, &samples), run, wall: walls[walls.len() / 2] })
 }

@@ -31,7 +31,7 @@ const LONG: f64 = 3.0;
 
 /// A run from `start` at rest by a method of the library: results, wall time and counts.
 fn run(
-    rig: &dyn DynCrane,
+    crane: &dyn DynCrane,
     start: &[f64],
     base: &Settings,
     method: &str,
@@ -45,13 +45,13 @@ fn run(
         evaluations.set(evaluations.get() + 1);
         let (q, v) = y.split_at(n);
         slope[..n].copy_from_slice(v);
-        slope[n..].copy_from_slice(rig.accelerations_at(t, q, v).as_slice());
+        slope[n..].copy_from_slice(crane.accelerations_at(t, q, v).as_slice());
     };
     let multiply = |y: &[f64], _: &[f64], _: f64, x: &[f64], product: &mut [f64]| {
         let mut linearised = linearised.borrow_mut();
         if linearised.0 != y[..n] {
             // Linearised at rest in the same pose; zero if the mass matrix is not positive definite.
-            let matrix = rig.small_motions_at(&y[..n]).state_matrix();
+            let matrix = crane.small_motions_at(&y[..n]).state_matrix();
             *linearised = (y[..n].to_vec(), matrix.unwrap_or_else(|_| DMatrix::zeros(2 * n, 2 * n)));
         }
         product.copy_from_slice((&linearised.1 * DVectorView::from_slice(x, 2 * n)).as_slice());
@@ -92,12 +92,12 @@ fn run(
         evaluations: evaluations.get(),
         factorisations: done.number_of_linear_solver_setups,
     };
-    Ok((Trace::of(rig, &samples), wall, statistics))
+    Ok((Trace::of(crane, &samples), wall, statistics))
 }
 
 /// Runs of the library's methods with every tolerance, except those that fail.
 pub fn series(
-    rig: &dyn DynCrane,
+    crane: &dyn DynCrane,
     start: &[f64],
     base: &Settings,
     reference: &Trace,
@@ -106,7 +106,8 @@ pub fn series(
     let mut points = Vec::new();
     for method in METHODS {
         for tolerance in TOLERANCES {
-            let mut runs: Vec<_> = (0..repeats).map_while(|_| run(rig, start, base, method, tolerance).ok()).collect();
+            let mut runs: Vec<_> =
+                (0..repeats).map_while(|_| run(crane, start, base, method, tolerance).ok()).collect();
             runs.sort_by(|a, b| a.1.total_cmp(&b.1));
             if runs.is_empty() {
                 continue;

@@ -7,10 +7,10 @@ use crane_model::dyn_crane::{DynCrane, Instance};
 
 #[test]
 fn the_weight_follows_live_gravity() {
-    let mut rig: Box<dyn DynCrane> = Box::new(Instance(Box::new(Sledge::default())));
+    let mut crane: Box<dyn DynCrane> = Box::new(Instance(Box::new(Sledge::default())));
     for gravity in [9.81, 1.62] {
-        rig.set_parameter(0, gravity).expect("any number");
-        let [x, y, z] = rig.weight_at(&[0.1, 0.2]);
+        crane.set_parameter(0, gravity).expect("any number");
+        let [x, y, z] = crane.weight_at(&[0.1, 0.2]);
         // The base does not move along y. A few roundings of the weight.
         assert_eq!(y, None);
         let expected = Sledge { gravity }.weight();
