@@ -17,8 +17,8 @@ use nalgebra::{Complex, DMatrix};
 use crate::{
     BristleInfo, Description,
     dyn_crane::DynCrane,
+    force_states::{StateAt, StatefulForce},
     modes::{DampedMode, SmallMotions},
-    own_states::{StateAt, StatefulForce},
 };
 
 /// The joints of a crane that stick.
@@ -45,17 +45,17 @@ impl Bristles {
         self.joints.iter().map(|joint| joint.breakaway / joint.stiffness)
     }
 
-    /// Evaluates all joints, like [`OwnStates::evaluate`](crate::own_states::OwnStates).
+    /// Evaluates all joints, like [`ForceStates::evaluate`](crate::force_states::ForceStates).
     pub fn evaluate(
         &self,
         moment: &StateAt<'_>,
         rates: &mut [f64],
-        pushed: &mut [StatefulForce],
+        forces: &mut [StatefulForce],
         mut by_states: Option<&mut DMatrix<f64>>,
     ) {
-        for (place, (joint, own)) in self.joints.iter().zip(pushed).enumerate() {
+        for (place, (joint, force)) in self.joints.iter().zip(forces).enumerate() {
             let state = self.first + place;
-            let slope = joint.evaluate(state, moment.x[state], moment.v[joint.coordinate], own);
+            let slope = joint.evaluate(state, moment.x[state], moment.v[joint.coordinate], force);
             rates[state] = slope.rate;
             if let Some(matrix) = by_states.as_deref_mut() {
                 matrix[(state, state)] = slope.by_deflection;
@@ -72,14 +72,14 @@ struct Slope {
 
 impl BristleInfo {
     /// The friction at a deflection and a rate of the joint.
-    fn evaluate(&self, first: usize, z: f64, rate: f64, own: &mut StatefulForce) -> Slope {
+    fn evaluate(&self, first: usize, z: f64, rate: f64, force: &mut StatefulForce) -> Slope {
         let &Self { coordinate, coulomb, breakaway, stribeck, stiffness, damping } = self;
         let decline = (breakaway - coulomb) * (-(rate / stribeck).powi(2)).exp();
         let (level, level_by_rate) = (coulomb + decline, -2.0 * rate / (stribeck * stribeck) * decline);
         let by_deflection = -stiffness * rate.abs() / level;
         let by_rate = 1.0 - stiffness * z / level * (rate.signum() - rate.abs() * level_by_rate / level);
         let slope = rate + by_deflection * z;
-        *own = StatefulForce {
+        *force = StatefulForce {
             coordinate,
             arm: 1.0,
             first,
@@ -113,9 +113,9 @@ pub(crate) fn decays(crane: &dyn DynCrane, t: f64) -> Vec<DampedMode> {
 pub(crate) fn efforts(description: &Description, v: &[f64], x: &[f64]) -> Vec<(usize, f64)> {
     let first = x.len().saturating_sub(description.bristles.len());
     let effort = |(joint, z): (&BristleInfo, &f64)| {
-        let mut own = StatefulForce::default();
-        joint.evaluate(0, *z, v[joint.coordinate], &mut own);
-        (joint.coordinate, own.force)
+        let mut force = StatefulForce::default();
+        joint.evaluate(0, *z, v[joint.coordinate], &mut force);
+        (joint.coordinate, force.force)
     };
     description.bristles.iter().zip(&x[first..]).map(effort).collect()
 }
@@ -151,18 +151,18 @@ mod tests {
             damping: 300.0,
         };
         let at = |z: f64, v: f64| {
-            let mut own = StatefulForce::default();
-            let slope = joint.evaluate(0, z, v, &mut own);
-            (slope, own)
+            let mut force = StatefulForce::default();
+            let slope = joint.evaluate(0, z, v, &mut force);
+            (slope, force)
         };
         for (z, v) in [(5e-4, 0.013), (-3e-4, 0.04), (8e-4, -0.002)] {
-            let (slope, own) = at(z, v);
+            let (slope, force) = at(z, v);
             let by = |of: &dyn Fn(f64) -> f64, h: f64| (of(h) - of(-h)) / (2.0 * h);
             let differences = [
                 (slope.by_deflection, by(&|h| at(z + h, v).0.rate, 1e-9)),
-                (own.rates_by_speed[0], by(&|h| at(z, v + h).0.rate, 1e-7)),
-                (own.by_states[0], by(&|h| at(z + h, v).1.force, 1e-9)),
-                (own.by_speed, by(&|h| at(z, v + h).1.force, 1e-7)),
+                (force.rates_by_speed[0], by(&|h| at(z, v + h).0.rate, 1e-7)),
+                (force.by_states[0], by(&|h| at(z + h, v).1.force, 1e-9)),
+                (force.by_speed, by(&|h| at(z, v + h).1.force, 1e-7)),
             ];
             for (place, (found, difference)) in differences.into_iter().enumerate() {
                 assert!((found / difference - 1.0).abs() < 1e-6, "{place}: {found} for {difference}");

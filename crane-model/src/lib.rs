@@ -39,11 +39,11 @@ pub mod dynamics;
 #[cfg(feature = "std")]
 pub mod envelope;
 #[cfg(feature = "std")]
+pub mod force_states;
+#[cfg(feature = "std")]
 pub mod hydraulics;
 #[cfg(feature = "std")]
 pub mod modes;
-#[cfg(feature = "std")]
-pub mod own_states;
 #[cfg(feature = "std")]
 pub mod results;
 pub mod rt;

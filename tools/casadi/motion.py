@@ -19,7 +19,7 @@ from scipy.integrate import solve_ivp
 
 from crane_model import read_crane
 from derivations import PRESCRIBED, Derivations, solve_unknown
-from own_states import OwnStates
+from force_states import ForceStates
 
 WORKSPACE = Path(__file__).resolve().parents[2]
 CRANES = ["double_pendulum", "eight_link_flexible", "eight_link_hydraulic", "knuckle_boom"]
@@ -44,14 +44,14 @@ def main():
 def compare(name, options):
     """Runs a crane by its own methods and by Radau from the same pose at rest."""
     crane = read_crane(WORKSPACE / "specs" / f"{name}.yaml")
-    slope, jacobian, rates, own = equations(crane)
+    slope, jacobian, rates, force_states = equations(crane)
     names = [coordinate.name for coordinate in crane.coordinates]
-    scales = np.concatenate([np.ones(len(names)), own.scales])
-    places = np.r_[: len(names), 2 * len(names) : 2 * len(names) + len(own.names)]
+    scales = np.concatenate([np.ones(len(names)), force_states.scales])
+    places = np.r_[: len(names), 2 * len(names) : 2 * len(names) + len(force_states.names)]
     agree = True
     exact = None
     for method, (tolerance, agreement) in METHODS.items():
-        times, states = simulate(name, method, tolerance, names + own.names, options)
+        times, states = simulate(name, method, tolerance, names + force_states.names, options)
         states /= scales
         if exact is None:
             start = np.concatenate([states[0, : len(names)], rates, states[0, len(names) :]])
@@ -77,36 +77,37 @@ def equations(crane):
     quantities = derivations.quantities
     count = crane.q.numel()
     mass = ca.reshape(quantities["mass_matrix"], count, count)
-    own = OwnStates(crane, derivations.rate)
-    scales = ca.DM(own.scales)
-    scaled = ca.SX.sym("x", len(own.names))
+    force_states = ForceStates(crane, derivations.rate)
+    scales = ca.DM(force_states.scales)
+    scaled = ca.SX.sym("x", len(force_states.names))
     state = ca.vertcat(crane.q, crane.v, scaled)
-    by_own = [ca.substitute(part, own.x, scales * scaled) for part in (own.forces, own.rates / scales)]
-    forces = quantities["bias"] + quantities["forces"] + by_own[0]
+    parts = (force_states.forces, force_states.rates / scales)
+    by_states = [ca.substitute(part, force_states.x, scales * scaled) for part in parts]
+    forces = quantities["bias"] + quantities["forces"] + by_states[0]
     prescribed = list(crane.rigid_drives)
     defaults = ca.DM(list(crane.spec.defaults.values()))
     at = [crane.time, state, crane.parameters]
     rates = ca.Function("rates", [crane.time, crane.parameters], [ca.densify(given_rates(crane, derivations))])
-    slopes = [ca.jacobian(forces, state), ca.jacobian(by_own[1], state)]
-    function = ca.Function("forces", at, [mass, forces, quantities[PRESCRIBED], by_own[1], *slopes])
+    slopes = [ca.jacobian(forces, state), ca.jacobian(by_states[1], state)]
+    function = ca.Function("forces", at, [mass, forces, quantities[PRESCRIBED], by_states[1], *slopes])
 
     def values(t, y):
-        mass, forces, given, of_own, slopes, slopes_of_own = (part.full() for part in function(t, y, defaults))
-        return mass, forces[:, 0], given[:, 0], of_own.reshape(-1), slopes, slopes_of_own
+        mass, forces, given, of_states, slopes, slopes_of_states = (part.full() for part in function(t, y, defaults))
+        return mass, forces[:, 0], given[:, 0], of_states.reshape(-1), slopes, slopes_of_states
 
     def slope(t, y):
-        mass, forces, given, of_own, *_ = values(t, y)
+        mass, forces, given, of_states, *_ = values(t, y)
         others = solve_unknown(mass[None], (forces - mass @ given)[None], prescribed)[0]
-        return np.concatenate([y[count : 2 * count], given + others, of_own])
+        return np.concatenate([y[count : 2 * count], given + others, of_states])
 
     def jacobian(t, y):
         """Without the derivative of the mass matrix: Newton's iteration converges without it, to the same result."""
-        mass, *_, slopes, slopes_of_own = values(t, y)
-        upper = np.hstack([np.zeros((count, count)), np.eye(count), np.zeros((count, len(own.names)))])
+        mass, *_, slopes, slopes_of_states = values(t, y)
+        upper = np.hstack([np.zeros((count, count)), np.eye(count), np.zeros((count, len(force_states.names)))])
         columns = [solve_unknown(mass[None], column[None], prescribed)[0] for column in slopes.T]
-        return np.vstack([upper, np.column_stack(columns), slopes_of_own])
+        return np.vstack([upper, np.column_stack(columns), slopes_of_states])
 
-    return slope, jacobian, rates(0, defaults).full()[:, 0], own
+    return slope, jacobian, rates(0, defaults).full()[:, 0], force_states
 
 
 def given_rates(crane, derivations):

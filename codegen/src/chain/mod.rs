@@ -150,7 +150,7 @@ impl Chain {
 
     /// Whether forces have states in addition to pose and rates: oil, and bristles of joints that stick.
     #[must_use]
-    pub fn has_own_states(&self) -> bool {
+    pub fn has_force_states(&self) -> bool {
         self.has_valves() || self.bristles().next().is_some()
     }
 

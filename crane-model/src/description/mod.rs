@@ -71,7 +71,7 @@ impl Description {
     }
 
     /// Whether forces have states besides pose and rates: forces and accelerations then need those, too.
-    pub fn has_own_states(&self) -> bool {
+    pub fn has_force_states(&self) -> bool {
         self.has_valves() || !self.bristles.is_empty()
     }
 }

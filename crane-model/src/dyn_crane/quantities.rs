@@ -9,9 +9,9 @@ use crate::{
     CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Tension, Wrench, bristles,
     dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
+    force_states::StateAt,
     hydraulics::{self, Oil},
     modes::SmallMotions,
-    own_states::StateAt,
     statics,
     statics::Equilibrium,
 };

@@ -79,7 +79,7 @@ impl<F: Formula> Adaptive<'_, F> {
     fn accept(&mut self, reached: f64) {
         let n = self.equations.n;
         self.motion.copy_from_slice(&self.step.end);
-        self.equations.restore(reached, &mut self.motion);
+        self.equations.make_absolute(reached, &mut self.motion);
         self.norm.note(&self.step.end, &self.step.error);
         let (q, v) = self.motion[..2 * n].split_at(n);
         self.norm.note_rounding(q, v);
@@ -92,9 +92,9 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
         self.motion.copy_from_slice(motion);
         let Step { end, slopes: [_, slope], .. } = &mut self.step;
         end.copy_from_slice(motion);
-        self.equations.count(t, end);
+        self.equations.make_relative(t, end);
         self.norm.start(&mut self.equations, t, end);
-        self.equations.guides.step_within(t, t + FIRST);
+        self.equations.references.step_within(t, t + FIRST);
         self.equations.slope(t, end, slope).map_err(|NotFinite| self.stuck(t, FIRST))
     }
 
@@ -107,7 +107,7 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
             }
             let stops = t + self.next * (1.0 + SLIVER) >= ahead.stop;
             self.step.length = if stops { ahead.stop - t } else { self.next };
-            self.equations.guides.step_within(t, self.step.reached());
+            self.equations.references.step_within(t, self.step.reached());
             let tried = self.formula.attempt(&mut self.equations, &mut self.step);
             if self.judge(tried) {
                 self.steps += 1;
@@ -125,10 +125,10 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
 
     fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
         self.step.at(t, motion);
-        for coordinate in self.equations.guides.coordinates() {
+        for coordinate in self.equations.references.coordinates() {
             motion[self.equations.n + coordinate] = self.step.rate_at(t, self.equations.n, coordinate);
         }
-        self.equations.restore(t, motion);
+        self.equations.make_absolute(t, motion);
     }
 
     fn statistics(&self) -> Statistics {

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use super::{
     Ahead, Cause, Method, Settings, Statistics, Stepper, Stopped,
     equations::Equations,
-    guides::Guides,
     motion::{add, add_all},
+    references::References,
     rk4,
     roughness::Roughness,
     settings::divided,
@@ -56,7 +56,7 @@ impl Equal {
 impl<'a> Rk4<'a> {
     /// Creates the motion, with the step of the settings.
     pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, Guides::rigid(crane), settings.audit);
+        let equations = Equations::new(crane, References::rigid(crane), settings.audit);
         let n = equations.n;
         Self {
             motion: vec![0.0; equations.len()],

@@ -1,12 +1,12 @@
 //! The equations of motion in first-order form, with integrals along the motion.
 
 use super::{
-    guides::Guides,
+    references::References,
     state::{NotFinite, finite},
 };
 use crate::{
     dyn_crane::DynDynamics,
-    own_states::{OwnStates, StateAt},
+    force_states::{ForceStates, StateAt},
 };
 
 /// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.
@@ -19,31 +19,31 @@ pub(super) struct Equations<'a> {
     pub n: usize,
     audit: bool,
     /// The references of the integrated numbers.
-    pub guides: Guides,
+    pub references: References,
     /// Evaluations of the accelerations so far.
     pub evaluations: usize,
     /// Pose and rates of the last evaluated motion.
     state: Vec<f64>,
-    own: OwnStates,
+    force_states: ForceStates,
     /// Rates of their states, for the powers.
     rates: Vec<f64>,
 }
 
 impl<'a> Equations<'a> {
     /// The equations of a crane, with or without integrals.
-    pub fn new(crane: &'a dyn DynDynamics, guides: Guides, audit: bool) -> Self {
+    pub fn new(crane: &'a dyn DynDynamics, references: References, audit: bool) -> Self {
         let n = crane.size();
-        let own = OwnStates::new(crane.description());
-        let rates = vec![0.0; own.len()];
-        Self { crane, n, audit, guides, evaluations: 0, state: vec![0.0; 2 * n], own, rates }
+        let force_states = ForceStates::new(crane.description());
+        let rates = vec![0.0; force_states.len()];
+        Self { crane, n, audit, references, evaluations: 0, state: vec![0.0; 2 * n], force_states, rates }
     }
 
-    /// The number of components of a motion: coordinates, rates, own states of forces and integrals.
+    /// The number of components of a motion: coordinates, rates, states of forces and integrals.
     pub fn len(&self) -> usize {
         self.integrals() + if self.audit { INTEGRALS } else { 0 }
     }
 
-    /// Number of own states of forces.
+    /// Number of states of forces.
     pub fn states(&self) -> usize {
         self.rates.len()
     }
@@ -53,25 +53,25 @@ impl<'a> Equations<'a> {
         2 * self.n + self.states()
     }
 
-    /// The own states of forces in a motion.
-    pub fn own<'m>(&self, motion: &'m [f64]) -> &'m [f64] {
+    /// The states of forces in a motion.
+    pub fn force_states<'m>(&self, motion: &'m [f64]) -> &'m [f64] {
         &motion[2 * self.n..self.integrals()]
     }
 
-    /// Converts a motion to deviations from the guides.
-    pub fn count(&mut self, t: f64, motion: &mut [f64]) {
-        self.guides.count(self.crane, t, self.n, motion);
+    /// Converts a motion to deviations from the references.
+    pub fn make_relative(&mut self, t: f64, motion: &mut [f64]) {
+        self.references.make_relative(self.crane, t, self.n, motion);
     }
 
-    /// The motion from its deviations from the guides.
-    pub fn restore(&mut self, t: f64, motion: &mut [f64]) {
-        self.guides.add(self.crane, t, 1.0, self.n, motion);
+    /// The motion from its deviations from the references.
+    pub fn make_absolute(&mut self, t: f64, motion: &mut [f64]) {
+        self.references.add(self.crane, t, 1.0, self.n, motion);
     }
 
-    /// Pose and rates of a motion given relative to the guides.
+    /// Pose and rates of a motion given relative to the references.
     pub fn state(&mut self, t: f64, motion: &[f64]) -> (&[f64], &[f64]) {
         self.state.copy_from_slice(&motion[..2 * self.n]);
-        self.guides.add(self.crane, t, 1.0, self.n, &mut self.state);
+        self.references.add(self.crane, t, 1.0, self.n, &mut self.state);
         self.state.split_at(self.n)
     }
 
@@ -88,14 +88,14 @@ impl<'a> Equations<'a> {
         [work, self.crane.dissipation(t, q, v), self.crane.load_power(t, q, v)]
     }
 
-    /// Slope of a motion given relative to the guides: rates, accelerations and powers.
+    /// Slope of a motion given relative to the references: rates, accelerations and powers.
     pub fn slope(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
         self.derivative(t, motion, out)?;
         self.powers(t, motion, out);
         Ok(())
     }
 
-    /// Rates and accelerations of a motion given relative to the guides.
+    /// Rates and accelerations of a motion given relative to the references.
     pub fn derivative(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
         let n = self.n;
         out[..n].copy_from_slice(&motion[n..2 * n]);
@@ -105,27 +105,27 @@ impl<'a> Equations<'a> {
         let (_, rest) = out.split_at_mut(n);
         let (accelerations, rest) = rest.split_at_mut(n);
         self.crane.forward_dynamics(t, q, v, accelerations);
-        if !self.own.is_empty() {
+        if !self.force_states.is_empty() {
             let rates = &mut rest[..self.rates.len()];
             let x = &motion[2 * n..2 * n + rates.len()];
-            self.own.accelerate(self.crane, &StateAt { t, q, v, x }, rates, accelerations);
+            self.force_states.accelerate(self.crane, &StateAt { t, q, v, x }, rates, accelerations);
             finite(rates)?;
         }
-        self.guides.take_accelerations(self.crane, t, accelerations);
+        self.references.subtract_accelerations(self.crane, t, accelerations);
         finite(accelerations)
     }
 
-    /// Writes the powers of a motion given relative to the guides into the last components of a slope, if it has them.
+    /// Writes the powers of a motion given relative to the references into the last components of a slope, if it has them.
     pub fn powers(&mut self, t: f64, motion: &[f64], slope: &mut [f64]) {
         if self.audit {
             self.state(t, motion);
             let (q, v) = self.state.split_at(self.n);
             let mut powers = self.powers_at(t, q, v);
             let begin = self.integrals();
-            if !self.own.is_empty() {
+            if !self.force_states.is_empty() {
                 let moment = StateAt { t, q, v, x: &motion[2 * self.n..begin] };
-                self.own.evaluate(self.crane, &moment, &mut self.rates, None);
-                let [put_in, taken_out] = self.own.powers();
+                self.force_states.evaluate(self.crane, &moment, &mut self.rates, None);
+                let [put_in, taken_out] = self.force_states.powers();
                 powers[0] += put_in;
                 powers[1] += taken_out;
             }

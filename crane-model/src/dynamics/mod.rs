@@ -5,27 +5,27 @@ mod adaptive;
 #[cfg(feature = "std")]
 pub mod bdf;
 #[cfg(feature = "std")]
-mod connected;
+mod connector_update;
 #[cfg(feature = "std")]
 mod constant;
 #[cfg(feature = "std")]
-mod course;
-#[cfg(feature = "std")]
 pub mod dormand_prince;
-#[cfg(feature = "std")]
-mod eliminated;
 #[cfg(feature = "std")]
 pub mod ensemble;
 #[cfg(feature = "std")]
 mod equations;
 #[cfg(feature = "std")]
-mod guides;
+mod force_state_update;
+#[cfg(feature = "std")]
+mod integration;
 #[cfg(feature = "std")]
 mod method;
 #[cfg(feature = "std")]
 mod motion;
 #[cfg(feature = "std")]
 mod norm;
+#[cfg(feature = "std")]
+mod references;
 pub mod rk4;
 #[cfg(feature = "std")]
 pub mod rosenbrock;
@@ -56,7 +56,7 @@ mod typed;
 #[cfg(feature = "std")]
 pub use constant::Rk4;
 #[cfg(feature = "std")]
-pub use course::Course;
+pub use integration::Integration;
 #[cfg(feature = "std")]
 pub use method::{Method, UnknownMethod};
 #[cfg(feature = "std")]

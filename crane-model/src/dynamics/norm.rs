@@ -4,7 +4,7 @@ use super::equations::Equations;
 use crate::{
     CoordinateKind,
     dyn_crane::{DynImplicit, DynModel},
-    own_states::OwnStates,
+    force_states::ForceStates,
 };
 
 /// Weight of an error of a rate relative to one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
@@ -67,7 +67,7 @@ impl Norm {
 
     /// For coordinates, rates and states of forces.
     pub fn with_states(crane: &dyn DynModel, tolerance: f64) -> Self {
-        let states = OwnStates::new(crane.description()).scales();
+        let states = ForceStates::new(crane.description()).scales();
         Self { states, ..Self::new(crane.description().coordinates.len(), tolerance) }
     }
 

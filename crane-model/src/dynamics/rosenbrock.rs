@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The order does not depend on J: an inexact Jacobian costs accuracy only in the stiff parts. It does not depend on ∂f/∂t either, which is
-//! neglected: driven coordinates are relative to their drives' motions, so that no stiff spring is forced (`guides`). Six stages, γ = 1/4, order 4,
+//! neglected: driven coordinates are relative to their drives' motions, so that no stiff spring is forced (`references`). Six stages, γ = 1/4, order 4,
 //! R(∞) = 0, and with `J = ∂f/∂y` A(α)-stable with α = 89.8°: only modes with less than 0.35 % of critical damping can grow, by
 //! less than 0.65 % per step, in steps that do not resolve them.
 //! A. Rahunanthan, D. Stanescu, High-order W-methods, J. Comput. Appl. Math. 233 (2010) 1798; the form
@@ -24,9 +24,9 @@ use super::{
     EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
     adaptive::{Adaptive, Formula},
     equations::Equations,
-    guides::Guides,
     motion::add_all,
     norm::Norm,
+    references::References,
     state::{NotFinite, State},
     step::Step,
     stepper::{Ahead, forward},
@@ -109,8 +109,8 @@ pub fn step<const N: usize, C: Implicit<N>>(
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
     let crane = Instance::<N, _>(crane);
-    let guides = Guides::of(&crane);
-    let mut equations = Equations::new(&crane, guides, false);
+    let references = References::of(&crane);
+    let mut equations = Equations::new(&crane, references, false);
     typed::step(&mut equations, t, h, state, &mut Stages::new(&crane, 2 * N))
 }
 
@@ -120,7 +120,7 @@ pub struct Rosenbrock<'a>(Adaptive<'a, Stages<'a>>);
 impl<'a> Rosenbrock<'a> {
     /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, Guides::of(crane), settings.audit);
+        let equations = Equations::new(crane, References::of(crane), settings.audit);
         let norm = Norm::with_efforts(crane, settings.tolerance);
         Self(Adaptive::new(Stages::new(crane, equations.len()), equations, norm))
     }
@@ -152,7 +152,7 @@ impl Formula for Stages<'_> {
     /// Integrals are included; J is zero for them.
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
         let h = step.length;
-        let x = equations.own(&step.start);
+        let x = equations.force_states(&step.start);
         self.system.factorise(step.t, equations.state(step.t, &step.start), x, h * GAMMA);
         self.system.solve(&step.slopes[0], &mut self.u[0]);
         for i in 1..STAGES {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Course, InitialState, Run, Sample, Settings, State, Stepper, Stopped, settings::divided};
+use super::{InitialState, Integration, Run, Sample, Settings, State, Stepper, Stopped, settings::divided};
 use crate::{
     Implicit,
     dyn_crane::{DynDynamics, DynImplicit, Instance},
@@ -93,7 +93,7 @@ pub fn simulate_from(
     settings: &Settings,
     watch: &mut dyn Watch,
 ) -> Result<Run, Stopped> {
-    follow(Course::new(crane, begin, start, settings)?, begin, settings, watch)
+    follow(Integration::new(crane, begin, start, settings)?, begin, settings, watch)
 }
 
 /// Like [`simulate_dyn`], with a stepper made for this crane and these settings: explicit ones only require [`DynDynamics`].
@@ -110,22 +110,27 @@ pub fn run(
     settings: &Settings,
     observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
 ) -> Result<Run, Stopped> {
-    let course = Course::by(Box::new(stepper), crane, 0.0, start, settings)?;
-    follow(course, 0.0, settings, &mut Samples(observe))
+    let integration = Integration::by(Box::new(stepper), crane, 0.0, start, settings)?;
+    follow(integration, 0.0, settings, &mut Samples(observe))
 }
 
 /// Follows a motion to the end of its run, from result to result.
-fn follow(mut course: Course<'_>, begin: f64, settings: &Settings, watch: &mut dyn Watch) -> Result<Run, Stopped> {
+fn follow(
+    mut integration: Integration<'_>,
+    begin: f64,
+    settings: &Settings,
+    watch: &mut dyn Watch,
+) -> Result<Run, Stopped> {
     let end = begin + settings.duration;
     let intervals = divided(settings.duration, settings.output).0;
     for interval in 0..=intervals {
-        if watch.sample(&course.sample()).is_break() || interval == intervals {
+        if watch.sample(&integration.sample()).is_break() || interval == intervals {
             break;
         }
         let result = (begin + settings.output * (interval + 1) as f64).min(end);
-        if course.advance(result, &mut |t| watch.step(t))?.is_break() {
+        if integration.advance(result, &mut |t| watch.step(t))?.is_break() {
             break;
         }
     }
-    Ok(course.run())
+    Ok(integration.run())
 }

@@ -9,16 +9,16 @@
 //! (A + cD̂ + c²K̂) z = −c² ((D̂ + cK̂) G + K̂ P),     w = c G + z,     p = c (w + P)
 //! ```
 //!
-//! The contribution of connectors, `Σ Jᵀ (c d + c² k) J`, has low rank: [`Connected`]. So has that of forces with
-//! states of their own, which are eliminated: [`Eliminated`].
+//! The contribution of connectors, `Σ Jᵀ (c d + c² k) J`, has low rank: [`ConnectorUpdate`]. So has that of forces with
+//! states of their own, which are eliminated: [`ForceStateUpdate`].
 
 use nalgebra::Matrix6;
 
-use super::{connected::Connected, eliminated::Eliminated};
+use super::{connector_update::ConnectorUpdate, force_state_update::ForceStateUpdate};
 use crate::{
     Description,
     dyn_crane::{DynImplicit, DynSystem},
-    own_states::{OwnStates, StateAt},
+    force_states::{ForceStates, StateAt},
 };
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.
@@ -35,9 +35,9 @@ pub(super) struct System<'a> {
     /// Whether some law acts at some states and not at others.
     switches: bool,
     /// Stiffness and damping of connectors.
-    connected: Connected,
+    connectors: ConnectorUpdate,
     /// Forces with states, and the number of these states.
-    own: Eliminated,
+    force_states: ForceStateUpdate,
     states: usize,
     /// c, s.
     c: f64,
@@ -66,9 +66,9 @@ impl<'a> System<'a> {
             linear,
             nonlinear: [vec![[0.0; 2]; n], vec![[0.0; 2]; n]],
             base: [Matrix6::zeros(); 2],
-            connected: Connected::new(crane),
-            own: Eliminated::new(crane),
-            states: OwnStates::new(crane.description()).len(),
+            connectors: ConnectorUpdate::new(crane),
+            force_states: ForceStateUpdate::new(crane),
+            states: ForceStates::new(crane.description()).len(),
             c: f64::NAN,
             added_inertia: zeros(),
             right: zeros(),
@@ -91,11 +91,11 @@ impl<'a> System<'a> {
         }
         let [stiffness, damping] = &self.base;
         self.factors.factorise(q, &self.added_inertia, &(damping * c + stiffness * (c * c)));
-        self.connected.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
-        let Self { factors, connected, .. } = self;
-        self.own.factorise(self.crane, &StateAt { t, q, v, x }, c, &mut |right, solution| {
+        self.connectors.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
+        let Self { factors, connectors, .. } = self;
+        self.force_states.factorise(self.crane, &StateAt { t, q, v, x }, c, &mut |right, solution| {
             factors.solve(right, solution);
-            connected.correct(solution);
+            connectors.correct(solution);
         });
         self.factorisations += 1;
     }
@@ -114,7 +114,7 @@ impl<'a> System<'a> {
         let mut of_base = self.base.iter().zip(&base).map(|(before, now)| (diagonal(before), diagonal(now)));
         of_joints.any(|(before, now)| differs(*before, *now))
             || of_base.any(|(before, now)| before.iter().zip(&now).any(|(before, now)| differs(*before, *now)))
-            || self.connected.switched(self.crane, t, (q, v))
+            || self.connectors.switched(self.crane, t, (q, v))
     }
 
     /// u for a right-hand side `(P, G, R, ·)`.
@@ -131,15 +131,15 @@ impl<'a> System<'a> {
                 *right += damping[(row, column)] * g + stiffness[(row, column)] * (c * g + p);
             }
         }
-        self.connected.add_to((g, p), c, &mut self.right);
+        self.connectors.add_to((g, p), c, &mut self.right);
         let (r, of_integrals) = rhs[2 * n..].split_at(self.states);
-        self.own.add_to((g, p), r, c, &mut self.right);
+        self.force_states.add_to((g, p), r, c, &mut self.right);
         for right in &mut self.right {
             *right *= -c * c;
         }
         self.factors.solve(&self.right, &mut self.solution);
-        self.connected.correct(&mut self.solution);
-        self.own.correct(&mut self.solution);
+        self.connectors.correct(&mut self.solution);
+        self.force_states.correct(&mut self.solution);
         let (of_q, rest) = u.split_at_mut(n);
         let (of_v, rest) = rest.split_at_mut(n);
         let (of_x, rest) = rest.split_at_mut(self.states);
@@ -147,7 +147,7 @@ impl<'a> System<'a> {
             of_v[i] = c * g[i] + self.solution[i];
             of_q[i] = c * (of_v[i] + p[i]);
         }
-        self.own.states((of_q, of_v), r, of_x);
+        self.force_states.states((of_q, of_v), r, of_x);
         for (u, rhs) in rest.iter_mut().zip(of_integrals) {
             *u = c * rhs;
         }

@@ -32,10 +32,10 @@ pub(super) fn step<const N: usize>(
         return Err(NotFinite);
     }
     let mut step = Step { t, length: h, start: motion_of(state), ..Step::new(2 * N) };
-    equations.count(t, &mut step.start);
-    equations.guides.step_within(t, t + h);
+    equations.make_relative(t, &mut step.start);
+    equations.references.step_within(t, t + h);
     equations.slope(t, &step.start, &mut step.slopes[0])?;
     formula.attempt(equations, &mut step)?;
-    equations.restore(t + h, &mut step.end);
+    equations.make_absolute(t + h, &mut step.end);
     Ok((state_of(&step.end), state_of(&step.error)))
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::valve::root;
-use crate::{CylinderInfo, PumpInfo, ValveInfo, own_states::StatefulForce};
+use crate::{CylinderInfo, PumpInfo, ValveInfo, force_states::StatefulForce};
 
 /// Relative band of pressures: a relief valve passes the nominal flow of the valve at `1 + BAND` of its set pressure; the pump delivers its
 /// maximum flow below `1 − BAND` of its set pressure.
@@ -58,7 +58,7 @@ impl Pump {
 
 impl ValveCylinder {
     /// Force at given pressures, and its derivatives.
-    pub(super) fn push(&self, here: Vector3<f64>, [piston, rod]: [f64; 2]) -> StatefulForce {
+    pub(super) fn force(&self, here: Vector3<f64>, [piston, rod]: [f64; 2]) -> StatefulForce {
         let [area, ring] = self.info.areas;
         let y = here.x - self.info.retracted;
         let beyond = if y > self.info.stroke { y - self.info.stroke } else { y.min(0.0) };

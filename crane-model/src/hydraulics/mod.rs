@@ -33,7 +33,7 @@ use nalgebra::{DMatrix, Vector3};
 use crate::{
     CylinderInfo, Description,
     dyn_crane::{DynDynamics, DynModel},
-    own_states::{STATES, StateAt, StatefulForce},
+    force_states::{STATES, StateAt, StatefulForce},
     results::CylinderState,
 };
 pub use about_rest::decays;
@@ -59,7 +59,7 @@ pub(crate) struct Hydraulics {
 impl Hydraulics {
     /// From the description of a crane; empty if no cylinder has a valve.
     pub fn new(description: &Description) -> Self {
-        let moved = description.cylinders.iter().enumerate().filter_map(|(index, info)| {
+        let with_valves = description.cylinders.iter().enumerate().filter_map(|(index, info)| {
             Some(ValveCylinder {
                 index,
                 coordinate: description.drives[info.drive].coordinate,
@@ -69,7 +69,7 @@ impl Hydraulics {
                 info: info.clone(),
             })
         });
-        let cylinders: Vec<ValveCylinder> = moved.collect();
+        let cylinders: Vec<ValveCylinder> = with_valves.collect();
         let Some(first) = cylinders.first() else { return Self::default() };
         let pump = description
             .pump
@@ -119,9 +119,9 @@ impl Hydraulics {
         crane.bias(q, &rest, &mut bias);
         crane.forces(t, q, &rest, &mut forces);
         crane.cylinder_states(q, &rest, &mut self.here);
-        let of_cylinder = |moved: &ValveCylinder| {
-            let effort = -(bias[moved.coordinate] + forces[moved.coordinate]);
-            let state = CylinderState::new(&moved.info, self.here[moved.index].into(), effort);
+        let of_cylinder = |cylinder: &ValveCylinder| {
+            let effort = -(bias[cylinder.coordinate] + forces[cylinder.coordinate]);
+            let state = CylinderState::new(&cylinder.info, self.here[cylinder.index].into(), effort);
             let [piston, rod] = state.pressures;
             [piston, rod, 0.0]
         };
@@ -136,7 +136,7 @@ impl Hydraulics {
         crane: &dyn DynModel,
         &StateAt { t, q, v, x }: &StateAt<'_>,
         rates: &mut [f64],
-        pushed: &mut [StatefulForce],
+        forces: &mut [StatefulForce],
         mut by_states: Option<&mut DMatrix<f64>>,
     ) {
         let Some(last) = self.len().checked_sub(1) else { return };
@@ -145,35 +145,35 @@ impl Hydraulics {
         let (mut taken, mut taken_by_pump) = (0.0, 0.0);
         let pump = self.pump;
         let of_pump = pump.map_or(0.0, |pump| pump.bulk_modulus / pump.info.volume);
-        for (place, moved) in self.cylinders.iter().enumerate() {
+        for (place, cylinder) in self.cylinders.iter().enumerate() {
             let first = STATES * place;
-            let (here, wanted) = (self.here[moved.index], self.wanted[moved.index]);
+            let (here, wanted) = (self.here[cylinder.index], self.wanted[cylinder.index]);
             let u = x[first + 2];
-            let flows = flows(&moved.valve, u, [x[first], x[first + 1]], p_s, moved.info.back_pressure);
+            let flows = flows(&cylinder.valve, u, [x[first], x[first + 1]], p_s, cylinder.info.back_pressure);
             let fed = usize::from(u <= 0.0);
             taken += flows.into[fed];
             taken_by_pump += flows.by_pump[fed];
-            let mut own = moved.push(here, [x[first], x[first + 1]]);
-            own.from_pump = flows.into[fed];
-            (own.first, own.count) = (first, STATES);
+            let mut force = cylinder.force(here, [x[first], x[first + 1]]);
+            force.from_pump = flows.into[fed];
+            (force.first, force.count) = (first, STATES);
             let mut block = [[0.0; STATES]; STATES];
             for side in 0..2 {
                 let sign = [1.0, -1.0][side];
-                let area = moved.info.areas[side];
-                let extension = (here.x - moved.info.retracted).clamp(0.0, moved.info.stroke);
-                let inside = extension == here.x - moved.info.retracted;
-                let way = if side == 0 { extension } else { moved.info.stroke - extension };
-                let volume = moved.info.hose_volumes[side] + area * way;
+                let area = cylinder.info.areas[side];
+                let extension = (here.x - cylinder.info.retracted).clamp(0.0, cylinder.info.stroke);
+                let inside = extension == here.x - cylinder.info.retracted;
+                let way = if side == 0 { extension } else { cylinder.info.stroke - extension };
+                let volume = cylinder.info.hose_volumes[side] + area * way;
                 let p = x[first + side];
-                let leak = moved.valve.leakage * (x[first] - x[first + 1]);
-                let (guard, guard_slope) = moved.relief_and_suction(p);
+                let leak = cylinder.valve.leakage * (x[first] - x[first + 1]);
+                let (guard, guard_slope) = cylinder.relief_and_suction(p);
                 let flow = flows.into[side] - sign * (area * here.y + leak) + guard;
-                let stiffness = moved.bulk_modulus / volume;
+                let stiffness = cylinder.bulk_modulus / volume;
                 rates[first + side] = stiffness * flow;
                 let by_way = if inside { -sign * area / volume } else { 0.0 };
-                own.rates_by_length[side] = rates[first + side] * by_way;
-                own.rates_by_speed[side] = -sign * stiffness * area;
-                let leakage = stiffness * moved.valve.leakage;
+                force.rates_by_length[side] = rates[first + side] * by_way;
+                force.rates_by_speed[side] = -sign * stiffness * area;
+                let leakage = stiffness * cylinder.valve.leakage;
                 block[side][side] = stiffness * (flows.by_own[side] + guard_slope) - leakage;
                 block[side][1 - side] = leakage;
                 block[side][2] = stiffness * flows.by_spool[side];
@@ -182,15 +182,15 @@ impl Hydraulics {
                     matrix[(last, first + side)] = if side == fed { -of_pump * flows.by_own[side] } else { 0.0 };
                 }
             }
-            let command = if moved.valve.commanded {
-                let [opening, _] = self.openings[moved.info.drive];
+            let command = if cylinder.valve.commanded {
+                let [opening, _] = self.openings[cylinder.info.drive];
                 Command { opening: opening.clamp(-1.0, 1.0), ..Command::default() }
             } else {
-                moved.command(here, wanted, [x[first], x[first + 1]], p_s)
+                cylinder.command(here, wanted, [x[first], x[first + 1]], p_s)
             };
-            let lag = moved.valve.lag;
+            let lag = cylinder.valve.lag;
             rates[first + 2] = (command.opening - u) / lag;
-            own.rates_by_length[2] = command.by_length / lag;
+            force.rates_by_length[2] = command.by_length / lag;
             block[2] = [command.by_sides[0] / lag, command.by_sides[1] / lag, -1.0 / lag];
             if let Some(matrix) = by_states.as_deref_mut() {
                 for (row, numbers) in block.iter().enumerate() {
@@ -201,7 +201,7 @@ impl Hydraulics {
                 matrix[(last, first + 2)] = -of_pump * flows.by_spool[fed];
                 matrix[(first + 2, last)] = command.by_pump / lag;
             }
-            pushed[place] = own;
+            forces[place] = force;
         }
         let (delivered, slope) = pump.map_or((0.0, 0.0), |pump| pump.flow(p_s));
         rates[last] = of_pump * (delivered - taken);
@@ -218,10 +218,10 @@ impl Hydraulics {
         let [wanted_q, wanted_v] = &mut self.place;
         wanted_q.copy_from_slice(q);
         wanted_v.copy_from_slice(v);
-        for moved in &self.cylinders {
-            let [position, rate] = self.motions[moved.info.drive];
-            wanted_q[moved.coordinate] = position;
-            wanted_v[moved.coordinate] = rate;
+        for cylinder in &self.cylinders {
+            let [position, rate] = self.motions[cylinder.info.drive];
+            wanted_q[cylinder.coordinate] = position;
+            wanted_v[cylinder.coordinate] = rate;
         }
         crane.cylinder_states(wanted_q, wanted_v, &mut self.wanted);
         // Bending between the pins of a cylinder changes its length slightly, but its force acts on its joint only.

@@ -4,7 +4,7 @@ use super::Hydraulics;
 use crate::{
     Description,
     dyn_crane::DynModel,
-    own_states::{STATES, StateAt, StatefulForce},
+    force_states::{STATES, StateAt, StatefulForce},
     results::CylinderState,
 };
 
@@ -23,19 +23,19 @@ impl Oil {
         if hydraulics.is_empty() || x.len() < hydraulics.len() {
             return None;
         }
-        let mut pushed = vec![StatefulForce::default(); hydraulics.count()];
-        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut pushed, None);
+        let mut forces = vec![StatefulForce::default(); hydraulics.count()];
+        hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut forces, None);
         let cylinders =
-            hydraulics.cylinders.iter().zip(&pushed).zip(x.chunks_exact(STATES)).map(|((moved, own), x)| {
+            hydraulics.cylinders.iter().zip(&forces).zip(x.chunks_exact(STATES)).map(|((cylinder, force), x)| {
                 let state = CylinderState {
-                    length: hydraulics.here[moved.index].x,
-                    speed: own.speed,
-                    arm: own.arm,
-                    force: own.force,
+                    length: hydraulics.here[cylinder.index].x,
+                    speed: force.speed,
+                    arm: force.arm,
+                    force: force.force,
                     pressures: [x[0], x[1]],
-                    flow: own.from_pump,
+                    flow: force.from_pump,
                 };
-                (moved.index, state, x[2])
+                (cylinder.index, state, x[2])
             });
         Some(Self { cylinders: cylinders.collect(), pump: hydraulics.delivered(x) })
     }

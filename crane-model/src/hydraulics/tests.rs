@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::{Command, Pump, ValveCylinder, valve};
 use crate::{CylinderInfo, PumpInfo, ValveInfo};
 
-fn moved() -> ValveCylinder {
+fn cylinder() -> ValveCylinder {
     let valve = ValveInfo {
         flow: 1e-3,
         pressure_drop: 1e6,
@@ -42,7 +42,7 @@ const CLOSE: f64 = 1e-5;
 
 #[test]
 fn flows_have_their_derivatives() {
-    let ValveCylinder { valve, .. } = moved();
+    let ValveCylinder { valve, .. } = cylinder();
     for u in [0.4, -0.7] {
         let sides = [9e6, 4e6];
         let (pump, tank) = (2e7, 3e5);
@@ -73,11 +73,11 @@ fn flows_have_their_derivatives() {
 
 #[test]
 fn servo_and_stop_have_their_derivatives() {
-    let moved = moved();
+    let cylinder = cylinder();
     let (here, wanted, sides, pump) = (Vector3::new(0.8, 0.02, 0.3), Vector3::new(0.81, 0.05, 0.3), [9e6, 4e6], 2e7);
     for wanted in [wanted, Vector3::new(0.79, -0.05, 0.3)] {
-        let Command { by_length, by_sides, by_pump, .. } = moved.command(here, wanted, sides, pump);
-        let opening = |l: f64, sides, pump| moved.command(Vector3::new(l, 0.02, 0.3), wanted, sides, pump).opening;
+        let Command { by_length, by_sides, by_pump, .. } = cylinder.command(here, wanted, sides, pump);
+        let opening = |l: f64, sides, pump| cylinder.command(Vector3::new(l, 0.02, 0.3), wanted, sides, pump).opening;
         assert!(off(|l| opening(l, sides, pump), 0.8, 1e-6, by_length) < CLOSE);
         assert!(off(|pump| opening(0.8, sides, pump), pump, 1e3, by_pump) < CLOSE);
         let fed = usize::from(wanted.y <= 0.0);
@@ -89,20 +89,20 @@ fn servo_and_stop_have_their_derivatives() {
         assert!(off(own, sides[fed], 1e3, by_sides[fed]) < CLOSE);
     }
     for (length, speed) in [(1.0004, 0.1), (0.5996, -0.1), (1.0004, -0.1)] {
-        let push = |l: f64, v: f64| moved.push(Vector3::new(l, v, 0.3), sides);
-        let at = push(length, speed);
-        assert!(off(|l| push(l, speed).force, length, 1e-7, at.by_length) < CLOSE);
-        assert!(off(|v| push(length, v).force, speed, 1e-4, at.by_speed) < CLOSE);
+        let force = |l: f64, v: f64| cylinder.force(Vector3::new(l, v, 0.3), sides);
+        let at = force(length, speed);
+        assert!(off(|l| force(l, speed).force, length, 1e-7, at.by_length) < CLOSE);
+        assert!(off(|v| force(length, v).force, speed, 1e-4, at.by_speed) < CLOSE);
     }
 }
 
 #[test]
 fn relief_and_suction_open_at_their_pressures() {
-    let moved = moved();
-    assert_eq!(moved.relief_and_suction(1e7), (0.0, 0.0));
+    let cylinder = cylinder();
+    assert_eq!(cylinder.relief_and_suction(1e7), (0.0, 0.0));
     // The nominal flow of the valve, 5 % above the maximum pressure and 1 bar below the tank's.
-    let (out, _) = moved.relief_and_suction(1.05 * 2.8e7);
-    let (into, _) = moved.relief_and_suction(2e5);
+    let (out, _) = cylinder.relief_and_suction(1.05 * 2.8e7);
+    let (into, _) = cylinder.relief_and_suction(2e5);
     assert!((out + 1e-3).abs() < 1e-12 && (into - 1e-3).abs() < 1e-12);
     let pump = Pump {
         info: PumpInfo { max_flow: 2e-3, pressure: Some(2e7), volume: 5e-3 },

@@ -4,8 +4,8 @@ use crate::{
     ConnectorInfo, CoordinateKind, Description, bristles,
     dyn_crane::{DynCrane, Energies},
     dynamics::Sample,
+    force_states::StateAt,
     hydraulics::Oil,
-    own_states::StateAt,
     results::{Column, Table, cylinders},
 };
 

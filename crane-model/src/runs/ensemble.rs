@@ -83,7 +83,7 @@ pub struct Conduct<'a> {
 /// per row, in order.
 pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, conduct: &Conduct<'_>) -> Vec<Outcome> {
     // Lanes do not support states of forces.
-    let in_lanes = settings.method == Method::Rk4 && !crane.description().has_own_states();
+    let in_lanes = settings.method == Method::Rk4 && !crane.description().has_force_states();
     let piece = if in_lanes { crane.lanes() } else { 1 };
     let waiting = Mutex::new(rows.chunks(piece).enumerate());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();

@@ -23,7 +23,7 @@ pub fn eval(options: &Eval, registry: &Registry, out: &mut dyn Write) -> Outcome
     let crane = registry.live(options.crane.open(registry)?.as_ref())?;
     let by_forces = [Quantity::Forces, Quantity::Accelerations, Quantity::DriveEfforts];
     if let Some(quantity) = options.quantities.iter().find(|quantity| by_forces.contains(quantity))
-        && crane.description().has_own_states()
+        && crane.description().has_force_states()
     {
         return Err(Problem::usage(
             format!(

@@ -61,7 +61,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
         Language::C => {
             let by_forces = ["forces", "forward_dynamics"];
             if let Some(name) = options.functions.iter().find(|name| by_forces.contains(&name.as_str()))
-                && chain.has_own_states()
+                && chain.has_force_states()
             {
                 return Err(Problem::usage(
                     format!(

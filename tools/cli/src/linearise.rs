@@ -52,7 +52,7 @@ type Mode = (DampedMode, ComplexShape);
 pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let crane = registry.live(options.analysis.crane.open(registry)?.as_ref())?;
     let description = crane.description();
-    if description.has_own_states() {
+    if description.has_force_states() {
         return Err(Problem::usage(
             format!(
                 "the forces of {} follow from the pressures of its cylinders or bristles of its joints",
@@ -110,7 +110,7 @@ fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<Mot
                 missing.retain(|name| **name != *crane.description().coordinates[index].name);
             }
             Variable::Rate(index) => v[index] = value,
-            Variable::Own(_) => {}
+            Variable::ForceState(_) => {}
         }
     }
     if !missing.is_empty() {
@@ -185,7 +185,7 @@ fn read_held(given: &[String], description: &Description) -> Outcome<Vec<Held>> 
             Variable::Position(index) => (index, Some(value), None),
             Variable::Rate(index) => (index, None, Some(value)),
             // Cranes with force states were refused.
-            Variable::Own(_) => continue,
+            Variable::ForceState(_) => continue,
         };
         match held.iter_mut().find(|held| held.coordinate == coordinate) {
             Some(held) => {

@@ -5,7 +5,7 @@ use std::path::Path;
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
-    own_states::{self, OwnStates},
+    force_states::{self, ForceStates},
     runs::Start,
 };
 
@@ -25,7 +25,7 @@ pub enum Variable {
     /// The rate of a coordinate.
     Rate(usize),
     /// A state of a force: of the oil, or the deflection of bristles.
-    Own(usize),
+    ForceState(usize),
 }
 
 impl Variable {
@@ -33,8 +33,9 @@ impl Variable {
     fn of(name: &str, description: &Description) -> Option<Self> {
         let place = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
         let rate = || name.strip_suffix(RATE).and_then(place).map(Self::Rate);
-        let own = || own_states::columns(description).iter().position(|column| column == name).map(Self::Own);
-        place(name).map(Self::Position).or_else(rate).or_else(own)
+        let force_state =
+            || force_states::columns(description).iter().position(|column| column == name).map(Self::ForceState);
+        place(name).map(Self::Position).or_else(rate).or_else(force_state)
     }
 
     /// The variable that an option names.
@@ -49,7 +50,7 @@ impl Variable {
         match self {
             Self::Position(place) => start.q[place] = value,
             Self::Rate(place) => start.v[place] = value,
-            Self::Own(place) => {
+            Self::ForceState(place) => {
                 if start.x.len() <= place {
                     start.x.resize(place + 1, f64::NAN);
                 }
@@ -77,7 +78,7 @@ impl Timing {
             for (variable, value) in row(file, description, None)?.values {
                 variable.set(&mut start, value);
             }
-            let states = own_states::columns(description);
+            let states = force_states::columns(description);
             start.x.resize(if start.x.is_empty() { 0 } else { states.len() }, f64::NAN);
             if let Some(place) = start.x.iter().position(|x| x.is_nan()) {
                 let title = format!("{} has no column {}", file.display(), states[place]);
@@ -114,11 +115,11 @@ impl Timing {
         }
         if !start.x.is_empty() {
             // States that are not given take the values that hold the pose.
-            let held = OwnStates::new(description).holding(crane, 0.0, &start.q);
+            let held = ForceStates::new(description).holding(crane, 0.0, &start.q);
             start.x.resize(held.len(), f64::NAN);
             start.x.iter_mut().zip(held).filter(|(x, _)| x.is_nan()).for_each(|(x, held)| *x = held);
         }
-        if let Some(wrong) = own_states::impossible(description, &start.x) {
+        if let Some(wrong) = force_states::impossible(description, &start.x) {
             return Err(Problem::usage(
                 wrong,
                 "give an opening from −1 (fully open, retracts) to 1 (fully open, extends)",

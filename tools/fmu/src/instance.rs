@@ -7,7 +7,7 @@ use std::path::Path;
 use crane_live::{LiveCrane, Motion};
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Settings, Stopped};
-use crane_model::own_states::{self, OwnStates};
+use crane_model::force_states::{self, ForceStates};
 use crane_model::results;
 use crane_model::runs::Start;
 use crane_model::statics;
@@ -185,7 +185,7 @@ impl Instance {
 
     /// Number of continuous states: coordinates, rates and states of forces.
     pub fn states(&self) -> usize {
-        2 * self.crane.size() + own_states::columns(self.crane.description()).len()
+        2 * self.crane.size() + force_states::columns(self.crane.description()).len()
     }
 
     /// The time, s.
@@ -215,7 +215,7 @@ impl Instance {
                 q = Start::at(crane, &equilibrium).map_err(Fault::error)?.q;
             }
             self.crane.prescribe(self.begin, &mut q, &mut v);
-            let x = OwnStates::new(self.crane.description()).holding(&self.crane, self.begin, &q);
+            let x = ForceStates::new(self.crane.description()).holding(&self.crane, self.begin, &q);
             self.moment = Some(Moment { t: self.begin, q, v, x });
             self.forget();
         }
@@ -284,7 +284,7 @@ impl Instance {
         let Self { crane, moment: Some(Moment { t, q, v, x }), accelerations, .. } = self else {
             return Err(Fault::nowhere());
         };
-        Ok(accelerations.get_or_insert_with(|| own_states::accelerations(crane, *t, (q, v), x)))
+        Ok(accelerations.get_or_insert_with(|| force_states::accelerations(crane, *t, (q, v), x)))
     }
 
     /// Sets variables by their references; only parameters and inputs can be set. Rules that involve several parameters are
@@ -401,7 +401,7 @@ impl Instance {
                 format!("the acceleration of {}", self.crane.description().coordinates[index].name)
             }
             Some(index) => {
-                format!("the rate of {}", own_states::columns(self.crane.description())[index - rates.len()])
+                format!("the rate of {}", force_states::columns(self.crane.description())[index - rates.len()])
             }
             None => return Ok(()),
         };
@@ -431,7 +431,7 @@ impl Instance {
     ) -> Result<(), Fault> {
         /// The cube root of the machine epsilon balances truncation and rounding errors of central differences.
         const RELATIVE: f64 = 6e-6;
-        let scales = OwnStates::new(self.crane.description()).scales();
+        let scales = ForceStates::new(self.crane.description()).scales();
         let mut greatest = 0.0_f64;
         for (&reference, along) in knowns.iter().zip(direction) {
             let scale = if let Source::Own(index) = self.variable(reference)?.source { scales[index] } else { 1.0 };

@@ -1,7 +1,7 @@
 //! The variables of a crane.
 
 use crane_codegen::SourceFile;
-use crane_model::{CoordinateRole, Description, own_states, results};
+use crane_model::{CoordinateRole, Description, force_states, results};
 
 /// What a variable is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub fn list(description: &Description) -> Vec<Variable> {
         .filter(|coordinate| coordinate.role.is_element())
         .map(|coordinate| format!("{}_moment", coordinate.name))
         .collect();
-    let states = own_states::columns(description);
+    let states = force_states::columns(description);
     let mut units = vec![String::new(); states.len()];
     let quantities = results::quantities(description).into_iter().enumerate().map(|(index, column)| {
         let source = match index {

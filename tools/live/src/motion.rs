@@ -1,8 +1,8 @@
-//! A crane in motion: the crane and the course that borrows it, in one value.
+//! A crane in motion: the crane and the integration that borrows it, in one value.
 
 use std::ops::ControlFlow;
 
-use crane_model::dynamics::{Course, InitialState, Run, Sample, Settings, Stopped};
+use crane_model::dynamics::{InitialState, Integration, Run, Sample, Settings, Stopped};
 use self_cell::self_cell;
 
 use crate::LiveCrane;
@@ -11,7 +11,7 @@ self_cell!(
     struct Moving {
         owner: LiveCrane,
         #[covariant]
-        dependent: Course,
+        dependent: Integration,
     }
 );
 
@@ -22,21 +22,21 @@ impl Motion {
     /// From a state at a time, s.
     ///
     /// # Errors
-    /// As [`Course::new`].
+    /// As [`Integration::new`].
     pub fn new(crane: LiveCrane, begin: f64, start: &InitialState, settings: &Settings) -> Result<Self, Stopped> {
-        Moving::try_new(crane, |crane| Course::new(crane, begin, start, settings)).map(Self)
+        Moving::try_new(crane, |crane| Integration::new(crane, begin, start, settings)).map(Self)
     }
 
     /// Continues to a later time, s. `step` receives the time after every step, and may stop the motion: then the last result is kept.
     ///
     /// # Errors
-    /// As [`Course::advance`].
+    /// As [`Integration::advance`].
     pub fn advance(
         &mut self,
         result: f64,
         step: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>, Stopped> {
-        self.0.with_dependent_mut(|_, course| course.advance(result, step))
+        self.0.with_dependent_mut(|_, integration| integration.advance(result, step))
     }
 
     /// The state reached.

@@ -297,7 +297,7 @@ fn a_run_of_ten_seconds_agrees() {
 #[test]
 fn ensembles_agree() {
     // Ensembles in lanes do not support states of forces.
-    for (compiled, live) in both().into_iter().filter(|(_, live)| !live.description().has_own_states()) {
+    for (compiled, live) in both().into_iter().filter(|(_, live)| !live.description().has_force_states()) {
         let member = |factor: f64| {
             let parameters = compiled.description().parameters.iter().map(|info| info.default * factor).collect();
             Member { parameters, start: InitialState::at_rest(compiled.guess()) }

@@ -6,8 +6,8 @@ use crane_model::{
     CoordinateRole,
     dyn_crane::DynCrane,
     dynamics::Sample,
+    force_states::ForceStates,
     modes::{NoModes, undamped},
-    own_states::OwnStates,
     results::{Recording, Table},
 };
 use serde_json::{Value, json};
@@ -68,7 +68,7 @@ pub fn data(subject: &Subject<'_>, program: Program) -> Result<Value, NoModes> {
 
 /// The single result of a crane at rest, with its drives at their start positions.
 fn rest(rig: &dyn DynCrane, q: &[f64]) -> Table {
-    let (v, x) = (vec![0.0; q.len()], OwnStates::new(rig.description()).holding(rig, 0.0, q));
+    let (v, x) = (vec![0.0; q.len()], ForceStates::new(rig.description()).holding(rig, 0.0, q));
     let mut recording = Recording::new(rig);
     recording.push(&Sample { t: 0.0, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0 });
     recording.into_table()

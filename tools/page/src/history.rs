@@ -3,7 +3,7 @@
 use crane_model::{
     Wrench,
     dyn_crane::DynCrane,
-    own_states, results,
+    force_states, results,
     tipping::{TippingLine, lines},
 };
 
@@ -26,7 +26,7 @@ impl Instant {
 
     /// In motion.
     fn moving(rig: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Self {
-        let (a, _) = own_states::accelerations(rig, t, (q, v), x);
+        let (a, _) = force_states::accelerations(rig, t, (q, v), x);
         Self { t, lines: lines(rig, t, q, v, &a), wrenches: rig.internal_forces_at(t, q, v, &a) }
     }
 }
@@ -37,7 +37,7 @@ pub fn instants<'a>(rig: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64>>
     // Time, coordinates and rates come first.
     let columns = results::quantities(rig.description());
     let place = |name: String| columns.iter().position(|column| column.name == name);
-    let oil: Vec<usize> = own_states::columns(rig.description()).into_iter().filter_map(place).collect();
+    let oil: Vec<usize> = force_states::columns(rig.description()).into_iter().filter_map(place).collect();
     rows.map(|row| {
         let x: Vec<f64> = oil.iter().map(|&place| row[place]).collect();
         Instant::moving(rig, row[0], (&row[1..=n], &row[n + 1..=2 * n]), &x)

@@ -592,7 +592,7 @@ impl Crane {
                     | FunctionId::Linearise
             )
         );
-        if by_forces && self.live.description().has_own_states() {
+        if by_forces && self.live.description().has_force_states() {
             return Err(PyValueError::new_err(
                 "forces of this crane follow from pressures or bristles, which are states of a run: use simulate, simulation or modes",
             ));

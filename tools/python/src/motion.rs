@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings, Statistics, Stopped};
-use crane_model::own_states::{self, OwnStates};
+use crane_model::force_states::{self, ForceStates};
 use crane_model::results::{Column, Peaks, cautions};
 use crane_model::runs::ensemble::{self, Conduct};
 use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, record_checked, step_limit};
@@ -314,8 +314,8 @@ impl Crane {
         }
         let settings = Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..timing.settings(description)? };
         let start = InitialState { q: given("q", q, description)?, v: given("v", v, description)?, x };
-        let states = OwnStates::new(description).len();
-        if let Some(wrong) = own_states::impossible(description, &start.x) {
+        let states = ForceStates::new(description).len();
+        if let Some(wrong) = force_states::impossible(description, &start.x) {
             return Err(PyValueError::new_err(wrong));
         }
         if !start.x.is_empty() && start.x.len() != states {

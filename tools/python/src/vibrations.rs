@@ -51,7 +51,7 @@ impl Crane {
         t: Given<'_, 'py>,
         invalid: &str,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.refuse_own_states()?;
+        self.refuse_force_states()?;
         let n = self.live.size();
         self.one_by_one(py, State { t, q: Some(q), v: Some(v), a: Some(a) }, &[3, n, n], invalid, |crane, at, out| {
             let (mass, rest) = out.split_at_mut(n * n);
@@ -82,7 +82,7 @@ impl Crane {
         t: Given<'_, 'py>,
         invalid: &str,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.refuse_own_states()?;
+        self.refuse_force_states()?;
         let n = self.live.size();
         let find = |crane: &LiveCrane, at: &Moment, out: &mut [f64]| {
             let of = |&(coordinate, positioned): &(usize, bool)| Held {
@@ -188,8 +188,8 @@ impl Crane {
 
 impl Crane {
     /// Refuses cranes whose forces have their own states: these do not follow from pose and rates alone.
-    fn refuse_own_states(&self) -> PyResult<()> {
-        if self.live.description().has_own_states() {
+    fn refuse_force_states(&self) -> PyResult<()> {
+        if self.live.description().has_force_states() {
             let message =
                 "forces of this crane follow from pressures or bristles, which are states of a run: use modes";
             return Err(PyValueError::new_err(message));

@@ -47,8 +47,8 @@ impl<'a> Correction<'a> {
         self.d.fill(0.0);
         self.t = history.t + history.h;
         self.c = history.h / GAMMAS[history.order];
-        equations.guides.step_within(history.t, self.t);
-        let x = equations.own(&self.end);
+        equations.references.step_within(history.t, self.t);
+        let x = equations.force_states(&self.end);
         self.system.factorise(self.t, equations.state(self.t, &self.end), x, self.c);
     }
 

@@ -23,8 +23,8 @@ use super::{
     Ahead, Cause, EffortAccuracy, Method, Settings, Statistics, Stepper, Stopped,
     adaptive::{FIRST, LEAST, LONGEST, SAFETY, SLIVER},
     equations::Equations,
-    guides::Guides,
     norm::Norm,
+    references::References,
     state::{NotFinite, State},
     stopped::StepContext,
     typed::{motion_of, state_of},
@@ -71,14 +71,14 @@ pub fn step<const N: usize, C: Implicit<N>>(
     /// Allowed last increment, relative to 1 m or rad plus the size of the new state.
     const EXACT: f64 = 1e-14;
     let crane = Instance::<N, _>(crane);
-    let mut equations = Equations::new(&crane, Guides::of(&crane), false);
+    let mut equations = Equations::new(&crane, References::of(&crane), false);
     if equations.states() > 0 {
         return Err(NotFinite);
     }
     let mut history = History::new(2 * N);
     let mut past: Vec<_> = past.iter().map(motion_of).collect();
     for (k, motion) in past.iter_mut().enumerate() {
-        equations.count(t - h * k as f64, motion);
+        equations.make_relative(t - h * k as f64, motion);
     }
     history.through(&past, t, h);
     let mut correction = Correction::new(&crane, 2 * N);
@@ -89,7 +89,7 @@ pub fn step<const N: usize, C: Implicit<N>>(
         correction.improve(&mut equations)?;
         let scale = 1.0 + EXACT * norm.size(&origin, &correction.end);
         if norm.size(&correction.end, &correction.improvement) < scale {
-            equations.restore(t + h, &mut correction.end);
+            equations.make_absolute(t + h, &mut correction.end);
             return Ok(state_of(&correction.end));
         }
     }
@@ -153,7 +153,7 @@ struct Control {
 impl<'a> Bdf<'a> {
     /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, Guides::of(crane), settings.audit);
+        let equations = Equations::new(crane, References::of(crane), settings.audit);
         let norm = Norm::with_efforts(crane, SHARE * settings.tolerance);
         let len = equations.len();
         let contraction = Contraction { ratio: 1.0, h: 1.0, age: Contraction::LIFETIME };
@@ -195,7 +195,7 @@ impl<'a> Bdf<'a> {
     fn accept(&mut self) {
         let n = self.equations.n;
         self.motion.copy_from_slice(&self.history.differences[0]);
-        self.equations.restore(self.history.t, &mut self.motion);
+        self.equations.make_absolute(self.history.t, &mut self.motion);
         let (q, v) = self.motion[..2 * n].split_at(n);
         self.control.norm.note_rounding(q, v);
     }
@@ -240,9 +240,9 @@ impl Stepper for Bdf<'_> {
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
         self.motion.copy_from_slice(motion);
         let mut start = motion.to_vec();
-        self.equations.count(t, &mut start);
+        self.equations.make_relative(t, &mut start);
         self.control.norm.start(&mut self.equations, t, &start);
-        self.equations.guides.step_within(t, t + FIRST);
+        self.equations.references.step_within(t, t + FIRST);
         let slope = self.equations.slope(t, &start, &mut self.slope);
         self.history.begin(t, &start, &self.slope, FIRST);
         self.control.alike = 0;
@@ -260,7 +260,7 @@ impl Stepper for Bdf<'_> {
             }
             if failures % PATIENCE == 0 {
                 let History { t, h, differences: [last, ..], .. } = &self.history;
-                self.equations.guides.step_within(*t, t + h);
+                self.equations.references.step_within(*t, t + h);
                 let slope = self.equations.slope(*t, last, &mut self.slope);
                 slope.map_err(|NotFinite| self.stuck())?;
                 self.history.begin_again(&self.slope);
@@ -282,7 +282,7 @@ impl Stepper for Bdf<'_> {
 
     fn interpolate(&mut self, t: f64, motion: &mut [f64]) {
         self.history.at(t, motion);
-        self.equations.restore(t, motion);
+        self.equations.make_absolute(t, motion);
     }
 
     fn statistics(&self) -> Statistics {

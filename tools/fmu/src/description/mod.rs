@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use crane_codegen::exchange::xml::{Xml, number_text};
 use crane_model::dyn_crane::DynModel;
 use crane_model::dynamics::Settings;
-use crane_model::own_states;
+use crane_model::force_states;
 
 use crate::variables::{self, Source, Variable};
 
@@ -56,7 +56,7 @@ impl<'a> Subject<'a> {
     fn derivatives(&self) -> Vec<usize> {
         let n = self.crane.size();
         let (rates, accelerations) = ((0..n).map(Source::Rate), (0..n).map(Source::Acceleration));
-        let own = (0..own_states::columns(self.crane.description()).len()).map(Source::OwnRate);
+        let own = (0..force_states::columns(self.crane.description()).len()).map(Source::OwnRate);
         rates.chain(accelerations).chain(own).map(|source| self.reference(source)).collect()
     }
 

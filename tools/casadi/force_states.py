@@ -5,7 +5,7 @@ import casadi as ca
 from hydraulics import Oil
 
 
-class OwnStates:
+class ForceStates:
     """The states x of a crane's forces, their names in results, their scales and rates, and the generalized forces."""
 
     def __init__(self, crane, rate):

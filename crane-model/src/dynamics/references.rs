@@ -8,8 +8,8 @@
 use crate::{CoordinateRole, Description, dyn_crane::DynModel};
 
 /// Coordinates that are relative to the motions of their drives.
-pub(super) struct Guides {
-    guided: Vec<Guided>,
+pub(super) struct References {
+    references: Vec<Reference>,
     /// `p`, `ṗ` of all drives at the last evaluated time, and at two times near it.
     motions: Vec<[f64; 2]>,
     near: [Vec<[f64; 2]>; 2],
@@ -19,7 +19,7 @@ pub(super) struct Guides {
 
 /// A coordinate that is relative to a motion.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Guided {
+pub(super) struct Reference {
     pub coordinate: usize,
     /// Index of its drive.
     drive: usize,
@@ -27,7 +27,7 @@ pub(super) struct Guided {
     rigid: bool,
 }
 
-impl Guides {
+impl References {
     /// Fraction of a step over which rates are differenced: the error is of second order in it.
     const DIFFERENCE: f64 = 1e-3;
     /// Shortest time between differenced rates, s: rounding of a rate then causes an error of 1e-8 m/s² or rad/s².
@@ -44,23 +44,25 @@ impl Guides {
         Self::new(crane, |_, rigid| rigid)
     }
 
-    fn new(crane: &dyn DynModel, counts: impl Fn(usize, bool) -> bool) -> Self {
+    fn new(crane: &dyn DynModel, has_reference: impl Fn(usize, bool) -> bool) -> Self {
         let Description { drives, coordinates, cylinders, .. } = crane.description();
-        let guided = drives.iter().enumerate().map(|(drive, info)| {
+        let references = drives.iter().enumerate().map(|(drive, info)| {
             let rigid = coordinates[info.coordinate].role == CoordinateRole::Prescribed;
-            Guided { coordinate: info.coordinate, drive, rigid }
+            Reference { coordinate: info.coordinate, drive, rigid }
         });
         // A joint that is moved by oil does not follow its drive's motion closely.
         let by_oil =
             |drive: usize| cylinders.iter().any(|cylinder| cylinder.drive == drive && cylinder.valve.is_some());
-        let guided = guided.filter(|guided| counts(guided.drive, guided.rigid) && !by_oil(guided.drive)).collect();
+        let references = references
+            .filter(|reference| has_reference(reference.drive, reference.rigid) && !by_oil(reference.drive))
+            .collect();
         let motions = vec![[0.0; 2]; drives.len()];
-        Self { guided, near: [motions.clone(), motions.clone()], motions, within: [0.0; 2] }
+        Self { references, near: [motions.clone(), motions.clone()], motions, within: [0.0; 2] }
     }
 
     /// The coordinates that are relative to a motion.
     pub fn coordinates(&self) -> impl Iterator<Item = usize> {
-        self.guided.iter().map(|guided| guided.coordinate)
+        self.references.iter().map(|reference| reference.coordinate)
     }
 
     /// Sets the step from `begin` to `end`, s.
@@ -69,30 +71,30 @@ impl Guides {
     }
 
     /// Makes a motion of `n` coordinates relative to the drives' motions.
-    pub fn count(&mut self, crane: &dyn DynModel, t: f64, n: usize, motion: &mut [f64]) {
+    pub fn make_relative(&mut self, crane: &dyn DynModel, t: f64, n: usize, motion: &mut [f64]) {
         self.add(crane, t, -1.0, n, motion);
-        for guided in self.guided.iter().filter(|guided| guided.rigid) {
-            motion[guided.coordinate] = 0.0;
-            motion[n + guided.coordinate] = 0.0;
+        for reference in self.references.iter().filter(|reference| reference.rigid) {
+            motion[reference.coordinate] = 0.0;
+            motion[n + reference.coordinate] = 0.0;
         }
     }
 
     /// Adds `sign (p, ṗ)` to a motion of `n` coordinates.
     pub fn add(&mut self, crane: &dyn DynModel, t: f64, sign: f64, n: usize, motion: &mut [f64]) {
-        if self.guided.is_empty() {
+        if self.references.is_empty() {
             return;
         }
         crane.drive_motions(t, &mut self.motions);
-        for guided in &self.guided {
-            let [position, rate] = self.motions[guided.drive];
-            motion[guided.coordinate] += sign * position;
-            motion[n + guided.coordinate] += sign * rate;
+        for reference in &self.references {
+            let [position, rate] = self.motions[reference.drive];
+            motion[reference.coordinate] += sign * position;
+            motion[n + reference.coordinate] += sign * rate;
         }
     }
 
     /// Subtracts `p̈` from accelerations. Rates are differenced within the step, because a motion may be less smooth at its ends.
-    pub fn take_accelerations(&mut self, crane: &dyn DynModel, t: f64, accelerations: &mut [f64]) {
-        if self.guided.is_empty() {
+    pub fn subtract_accelerations(&mut self, crane: &dyn DynModel, t: f64, accelerations: &mut [f64]) {
+        if self.references.is_empty() {
             return;
         }
         let [begin, end] = self.within;
@@ -109,11 +111,11 @@ impl Guides {
         for (shift, near) in shifts.iter().zip(&mut self.near) {
             crane.drive_motions(t + shift, near);
         }
-        for guided in &self.guided {
-            let rates = [&self.motions, &self.near[0], &self.near[1]].map(|motions| motions[guided.drive][1]);
+        for reference in &self.references {
+            let rates = [&self.motions, &self.near[0], &self.near[1]].map(|motions| motions[reference.drive][1]);
             let sum: f64 = rates.iter().zip(weights).map(|(rate, weight)| rate * weight).sum();
-            let acceleration = &mut accelerations[guided.coordinate];
-            *acceleration = if guided.rigid { 0.0 } else { *acceleration - sum / (2.0 * by) };
+            let acceleration = &mut accelerations[reference.coordinate];
+            *acceleration = if reference.rigid { 0.0 } else { *acceleration - sum / (2.0 * by) };
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// The connectors of a crane at a state.
-pub(super) struct Connected {
+pub(super) struct ConnectorUpdate {
     rows: Vec<Row>,
     /// S.
     schur: Option<Cholesky<f64, Dyn>>,
@@ -37,14 +37,14 @@ struct Row {
     /// J of the spanned coordinates.
     jacobian: Vec<f64>,
     /// M⁻¹ Jᵀ.
-    answer: Vec<f64>,
+    inverse_column: Vec<f64>,
     /// k, N/m, and d, N s/m.
     stiffness_and_damping: [f64; 2],
     /// `c d + c² k`
     added_inertia: f64,
 }
 
-impl Connected {
+impl ConnectorUpdate {
     /// Storage for the connectors of a crane.
     pub fn new(crane: &dyn DynImplicit) -> Self {
         let n = crane.size();
@@ -52,7 +52,7 @@ impl Connected {
         let row = |spanned @ [first, end]: [usize; 2]| Row {
             spanned,
             jacobian: vec![0.0; end - first],
-            answer: vec![0.0; n],
+            inverse_column: vec![0.0; n],
             stiffness_and_damping: [0.0; 2],
             added_inertia: 0.0,
         };
@@ -87,10 +87,10 @@ impl Connected {
             if row.added_inertia > 0.0 {
                 let [first, end] = row.spanned;
                 row.jacobian.copy_from_slice(&jacobian[first..end]);
-                factors.solve(jacobian, &mut row.answer);
+                factors.solve(jacobian, &mut row.inverse_column);
             } else {
                 row.jacobian.fill(0.0);
-                row.answer.fill(0.0);
+                row.inverse_column.fill(0.0);
             }
         }
         let room = self.schur.take().map_or_else(|| DMatrix::zeros(count, count), Cholesky::unpack_dirty);
@@ -101,7 +101,7 @@ impl Connected {
     fn fill_schur(&self, mut schur: DMatrix<f64>) -> DMatrix<f64> {
         for (i, one) in self.rows.iter().enumerate() {
             for (j, other) in self.rows.iter().enumerate() {
-                schur[(i, j)] = one.along(&other.answer);
+                schur[(i, j)] = one.along(&other.inverse_column);
             }
             schur[(i, i)] += if one.added_inertia > 0.0 { 1.0 / one.added_inertia } else { 1.0 };
         }
@@ -142,8 +142,8 @@ impl Connected {
         }
         schur.solve_mut(&mut self.shares);
         for (row, share) in self.rows.iter().zip(&self.shares) {
-            for (x, answer) in solution.iter_mut().zip(&row.answer) {
-                *x -= share * answer;
+            for (x, entry) in solution.iter_mut().zip(&row.inverse_column) {
+                *x -= share * entry;
             }
         }
     }

@@ -15,12 +15,12 @@ use nalgebra::{DMatrix, DVectorViewMut};
 
 use crate::{
     dyn_crane::DynModel,
-    own_states::{OwnStates, StateAt, StatefulForce},
+    force_states::{ForceStates, StateAt, StatefulForce},
 };
 
 /// The crane's forces that have states, evaluated at a state of the crane, and their contribution to the system there.
-pub(crate) struct Eliminated {
-    own: OwnStates,
+pub(crate) struct ForceStateUpdate {
+    force_states: ForceStates,
     rates: Vec<f64>,
     by_states: DMatrix<f64>,
     /// W, as factors of its inverse.
@@ -29,7 +29,7 @@ pub(crate) struct Eliminated {
     delta: DMatrix<f64>,
     added_inertia: DMatrix<f64>,
     /// M⁻¹ Uᵀ, force by force.
-    answers: Vec<Vec<f64>>,
+    inverse_columns: Vec<Vec<f64>>,
     /// I + S U M⁻¹ Uᵀ.
     correction: Factors,
     unit: Vec<f64>,
@@ -38,12 +38,12 @@ pub(crate) struct Eliminated {
     shares: Vec<f64>,
 }
 
-impl Eliminated {
+impl ForceStateUpdate {
     /// Storage for the forces of a crane.
     pub fn new(crane: &dyn DynModel) -> Self {
-        let own = OwnStates::new(crane.description());
+        let force_states = ForceStates::new(crane.description());
         let n = crane.description().coordinates.len();
-        let (count, len) = (own.count(), own.len());
+        let (count, len) = (force_states.count(), force_states.len());
         let square = |size| DMatrix::zeros(size, size);
         Self {
             rates: vec![0.0; len],
@@ -52,12 +52,12 @@ impl Eliminated {
             kappa: square(count),
             delta: square(count),
             added_inertia: square(count),
-            answers: vec![vec![0.0; n]; count],
+            inverse_columns: vec![vec![0.0; n]; count],
             correction: Factors::new(count),
             unit: vec![0.0; n],
             of_states: vec![0.0; len],
             shares: vec![0.0; count],
-            own,
+            force_states,
         }
     }
 
@@ -69,67 +69,68 @@ impl Eliminated {
         c: f64,
         solve: &mut dyn FnMut(&[f64], &mut [f64]),
     ) {
-        let Self { own, rates, by_states, states, kappa, delta, added_inertia, answers, .. } = self;
-        if own.is_empty() {
+        let Self { force_states, rates, by_states, states, kappa, delta, added_inertia, inverse_columns, .. } = self;
+        if force_states.is_empty() {
             return;
         }
-        own.evaluate(crane, moment, rates, Some(by_states));
-        let pushed = own.pushed();
+        force_states.evaluate(crane, moment, rates, Some(by_states));
+        let forces = force_states.forces();
         states.factorise(|row, column| f64::from(row == column) / c - by_states[(row, column)]);
-        for (column, own) in pushed.iter().enumerate() {
-            for (matrix, rates) in [(&mut *kappa, own.rates_by_length), (&mut *delta, own.rates_by_speed)] {
+        for (column, force) in forces.iter().enumerate() {
+            for (matrix, rates) in [(&mut *kappa, force.rates_by_length), (&mut *delta, force.rates_by_speed)] {
                 self.of_states.fill(0.0);
-                self.of_states[own.first..own.first + own.count].copy_from_slice(&rates[..own.count]);
+                self.of_states[force.first..force.first + force.count].copy_from_slice(&rates[..force.count]);
                 states.solve(&mut self.of_states);
-                for (row, other) in pushed.iter().enumerate() {
+                for (row, other) in forces.iter().enumerate() {
                     matrix[(row, column)] = other.pull(&self.of_states);
                 }
             }
-            kappa[(column, column)] += own.by_length;
-            delta[(column, column)] += own.by_speed;
+            kappa[(column, column)] += force.by_length;
+            delta[(column, column)] += force.by_speed;
         }
         for ((added_inertia, delta), kappa) in added_inertia.iter_mut().zip(delta.iter()).zip(kappa.iter()) {
             *added_inertia = -(delta * c + kappa * (c * c));
         }
-        for (own, answer) in pushed.iter().zip(&mut *answers) {
+        for (force, inverse_column) in forces.iter().zip(&mut *inverse_columns) {
             self.unit.fill(0.0);
-            self.unit[own.coordinate] = own.arm;
-            solve(&self.unit, answer);
+            self.unit[force.coordinate] = force.arm;
+            solve(&self.unit, inverse_column);
         }
         self.correction.factorise(|row, column| {
-            let share =
-                |(place, own): (usize, &StatefulForce)| added_inertia[(row, place)] * own.along(&answers[column]);
-            f64::from(row == column) + pushed.iter().enumerate().map(share).sum::<f64>()
+            let share = |(place, force): (usize, &StatefulForce)| {
+                added_inertia[(row, place)] * force.along(&inverse_columns[column])
+            };
+            f64::from(row == column) + forces.iter().enumerate().map(share).sum::<f64>()
         });
     }
 
     /// Adds `−δ U G − κ U (c G + P) − F_x W R/c`.
     pub fn add_to(&mut self, (g, p): (&[f64], &[f64]), r: &[f64], c: f64, right: &mut [f64]) {
-        let pushed = self.own.pushed();
+        let forces = self.force_states.forces();
         self.of_states.copy_from_slice(r);
         self.states.solve(&mut self.of_states);
-        for (row, own) in pushed.iter().enumerate() {
+        for (row, force) in forces.iter().enumerate() {
             let of_force = |(column, other): (usize, &StatefulForce)| {
                 let (g, p) = (other.along(g), other.along(p));
                 self.delta[(row, column)] * g + self.kappa[(row, column)] * (g * c + p)
             };
-            let force = pushed.iter().enumerate().map(of_force).sum::<f64>() + own.pull(&self.of_states) / c;
-            right[own.coordinate] -= own.arm * force;
+            let sum = forces.iter().enumerate().map(of_force).sum::<f64>() + force.pull(&self.of_states) / c;
+            right[force.coordinate] -= force.arm * sum;
         }
     }
 
     /// Turns the solution of the system without these forces into that of the system with them.
     pub fn correct(&mut self, solution: &mut [f64]) {
-        let pushed = self.own.pushed();
+        let forces = self.force_states.forces();
         for (row, share) in self.shares.iter_mut().enumerate() {
             let of_force =
-                |(column, own): (usize, &StatefulForce)| self.added_inertia[(row, column)] * own.along(solution);
-            *share = pushed.iter().enumerate().map(of_force).sum();
+                |(column, force): (usize, &StatefulForce)| self.added_inertia[(row, column)] * force.along(solution);
+            *share = forces.iter().enumerate().map(of_force).sum();
         }
         self.correction.solve(&mut self.shares);
-        for (answer, share) in self.answers.iter().zip(&self.shares) {
-            for (x, answer) in solution.iter_mut().zip(answer) {
-                *x -= share * answer;
+        for (inverse_column, share) in self.inverse_columns.iter().zip(&self.shares) {
+            for (x, entry) in solution.iter_mut().zip(inverse_column) {
+                *x -= share * entry;
             }
         }
     }
@@ -137,11 +138,11 @@ impl Eliminated {
     /// The increments of the states, `W (R + g_ℓ U p + g_ℓ̇ U w)`, given those of pose and rates.
     pub fn states(&self, (p, w): (&[f64], &[f64]), r: &[f64], out: &mut [f64]) {
         out.copy_from_slice(r);
-        for own in self.own.pushed() {
-            let part = &mut out[own.first..own.first + own.count];
-            let (p, w) = (own.along(p), own.along(w));
+        for force in self.force_states.forces() {
+            let part = &mut out[force.first..force.first + force.count];
+            let (p, w) = (force.along(p), force.along(w));
             for (i, x) in part.iter_mut().enumerate() {
-                *x += own.rates_by_length[i] * p + own.rates_by_speed[i] * w;
+                *x += force.rates_by_length[i] * p + force.rates_by_speed[i] * w;
             }
         }
         self.states.solve(out);
@@ -207,8 +208,8 @@ impl StatefulForce {
 
     /// `F_x x`
     fn pull(&self, x: &[f64]) -> f64 {
-        let own = &x[self.first..self.first + self.count];
-        self.by_states.iter().zip(own).map(|(slope, x)| slope * x).sum()
+        let states = &x[self.first..self.first + self.count];
+        self.by_states.iter().zip(states).map(|(slope, x)| slope * x).sum()
     }
 }
 

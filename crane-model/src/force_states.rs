@@ -50,22 +50,22 @@ pub(crate) struct StatefulForce {
 
 /// All forces of a crane that have states.
 #[derive(Clone, Debug)]
-pub struct OwnStates {
+pub struct ForceStates {
     oil: Hydraulics,
     bristles: Bristles,
     /// The forces as last evaluated, those of the oil first.
-    pushed: Vec<StatefulForce>,
+    forces: Vec<StatefulForce>,
     /// Their generalized forces, and what those add to the accelerations.
     efforts: [Vec<f64>; 2],
 }
 
-impl OwnStates {
+impl ForceStates {
     /// From the description of a crane.
     pub fn new(description: &Description) -> Self {
         let (oil, n) = (Hydraulics::new(description), description.coordinates.len());
         let bristles = Bristles::new(description, oil.len());
         Self {
-            pushed: vec![StatefulForce::default(); oil.count() + bristles.len()],
+            forces: vec![StatefulForce::default(); oil.count() + bristles.len()],
             efforts: [vec![0.0; n], vec![0.0; n]],
             oil,
             bristles,
@@ -79,7 +79,7 @@ impl OwnStates {
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.pushed.is_empty()
+        self.forces.is_empty()
     }
 
     /// Sizes by which errors of the states are measured: the pump's pressure, the travel of a spool from its centre, the deflection at
@@ -98,12 +98,12 @@ impl OwnStates {
 
     /// Number of forces with states.
     pub(crate) fn count(&self) -> usize {
-        self.pushed.len()
+        self.forces.len()
     }
 
     /// The forces as last evaluated.
-    pub(crate) fn pushed(&self) -> &[StatefulForce] {
-        &self.pushed
+    pub(crate) fn forces(&self) -> &[StatefulForce] {
+        &self.forces
     }
 
     /// Evaluates all forces and the rates of their states and, if requested, the derivatives of the rates with respect to the states.
@@ -117,7 +117,7 @@ impl OwnStates {
         if let Some(matrix) = by_states.as_deref_mut() {
             matrix.fill(0.0);
         }
-        let (of_oil, of_bristles) = self.pushed.split_at_mut(self.oil.count());
+        let (of_oil, of_bristles) = self.forces.split_at_mut(self.oil.count());
         self.oil.evaluate(crane, moment, rates, of_oil, by_states.as_deref_mut());
         self.bristles.evaluate(moment, rates, of_bristles, by_states);
     }
@@ -131,19 +131,19 @@ impl OwnStates {
         accelerations: &mut [f64],
     ) {
         self.evaluate(crane, moment, rates, None);
-        let [efforts, own] = &mut self.efforts;
+        let [efforts, added] = &mut self.efforts;
         efforts.fill(0.0);
-        for pushed in &self.pushed {
-            efforts[pushed.coordinate] += pushed.force * pushed.arm;
+        for force in &self.forces {
+            efforts[force.coordinate] += force.force * force.arm;
         }
-        crane.solve_mass(moment.q, efforts, own);
-        accelerations.iter_mut().zip(own).for_each(|(all, own)| *all += *own);
+        crane.solve_mass(moment.q, efforts, added);
+        accelerations.iter_mut().zip(added).for_each(|(acceleration, added)| *acceleration += *added);
     }
 
     /// Power that cylinders put in and power that bristles take out, `Σ F ℓ̇`, at the last evaluation, W.
     pub(crate) fn powers(&self) -> [f64; 2] {
-        let (of_oil, of_bristles) = self.pushed.split_at(self.oil.count());
-        let power = |all: &[StatefulForce]| all.iter().map(|own| own.force * own.speed).sum::<f64>();
+        let (of_oil, of_bristles) = self.forces.split_at(self.oil.count());
+        let power = |all: &[StatefulForce]| all.iter().map(|force| force.force * force.speed).sum::<f64>();
         [power(of_oil), -power(of_bristles)]
     }
 }
@@ -174,7 +174,7 @@ pub fn impossible(description: &Description, x: &[f64]) -> Option<String> {
 pub fn accelerations(crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
     crane.forward_dynamics(t, q, v, &mut accelerations);
-    let mut states = OwnStates::new(crane.description());
+    let mut states = ForceStates::new(crane.description());
     assert_eq!(x.len(), states.len(), "one number for each state of a force");
     if !states.is_empty() {
         states.accelerate(crane, &StateAt { t, q, v, x }, &mut rates, &mut accelerations);

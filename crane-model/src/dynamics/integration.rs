@@ -16,11 +16,11 @@ use super::{
 };
 use crate::{
     dyn_crane::{DynDynamics, DynImplicit, DynModel},
-    own_states::OwnStates,
+    force_states::ForceStates,
 };
 
 /// A run that is advanced from result to result. It keeps its step size and its history from one result to the next.
-pub struct Course<'a> {
+pub struct Integration<'a> {
     crane: &'a dyn DynDynamics,
     stepper: Box<dyn Stepper + 'a>,
     settings: Settings,
@@ -37,7 +37,7 @@ pub struct Course<'a> {
     motion: Vec<f64>,
 }
 
-impl<'a> Course<'a> {
+impl<'a> Integration<'a> {
     /// Starts from a state at time `begin`, s, with the method of the settings. Their duration may be infinite; their interval of results
     /// is not used for stepping.
     ///
@@ -75,9 +75,9 @@ impl<'a> Course<'a> {
                 StepContext { method, t: begin, h: settings.step, q: &start.q, description: crane.description() };
             context.stopped(Cause::MassMatrix, index)
         })?;
-        let mut own = OwnStates::new(crane.description());
-        let states = if start.x.is_empty() { own.holding(crane, begin, &start.q) } else { start.x.clone() };
-        assert_eq!(states.len(), own.len(), "one number for each state of a force");
+        let mut force_states = ForceStates::new(crane.description());
+        let states = if start.x.is_empty() { force_states.holding(crane, begin, &start.q) } else { start.x.clone() };
+        assert_eq!(states.len(), force_states.len(), "one number for each state of a force");
         let integrals: &[f64] = if settings.audit { &[0.0; INTEGRALS] } else { &[] };
         let mut motion = [start.q.as_slice(), &start.v, &states, integrals].concat();
         let (pose, rates) = motion[..2 * n].split_at_mut(n);
@@ -85,7 +85,7 @@ impl<'a> Course<'a> {
         stepper.start(begin, &motion)?;
         let end = begin + settings.duration;
         let stops = Stops::between([crane as &dyn DynModel], begin, end);
-        let states = own.len();
+        let states = force_states.len();
         Ok(Self { crane, states, stepper, settings: *settings, stops, begin, end, reached: begin, time: begin, motion })
     }
 
