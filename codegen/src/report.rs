@@ -58,7 +58,7 @@ impl Report {
                     .function(code.function.id)
                     .map(|f| {
                         let mut count = verbatim.count(&f.outputs, |_| false);
-                        count += f.shape.closing_count();
+                        count += f.shape.expansion_count();
                         count
                     })
                     .unwrap_or_default(),

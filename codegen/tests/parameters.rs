@@ -69,9 +69,9 @@ fn chain(text: &str) -> Result<Chain, Vec<&'static str>> {
 
 /// The code of the rule in a chain that refuses a value of its only parameter, if there is one.
 fn refused(chain: &Chain, value: f64) -> Option<&'static str> {
-    let least = chain.parameters[0].least.as_ref();
-    let below = least.filter(|least| value < least.value || (value == least.value && !least.allowed));
-    below.map(|least| least.refusal.code).or_else(|| chain.broken_relation(&[value]).map(|broken| broken.refusal.code))
+    let lower = chain.parameters[0].lower_bound.as_ref();
+    let below = lower.filter(|lower| value < lower.value || (value == lower.value && !lower.allowed));
+    below.map(|lower| lower.refusal.code).or_else(|| chain.broken_relation(&[value]).map(|broken| broken.refusal.code))
 }
 
 #[test]
@@ -102,8 +102,8 @@ fn the_strictest_of_several_places_counts() {
         links: [{name: arm, joint: revolute, mass: 5, com: [p, 0, 0]}]\n\
         damping: {arm_psi: p}\n\
         drives: []\nrun: {duration: 1, step: 1e-3}\ngravity: [p, 0, 0]\n";
-    let least = chain(spec).expect("a sound spec").parameters.remove(0).least.expect("damping is not below zero");
-    assert_eq!((least.value, least.allowed, least.refusal.code), (0.0, true, "E032"));
-    assert_eq!(least.refusal.title, "the damping of `arm_psi` must not be negative, but is");
-    assert_eq!(least.refusal.help, "write 0 or a positive number, in N m s/rad");
+    let lower = chain(spec).expect("a sound spec").parameters.remove(0).lower_bound.expect("damping is not below zero");
+    assert_eq!((lower.value, lower.allowed, lower.refusal.code), (0.0, true, "E032"));
+    assert_eq!(lower.refusal.title, "the damping of `arm_psi` must not be negative, but is");
+    assert_eq!(lower.refusal.help, "write 0 or a positive number, in N m s/rad");
 }

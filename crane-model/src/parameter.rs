@@ -44,9 +44,9 @@ const NOT_FINITE: Refusal = Refusal {
 
 impl Bound {
     /// The smallest number of the spec language.
-    pub const LEAST: Bound = Bound { value: -LARGEST, allowed: true, refusal: OUT_OF_RANGE };
+    pub const LOWEST: Bound = Bound { value: -LARGEST, allowed: true, refusal: OUT_OF_RANGE };
     /// The largest number of the spec language.
-    pub const GREATEST: Bound = Bound { value: LARGEST, allowed: true, refusal: OUT_OF_RANGE };
+    pub const HIGHEST: Bound = Bound { value: LARGEST, allowed: true, refusal: OUT_OF_RANGE };
 }
 
 impl ParameterInfo {
@@ -58,13 +58,13 @@ impl ParameterInfo {
         let refuse = |refusal: &Refusal| {
             Err(ParameterError { given: Some((self.name.clone(), value)), refusal: refusal.clone() })
         };
-        let Self { least, greatest, .. } = self;
+        let Self { lower_bound: lower, upper_bound: upper, .. } = self;
         if !value.is_finite() {
             refuse(&NOT_FINITE)
-        } else if value < least.value || (value == least.value && !least.allowed) {
-            refuse(&least.refusal)
-        } else if value > greatest.value || (value == greatest.value && !greatest.allowed) {
-            refuse(&greatest.refusal)
+        } else if value < lower.value || (value == lower.value && !lower.allowed) {
+            refuse(&lower.refusal)
+        } else if value > upper.value || (value == upper.value && !upper.allowed) {
+            refuse(&upper.refusal)
         } else if value != 0.0 && value.abs() < SMALLEST {
             refuse(&OUT_OF_RANGE)
         } else {
@@ -103,7 +103,7 @@ mod tests {
         unit: Text::Static("kg"),
         about: Text::Static(""),
         default: 1.0,
-        least: Bound {
+        lower_bound: Bound {
             value: 0.0,
             allowed: false,
             refusal: Refusal {
@@ -112,14 +112,14 @@ mod tests {
                 help: Text::Static("write a number above 0"),
             },
         },
-        greatest: Bound::GREATEST,
+        upper_bound: Bound::HIGHEST,
     };
 
     #[test]
     fn values_outside_the_range_are_refused_with_their_rule() {
         let code = |info: &ParameterInfo, value| info.check(value).err().map(|error| error.refusal.code);
-        let free = ParameterInfo { least: Bound::LEAST, ..MASS };
-        let zero_too = ParameterInfo { least: Bound { allowed: true, ..MASS.least }, ..MASS };
+        let free = ParameterInfo { lower_bound: Bound::LOWEST, ..MASS };
+        let zero_too = ParameterInfo { lower_bound: Bound { allowed: true, ..MASS.lower_bound }, ..MASS };
         for (value, mass, zero, any) in [
             (-10.0, Some("E031"), Some("E031"), None),
             (0.0, Some("E031"), None, None),

@@ -44,7 +44,7 @@ fn live_parameters_keep_the_rules_of_the_spec() {
         assert_eq!(CraneModel::<N>::set_parameter(&mut crane, 0, payload), Ok(()));
         assert_eq!(crane.params().payload, payload);
     }
-    assert_eq!((PARAMETERS[0].least.value, PARAMETERS[0].least.allowed), (0.0, true));
+    assert_eq!((PARAMETERS[0].lower_bound.value, PARAMETERS[0].lower_bound.allowed), (0.0, true));
 }
 
 #[test]

@@ -271,7 +271,7 @@ pub const PARAMETERS: [ParameterInfo; 1] = [
         unit: Text::Static("kg"),
         about: Text::Static("what hangs on the hook"),
         default: 800.0,
-        least: Bound {
+        lower_bound: Bound {
             value: 0.0,
             allowed: true,
             refusal: Refusal {
@@ -282,7 +282,7 @@ pub const PARAMETERS: [ParameterInfo; 1] = [
                 help: Text::Static("write 0 or a positive number, in kg"),
             },
         },
-        greatest: Bound::GREATEST,
+        upper_bound: Bound::HIGHEST,
     },
 ];
 

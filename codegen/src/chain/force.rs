@@ -40,9 +40,9 @@ pub struct Stop {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The minimum of the coordinate.
-    Least,
+    Lower,
     /// The maximum.
-    Greatest,
+    Upper,
 }
 
 /// Friction of a joint, `F = (F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) + b q̇`: Coulomb friction with a Stribeck decline,

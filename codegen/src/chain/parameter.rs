@@ -14,7 +14,7 @@ pub struct Parameter {
     /// Value unless set at run time.
     pub default: f64,
     /// The smallest value that every use of the parameter allows; `None`: any number.
-    pub least: Option<Bound>,
+    pub lower_bound: Option<Bound>,
 }
 
 /// The lower end of the range of a live parameter.
@@ -43,8 +43,8 @@ impl Parameter {
     /// Raises the lower end of the range, unless it is already as high.
     pub fn raise(&mut self, bound: Bound) {
         let end = |bound: &Bound| (bound.value, !bound.allowed);
-        if self.least.as_ref().is_none_or(|held| end(&bound) > end(held)) {
-            self.least = Some(bound);
+        if self.lower_bound.as_ref().is_none_or(|held| end(&bound) > end(held)) {
+            self.lower_bound = Some(bound);
         }
     }
 }

@@ -11,7 +11,7 @@ use super::print::plain;
 use super::shape::{Storage, struct_name};
 use crate::chain::{Chain, Input};
 use crate::lower::{LoweredFunction, LoweredProgram};
-use crate::program::{Argument, FunctionId, Seam, Shape};
+use crate::program::{Argument, FunctionId, RuntimeTrait, Shape};
 
 /// `Crane` and its traits.
 pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
@@ -69,8 +69,8 @@ pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
             }
         }
     });
-    for seam in Seam::ALL {
-        let methods: Vec<_> = seam
+    for runtime_trait in RuntimeTrait::ALL {
+        let methods: Vec<_> = runtime_trait
             .functions()
             .filter_map(|id| lowered.functions.iter().find(|code| code.function.id == id))
             .map(|code| match code.function.id {
@@ -81,14 +81,14 @@ pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
         if methods.is_empty() {
             continue;
         }
-        let common = match seam {
-            Seam::CraneModel => common_methods(chain),
-            Seam::Implicit => quote!(
+        let common = match runtime_trait {
+            RuntimeTrait::CraneModel => common_methods(chain),
+            RuntimeTrait::Implicit => quote!(
                 type Factors = Factors;
             ),
             _ => quote!(),
         };
-        let name = format_ident!("{}", seam.name());
+        let name = format_ident!("{}", runtime_trait.name());
         items.push(parse_quote! {
             impl #name<N> for Crane {
                 #common

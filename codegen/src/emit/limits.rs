@@ -16,10 +16,10 @@ pub fn limits(chain: &Chain) -> Vec<Item> {
     let infos = chain.parameters.iter().map(|p| {
         let (name, unit, about) = (text(&p.name), text(&p.unit), text(&p.about));
         let default = literal(p.default);
-        let least = p.least.as_ref().map_or_else(|| quote!(Bound::LEAST), bound);
+        let lower = p.lower_bound.as_ref().map_or_else(|| quote!(Bound::LOWEST), bound);
         quote! {
             ParameterInfo {
-                name: #name, unit: #unit, about: #about, default: #default, least: #least, greatest: Bound::GREATEST,
+                name: #name, unit: #unit, about: #about, default: #default, lower_bound: #lower, upper_bound: Bound::HIGHEST,
             }
         }
     });

@@ -182,7 +182,7 @@ fn lower_function<'p>(
     let program = &*program;
     let (pieces, kept) = split::split(program, constants, &inlined, line);
     let mut count = program.count(&function.outputs, |id| constants.is_stored(id));
-    count += function.shape.closing_count();
+    count += function.shape.expansion_count();
     // −(2 · b) is written as −2 · b.
     let folded = |id: &ExprId| match program.op(*id) {
         Op::Neg(a) => match program.op(a) {

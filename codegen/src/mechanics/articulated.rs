@@ -107,11 +107,11 @@ impl<'g> Articulated<'g> {
     /// Transforms to components in the frame before a rotation.
     pub fn rotate_about_axis(&mut self, rotation: &AxisRotation<'g>) {
         *self = Articulated {
-            rotational: rotation.outward_symmetric(&self.rotational),
-            coupling: rotation.outward_matrix(&self.coupling),
-            translational: rotation.outward_symmetric(&self.translational),
-            moment: rotation.outward(self.moment),
-            force: rotation.outward(self.force),
+            rotational: rotation.to_outer_symmetric(&self.rotational),
+            coupling: rotation.to_outer_matrix(&self.coupling),
+            translational: rotation.to_outer_symmetric(&self.translational),
+            moment: rotation.to_outer(self.moment),
+            force: rotation.to_outer(self.force),
         };
     }
 

@@ -143,8 +143,8 @@ impl<'g> Composite<'g> {
 
     /// Transforms to components in the frame before a rotation.
     fn rotate_about_axis(&mut self, rotation: &AxisRotation<'g>) {
-        self.first = rotation.outward(self.first);
-        self.second = rotation.outward_symmetric(&self.second);
+        self.first = rotation.to_outer(self.first);
+        self.second = rotation.to_outer_symmetric(&self.second);
     }
 
     /// The same for a rotation given by its matrix.

@@ -60,7 +60,7 @@ pub fn solution<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[F
         columns.iter().zip(&motion).fold(zero, |sum, (column, &x)| sum + x * pick(column))
     };
     let start = rotations.iter().fold((sum(|column| column.0), sum(|column| column.1)), |(alpha, a), rotation| {
-        (rotation.inward(alpha), rotation.inward(a))
+        (rotation.to_inner(alpha), rotation.to_inner(a))
     });
     let mut x = outward(model, &factors[split..], &velocities[split..], &joints, start).accelerations;
     for (&j, value) in base.iter().zip(motion) {

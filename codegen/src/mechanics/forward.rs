@@ -17,8 +17,8 @@ use super::vector::{Rotation, Symmetric3, Vec3, plane};
 use crate::chain::Axis;
 use crate::symbolic::Expr;
 
-/// The loads on the chain.
-pub struct Loads<'a, 'g> {
+/// What the forward dynamics of a chain needs besides its pose.
+pub struct ForwardInputs<'a, 'g> {
     /// Velocities of the coordinates.
     pub v: &'a [Expr<'g>],
     /// Efforts on the coordinates.
@@ -29,7 +29,7 @@ pub struct Loads<'a, 'g> {
     pub gravity: Vec3<'g>,
 }
 
-/// The motion of a chain under its loads.
+/// The motion of a chain with these inputs.
 pub struct Motion<'g> {
     /// q̈ of all coordinates.
     pub accelerations: Vec<Expr<'g>>,
@@ -48,10 +48,10 @@ pub(super) enum Joint<'g> {
 }
 
 /// q̈ of all coordinates, and the efforts of the prescribed ones (hybrid dynamics).
-pub fn hybrid_dynamics<'g>(model: &Model<'g>, factors: &[Factor<'g>], loads: &Loads<'_, 'g>) -> Motion<'g> {
-    let velocities = velocities(model, factors, loads.v);
-    let (joints, _) = inward(model, factors, &velocities, loads.efforts, loads.prescribed);
-    outward(model, factors, &velocities, &joints, (Vec3::zero(model.graph), -loads.gravity))
+pub fn hybrid_dynamics<'g>(model: &Model<'g>, factors: &[Factor<'g>], inputs: &ForwardInputs<'_, 'g>) -> Motion<'g> {
+    let velocities = velocities(model, factors, inputs.v);
+    let (joints, _) = inward(model, factors, &velocities, inputs.efforts, inputs.prescribed);
+    outward(model, factors, &velocities, &joints, (Vec3::zero(model.graph), -inputs.gravity))
 }
 
 /// Articulated inertias from tip to base, and the remaining inertia at the base.
@@ -145,9 +145,11 @@ pub(super) fn outward<'g>(
             linear = linear + angular.cross(*by) + *acceleration;
         }
         match (factor, velocity, joint) {
-            (Factor::Rotation(rotation), ..) => (angular, linear) = (rotation.inward(angular), rotation.inward(linear)),
+            (Factor::Rotation(rotation), ..) => {
+                (angular, linear) = (rotation.to_inner(angular), rotation.to_inner(linear));
+            }
             (Factor::Revolute { j, rotation }, Velocities::Revolute { gyration }, joint) => {
-                (angular, linear) = (rotation.inward(angular), rotation.inward(linear));
+                (angular, linear) = (rotation.to_inner(angular), rotation.to_inner(linear));
                 joint.move_on(&mut accelerations[*j], &mut efforts[*j], angular, linear);
                 angular = angular + Vec3::along(rotation.axis, accelerations[*j]) + *gyration;
             }
@@ -287,8 +289,8 @@ impl<'g> Ball<'g> {
             articulated.rotate_about_axis(first);
             response
         } else {
-            let response = articulated.free_ball(third.inward(moment), None);
-            articulated.rotate_force(self.rotation(), first.outward(second.outward(moment)));
+            let response = articulated.free_ball(third.to_inner(moment), None);
+            articulated.rotate_force(self.rotation(), first.to_outer(second.to_outer(moment)));
             response
         }
     }
@@ -310,16 +312,16 @@ impl<'g> Ball<'g> {
         mut linear: Vec3<'g>,
     ) -> ([Expr<'g>; 3], Vec3<'g>, Vec3<'g>) {
         let [first, second, third] = &self.rotations;
-        let before = second.inward(first.inward(angular) + gyrations[0]) + gyrations[1];
+        let before = second.to_inner(first.to_inner(angular) + gyrations[0]) + gyrations[1];
         let relative;
         if let Some(own) = &response.angular {
-            linear = second.inward(first.inward(linear));
+            linear = second.to_inner(first.to_inner(linear));
             relative = response.rest - response.linear.apply(linear) - own.apply(before);
-            (angular, linear) = (third.inward(before + relative), third.inward(linear));
+            (angular, linear) = (third.to_inner(before + relative), third.to_inner(linear));
         } else {
             linear = self.rotation().apply_transposed(linear);
             angular = response.rest - response.linear.apply(linear);
-            relative = third.outward(angular - gyrations[2]) - before;
+            relative = third.to_outer(angular - gyrations[2]) - before;
         }
         let ([a, b, c], tangent, secant) = self.geometry();
         ([secant * relative[a], relative[b], relative[c] + tangent * relative[a]], angular, linear)

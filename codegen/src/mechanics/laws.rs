@@ -9,8 +9,8 @@ use crate::symbolic::Expr;
 fn depth<'g>(model: &Model<'g>, stop: &Stop, q: Expr<'g>) -> (Expr<'g>, f64) {
     let at = model.number(&stop.at);
     let (beyond, sign) = match stop.end {
-        End::Least => (at - q, -1.0),
-        End::Greatest => (q - at, 1.0),
+        End::Lower => (at - q, -1.0),
+        End::Upper => (q - at, 1.0),
     };
     (beyond.max(model.zero()), sign)
 }

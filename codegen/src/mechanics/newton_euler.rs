@@ -54,15 +54,15 @@ fn outward<'g>(model: &Model<'g>, factors: &[Factor<'g>], accelerations: Option<
     for factor in factors {
         let velocities = along(model, &mut omega, factor, &model.v);
         match (factor, &velocities) {
-            (Factor::Rotation(rotation), _) => (alpha, a) = (rotation.inward(alpha), rotation.inward(a)),
+            (Factor::Rotation(rotation), _) => (alpha, a) = (rotation.to_inner(alpha), rotation.to_inner(a)),
             (Factor::Revolute { j, rotation }, Velocities::Revolute { gyration }) => {
-                alpha = own(rotation.inward(alpha) + *gyration, &|q| Vec3::along(rotation.axis, q[*j]));
-                a = rotation.inward(a);
+                alpha = own(rotation.to_inner(alpha) + *gyration, &|q| Vec3::along(rotation.axis, q[*j]));
+                a = rotation.to_inner(a);
             }
             (Factor::Ball { j, rotations }, Velocities::Ball { gyrations }) => {
                 for (k, (rotation, gyration)) in rotations.iter().zip(gyrations).enumerate() {
-                    alpha = own(rotation.inward(alpha) + *gyration, &|q| Vec3::along(rotation.axis, q[j + k]));
-                    a = rotation.inward(a);
+                    alpha = own(rotation.to_inner(alpha) + *gyration, &|q| Vec3::along(rotation.axis, q[j + k]));
+                    a = rotation.to_inner(a);
                 }
             }
             (Factor::RotationVector { j, vector }, Velocities::RotationVector { rates, gyration }) => {
@@ -144,7 +144,7 @@ fn inward<'g>(
                     if let Some(j) = j {
                         bias[j] = -moment[rotation.axis.index()];
                     }
-                    (force, moment) = (rotation.outward(force), rotation.outward(moment));
+                    (force, moment) = (rotation.to_outer(force), rotation.to_outer(moment));
                 }
             }
             (Factor::RotationVector { j, vector }, _) => {

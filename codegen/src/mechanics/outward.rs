@@ -52,13 +52,13 @@ pub fn velocities<'g>(model: &Model<'g>, factors: &[Factor<'g>], v: &[Expr<'g>])
 pub fn along<'g>(model: &Model<'g>, omega: &mut Vec3<'g>, factor: &Factor<'g>, v: &[Expr<'g>]) -> Velocities<'g> {
     let mut rotate = |rotation: &AxisRotation<'g>, rate: Expr<'g>| {
         let spin = Vec3::along(rotation.axis, rate);
-        *omega = rotation.inward(*omega) + spin;
+        *omega = rotation.to_inner(*omega) + spin;
         omega.cross(spin)
     };
     match factor {
         Factor::Translate(by) => Velocities::Translation { by: *by, acceleration: centripetal(*omega, *by) },
         Factor::Rotation(rotation) => {
-            *omega = rotation.inward(*omega);
+            *omega = rotation.to_inner(*omega);
             Velocities::Rotation
         }
         Factor::Revolute { j, rotation } => Velocities::Revolute { gyration: rotate(rotation, v[*j]) },

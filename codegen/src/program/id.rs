@@ -2,7 +2,7 @@
 
 /// Writes the list once: as an enumeration, with the name and the trait of each.
 macro_rules! functions {
-    ($($seam:ident { $($id:ident = $name:literal,)* })*) => {
+    ($($runtime_trait:ident { $($id:ident = $name:literal,)* })*) => {
         /// A function of a crane, named after the method of the runtime that calls it; documentation and equation are given where it
         /// is derived, see [`Function`](super::Function).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -25,9 +25,9 @@ macro_rules! functions {
 
             /// The trait of the runtime that has it as a method.
             #[must_use]
-            pub const fn seam(self) -> Seam {
+            pub const fn runtime_trait(self) -> RuntimeTrait {
                 match self {
-                    $($(FunctionId::$id => Seam::$seam,)*)*
+                    $($(FunctionId::$id => RuntimeTrait::$runtime_trait,)*)*
                 }
             }
         }
@@ -35,25 +35,25 @@ macro_rules! functions {
         /// A trait of the runtime that generated functions implement.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[expect(missing_docs, reason = "the traits are documented")]
-        pub enum Seam {
-            $($seam,)*
+        pub enum RuntimeTrait {
+            $($runtime_trait,)*
         }
 
-        impl Seam {
+        impl RuntimeTrait {
             /// All of them.
-            pub const ALL: &[Seam] = &[$(Seam::$seam,)*];
+            pub const ALL: &[RuntimeTrait] = &[$(RuntimeTrait::$runtime_trait,)*];
 
             /// The name of the trait.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
-                    $(Seam::$seam => stringify!($seam),)*
+                    $(RuntimeTrait::$runtime_trait => stringify!($runtime_trait),)*
                 }
             }
 
             /// Its functions, in the order of their methods.
             pub fn functions(self) -> impl Iterator<Item = FunctionId> {
-                FunctionId::ALL.iter().copied().filter(move |id| id.seam() == self)
+                FunctionId::ALL.iter().copied().filter(move |id| id.runtime_trait() == self)
             }
         }
     };

@@ -69,6 +69,6 @@ impl Program {
             values[index] = Some(value);
         }
         let slots = function.outputs.iter().map(|id| values[id.index()].clone().expect("outputs are needed"));
-        function.shape.close(slots.collect())
+        function.shape.expand(slots.collect())
     }
 }

@@ -1,7 +1,7 @@
 //! What is derived from a crane: named functions over one graph of expressions, and their semantics.
 
-mod closing;
 mod count;
+mod expansion;
 mod id;
 mod interpret;
 mod shape;
@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use crate::symbolic::{ExprId, Graph, Nodes, Op, SweepTrace, SymbolId};
 
 pub use count::OperationCount;
-pub use id::{FunctionId, Seam};
+pub use id::{FunctionId, RuntimeTrait};
 pub use interpret::Inputs;
 pub use shape::{ConcurrentAxes, Shape, Struct};
 

@@ -67,7 +67,7 @@ impl<'a> Check<'a> {
         let unit = if kind == Some(CoordinateKind::Translation) { "s/m" } else { "s/rad" };
         let damping = self.number_or(own.damping.as_ref(), 0.0, &place("damping"), unit, Limit::NotNegative);
         let mut stops = Vec::new();
-        for (end, at, key) in [(End::Least, &own.min, "`min`"), (End::Greatest, &own.max, "`max`")] {
+        for (end, at, key) in [(End::Lower, &own.min, "`min`"), (End::Upper, &own.max, "`max`")] {
             if let Some(at) = at {
                 let at = self.position(at, kind, key);
                 stops.push(Stop { at, end, stiffness: stiffness.clone(), damping: damping.clone() });
@@ -75,13 +75,13 @@ impl<'a> Check<'a> {
         }
         match (stops.as_slice(), &own.max) {
             ([], _) => self.report(rule::no_stop(given.span, name)),
-            ([least, greatest], Some(max)) => {
-                let (low, high) = (self.now(&least.at), self.now(&greatest.at));
+            ([lower, upper], Some(max)) => {
+                let (low, high) = (self.now(&lower.at), self.now(&upper.at));
                 let broken = rule::stops_crossed(max.span, name, low, high);
                 if low >= high {
                     self.report(broken.clone());
                 }
-                self.keep_below(&least.at, &greatest.at, &broken);
+                self.keep_below(&lower.at, &upper.at, &broken);
             }
             _ => {}
         }

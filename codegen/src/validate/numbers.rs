@@ -37,7 +37,7 @@ impl<'a> Check<'a> {
                 unit: unit.unwrap_or_default(),
                 about: about.unwrap_or_default(),
                 default,
-                least: None,
+                lower_bound: None,
             });
             self.defaults.push(default);
             self.used.push(false);

@@ -149,9 +149,9 @@ pub struct ParameterInfo {
     /// Default value.
     pub default: f64,
     /// The smallest value that every use of the parameter allows.
-    pub least: Bound,
+    pub lower_bound: Bound,
     /// The largest value that every use of the parameter allows.
-    pub greatest: Bound,
+    pub upper_bound: Bound,
 }
 
 /// A generalized coordinate.

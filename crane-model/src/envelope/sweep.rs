@@ -56,9 +56,9 @@ pub fn only_mass(description: &Description) -> Option<usize> {
 pub fn range_of_loads(description: &Description, load: usize, greatest: Option<f64>) -> [f64; 2] {
     let info = &description.parameters[load];
     let is_allowed = |value: &f64| info.check(*value).is_ok();
-    let least = [0.0, LEAST_LOAD, info.least.value].into_iter().find(is_allowed).unwrap_or(info.default);
+    let least = [0.0, LEAST_LOAD, info.lower_bound.value].into_iter().find(is_allowed).unwrap_or(info.default);
     let mass: f64 = description.bodies.iter().map(|body| body.mass).sum();
-    [least, greatest.unwrap_or(GREATEST_LOAD * mass.max(1.0)).min(info.greatest.value)]
+    [least, greatest.unwrap_or(GREATEST_LOAD * mass.max(1.0)).min(info.upper_bound.value)]
 }
 
 impl Envelope {

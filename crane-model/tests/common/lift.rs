@@ -19,8 +19,8 @@ static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
         unit: Text::Static("m"),
         about: Text::Static("where the support starts"),
         default: 0.0,
-        least: Bound::LEAST,
-        greatest: Bound::GREATEST,
+        lower_bound: Bound::LOWEST,
+        upper_bound: Bound::HIGHEST,
     }]),
     ..description("lift", COORDINATES, &[0.0])
 });

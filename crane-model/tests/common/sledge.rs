@@ -18,8 +18,8 @@ static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description {
         unit: Text::Static("m/s²"),
         about: Text::Static("downwards"),
         default: GRAVITY,
-        least: Bound::LEAST,
-        greatest: Bound::GREATEST,
+        lower_bound: Bound::LOWEST,
+        upper_bound: Bound::HIGHEST,
     }]),
     bodies: List::Static(&[BodyInfo {
         name: Text::Static("sledge"),

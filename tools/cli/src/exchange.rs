@@ -124,8 +124,9 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
 
 /// A problem if values of live parameters break a rule of the spec language.
 fn keep_rules(chain: &Chain, values: &[f64]) -> Outcome<()> {
-    let mut bounds = chain.parameters.iter().zip(values).filter_map(|(p, value)| Some((p, p.least.as_ref()?, *value)));
-    let below = bounds.find(|(_, least, value)| *value < least.value || (*value == least.value && !least.allowed));
+    let mut bounds =
+        chain.parameters.iter().zip(values).filter_map(|(p, value)| Some((p, p.lower_bound.as_ref()?, *value)));
+    let below = bounds.find(|(_, lower, value)| *value < lower.value || (*value == lower.value && !lower.allowed));
     let refused = match below {
         Some((p, Bound { refusal, .. }, value)) => {
             let Refusal { code, title, .. } = refusal;

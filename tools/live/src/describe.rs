@@ -18,8 +18,8 @@ pub fn describe(chain: &Chain) -> Description {
         unit: parameter.unit.clone().into(),
         about: parameter.about.clone().into(),
         default: parameter.default,
-        least: parameter.least.as_ref().map_or(Bound::LEAST, bound),
-        greatest: Bound::GREATEST,
+        lower_bound: parameter.lower_bound.as_ref().map_or(Bound::LOWEST, bound),
+        upper_bound: Bound::HIGHEST,
     });
     let coordinates = chain.coordinates.iter().enumerate().map(|(index, coordinate)| CoordinateInfo {
         name: coordinate.name.clone().into(),

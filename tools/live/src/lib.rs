@@ -25,9 +25,9 @@
 
 pub mod assemble;
 pub mod bytecode;
-mod closing;
 mod crane;
 mod describe;
+mod expansion;
 pub mod layout;
 mod library;
 mod linearise;

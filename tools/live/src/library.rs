@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use crane_codegen::chain::{Analyses, Chain};
 use crane_codegen::mechanics;
-use crane_codegen::program::{FunctionId, Program, Seam};
+use crane_codegen::program::{FunctionId, Program, RuntimeTrait};
 
 use crate::routine::Routine;
 
@@ -30,13 +30,13 @@ impl Group {
 
     /// The group to which a function belongs.
     fn of(id: FunctionId) -> Self {
-        match id.seam() {
-            Seam::CraneModel => Group::Common,
-            Seam::Dynamics | Seam::Implicit => Group::Dynamics,
-            Seam::Statics => Group::Statics,
-            Seam::Linearise => Group::Modes,
-            Seam::InternalForces => Group::InternalForces,
-            Seam::TransformDerivatives => Group::Derivatives,
+        match id.runtime_trait() {
+            RuntimeTrait::CraneModel => Group::Common,
+            RuntimeTrait::Dynamics | RuntimeTrait::Implicit => Group::Dynamics,
+            RuntimeTrait::Statics => Group::Statics,
+            RuntimeTrait::Linearise => Group::Modes,
+            RuntimeTrait::InternalForces => Group::InternalForces,
+            RuntimeTrait::TransformDerivatives => Group::Derivatives,
         }
     }
 

@@ -12,7 +12,7 @@ use crane_model::dyn_crane::DynModel;
 use crane_model::rt::fma;
 
 use crate::LiveCrane;
-use crate::closing::mass_matrix;
+use crate::expansion::mass_matrix;
 use crate::library::Library;
 use crate::machine::{Arguments, Batch, Machine, Number};
 use crate::routine::Routine;

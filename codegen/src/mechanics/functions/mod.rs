@@ -16,7 +16,7 @@ use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 use super::articulated::Effort;
 use super::columns::columns;
 use super::factors::{Factor, factors};
-use super::forward::{self, Loads, Motion};
+use super::forward::{self, ForwardInputs, Motion};
 use super::inertia::Inertias;
 use super::kinematics::Kinematics;
 use super::model::Model;
@@ -44,9 +44,9 @@ struct Derivation<'g> {
     rigid: bool,
 }
 
-/// The loads of a chain: velocities, forces, prescribed accelerations, gravity.
+/// What the dynamics of a chain needs besides its pose: velocities, forces, prescribed accelerations, gravity.
 #[derive(Clone, Copy)]
-struct Load<'a, 'g> {
+struct DynamicsInputs<'a, 'g> {
     v: &'a [Expr<'g>],
     forces: &'a [Expr<'g>],
     prescribed: &'a [Option<Expr<'g>>],
@@ -134,11 +134,15 @@ impl<'g> Derivation<'g> {
         let gravity = model.vector(&model.chain.gravity);
         let forces = self.given_forces(model.t, &model.v);
         let prescribed = drives::accelerations(model);
-        let of_motion = Load { v: &model.v, forces: &forces, prescribed: &prescribed, gravity };
+        let of_motion = DynamicsInputs { v: &model.v, forces: &forces, prescribed: &prescribed, gravity };
         let (accelerations, trace) = model.graph.recorded(|| self.hybrid_dynamics(&of_motion).accelerations);
         let (rest, still) = (model.zeros(), drives::at_rest(model));
-        let at_rest =
-            Load { v: &rest, forces: &model.right_hand_side, prescribed: &still, gravity: Vec3::zero(model.graph) };
+        let at_rest = DynamicsInputs {
+            v: &rest,
+            forces: &model.right_hand_side,
+            prescribed: &still,
+            gravity: Vec3::zero(model.graph),
+        };
         let (solution, solution_trace) = model.graph.recorded(|| self.hybrid_dynamics(&at_rest).accelerations);
         let (columns, mass_trace) = model.graph.recorded(|| columns(model, &self.factors));
         let (bias, bias_trace) = model.graph.recorded(|| newton_euler::bias(model, &self.factors));
@@ -216,16 +220,20 @@ impl<'g> Derivation<'g> {
         let forces = self.given_forces(model.t, &model.v);
         let prescribed = drives::accelerations(model);
         let gravity = model.vector(&model.chain.gravity);
-        self.hybrid_dynamics(&Load { v: &model.v, forces: &forces, prescribed: &prescribed, gravity })
+        self.hybrid_dynamics(&DynamicsInputs { v: &model.v, forces: &forces, prescribed: &prescribed, gravity })
     }
 
     /// The motion of the chain, including rotors.
-    fn hybrid_dynamics(&self, load: &Load<'_, 'g>) -> Motion<'g> {
-        let Load { v, forces, prescribed, gravity } = *load;
+    fn hybrid_dynamics(&self, inputs: &DynamicsInputs<'_, 'g>) -> Motion<'g> {
+        let DynamicsInputs { v, forces, prescribed, gravity } = *inputs;
         let armatures = rotors::armatures(&self.model);
         let efforts = forces.iter().zip(armatures).map(|(&applied, added_inertia)| Effort { applied, added_inertia });
         let efforts: Vec<_> = efforts.collect();
-        forward::hybrid_dynamics(&self.model, &self.factors, &Loads { v, efforts: &efforts, prescribed, gravity })
+        forward::hybrid_dynamics(
+            &self.model,
+            &self.factors,
+            &ForwardInputs { v, efforts: &efforts, prescribed, gravity },
+        )
     }
 
     /// Functions for implicit integration: structured stiffness and damping, and systems with them.

@@ -6,7 +6,7 @@ use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::{SectionModuli, Wrench};
 
 use super::{LiveCrane, at, copy, copy_as, state};
-use crate::closing::{mass_matrix, second_derivatives};
+use crate::expansion::{mass_matrix, second_derivatives};
 use crate::machine::Arguments;
 
 impl DynStatics for LiveCrane {

@@ -1,4 +1,4 @@
-//! The completion of results that are left as factors, because there are too many of them to write out.
+//! The expansion of results that are left as factors, because there are too many of them to write out.
 
 use super::OperationCount;
 use super::shape::{ConcurrentAxes, Shape};
@@ -6,24 +6,24 @@ use crate::symbolic::Scalar;
 
 impl Shape {
     /// The result from its slots: the slots themselves, unless they are factors.
-    pub fn close<S: Scalar>(&self, slots: Vec<S>) -> Vec<S> {
+    pub fn expand<S: Scalar>(&self, slots: Vec<S>) -> Vec<S> {
         match self {
             Shape::TransformFactors { degrees, rotations, vectors } => {
                 second_derivatives(degrees, rotations.len(), vectors, &slots)
             }
             Shape::Columns { n, points, .. } => {
                 let (columns, bias) = slots.split_at(12 * n);
-                let mut closed = mass_matrix(points, columns);
-                closed.extend_from_slice(bias);
-                closed
+                let mut expanded = mass_matrix(points, columns);
+                expanded.extend_from_slice(bias);
+                expanded
             }
             _ => slots,
         }
     }
 
-    /// Operations of [`Shape::close`]; translations cost none.
+    /// Operations of [`Shape::expand`]; translations cost none.
     #[must_use]
-    pub fn closing_count(&self) -> OperationCount {
+    pub fn expansion_count(&self) -> OperationCount {
         match self {
             Shape::TransformFactors { degrees, rotations, vectors } => {
                 let of = |&count: &usize| (0..count).filter(|&m| rotations[m]).map(|m| count - m).sum::<usize>();
@@ -61,7 +61,7 @@ fn second_derivatives<S: Scalar>(degrees: &[usize], coordinates: usize, vectors:
     let (axes, derivatives) = slots.split_at(3 * coordinates);
     let (derivatives, shares) = derivatives.split_at(derivatives.len() - 18 * vectors.len());
     let derivative = |at: usize| &derivatives[12 * at..12 * at + 12];
-    let mut closed = Vec::new();
+    let mut expanded = Vec::new();
     let mut start = 0;
     for &count in degrees {
         for m in 0..count {
@@ -79,12 +79,12 @@ fn second_derivatives<S: Scalar>(degrees: &[usize], coordinates: usize, vectors:
                         }
                     }
                 }
-                closed.extend(pair);
+                expanded.extend(pair);
             }
         }
         start += count;
     }
-    closed
+    expanded
 }
 
 /// Upper triangle of a mass matrix, row by row: `a_ij = n_i · L_j` or `n_i · P_j`, with L_j taken about the point of i.
