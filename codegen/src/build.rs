@@ -37,7 +37,7 @@ pub fn compile_spec(spec: impl AsRef<Path>) -> GeneratedCode {
 pub fn compile_spec_for(spec: impl AsRef<Path>, analyses: Option<Analyses>) -> GeneratedCode {
     let spec = spec.as_ref();
     println!("cargo::rerun-if-changed={}", spec.display());
-    let compiled = gather(spec, &|_| None).and_then(|(source, bases)| {
+    let compiled = load_with_bases(spec, &|_| None).and_then(|(source, bases)| {
         for base in bases {
             println!("cargo::rerun-if-changed={}", base.display());
         }
@@ -65,7 +65,7 @@ pub fn open(spec: &Path) -> Result<SourceFile, Failure> {
 /// # Errors
 /// Those of [`open`].
 pub fn open_with(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) -> Result<SourceFile, Failure> {
-    Ok(gather(spec, shipped)?.0)
+    Ok(load_with_bases(spec, shipped)?.0)
 }
 
 /// Reads a spec from a stream, such as the standard input, called `name` in messages; specs that it extends are looked up
@@ -78,52 +78,55 @@ pub fn read_with(
     stream: impl Read,
     shipped: &dyn Fn(&str) -> Option<&'static str>,
 ) -> Result<SourceFile, Failure> {
-    Ok(gather_from(name.to_owned(), read_alone(name, stream)?, PathBuf::new(), shipped)?.0)
+    Ok(with_bases(name.to_owned(), read_single(name, stream)?, PathBuf::new(), shipped)?.0)
 }
 
 /// Maximum number of specs that extend each other in a chain: more are taken for a cycle.
 const MOST_BASES: usize = 16;
 
 /// A spec combined with the specs that it extends, and the files of the latter.
-fn gather(spec: &Path, shipped: &dyn Fn(&str) -> Option<&'static str>) -> Result<(SourceFile, Vec<PathBuf>), Failure> {
+fn load_with_bases(
+    spec: &Path,
+    shipped: &dyn Fn(&str) -> Option<&'static str>,
+) -> Result<(SourceFile, Vec<PathBuf>), Failure> {
     // The text must not depend on where the file is.
     let named = spec.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    gather_from(named, open_alone(spec)?, folder(spec), shipped)
+    with_bases(named, open_single(spec)?, folder(spec), shipped)
 }
 
 fn folder(file: &Path) -> PathBuf {
     file.parent().map(Path::to_owned).unwrap_or_default()
 }
 
-/// Like [`gather`], for a spec that has already been read; the specs that it extends are looked up `from` a folder.
-fn gather_from(
+/// Like [`load_with_bases`], for a spec that has already been read; the specs that it extends are looked up `from` a folder.
+fn with_bases(
     named: String,
     spec: SourceFile,
     mut from: PathBuf,
     shipped: &dyn Fn(&str) -> Option<&'static str>,
 ) -> Result<(SourceFile, Vec<PathBuf>), Failure> {
     let nothing = format!("{}: nothing to read", spec.name);
-    let mut row = vec![(named, spec)];
+    let mut extends_chain = vec![(named, spec)];
     let mut files = Vec::new();
-    while let Some((name, span)) = row.last().and_then(|(_, source)| base(source)) {
+    while let Some((name, span)) = extends_chain.last().and_then(|(_, source)| base(source)) {
         let refused = |problem: &str| {
-            let source = &row[row.len() - 1].1;
+            let source = &extends_chain[extends_chain.len() - 1].1;
             Failure::Mistakes(Diagnostics::new(source, vec![rule::no_base(span, &name, problem)]))
         };
-        if row.len() > MOST_BASES {
+        if extends_chain.len() > MOST_BASES {
             return Err(refused("specs extend each other in a circle"));
         }
         let file = from.join(&name);
         let source = if file.is_file() {
-            open_alone(&file).map_err(|failure| refused(&failure.to_string()))?
+            open_single(&file).map_err(|failure| refused(&failure.to_string()))?
         } else {
             SourceFile::new(&name, shipped(&name).ok_or_else(|| refused("there is no such file"))?)
         };
         from = folder(&file);
         files.push(file);
-        row.push((name, source));
+        extends_chain.push((name, source));
     }
-    let whole = row.into_iter().rev().reduce(|(base_named, base), (named, source)| {
+    let whole = extends_chain.into_iter().rev().reduce(|(base_named, base), (named, source)| {
         let extended = source.extended(&base, &base_named, &named);
         (named, extended)
     });
@@ -131,14 +134,14 @@ fn gather_from(
 }
 
 /// Reads one file.
-fn open_alone(spec: &Path) -> Result<SourceFile, Failure> {
+fn open_single(spec: &Path) -> Result<SourceFile, Failure> {
     let name = spec.display().to_string();
     let file = fs::File::open(spec).map_err(|error| Failure::File(format!("{name}: {error}")))?;
-    read_alone(&name, file)
+    read_single(&name, file)
 }
 
 /// Reads one file to its end, unless it is too large.
-fn read_alone(name: &str, stream: impl Read) -> Result<SourceFile, Failure> {
+fn read_single(name: &str, stream: impl Read) -> Result<SourceFile, Failure> {
     let mut bytes = Vec::new();
     let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX).saturating_add(1);
     let read = stream.take(limit).read_to_end(&mut bytes);

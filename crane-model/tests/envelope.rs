@@ -6,7 +6,7 @@ use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::{
     dyn_crane::{DynCrane, DynModel},
-    envelope::{Axes, Axis, Conduct, Envelope, Limit, Limits, Rating, SlewAxis, Varied},
+    envelope::{Axes, Axis, Envelope, Execution, Limit, Limits, Rating, SlewAxis, Varied},
     statics::Settings,
 };
 
@@ -23,7 +23,7 @@ fn rate(envelope: &Envelope, crane: &dyn DynCrane, threads: usize) -> Vec<Rating
         }
     };
     let pieces: Vec<usize> = (0..envelope.pieces()).collect();
-    envelope.run(crane, &pieces, &Conduct { threads, done: &done, called_off: &|| false }).expect("allowed");
+    envelope.run(crane, &pieces, &Execution { threads, done: &done, cancelled: &|| false }).expect("allowed");
     found.into_inner().unwrap().into_iter().map(|rating| rating.expect("every pose is rated")).collect()
 }
 

@@ -1,8 +1,8 @@
 //! Drives: a spring and a damper between a coordinate and its prescribed motion, or that motion itself. A joint that oil moves has a
 //! spring at rest only: in motion, its force follows from pressures, which are states of the run.
 
-use super::capability::delivered;
 use super::model::Model;
+use super::power_limits::delivered;
 use super::profile;
 use super::saturation::Saturation;
 use super::vector::SymmetricMatrix;
@@ -15,7 +15,7 @@ fn flexible<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Va
 }
 
 /// Hydraulic drives, with their stiffness at rest.
-fn moved_by_oil<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value)> {
+fn hydraulic_drives<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value)> {
     model.chain.drives.iter().filter_map(|drive| drive.oil().map(|stiffness| (drive, stiffness)))
 }
 
@@ -80,7 +80,7 @@ pub fn forces_at_rest<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
         let stretch = stretch(model, drive, model.zero());
         forces[drive.coordinate.0] = named(model, drive, limited(model, drive, model.number(stiffness) * stretch));
     }
-    for (drive, stiffness) in moved_by_oil(model) {
+    for (drive, stiffness) in hydraulic_drives(model) {
         let effort = model.number(stiffness) * stretch(model, drive, model.zero());
         forces[drive.coordinate.0] = named(model, drive, effort);
     }
@@ -143,8 +143,8 @@ pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
 }
 
 /// Stiffness at rest of hydraulic drives, on the diagonal.
-pub fn holding_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    for (drive, stiffness) in moved_by_oil(model) {
+pub fn hydraulic_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    for (drive, stiffness) in hydraulic_drives(model) {
         matrix.add(drive.coordinate.0, drive.coordinate.0, model.number(stiffness));
     }
 }

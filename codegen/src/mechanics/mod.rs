@@ -6,7 +6,6 @@
 
 mod articulated;
 mod axis_rotation;
-mod capability;
 mod columns;
 mod connectors;
 mod contact;
@@ -28,6 +27,7 @@ mod newton_euler;
 mod omissions;
 mod outward;
 mod points;
+mod power_limits;
 mod profile;
 mod rotation_vector;
 mod rotors;

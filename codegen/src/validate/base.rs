@@ -32,7 +32,7 @@ impl<'a> Check<'a> {
         for support in supports.iter().filter_map(|support| support.value.as_ref()) {
             let name = self.name(&support.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
-                self.take_name("supports", &name, "an earlier support".into(), support.name.span);
+                self.register_name("supports", &name, "an earlier support".into(), support.name.span);
             }
             let kinematics = match support.kinematics.as_ref().and_then(|kinematics| kinematics.value) {
                 Some(Kinematics::Exact) => SupportKinematics::Exact,

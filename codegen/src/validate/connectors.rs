@@ -16,7 +16,7 @@ impl<'a> Check<'a> {
         for connector in given.iter().filter_map(|connector| connector.value.as_ref()) {
             let name = self.name(&connector.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
-                self.take_name("connectors", &name, "an earlier connector".into(), connector.name.span);
+                self.register_name("connectors", &name, "an earlier connector".into(), connector.name.span);
                 // Both have result columns for length and force.
                 if cylinders.iter().any(|cylinder| cylinder.name == name) {
                     self.report(rule::duplicate_name(connector.name.span, "elements", &name, "a cylinder"));
@@ -41,7 +41,7 @@ impl<'a> Check<'a> {
         for coupling in given.iter().filter_map(|coupling| coupling.value.as_ref()) {
             let name = self.name(&coupling.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
-                self.take_name("connectors", &name, "an earlier connector".into(), coupling.name.span);
+                self.register_name("connectors", &name, "an earlier connector".into(), coupling.name.span);
             }
             let coordinate = self.joint_of(&coupling.coordinate, "a coupling");
             let leader = self.joint_of(&coupling.follows, "a coupling");

@@ -46,7 +46,7 @@ impl<'a> Check<'a> {
     }
 
     /// Changes the transmission of joints with a valve-controlled cylinder to oil.
-    pub(super) fn moved_by_oil(
+    pub(super) fn make_drives_hydraulic(
         &mut self,
         crane: &'a Crane,
         cylinders: &[Cylinder],
@@ -138,7 +138,7 @@ impl<'a> Check<'a> {
     fn cylinder(&mut self, given: &spec::Cylinder, drives: &[Drive]) -> Option<Cylinder> {
         let name = self.name(&given.name).unwrap_or_default().to_owned();
         if !name.is_empty() {
-            self.take_name("cylinders", &name, "an earlier cylinder".into(), given.name.span);
+            self.register_name("cylinders", &name, "an earlier cylinder".into(), given.name.span);
         }
         let place = |what: &str| format!("the {what} of cylinder `{name}`");
         let bore = self.constant(&given.bore, &place("bore"), "m", Limit::Positive);

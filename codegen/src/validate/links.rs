@@ -84,7 +84,7 @@ impl<'a> Check<'a> {
 
     /// Appends a body; its name must not be taken.
     pub(super) fn push_body(&mut self, body: Body, span: Span) {
-        self.take_expanded("bodies", &body.name, &body.link, span);
+        self.register_expanded("bodies", &body.name, &body.link, span);
         self.bodies.push(body);
     }
 
@@ -99,7 +99,7 @@ impl<'a> Check<'a> {
     ) -> CoordinateId {
         let id = CoordinateId(self.coordinates.len());
         let name = format!("{stem}_{}", symbol(kind, axis));
-        self.take_expanded("coordinates", &name, link, span);
+        self.register_expanded("coordinates", &name, link, span);
         self.coordinates.push(Coordinate { name, kind, axis, body: BodyId(self.bodies.len()) });
         self.owners.push(owner);
         id

@@ -174,7 +174,7 @@ impl<'a> Check<'a> {
         let loads = self.loads(crane);
         let cylinders = self.cylinders(crane, &drives);
         let pump = self.pump(crane);
-        self.moved_by_oil(crane, &cylinders, pump.as_ref(), &mut drives);
+        self.make_drives_hydraulic(crane, &cylinders, pump.as_ref(), &mut drives);
         let connectors = self.connectors(crane, &cylinders);
         rotors.extend(self.rotors(crane, &drives));
         let points = self.points(crane, &supports);

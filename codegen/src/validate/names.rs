@@ -29,10 +29,10 @@ pub(super) struct Names(BTreeMap<(&'static str, String), String>);
 
 impl Names {
     /// Registers a name, or returns its owner if it is taken.
-    fn take(&mut self, kind: &'static str, name: &str, taker: String) -> Result<(), String> {
+    fn register(&mut self, kind: &'static str, name: &str, owner: String) -> Result<(), String> {
         match self.0.entry((kind, name.to_owned())) {
             std::collections::btree_map::Entry::Vacant(free) => {
-                free.insert(taker);
+                free.insert(owner);
                 Ok(())
             }
             std::collections::btree_map::Entry::Occupied(taken) => Err(taken.get().clone()),
@@ -81,16 +81,16 @@ impl Check<'_> {
     }
 
     /// Registers a name that must be unique among its kind.
-    pub(super) fn take_name(&mut self, kind: &'static str, name: &str, taker: String, span: Span) {
-        if let Err(other) = self.expanded.take(kind, name, taker) {
+    pub(super) fn register_name(&mut self, kind: &'static str, name: &str, owner: String, span: Span) {
+        if let Err(other) = self.expanded.register(kind, name, owner) {
             self.report(rule::duplicate_name(span, kind, name, other));
         }
     }
 
     /// Registers the name of a body or coordinate of a link, unless the link's own name is invalid or a duplicate.
-    pub(super) fn take_expanded(&mut self, kind: &'static str, name: &str, link: &str, span: Span) {
+    pub(super) fn register_expanded(&mut self, kind: &'static str, name: &str, link: &str, span: Span) {
         if !link.is_empty() && !self.links.contains_key(link) {
-            self.take_name(kind, name, format!("link `{link}`"), span);
+            self.register_name(kind, name, format!("link `{link}`"), span);
         }
     }
 

@@ -17,7 +17,7 @@ impl<'a> Check<'a> {
         for point in given.iter().filter_map(|point| point.value.as_ref()) {
             let name = self.name(&point.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
-                self.take_name("points", &name, "an earlier point".into(), point.name.span);
+                self.register_name("points", &name, "an earlier point".into(), point.name.span);
                 self.own_columns(&name, supports, point.name.span);
             }
             let at = self.vector(&point.at, &format!("the position of point `{name}`"), "m", Limit::Any);

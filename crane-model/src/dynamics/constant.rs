@@ -25,13 +25,13 @@ pub struct Rk4<'a> {
     before: Vec<f64>,
     room: Vec<f64>,
     first_order: FirstOrder,
-    steps: Equal,
+    steps: EqualSteps,
     done: usize,
 }
 
 /// Steps of equal length up to a time ahead.
 #[derive(Clone, Copy, Debug, Default)]
-struct Equal {
+struct EqualSteps {
     /// Their start and end, s.
     begin: f64,
     end: f64,
@@ -40,7 +40,7 @@ struct Equal {
     done: usize,
 }
 
-impl Equal {
+impl EqualSteps {
     /// Start and length of the next, s.
     fn next(&self) -> (f64, f64) {
         let h = (self.end - self.begin) / self.count as f64;
@@ -66,7 +66,7 @@ impl<'a> Rk4<'a> {
             equations,
             settings: *settings,
             roughness: Roughness::new(Vec::new()),
-            steps: Equal::default(),
+            steps: EqualSteps::default(),
             done: 0,
         }
     }
@@ -153,7 +153,7 @@ impl Stepper for Rk4<'_> {
         let mut mass = vec![0.0; n * n];
         self.equations.crane.mass_matrix(&motion[..n], &mut mass);
         self.roughness = Roughness::new(mass.iter().step_by(n + 1).copied().collect());
-        self.steps = Equal { begin: t, end: t, count: 0, done: 0 };
+        self.steps = EqualSteps { begin: t, end: t, count: 0, done: 0 };
         Ok(())
     }
 
@@ -163,7 +163,7 @@ impl Stepper for Rk4<'_> {
             let (begin, end) = (steps.end, ahead.result.min(ahead.stop));
             let short = end == ahead.stop && end - begin < self.settings.step;
             let count = if short { PIECE } else { divided(end - begin, self.settings.step).0 };
-            *steps = Equal { begin, end, count, done: 0 };
+            *steps = EqualSteps { begin, end, count, done: 0 };
         }
         let (t, h) = steps.next();
         let n = equations.n;

@@ -115,7 +115,7 @@ impl Formula for Tableau {
             add_all(&mut step.end, h, A[i], slopes.iter());
             equations.slope(step.t + NODES[i] * h, &step.end, &mut slopes[i])?;
         }
-        for (out, weights) in [(&mut step.error, &ERROR), (&mut step.bulge, &DENSE)] {
+        for (out, weights) in [(&mut step.error, &ERROR), (&mut step.quartic_term, &DENSE)] {
             out.fill(0.0);
             add_all(out, h, weights, slopes.iter());
         }

@@ -17,8 +17,8 @@ pub(super) struct Step {
     pub error: Vec<f64>,
     /// Slopes at the start and at the end; the latter is the first of the next step.
     pub slopes: [Vec<f64>; 2],
-    /// The term that a method adds to Hermite's cubic, `θ²(1−θ)² bulge`.
-    pub bulge: Vec<f64>,
+    /// The term that a method adds to Hermite's cubic, `θ²(1−θ)² quartic_term`.
+    pub quartic_term: Vec<f64>,
 }
 
 impl Step {
@@ -26,7 +26,7 @@ impl Step {
     pub fn new(len: usize) -> Self {
         let zeros = || vec![0.0; len];
         let slopes = [zeros(), zeros()];
-        Self { t: 0.0, length: 0.0, start: zeros(), end: zeros(), error: zeros(), slopes, bulge: zeros() }
+        Self { t: 0.0, length: 0.0, start: zeros(), end: zeros(), error: zeros(), slopes, quartic_term: zeros() }
     }
 
     /// Time at the end, s.
@@ -42,7 +42,7 @@ impl Step {
         std::mem::swap(first, last);
     }
 
-    /// Motion at a time within the step: Hermite's cubic through values and slopes at both ends, and the bulge.
+    /// Motion at a time within the step: Hermite's cubic through values and slopes at both ends, and the quartic term.
     ///
     /// The error of the cubic is at most `h⁴/384` times the fourth derivative: sufficient for methods of order 4.
     pub fn at(&self, t: f64, motion: &mut [f64]) {
@@ -55,7 +55,7 @@ impl Step {
         add(motion, of_end, &self.end);
         add(motion, theta * rest * rest * self.length, first);
         add(motion, -theta * theta * rest * self.length, last);
-        add(motion, theta * theta * rest * rest, &self.bulge);
+        add(motion, theta * theta * rest * rest, &self.quartic_term);
     }
 
     /// Rate of one of `n` coordinates at a time within the step, as the slope of its cubic.

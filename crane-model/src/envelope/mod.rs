@@ -23,4 +23,4 @@ pub use condition::Condition;
 pub use limits::{Limit, Limits};
 pub use radius::SlewAxis;
 pub use rating::Rating;
-pub use sweep::{Conduct, Envelope, PIECE, only_mass, range_of_loads};
+pub use sweep::{Envelope, Execution, PIECE, only_mass, range_of_loads};

@@ -31,13 +31,13 @@ pub struct Envelope {
 }
 
 /// How an envelope is computed.
-pub struct Conduct<'a> {
+pub struct Execution<'a> {
     /// Number of threads.
     pub threads: usize,
     /// Called with the ratings of every completed piece, in the order of completion, from any thread.
     pub done: &'a (dyn Fn(usize, &[Rating]) + Sync),
     /// Whether to skip the remaining pieces; asked before every piece.
-    pub called_off: &'a (dyn Fn() -> bool + Sync),
+    pub cancelled: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// Minimum load to try if zero is not allowed, kg: a gram.
@@ -80,16 +80,16 @@ impl Envelope {
     ///
     /// # Errors
     /// Values of parameters on an axis, or the minimum load, break a rule of the spec language.
-    pub fn run(&self, crane: &dyn DynCrane, pieces: &[usize], conduct: &Conduct<'_>) -> Result<(), ParameterError> {
+    pub fn run(&self, crane: &dyn DynCrane, pieces: &[usize], execution: &Execution<'_>) -> Result<(), ParameterError> {
         let waiting = Mutex::new(pieces.iter());
         let refused = Mutex::new(None);
         let work = || {
             let mut own = crane.boxed_clone();
             loop {
                 let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
-                let (Some(&piece), false) = (next, (conduct.called_off)()) else { break };
+                let (Some(&piece), false) = (next, (execution.cancelled)()) else { break };
                 match self.rate(crane, own.as_mut(), piece) {
-                    Ok(ratings) => (conduct.done)(piece, &ratings),
+                    Ok(ratings) => (execution.done)(piece, &ratings),
                     Err(error) => {
                         *refused.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
                         break;
@@ -98,7 +98,7 @@ impl Envelope {
             }
         };
         thread::scope(|scope| {
-            for _ in 1..conduct.threads.min(pieces.len()) {
+            for _ in 1..execution.threads.min(pieces.len()) {
                 scope.spawn(work);
             }
             work();

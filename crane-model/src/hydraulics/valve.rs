@@ -7,22 +7,22 @@ const LAMINAR: f64 = 1e5;
 
 /// A number and its derivative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Sloped {
+pub(super) struct WithSlope {
     pub value: f64,
     pub slope: f64,
 }
 
 /// `r(Δ) = Δ/(Δ² + ε²)^¼`: the square root of a pressure difference, with its sign, and laminar in the middle. √Pa.
-pub(super) fn root(difference: f64) -> Sloped {
+pub(super) fn root(difference: f64) -> WithSlope {
     let (square, epsilon) = (difference * difference, LAMINAR * LAMINAR);
     let sum = square + epsilon;
     let fourth = sum.sqrt().sqrt();
-    Sloped { value: difference / fourth, slope: (0.5 * square + epsilon) / (sum * fourth) }
+    WithSlope { value: difference / fourth, slope: (0.5 * square + epsilon) / (sum * fourth) }
 }
 
 /// As [`root`], behind a check valve: nothing flows backwards.
-fn checked(difference: f64) -> Sloped {
-    if difference > 0.0 { root(difference) } else { Sloped::default() }
+fn checked(difference: f64) -> WithSlope {
+    if difference > 0.0 { root(difference) } else { WithSlope::default() }
 }
 
 /// Flows into the two sides of a cylinder, m³/s, and their derivatives.

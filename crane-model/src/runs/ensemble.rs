@@ -38,7 +38,7 @@ pub enum Reason {
     /// It cannot start, or stopped before its end.
     Failed(Failed),
     /// The ensemble was cancelled.
-    CalledOff,
+    Cancelled,
 }
 
 impl Outcome {
@@ -64,24 +64,24 @@ impl std::fmt::Display for Reason {
         match self {
             Reason::Refused(refused) => write!(f, "{refused}"),
             Reason::Failed(failed) => write!(f, "{failed}"),
-            Reason::CalledOff => f.write_str("cancelled"),
+            Reason::Cancelled => f.write_str("cancelled"),
         }
     }
 }
 
 /// How an ensemble is executed, in addition to its settings.
-pub struct Conduct<'a> {
+pub struct Execution<'a> {
     /// Number of threads.
     pub threads: usize,
     /// Called with every completed row, in the order of completion, from any thread.
     pub done: &'a (dyn Fn(usize, &Outcome) + Sync),
     /// Whether to cancel the rest; called after every step, with `true` on the calling thread.
-    pub called_off: &'a (dyn Fn(bool) -> bool + Sync),
+    pub cancelled: &'a (dyn Fn(bool) -> bool + Sync),
 }
 
 /// Runs the crane with every row of parameters, all of them in the order of the description, each from its own [`Start`]. One outcome
 /// per row, in order.
-pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, conduct: &Conduct<'_>) -> Vec<Outcome> {
+pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, execution: &Execution<'_>) -> Vec<Outcome> {
     // Lanes do not support states of forces.
     let in_lanes = settings.method == Method::Rk4 && !crane.description().has_force_states();
     let piece = if in_lanes { crane.lanes() } else { 1 };
@@ -89,24 +89,24 @@ pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, conduct
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
     let finished = Mutex::new(Vec::with_capacity(rows.len()));
     let work = |caller: bool| {
-        let off = || (conduct.called_off)(caller);
+        let off = || (execution.cancelled)(caller);
         while let Some((index, rows)) = next() {
             let outcomes = match rows {
-                _ if off() => rows.iter().map(|_| Outcome::without_run(Reason::CalledOff)).collect(),
+                _ if off() => rows.iter().map(|_| Outcome::without_run(Reason::Cancelled)).collect(),
                 [row] if !in_lanes => vec![alone(crane, row, settings, &off)],
                 rows => side_by_side(crane, rows, settings),
             };
             for (place, outcome) in outcomes.into_iter().enumerate() {
                 let row = index * piece + place;
-                if !matches!(outcome.run, Err(Reason::CalledOff)) {
-                    (conduct.done)(row, &outcome);
+                if !matches!(outcome.run, Err(Reason::Cancelled)) {
+                    (execution.done)(row, &outcome);
                 }
                 finished.lock().unwrap_or_else(PoisonError::into_inner).push((row, outcome));
             }
         }
     };
     thread::scope(|scope| {
-        for _ in 1..conduct.threads.min(rows.len().div_ceil(piece)) {
+        for _ in 1..execution.threads.min(rows.len().div_ceil(piece)) {
             scope.spawn(|| work(false));
         }
         work(true);
@@ -130,13 +130,13 @@ struct Gathering<'a> {
     recording: Recording<'a>,
     end: InitialState,
     off: &'a dyn Fn() -> bool,
-    called_off: bool,
+    cancelled: bool,
 }
 
 impl<'a> Gathering<'a> {
     fn new(crane: &'a dyn DynCrane, off: &'a dyn Fn() -> bool) -> Self {
         let (recording, end) = (Recording::of_peaks(crane), InitialState::default());
-        Self { crane, recording, end, off, called_off: false }
+        Self { crane, recording, end, off, cancelled: false }
     }
 
     fn take(&mut self, sample: &Sample<'_>) {
@@ -149,8 +149,8 @@ impl<'a> Gathering<'a> {
     }
 
     fn finish(self, run: Result<Run, dynamics::Stopped>) -> Outcome {
-        if self.called_off {
-            return Outcome::without_run(Reason::CalledOff);
+        if self.cancelled {
+            return Outcome::without_run(Reason::Cancelled);
         }
         let (description, table) = (self.crane.description(), self.recording.into_table());
         let near_singular = cautions::near_singular(description, &table);
@@ -184,8 +184,8 @@ impl Watch for Gathering<'_> {
     }
 
     fn step(&mut self, _: f64) -> ControlFlow<()> {
-        self.called_off = (self.off)();
-        if self.called_off { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        self.cancelled = (self.off)();
+        if self.cancelled { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
@@ -219,7 +219,7 @@ fn side_by_side(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings) ->
     }
     .into_iter();
     let outcome = |ready: &Result<_, Reason>| match ready {
-        Ok(_) => outcomes.next().unwrap_or_else(|| Outcome::without_run(Reason::CalledOff)),
+        Ok(_) => outcomes.next().unwrap_or_else(|| Outcome::without_run(Reason::Cancelled)),
         Err(reason) => Outcome::without_run(reason.clone()),
     };
     ready.iter().map(outcome).collect()

@@ -41,7 +41,7 @@ impl Recorded {
 /// steps and tolerances.
 const IMBALANCE: f64 = 0.01;
 /// Lower limit of the energy exchanged, relative to the total energy: for a crane at rest it is only rounding.
-const LEAST_TURNED: f64 = 1e-9;
+const LEAST_EXCHANGED: f64 = 1e-9;
 
 /// Largest error of the energy balance over the largest energy exchanged.
 pub fn imbalance(table: &Table) -> f64 {
@@ -49,13 +49,14 @@ pub fn imbalance(table: &Table) -> f64 {
     // Only the kinetic energy has an absolute zero: a body that bounces may exchange all of it between two results.
     let kinetic = column("kinetic_energy").into_iter().fold(0.0, f64::max);
     let parts = ["gravity", "support", "element", "drive", "stop", "connector"].map(|part| format!("{part}_energy"));
-    let turned = parts.iter().map(String::as_str).chain(["drive_work", "load_work", "dissipated_energy"]).map(|name| {
-        let values = column(name);
-        let first = values.first().copied().unwrap_or(0.0);
-        values.iter().map(|x| (x - first).abs().max(LEAST_TURNED * x.abs())).fold(0.0, f64::max)
-    });
+    let exchanged =
+        parts.iter().map(String::as_str).chain(["drive_work", "load_work", "dissipated_energy"]).map(|name| {
+            let values = column(name);
+            let first = values.first().copied().unwrap_or(0.0);
+            values.iter().map(|x| (x - first).abs().max(LEAST_EXCHANGED * x.abs())).fold(0.0, f64::max)
+        });
     let error = column("energy_balance").iter().map(|x| x.abs()).fold(0.0, f64::max);
-    error / turned.fold(kinetic.max(f64::MIN_POSITIVE), f64::max)
+    error / exchanged.fold(kinetic.max(f64::MIN_POSITIVE), f64::max)
 }
 
 /// Records every sample, and asks after every step whether to continue.

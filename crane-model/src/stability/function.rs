@@ -23,8 +23,8 @@ pub enum StabilityFunction {
         /// Coefficients of the denominator; `[1]` for an explicit method.
         denominator: &'static [f64],
     },
-    /// Of backward differences of order 2: the greater root ζ of `(3/2 − z) ζ² − 2ζ + 1/2 = 0`.
-    Backward,
+    /// Of the backward differentiation formula of order 2: the greater root ζ of `(3/2 − z) ζ² − 2ζ + 1/2 = 0`.
+    Bdf2,
 }
 
 impl StabilityFunction {
@@ -32,7 +32,7 @@ impl StabilityFunction {
     pub fn value(&self, z: Complex<f64>) -> Complex<f64> {
         match self {
             Self::Rational { numerator, denominator } => horner(numerator, z) / horner(denominator, z),
-            Self::Backward => {
+            Self::Bdf2 => {
                 let root = (z * 2.0 + 1.0).sqrt();
                 let greater = if root.re < 0.0 { -root } else { root };
                 (greater + 2.0) / (-z * 2.0 + 3.0)
@@ -47,7 +47,7 @@ impl StabilityFunction {
             Self::Rational { numerator, denominator } => {
                 (slope(numerator, z) - value * slope(denominator, z)) / horner(denominator, z)
             }
-            Self::Backward => value * value / ((-z * 2.0 + 3.0) * value - 2.0),
+            Self::Bdf2 => value * value / ((-z * 2.0 + 3.0) * value - 2.0),
         }
     }
 
@@ -55,7 +55,7 @@ impl StabilityFunction {
     pub(super) fn degree(&self) -> usize {
         match self {
             Self::Rational { numerator, denominator } => numerator.len().max(denominator.len()) - 1,
-            Self::Backward => 1,
+            Self::Bdf2 => 1,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{balance::Balance, equations::Equations};
+use super::{equations::Equations, residual_scale::ResidualScale};
 
 /// Maximum change of a coordinate in a step, m or rad, and of λ.
 const LONGEST: f64 = 0.3;
@@ -24,12 +24,12 @@ pub(super) fn follow<T>(
     equations: &dyn Equations,
     start: &DVector<f64>,
     steps: usize,
-    balance: &Balance,
+    scale: &ResidualScale,
     arrive: &mut Arrive<'_, T>,
 ) -> Option<T> {
     let n = start.len();
-    let springs = balance.springs(&equations.stiffness(start));
-    let path = Path { equations, start, springs, balance };
+    let springs = scale.springs(&equations.stiffness(start));
+    let path = Path { equations, start, springs, scale };
     // A point is q and λ in one vector; the path starts towards increasing λ.
     let mut point = start.clone().push(0.0);
     let ahead = DVector::zeros(n).push(1.0);
@@ -67,7 +67,7 @@ struct Path<'a> {
     start: &'a DVector<f64>,
     /// S, N/m and N m/rad.
     springs: DVector<f64>,
-    balance: &'a Balance,
+    scale: &'a ResidualScale,
 }
 
 impl Path<'_> {
@@ -77,11 +77,11 @@ impl Path<'_> {
         let (q, load) = (point.rows(0, n).into_owned(), point[n]);
         let (residual, stiffness) = (self.equations.residual(&q), self.equations.stiffness(&q));
         let held = (q - self.start).component_mul(&self.springs);
-        let value = self.balance.scaled(&(&residual * load + &held * (1.0 - load)));
-        let by_load = self.balance.scaled(&(residual - held));
+        let value = self.scale.scaled(&(&residual * load + &held * (1.0 - load)));
+        let by_load = self.scale.scaled(&(residual - held));
         let matrix = DMatrix::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
-            (true, true) if i == j => self.balance.row(i, stiffness[(i, j)] * load + self.springs[i] * (1.0 - load)),
-            (true, true) => self.balance.row(i, stiffness[(i, j)] * load),
+            (true, true) if i == j => self.scale.row(i, stiffness[(i, j)] * load + self.springs[i] * (1.0 - load)),
+            (true, true) => self.scale.row(i, stiffness[(i, j)] * load),
             (true, false) => by_load[i],
             (false, _) => last[j],
         });

@@ -72,13 +72,13 @@ impl<'a> Held<'a> {
 
     /// The pose at which the drives, at their positions of t = 0, are stretched as much as they are here: the effort of a drive depends
     /// only on the distance of its coordinate from its position.
-    fn moved(&self, q: &DVector<f64>) -> DVector<f64> {
-        let mut moved = q.clone();
+    fn shifted(&self, q: &DVector<f64>) -> DVector<f64> {
+        let mut shifted = q.clone();
         let drives = self.crane.description().drives.iter().zip(self.positions.iter().zip(&self.motions));
         for (drive, (position, [start, _])) in drives {
-            moved[drive.coordinate] -= position - start;
+            shifted[drive.coordinate] -= position - start;
         }
-        moved
+        shifted
     }
 }
 
@@ -90,7 +90,7 @@ impl Equations for Held<'_> {
     fn residual(&self, q: &DVector<f64>) -> DVector<f64> {
         let (crane, description) = (self.crane, self.crane.description());
         let (mut residual, mut forces) = (AtStart(crane).residual(q), vec![0.0; q.len()]);
-        for (sign, q) in [(1.0, q), (-1.0, &self.moved(q))] {
+        for (sign, q) in [(1.0, q), (-1.0, &self.shifted(q))] {
             crane.drive_forces_at_rest(q.as_slice(), &mut forces);
             for drive in description.drives.iter().filter(|drive| !self.is_rigid(drive.coordinate)) {
                 residual[drive.coordinate] += sign * forces[drive.coordinate];
@@ -121,7 +121,7 @@ impl Equations for Held<'_> {
         let mut stiffness = AtStart(self.crane).stiffness(q);
         let drives = &self.crane.description().drives;
         let mut limits = vec![[0.0; 2]; drives.len()];
-        for (sign, q) in [(-1.0, q), (1.0, &self.moved(q))] {
+        for (sign, q) in [(-1.0, q), (1.0, &self.shifted(q))] {
             self.crane.drive_limits(0.0, q.as_slice(), &self.rates, &mut limits);
             for (drive, [_, own]) in drives.iter().zip(&limits).filter(|(drive, _)| !self.is_rigid(drive.coordinate)) {
                 stiffness[(drive.coordinate, drive.coordinate)] += sign * own;

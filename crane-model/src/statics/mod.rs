@@ -1,11 +1,11 @@
 //! Static equilibrium by damped Newton–Raphson with the analytic tangent stiffness, and by continuation where that fails.
 
-mod balance;
 mod continuation;
 mod equations;
 mod equilibrium;
 mod guess;
 mod newton;
+mod residual_scale;
 mod settings;
 mod solve;
 mod status;

@@ -2,7 +2,9 @@
 
 use nalgebra::DVector;
 
-use super::{Equilibrium, Iteration, Settings, Status, balance::Balance, equations::Equations, tangent::Tangent};
+use super::{
+    Equilibrium, Iteration, Settings, Status, equations::Equations, residual_scale::ResidualScale, tangent::Tangent,
+};
 use crate::CoordinateKind;
 
 /// Halvings of a step before it is given up: 1e-6 of a Newton step no longer makes progress.
@@ -15,7 +17,7 @@ pub(super) fn iterate(
     equations: &dyn Equations,
     mut q: DVector<f64>,
     settings: &Settings,
-    balance: &Balance,
+    scale: &ResidualScale,
 ) -> Equilibrium {
     let load_steps = None;
     if q.is_empty() {
@@ -25,7 +27,7 @@ pub(super) fn iterate(
     }
     let description = equations.crane().description();
     let mut residual = equations.residual(&q);
-    let mut norm = balance.norm(&residual);
+    let mut norm = scale.norm(&residual);
     let mut history = vec![Iteration { residual: norm, fraction: 0.0 }];
 
     let status = loop {
@@ -33,7 +35,7 @@ pub(super) fn iterate(
         let Some(tangent) = Tangent::new(&stiffness, description).filter(|_| norm.is_finite()) else {
             break Status::Overflow;
         };
-        if norm <= settings.tolerance.max(balance.rounding(equations.crane(), &stiffness, &q)) {
+        if norm <= settings.tolerance.max(scale.rounding(equations.crane(), &stiffness, &q)) {
             break tangent.status(description);
         }
         if history.len() > settings.iterations {
@@ -50,7 +52,7 @@ pub(super) fn iterate(
         let improved = (0..=HALVINGS).map(|k| 0.5_f64.powi(k.cast_signed())).find_map(|fraction| {
             let pose = &q + &step * fraction;
             let residual = equations.residual(&pose);
-            let trial = balance.norm(&residual);
+            let trial = scale.norm(&residual);
             (trial < norm || is_nearer(&residual)).then_some((pose, residual, trial, fraction))
         });
         let Some((pose, next, trial, fraction)) = improved else {

@@ -3,11 +3,10 @@
 use nalgebra::{DVector, SVector};
 
 use super::{
-    Equilibrium, Settings, Status,
-    balance::Balance,
-    continuation,
+    Equilibrium, Settings, Status, continuation,
     equations::{AtStart, Equations, Held},
     guess_dyn, newton,
+    residual_scale::ResidualScale,
     tangent::Tangent,
 };
 use crate::{
@@ -86,18 +85,18 @@ fn prescribed(crane: &dyn DynStatics, mut found: Equilibrium) -> Equilibrium {
 
 /// Newton's method, then continuation.
 fn search(equations: &dyn Equations, start: &DVector<f64>, settings: &Settings) -> Equilibrium {
-    let balance = Balance::at(equations.crane(), start);
-    let first = newton::iterate(equations, start.clone(), settings, &balance);
+    let scale = ResidualScale::at(equations.crane(), start);
+    let first = newton::iterate(equations, start.clone(), settings, &scale);
     if settings.load_steps == 0 || !missed(equations, start, settings, &first) {
         return first;
     }
     let mut load_steps = 0;
     let mut arrive = |q: DVector<f64>, steps: usize| {
         load_steps = steps;
-        let found = newton::iterate(equations, q, settings, &balance);
+        let found = newton::iterate(equations, q, settings, &scale);
         found.is_stable().then_some(found)
     };
-    let found = continuation::follow(equations, start, settings.load_steps, &balance, &mut arrive);
+    let found = continuation::follow(equations, start, settings.load_steps, &scale, &mut arrive);
     found.map_or(first, |found| Equilibrium { load_steps: Some(load_steps), ..found })
 }
 

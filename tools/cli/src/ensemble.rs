@@ -17,7 +17,7 @@ use crane_model::{
     results::{Column, Peaks},
     runs::{
         Start,
-        ensemble::{self, Conduct, Outcome as Row},
+        ensemble::{self, Execution, Outcome as Row},
     },
 };
 use serde_json::Value;
@@ -77,8 +77,8 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
         bar.inc(1);
     };
     let failed = |_| state.lock().unwrap_or_else(PoisonError::into_inner).1.is_err();
-    let conduct = Conduct { threads, done: &done, called_off: &failed };
-    let simulated: f64 = ensemble::run(crane, &parameters, &settings, &conduct).iter().map(Row::time).sum();
+    let execution = Execution { threads, done: &done, cancelled: &failed };
+    let simulated: f64 = ensemble::run(crane, &parameters, &settings, &execution).iter().map(Row::time).sum();
     bar.finish_and_clear();
     let wall = begin.elapsed().as_secs_f64();
     let (rows, written) = state.into_inner().unwrap_or_else(PoisonError::into_inner);

@@ -33,7 +33,7 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
     name.push(format!(".{}.part", process::id()));
     let part: PathBuf = path.with_file_name(name);
     let written = (|| {
-        remove_parts_of_the_dead(path);
+        remove_stale_parts(path);
         let file = fs::File::create(&part)?;
         // Locked while this process lives. A file system without locks does without.
         let _ = file.try_lock();
@@ -50,12 +50,12 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
 }
 
 /// Removes incomplete files that killed commands left: those that no living process has locked.
-fn remove_parts_of_the_dead(path: &Path) {
+fn remove_stale_parts(path: &Path) {
     /// The owner of a younger file may be about to lock it.
     const AGE: Duration = Duration::from_secs(60);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let begin = format!("{}.", path.file_name().unwrap_or_default().to_string_lossy());
-    let is_dead = |part: &Path| {
+    let is_stale = |part: &Path| {
         let name = part.file_name().unwrap_or_default().to_string_lossy();
         let number = name.strip_prefix(&begin).and_then(|rest| rest.strip_suffix(".part"));
         let is_part = number.is_some_and(|number| number.chars().all(|c| c.is_ascii_digit()));
@@ -69,7 +69,7 @@ fn remove_parts_of_the_dead(path: &Path) {
             })
     };
     for part in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
-        if is_dead(&part) {
+        if is_stale(&part) {
             let _ = fs::remove_file(part);
         }
     }
@@ -128,12 +128,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_of_the_dead_go_and_others_stay() {
+    fn stale_parts_go_and_others_stay() {
         let folder = env::temp_dir().join(format!("crane-parts-{}", process::id()));
         fs::create_dir_all(&folder).unwrap();
         let parts = ["table.csv.4194999.part", "table.csv.4194998.part", "table.csv.notes.part", "other.csv.1.part"];
-        let [dead, held, notes, other] = parts.map(|name| folder.join(name));
-        for part in [&dead, &held, &notes, &other] {
+        let [stale, held, notes, other] = parts.map(|name| folder.join(name));
+        for part in [&stale, &held, &notes, &other] {
             fs::write(part, "half").unwrap();
             let file = fs::File::options().write(true).open(part).unwrap();
             file.set_modified(SystemTime::now() - Duration::from_secs(3600)).unwrap();
@@ -142,7 +142,7 @@ mod tests {
         owner.try_lock().unwrap();
         write_text(&folder.join("table.csv"), "whole").unwrap();
         assert_eq!(fs::read_to_string(folder.join("table.csv")).unwrap(), "whole");
-        assert_eq!([&dead, &held, &notes, &other].map(|part| part.exists()), [false, true, true, true]);
+        assert_eq!([&stale, &held, &notes, &other].map(|part| part.exists()), [false, true, true, true]);
         fs::remove_dir_all(folder).unwrap();
     }
 }

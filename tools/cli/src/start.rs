@@ -61,12 +61,12 @@ impl Variable {
 }
 
 impl Timing {
-    /// The start that `--from` and `--start` ask for; `with_strangers`: skips names that this crane does not have, as they belong to
+    /// The start that `--from` and `--start` ask for; `skip_unknown_names`: skips names that this crane does not have, as they belong to
     /// another one.
     ///
     /// # Errors
     /// An option has a value that cannot be used.
-    pub fn start(&self, crane: &dyn DynCrane, with_strangers: bool) -> Outcome<Start> {
+    pub fn start(&self, crane: &dyn DynCrane, skip_unknown_names: bool) -> Outcome<Start> {
         if self.from.is_none() && self.start.is_empty() {
             return Ok(Start::of(crane)?);
         }
@@ -102,7 +102,7 @@ impl Timing {
             })?;
             let variable = match Variable::of(name, description) {
                 Some(variable) => variable,
-                None if with_strangers => continue,
+                None if skip_unknown_names => continue,
                 None => return Err(unknown(name, description)),
             };
             let number = value.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {

@@ -27,6 +27,7 @@ pub mod assemble;
 pub mod bytecode;
 mod crane;
 mod describe;
+mod dual;
 mod expansion;
 pub mod layout;
 mod library;
@@ -35,7 +36,6 @@ pub mod machine;
 mod motion;
 mod routine;
 pub mod rows;
-mod sloped;
 
 pub use crane::LiveCrane;
 pub use crane_codegen::program::FunctionId;

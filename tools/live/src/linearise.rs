@@ -4,9 +4,9 @@ use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::{DynDynamics, DynLineariseMotion, DynModel};
 
 use crate::LiveCrane;
+use crate::dual::{DIRECTIONS, Dual8};
 use crate::machine::Number;
 use crate::rows::{Evaluation, Quantity};
-use crate::sloped::{DIRECTIONS, Sloped};
 
 impl DynLineariseMotion for LiveCrane {
     fn linearise_motion(
@@ -21,12 +21,12 @@ impl DynLineariseMotion for LiveCrane {
         self.mass_matrix(q, mass);
         // A a − e, and f.
         let quantities = [Quantity::InverseDynamics, Quantity::Of(FunctionId::Forces)];
-        let mut forces = quantities.map(|quantity| Evaluation::<Sloped>::new(self, quantity));
-        let numbers = |values: &[f64], first: Option<usize>| -> Vec<Sloped> {
+        let mut forces = quantities.map(|quantity| Evaluation::<Dual8>::new(self, quantity));
+        let numbers = |values: &[f64], first: Option<usize>| -> Vec<Dual8> {
             let along = |i: usize| first.and_then(|first| i.checked_sub(first)).filter(|place| *place < DIRECTIONS);
-            values.iter().enumerate().map(|(i, value)| Sloped::along(*value, along(i))).collect()
+            values.iter().enumerate().map(|(i, value)| Dual8::along(*value, along(i))).collect()
         };
-        let (t, a) = (Sloped::splat(t), numbers(a, None));
+        let (t, a) = (Dual8::splat(t), numbers(a, None));
         for first in (0..n).step_by(DIRECTIONS) {
             for (of_rates, columns) in [(false, &mut *stiffness), (true, &mut *damping)] {
                 let q = numbers(q, (!of_rates).then_some(first));

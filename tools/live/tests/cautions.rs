@@ -7,7 +7,7 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynModel;
 use crane_model::dynamics::Settings;
 use crane_model::results::{Extremes, Peaks, cautions};
-use crane_model::runs::ensemble::{self, Conduct};
+use crane_model::runs::ensemble::{self, Execution};
 use crane_model::runs::{Start, record_checked};
 
 fn shipped(name: &str) -> LiveCrane {
@@ -35,8 +35,8 @@ fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
         let settings = Settings { duration: 6.5, audit: false, ..Settings::of(crane.description()) };
         let single = said(&crane, &settings);
         assert!(!single.is_empty(), "{name}");
-        let conduct = Conduct { threads: 1, done: &|_, _| (), called_off: &|_| false };
-        let rows = ensemble::run(&crane, &[crane.parameters().to_vec()], &settings, &conduct);
+        let execution = Execution { threads: 1, done: &|_, _| (), cancelled: &|_| false };
+        let rows = ensemble::run(&crane, &[crane.parameters().to_vec()], &settings, &execution);
         assert_eq!(rows[0].cautions, single, "{name}");
 
         let start = Start::of(&crane).expect("it rests");

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use crane_model::Description;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::envelope::{
-    Axes, Axis, Condition, Conduct, Envelope, Limit, Limits, Rating, SlewAxis, Varied, only_mass, range_of_loads,
+    Axes, Axis, Condition, Envelope, Execution, Limit, Limits, Rating, SlewAxis, Varied, only_mass, range_of_loads,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -69,9 +69,9 @@ impl Crane {
                     watch.count();
                 }
             };
-            let called_off = || if std::thread::current().id() == caller { watch.look() } else { watch.is_off() };
+            let cancelled = || if std::thread::current().id() == caller { watch.look() } else { watch.is_off() };
             let pieces: Vec<usize> = (0..envelope.pieces()).collect();
-            envelope.run(crane, &pieces, &Conduct { threads: threads(), done: &done, called_off: &called_off })
+            envelope.run(crane, &pieces, &Execution { threads: threads(), done: &done, cancelled: &cancelled })
         });
         watch.finish(py)?;
         run.map_err(|refused| PyValueError::new_err(refused.to_string()))?;

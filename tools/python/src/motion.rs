@@ -8,7 +8,7 @@ use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings, Statistics, Stopped};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::results::{Column, Peaks, cautions};
-use crane_model::runs::ensemble::{self, Conduct};
+use crane_model::runs::ensemble::{self, Execution};
 use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, record_checked, step_limit};
 use crane_model::stability::cause;
 use crane_model::{Description, Text};
@@ -253,9 +253,9 @@ impl Crane {
                     }
                 }
             }
-            let called_off = |caller: bool| if caller { watch.look() } else { watch.is_off() };
-            let conduct = Conduct { threads: threads(), done: &|_, _| watch.count(), called_off: &called_off };
-            Ok::<_, PyErr>(ensemble::run(crane, &rows, &settings, &conduct))
+            let cancelled = |caller: bool| if caller { watch.look() } else { watch.is_off() };
+            let execution = Execution { threads: threads(), done: &|_, _| watch.count(), cancelled: &cancelled };
+            Ok::<_, PyErr>(ensemble::run(crane, &rows, &settings, &execution))
         });
         watch.finish(py)?;
         let outcomes = outcomes?;

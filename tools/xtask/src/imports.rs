@@ -1,6 +1,6 @@
 //! The permitted imports; ARCHITECTURE.md gives the reasons.
 
-use crate::{circles, workspace};
+use crate::{cycles, workspace};
 
 /// A folder of the compiler, and the modules of the compiler that it may name besides itself.
 const MAY_IMPORT: [(&str, &[&str]); 13] = [
@@ -95,7 +95,7 @@ pub fn check() -> Result<(), String> {
             }
         }
     }
-    breaches.extend(circles::circles()?);
+    breaches.extend(cycles::cycles()?);
     if breaches.is_empty() { Ok(()) } else { Err(format!("\n{}", breaches.join("\n"))) }
 }
 

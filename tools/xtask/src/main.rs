@@ -3,7 +3,7 @@
 //! `cargo xtask test` runs all checks; other tasks run parts of it, for use during development.
 
 mod book;
-mod circles;
+mod cycles;
 mod equations;
 mod fused;
 mod imports;

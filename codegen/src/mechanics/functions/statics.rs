@@ -107,7 +107,7 @@ impl<'g> Derivation<'g> {
     /// The stiffness including the springs that represent oil at rest.
     fn tangent_stiffness(&self) -> SymmetricMatrix<'g> {
         let mut matrix = self.stiffness();
-        drives::holding_stiffness(&self.model, &mut matrix);
+        drives::hydraulic_stiffness(&self.model, &mut matrix);
         matrix
     }
 

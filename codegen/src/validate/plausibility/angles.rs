@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::lengths::is_far;
-use super::{Look, items, rounded};
+use super::{Plausibility, items, rounded};
 use crate::chain::{Coordinate, CoordinateKind};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Angle, Input, Link, Motion, Placement, Scalar, Spanned, Turn};
@@ -11,7 +11,7 @@ use crate::spec::{Angle, Input, Link, Motion, Placement, Scalar, Spanned, Turn};
 /// Bare angles beyond a full turn look like degrees; with four ulp of tolerance, because `6.283185307179586` is 2π.
 const FULL_TURN: f64 = TAU * (1.0 + 4.0 * f64::EPSILON);
 
-impl<'a> Look<'a> {
+impl<'a> Plausibility<'a> {
     pub(super) fn angles(&mut self) {
         let crane = self.crane;
         for link in items(Some(&crane.links)) {

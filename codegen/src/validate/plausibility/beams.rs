@@ -1,6 +1,6 @@
 //! Materials, cross-sections and damping of beams.
 
-use super::{Look, items, rounded};
+use super::{Plausibility, items, rounded};
 use crate::chain::CoordinateKind;
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Beam, Either, Link, Material, Number, Section, Sections, Spanned};
@@ -36,7 +36,7 @@ fn in_pascal(given: f64) -> String {
     }
 }
 
-impl Look<'_> {
+impl Plausibility<'_> {
     pub(super) fn beams(&mut self) {
         let crane = self.crane;
         let materials = crane.materials.as_ref().and_then(|materials| materials.value.as_ref());

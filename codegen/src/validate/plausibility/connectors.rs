@@ -1,6 +1,6 @@
 //! Lengths of connectors compared with the distance between their points.
 
-use super::{Look, items, rounded};
+use super::{Plausibility, items, rounded};
 use crate::chain::{ConnectorLaw, Strain};
 use crate::diagnostic::rule;
 
@@ -9,7 +9,7 @@ const USUAL: [f64; 2] = [0.1, 10.0];
 /// Maximum ratio of the length of a rope at the guess to its length without force: steel breaks long before.
 const STRETCHED: f64 = 1.2;
 
-impl Look<'_> {
+impl Plausibility<'_> {
     /// A spring or rope whose length does not fit its points.
     pub(super) fn connectors(&mut self) {
         let (crane, chain) = (self.crane, self.chain);

@@ -1,9 +1,9 @@
 //! One-sided supports compared with the weight that they carry.
 
-use super::{Look, items, rounded};
+use super::{Plausibility, items, rounded};
 use crate::diagnostic::rule;
 
-impl Look<'_> {
+impl Plausibility<'_> {
     /// Supports whose full hold exceeds their share of the crane's weight: they hold the crane only in part.
     pub(super) fn feet(&mut self) {
         let (crane, chain) = (self.crane, self.chain);

@@ -1,13 +1,13 @@
 //! Bristles of joints that stick.
 
-use super::{Look, rounded};
+use super::{Plausibility, rounded};
 use crate::chain::{Coordinate, CoordinateKind, Law};
 use crate::diagnostic::rule;
 
 /// Usual deflections at which bristles slide, rad or m: from stiff bearings to soft seals.
 const USUAL: [f64; 2] = [1e-8, 0.1];
 
-impl Look<'_> {
+impl Plausibility<'_> {
     /// Bristles that slide at a deflection that no real surface has: steps become tiny, or the joint acts as a spring instead of sticking.
     pub(super) fn bristles(&mut self) {
         let entries = self.crane.friction.as_ref().and_then(|friction| friction.value.as_ref());

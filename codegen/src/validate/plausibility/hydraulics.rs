@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Look, angles::positions, beams::in_metres, items, rounded};
+use super::{Plausibility, angles::positions, beams::in_metres, items, rounded};
 use crate::chain::{Attachment, Pin};
 use crate::diagnostic::rule;
 use crate::spec::{Constant, Cylinder, Motion, Pump, Spanned, Valve};
@@ -50,7 +50,7 @@ fn in_pascal(pressure: f64) -> String {
     format!("write it in Pa: {pressure} bar = {bar:e} Pa, {pressure} MPa = {mega:e} Pa")
 }
 
-impl Look<'_> {
+impl Plausibility<'_> {
     pub(super) fn hydraulics(&mut self) {
         let before = self.warnings.len();
         let pump = self.crane.pump.as_ref().and_then(|pump| pump.value.as_ref());

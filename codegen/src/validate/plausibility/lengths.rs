@@ -1,14 +1,14 @@
 //! Lengths of beams, and positions within the crane.
 
 use super::beams::in_metres;
-use super::{Look, items, rounded};
+use super::{Plausibility, items, rounded};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Link, Number, Placement, Spanned, Vector};
 
 /// Upper limit of lengths and distances in a crane, m.
 const LONGEST: f64 = 200.0;
 
-impl Look<'_> {
+impl Plausibility<'_> {
     pub(super) fn lengths(&mut self) {
         let crane = self.crane;
         for (index, link) in items(Some(&crane.links)).enumerate() {

@@ -1,6 +1,6 @@
 //! The payload compared with the crane's own mass.
 
-use super::{Look, items, rounded};
+use super::{Plausibility, items, rounded};
 use crate::diagnostic::{Span, rule};
 use crate::spec::{Number, Scalar, Spanned};
 
@@ -11,7 +11,7 @@ const LIGHTEST: f64 = 1.0 / 1000.0;
 /// Beyond this ratio of the payload to the mass that carries it, the crane is in tonnes or the payload in g.
 const HEAVIEST: f64 = 100.0;
 
-impl Look<'_> {
+impl Plausibility<'_> {
     pub(super) fn masses(&mut self) {
         let crane = self.crane;
         let mut masses: Vec<(String, &Spanned<Number>)> = Vec::new();

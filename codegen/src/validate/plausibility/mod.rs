@@ -18,25 +18,25 @@ use crate::spec::{Crane, Number, Parameter, Scalar, Spanned};
 
 /// Warnings about a crane without mistakes, with these values of its parameters.
 pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mistake> {
-    let mut look = Look { crane, chain, values, warnings: Vec::new() };
-    look.beams();
-    look.lengths();
-    look.hydraulics();
-    look.bristles();
+    let mut plausibility = Plausibility { crane, chain, values, warnings: Vec::new() };
+    plausibility.beams();
+    plausibility.lengths();
+    plausibility.hydraulics();
+    plausibility.bristles();
     // Consequences of such numbers, such as frequencies and masses, would be reported as well.
-    if look.warnings.is_empty() {
-        look.parts();
-        look.damping();
-        look.masses();
-        look.feet();
-        look.connectors();
+    if plausibility.warnings.is_empty() {
+        plausibility.parts();
+        plausibility.damping();
+        plausibility.masses();
+        plausibility.feet();
+        plausibility.connectors();
     }
-    look.angles();
-    look.warnings
+    plausibility.angles();
+    plausibility.warnings
 }
 
 /// The state of the check: the crane as written, and as validated.
-struct Look<'a> {
+struct Plausibility<'a> {
     crane: &'a Crane,
     chain: &'a Chain,
     /// Values of the parameters at which the numbers are checked.
@@ -44,7 +44,7 @@ struct Look<'a> {
     warnings: Vec<Mistake>,
 }
 
-impl<'a> Look<'a> {
+impl<'a> Plausibility<'a> {
     fn warn(&mut self, warning: Mistake) {
         self.warnings.push(warning);
     }

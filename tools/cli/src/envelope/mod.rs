@@ -19,7 +19,7 @@ use std::{
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
-    envelope::{Conduct, Limits, Rating, range_of_loads},
+    envelope::{Execution, Limits, Rating, range_of_loads},
 };
 
 use crate::{
@@ -178,7 +178,7 @@ fn rate(
         bar.inc(ratings.len() as u64);
     };
     let failed = || state.lock().unwrap_or_else(PoisonError::into_inner).1.is_err();
-    let run = asked.run(crane, &pieces, &Conduct { threads, done: &done, called_off: &failed });
+    let run = asked.run(crane, &pieces, &Execution { threads, done: &done, cancelled: &failed });
     bar.finish_and_clear();
     run.map_err(|refused| {
         let (title, help) = told(&refused);

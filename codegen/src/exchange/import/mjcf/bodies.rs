@@ -7,7 +7,7 @@ use roxmltree::Node;
 
 use super::geoms::together;
 use super::pose::unit;
-use super::{File, Inertia};
+use super::{File, InertiaFromGeoms};
 use crate::chain::{Frame, Vector};
 use crate::exchange::import::document::{name_of, tag, value_span};
 use crate::exchange::import::mistakes::rule;
@@ -210,8 +210,8 @@ impl<'a, 'i> File<'a, 'i> {
     fn lump(&mut self, inside: &[Placed<'a, 'i>], name: &str, stands: bool) -> Option<Lump> {
         let owner = format!("the mass of body `{name}`");
         let inertial = inside.iter().find(|inner| name_of(inner.node) == "inertial");
-        match (inertial, self.inertia) {
-            (Some(&Placed { node, ref frame, .. }), Inertia::Missing | Inertia::Never) => {
+        match (inertial, self.inertia_from_geoms) {
+            (Some(&Placed { node, ref frame, .. }), InertiaFromGeoms::Auto | InertiaFromGeoms::Never) => {
                 let placement = frame.outer(&self.pose(node, None, &owner));
                 let [mass] = self.reader.numbers(node, "mass", &owner)?;
                 if mass < 0.0 {
@@ -224,7 +224,7 @@ impl<'a, 'i> File<'a, 'i> {
                 });
                 Some(Lump { mass, com: [0.0; 3], tensor }.seen_through(&placement))
             }
-            (_, Inertia::Never) => None,
+            (_, InertiaFromGeoms::Never) => None,
             _ => {
                 let shapes = inside.iter().filter(|inner| name_of(inner.node) == "geom");
                 let lumps: Vec<Lump> = shapes.filter_map(|shape| self.shape(shape, name, stands)).collect();

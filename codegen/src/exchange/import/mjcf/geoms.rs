@@ -49,7 +49,7 @@ impl<'a, 'i> File<'a, 'i> {
             None => self.pose(node, class, &owner),
         };
         let mass = mass.unwrap_or_else(|| density * solid.volume());
-        let [xx, yy, zz] = solid.radii_of_gyration().map(|square| mass * square);
+        let [xx, yy, zz] = solid.squared_radii_of_gyration().map(|square| mass * square);
         Some(Lump { mass, com: [0.0; 3], tensor: [xx, yy, zz, 0.0, 0.0, 0.0] }.seen_through(&frame.outer(&placement)))
     }
 }
@@ -99,7 +99,7 @@ impl Solid {
     }
 
     /// Squares of the radii of gyration about x, y, z, m².
-    fn radii_of_gyration(&self) -> Vector {
+    fn squared_radii_of_gyration(&self) -> Vector {
         let of_three =
             |[a, b, c]: Vector, share: f64| [b * b + c * c, a * a + c * c, a * a + b * b].map(|sum| share * sum);
         match *self {

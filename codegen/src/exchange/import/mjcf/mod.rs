@@ -41,7 +41,7 @@ pub(super) fn read(root: Node) -> Result<Robot, Vec<Mistake>> {
         reader: Reader::default(),
         classes: Classes::default(),
         angles: Angles::default(),
-        inertia: Inertia::Missing,
+        inertia_from_geoms: InertiaFromGeoms::Auto,
         robot: Robot {
             name: root.attribute("model").unwrap_or("robot").to_owned(),
             links: Vec::new(),
@@ -64,9 +64,9 @@ pub(super) fn read(root: Node) -> Result<Robot, Vec<Mistake>> {
 
 /// Which bodies take their masses from their shapes.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Inertia {
+enum InertiaFromGeoms {
     /// Those without an inertial frame.
-    Missing,
+    Auto,
     /// All.
     Always,
     /// None.
@@ -78,7 +78,7 @@ struct File<'a, 'i> {
     reader: Reader,
     classes: Classes<'a, 'i>,
     angles: Angles,
-    inertia: Inertia,
+    inertia_from_geoms: InertiaFromGeoms,
     robot: Robot,
 }
 
@@ -95,10 +95,10 @@ impl File<'_, '_> {
         }
         self.angles.read(node, &mut self.reader);
         if let Some(given) = node.attribute("inertiafromgeom") {
-            self.inertia = match given {
-                "true" => Inertia::Always,
-                "false" => Inertia::Never,
-                _ => Inertia::Missing,
+            self.inertia_from_geoms = match given {
+                "true" => InertiaFromGeoms::Always,
+                "false" => InertiaFromGeoms::Never,
+                _ => InertiaFromGeoms::Auto,
             };
         }
     }

@@ -20,7 +20,7 @@ const HELPED: usize = 2;
 type Imports = BTreeMap<String, BTreeSet<String>>;
 
 /// Every cycle, as a line that names its files.
-pub fn circles() -> Result<Vec<String>, String> {
+pub fn cycles() -> Result<Vec<String>, String> {
     let mut found = Vec::new();
     for (root, folder) in FOLDERS {
         // A crate's root names every module; tests may use everything.
@@ -32,8 +32,8 @@ pub fn circles() -> Result<Vec<String>, String> {
             let named = imported(&workspace::read(file)?, file, root, &known);
             imports.insert(file.clone(), named);
         }
-        let circles = groups(&imports).into_iter().filter(|files| files.len() > HELPED);
-        found.extend(circles.map(|files| format!("{} import each other in a circle", files.join(", "))));
+        let cycles = groups(&imports).into_iter().filter(|files| files.len() > HELPED);
+        found.extend(cycles.map(|files| format!("{} import each other in a cycle", files.join(", "))));
     }
     Ok(found)
 }
@@ -150,9 +150,9 @@ fn groups(imports: &Imports) -> Vec<Vec<String>> {
             continue;
         }
         let back = |other: &&&str| reached.get(**other).is_some_and(|from| from.contains(file.as_str()));
-        let circle: Vec<String> = reached[file.as_str()].iter().filter(back).map(ToString::to_string).collect();
-        if !circle.is_empty() {
-            found.push(circle);
+        let cycle: Vec<String> = reached[file.as_str()].iter().filter(back).map(ToString::to_string).collect();
+        if !cycle.is_empty() {
+            found.push(cycle);
         }
     }
     found
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn circles_of_three_are_found_and_pairs_are_not() {
+    fn cycles_of_three_are_found_and_pairs_are_not() {
         let known: BTreeSet<&str> = ["r/a.rs", "r/b/mod.rs", "r/b/c.rs", "r/d.rs"].into();
         let of = |file: &str, text: &str| (file.to_owned(), imported(text, file, "r", &known));
         let mut imports: Imports = [
@@ -196,8 +196,8 @@ mod tests {
             of("r/d.rs", "fn f() { super::a::g() }\n#[cfg(test)]\nuse crate::b;\n"),
         ]
         .into();
-        let circle = ["r/a.rs", "r/b/c.rs", "r/d.rs"].map(str::to_owned).to_vec();
-        assert_eq!(groups(&imports), [circle]);
+        let cycle = ["r/a.rs", "r/b/c.rs", "r/d.rs"].map(str::to_owned).to_vec();
+        assert_eq!(groups(&imports), [cycle]);
         imports.extend([of("r/b/c.rs", "use std::fmt;\n")]);
         assert_eq!(groups(&imports), [["r/a.rs", "r/d.rs"].map(str::to_owned).to_vec()]);
     }

@@ -13,13 +13,13 @@ const LEAST: f64 = 1e-5;
 /// Every row of `r = ∂E_p/∂q = ∂E_g/∂q − f` balances gravity against springs. A row in N cannot be compared with a row in
 /// N m, and one alone may balance nothing at all (a passive hinge in equilibrium: 0 = 0). So the scale of a translation is
 /// the greatest force that any translation balances at the guess, that of a rotation the greatest moment of any rotation.
-pub(super) struct Balance {
+pub(super) struct ResidualScale {
     scale: DVector<f64>,
     /// Size of the numbers whose difference is the elongation of springs, per coordinate, in addition to the coordinate itself, m.
     reach: DVector<f64>,
 }
 
-impl Balance {
+impl ResidualScale {
     /// Scales from the terms of the balance at pose `q`.
     pub(super) fn at(crane: &dyn DynStatics, q: &DVector<f64>) -> Self {
         let coordinates = &crane.description().coordinates;

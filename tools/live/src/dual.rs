@@ -15,12 +15,12 @@ pub const DIRECTIONS: usize = 8;
 
 /// A number and its derivatives in eight directions.
 #[derive(Clone, Copy, Debug)]
-pub struct Sloped {
+pub struct Dual8 {
     value: f64,
     slopes: f64x8,
 }
 
-impl Sloped {
+impl Dual8 {
     /// A number with slope 1 in one direction; with zero slopes only, if `direction` is none of the eight.
     pub fn along(value: f64, direction: Option<usize>) -> Self {
         let slope = |place: usize| if Some(place) == direction { 1.0 } else { 0.0 };
@@ -38,14 +38,14 @@ impl Sloped {
     }
 }
 
-impl Fused for Sloped {
+impl Fused for Dual8 {
     fn fma(a: Self, b: Self, c: Self) -> Self {
         let of_factors = fma(a.slopes, f64x8::splat(b.value), c.slopes);
         Self { value: fma(a.value, b.value, c.value), slopes: fma(b.slopes, f64x8::splat(a.value), of_factors) }
     }
 }
 
-impl Function for Sloped {
+impl Function for Dual8 {
     /// A zero slope stays zero, even at 0, where the root has a vertical tangent.
     fn sqrt(self) -> Self {
         let root = sqrt(self.value);
@@ -67,7 +67,7 @@ impl Function for Sloped {
     }
 }
 
-impl Mul for Sloped {
+impl Mul for Dual8 {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let slopes = self.slopes * f64x8::splat(other.value) + other.slopes * f64x8::splat(self.value);
@@ -75,7 +75,7 @@ impl Mul for Sloped {
     }
 }
 
-impl Div for Sloped {
+impl Div for Dual8 {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
@@ -83,14 +83,14 @@ impl Div for Sloped {
     }
 }
 
-impl Neg for Sloped {
+impl Neg for Dual8 {
     type Output = Self;
     fn neg(self) -> Self {
         Self { value: -self.value, slopes: -self.slopes }
     }
 }
 
-impl Number for Sloped {
+impl Number for Dual8 {
     fn splat(number: f64) -> Self {
         Self { value: number, slopes: f64x8::splat(0.0) }
     }
