@@ -35,6 +35,9 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             "set the input where the exported crane runs, or change its `value` in the spec",
         ));
     }
+    if options.crane.compile && options.format != Language::Fmu {
+        return Err(Problem::usage("`--compile` is for `--format fmu` alone", "leave `--compile` out"));
+    }
     let (chain, spec) = own::load_named(&options.crane.name, options.crane.strict, registry)?;
     let mut parameters = chain.parameter_defaults();
     let known: Vec<(&str, &str)> = chain.parameters.iter().map(|p| (p.name.as_str(), p.unit.as_str())).collect();

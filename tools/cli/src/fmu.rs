@@ -1,4 +1,4 @@
-//! `crane export --format fmu`: the spec, its description and the shared library in one archive.
+//! `crane export --format fmu`: the spec, its description and the shared library, of live cranes or of this one, in one archive.
 
 use std::{
     env::{consts, current_exe},
@@ -15,7 +15,7 @@ use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptio
 
 use crate::{
     arguments::{Export, Fmi},
-    files,
+    files, own,
     problem::{Outcome, Problem},
 };
 
@@ -59,14 +59,16 @@ pub fn write(
     parameters: &[f64],
     out: &mut dyn Write,
 ) -> Outcome<()> {
-    if options.crane.compile {
-        return Err(Problem::usage(
-            "an FMU needs no compilation: it contains a ready-made library",
-            "leave `--compile` out",
-        ));
-    }
+    let is_compiled = options.crane.compile;
     let libraries = match options.libraries.as_slice() {
+        [] if is_compiled => vec![read(&own::unit(&chain, spec)?)?],
         [] => vec![read(&beside_the_command()?)?],
+        [..] if is_compiled => {
+            return Err(Problem::usage(
+                "`--library` names a library that is ready made, `--compile` makes one for this computer",
+                "leave one of them out",
+            ));
+        }
         named => named.iter().map(|path| read(path)).collect::<Outcome<_>>()?,
     };
     let mut crane = LiveCrane::new(chain);
@@ -78,8 +80,9 @@ pub fn write(
     let (file, size) = (file.display(), content.len() as f64 / 1e6);
     Ok(writeln!(
         out,
-        "{file} written: FMI {}, co-simulation and model exchange, {}; {size:.1} MB",
+        "{file} written: FMI {}, co-simulation and model exchange, {}{}; {size:.1} MB",
         options.fmi.number(),
+        if is_compiled { "compiled, " } else { "" },
         systems.join(", ")
     )?)
 }

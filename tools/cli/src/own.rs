@@ -1,12 +1,12 @@
 //! A crane of a YAML file: checked here, and compiled on request.
 
-mod program;
+mod package;
 
 use std::{
     env,
     ffi::{OsStr, OsString},
     io::{self, Write},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use crane_codegen::{Checked, Diagnostics, SourceFile, build, chain::Chain, compile, explain, picture::picture};
@@ -17,12 +17,13 @@ use crate::{
     files,
     problem::{FAILED, Outcome, Problem},
 };
+use package::{Package, Product};
 
 /// The crate of the command, from which this program was built and on which the program of a crane depends.
 const CLI: &str = env!("CARGO_MANIFEST_DIR");
 /// The versions of everything that this program was built with.
 pub const LOCK: &str = include_str!("../../../Cargo.lock");
-/// The library of a program of compiled cranes: a crate with a function `main` over a registry.
+/// The library of a program of compiled cranes: a crate with a function `main` over a registry; or that of units.
 pub struct Library {
     /// The crate's name.
     pub name: &'static str,
@@ -34,6 +35,9 @@ pub struct Library {
 
 /// The command itself.
 const COMMAND: Library = Library { name: env!("CARGO_PKG_NAME"), folder: CLI, features: &[] };
+/// Functional mock-up units.
+const UNITS: Library =
+    Library { name: "crane-fmu", folder: concat!(env!("CARGO_MANIFEST_DIR"), "/../fmu"), features: &[] };
 /// Environment variable with the command line as typed, for a crane's own program.
 const AS_TYPED: &str = "CRANE_AS_TYPED";
 
@@ -99,9 +103,19 @@ pub fn run_with(library: &Library, package: &str, named: &OsStr, cranes: &[(Stri
             None => argument,
         })
         .collect();
-    program::run(library, package, cranes, |command| {
+    let package = Package { product: Product::Program, library, name: package, cranes };
+    package::run(&package, |command| {
         command.args(&arguments).env(AS_TYPED, typed());
     })
+}
+
+/// The shared library of functional mock-up units of a crane as machine code: the kept one, or one that is compiled now.
+pub fn unit(chain: &Chain, spec: &str) -> Outcome<PathBuf> {
+    let Chain { name, spec_hash, .. } = chain;
+    let cranes = [(name.clone(), spec.to_owned())];
+    let package = format!("crane-fmu-{name}-{spec_hash}");
+    let package = Package { product: Product::Unit, library: &UNITS, name: &package, cranes: &cranes };
+    package.kept()?.map_or_else(|| package.compiled(), Ok)
 }
 
 /// The command as it was typed.

@@ -4,14 +4,15 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use crane_live::{LiveCrane, Motion};
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_live::Motion;
+use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Settings, Stopped};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::results;
 use crane_model::runs::Start;
 use crane_model::statics;
 
+use crate::Make;
 use crate::resources::{self, Opened};
 use crate::variables::{self, Source, Variable};
 
@@ -79,7 +80,7 @@ impl State {
 ///
 /// A crane begins where its runs begin: in the static equilibrium if the spec asks for statics, otherwise at the guess.
 pub struct Instance {
-    crane: LiveCrane,
+    crane: Box<dyn DynCrane>,
     variables: Vec<Variable>,
     /// Parameters at the start, and as last set.
     first: Vec<f64>,
@@ -108,8 +109,8 @@ impl Instance {
     ///
     /// # Errors
     /// A message, if the spec cannot be read or the description belongs to another version of the library.
-    pub fn new(folder: &Path, token: &str) -> Result<Self, String> {
-        let Opened { crane, parameters, warnings } = resources::open(folder)?;
+    pub fn new(folder: &Path, token: &str, make: Make) -> Result<Self, String> {
+        let Opened { crane, parameters, warnings } = resources::open(folder, make)?;
         let variables = variables::list(crane.description());
         let own = variables::token(crane.description(), &variables);
         if token != own {
@@ -200,22 +201,22 @@ impl Instance {
     /// Applies the parameters and inputs last set to the crane, and computes its initial state if it has none yet.
     fn settle(&mut self) -> Result<(), Fault> {
         if !self.is_current {
-            DynCrane::set_parameters(&mut self.crane, &self.parameters).map_err(Fault::error)?;
-            self.crane = self.crane.with_inputs(&self.inputs);
+            self.crane.set_parameters(&self.parameters).map_err(Fault::error)?;
+            give_inputs(self.crane.as_mut(), &self.inputs);
             self.is_current = true;
             self.motion = None;
             self.forget();
         }
         if self.moment.is_none() {
+            let crane = self.crane.as_ref();
             let Start { mut q, mut v, rests, .. } =
-                Start::of(&self.crane).map_err(|failed| Fault::Error(format!("{failed}; {}", failed.advice())))?;
+                Start::of(crane).map_err(|failed| Fault::Error(format!("{failed}; {}", failed.advice())))?;
             if rests && self.begin != 0.0 {
-                let crane: &dyn DynCrane = &self.crane;
                 let equilibrium = crane.equilibrium_at(self.begin, &q, &statics::Settings::default());
                 q = Start::at(crane, &equilibrium).map_err(Fault::error)?.q;
             }
-            self.crane.prescribe(self.begin, &mut q, &mut v);
-            let x = ForceStates::new(self.crane.description()).holding(&self.crane, self.begin, &q);
+            crane.prescribe(self.begin, &mut q, &mut v);
+            let x = ForceStates::new(crane.description()).holding(crane, self.begin, &q);
             self.moment = Some(Moment { t: self.begin, q, v, x });
             self.forget();
         }
@@ -276,7 +277,7 @@ impl Instance {
         let Self { crane, moment: Some(Moment { t, q, v, x }), quantities, .. } = self else {
             return Err(Fault::nowhere());
         };
-        Ok(quantities.get_or_insert_with(|| results::quantities_at(crane, *t, (q, v), x)))
+        Ok(quantities.get_or_insert_with(|| results::quantities_at(crane.as_ref(), *t, (q, v), x)))
     }
 
     fn accelerations(&mut self) -> Result<&(Vec<f64>, Vec<f64>), Fault> {
@@ -284,7 +285,7 @@ impl Instance {
         let Self { crane, moment: Some(Moment { t, q, v, x }), accelerations, .. } = self else {
             return Err(Fault::nowhere());
         };
-        Ok(accelerations.get_or_insert_with(|| force_states::accelerations(crane, *t, (q, v), x)))
+        Ok(accelerations.get_or_insert_with(|| force_states::accelerations(crane.as_ref(), *t, (q, v), x)))
     }
 
     /// Sets variables by their references; only parameters and inputs can be set. Rules that involve several parameters are
@@ -442,7 +443,6 @@ impl Instance {
             return Ok(());
         }
         let own = self.moment()?.clone();
-        let crane = self.crane.clone();
         let h = RELATIVE / greatest;
         let mut aside = |side: f64, out: &mut [f64]| {
             let Moment { mut q, mut v, mut x, .. } = own.clone();
@@ -453,14 +453,14 @@ impl Instance {
                     Source::Position(index) => q[index] += side * along,
                     Source::Rate(index) => v[index] += side * along,
                     Source::Own(index) => x[index] += side * along,
-                    Source::Input(index) if inputs[index].is_none() && crane.description().inputs[index].moves => {
+                    Source::Input(index) if inputs[index].is_none() && self.crane.description().inputs[index].moves => {
                         return Err(Fault::Error(format!("{name} follows the motion of the spec: set it first")));
                     }
                     Source::Input(index) => inputs[index] = Some(self.input(index) + side * along),
                     _ => return Err(Fault::Error(format!("{name} is neither a state nor an input"))),
                 }
             }
-            self.crane = crane.with_inputs(&inputs);
+            give_inputs(self.crane.as_mut(), &inputs);
             (self.quantities, self.accelerations) = (None, None);
             self.moment = Some(Moment { t: own.t, q, v, x });
             self.get(unknowns, out)
@@ -468,7 +468,8 @@ impl Instance {
         let mut behind = vec![0.0; out.len()];
         let found = aside(h, out).and_then(|()| aside(-h, &mut behind));
         out.iter_mut().zip(&behind).for_each(|(ahead, behind)| *ahead = (*ahead - behind) / (2.0 * h));
-        (self.moment, self.crane) = (Some(own), crane);
+        give_inputs(self.crane.as_mut(), &self.inputs);
+        self.moment = Some(own);
         self.forget();
         found
     }
@@ -490,7 +491,7 @@ impl Instance {
         }
         let mut motion = match self.motion.take() {
             Some(motion) => motion,
-            None => Motion::new(self.crane.clone(), t, &InitialState { q, v, x }, &self.settings)?,
+            None => Motion::new(self.crane.boxed_clone(), t, &InitialState { q, v, x }, &self.settings)?,
         };
         let _ = motion.advance(from + length, &mut |_| ControlFlow::Continue(()))?;
         let sample = motion.sample();
@@ -511,5 +512,12 @@ impl Instance {
                 self.said.push(format!("t = {t:.3} s: {words}"));
             }
         }
+    }
+}
+
+/// Sets the inputs of a crane; those without a value are as its spec says.
+fn give_inputs(crane: &mut dyn DynCrane, values: &[Option<f64>]) {
+    for (index, value) in values.iter().enumerate() {
+        crane.set_input(index, *value);
     }
 }

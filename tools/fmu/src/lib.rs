@@ -1,8 +1,8 @@
-//! Cranes as functional mock-up units: a live crane behind the C interfaces of FMI 2.0 and 3.0, for co-simulation and model exchange.
+//! Cranes as functional mock-up units: a crane behind the C interfaces of FMI 2.0 and 3.0, for co-simulation and model exchange.
 //!
 //! The functional mock-up interface: <https://fmi-standard.org/docs/2.0.5/>, <https://fmi-standard.org/docs/3.0.2/>. A unit is a ZIP archive of a description, of this crate as a
-//! shared library, and of the crane's spec, which the library reads where the importer unpacked it. One library serves all
-//! cranes and both versions, so that a unit is made without a compiler.
+//! shared library, and of the crane's spec, which the library reads where the importer unpacked it. One library of live cranes serves
+//! all specs and both versions, so that a unit is made without a compiler; a library of one compiled crane is faster.
 //!
 //! | where | what |
 //! |---|---|
@@ -11,11 +11,26 @@
 //! | [`resources`] | the spec and the parameters inside of a unit |
 //! | [`instance`] | an instance of a crane, in Rust: states, values, steps |
 //! | `abi` | the same for C: pointers are dereferenced only there |
+//! | [`units!`] | the functions of C that create a crane, in the crate of the shared library |
 
-mod abi;
+#[doc(hidden)]
+pub mod abi;
 pub mod description;
 pub mod instance;
 pub mod resources;
 pub mod variables;
 
+use crane_codegen::chain::Chain;
+use crane_live::LiveCrane;
+use crane_model::dyn_crane::DynCrane;
+
 pub use instance::Instance;
+
+/// What makes the crane of a shared library: of any spec, as [`live`], or a compiled one, which is that of one spec.
+pub type Make = fn(Chain) -> Box<dyn DynCrane>;
+
+/// A live crane of any spec.
+#[must_use]
+pub fn live(chain: Chain) -> Box<dyn DynCrane> {
+    Box::new(LiveCrane::new(chain))
+}

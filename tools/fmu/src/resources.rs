@@ -5,8 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crane_codegen::{Checked, SourceFile, compile};
-use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynModel;
+use crane_model::dyn_crane::{DynCrane, DynModel};
+
+use crate::Make;
 
 /// File of the spec.
 pub const SPEC: &str = "crane.yaml";
@@ -16,7 +17,7 @@ pub const PARAMETERS: &str = "parameters.csv";
 /// A crane with its parameters at the start, and what is implausible about its spec.
 pub struct Opened {
     /// The crane, with the parameters of its spec.
-    pub crane: LiveCrane,
+    pub crane: Box<dyn DynCrane>,
     /// Values of its live parameters at the start, in the order of the description.
     pub parameters: Vec<f64>,
     /// Warnings as rendered text; empty if there are none.
@@ -32,20 +33,28 @@ pub fn write_parameters(crane: &dyn DynModel) -> String {
     text
 }
 
-/// Reads the crane of an unpacked unit.
+/// Reads the crane of an unpacked unit, which `make` makes of the spec.
 ///
 /// # Errors
-/// A message, if a file cannot be read or the spec has mistakes.
-pub fn open(folder: &Path) -> Result<Opened, String> {
+/// A message, if a file cannot be read, the spec has mistakes, or a compiled crane belongs to another spec.
+pub fn open(folder: &Path, make: Make) -> Result<Opened, String> {
     // Not by the compiler's reader of files: the text includes the specs that it extends.
     let bytes = read(folder, SPEC)?;
     let source = SourceFile::from_bytes(SPEC, &bytes).map_err(|mistakes| mistakes.to_string())?;
     let Checked { chain, warnings } = compile::check(&source).map_err(|mistakes| mistakes.to_string())?;
-    let crane = LiveCrane::new(chain);
-    let mut parameters = crane.parameters().to_vec();
+    let spec_hash = chain.spec_hash.clone();
+    let crane = make(chain);
+    let compiled_from = &crane.description().spec_hash;
+    if *compiled_from != *spec_hash {
+        return Err(format!(
+            "{SPEC} ({spec_hash}) is not the spec from which this library was compiled ({compiled_from}): change the spec before the export, and export the unit again"
+        ));
+    }
+    let mut parameters: Vec<f64> =
+        (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
     let bytes = read(folder, PARAMETERS)?;
     for line in String::from_utf8_lossy(&bytes).lines() {
-        let (place, value) = read_line(&crane, line).ok_or_else(|| format!("{PARAMETERS}: `{line}`"))?;
+        let (place, value) = read_line(crane.as_ref(), line).ok_or_else(|| format!("{PARAMETERS}: `{line}`"))?;
         parameters[place] = value;
     }
     Ok(Opened { crane, parameters, warnings: warnings.lines().collect::<Vec<_>>().join("; ") })
@@ -58,7 +67,7 @@ fn read(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
 }
 
 /// Index and value of a parameter.
-fn read_line(crane: &LiveCrane, line: &str) -> Option<(usize, f64)> {
+fn read_line(crane: &dyn DynModel, line: &str) -> Option<(usize, f64)> {
     let (name, value) = line.split_once(',')?;
     let place = crane.description().parameters.iter().position(|parameter| parameter.name == name)?;
     Some((place, value.parse().ok()?))

@@ -1,12 +1,33 @@
 """What the tests share: units exported by the command, runs of the command to compare with, and running units."""
 
 import csv
+import os
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+
+
+# A boom whose drive follows an input, with a load that hangs from it and a wind that another input scales.
+STEERED = """
+format: 1
+name: steered
+parameters: {payload: {value: 80, unit: kg}}
+inputs:
+  lever: {motion: {quintic: {from: 0, to: 60 deg, begin: 0.2, duration: 3}}, unit: rad}
+  gust: {unit: N, about: wind at the tip}
+links:
+  - {name: boom, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 200, com: [2, 0, 0], inertia: {gyration: [0.1, 1, 1]}}
+  - {name: load, placement: {transform: {translation: [4, 0, 0]}}, joint: revolute, mass: payload, com: [0, -1, 0]}
+drives: [{coordinate: boom_psi, stiffness: 2e5, damping: 2e4, motion: {input: lever}}]
+loads: [{name: wind, link: boom, at: [4, 0, 0], force: [0, 0, 1], scale: {input: gust}}]
+damping: {load_psi: 40}
+points: [{name: hook, link: load, at: [0, -1, 0]}]
+run: {duration: 2, output: 0.1}
+"""
 
 
 def pytest_addoption(parser):
@@ -15,15 +36,24 @@ def pytest_addoption(parser):
 
 @pytest.fixture(scope="session")
 def crane(request):
-    """Runs the command."""
+    """Runs the command, and returns what it prints."""
     program = request.config.getoption("--command")
 
-    def run(*arguments):
-        done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        return done.stdout
+    # What is compiled stays beside the command: the next tests find what cargo has built for it.
+    environment = {**os.environ, "CRANE_CACHE": str(Path(program).resolve().parents[1] / "tmp" / "units")}
+
+    def run(*arguments, fails=False):
+        done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, env=environment)
+        assert (done.returncode != 0) == fails, done.stderr
+        return done.stderr if fails else done.stdout
 
     return run
+
+
+@pytest.fixture(scope="session")
+def refused(crane):
+    """What the command says to arguments that it refuses."""
+    return lambda *arguments: crane(*arguments, fails=True)
 
 
 @pytest.fixture(scope="session")
@@ -40,13 +70,21 @@ def export(crane, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def steered(export, tmp_path_factory):
+    """The spec with inputs, and its unit."""
+    file = tmp_path_factory.mktemp("steered") / "steered.yaml"
+    file.write_text(STEERED)
+    return file, export(str(file), name="steered")
+
+
+@pytest.fixture(scope="session")
 def simulate(crane, tmp_path_factory):
     """Columns of a run of the command, by name."""
 
     def run(spec, *options):
         folder = tmp_path_factory.mktemp("run")
         crane("simulate", spec, "--out", folder, "--no-verify", *options)
-        with open(folder / f"{spec}.csv", newline="") as file:
+        with open(folder / f"{Path(spec).stem}.csv", newline="") as file:
             header, *rows = csv.reader(file)
         table = np.array(rows, dtype=float)
         return {title.split(" [")[0]: table[:, place] for place, title in enumerate(header)}

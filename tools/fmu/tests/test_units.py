@@ -1,7 +1,5 @@
 """Units in FMPy: valid, and with the same motion as that of the command."""
 
-import csv
-
 import numpy as np
 import pytest
 from conftest import Slave
@@ -33,33 +31,6 @@ points:
 guess: {rod_theta: 0.5}
 run: {duration: 2, output: 0.1}
 """
-
-
-# A boom whose drive follows an input, with a load that hangs from it and a wind that another input scales.
-STEERED = """
-format: 1
-name: steered
-parameters: {payload: {value: 80, unit: kg}}
-inputs:
-  lever: {motion: {quintic: {from: 0, to: 60 deg, begin: 0.2, duration: 3}}, unit: rad}
-  gust: {unit: N, about: wind at the tip}
-links:
-  - {name: boom, placement: {transform: {rotation: {x: 90 deg}}}, joint: revolute, mass: 200, com: [2, 0, 0], inertia: {gyration: [0.1, 1, 1]}}
-  - {name: load, placement: {transform: {translation: [4, 0, 0]}}, joint: revolute, mass: payload, com: [0, -1, 0]}
-drives: [{coordinate: boom_psi, stiffness: 2e5, damping: 2e4, motion: {input: lever}}]
-loads: [{name: wind, link: boom, at: [4, 0, 0], force: [0, 0, 1], scale: {input: gust}}]
-damping: {load_psi: 40}
-points: [{name: hook, link: load, at: [0, -1, 0]}]
-run: {duration: 2, output: 0.1}
-"""
-
-
-@pytest.fixture(scope="session")
-def steered(export, tmp_path_factory):
-    """The spec with inputs, and its unit."""
-    file = tmp_path_factory.mktemp("steered") / "steered.yaml"
-    file.write_text(STEERED)
-    return file, export(str(file), name="steered")
 
 
 @pytest.fixture(scope="session")
@@ -176,7 +147,7 @@ def test_parameters_of_the_importer_and_of_the_export_are_those_of_the_command(e
         assert np.abs(unit.get("load_centre_x", "load_centre_z") - expected).max() < 1e-9
 
 
-def test_inputs_of_the_importer_are_those_of_the_command(steered, crane, tmp_path, slave):
+def test_inputs_of_the_importer_are_those_of_the_command(steered, simulate, slave):
     """Inputs that are set before the start, and inputs that are not set."""
     file, unit = steered
     assert validate_fmu(unit) == []
@@ -185,13 +156,8 @@ def test_inputs_of_the_importer_are_those_of_the_command(steered, crane, tmp_pat
         "lever": ("rad", "0", "continuous"),
         "gust": ("N", "0", "continuous"),
     }
-    for number, given in enumerate([{}, {"gust": 500.0}, {"lever": 0.4, "gust": -300.0}]):
-        folder = tmp_path / str(number)
-        options = [f"--input={name}={value}" for name, value in given.items()]
-        crane("simulate", file, "--no-verify", "--output", "0.01", "--out", folder, *options)
-        with open(folder / "steered.csv", newline="") as table:
-            header, *rows = csv.reader(table)
-        own = dict(zip([title.split(" [")[0] for title in header], np.array(rows, dtype=float).T, strict=True))
+    for given in [{}, {"gust": 500.0}, {"lever": 0.4, "gust": -300.0}]:
+        own = simulate(file, "--output", "0.01", *[f"--input={name}={value}" for name, value in given.items()])
         one = slave(unit, **given)
         one.follow(0, 2, 200)
         names = ["boom_psi", "boom_psi_rate", "load_psi", "hook_x", "hook_z", "boom_psi_drive_torque"]

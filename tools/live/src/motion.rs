@@ -2,20 +2,19 @@
 
 use std::ops::ControlFlow;
 
+use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Integration, Run, Sample, Settings, Stopped};
 use self_cell::self_cell;
 
-use crate::LiveCrane;
-
 self_cell!(
     struct Moving {
-        owner: LiveCrane,
+        owner: Box<dyn DynCrane>,
         #[covariant]
         dependent: Integration,
     }
 );
 
-/// A motion that continues from a state as far as requested, with the history of its method.
+/// A motion of a live or compiled crane that continues from a state as far as requested, with the history of its method.
 pub struct Motion(Moving);
 
 impl Motion {
@@ -23,8 +22,13 @@ impl Motion {
     ///
     /// # Errors
     /// As [`Integration::new`].
-    pub fn new(crane: LiveCrane, begin: f64, start: &InitialState, settings: &Settings) -> Result<Self, Stopped> {
-        Moving::try_new(crane, |crane| Integration::new(crane, begin, start, settings)).map(Self)
+    pub fn new(
+        crane: Box<dyn DynCrane>,
+        begin: f64,
+        start: &InitialState,
+        settings: &Settings,
+    ) -> Result<Self, Stopped> {
+        Moving::try_new(crane, |crane| Integration::new(crane.as_ref(), begin, start, settings)).map(Self)
     }
 
     /// Continues to a later time, s. `step` receives the time after every step, and may stop the motion: then the last result is kept.

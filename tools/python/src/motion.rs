@@ -324,7 +324,7 @@ impl Crane {
                 start.x.len()
             )));
         }
-        let moving = py.detach(|| crane_live::Motion::new(self.live.clone(), t, &start, &settings));
+        let moving = py.detach(|| crane_live::Motion::new(Box::new(self.live.clone()), t, &start, &settings));
         let name = description.name.clone();
         let moving = moving.map_err(|stopped| failed(stopped, &name))?;
         Ok(Motion { name, moving: Mutex::new(moving) })

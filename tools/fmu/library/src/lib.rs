@@ -1,3 +1,3 @@
-//! The shared library of functional mock-up units: the functions that `crane-fmu` exports to C.
+//! The shared library of functional mock-up units of live cranes: the functions that `crane-fmu` exports to C.
 
-pub use crane_fmu::Instance;
+crane_fmu::units!(crane_fmu::live);

@@ -5,7 +5,7 @@ use std::ffi::{CString, c_char, c_double, c_int, c_uint, c_void};
 use super::unit::{Host, Pointer, Status, Unit, free, none_of, with, write};
 use super::{array, array_mut, states, words};
 use crate::instance::Fault;
-use crate::resources;
+use crate::{Make, resources};
 
 type Component = Pointer;
 type Boolean = c_int;
@@ -17,7 +17,7 @@ const FALSE: Boolean = 0;
 /// `fmi2CallbackFunctions`.
 #[repr(C)]
 #[derive(Clone, Copy)]
-struct Callbacks {
+pub struct Callbacks {
     logger: Option<Logger>,
     allocate: *const c_void,
     free: *const c_void,
@@ -77,20 +77,22 @@ unsafe extern "C" fn fmi2SetDebugLogging(
     }
 }
 
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2Instantiate(
+/// `fmi2Instantiate`, which [`units!`](crate::units) exports.
+///
+/// # Safety
+/// As the standard has it.
+pub unsafe fn instantiate(
+    make: Make,
     name: *const c_char,
-    _kind: c_int,
     guid: *const c_char,
     resources: *const c_char,
     callbacks: *const Callbacks,
-    _visible: Boolean,
     logs: Boolean,
 ) -> Component {
     // SAFETY: texts and callbacks are valid, as the FMI standard guarantees.
     let (name, guid, uri, callbacks) =
         unsafe { (words(name), words(guid), words(resources), callbacks.as_ref().copied()) };
-    Unit::make(resources::folder_of(uri), guid, host(callbacks, name, logs != FALSE))
+    Unit::make(make, resources::folder_of(uri), guid, host(callbacks, name, logs != FALSE))
 }
 
 #[unsafe(no_mangle)]

@@ -6,12 +6,14 @@ use std::ptr;
 
 use super::unit::{Host, Pointer, Status, Unit, free, none_of, with, write};
 use super::{array, array_mut, states, words};
+use crate::Make;
 use crate::instance::{Fault, Instance};
 
 type Component = Pointer;
 /// `bool` of C; any number but 0 counts as true.
 type Boolean = u8;
-type LogMessage = unsafe extern "C" fn(*mut c_void, Status, *const c_char, *const c_char);
+/// `fmi3LogMessageCallback`.
+pub type LogMessage = unsafe extern "C" fn(*mut c_void, Status, *const c_char, *const c_char);
 
 const TRUE: Boolean = 1;
 const FALSE: Boolean = 0;
@@ -28,7 +30,7 @@ unsafe extern "C" fn fmi3SetDebugLogging(
     _count: usize,
     _categories: *const *const c_char,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |unit| {
             unit.host.logs = on != FALSE;
@@ -54,39 +56,21 @@ fn folder(path: &str) -> Result<PathBuf, String> {
     if path.is_empty() { Err("the importer gives no folder of resources".to_owned()) } else { Ok(PathBuf::from(path)) }
 }
 
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3InstantiateModelExchange(
-    _name: *const c_char,
+/// `fmi3InstantiateModelExchange` and `fmi3InstantiateCoSimulation`, which [`units!`](crate::units) exports.
+///
+/// # Safety
+/// As the standard has it.
+pub unsafe fn instantiate(
+    make: Make,
     token: *const c_char,
     resources: *const c_char,
-    _visible: Boolean,
     logs: Boolean,
     environment: *mut c_void,
     log: Option<LogMessage>,
 ) -> Component {
     // SAFETY: texts are valid, as the FMI standard guarantees.
     let (token, path) = unsafe { (words(token), words(resources)) };
-    Unit::make(folder(path), token, host(environment, log, logs))
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3InstantiateCoSimulation(
-    _name: *const c_char,
-    token: *const c_char,
-    resources: *const c_char,
-    _visible: Boolean,
-    logs: Boolean,
-    _event_mode_used: Boolean,
-    _early_return_allowed: Boolean,
-    _intermediate: *const c_uint,
-    _intermediate_count: usize,
-    environment: *mut c_void,
-    log: Option<LogMessage>,
-    _intermediate_update: *const c_void,
-) -> Component {
-    // SAFETY: texts are valid, as the FMI standard guarantees.
-    let (token, path) = unsafe { (words(token), words(resources)) };
-    Unit::make(folder(path), token, host(environment, log, logs))
+    Unit::make(make, folder(path), token, host(environment, log, logs))
 }
 
 #[unsafe(no_mangle)]
@@ -109,7 +93,7 @@ unsafe extern "C" fn fmi3InstantiateScheduledExecution(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3FreeInstance(component: Component) {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { free(component) }
 }
 
@@ -122,7 +106,7 @@ unsafe extern "C" fn fmi3EnterInitializationMode(
     _has_stop: Boolean,
     _stop: c_double,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |unit| {
             unit.last = start;
@@ -133,13 +117,13 @@ unsafe extern "C" fn fmi3EnterInitializationMode(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3ExitInitializationMode(component: Component) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |unit| unit.instance.start()) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3Reset(component: Component) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |unit| {
             unit.instance.reset();
@@ -153,7 +137,7 @@ macro_rules! accept {
     ($($name:ident),* $(,)?) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component) -> Status {
-            // SAFETY: as the FMI standard guarantees.
+            // SAFETY: as the standard has it.
             unsafe { with(component, |_| Ok(())) }
         }
     )*};
@@ -177,7 +161,7 @@ unsafe extern "C" fn fmi3GetFloat64(
     values: *mut c_double,
     value_count: usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |unit| {
             as_many(count, value_count)?;
@@ -194,7 +178,7 @@ unsafe extern "C" fn fmi3SetFloat64(
     values: *const c_double,
     value_count: usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |unit| {
             as_many(count, value_count)?;
@@ -217,7 +201,7 @@ macro_rules! no_variables {
     ($($name:ident: ($($value:ty),+), $kind:literal;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, _: *const c_uint, count: usize, $(_: $value),+) -> Status {
-            // SAFETY: as the FMI standard guarantees.
+            // SAFETY: as the standard has it.
             unsafe { with(component, |_| none_of(count, $kind, "Float64")) }
         }
     )*};
@@ -267,7 +251,7 @@ unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
     _reference: c_uint,
     _count: *mut usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |_| Err(no_dependencies())) }
 }
 
@@ -281,7 +265,7 @@ unsafe extern "C" fn fmi3GetVariableDependencies(
     _kinds: *mut c_int,
     _count: usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |_| Err(no_dependencies())) }
 }
 
@@ -297,13 +281,13 @@ unsafe extern "C" fn fmi3GetFMUState(component: Component, state: *mut Pointer) 
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SetFMUState(component: Component, state: Pointer) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |unit| states::restore(unit, state)) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3FreeFMUState(component: Component, state: *mut Pointer) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |_| {
             states::free(state);
@@ -314,7 +298,7 @@ unsafe extern "C" fn fmi3FreeFMUState(component: Component, state: *mut Pointer)
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SerializedFMUStateSize(component: Component, state: Pointer, size: *mut usize) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |_| states::measure(state, size)) }
 }
 
@@ -325,7 +309,7 @@ unsafe extern "C" fn fmi3SerializeFMUState(
     bytes: *mut u8,
     size: usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |_| states::to_bytes(state, bytes, size)) }
 }
 
@@ -336,7 +320,7 @@ unsafe extern "C" fn fmi3DeserializeFMUState(
     size: usize,
     state: *mut Pointer,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |unit| states::from_bytes(unit, bytes, size, state)) }
 }
 
@@ -352,7 +336,7 @@ unsafe extern "C" fn fmi3GetDirectionalDerivative(
     sensitivity: *mut c_double,
     sensitivity_count: usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |unit| {
             as_many(known_count, seed_count)?;
@@ -379,7 +363,7 @@ unsafe extern "C" fn fmi3GetAdjointDerivative(
     _sensitivity: *mut c_double,
     _sensitivity_count: usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |_| Err(Fault::Error("a crane has no adjoint derivatives: use directional ones".to_owned())))
     }
@@ -395,7 +379,7 @@ unsafe extern "C" fn fmi3UpdateDiscreteStates(
     next_event_time_defined: *mut Boolean,
     next_event_time: *mut c_double,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |unit| {
             let next = unit.instance.next_event();
@@ -416,7 +400,7 @@ unsafe extern "C" fn fmi3CompletedIntegratorStep(
     enter_event_mode: *mut Boolean,
     terminate: *mut Boolean,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |_| {
             write(enter_event_mode, FALSE);
@@ -428,13 +412,13 @@ unsafe extern "C" fn fmi3CompletedIntegratorStep(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SetTime(component: Component, time: c_double) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |unit| unit.instance.set_time(time)) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SetContinuousStates(component: Component, states: *const c_double, count: usize) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |unit| unit.instance.set_continuous_states(array(states, count))) }
 }
 
@@ -444,13 +428,13 @@ unsafe extern "C" fn fmi3GetContinuousStateDerivatives(
     derivatives: *mut c_double,
     count: usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |unit| unit.instance.derivatives(array_mut(derivatives, count))) }
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3GetEventIndicators(component: Component, _: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |_| match count {
             0 => Ok(()),
@@ -461,7 +445,7 @@ unsafe extern "C" fn fmi3GetEventIndicators(component: Component, _: *mut c_doub
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3GetContinuousStates(component: Component, states: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |unit| unit.instance.continuous_states(array_mut(states, count))) }
 }
 
@@ -472,7 +456,7 @@ unsafe extern "C" fn fmi3GetNominalsOfContinuousStates(
     nominals: *mut c_double,
     count: usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |_| {
             array_mut(nominals, count).fill(1.0);
@@ -487,7 +471,7 @@ macro_rules! counts {
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, count: *mut usize) -> Status {
             let own: fn(&Instance) -> usize = $count;
-            // SAFETY: as the FMI standard guarantees.
+            // SAFETY: as the standard has it.
             unsafe {
                 with(component, |unit| {
                     write(count, own(&unit.instance));
@@ -512,7 +496,7 @@ unsafe extern "C" fn fmi3GetOutputDerivatives(
     _values: *mut c_double,
     _value_count: usize,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |_| match count {
             0 => Ok(()),
@@ -532,7 +516,7 @@ unsafe extern "C" fn fmi3DoStep(
     early_return: *mut Boolean,
     last: *mut c_double,
 ) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe {
         with(component, |unit| {
             for place in [event_handling_needed, terminate, early_return] {
@@ -549,6 +533,6 @@ unsafe extern "C" fn fmi3DoStep(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3ActivateModelPartition(component: Component, _clock: c_uint, _time: c_double) -> Status {
-    // SAFETY: as the FMI standard guarantees.
+    // SAFETY: as the standard has it.
     unsafe { with(component, |_| Err(Fault::Error("a crane has no clocks".to_owned()))) }
 }

@@ -2,10 +2,11 @@
 
 #![allow(unsafe_code, non_snake_case)]
 
-mod fmi2;
-mod fmi3;
+pub mod fmi2;
+pub mod fmi3;
 mod states;
 mod unit;
+mod units;
 
 use std::any::Any;
 use std::ffi::{CStr, c_char};

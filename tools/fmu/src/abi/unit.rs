@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::ptr;
 
 use super::guarded;
+use crate::Make;
 use crate::instance::{Fault, Instance};
 
 /// An opaque pointer handed to the importer.
@@ -13,7 +14,7 @@ pub(super) type Pointer = *mut c_void;
 /// `fmi2Status` and `fmi3Status`.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub(super) enum Status {
+pub enum Status {
     Ok = 0,
     Warning = 1,
     Discard = 2,
@@ -30,10 +31,10 @@ pub(super) struct Unit {
 
 impl Unit {
     /// A new instance for the importer; null, with a message, if it cannot be made.
-    pub(super) fn make(folder: Result<PathBuf, String>, token: &str, host: Host) -> Pointer {
+    pub(super) fn make(make: Make, folder: Result<PathBuf, String>, token: &str, host: Host) -> Pointer {
         let made = guarded(|| {
             let folder = folder.map_err(Fault::Error)?;
-            Instance::new(&folder, token).map_err(Fault::Error)
+            Instance::new(&folder, token, make).map_err(Fault::Error)
         });
         match made {
             Ok(mut instance) => {
