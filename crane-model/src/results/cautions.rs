@@ -94,7 +94,7 @@ pub fn of_step(step: f64, limit: f64) -> Option<String> {
     (step > NEAR * limit).then(|| {
         format!(
             "the step of {step:.3e} s is within 3 % of the largest stable step, {limit:.3e} s: fast modes are wrong, and a \
-             change of pose may make the run unstable; `--step auto` uses a safe step"
+             change of pose may make the run unstable; the step `auto` is a safe one"
         )
     })
 }

@@ -88,9 +88,9 @@ impl Verification {
                         .zip(&self.between)
                         .any(|(column, between)| column.name == *name && *between);
                     let remedy = if between {
-                        "it has a peak between two results; use a shorter `--output`"
+                        "it has a peak between two results; use a shorter interval of results"
                     } else {
-                        "a finer run differs by that much; use a smaller `--tolerance` or `--step`"
+                        "a finer run differs by that much; use a smaller tolerance or step"
                     };
                     cautions.push(format!(
                         "{name} may be off by {difference:.2e} {unit}, {percent:.1} % of its {}: {remedy}",

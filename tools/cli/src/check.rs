@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use crane_codegen::{Checked, Diagnostics, Located, chain::Chain, compile};
+use crane_page::tables::FORMAT;
 use serde_json::{Value, json};
 
 use crate::{
@@ -10,7 +11,6 @@ use crate::{
     arguments::{Check, Format},
     own,
     problem::{FAILED, Outcome, Problem},
-    report::FORMAT,
 };
 
 /// Checks a spec: confirms that it is valid, or reports what is wrong.

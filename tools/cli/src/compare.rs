@@ -4,17 +4,16 @@
 use std::{io::Write, mem, time::Instant};
 
 use crane_model::{Description, dyn_crane::DynCrane, dynamics::Method, results::Table};
+use crane_page::tables::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, equilibria, extremes, summary};
 
 use crate::{
     Registry,
     arguments::{Compare, ComparePair, Format, Parameters, spec_file},
-    extremes::extremes,
     figures::{Curve, Mark, PALETTE, Panel},
     files, own, page,
     problem::{Outcome, Problem},
     run::runs,
-    simulate::{Trace, file_list, points, spoken, summary, write_figure, write_figures, write_run},
-    statics::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, tables},
+    simulate::{Trace, file_list, points, spoken, write_figure, write_figures, write_run},
     variants::renamed,
 };
 
@@ -89,7 +88,7 @@ fn side_by_side(
     let folder = &options.folder.out;
     let cases = [Case::new(first, one.as_ref()), Case::new(second, other.as_ref())];
     let format = options.format;
-    let mut report = tables(&cases, options.limits);
+    let mut report = equilibria(&cases, options.limits.bend);
     report.grid(deflection(&cases[0], &cases[1]));
     report.show_all(options.all);
     if format == Format::Table {
@@ -98,7 +97,7 @@ fn side_by_side(
         writeln!(out, "Comparing {} and {}.", from.name, to.name)?;
         writeln!(out, "Figures (SVG), results (CSV) and report.html go to the folder {}.\n", folder.display())?;
         writeln!(out, "Statics of {}\n", to.title)?;
-        mem::take(&mut report).print(format, out)?;
+        format.print(&mem::take(&mut report), out)?;
         report.show_all(options.all);
     }
 
@@ -138,7 +137,7 @@ fn side_by_side(
         let (duration, method, step) = (settings[1].duration, settings[1].method.title(), other_run.run.step);
         writeln!(out, "\nMotion over {duration} s from the {}, {method}, step {step} s\n", other_run.start)?;
     }
-    report.print(format, out)?;
+    format.print(&report, out)?;
     if format == Format::Table {
         writeln!(out, "\nTotal time: {:.1} s", begin.elapsed().as_secs_f64())?;
     }

@@ -20,6 +20,7 @@ use crane_model::{
         ensemble::{self, Execution, Outcome as Row},
     },
 };
+use crane_page::tables::{Report, number_text};
 use serde_json::Value;
 
 use crate::{
@@ -29,7 +30,6 @@ use crate::{
     journal::{self, Journal, Request},
     parameter_table::ParameterTable,
     problem::{Outcome, Problem},
-    report::Report,
     run::batches,
     simulate::method,
 };
@@ -106,7 +106,7 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
     report.fact("cranes per second", fresh.len() as f64 / wall, "");
     report.fact("real-time factor", simulated / wall, "");
     report.fact("written to", path.display().to_string(), "");
-    report.print(options.analysis.format, out)?;
+    options.analysis.format.print(&report, out)?;
     if reached == rows.len() {
         return Ok(());
     }
@@ -192,7 +192,7 @@ fn fields(description: &Description, parameters: &[f64], row: &Row) -> Vec<Strin
         None => vec![None; Peaks::columns(description).len()],
     };
     let numbers = parameters.iter().copied().map(Some).chain(values).chain([Some(row.time())]);
-    let numbers = numbers.map(|number| number.map_or_else(String::new, files::number));
+    let numbers = numbers.map(|number| number.map_or_else(String::new, number_text));
     let status = row.run.as_ref().map_or_else(ToString::to_string, |_| DONE.to_owned());
     numbers.chain([row.cautions.join("; "), status].map(|words| words.replace(['\n', '\r'], " "))).collect()
 }

@@ -9,7 +9,7 @@ use std::{
 };
 
 use crane_model::results::Table;
-use crane_page::Program;
+use crane_page::{Program, tables::number_text};
 
 use crate::problem::{Outcome, Problem};
 
@@ -94,12 +94,7 @@ pub fn write_csv(path: &Path, table: &Table) -> Outcome<()> {
         return Err(Problem::failed(title, "check the units of masses, stiffnesses and positions"));
     }
     let header = table.columns.iter().map(ToString::to_string);
-    write_fields(path, header, table.rows.iter().map(|row| row.iter().copied().map(number).collect()))
-}
-
-/// The shortest text that reads back as the same number.
-pub fn number(number: f64) -> String {
-    format!("{number:?}")
+    write_fields(path, header, table.rows.iter().map(|row| row.iter().copied().map(number_text).collect()))
 }
 
 /// Writes a header and rows of fields as CSV.

@@ -3,12 +3,12 @@
 use std::io::Write;
 
 use crane_model::runs::{EQUILIBRIUM, GUESS};
+use crane_page::tables::{Cell, Grid, Report};
 
 use crate::{
     Registry,
     arguments::{Analysis, Format},
     problem::Outcome,
-    report::{Cell, Grid, Report},
 };
 
 /// Prints the available cranes.
@@ -25,7 +25,7 @@ pub fn list(format: Format, registry: &Registry, out: &mut dyn Write) -> Outcome
     }
     let mut report = Report::default();
     report.grid(grid);
-    report.print(format, out)
+    format.print(&report, out)
 }
 
 /// Prints the parts of a crane.
@@ -115,5 +115,5 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
         points.row([point.as_str().into()]);
     }
     report.grid(points);
-    report.print(options.format, out)
+    options.format.print(&report, out)
 }

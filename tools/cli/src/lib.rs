@@ -19,7 +19,6 @@ mod ensemble;
 mod envelope;
 mod eval;
 mod exchange;
-mod extremes;
 mod figures;
 pub mod files;
 mod fmu;
@@ -38,7 +37,6 @@ mod page;
 mod parameter_table;
 mod problem;
 pub mod refinement;
-mod report;
 mod run;
 mod selection;
 mod simulate;
@@ -62,9 +60,9 @@ pub mod toolbox {
     pub use crate::figures::{Curve, Mark, PALETTE, Panel};
     pub use crate::own::{Library, load, run_with};
     pub use crate::problem::{Outcome, Problem};
-    pub use crate::report::{Cell, Grid, Report};
     pub use crate::run::{progress, record, styled};
     pub use crate::simulate::{file_list, write_figure};
+    pub use crane_page::tables::{Cell, Grid, Report};
 }
 
 /// Does what the arguments of the process ask for, with the cranes of a registry or of a YAML file that the arguments name.

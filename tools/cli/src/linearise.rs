@@ -9,6 +9,7 @@ use crane_model::{
     modes::{ComplexShape, DampedMode, Held, SmallMotions, damped_with_shapes, steady},
     statics,
 };
+use crane_page::tables::{Cell, Grid, Report, names};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
@@ -16,10 +17,9 @@ use crate::{
     Registry,
     arguments::Linearise,
     envelope::number,
-    files, modes,
+    files,
     npz::{Array, npz},
     problem::{Outcome, Problem},
-    report::{Cell, Grid, Report},
     start::{Variable, row},
 };
 
@@ -95,7 +95,7 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
     report.excerpt(modes_of(description, &found), LOWEST);
     report.excerpt(states(description, &motion), 0);
     report.show_all(options.analysis.all);
-    report.print(options.analysis.format, out)
+    options.analysis.format.print(&report, out)
 }
 
 /// The motion in a row of results, with the accelerations that follow from it.
@@ -227,7 +227,7 @@ fn modes_of(description: &Description, found: &[Mode]) -> Grid {
             mode.damping_ratio().into(),
             mode.eigenvalue.re.into(),
             mode.eigenvalue.im.into(),
-            modes::names(description, &mode.dominating),
+            names(description, &mode.dominating),
         ]);
     }
     grid

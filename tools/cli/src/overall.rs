@@ -3,17 +3,16 @@
 use std::io::Write;
 
 use crane_model::dynamics::Method;
+use crane_page::tables::{caution_of_runs, deflection, equilibria, extremes, summary};
 
 use crate::{
     Registry,
     arguments::Simulate,
-    extremes::extremes,
     files,
     page::{cases, twin, write},
     problem::{Outcome, Problem},
     run::runs,
-    simulate::{Trace, file_list, summary, write_figures, write_run},
-    statics::{caution_of_runs, deflection, tables},
+    simulate::{Trace, file_list, write_figures, write_run},
 };
 
 /// Statics and motion of a crane, compared with its rigid twin if there is one; results, figures and the report.
@@ -24,7 +23,7 @@ pub fn run(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outc
     let crane = options.analysis.crane.open(registry)?;
     let (crane, twin) = (crane.as_ref(), twin::rigid(crane.as_ref(), registry));
     let cases = cases(crane, twin.as_deref());
-    let mut report = tables(&cases, options.analysis.crane.limits);
+    let mut report = equilibria(&cases, options.analysis.crane.limits.bend);
     if let [rigid, flexible] = cases.as_slice() {
         report.grid(deflection(rigid, flexible));
     }
@@ -53,5 +52,5 @@ pub fn run(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outc
     report.grid(summary(&labelled));
     report.grid(file_list(folder, &written));
     report.show_all(options.analysis.all);
-    report.print(options.analysis.format, out)
+    options.analysis.format.print(&report, out)
 }

@@ -6,8 +6,9 @@ use crane_codegen::{
 };
 use crane_live::LiveCrane;
 use crane_model::{dyn_crane::DynCrane, modes::undamped};
+use crane_page::tables::Case;
 
-use crate::{Registry, problem::Outcome, statics::Case};
+use crate::{Registry, problem::Outcome};
 
 /// Maximum number of coordinates of a crane whose frequencies are also computed with twice the sections: more take seconds.
 const MOST_COORDINATES: usize = 60;

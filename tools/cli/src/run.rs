@@ -8,12 +8,12 @@ use crane_model::{
     runs::{self, Bound, Recorded, SAFE, Start, step_limit},
     stability::{Limit, cause},
 };
+use crane_page::tables::Case;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
     arguments::{Limits, Step, Timing},
     problem::{Outcome, Problem},
-    statics::Case,
 };
 
 impl Timing {

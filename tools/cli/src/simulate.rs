@@ -10,17 +10,18 @@ use crane_model::{
     results::{Table, drive_effort},
     runs::Recorded,
 };
-use crane_page::record;
+use crane_page::{
+    record,
+    tables::{Grid, Report, VALUE, extremes, summary},
+};
 use serde_json::Value;
 
 use crate::{
     Registry,
     arguments::Simulate,
-    extremes::extremes,
     figures::{Curve, Mark, PALETTE, Panel, svg},
     files,
     problem::{Outcome, Problem},
-    report::{Grid, Heading, Report, VALUE},
     run::{progress, record_checked},
 };
 
@@ -67,7 +68,7 @@ pub fn simulate(options: &Simulate, registry: &Registry, out: &mut dyn Write) ->
     report.grid(extremes(crane.description(), &[(name, &recorded)]));
     report.grid(summary(&[(VALUE, &recorded)]));
     report.grid(file_list(&options.folder.out, &written));
-    report.print(options.analysis.format, out)
+    options.analysis.format.print(&report, out)
 }
 
 /// Adds the method, and its tolerance if it has one.
@@ -204,23 +205,4 @@ fn drives(description: &Description, traces: &[Trace<'_>]) -> Vec<Panel> {
         }
     };
     description.drives.iter().map(panel).collect()
-}
-
-/// Work, energy balance and time of runs, one column each.
-pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
-    let values = runs.iter().map(|(label, _)| Heading::of(label, VALUE));
-    let headings = [Heading::from("quantity")].into_iter().chain(values).chain(["unit".into()]).collect();
-    let mut grid = Grid::with_headings("summary", "Run", headings);
-    let mut row = |name: String, unit: &str, value: &dyn Fn(&Recorded) -> Option<f64>| {
-        let values = runs.iter().map(|(_, run)| value(run).into());
-        grid.row([name.into()].into_iter().chain(values).chain([unit.into()]).collect::<Vec<_>>());
-    };
-    let greatest = |run: &Recorded, column: &str| run.table.values(column).map(|v| v.map(f64::abs).fold(0.0, f64::max));
-    let last = |run: &Recorded, column: &str| run.table.values(column).and_then(Iterator::last);
-    row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
-    row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
-    row("energy balance, largest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
-    row("wall time".to_owned(), "s", &|run| Some(run.wall.as_secs_f64()));
-    row("real-time factor".to_owned(), "", &|run| Some(run.real_time_factor()));
-    grid
 }

@@ -6,18 +6,17 @@ use crane_model::{
     Description,
     dynamics::Method,
     modes::DampedMode,
-    runs::{Bound, Pose, SAFE, Start, manoeuvre},
+    runs::{Pose, Start, manoeuvre},
     stability::{cause, limit},
 };
+use crane_page::tables::{Grid, Report, damped_modes, stable_steps};
 
 use crate::{
     Registry,
     arguments::Stability,
     figures::{BLUE, Curve, Mark, Panel, VERMILLION},
     files,
-    modes::damped_modes,
     problem::Outcome,
-    report::{Grid, Report},
     simulate::{file_list, write_figure},
 };
 
@@ -33,7 +32,7 @@ pub fn stability(options: &Stability, registry: &Registry, out: &mut dyn Write) 
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
     report.fact("start", start.what.as_str(), "");
-    report.grid(limits(description, &poses));
+    report.grid(stable_steps(description, &poses));
     if poses.len() > 1 {
         report.grid(along(description, &poses));
     }
@@ -43,31 +42,7 @@ pub fn stability(options: &Stability, registry: &Registry, out: &mut dyn Write) 
     let file = format!("{}_stability.svg", description.name);
     write_figure(&options.out.join(&file), &regions(modes, description.step), 1)?;
     report.grid(file_list(&options.out, &[file]));
-    report.print(options.analysis.format, out)
-}
-
-/// The largest stable step of every method over some poses, and what limits it.
-pub fn limits(description: &Description, poses: &[Pose]) -> Grid {
-    let headers = ["method", "order", "step [s]", "safe step [s]", "at t [s]", "limited by"];
-    let title = match poses.len() {
-        0 | 1 => "Largest stable steps at the static pose".to_owned(),
-        count => format!("Largest stable steps, the smallest of {count} poses during the manoeuvre"),
-    };
-    let mut grid = Grid::new("limits", title, &headers);
-    for method in Method::ALL {
-        let bound = Bound::of(poses, method);
-        let step = bound.as_ref().map(|bound| bound.limit.step);
-        let why = bound.as_ref().map_or_else(|| "nothing".to_owned(), |bound| cause(description, &bound.limit.mode));
-        grid.row([
-            method.name().into(),
-            method.order().into(),
-            step.into(),
-            step.map(|step| SAFE * step).into(),
-            bound.map(|bound| bound.t).into(),
-            why.into(),
-        ]);
-    }
-    grid
+    options.analysis.format.print(&report, out)
 }
 
 /// Limits at every pose, one method after the other.

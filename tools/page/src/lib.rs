@@ -10,18 +10,21 @@
 //! | `strength` | utilisation of sections and tipping margins over a run |
 //! | `history` | internal forces and tipping lines over a run |
 //! | `record` | the record of a run: enough to repeat it |
+//! | [`tables`] | tables of results: those of the page, and what the command prints |
 
 mod crane;
 pub mod history;
 mod record;
 mod scene;
 mod strength;
+pub mod tables;
 
 use crane_live::LiveCrane;
 use crane_model::{dyn_crane::DynCrane, dynamics::Settings, modes::NoModes, runs::Recorded, statics::Equilibrium};
 use serde_json::{Value, json};
 
 pub use record::{Program, record};
+use tables::Report;
 
 /// The page without data: script, style and licences in one file.
 const PAGE: &str = include_str!("report.html");
@@ -46,8 +49,8 @@ pub struct Subject<'a> {
 /// What a page shows besides cranes.
 #[derive(Default)]
 pub struct Texts<'a> {
-    /// Tables as the page shows them; none if null.
-    pub tables: Value,
+    /// Tables of results.
+    pub tables: Option<Report>,
     /// Figures of load charts; none if null.
     pub chart: Value,
     /// The command that wrote the page.
@@ -63,6 +66,7 @@ pub struct Texts<'a> {
 pub fn page(subjects: &[Subject<'_>], texts: Texts<'_>, program: Program) -> Result<String, NoModes> {
     let cranes = subjects.iter().map(|subject| crane::data(subject, program)).collect::<Result<Vec<_>, _>>()?;
     let Texts { tables, chart, command, spec } = texts;
+    let tables = tables.map(|report| report.page());
     let data =
         json!({"cranes": cranes, "tables": tables, "chart": chart, "command": command, "spec": spec}).to_string();
     // No text of a spec may end the script element that contains the data.

@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{Run, Settings, Statistics};
-use crane_model::results::{Recording, Verification};
+use crane_model::results::{Recording, Verification, cautions};
 use crane_model::runs::Recorded;
-use crane_model::statics;
+use crane_page::tables::{Case, of_page};
 use crane_page::{Program, Subject, Texts, page};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::{PyArithmeticError, PyValueError};
@@ -87,18 +87,22 @@ impl Given<'_> {
 
 #[pymethods]
 impl Crane {
-    /// The crane in 3-D as an HTML page that needs no network: at rest, or with a run of it.
+    /// The crane in 3-D and in tables as an HTML page that needs no network: at rest, or with a run of it.
     #[pyo3(signature = (run=None))]
     fn page_with(&self, py: Python<'_>, run: Option<Given<'_>>) -> PyResult<String> {
         let run = run.map(|run| run.recorded(&self.live)).transpose()?;
         let (crane, live, spec) = (&self.live as &dyn DynCrane, &self.live, &self.source.text);
         let made = py.detach(|| {
-            let equilibrium = crane.equilibrium(&statics::Settings::default());
+            let case = Case::new(&crane.description().name, crane);
             let run = run.as_ref().map(|(settings, recorded)| (settings, recorded));
-            let subject =
-                Subject { label: &crane.description().name, rig: crane, live, equilibrium: &equilibrium, run };
-            page(&[subject], Texts { spec: Some(spec), ..Texts::default() }, PROGRAM)
+            let runs: Vec<&Recorded> = run.iter().map(|(_, recorded)| *recorded).collect();
+            let cases = [case];
+            let tables = of_page(&cases, &runs, cautions::BEND, None).map_err(|failed| failed.to_string())?;
+            let [Case { label, equilibrium, .. }] = &cases;
+            let subject = Subject { label, rig: crane, live, equilibrium, run };
+            let texts = Texts { tables: Some(tables), spec: Some(spec), ..Texts::default() };
+            page(&[subject], texts, PROGRAM).map_err(|error| error.to_string())
         });
-        made.map_err(|error| PyArithmeticError::new_err(error.to_string()))
+        made.map_err(PyArithmeticError::new_err)
     }
 }

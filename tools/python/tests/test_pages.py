@@ -47,6 +47,34 @@ def test_a_notebook_shows_a_crane_at_rest(knuckle):
     np.testing.assert_allclose(np.ravel(efforts), knuckle.statics().drive_efforts, rtol=2**-23, atol=1e-6)
 
 
+def tables(page):
+    """Rows of the tables of a page by the tables' keys, as dictionaries by column."""
+    grids = data(page)["tables"]["grids"]
+    return {grid["key"]: [dict(zip(grid["headers"], row, strict=True)) for row in grid["exact"]] for grid in grids}
+
+
+def test_pages_have_the_tables_of_the_command(knuckle):
+    """At rest those of statics and modes, and with a run its extremes."""
+    equilibrium = knuckle.statics()
+    at_rest = tables(knuckle.page())
+    assert [float(row["knuckle_boom"]) for row in at_rest["drives"]] == equilibrium.drive_efforts.tolist()
+    points = [[float(row[f"knuckle_boom {axis}"]) for axis in "xyz"] for row in at_rest["points"]]
+    assert points == equilibrium.points.tolist()
+    frequencies = [float(row["frequency [Hz]"]) for row in at_rest["undamped"]]
+    np.testing.assert_allclose(frequencies, knuckle.modes().frequencies, rtol=1e-15)
+    assert {"damped", "limits", "pose"} <= at_rest.keys() and "extremes" not in at_rest
+    run = knuckle.simulate(duration=0.5, output=0.01)
+    moved = tables(run.page())
+    names = [row[0] for grid in data(run.page())["tables"]["grids"] if grid["key"] == "extremes" for row in grid["rows"]]
+    for name, row in zip(names, moved["extremes"], strict=True):
+        extremes = run.extremes(name)
+        assert (float(row["minimum"]), float(row["maximum"])) == (extremes["minimum"], extremes["maximum"]), name
+        assert float(row["error"]) == run.errors[name], name
+    assert {"main_boom_theta_drive_torque", "load_centre_z"} <= set(names)
+    facts = dict((name, value) for name, value, _ in data(run.page())["tables"]["facts"])
+    assert "converged to a stable equilibrium" in facts["knuckle_boom"]
+
+
 def test_a_batch_is_shown_by_its_first_row(knuckle):
     shown = knuckle.replace(payload=[100.0, 900.0])._repr_html_()
     assert "(2,): 100 to 900" in shown and "the first row" in shown

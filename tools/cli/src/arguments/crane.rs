@@ -1,10 +1,16 @@
 //! The crane of a command, and commands that describe, create or generate one.
 
-use std::path::{Path, PathBuf};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 use clap::{Args, ValueEnum, ValueHint};
 
 use crane_model::results::cautions::BEND;
+use crane_page::tables::Report;
+
+use crate::problem::Outcome;
 
 /// Output format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -14,6 +20,19 @@ pub enum Format {
     Table,
     /// For programs.
     Json,
+}
+
+impl Format {
+    /// Prints a report in this form.
+    ///
+    /// # Errors
+    /// The output is closed.
+    pub fn print(self, report: &Report, out: &mut dyn Write) -> Outcome<()> {
+        match self {
+            Format::Table => Ok(report.print(out)?),
+            Format::Json => Ok(writeln!(out, "{:#}", report.json())?),
+        }
+    }
 }
 
 /// A spec to check.

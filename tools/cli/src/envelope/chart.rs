@@ -1,6 +1,6 @@
 //! The load chart as a table: loads over the radius.
 
-use crate::report::{Cell, Grid, Heading};
+use crane_page::tables::{Cell, Grid, Heading};
 
 use super::surface::{Knot, Sheet, Surface};
 

@@ -21,6 +21,7 @@ use crane_model::{
     dyn_crane::DynCrane,
     envelope::{Execution, Limits, Rating, range_of_loads},
 };
+use crane_page::tables::Report;
 
 use crate::{
     Registry,
@@ -28,7 +29,6 @@ use crate::{
     files,
     journal::{self, Journal, Request},
     problem::{Outcome, Problem},
-    report::Report,
     run::styled,
     selection::told,
     strength::load_parameter,
@@ -76,7 +76,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     written.extend(figures::write(&options.folder.out, &name, &asked, &layout, &rows, surface.as_ref())?);
     journal.remove()?;
     report.grid(crate::simulate::file_list(&options.folder.out, &written));
-    report.print(options.analysis.format, out)?;
+    options.analysis.format.print(&report, out)?;
     if options.analysis.format == Format::Table {
         writeln!(out, "\n{}", chart::NOTE)?;
     }

@@ -9,6 +9,7 @@ use crane_model::{
     nalgebra::Vector3,
     results::{Column, drive_effort},
 };
+use crane_page::tables::number_text;
 
 use crate::{
     files,
@@ -29,7 +30,7 @@ impl Row {
     /// The row of a pose as fields of a journal: its number, the limit that governs, all numbers.
     pub fn record(&self, pose: usize) -> Vec<String> {
         let [kind, of] = self.governing.clone();
-        let numbers = self.numbers.iter().copied().map(files::number);
+        let numbers = self.numbers.iter().copied().map(number_text);
         [pose.to_string(), kind, of].into_iter().chain(numbers).collect()
     }
 }
@@ -154,7 +155,7 @@ impl Layout {
 
 /// A field of a file: empty for a number that is not finite.
 pub fn field(number: f64) -> String {
-    if number.is_finite() { files::number(number) } else { String::new() }
+    if number.is_finite() { number_text(number) } else { String::new() }
 }
 
 /// Writes all rows as CSV and as arrays; returns the names of the files.

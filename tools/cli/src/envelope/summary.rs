@@ -4,9 +4,8 @@ use crane_model::{
     Description, DriveInfo,
     envelope::{Envelope, Limits},
 };
+use crane_page::tables::{Cell, Grid, Report};
 use serde_json::{Value, json};
-
-use crate::report::{Cell, Grid, Report};
 
 use super::{
     ranges::shown,

@@ -10,27 +10,22 @@ use std::{io::Write, path::Path};
 use crane_model::{
     dyn_crane::DynCrane,
     dynamics::{Method, Settings},
-    runs::{POSES, Recorded, Start, manoeuvre},
+    runs::Recorded,
 };
-use crane_page::{Subject, Texts, page};
+use crane_page::{
+    Subject, Texts, page,
+    tables::{Case, FLEXIBLE, RIGID, Report, of_page},
+};
 use serde_json::Value;
 
 use crate::{
     Registry,
     arguments::{Limits, Page},
-    extremes::extremes,
-    files, modes, own,
+    files, own,
     problem::Outcome,
     refinement,
-    report::Report,
     run::runs,
-    simulate::summary,
-    stability,
-    statics::{Case, FLEXIBLE, RIGID, caution_of_runs, deflection, tables},
 };
-
-/// Coordinates of the largest crane whose modes are computed at all [`POSES`] along the manoeuvre.
-const AFFORDABLE: usize = 100;
 
 /// Computes a crane, and its rigid twin if there is one, and writes the page.
 pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
@@ -87,7 +82,7 @@ fn write_with(
         })
         .collect();
     let texts = Texts {
-        tables: all_tables(registry, cases, limits, runs)?.page(),
+        tables: Some(all_tables(registry, cases, limits, runs)?),
         chart: chart.unwrap_or_default(),
         command: Some(own::typed()),
         spec: cases.last().and_then(|case| registry.spec(&case.crane.description().name)),
@@ -99,40 +94,11 @@ fn write_with(
 }
 
 fn all_tables(registry: &Registry, cases: &[Case<'_>], limits: Limits, runs: &[Recorded]) -> Outcome<Report> {
-    let mut report = tables(cases, limits);
-    caution_of_runs(&mut report, cases.iter().map(|case| case.label).zip(runs));
-    if let [rigid, flexible] = cases {
-        report.grid(deflection(rigid, flexible));
-    }
-    if let Some(case) = cases.last() {
-        let labelled: Vec<(&str, &Recorded)> = cases.iter().map(|case| case.label).zip(runs).collect();
-        report.grid(extremes(case.crane.description(), &labelled));
-        report.grid(summary(&labelled));
-        if case.equilibrium.is_stable() {
-            let changes = refinement::changes(case, registry)?;
-            report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
-            report.grid(modes::undamped_modes(case, changes.as_deref())?);
-            let poses = manoeuvre(case.crane, &Start::of(case.crane)?, affordable_poses(case.crane.size()))?;
-            report.grid(modes::damped_modes(case.crane.description(), poses.first().map_or(&[], |pose| &pose.modes)));
-            report.grid(stability::limits(case.crane.description(), &poses));
-        }
-    }
+    let changes = match cases.last().filter(|case| case.equilibrium.is_stable()) {
+        Some(case) => refinement::changes(case, registry)?,
+        None => None,
+    };
+    let mut report = of_page(cases, &runs.iter().collect::<Vec<_>>(), limits.bend, changes.as_deref())?;
+    report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
     Ok(report)
-}
-
-/// Number of poses along the manoeuvre whose modes take no longer than those at all [`POSES`] for a crane of [`AFFORDABLE`]
-/// coordinates: the time of the eigenvalue iteration grows with n³.
-fn affordable_poses(coordinates: usize) -> u16 {
-    let most = usize::from(POSES) * AFFORDABLE.pow(3) / coordinates.saturating_pow(3).max(1);
-    u16::try_from(most).map_or(POSES, |most| most.min(POSES))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn large_cranes_have_fewer_poses() {
-        assert_eq!([1, 100, 101, 125, 215, 216, usize::MAX].map(affordable_poses), [10, 10, 9, 5, 1, 0, 0]);
-    }
 }

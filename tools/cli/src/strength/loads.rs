@@ -7,13 +7,11 @@ use crane_model::{
     statics::{Settings, Status},
     tipping::{TippingLine, lines},
 };
+use crane_page::tables::Report;
 
 use serde_json::{Map, Value, json};
 
-use crate::{
-    problem::{Outcome, Problem, nearest},
-    report::Report,
-};
+use crate::problem::{Outcome, Problem, nearest};
 
 /// Relative accuracy of the load: an equilibrium leaves a residual of about 1e-13 of the forces.
 const ACCURACY: f64 = 1e-10;

@@ -11,15 +11,14 @@ use serde_json::Value;
 
 use crane_model::{dyn_crane::DynCrane, dynamics::Method, results::cautions, tipping::governing};
 use crane_page::history::{Instant, instants};
+use crane_page::tables::{Case, Report, VALUE, verdicts};
 
 use crate::{
     Registry,
     arguments::Strength,
     files,
     problem::{Outcome, Problem},
-    report::{Report, VALUE},
     run::{progress, record_checked},
-    statics::{Case, verdicts},
 };
 
 use history::least_margin;
@@ -34,8 +33,8 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     let mut report = Report::default();
     verdicts(&mut report, std::slice::from_ref(&case));
     if !case.equilibrium.is_stable() {
-        report.print(options.analysis.format, out)?;
-        return case.stable();
+        options.analysis.format.print(&report, out)?;
+        return Ok(case.stable()?);
     }
     let rest = Instant::at_rest(crane.as_ref(), &q);
     verdict(&mut report, crane.as_ref(), &rest, "");
@@ -62,7 +61,7 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     report.grid(tables::joints(crane.description(), &rest.wrenches));
     report.excerpt(tables::sections(crane.description(), &rest.wrenches), 0);
     report.show_all(options.analysis.all);
-    report.print(options.analysis.format, out)
+    options.analysis.format.print(&report, out)
 }
 
 /// Loads and stability along the manoeuvre, one entry per result.

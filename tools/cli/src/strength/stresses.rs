@@ -5,8 +5,7 @@ use crane_model::{
     sections::{StressedSection, stressed_sections},
 };
 use crane_page::history::Instant;
-
-use crate::report::{Cell, Grid, Report};
+use crane_page::tables::{Cell, Grid, Report};
 
 /// Pascals in a newton per square millimetre.
 const MEGA: f64 = 1e6;

@@ -5,8 +5,7 @@ use crane_model::{
     results::{Extremes, Table},
     tipping::TippingLine,
 };
-
-use crate::report::{Cell, Grid};
+use crane_page::tables::{Cell, Grid};
 
 use super::history::{OF_JOINTS, OF_SECTIONS, UNITS, numbers, prefix};
 

@@ -122,7 +122,7 @@ pub fn stress(options: &Stress, registry: &Registry, out: &mut dyn Write) -> Out
     report.fact("cases", verdicts.len(), "");
     report.fact("failed", failed, "");
     report.grid(grid(&verdicts));
-    report.print(options.format, out)?;
+    options.format.print(&report, out)?;
     if failed == 0 {
         return Ok(());
     }

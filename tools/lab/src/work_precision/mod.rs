@@ -191,5 +191,5 @@ fn deliver(options: &WorkPrecision, found: Found<'_>, out: &mut dyn Write) -> Ou
     let mut report = found.facts;
     found.grids.into_iter().for_each(|grid| report.grid(grid));
     report.grid(file_list(&options.out, &written));
-    report.print(options.analysis.format, out)
+    options.analysis.format.print(&report, out)
 }

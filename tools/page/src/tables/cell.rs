@@ -2,8 +2,6 @@
 
 use serde_json::Value;
 
-use crate::files;
-
 /// One field of a table.
 #[derive(Clone, Debug)]
 pub enum Cell {
@@ -84,9 +82,9 @@ impl Cell {
     pub(super) fn exact(&self) -> String {
         match self {
             Cell::Number(number) | Cell::Error(number) | Cell::Uncertainty(number) | Cell::Change(number) => {
-                files::number(*number)
+                number_text(*number)
             }
-            Cell::Angle(radians) => files::number(radians.to_degrees()),
+            Cell::Angle(radians) => number_text(radians.to_degrees()),
             _ => String::new(),
         }
     }
@@ -105,6 +103,11 @@ impl Cell {
             Cell::Empty => Value::Null,
         }
     }
+}
+
+/// The shortest text that reads back as the same number.
+pub fn number_text(number: f64) -> String {
+    format!("{number:?}")
 }
 
 /// A number with two significant digits, in powers of ten where it is very large or small.

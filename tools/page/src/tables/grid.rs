@@ -1,11 +1,13 @@
 //! Tables with named columns: printed, as JSON, as Markdown and for a page.
 
-use std::{fmt, io::Write};
+use std::{
+    fmt,
+    io::{self, Write},
+};
 
 use serde_json::{Map, Value, json};
 
-use super::cell::{Cell, DIGITS_OF_DOCUMENTS};
-use crate::{files, problem::Outcome};
+use super::cell::{Cell, DIGITS_OF_DOCUMENTS, number_text};
 
 /// The heading of a column.
 #[derive(Clone, Debug)]
@@ -138,7 +140,7 @@ impl Grid {
             | Cell::Error(number)
             | Cell::Uncertainty(number)
             | Cell::Angle(number)
-            | Cell::Change(number) => files::number(*number),
+            | Cell::Change(number) => number_text(*number),
             Cell::AngleUnit => "rad".to_owned(),
             Cell::Empty => String::new(),
             other => other.text(),
@@ -156,7 +158,7 @@ impl Grid {
     }
 
     /// Prints its first rows for people.
-    pub(super) fn print(&self, most: usize, out: &mut dyn Write) -> Outcome<()> {
+    pub(super) fn print(&self, most: usize, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{}", self.title)?;
         let headers = self.headers();
         let texts: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect();
@@ -164,12 +166,12 @@ impl Grid {
             let cells = texts.iter().filter_map(|row| row.get(column)).map(|text| text.chars().count());
             cells.chain([headers[column].chars().count()]).max().unwrap_or(0)
         };
-        let mut line = |cells: &mut dyn Iterator<Item = &str>| -> Outcome<()> {
+        let mut line = |cells: &mut dyn Iterator<Item = &str>| {
             let padded = cells.enumerate().map(|(column, cell)| {
                 let width = width(column);
                 if self.numeric(column) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
             });
-            Ok(writeln!(out, "  {}", padded.collect::<Vec<_>>().join("  ").trim_end())?)
+            writeln!(out, "  {}", padded.collect::<Vec<_>>().join("  ").trim_end())
         };
         line(&mut headers.iter().map(String::as_str))?;
         for row in texts.iter().take(most) {

@@ -1,16 +1,10 @@
 //! Results: facts, cautions and tables, for people and the same as JSON for programs.
 
-mod cell;
-mod grid;
-
-use std::io::Write;
+use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
-use crate::{arguments::Format, problem::Outcome};
-
-pub use cell::Cell;
-pub use grid::{Grid, Heading, VALUE};
+use super::{Cell, Grid};
 
 /// A named value.
 #[derive(Clone, Debug)]
@@ -95,7 +89,7 @@ impl Report {
     }
 
     /// Facts and tables as printed, for a page.
-    pub fn page(&self) -> Value {
+    pub(crate) fn page(&self) -> Value {
         let facts: Vec<_> = self
             .facts
             .iter()
@@ -105,43 +99,39 @@ impl Report {
         json!({"facts": facts, "grids": self.filled().map(|(grid, _)| grid.page()).collect::<Vec<_>>()})
     }
 
-    /// Prints it in the form asked for.
+    /// Prints it for people, as the command does.
     ///
     /// # Errors
     /// The output is closed.
-    pub fn print(&self, format: Format, out: &mut dyn Write) -> Outcome<()> {
-        match format {
-            Format::Json => Ok(writeln!(out, "{:#}", self.json())?),
-            Format::Table => {
-                let width = self.facts.iter().map(|fact| fact.name.chars().count()).max().unwrap_or(0);
-                for Fact { name, value, unit, .. } in &self.facts {
-                    writeln!(out, "{}", format!("{name:<width$}  {} {unit}", value.text()).trim_end())?;
-                }
-                for words in &self.cautions {
-                    writeln!(out, "caution: {words}")?;
-                }
-                let seen = |rows: usize| if self.all { usize::MAX } else { rows };
-                let shown = self.filled().filter(|(_, rows)| seen(*rows) > 0);
-                for (index, (grid, rows)) in shown.enumerate() {
-                    if index > 0 || !self.facts.is_empty() || !self.cautions.is_empty() {
-                        writeln!(out)?;
-                    }
-                    grid.print(seen(*rows), out)?;
-                }
-                let hidden = self.filled().filter(|(_, rows)| seen(*rows) == 0);
-                // What the table is, without how to read it.
-                let hidden: Vec<&str> =
-                    hidden.map(|(grid, _)| grid.title.split([',', ':']).next().unwrap_or_default()).collect();
-                if !hidden.is_empty() {
-                    writeln!(out, "\nWith `--all` also: {}", hidden.join("; "))?;
-                }
-                Ok(())
-            }
+    pub fn print(&self, out: &mut dyn Write) -> io::Result<()> {
+        let width = self.facts.iter().map(|fact| fact.name.chars().count()).max().unwrap_or(0);
+        for Fact { name, value, unit, .. } in &self.facts {
+            writeln!(out, "{}", format!("{name:<width$}  {} {unit}", value.text()).trim_end())?;
         }
+        for words in &self.cautions {
+            writeln!(out, "caution: {words}")?;
+        }
+        let seen = |rows: usize| if self.all { usize::MAX } else { rows };
+        let shown = self.filled().filter(|(_, rows)| seen(*rows) > 0);
+        for (index, (grid, rows)) in shown.enumerate() {
+            if index > 0 || !self.facts.is_empty() || !self.cautions.is_empty() {
+                writeln!(out)?;
+            }
+            grid.print(seen(*rows), out)?;
+        }
+        let hidden = self.filled().filter(|(_, rows)| seen(*rows) == 0);
+        // What the table is, without how to read it.
+        let hidden: Vec<&str> =
+            hidden.map(|(grid, _)| grid.title.split([',', ':']).next().unwrap_or_default()).collect();
+        if !hidden.is_empty() {
+            writeln!(out, "\nWith `--all` also: {}", hidden.join("; "))?;
+        }
+        Ok(())
     }
 
     /// Facts, cautions and tables by name; `units` has the units of facts by their names, and those of columns by table and name.
-    fn json(&self) -> Value {
+    #[must_use]
+    pub fn json(&self) -> Value {
         let mut object = self.values.clone();
         let mut units = Map::new();
         for Fact { key, value, unit, .. } in &self.facts {
@@ -171,6 +161,7 @@ pub const FORMAT: u32 = 1;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tables::Heading;
 
     #[test]
     fn programs_read_fixed_keys_with_units_apart() {
@@ -211,7 +202,7 @@ mod tests {
             report.excerpt(grid("pose", "Pose"), 0);
             report.grid_first(grid("peaks", "Peaks"));
             let mut out = Vec::new();
-            report.print(Format::Table, &mut out).expect("it prints");
+            report.print(&mut out).expect("it prints");
             String::from_utf8(out).expect("text")
         };
         let short = printed(false);

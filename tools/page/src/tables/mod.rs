@@ -1,0 +1,25 @@
+//! Tables of results: those of the page, and what the command prints.
+//!
+//! | module | content |
+//! |---|---|
+//! | `cell`, `grid`, `report` | fields, tables with named columns, tables in order with facts and cautions |
+//! | `statics` | cranes in equilibrium, side by side |
+//! | `runs` | extremes, work and time of runs |
+//! | `modes` | modes and the largest stable steps |
+//! | `page` | all tables of a page |
+
+mod cell;
+mod grid;
+mod modes;
+mod page;
+mod report;
+mod runs;
+mod statics;
+
+pub use cell::{Cell, number_text};
+pub use grid::{Grid, Heading, VALUE};
+pub use modes::{damped_modes, names, stable_steps, undamped_modes};
+pub use page::of_page;
+pub use report::{FORMAT, Report};
+pub use runs::{caution_of_runs, extremes, summary};
+pub use statics::{Case, FLEXIBLE, RIGID, deflection, equilibria, verdicts};

@@ -1,0 +1,70 @@
+//! Runs: minimum and maximum values, when they occur, and how far off they may be; work, energy balance and time.
+
+use crane_model::{
+    Description,
+    results::{Extremes, headlines},
+    runs::Recorded,
+};
+
+use super::{Cell, Grid, Heading, Report, VALUE};
+
+/// A time without the rounding of its sum: 2.28 instead of 2.2800000000000002.
+fn instant(time: f64) -> f64 {
+    format!("{time:.9}").parse().unwrap_or(time)
+}
+
+/// Extremes of all headlines of some runs, a row per quantity and run.
+pub fn extremes(description: &Description, runs: &[(&str, &Recorded)]) -> Grid {
+    let headers = ["quantity", "crane", "minimum", "time of minimum", "maximum", "time of maximum", "error", "unit"];
+    let alone = runs.len() < 2;
+    let headers: Vec<&str> = headers.into_iter().filter(|header| !alone || *header != "crane").collect();
+    let title = "Extremes of the run with their times in s, and the largest difference from a finer run";
+    let mut grid = Grid::new("extremes", title, &headers);
+    for kind in headlines(description) {
+        for name in &kind.names {
+            for (label, run) in runs {
+                if run.table.values(name).is_none() {
+                    continue;
+                }
+                let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(&run.table, name);
+                let error = run.verification.as_ref().and_then(|v| v.difference(&run.table, name));
+                let numbers = [minimum, instant(time_of_minimum), maximum, instant(time_of_maximum)].map(Cell::from);
+                let crane = (!alone).then(|| Cell::from(*label));
+                let row = [Cell::from(name.as_str())].into_iter().chain(crane).chain(numbers);
+                grid.row(
+                    row.chain([error.map_or(Cell::Empty, Cell::Uncertainty), kind.unit.into()]).collect::<Vec<_>>(),
+                );
+            }
+        }
+    }
+    grid
+}
+
+/// Work, energy balance and time of runs, one column each.
+pub fn summary(runs: &[(&str, &Recorded)]) -> Grid {
+    let values = runs.iter().map(|(label, _)| Heading::of(label, VALUE));
+    let headings = [Heading::from("quantity")].into_iter().chain(values).chain(["unit".into()]).collect();
+    let mut grid = Grid::with_headings("summary", "Run", headings);
+    let mut row = |name: String, unit: &str, value: &dyn Fn(&Recorded) -> Option<f64>| {
+        let values = runs.iter().map(|(_, run)| value(run).into());
+        grid.row([name.into()].into_iter().chain(values).chain([unit.into()]).collect::<Vec<_>>());
+    };
+    let greatest = |run: &Recorded, column: &str| run.table.values(column).map(|v| v.map(f64::abs).fold(0.0, f64::max));
+    let last = |run: &Recorded, column: &str| run.table.values(column).and_then(Iterator::last);
+    row("work of the drives".to_owned(), "J", &|run| last(run, "drive_work"));
+    row("dissipated".to_owned(), "J", &|run| last(run, "dissipated_energy"));
+    row("energy balance, largest error".to_owned(), "J", &|run| greatest(run, "energy_balance"));
+    row("wall time".to_owned(), "s", &|run| Some(run.wall.as_secs_f64()));
+    row("real-time factor".to_owned(), "", &|run| Some(run.real_time_factor()));
+    grid
+}
+
+/// Adds the cautions of labelled runs, with the label as prefix if there are several.
+pub fn caution_of_runs<'a>(report: &mut Report, runs: impl ExactSizeIterator<Item = (&'a str, &'a Recorded)>) {
+    let alone = runs.len() == 1;
+    for (label, run) in runs {
+        for caution in &run.cautions {
+            report.caution(Some(if alone { caution.clone() } else { format!("{label}: {caution}") }));
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! Cranes in equilibrium, one or several side by side.
+
+use crane_model::{
+    ConnectorInfo, CoordinateInfo, CoordinateKind, Description, Tension,
+    dyn_crane::DynCrane,
+    results::{CylinderState, cautions, cylinders_at},
+    runs::{Failed, Reason},
+    statics::{Equilibrium, Settings},
+};
+use nalgebra::Vector3;
+use serde_json::json;
+
+use super::{Cell, Grid, Heading, Report, VALUE};
+
+/// Label of a crane that is compared with itself with rigid beams.
+pub const FLEXIBLE: &str = "flexible";
+/// Label of a crane with rigid beams that is compared with itself with beams that bend.
+pub const RIGID: &str = "rigid";
+
+/// A crane in equilibrium.
+pub struct Case<'a> {
+    /// Heading of its column.
+    pub label: &'a str,
+    /// The crane.
+    pub crane: &'a dyn DynCrane,
+    /// Where it rests.
+    pub equilibrium: Equilibrium,
+}
+
+impl<'a> Case<'a> {
+    /// Solves statics.
+    pub fn new(label: &'a str, crane: &'a dyn DynCrane) -> Self {
+        Self { label, crane, equilibrium: crane.equilibrium(&Settings::default()) }
+    }
+
+    /// Whether the equilibrium is stable.
+    ///
+    /// # Errors
+    /// It is not: what balances the crane is missing.
+    pub fn stable(&self) -> Result<(), Failed> {
+        if self.equilibrium.is_stable() {
+            Ok(())
+        } else {
+            Err(Reason::no_equilibrium(self.crane, &self.equilibrium).of(&self.crane.description().name))
+        }
+    }
+
+    fn coordinates(&self) -> &[CoordinateInfo] {
+        &self.crane.description().coordinates
+    }
+
+    /// Velocity at rest.
+    fn rest(&self) -> Vec<f64> {
+        vec![0.0; self.equilibrium.q.len()]
+    }
+
+    /// Value of `values`, one per coordinate, at the coordinate of this name.
+    fn value(&self, name: &str, values: &[f64]) -> Option<f64> {
+        self.coordinates().iter().position(|coordinate| coordinate.name == name).map(|index| values[index])
+    }
+}
+
+/// Reports how the statics of each crane ended, and for programs also whether all equilibria are stable.
+pub fn verdicts(report: &mut Report, cases: &[Case<'_>]) {
+    let mut cranes = Vec::new();
+    for Case { label, crane, equilibrium } in cases {
+        let (name, residual) = (crane.description().name.as_str(), equilibrium.residual());
+        report.line(name, format!("{equilibrium}, relative residual {residual:.1e}"), "");
+        cranes.push(json!({
+            "label": label,
+            "crane": name,
+            "stable": equilibrium.is_stable(),
+            "status": equilibrium.status.name(),
+            "message": equilibrium.to_string(),
+            "newton_steps": equilibrium.steps(),
+            "load_steps": equilibrium.load_steps,
+            "relative_residual": residual,
+        }));
+    }
+    report.value("stable", cases.iter().all(|case| case.equilibrium.is_stable()));
+    report.value("cranes", cranes);
+}
+
+/// Tables of cranes in equilibrium, one column each; `bend`: bending or torsion of a section that is cautioned about, degrees.
+pub fn equilibria(cases: &[Case<'_>], bend: f64) -> Report {
+    let mut report = Report::default();
+    verdicts(&mut report, cases);
+    for case in cases {
+        let Case { equilibrium, .. } = case;
+        let description = case.crane.description();
+        for caution in [description.near_singular(&equilibrium.q), description.large_tilt(&equilibrium.q)] {
+            report.caution(caution);
+        }
+        for caution in cautions::of_pose(case.crane, &equilibrium.q, bend) {
+            let label = if cases.len() > 1 { format!("{}: ", case.label) } else { String::new() };
+            report.caution(Some(label + &caution));
+        }
+    }
+    report.grid(drives(cases));
+    if let Some(grid) = cylinders(cases) {
+        report.grid(grid);
+    }
+    report.grid(reactions(cases));
+    if let Some(grid) = connectors(cases) {
+        report.grid(grid);
+    }
+    report.grid(points(cases));
+    report.excerpt(pose(cases), 0);
+    report
+}
+
+/// How far the points of the second crane are from those of the first with the same name; if the first is the same crane with rigid
+/// beams, this is the deflection due to flexibility.
+pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
+    let title = if second.label == FLEXIBLE {
+        format!("Deflection of the load points due to flexibility ({} − {})", second.label, first.label)
+    } else {
+        format!("Distances between the points of interest ({} − {})", second.label, first.label)
+    };
+    let mut grid = Grid::new("deflection", title, &["point", "x", "y", "z", "distance", "unit"]);
+    let [from, to] = [first, second].map(|case| case.crane.points_at(&case.equilibrium.q));
+    let names = &first.crane.description().points;
+    for (name, to) in second.crane.description().points.iter().zip(&to) {
+        let Some(from) = names.iter().zip(&from).find_map(|(other, from)| (other == name).then_some(from)) else {
+            continue;
+        };
+        let way = (to - from) * 1e3;
+        grid.row([name.as_str().into(), way.x.into(), way.y.into(), way.z.into(), way.norm().into(), "mm".into()]);
+    }
+    grid
+}
+
+/// Headings: `first`, a value per case, `unit`.
+fn headings(first: &str, cases: &[Case<'_>]) -> Vec<Heading> {
+    let values = cases.iter().map(|case| Heading::of(case.label, VALUE));
+    [first.into()].into_iter().chain(values).chain(["unit".into()]).collect()
+}
+
+/// The case with the most coordinates, which has all names.
+fn widest<'c, 'a>(cases: &'c [Case<'a>]) -> Option<&'c Case<'a>> {
+    cases.iter().max_by_key(|case| case.coordinates().len())
+}
+
+fn pose(cases: &[Case<'_>]) -> Grid {
+    let mut grid = Grid::with_headings("pose", "Pose", headings("coordinate", cases));
+    for coordinate in widest(cases).map_or(&[][..], Case::coordinates) {
+        let (cell, unit): (fn(f64) -> Cell, Cell) = match coordinate.kind {
+            CoordinateKind::Translation => (Cell::Number, coordinate.kind.unit().into()),
+            CoordinateKind::Rotation => (Cell::Angle, Cell::AngleUnit),
+        };
+        let values =
+            cases.iter().map(|case| case.value(&coordinate.name, &case.equilibrium.q).map_or(Cell::Empty, cell));
+        let row: Vec<Cell> = [coordinate.name.as_str().into()].into_iter().chain(values).chain([unit]).collect();
+        grid.row(row);
+    }
+    grid
+}
+
+fn drives(cases: &[Case<'_>]) -> Grid {
+    let mut grid = Grid::with_headings("drives", "Torques and forces of the drives", headings("drive", cases));
+    let efforts: Vec<Vec<f64>> =
+        cases.iter().map(|case| case.crane.drive_efforts_at_rest(&case.equilibrium.q)).collect();
+    let Some(first) = cases.first() else { return grid };
+    for (index, drive) in first.crane.description().drives.iter().enumerate() {
+        let coordinate = &first.coordinates()[drive.coordinate];
+        let values = efforts.iter().map(|efforts| Cell::from(efforts.get(index).copied()));
+        let unit = coordinate.kind.force_unit();
+        let row: Vec<Cell> = [coordinate.name.as_str().into()].into_iter().chain(values).chain([unit.into()]).collect();
+        grid.row(row);
+    }
+    grid
+}
+
+/// Lengths, forces and pressures of the cylinders.
+fn cylinders(cases: &[Case<'_>]) -> Option<Grid> {
+    let first = cases.iter().find(|case| !case.crane.description().cylinders.is_empty())?;
+    let headings = headings("cylinder", cases);
+    let [name, others @ ..] = headings.as_slice() else { return None };
+    let headings = [&[name.clone(), "quantity".into()], others].concat();
+    let mut grid = Grid::with_headings("cylinders", "Cylinders", headings);
+    let of = |case: &Case<'_>| {
+        let q = &case.equilibrium.q;
+        cylinders_at(case.crane, q, &case.rest(), &case.crane.drive_efforts_at_rest(q))
+    };
+    let states: Vec<Vec<CylinderState>> = cases.iter().map(of).collect();
+    for (index, info) in first.crane.description().cylinders.iter().enumerate() {
+        let kind = first.coordinates()[first.crane.description().drives[info.drive].coordinate].kind;
+        let oil = format!("{}/{}", kind.force_unit(), kind.unit());
+        let mut row = |quantity: &str, unit: &str, value: &dyn Fn(&CylinderState) -> Option<f64>| {
+            let values = states.iter().map(|states| Cell::from(states.get(index).and_then(value)));
+            let named: [Cell; 2] = [info.name.as_str().into(), quantity.into()];
+            grid.row(named.into_iter().chain(values).chain([unit.into()]).collect::<Vec<Cell>>());
+        };
+        row("length", "m", &|state| Some(state.length));
+        row("extended", "%", &|state| Some(100.0 * state.extension(info) / info.stroke));
+        row("force", "N", &|state| Some(state.force));
+        row("pressure, piston's side", "bar", &|state| Some(1e-5 * state.pressures[0]));
+        row("pressure, rod's side", "bar", &|state| Some(1e-5 * state.pressures[1]));
+        if info.bulk_modulus.is_some() {
+            row("stiffness of its oil", &oil, &|state| state.oil_stiffness(info));
+        }
+    }
+    Some(grid)
+}
+
+fn reactions(cases: &[Case<'_>]) -> Grid {
+    let mut grid = vectors("reactions", "Support reactions", "support", cases);
+    let reactions: Vec<_> =
+        cases.iter().map(|case| case.crane.support_reactions_at(&case.equilibrium.q, &case.rest())).collect();
+    let supports = cases.first().map_or(&[][..], |case| case.crane.description().supports.as_slice());
+    for (index, support) in supports.iter().enumerate() {
+        let forces = reactions.iter().map(|of| of.get(index).map_or([None; 3], |force| (*force).map(Some).into()));
+        grid.row(vector_row(&support.name, forces, "N"));
+    }
+    if !supports.is_empty() {
+        let sums = reactions.iter().map(|of| <[f64; 3]>::from(of.iter().sum::<Vector3<f64>>()));
+        grid.row(vector_row("Σ supports", sums, "N"));
+        grid.row(vector_row("weight", cases.iter().map(|case| case.crane.weight_at(&case.equilibrium.q)), "N"));
+        let is_loaded = |description: &Description| {
+            !description.loads.is_empty() || description.connectors.iter().any(ConnectorInfo::holds_to_world)
+        };
+        if cases.iter().any(|case| is_loaded(case.crane.description())) {
+            let loads = cases.iter().map(|case| case.crane.applied_force_at(0.0, &case.equilibrium.q));
+            grid.row(vector_row("applied loads", loads, "N"));
+        }
+    }
+    grid
+}
+
+/// Lengths and forces of connectors.
+fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
+    let first = cases.iter().find(|case| !case.crane.description().connectors.is_empty())?;
+    let mut headings = headings("connector", cases);
+    headings.insert(1, "quantity".into());
+    let title = "Connectors: lengths, and forces, positive in tension";
+    let mut grid = Grid::with_headings("connectors", title, headings);
+    let at_rest = |case: &Case<'_>| {
+        let (q, rest) = (&case.equilibrium.q, case.rest());
+        let lengths = case.crane.connector_lengths_at(q, &rest).into_iter().map(|[length, _]| length);
+        lengths.zip(case.crane.connector_tensions_at(0.0, q, &rest)).collect::<Vec<_>>()
+    };
+    let values: Vec<_> = cases.iter().map(at_rest).collect();
+    for (index, connector) in first.crane.description().connectors.iter().enumerate() {
+        let mut row = |quantity: &str, unit: &str, of: fn(&(f64, Tension)) -> f64| {
+            let cells = values.iter().map(|values| Cell::from(values.get(index).map(of)));
+            let words = [connector.name.as_str().into(), quantity.into()];
+            grid.row(words.into_iter().chain(cells).chain([unit.into()]).collect::<Vec<_>>());
+        };
+        row("length", connector.kind.unit(), |(length, _)| *length);
+        row("force", connector.kind.force_unit(), |(_, tension)| tension.force);
+    }
+    Some(grid)
+}
+
+fn points(cases: &[Case<'_>]) -> Grid {
+    let mut grid = vectors("points", "Points of interest", "point", cases);
+    let positions: Vec<_> = cases.iter().map(|case| case.crane.points_at(&case.equilibrium.q)).collect();
+    for (index, name) in
+        cases.first().map_or(&[][..], |case| case.crane.description().points.as_slice()).iter().enumerate()
+    {
+        let places = positions.iter().map(|of| of.get(index).map_or([None; 3], |place| (*place).map(Some).into()));
+        grid.row(vector_row(name, places, "m"));
+    }
+    grid
+}
+
+/// A table of vectors, three columns per case.
+fn vectors(key: &'static str, title: &str, first: &str, cases: &[Case<'_>]) -> Grid {
+    let axes = cases.iter().flat_map(|case| ["x", "y", "z"].map(|axis| Heading::of(case.label, axis)));
+    Grid::with_headings(key, title, [first.into()].into_iter().chain(axes).chain(["unit".into()]).collect())
+}
+
+fn vector_row<T: Into<Cell>>(name: &str, vectors: impl Iterator<Item = [T; 3]>, unit: &str) -> Vec<Cell> {
+    let cells = vectors.flatten().map(Into::into);
+    [name.into()].into_iter().chain(cells).chain([unit.into()]).collect()
+}
