@@ -1,4 +1,4 @@
-//! A spec with parameters, and its description.
+//! A spec with parameters and inputs.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -9,12 +9,12 @@ use crane_codegen::picture::picture;
 use crane_codegen::{Checked, SourceFile, build, exchange};
 use crane_live::LiveCrane;
 use crane_live::rows::{Evaluation, Quantity};
+use crane_model::Description;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::{ConnectorInfo, Cut, Description};
 use crane_specs::SPECS;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined};
 use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn_of_rows, warn_of_spec};
@@ -140,106 +140,6 @@ impl Crane {
                 all.set_item(&*info.name, value)?;
             }
         }
-        Ok(all)
-    }
-
-    /// What the crane consists of.
-    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let description = self.live.description();
-        let all = PyDict::new(py);
-        let list = |rows: Vec<Bound<'py, PyDict>>| PyList::new(py, rows);
-        let mut rows = Vec::new();
-        for info in &description.coordinates {
-            let row = PyDict::new(py);
-            row.set_item("name", &*info.name)?;
-            row.set_item("unit", info.kind.unit())?;
-            row.set_item("force_unit", info.kind.force_unit())?;
-            row.set_item("role", info.role.name())?;
-            rows.push(row);
-        }
-        all.set_item("coordinates", list(std::mem::take(&mut rows))?)?;
-        for info in &description.bodies {
-            let row = PyDict::new(py);
-            row.set_item("name", &*info.name)?;
-            row.set_item("link", &*info.link)?;
-            row.set_item("mass", info.mass)?;
-            row.set_item("length", info.length)?;
-            row.set_item("degrees_of_freedom", info.degrees_of_freedom)?;
-            rows.push(row);
-        }
-        all.set_item("bodies", list(std::mem::take(&mut rows))?)?;
-        for info in &description.drives {
-            let coordinate = &description.coordinates[info.coordinate];
-            let row = PyDict::new(py);
-            row.set_item("coordinate", &*coordinate.name)?;
-            row.set_item("index", info.coordinate)?;
-            row.set_item("unit", coordinate.kind.force_unit())?;
-            row.set_item("start", info.start)?;
-            rows.push(row);
-        }
-        all.set_item("drives", list(std::mem::take(&mut rows))?)?;
-        for info in &description.supports {
-            let row = PyDict::new(py);
-            row.set_item("name", &*info.name)?;
-            row.set_item("position", info.position.to_vec())?;
-            row.set_item("one_sided", info.one_sided)?;
-            rows.push(row);
-        }
-        all.set_item("supports", list(std::mem::take(&mut rows))?)?;
-        for info in &description.cylinders {
-            let coordinate = &description.coordinates[description.drives[info.drive].coordinate];
-            let row = PyDict::new(py);
-            row.set_item("name", &*info.name)?;
-            row.set_item("coordinate", &*coordinate.name)?;
-            row.set_item("areas", info.areas.to_vec())?;
-            row.set_item("retracted", info.retracted)?;
-            row.set_item("stroke", info.stroke)?;
-            rows.push(row);
-        }
-        all.set_item("cylinders", list(std::mem::take(&mut rows))?)?;
-        all.set_item("connectors", describe_connectors(py, description)?)?;
-        for info in &description.parameters {
-            let row = PyDict::new(py);
-            row.set_item("name", &*info.name)?;
-            row.set_item("unit", &*info.unit)?;
-            row.set_item("about", &*info.about)?;
-            row.set_item("default", info.default)?;
-            rows.push(row);
-        }
-        all.set_item("parameters", list(std::mem::take(&mut rows))?)?;
-        for info in &description.inputs {
-            let row = PyDict::new(py);
-            row.set_item("name", &*info.name)?;
-            row.set_item("unit", &*info.unit)?;
-            row.set_item("about", &*info.about)?;
-            row.set_item("default", info.default)?;
-            row.set_item("moves", info.moves)?;
-            rows.push(row);
-        }
-        all.set_item("inputs", list(std::mem::take(&mut rows))?)?;
-        for cut in description.cuts() {
-            let (kind, body, x) = match cut {
-                Cut::Ground => ("ground", None, None),
-                Cut::Joint { body } => ("joint", Some(body), None),
-                Cut::Body { body, x: None } => ("link", Some(body), None),
-                Cut::Body { body, x } => ("section", Some(body), x),
-            };
-            let row = PyDict::new(py);
-            row.set_item("kind", kind)?;
-            row.set_item("link", body.map(|body| &*description.bodies[body].link))?;
-            row.set_item("x", x)?;
-            rows.push(row);
-        }
-        all.set_item("cuts", list(std::mem::take(&mut rows))?)?;
-        for (body, x) in description.sections() {
-            let row = PyDict::new(py);
-            row.set_item("beam", &*description.bodies[body].link)?;
-            row.set_item("x", x)?;
-            rows.push(row);
-        }
-        all.set_item("sections", list(rows)?)?;
-        all.set_item("points", description.points.iter().map(|point| &**point).collect::<Vec<&str>>())?;
-        all.set_item("run", (description.duration, description.step, description.output))?;
         Ok(all)
     }
 
@@ -403,16 +303,4 @@ fn place(description: &Description, name: &str) -> PyResult<usize> {
         };
         PyTypeError::new_err(format!("{} has no live parameter `{name}`; {known}", description.name))
     })
-}
-
-/// Springs, ropes and couplings, one dictionary each.
-fn describe_connectors<'py>(py: Python<'py>, description: &Description) -> PyResult<Bound<'py, PyList>> {
-    let describe = |info: &ConnectorInfo| -> PyResult<Bound<'py, PyDict>> {
-        let row = PyDict::new(py);
-        row.set_item("name", &*info.name)?;
-        row.set_item("rope", info.is_rope)?;
-        row.set_item("unit", info.kind.unit())?;
-        Ok(row)
-    };
-    PyList::new(py, description.connectors.iter().map(describe).collect::<PyResult<Vec<_>>>()?)
 }

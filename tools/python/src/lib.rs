@@ -2,8 +2,10 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | `crane` | the class `Crane`: a spec with parameters, its names and units |
+//! | `crane` | the class `Crane`: a spec with parameters and inputs |
+//! | `description` | its names and units |
 //! | `functions` | transforms, points, mass matrix, forces, dynamics, energies: arrays in, arrays out |
+//! | `evaluation` | how: rows of all arguments, eight at a time, on all threads |
 //! | `equilibria`, `vibrations` | statics, modes and stability, row by row |
 //! | `motion` | runs: of one crane, of many, step by step |
 //! | `page` | the crane in 3-D, as HTML |
@@ -13,8 +15,10 @@
 
 mod arrays;
 mod crane;
+mod description;
 mod envelope;
 mod equilibria;
+mod evaluation;
 mod functions;
 mod mistakes;
 mod motion;

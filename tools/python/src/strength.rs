@@ -10,7 +10,7 @@ use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
 use crate::crane::Crane;
-use crate::functions::{Given, Moment, State};
+use crate::evaluation::{Given, Moment, State};
 
 /// Numbers of a section: normal, shear, torsional and equivalent stress, utilisation.
 const OF_SECTION: usize = 5;

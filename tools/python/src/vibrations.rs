@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::functions::{Given, Moment, State};
+use crate::evaluation::{Given, Moment, State};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::map_rows;
 

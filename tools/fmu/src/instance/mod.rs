@@ -1,12 +1,15 @@
 //! An instance of a crane inside another program's simulation.
 
-use std::fmt;
+mod derivatives;
+mod fault;
+mod state;
+
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use crane_live::Motion;
 use crane_model::dyn_crane::DynCrane;
-use crane_model::dynamics::{InitialState, Settings, Stopped};
+use crane_model::dynamics::{InitialState, Settings};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::results;
 use crane_model::runs::Start;
@@ -15,66 +18,9 @@ use crane_model::statics;
 use crate::Make;
 use crate::resources::{self, Opened};
 use crate::variables::{self, Source, Variable};
-
-/// Why a call did not do what it should.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// Nothing has changed: the caller may continue with a different request.
-    Discard(String),
-    /// The call was invalid, or the simulation cannot continue.
-    Error(String),
-}
-
-impl Fault {
-    fn error(text: impl fmt::Display) -> Self {
-        Self::Error(text.to_string())
-    }
-
-    fn nowhere() -> Self {
-        Self::error("the crane has no state")
-    }
-}
-
-impl From<Stopped> for Fault {
-    fn from(stopped: Stopped) -> Self {
-        Self::Error(format!("{stopped}; {}", stopped.advice()))
-    }
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Fault::Discard(text) | Fault::Error(text)) = self;
-        f.write_str(text)
-    }
-}
-
-/// Everything that determines the crane's future motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State {
-    parameters: Vec<f64>,
-    /// Values of the inputs that are set.
-    inputs: Vec<Option<f64>>,
-    /// None before the crane has come to rest.
-    moment: Option<Moment>,
-}
-
-/// Time, pose and rates, and the states of forces.
-#[derive(Clone, Debug, PartialEq)]
-struct Moment {
-    t: f64,
-    q: Vec<f64>,
-    v: Vec<f64>,
-    x: Vec<f64>,
-}
-
-impl State {
-    /// The state as numbers: parameters; inputs, NaN if not set; and, if known, time, pose, rates and states of forces.
-    pub fn numbers(&self) -> Vec<f64> {
-        let moment = self.moment.iter().flat_map(|Moment { t, q, v, x }| std::iter::once(t).chain(q).chain(v).chain(x));
-        let inputs = self.inputs.iter().map(|value| value.unwrap_or(f64::NAN));
-        self.parameters.iter().copied().chain(inputs).chain(moment.copied()).collect()
-    }
-}
+pub use fault::Fault;
+use state::Moment;
+pub use state::State;
 
 /// A crane whose motion is integrated by the importer or by the crane's own method.
 ///
@@ -316,38 +262,6 @@ impl Instance {
         Ok(())
     }
 
-    /// The state, to return to later.
-    pub fn state(&self) -> State {
-        let Self { parameters, inputs, moment, .. } = self;
-        State { parameters: parameters.clone(), inputs: inputs.clone(), moment: moment.clone() }
-    }
-
-    /// Returns to a state.
-    pub fn set_state(&mut self, state: &State) {
-        self.parameters.clone_from(&state.parameters);
-        self.inputs.clone_from(&state.inputs);
-        self.moment.clone_from(&state.moment);
-        (self.is_current, self.motion) = (false, None);
-        self.forget();
-    }
-
-    /// A state of this crane from its numbers; `None` if their count does not match.
-    pub fn state_of(&self, numbers: &[f64]) -> Option<State> {
-        let (parameters, rest) = numbers.split_at_checked(self.parameters.len())?;
-        let (inputs, rest) = rest.split_at_checked(self.inputs.len())?;
-        let inputs = inputs.iter().map(|value| Some(*value).filter(|value| !value.is_nan())).collect();
-        let moment = match rest {
-            [] => None,
-            [t, motion @ ..] if motion.len() == self.states() => {
-                let (q, rest) = motion.split_at(self.crane.size());
-                let (v, x) = rest.split_at(q.len());
-                Some(Moment { t: *t, q: q.to_vec(), v: v.to_vec(), x: x.to_vec() })
-            }
-            _ => return None,
-        };
-        Some(State { parameters: parameters.to_vec(), inputs, moment })
-    }
-
     /// Sets the time, s.
     ///
     /// # Errors
@@ -387,28 +301,6 @@ impl Instance {
         Ok(())
     }
 
-    /// Rates, accelerations and the rates of the forces' states.
-    ///
-    /// # Errors
-    /// As [`Instance::get`]; the length of `out` is not the number of states; a derivative is not finite.
-    pub fn derivatives(&mut self, out: &mut [f64]) -> Result<(), Fault> {
-        self.check_states(out.len())?;
-        let (rates, rest) = out.split_at_mut(self.crane.size());
-        rates.copy_from_slice(&self.moment()?.v);
-        let (accelerations, of_forces) = self.accelerations()?;
-        rest.iter_mut().zip(accelerations.iter().chain(of_forces)).for_each(|(place, value)| *place = *value);
-        let name = match rest.iter().position(|rate| !rate.is_finite()) {
-            Some(index) if index < rates.len() => {
-                format!("the acceleration of {}", self.crane.description().coordinates[index].name)
-            }
-            Some(index) => {
-                format!("the rate of {}", force_states::columns(self.crane.description())[index - rates.len()])
-            }
-            None => return Ok(()),
-        };
-        Err(Fault::Discard(format!("{name} is not finite at t = {} s", self.time())))
-    }
-
     /// The next time at which a drive's motion is not smooth, s.
     pub fn next_event(&mut self) -> Option<f64> {
         let pieces = self.crane.description().drives.iter().map(|drive| drive.pieces).sum();
@@ -416,62 +308,6 @@ impl Instance {
         self.crane.drive_pieces(&mut times);
         let t = self.time();
         times.into_iter().flatten().filter(|time| *time > t && time.is_finite()).min_by(f64::total_cmp)
-    }
-
-    /// Directional derivatives of variables with respect to coordinates, rates, states of forces and inputs, by central differences.
-    ///
-    /// # Errors
-    /// As [`Instance::get`]; a variable of the direction is neither a state nor an input, or it is an input that follows
-    /// the motion of its spec.
-    pub fn directional_derivative(
-        &mut self,
-        unknowns: &[u32],
-        knowns: &[u32],
-        direction: &[f64],
-        out: &mut [f64],
-    ) -> Result<(), Fault> {
-        /// The cube root of the machine epsilon balances truncation and rounding errors of central differences.
-        const RELATIVE: f64 = 6e-6;
-        let scales = ForceStates::new(self.crane.description()).scales();
-        let mut greatest = 0.0_f64;
-        for (&reference, along) in knowns.iter().zip(direction) {
-            let scale = if let Source::Own(index) = self.variable(reference)?.source { scales[index] } else { 1.0 };
-            greatest = greatest.max(along.abs() / scale);
-        }
-        if greatest == 0.0 {
-            out.fill(0.0);
-            return Ok(());
-        }
-        let own = self.moment()?.clone();
-        let h = RELATIVE / greatest;
-        let mut aside = |side: f64, out: &mut [f64]| {
-            let Moment { mut q, mut v, mut x, .. } = own.clone();
-            let mut inputs = self.inputs.clone();
-            for (&reference, along) in knowns.iter().zip(direction) {
-                let Variable { name, source, .. } = self.variable(reference)?;
-                match *source {
-                    Source::Position(index) => q[index] += side * along,
-                    Source::Rate(index) => v[index] += side * along,
-                    Source::Own(index) => x[index] += side * along,
-                    Source::Input(index) if inputs[index].is_none() && self.crane.description().inputs[index].moves => {
-                        return Err(Fault::Error(format!("{name} follows the motion of the spec: set it first")));
-                    }
-                    Source::Input(index) => inputs[index] = Some(self.input(index) + side * along),
-                    _ => return Err(Fault::Error(format!("{name} is neither a state nor an input"))),
-                }
-            }
-            give_inputs(self.crane.as_mut(), &inputs);
-            (self.quantities, self.accelerations) = (None, None);
-            self.moment = Some(Moment { t: own.t, q, v, x });
-            self.get(unknowns, out)
-        };
-        let mut behind = vec![0.0; out.len()];
-        let found = aside(h, out).and_then(|()| aside(-h, &mut behind));
-        out.iter_mut().zip(&behind).for_each(|(ahead, behind)| *ahead = (*ahead - behind) / (2.0 * h));
-        give_inputs(self.crane.as_mut(), &self.inputs);
-        self.moment = Some(own);
-        self.forget();
-        found
     }
 
     /// A step of the crane's own integrator, s. Its history continues from step to step; a change of a parameter or an input starts
