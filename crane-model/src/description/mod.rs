@@ -96,7 +96,9 @@ impl Description {
         let turns = |name: &str, role| {
             self.coordinates.iter().any(|coordinate| coordinate.name == name && coordinate.role == role)
         };
-        self.coordinates.iter().zip(q).find_map(|(coordinate, angle)| {
+        // The angle first: the poses of a long run are asked one by one.
+        let near = |(_, angle): &(&CoordinateInfo, &f64)| angle.cos().abs() < NEAR_SINGULAR.sin();
+        self.coordinates.iter().zip(q).filter(near).find_map(|(coordinate, angle)| {
             let CoordinateInfo { name, role, .. } = coordinate;
             let body = name.strip_suffix("_theta")?;
             let turns = |symbol: &str| turns(&format!("{body}_{symbol}"), *role);
@@ -108,9 +110,7 @@ impl Description {
                 CoordinateRole::Passive if turns("psi") => format!("{body}_psi turns {body} about its own axis"),
                 _ => return None,
             };
-            let degrees = angle.to_degrees();
-            (angle.cos().abs() < NEAR_SINGULAR.sin())
-                .then(|| format!("{name} is {degrees:.2}°: near ±90° {lost} and accuracy is lost"))
+            Some(format!("{name} is {:.2}°: near ±90° {lost} and accuracy is lost", angle.to_degrees()))
         })
     }
 
