@@ -34,7 +34,7 @@
 //   drive_energy                        66        74
 //   drive_power                         89       110
 //   dissipation                         51        63
-//   forward_dynamics                   244       965
+//   forward_dynamics                   244       964
 //   solve_mass                         101       849
 //   mass_matrix                        127       517
 //   mass_matrix_and_bias               204       875
@@ -43,7 +43,7 @@
 //   factorise                           95       711
 //   solve                               61       138
 //   joint_stiffness_and_damping          0         7
-//   static_residual                     53       364
+//   static_residual                     53       367
 //   tangent_stiffness                   51       338
 //   linearise                          165       793
 
@@ -1067,7 +1067,6 @@ pub fn dissipation(t: f64, _q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
     let v = &v.data.0[0];
     // Sines and cosines
     let ([_], [t001]) = sin_cos([6.283185307179586 * (0.25 * t).max(0.0).min(1.0)]);
-    let hook_theta_dot = v[3];
     let main_boom_theta_dot = v[0];
     let t002 = fma(0.06544984694978734, 1.0 - t001, main_boom_theta_dot);
     let knuckle_theta_dot = v[1];
@@ -1095,6 +1094,7 @@ pub fn dissipation(t: f64, _q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
         t008 * t008,
         fma(30000.0, t004 * t004, 60000.0 * (t002 * t002)),
     );
+    let hook_theta_dot = v[3];
     fma(40.0, hook_theta_dot * hook_theta_dot, t009)
 }
 

@@ -107,8 +107,7 @@ fn prescribed<'g>(model: &Model<'g>, of: impl Fn(&Drive) -> Expr<'g>) -> Vec<Opt
 
 /// `E_dr = ½ Σ s (q_dr − q)²` [Urbaś 2016, Eq. (19)]; for a drive with a limit `∫ sat(s e) de`.
 pub fn energy<'g>(model: &Model<'g>) -> Expr<'g> {
-    let linear = flexible(model).filter(|(drive, ..)| drive.max_effort().is_none());
-    let twice = linear.fold(model.zero(), |sum, (drive, stiffness, _)| {
+    let twice = linear(model).fold(model.zero(), |sum, (drive, stiffness, _)| {
         let stretch = profile::position(model, &drive.profile, model.t) - model.q[drive.coordinate.0];
         sum + model.number(stiffness) * stretch.squared()
     });
@@ -135,25 +134,41 @@ pub fn stiffness_and_damping<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
     stiffness_and_damping
 }
 
+/// Drives whose efforts have no limit.
+fn linear<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value, &'a Value)> {
+    flexible(model).filter(|(drive, ..)| drive.max_effort().is_none())
+}
+
+/// Stiffness of drives without a limit, on the diagonal.
+pub fn linear_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    matrix.add_diagonal(linear(model).map(|(drive, s, _)| (drive.coordinate.0, model.number(s))));
+}
+
+/// Damping of drives without a limit, on the diagonal.
+pub fn linear_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    matrix.add_diagonal(linear(model).map(|(drive, _, d)| (drive.coordinate.0, model.number(d))));
+}
+
 /// Stiffness of drives with a limit at rest and t = 0, on the diagonal.
-pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    for ((drive, s, _), spring) in saturations(model, model.zero()) {
-        matrix.add(drive.coordinate.0, drive.coordinate.0, spring.slope() * model.number(s));
-    }
+pub fn limited_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    let stiffness = |((drive, s, _), spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
+        (drive.coordinate.0, spring.slope() * model.number(s))
+    };
+    matrix.add_diagonal(saturations(model, model.zero()).map(stiffness));
 }
 
 /// Stiffness at rest of hydraulic drives, on the diagonal.
 pub fn hydraulic_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    for (drive, stiffness) in hydraulic_drives(model) {
-        matrix.add(drive.coordinate.0, drive.coordinate.0, model.number(stiffness));
-    }
+    let springs = hydraulic_drives(model);
+    matrix.add_diagonal(springs.map(|(drive, stiffness)| (drive.coordinate.0, model.number(stiffness))));
 }
 
 /// Damping of drives with a limit at rest and t = 0, on the diagonal.
-pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    for ((drive, _, d), spring) in saturations(model, model.zero()) {
-        matrix.add(drive.coordinate.0, drive.coordinate.0, spring.slope() * model.number(d));
-    }
+pub fn limited_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    let damping = |((drive, _, d), spring): ((&Drive, &Value, &Value), Saturation<'g>)| {
+        (drive.coordinate.0, spring.slope() * model.number(d))
+    };
+    matrix.add_diagonal(saturations(model, model.zero()).map(damping));
 }
 
 /// Maximum effort of every drive, 0 if it has no limit, and its stiffness at the state, `−∂t_dr/∂q`.
@@ -216,9 +231,8 @@ pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
 /// limit `(sat(u) − sat(s e)) ė ≥ 0`.
 pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     let rate = |drive: &Drive| profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
-    let linear = flexible(model).filter(|(drive, ..)| drive.max_effort().is_none());
     let linear =
-        linear.fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());
+        linear(model).fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());
     saturations(model, model.t).fold(linear, |sum, (drive, spring)| {
         let damper = limited(model, drive.0, unlimited(model, drive, model.t, &model.v)) - spring.effort();
         sum + damper * rate(drive.0)

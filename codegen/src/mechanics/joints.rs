@@ -4,6 +4,7 @@ use super::drives;
 use super::laws;
 use super::model::Model;
 use super::vector::SymmetricMatrix;
+use crate::chain::{CoordinateId, Stop};
 use crate::symbolic::Expr;
 
 /// Generalized forces of the end stops.
@@ -34,13 +35,17 @@ pub fn stop_energy<'g>(model: &Model<'g>) -> Expr<'g> {
     0.5 * twice
 }
 
-/// Power that stops and friction dissipate.
-pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
-    let stops = model.chain.stops().fold(model.zero(), |sum, (coordinate, stop)| {
+/// Power that stops dissipate.
+pub fn stop_dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
+    model.chain.stops().fold(model.zero(), |sum, (coordinate, stop)| {
         let j = coordinate.0;
         sum + laws::stop_dissipation(model, stop, model.q[j], model.v[j])
-    });
-    model.chain.frictions().fold(stops, |sum, (coordinate, friction)| {
+    })
+}
+
+/// Power that friction dissipates.
+pub fn friction_dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
+    model.chain.frictions().fold(model.zero(), |sum, (coordinate, friction)| {
         let rate = model.v[coordinate.0];
         sum + laws::friction_force(model, friction, rate) * rate
     })
@@ -64,7 +69,7 @@ pub fn stiffness_and_damping<'g>(model: &Model<'g>) -> Vec<[Expr<'g>; 2]> {
 }
 
 /// Stiffness of the stops at rest, on the diagonal.
-pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+pub fn stop_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     let forces = stop_forces(model, &model.zeros());
     for coordinate in model.chain.stopped() {
         let j = coordinate.0;
@@ -72,14 +77,13 @@ pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
     }
 }
 
-/// Damping at rest, on the diagonal: that of the stops, and viscous friction. Coulomb friction is not included, because a joint that
-/// sticks has no damping.
-pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    for (coordinate, stop) in model.chain.stops() {
-        let j = coordinate.0;
-        matrix.add(j, j, laws::stop_damping_at_rest(model, stop, model.q[j]));
-    }
-    for (coordinate, friction) in model.chain.frictions() {
-        matrix.add(coordinate.0, coordinate.0, model.number(&friction.viscous));
-    }
+/// Damping of the stops at rest, on the diagonal.
+pub fn stop_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    let damping = |(id, stop): (CoordinateId, &Stop)| (id.0, laws::stop_damping_at_rest(model, stop, model.q[id.0]));
+    matrix.add_diagonal(model.chain.stops().map(damping));
+}
+
+/// Viscous friction, on the diagonal. Coulomb friction is not part of it: a joint that sticks does not damp.
+pub fn viscous_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    matrix.add_diagonal(model.chain.frictions().map(|(id, friction)| (id.0, model.number(&friction.viscous))));
 }

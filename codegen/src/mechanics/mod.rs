@@ -14,6 +14,7 @@ mod drives;
 mod effective_mass;
 mod energy;
 mod factors;
+mod forces;
 mod forward;
 mod functions;
 mod gravity;

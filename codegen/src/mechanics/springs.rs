@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use super::vector::SymmetricMatrix;
-use crate::chain::Drive;
+use crate::chain::Value;
 use crate::symbolic::Expr;
 
 /// `f = −S q̃ − D q̃̇` of the elements [Urbaś 2016, Eq. (15); one spring for each of the elements 1 … n].
@@ -34,35 +34,42 @@ pub fn joint_damper_forces<'g>(model: &Model<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g
     forces
 }
 
-/// Drives whose efforts have no limit.
-fn linear_drives<'a>(model: &'a Model<'_>) -> impl Iterator<Item = &'a Drive> {
-    model.chain.drives.iter().filter(|drive| drive.max_effort().is_none())
+/// Dampers between elements, by their coordinates.
+fn element_dampers<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, &'a Value)> {
+    model.chain.beam_springs.iter().map(|spring| (spring.coordinate.0, &spring.damping))
 }
 
-/// Stiffness of elements and drives without a limit, on the diagonal.
+/// Dampers of passive joints, by their coordinates.
+fn joint_dampers<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, &'a Value)> {
+    model.chain.joint_dampers.iter().map(|damper| (damper.coordinate.0, &damper.damping))
+}
+
+/// Stiffness of elements, on the diagonal.
 pub fn stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    let elements = model.chain.beam_springs.iter().map(|s| (s.coordinate.0, &s.stiffness));
-    let drives = linear_drives(model).filter_map(|d| Some((d.coordinate.0, d.spring()?.0)));
-    for (j, stiffness) in elements.chain(drives) {
-        matrix.add(j, j, model.number(stiffness));
-    }
+    let springs = model.chain.beam_springs.iter().map(|spring| (spring.coordinate.0, &spring.stiffness));
+    matrix.add_diagonal(springs.map(|(j, stiffness)| (j, model.number(stiffness))));
 }
 
-/// Damping of elements, drives without a limit and joints, on the diagonal.
-pub fn damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    let elements = model.chain.beam_springs.iter().map(|s| (s.coordinate.0, &s.damping));
-    let drives = linear_drives(model).filter_map(|d| Some((d.coordinate.0, d.spring()?.1)));
-    let joint_dampers = model.chain.joint_dampers.iter().map(|h| (h.coordinate.0, &h.damping));
-    for (j, damping) in elements.chain(drives).chain(joint_dampers) {
-        matrix.add(j, j, model.number(damping));
-    }
+/// Damping of elements, on the diagonal.
+pub fn element_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    matrix.add_diagonal(element_dampers(model).map(|(j, damping)| (j, model.number(damping))));
 }
 
-/// Power that elements' and joints' dampers dissipate, `Σ d q̇²` (2R of [Urbaś 2016, Eq. (14)]).
-pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
-    let elements = model.chain.beam_springs.iter().map(|s| (s.coordinate.0, &s.damping));
-    let joint_dampers = model.chain.joint_dampers.iter().map(|h| (h.coordinate.0, &h.damping));
-    elements
-        .chain(joint_dampers)
-        .fold(model.zero(), |sum, (j, damping)| sum + model.number(damping) * model.v[j].squared())
+/// Damping of passive joints, on the diagonal.
+pub fn joint_damping<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
+    matrix.add_diagonal(joint_dampers(model).map(|(j, damping)| (j, model.number(damping))));
+}
+
+/// Power that dampers between elements dissipate, `Σ d q̇²` (2R of [Urbaś 2016, Eq. (14)]).
+pub fn element_dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
+    dissipation(model, element_dampers(model))
+}
+
+/// Power that dampers of passive joints dissipate, `Σ d q̇²`.
+pub fn joint_dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
+    dissipation(model, joint_dampers(model))
+}
+
+fn dissipation<'a, 'g>(model: &Model<'g>, dampers: impl Iterator<Item = (usize, &'a Value)>) -> Expr<'g> {
+    dampers.fold(model.zero(), |sum, (j, damping)| sum + model.number(damping) * model.v[j].squared())
 }

@@ -326,6 +326,11 @@ impl<'g> SymmetricMatrix<'g> {
         self.upper[slot] = self.upper[slot] + x;
     }
 
+    /// Adds numbers to the diagonal, given by their rows.
+    pub fn add_diagonal(&mut self, entries: impl IntoIterator<Item = (usize, Expr<'g>)>) {
+        entries.into_iter().for_each(|(j, x)| self.add(j, j, x));
+    }
+
     /// The entry (i, j).
     pub fn at(&self, i: usize, j: usize) -> Expr<'g> {
         let (row, column) = (i.min(j), i.max(j));

@@ -1,30 +1,16 @@
-//! Efforts, powers and motions of drives.
+//! Efforts, motions and limits of drives.
 
-use super::{Derivation, function, sum};
-use crate::mechanics::drives;
+use super::{Derivation, function};
+use crate::mechanics::{drives, forces};
 use crate::program::Argument::{Position, Time, Velocity};
 use crate::program::{Function, FunctionId, Shape};
 use crate::symbolic::{Expr, SweepTrace};
 
 impl<'g> Derivation<'g> {
-    /// Efforts, powers and motions of drives, from their generalized forces.
-    pub(super) fn drives(&self, forces: Vec<Expr<'g>>, trace: SweepTrace) -> Vec<Function> {
+    /// Motions and limits of drives.
+    pub(super) fn drives(&self) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
-        let equation = if self.rigid {
-            "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]; of rigid drives (A q̈ − e)_j"
-        } else {
-            "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]"
-        };
         let mut functions = vec![
-            function(
-                FunctionId::DriveForces,
-                "Generalized forces of the drives, N and N m.",
-                equation,
-                &[Time, Position, Velocity],
-                Shape::Vector(model.size()),
-                forces,
-            )
-            .by(trace),
             function(
                 FunctionId::DriveMotions,
                 "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
@@ -82,13 +68,13 @@ impl<'g> Derivation<'g> {
     pub(super) fn drive_forces(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
         let flexible = drives::forces(model, model.t, &model.v);
-        if self.rigid { sum(&[flexible, self.rigid_efforts()]) } else { flexible }
+        if self.rigid { forces::add(&flexible, &self.rigid_efforts()) } else { flexible }
     }
 
     /// Efforts of rigid drives: the forces that the prescribed motions require, minus the other forces on their joints.
     pub(super) fn rigid_efforts(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
-        let given = self.given_forces(model.t, &model.v);
+        let given = self.forces().all();
         let mut efforts = self.motion().efforts;
         for drive in model.chain.rigid_drives() {
             let j = drive.coordinate.0;

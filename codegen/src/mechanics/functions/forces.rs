@@ -1,170 +1,158 @@
-//! Forces by part.
+//! Forces by kind.
 
-use super::{Derivation, function, sum};
-use crate::mechanics::{connectors, drives, joints, loads, springs, supports};
+use super::{Derivation, function};
+use crate::mechanics::forces::{Kind, add};
+use crate::mechanics::{connectors, loads, supports};
 use crate::program::Argument::{Position, Time, Velocity};
 use crate::program::{Argument, Function, FunctionId, Shape, Struct};
-use crate::symbolic::Expr;
-
-/// A part of the forces: identifier, documentation, equation and arguments of its function, and its expressions.
-type Part<'g> = (FunctionId, &'static str, &'static str, &'static [Argument], Vec<Expr<'g>>);
+use crate::symbolic::{Expr, SweepTrace};
 
 impl<'g> Derivation<'g> {
-    /// How far one-sided supports are above the ground, if there are any.
-    fn support_gaps(&self) -> Option<Function> {
-        let (model, chain) = (&self.model, self.model.chain);
-        chain.has_one_sided_supports().then(|| {
+    /// The forces of each kind with what belongs to it, and their sum.
+    pub(super) fn force_functions(&self) -> Vec<Function> {
+        let model = &self.model;
+        let vector = || Shape::Vector(model.size());
+        let mut functions = Vec::new();
+        let mut sum = None;
+        for kind in self.forces().kinds() {
+            let (forces, trace) = self.generalized(kind);
+            let total = sum.take().unwrap_or_else(|| model.zeros());
+            sum = Some(add(&total, &forces));
+            let (id, doc, equation, arguments) = self.signature(kind);
+            functions.push(function(id, doc, equation, arguments, vector(), forces).by(trace));
+            functions.extend(match kind {
+                Kind::Supports => self.reactions_and_gaps(),
+                Kind::Drives => self.drives(),
+                Kind::Loads => self.load_pieces(),
+                Kind::Connectors => self.connectors(),
+                Kind::BeamSprings | Kind::JointDampers | Kind::Stops | Kind::Friction => Vec::new(),
+            });
+        }
+        functions.extend(sum.map(|sum| {
             function(
+                FunctionId::Forces,
+                "Generalized forces of everything except inertia and gravity, N and N m.",
+                "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
+                &[Time, Position, Velocity],
+                vector(),
+                sum,
+            )
+            .by(self.generalized(Kind::Drives).1)
+        }));
+        functions
+    }
+
+    /// Generalized forces of a kind, including those of rigid drives, with the order of their operations.
+    fn generalized(&self, kind: Kind) -> (Vec<Expr<'g>>, SweepTrace) {
+        match kind {
+            Kind::Drives => self.recorded_if_rigid(|| self.drive_forces()),
+            _ => (self.forces().of(kind), SweepTrace::default()),
+        }
+    }
+
+    /// Documentation, equation and arguments of the function with the generalized forces of a kind.
+    fn signature(&self, kind: Kind) -> (FunctionId, &'static str, &'static str, &'static [Argument]) {
+        match kind {
+            Kind::Supports => (
+                FunctionId::SupportForces,
+                "Generalized forces of the supports, N and N m.",
+                "−Jᵀ (s e + d ė) [Urbaś 2016, Eq. (18)]",
+                &[Position, Velocity],
+            ),
+            Kind::BeamSprings => (
+                FunctionId::ElementForces,
+                "Generalized forces of the springs and dampers between rigid elements, N m.",
+                "−S q̃ − D q̃̇ [Urbaś 2016, Eq. (15)]",
+                &[Position, Velocity],
+            ),
+            Kind::Drives => (
+                FunctionId::DriveForces,
+                "Generalized forces of the drives, N and N m.",
+                if self.rigid {
+                    "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]; of rigid drives (A q̈ − e)_j"
+                } else {
+                    "s (q_dr − q) + d (q̇_dr − q̇) [Urbaś 2016, Eqs. (20)–(21)]"
+                },
+                &[Time, Position, Velocity],
+            ),
+            Kind::JointDampers => (
+                FunctionId::JointDamperForces,
+                "Generalized forces of viscous damping in passive joints, N and N m.",
+                "−d q̇",
+                &[Velocity],
+            ),
+            Kind::Stops => (
+                FunctionId::StopForces,
+                "Generalized forces of the end stops, N and N m.",
+                "−k δ max(0, 1 + a δ̇)",
+                &[Position, Velocity],
+            ),
+            Kind::Friction => (
+                FunctionId::FrictionForces,
+                "Generalized forces of joint friction, N and N m.",
+                "−(F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) − b q̇",
+                &[Velocity],
+            ),
+            Kind::Loads => (
+                FunctionId::LoadForces,
+                "Generalized forces of the loads applied from outside, N and N m.",
+                "F · Ω_j x + M · ω_j",
+                &[Time, Position],
+            ),
+            Kind::Connectors => (
+                FunctionId::ConnectorForces,
+                "Generalized forces of connectors, N and N m.",
+                "−Jᵀ F",
+                &[Time, Position, Velocity],
+            ),
+        }
+    }
+
+    /// Forces on the supports, and how far one-sided ones are above the ground.
+    fn reactions_and_gaps(&self) -> Vec<Function> {
+        let (model, chain) = (&self.model, self.model.chain);
+        let mut functions = vec![function(
+            FunctionId::SupportReactions,
+            "Forces of the supports on the crane in the world frame, N.",
+            "−s e − d ė [Urbaś 2016, Eq. (16)]",
+            &[Position, Velocity],
+            Shape::Vectors(chain.supports.len()),
+            supports::reactions(model, &self.kinematics),
+        )];
+        if chain.has_one_sided_supports() {
+            functions.push(function(
                 FunctionId::SupportGaps,
                 "How far one-sided supports are above the ground, m, negative where they are pressed in, and its rate, m/s; 0 for others.",
                 "e_z, ė_z [Urbaś 2016, Eq. (16)]",
                 &[Position, Velocity],
                 Shape::Pairs(chain.supports.len()),
                 supports::gaps(model, &self.kinematics),
-            )
-        })
-    }
-
-    pub(super) fn forces(&self) -> Vec<Function> {
-        let (model, chain) = (&self.model, self.model.chain);
-        let vector = || Shape::Vector(model.size());
-        let mut functions = Vec::new();
-        let mut parts = vec![model.zeros()];
-        if !chain.supports.is_empty() {
-            let forces = supports::forces(model, &self.kinematics, &model.v);
-            parts.push(forces.clone());
-            functions.push(function(
-                FunctionId::SupportForces,
-                "Generalized forces of the supports, N and N m.",
-                "−Jᵀ (s e + d ė) [Urbaś 2016, Eq. (18)]",
-                &[Position, Velocity],
-                vector(),
-                forces,
             ));
-            functions.push(function(
-                FunctionId::SupportReactions,
-                "Forces of the supports on the crane in the world frame, N.",
-                "−s e − d ė [Urbaś 2016, Eq. (16)]",
-                &[Position, Velocity],
-                Shape::Vectors(chain.supports.len()),
-                supports::reactions(model, &self.kinematics),
-            ));
-        }
-        functions.extend(self.support_gaps());
-        if !chain.beam_springs.is_empty() {
-            let forces = springs::element_forces(model, &model.q, &model.v);
-            parts.push(forces.clone());
-            functions.push(function(
-                FunctionId::ElementForces,
-                "Generalized forces of the springs and dampers between rigid elements, N m.",
-                "−S q̃ − D q̃̇ [Urbaś 2016, Eq. (15)]",
-                &[Position, Velocity],
-                vector(),
-                forces,
-            ));
-        }
-        if !chain.drives.is_empty() {
-            let (forces, trace) = self.recorded_if_rigid(|| self.drive_forces());
-            parts.push(forces.clone());
-            functions.extend(self.drives(forces, trace));
-        }
-        if !chain.joint_dampers.is_empty() {
-            let forces = springs::joint_damper_forces(model, &model.v);
-            parts.push(forces.clone());
-            functions.push(function(
-                FunctionId::JointDamperForces,
-                "Generalized forces of viscous damping in passive joints, N and N m.",
-                "−d q̇",
-                &[Velocity],
-                vector(),
-                forces,
-            ));
-        }
-        for (id, doc, equation, arguments, forces) in self.joint_forces() {
-            parts.push(forces.clone());
-            functions.push(function(id, doc, equation, arguments, vector(), forces));
-        }
-        if !chain.loads.is_empty() {
-            let forces = loads::forces(model, &self.kinematics, model.t);
-            parts.push(forces.clone());
-            functions.push(function(
-                FunctionId::LoadForces,
-                "Generalized forces of the loads applied from outside, N and N m.",
-                "F · Ω_j x + M · ω_j",
-                &[Time, Position],
-                vector(),
-                forces,
-            ));
-            let pieces = loads::pieces(model);
-            if !pieces.is_empty() {
-                functions.push(function(
-                    FunctionId::LoadPieces,
-                    "Start and end of the intervals in which the scales of loads are smooth, load by load, s.",
-                    "t_begin, t_end",
-                    &[],
-                    Shape::Pairs(pieces.len() / 2),
-                    pieces,
-                ));
-            }
-        }
-        if !chain.connectors.is_empty() {
-            parts.push(connectors::forces(model, &self.kinematics, model.t, Some(&model.v)));
-            functions.extend(self.connectors());
-        }
-        if parts.len() > 1 {
-            functions.push(
-                function(
-                    FunctionId::Forces,
-                    "Generalized forces of everything except inertia and gravity, N and N m.",
-                    "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]",
-                    &[Time, Position, Velocity],
-                    vector(),
-                    sum(&parts),
-                )
-                .by(self.recorded_if_rigid(|| self.drive_forces()).1),
-            );
         }
         functions
     }
 
-    /// Forces in joints other than those of drives and viscous damping, if the crane has any.
-    fn joint_forces(&self) -> Vec<Part<'g>> {
-        let model = &self.model;
-        let mut parts: Vec<Part<'g>> = Vec::new();
-        if model.chain.stops().next().is_some() {
-            parts.push((
-                FunctionId::StopForces,
-                "Generalized forces of the end stops, N and N m.",
-                "−k δ max(0, 1 + a δ̇)",
-                &[Position, Velocity],
-                joints::stop_forces(model, &model.v),
-            ));
+    /// When the scales of loads are smooth.
+    fn load_pieces(&self) -> Vec<Function> {
+        let pieces = loads::pieces(&self.model);
+        if pieces.is_empty() {
+            return Vec::new();
         }
-        if model.chain.frictions().next().is_some() {
-            parts.push((
-                FunctionId::FrictionForces,
-                "Generalized forces of joint friction, N and N m.",
-                "−(F_c + (F_b − F_c) exp(−(q̇/v_s)²)) tanh(q̇/v₀) − b q̇",
-                &[Velocity],
-                joints::friction_forces(model, &model.v),
-            ));
-        }
-        parts
+        vec![function(
+            FunctionId::LoadPieces,
+            "Start and end of the intervals in which the scales of loads are smooth, load by load, s.",
+            "t_begin, t_end",
+            &[],
+            Shape::Pairs(pieces.len() / 2),
+            pieces,
+        )]
     }
 
-    /// Forces, lengths and tangents of connectors.
+    /// Forces at rest, lengths and tangents of connectors.
     fn connectors(&self) -> Vec<Function> {
         let (model, kinematics) = (&self.model, &self.kinematics);
         let count = model.chain.connectors.len();
         let mut functions = vec![
-            function(
-                FunctionId::ConnectorForces,
-                "Generalized forces of connectors, N and N m.",
-                "−Jᵀ F",
-                &[Time, Position, Velocity],
-                Shape::Vector(model.size()),
-                connectors::forces(model, kinematics, model.t, Some(&model.v)),
-            ),
             function(
                 FunctionId::ConnectorForcesAtRest,
                 "Generalized forces of connectors while nothing moves, not even a winch, N and N m.",
@@ -210,26 +198,5 @@ impl<'g> Derivation<'g> {
             ));
         }
         functions
-    }
-
-    /// Generalized forces of everything except inertia, gravity and rigid drives.
-    pub(super) fn given_forces(&self, t: Expr<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let model = &self.model;
-        let mut parts = vec![
-            supports::forces(model, &self.kinematics, v),
-            springs::element_forces(model, &model.q, v),
-            drives::forces(model, t, v),
-            springs::joint_damper_forces(model, v),
-        ];
-        if !model.chain.forces.is_empty() {
-            parts.extend([joints::stop_forces(model, v), joints::friction_forces(model, v)]);
-        }
-        if !model.chain.loads.is_empty() {
-            parts.push(loads::forces(model, &self.kinematics, t));
-        }
-        if !model.chain.connectors.is_empty() {
-            parts.push(connectors::forces(model, &self.kinematics, t, Some(v)));
-        }
-        sum(&parts)
     }
 }

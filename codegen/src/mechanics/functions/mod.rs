@@ -16,15 +16,14 @@ use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 use super::articulated::Effort;
 use super::columns::columns;
 use super::factors::{Factor, factors};
+use super::forces::Forces;
 use super::forward::{self, ForwardInputs, Motion};
 use super::inertia::Inertias;
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
-use super::{
-    cylinders, drives, effective_mass, energy, joints, newton_euler, points, rotors, springs, supports, transforms,
-};
+use super::{cylinders, drives, effective_mass, energy, joints, newton_euler, points, rotors, transforms};
 
 /// Derives all functions over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
@@ -66,7 +65,7 @@ impl<'g> Derivation<'g> {
 
     fn functions(&self, analyses: Analyses, symbols: &mut Vec<Symbol>) -> Vec<Function> {
         let mut functions = self.poses();
-        functions.extend(self.forces());
+        functions.extend(self.force_functions());
         functions.extend(self.energies());
         if analyses.dynamics {
             functions.extend(self.dynamics());
@@ -85,6 +84,11 @@ impl<'g> Derivation<'g> {
             functions.extend(self.transform_derivatives());
         }
         functions
+    }
+
+    /// All forces except those of rigid drives.
+    fn forces(&self) -> Forces<'_, 'g> {
+        Forces::new(&self.model, &self.kinematics)
     }
 
     fn poses(&self) -> Vec<Function> {
@@ -132,7 +136,7 @@ impl<'g> Derivation<'g> {
     fn dynamics(&self) -> Vec<Function> {
         let model = &self.model;
         let gravity = model.vector(&model.chain.gravity);
-        let forces = self.given_forces(model.t, &model.v);
+        let forces = self.forces().all();
         let prescribed = drives::accelerations(model);
         let of_motion = DynamicsInputs { v: &model.v, forces: &forces, prescribed: &prescribed, gravity };
         let (accelerations, trace) = model.graph.recorded(|| self.hybrid_dynamics(&of_motion).accelerations);
@@ -217,7 +221,7 @@ impl<'g> Derivation<'g> {
     /// Accelerations, and efforts of rigid drives, at the present state.
     fn motion(&self) -> Motion<'g> {
         let model = &self.model;
-        let forces = self.given_forces(model.t, &model.v);
+        let forces = self.forces().all();
         let prescribed = drives::accelerations(model);
         let gravity = model.vector(&model.chain.gravity);
         self.hybrid_dynamics(&DynamicsInputs { v: &model.v, forces: &forces, prescribed: &prescribed, gravity })
@@ -270,7 +274,7 @@ impl<'g> Derivation<'g> {
             )
             .by(late_trace),
         ];
-        let (stiffness, damping) = self.step_stiffness_and_damping();
+        let [stiffness, damping] = self.forces().for_step();
         let base: Vec<usize> = model.chain.base.iter().flatten().map(|id| id.0).collect();
         let diagonal =
             |j: usize| [&stiffness, &damping].map(|m| if base.contains(&j) { model.zero() } else { m.at(j, j) });
@@ -325,33 +329,6 @@ impl<'g> Derivation<'g> {
         functions
     }
 
-    /// Stiffness and damping of supports, elements, drives and joints, without the stiffness of gravity.
-    fn stiffness_and_damping(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
-        let model = &self.model;
-        let zero = || SymmetricMatrix::zero(model.graph, model.size());
-        let (mut stiffness, mut damping) = (zero(), zero());
-        supports::stiffness(model, &self.kinematics, &mut stiffness);
-        springs::stiffness(model, &mut stiffness);
-        supports::damping(model, &self.kinematics, &mut damping);
-        springs::damping(model, &mut damping);
-        (stiffness, damping)
-    }
-
-    /// The same for implicit steps: one-sided supports at the present state, with a stiffness that is never negative.
-    fn step_stiffness_and_damping(&self) -> (SymmetricMatrix<'g>, SymmetricMatrix<'g>) {
-        let model = &self.model;
-        if !model.chain.has_one_sided_supports() {
-            return self.stiffness_and_damping();
-        }
-        let zero = || SymmetricMatrix::zero(model.graph, model.size());
-        let (mut stiffness, mut damping) = (zero(), zero());
-        supports::step_stiffness(model, &self.kinematics, &mut stiffness);
-        springs::stiffness(model, &mut stiffness);
-        supports::step_damping(model, &self.kinematics, &mut damping);
-        springs::damping(model, &mut damping);
-        (stiffness, damping)
-    }
-
     fn transform_derivatives(&self) -> Vec<Function> {
         let (model, kinematics) = (&self.model, &self.kinematics);
         let counts = (0..model.chain.bodies.len()).map(|p| model.chain.degrees_of_freedom(BodyId(p))).collect();
@@ -375,11 +352,6 @@ impl<'g> Derivation<'g> {
             ),
         ]
     }
-}
-
-fn sum<'g>(parts: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
-    let (first, rest) = parts.split_first().expect("at least the zero forces");
-    rest.iter().fold(first.clone(), |total, part| total.iter().zip(part).map(|(&a, &b)| a + b).collect())
 }
 
 fn function(

@@ -1,9 +1,9 @@
 //! Statics and small motions.
 
-use super::{Derivation, function, sum};
+use super::{Derivation, function};
 use crate::mechanics::columns::columns;
 use crate::mechanics::vector::SymmetricMatrix;
-use crate::mechanics::{connectors, drives, gravity, joints, loads, springs, supports};
+use crate::mechanics::{connectors, drives, gravity};
 use crate::program::Argument::{Position, Time};
 use crate::program::{Function, FunctionId, Shape};
 use crate::symbolic::Expr;
@@ -83,24 +83,8 @@ impl<'g> Derivation<'g> {
 
     /// `∂E_p/∂q`: gravity minus all forces at rest and t = 0.
     fn gradient(&self) -> Vec<Expr<'g>> {
-        let model = &self.model;
-        let rest = model.zeros();
-        let gravity = gravity::gradient(model, &self.kinematics, &self.inertias);
-        let mut forces = vec![
-            supports::forces(model, &self.kinematics, &rest),
-            springs::element_forces(model, &model.q, &rest),
-            drives::forces_at_rest(model),
-        ];
-        if !model.chain.forces.is_empty() {
-            forces.push(joints::stop_forces(model, &rest));
-        }
-        if !model.chain.loads.is_empty() {
-            forces.push(loads::forces(model, &self.kinematics, model.zero()));
-        }
-        if !model.chain.connectors.is_empty() {
-            forces.push(connectors::forces(model, &self.kinematics, model.zero(), None));
-        }
-        let forces = sum(&forces);
+        let gravity = gravity::gradient(&self.model, &self.kinematics, &self.inertias);
+        let forces = self.forces().all_at_rest();
         gravity.into_iter().zip(forces).map(|(g, f)| g - f).collect()
     }
 
@@ -113,22 +97,14 @@ impl<'g> Derivation<'g> {
 
     /// The stiffness without that of hydraulic drives, which follows from their oil volumes.
     fn stiffness(&self) -> SymmetricMatrix<'g> {
-        let model = &self.model;
-        let mut matrix = self.stiffness_and_damping().0;
-        joints::stiffness(model, &mut matrix);
-        loads::stiffness(model, &self.kinematics, &mut matrix);
-        drives::stiffness(model, &mut matrix);
-        connectors::stiffness(model, &self.kinematics, model.zero(), &mut matrix);
-        gravity::stiffness(model, &self.kinematics, &self.inertias, &mut matrix);
+        let mut matrix = self.forces().stiffness();
+        gravity::stiffness(&self.model, &self.kinematics, &self.inertias, &mut matrix);
         matrix
     }
 
     pub(super) fn linearise(&self) -> Function {
         let model = &self.model;
-        let mut damping = self.stiffness_and_damping().1;
-        joints::damping(model, &mut damping);
-        drives::damping(model, &mut damping);
-        connectors::damping(model, &self.kinematics, &mut damping);
+        let damping = self.forces().damping();
         let columns = columns(model, &self.factors);
         let mut outputs = self.unknowns(columns.mass_matrix(model), 1.0).into_upper();
         outputs.extend(self.unknowns(self.stiffness(), 1.0).into_upper());
