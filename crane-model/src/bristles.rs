@@ -62,6 +62,11 @@ impl Bristles {
             }
         }
     }
+
+    /// Appends the direction in which each joint moves.
+    pub fn branches(&self, moment: &StateAt<'_>, out: &mut Vec<bool>) {
+        out.extend(self.joints.iter().map(|joint| moment.v[joint.coordinate] > 0.0));
+    }
 }
 
 /// ż and its derivative with respect to z.

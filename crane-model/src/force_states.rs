@@ -140,6 +140,12 @@ impl ForceStates {
         accelerations.iter_mut().zip(added).for_each(|(acceleration, added)| *acceleration += *added);
     }
 
+    /// Appends which branch of its law each of them is on.
+    pub(crate) fn branches(&mut self, crane: &dyn DynModel, moment: &StateAt<'_>, out: &mut Vec<bool>) {
+        self.oil.branches(crane, moment, out);
+        self.bristles.branches(moment, out);
+    }
+
     /// Power that cylinders put in and power that bristles take out, `Σ F ℓ̇`, at the last evaluation, W.
     pub(crate) fn powers(&self) -> [f64; 2] {
         let (of_oil, of_bristles) = self.forces.split_at(self.oil.count());

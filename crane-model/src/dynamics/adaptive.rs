@@ -2,7 +2,7 @@
 
 use super::{
     Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped, equations::Equations, norm::Norm,
-    state::NotFinite, step::Step, stopped::StepContext,
+    state::NotFinite, step::Step, stopped::StepContext, switches::{Laws, Switches},
 };
 
 /// First step tried, s: a crane starts smoothly, and steps may grow by a factor of three.
@@ -38,6 +38,7 @@ pub(super) struct Adaptive<'a, F> {
     /// Step to try next, s.
     next: f64,
     step: Step,
+    switches: Switches,
     /// Motion at the time reached.
     motion: Vec<f64>,
     steps: usize,
@@ -48,7 +49,8 @@ impl<'a, F: Formula> Adaptive<'a, F> {
     /// Creates the motion, with a measure of errors.
     pub fn new(formula: F, equations: Equations<'a>, norm: Norm) -> Self {
         let (step, motion) = (Step::new(equations.len()), vec![0.0; equations.len()]);
-        Self { formula, equations, norm, next: FIRST, step, motion, steps: 0, rejections: 0 }
+        let switches = Switches::new(equations.crane, equations.len());
+        Self { formula, equations, norm, next: FIRST, step, switches, motion, steps: 0, rejections: 0 }
     }
 
     /// The error that no further step is possible.
@@ -56,6 +58,12 @@ impl<'a, F: Formula> Adaptive<'a, F> {
         let Equations { crane, n, .. } = self.equations;
         let q = &self.motion[..n];
         StepContext { method: F::METHOD, t, h, q, description: crane.description() }.failed(Cause::Tolerance, crane)
+    }
+
+    /// The first time in a step at which a law changes its branch, s.
+    fn change(&mut self, laws: Laws) -> Option<f64> {
+        let Self { switches, equations, step, .. } = self;
+        switches.first(equations, laws, [step.t, step.reached()], &|t, motion| step.at(t, motion))
     }
 
     /// Returns whether a tried step meets the tolerance, and sets the length to try next.
@@ -101,21 +109,28 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
     fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
         self.step.proceed();
         let t = self.step.t;
+        let (mut change, mut repeats) = (f64::INFINITY, 0);
         loop {
             if self.next < LEAST * ahead.result {
                 return Err(self.stuck(t, self.next));
             }
-            let stops = t + self.next * (1.0 + SLIVER) >= ahead.stop;
-            self.step.length = if stops { ahead.stop - t } else { self.next };
+            let stop = ahead.stop.min(change);
+            let stops = t + self.next * (1.0 + SLIVER) >= stop || change < f64::INFINITY;
+            self.step.length = if stops { stop - t } else { self.next };
             self.equations.references.step_within(t, self.step.reached());
             let tried = self.formula.attempt(&mut self.equations, &mut self.step);
-            if self.judge(tried) {
+            let meets = self.judge(tried);
+            let laws = if meets { Laws::Contacts } else { Laws::All };
+            let found = tried.ok().filter(|()| repeats < Switches::REPEATS).and_then(|()| self.change(laws));
+            if meets && found.is_none() {
                 self.steps += 1;
-                let reached = if stops { ahead.stop } else { self.step.reached() };
+                let reached = if stops { stop } else { self.step.reached() };
                 self.accept(reached);
                 return Ok(reached);
             }
             self.rejections += 1;
+            change = found.unwrap_or(f64::INFINITY);
+            repeats += usize::from(found.is_some());
         }
     }
 

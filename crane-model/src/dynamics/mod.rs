@@ -49,6 +49,8 @@ mod stopped;
 #[cfg(feature = "std")]
 mod stops;
 #[cfg(feature = "std")]
+mod switches;
+#[cfg(feature = "std")]
 mod system;
 #[cfg(feature = "std")]
 mod typed;

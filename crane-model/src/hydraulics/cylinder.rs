@@ -54,6 +54,11 @@ impl Pump {
         let slope = if (0.0..1.0).contains(&share) { -self.info.max_flow / band } else { 0.0 };
         (self.info.max_flow * share.clamp(0.0, 1.0), slope)
     }
+
+    /// Whether it delivers its greatest flow, and whether it delivers nothing.
+    pub(super) fn branches(&self, pressure: f64) -> [bool; 2] {
+        [pressure < (1.0 - BAND) * self.pressure, pressure > self.pressure]
+    }
 }
 
 impl ValveCylinder {
@@ -93,6 +98,30 @@ impl ValveCylinder {
             (suction * below, suction)
         } else {
             (0.0, 0.0)
+        }
+    }
+
+    /// Appends the direction in which the valve is open, whether check, relief and suction valves are open, whether the servo is at one of its
+    /// limits, and whether the piston is at one of its stops.
+    pub(super) fn branches(
+        &self,
+        here: Vector3<f64>,
+        wanted: Vector3<f64>,
+        own: &[f64],
+        pump: f64,
+        out: &mut Vec<bool>,
+    ) {
+        let &[piston, rod, u] = own else { return };
+        let sides = [piston, rod];
+        let y = here.x - self.info.retracted;
+        out.extend([u > self.valve.overlap, u < -self.valve.overlap, y < 0.0, y > self.info.stroke]);
+        out.push(pump > sides[usize::from(u <= 0.0)]);
+        for pressure in sides {
+            out.extend([pressure > self.max_pressure, pressure < self.info.back_pressure]);
+        }
+        if !self.valve.commanded {
+            let opening = self.command(here, wanted, sides, pump).opening;
+            out.extend([opening >= 1.0, opening <= -1.0]);
         }
     }
 

@@ -210,6 +210,20 @@ impl Hydraulics {
         }
     }
 
+    /// Appends which branches of their laws cylinders, valves and pump are on.
+    pub(crate) fn branches(&mut self, crane: &dyn DynModel, &StateAt { t, q, v, x }: &StateAt<'_>, out: &mut Vec<bool>) {
+        let Some(last) = self.len().checked_sub(1) else { return };
+        let p_s = x[last];
+        self.measure(crane, t, q, v);
+        for (moved, own) in self.cylinders.iter().zip(x.chunks_exact(STATES)) {
+            let (here, wanted) = (self.here[moved.index], self.wanted[moved.index]);
+            moved.branches(here, wanted, own, p_s, out);
+        }
+        if let Some(pump) = self.pump {
+            out.extend(pump.branches(p_s));
+        }
+    }
+
     /// Lengths of all cylinders at this state, and with the drives at the positions of their motions.
     fn measure(&mut self, crane: &dyn DynModel, t: f64, q: &[f64], v: &[f64]) {
         crane.cylinder_states(q, v, &mut self.here);

@@ -27,6 +27,7 @@ use super::{
     references::References,
     state::{NotFinite, State},
     stopped::StepContext,
+    switches::{Laws, Switches},
     typed::{motion_of, state_of},
 };
 use crate::{
@@ -135,10 +136,21 @@ pub struct Bdf<'a> {
     correction: Correction<'a>,
     control: Control,
     slope: Vec<f64>,
+    switches: Switches,
+    /// The length of the next step if the last one ended where a law changes its branch, s: the history does not predict it.
+    restart: Option<f64>,
     /// Motion at the time reached.
     motion: Vec<f64>,
     steps: usize,
     rejections: usize,
+}
+
+/// Outcome of a tried step.
+enum Attempt {
+    /// It meets the tolerance.
+    Met,
+    /// It does not, and perhaps a law changes its branch in it, at a time, s.
+    Failed { change: Option<f64> },
 }
 
 /// Choice of order and length.
@@ -164,6 +176,8 @@ impl<'a> Bdf<'a> {
             correction: Correction::new(crane, len),
             control: Control { norm, alike: 0, contraction },
             slope: vec![0.0; len],
+            switches: Switches::new(crane, len),
+            restart: None,
             motion: vec![0.0; len],
             steps: 0,
             rejections: 0,
@@ -200,10 +214,21 @@ impl<'a> Bdf<'a> {
         self.control.norm.note_rounding(q, v);
     }
 
+    /// Continues from the last state as if there was nothing before it.
+    fn begin_again(&mut self) -> Result<(), Stopped> {
+        let History { t, h, differences: [last, ..], .. } = &self.history;
+        self.equations.references.step_within(*t, t + h);
+        let slope = self.equations.slope(*t, last, &mut self.slope);
+        slope.map_err(|NotFinite| self.stuck())?;
+        self.history.begin_again(&self.slope);
+        self.control.alike = 0;
+        Ok(())
+    }
+
     /// Tries a step, and returns whether it meets the tolerance; chooses order and length of the next in any case. `again`: the step
     /// has been shortened already.
-    fn attempt(&mut self, again: bool) -> bool {
-        let Self { equations, history, correction, control, .. } = self;
+    fn attempt(&mut self, again: bool, repeats: usize) -> Attempt {
+        let Self { equations, history, correction, control, switches, .. } = self;
         let order = history.order;
         correction.predict(equations, history);
         let error = if control.converges(equations, history.h, correction) {
@@ -212,15 +237,21 @@ impl<'a> Bdf<'a> {
         } else {
             f64::INFINITY
         };
+        let laws = if error > 1.0 { Laws::All } else { Laws::Contacts };
+        let span = [history.t, history.t + history.h];
+        let mut first = || switches.first(equations, laws, span, &|t, motion| history.at(t, motion));
+        let change = if repeats < Switches::REPEATS { first() } else { None };
         let ratio = if error > 1.0 {
             ideal(error, order).clamp(RATIO.0, if again { AGAIN } else { 1.0 })
+        } else if change.is_some() {
+            return Attempt::Failed { change };
         } else {
             history.push(&correction.d);
             control.norm.note(&correction.end, &correction.d);
             control.alike += 1;
             control.contraction.age += 1;
             if control.alike <= order {
-                return true;
+                return Attempt::Met;
             }
             let orders = (order.max(2) - 1..=(order + 1).min(ORDER)).map(|order| {
                 let error = control.error(&correction.end, &history.differences[order + 1], order);
@@ -232,7 +263,7 @@ impl<'a> Bdf<'a> {
         };
         history.rescale(ratio);
         control.alike = 0;
-        error <= 1.0
+        if error <= 1.0 { Attempt::Met } else { Attempt::Failed { change } }
     }
 }
 
@@ -245,28 +276,33 @@ impl Stepper for Bdf<'_> {
         self.equations.references.step_within(t, t + FIRST);
         let slope = self.equations.slope(t, &start, &mut self.slope);
         self.history.begin(t, &start, &self.slope, FIRST);
-        self.control.alike = 0;
+        (self.control.alike, self.restart) = (0, None);
         slope.map_err(|NotFinite| self.stuck())
     }
 
     fn step(&mut self, ahead: &Ahead) -> Result<f64, Stopped> {
-        let mut failures = 0;
+        let (mut failures, mut repeats) = (0, 0);
+        if let Some(h) = self.restart.take() {
+            self.history.rescale(h / self.history.h);
+            self.begin_again()?;
+        }
         self.aim(ahead.stop);
-        while !self.attempt(failures > 0) {
+        while let Attempt::Failed { change } = self.attempt(failures > 0, repeats) {
             self.rejections += 1;
             failures += 1;
             if self.history.h < LEAST * ahead.result {
                 return Err(self.stuck());
             }
             if failures % PATIENCE == 0 {
-                let History { t, h, differences: [last, ..], .. } = &self.history;
-                self.equations.references.step_within(*t, t + h);
-                let slope = self.equations.slope(*t, last, &mut self.slope);
-                slope.map_err(|NotFinite| self.stuck())?;
-                self.history.begin_again(&self.slope);
-                self.control.alike = 0;
+                self.begin_again()?;
             }
-            self.aim(ahead.stop);
+            let History { t, h, .. } = self.history;
+            self.restart = change.map(|_| h);
+            repeats += usize::from(change.is_some());
+            match change {
+                Some(change) => self.history.rescale((change - t) / h),
+                None => self.aim(ahead.stop),
+            }
         }
         self.steps += 1;
         if (ahead.stop - self.history.t).abs() < LEAST * ahead.stop {

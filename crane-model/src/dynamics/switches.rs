@@ -1,0 +1,132 @@
+//! Where laws of forces change branch: a foot meets the ground, a rope becomes taut, a valve opens.
+//!
+//! There the force is continuous but its slope jumps, so a step across such a change is of low order, however smooth the motion is before
+//! and after, and its error estimate says little. Adaptive methods therefore end a step where a contact changes, and a step that failed
+//! where any law does.
+
+use super::equations::Equations;
+use crate::{
+    Description, Tension,
+    dyn_crane::DynModel,
+    own_states::{OwnStates, StateAt},
+};
+
+/// The laws that are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Laws {
+    /// One-sided supports, end stops and ropes.
+    Contacts,
+    /// Also forces with states of their own: valves, cylinders, bristles.
+    All,
+}
+
+/// The laws of a crane that have branches.
+pub(super) struct Switches {
+    /// One-sided supports, end stops and ropes, by their indices.
+    feet: Vec<usize>,
+    stops: Vec<usize>,
+    ropes: Vec<usize>,
+    own: OwnStates,
+    gaps: Vec<[f64; 2]>,
+    forces: Vec<f64>,
+    tensions: Vec<Tension>,
+    motion: Vec<f64>,
+    /// Branches at the beginning of a step and at a later time.
+    branches: [Vec<bool>; 2],
+    /// The time of the contacts in the first list, s: those at the end of a step are those at the beginning of the next.
+    known_at: f64,
+}
+
+impl Switches {
+    /// How often a step is repeated at most to end where a law changes: where laws change faster than any step can follow, the error estimate
+    /// alone decides.
+    pub const REPEATS: usize = 3;
+    /// Bisections that find a change, to a millionth of the step.
+    const BISECTIONS: usize = 20;
+    /// A change as near to an end of a step as this, relative to its length, does not matter.
+    const NEAR: f64 = 1e-3;
+
+    /// Those of a crane, with storage for motions of this many numbers.
+    pub fn new(crane: &dyn DynModel, len: usize) -> Self {
+        let Description { supports, stops, connectors, .. } = crane.description();
+        let feet = (0..supports.len()).filter(|foot| supports[*foot].one_sided).collect();
+        let ropes = (0..connectors.len()).filter(|rope| connectors[*rope].is_rope).collect();
+        Self {
+            feet,
+            stops: stops.to_vec(),
+            ropes,
+            own: OwnStates::new(crane.description()),
+            gaps: vec![[0.0; 2]; supports.len()],
+            forces: vec![0.0; crane.size()],
+            tensions: vec![Tension::ZERO; connectors.len()],
+            motion: vec![0.0; len],
+            branches: [Vec::new(), Vec::new()],
+            known_at: f64::NAN,
+        }
+    }
+
+    /// The first time in a step, s, at which a law is on another branch than at its beginning, if one is at its end. `at` is the motion
+    /// during the step, relative to the guides.
+    pub fn first(
+        &mut self,
+        equations: &mut Equations<'_>,
+        laws: Laws,
+        [begin, end]: [f64; 2],
+        at: &dyn Fn(f64, &mut [f64]),
+    ) -> Option<f64> {
+        let contacts = !(self.feet.is_empty() && self.stops.is_empty() && self.ropes.is_empty());
+        if !contacts && (laws == Laws::Contacts || self.own.is_empty()) {
+            return None;
+        }
+        let known_at = std::mem::replace(&mut self.known_at, f64::NAN);
+        let mut branches = |t: f64, place: usize| {
+            at(t, &mut self.motion);
+            self.evaluate(equations, laws, t, place);
+            self.branches[0] != self.branches[1]
+        };
+        if laws == Laws::All || begin != known_at {
+            branches(begin, 0);
+        }
+        if !branches(end, 1) {
+            if laws == Laws::Contacts {
+                self.known_at = end;
+            }
+            return None;
+        }
+        let (mut before, mut after) = (begin, end);
+        for _ in 0..Self::BISECTIONS {
+            let middle = 0.5 * (before + after);
+            if branches(middle, 1) {
+                after = middle;
+            } else {
+                before = middle;
+            }
+        }
+        let near = Self::NEAR * (end - begin);
+        (after > begin + near && after < end - near).then_some(after)
+    }
+
+    /// The branches at a time and at `motion`.
+    fn evaluate(&mut self, equations: &mut Equations<'_>, laws: Laws, t: f64, place: usize) {
+        let crane = equations.crane;
+        let (q, v) = equations.state(t, &self.motion);
+        let branches = &mut self.branches[place];
+        branches.clear();
+        if !self.feet.is_empty() {
+            crane.support_gaps(q, v, &mut self.gaps);
+            branches.extend(self.feet.iter().map(|foot| self.gaps[*foot][0] > 0.0));
+        }
+        if !self.stops.is_empty() {
+            crane.stop_forces(q, v, &mut self.forces);
+            branches.extend(self.stops.iter().map(|stop| self.forces[*stop] != 0.0));
+        }
+        if !self.ropes.is_empty() {
+            crane.connector_tensions(t, q, v, &mut self.tensions);
+            branches.extend(self.ropes.iter().map(|rope| self.tensions[*rope].force > 0.0));
+        }
+        if laws == Laws::All {
+            let x = &self.motion[2 * q.len()..][..self.own.len()];
+            self.own.branches(crane, &StateAt { t, q, v, x }, branches);
+        }
+    }
+}
