@@ -231,8 +231,8 @@ pub fn power<'g>(model: &Model<'g>, efforts: &[Expr<'g>]) -> Expr<'g> {
 /// limit `(sat(u) − sat(s e)) ė ≥ 0`.
 pub fn dissipation<'g>(model: &Model<'g>) -> Expr<'g> {
     let rate = |drive: &Drive| profile::rate(model, &drive.profile, model.t) - model.v[drive.coordinate.0];
-    let linear =
-        linear(model).fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());
+    let linear = linear(model)
+        .fold(model.zero(), |sum, (drive, _, damping)| sum + model.number(damping) * rate(drive).squared());
     saturations(model, model.t).fold(linear, |sum, (drive, spring)| {
         let damper = limited(model, drive.0, unlimited(model, drive, model.t, &model.v)) - spring.effort();
         sum + damper * rate(drive.0)

@@ -107,7 +107,9 @@ impl<'a, 'g> Forces<'a, 'g> {
         match kind {
             Kind::Supports => Some(supports::energy(model, kinematics)),
             Kind::BeamSprings => Some(springs::element_energy(model)),
-            Kind::Drives => model.chain.drives.iter().any(|drive| drive.spring().is_some()).then(|| drives::energy(model)),
+            Kind::Drives => {
+                model.chain.drives.iter().any(|drive| drive.spring().is_some()).then(|| drives::energy(model))
+            }
             Kind::Stops => Some(joints::stop_energy(model)),
             Kind::Connectors => Some(connectors::energy(model, kinematics)),
             Kind::JointDampers | Kind::Friction | Kind::Loads => None,

@@ -1,8 +1,13 @@
 //! Steps as long as a tolerance allows, for one-step methods.
 
 use super::{
-    Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped, equations::Equations, norm::Norm,
-    state::NotFinite, step::Step, stopped::StepContext, switches::{Laws, Switches},
+    Ahead, Cause, EffortAccuracy, Method, Statistics, Stepper, Stopped,
+    equations::Equations,
+    norm::Norm,
+    state::NotFinite,
+    step::Step,
+    stopped::StepContext,
+    switches::{Laws, Switches},
 };
 
 /// First step tried, s: a crane starts smoothly, and steps may grow by a factor of three.

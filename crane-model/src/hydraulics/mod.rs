@@ -211,7 +211,12 @@ impl Hydraulics {
     }
 
     /// Appends which branches of their laws cylinders, valves and pump are on.
-    pub(crate) fn branches(&mut self, crane: &dyn DynModel, &StateAt { t, q, v, x }: &StateAt<'_>, out: &mut Vec<bool>) {
+    pub(crate) fn branches(
+        &mut self,
+        crane: &dyn DynModel,
+        &StateAt { t, q, v, x }: &StateAt<'_>,
+        out: &mut Vec<bool>,
+    ) {
         let Some(last) = self.len().checked_sub(1) else { return };
         let p_s = x[last];
         self.measure(crane, t, q, v);

@@ -10,16 +10,14 @@ impl<'g> Derivation<'g> {
     /// Motions and limits of drives.
     pub(super) fn drives(&self) -> Vec<Function> {
         let (model, chain) = (&self.model, self.model.chain);
-        let mut functions = vec![
-            function(
-                FunctionId::DriveMotions,
-                "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
-                "q_dr(t), q̇_dr(t)",
-                &[Time],
-                Shape::Pairs(chain.drives.len()),
-                drives::motions(model, chain.drives.iter()),
-            ),
-        ];
+        let mut functions = vec![function(
+            FunctionId::DriveMotions,
+            "Prescribed position q_dr (m, rad) and rate q̇_dr (m/s, rad/s) of every drive.",
+            "q_dr(t), q̇_dr(t)",
+            &[Time],
+            Shape::Pairs(chain.drives.len()),
+            drives::motions(model, chain.drives.iter()),
+        )];
         if chain.has_limited_drives() {
             functions.push(function(
                 FunctionId::DriveLimits,

@@ -7,7 +7,7 @@ use crate::program::Argument::{self, Position, Time, Velocity};
 use crate::program::{Function, FunctionId, Shape};
 use crate::symbolic::Expr;
 
-impl<'g> Derivation<'g> {
+impl Derivation<'_> {
     pub(super) fn energies(&self) -> Vec<Function> {
         let forces = self.forces();
         let mut functions = vec![scalar(
