@@ -8,7 +8,7 @@ use super::equations::Equations;
 use crate::{
     Description, Tension,
     dyn_crane::DynModel,
-    own_states::{OwnStates, StateAt},
+    force_states::{ForceStates, StateAt},
 };
 
 /// The laws that are looked at.
@@ -26,7 +26,7 @@ pub(super) struct Switches {
     feet: Vec<usize>,
     stops: Vec<usize>,
     ropes: Vec<usize>,
-    own: OwnStates,
+    states: ForceStates,
     gaps: Vec<[f64; 2]>,
     forces: Vec<f64>,
     tensions: Vec<Tension>,
@@ -55,7 +55,7 @@ impl Switches {
             feet,
             stops: stops.to_vec(),
             ropes,
-            own: OwnStates::new(crane.description()),
+            states: ForceStates::new(crane.description()),
             gaps: vec![[0.0; 2]; supports.len()],
             forces: vec![0.0; crane.size()],
             tensions: vec![Tension::ZERO; connectors.len()],
@@ -66,7 +66,7 @@ impl Switches {
     }
 
     /// The first time in a step, s, at which a law is on another branch than at its beginning, if one is at its end. `at` is the motion
-    /// during the step, relative to the guides.
+    /// during the step, relative to the references.
     pub fn first(
         &mut self,
         equations: &mut Equations<'_>,
@@ -75,7 +75,7 @@ impl Switches {
         at: &dyn Fn(f64, &mut [f64]),
     ) -> Option<f64> {
         let contacts = !(self.feet.is_empty() && self.stops.is_empty() && self.ropes.is_empty());
-        if !contacts && (laws == Laws::Contacts || self.own.is_empty()) {
+        if !contacts && (laws == Laws::Contacts || self.states.is_empty()) {
             return None;
         }
         let known_at = std::mem::replace(&mut self.known_at, f64::NAN);
@@ -125,8 +125,8 @@ impl Switches {
             branches.extend(self.ropes.iter().map(|rope| self.tensions[*rope].force > 0.0));
         }
         if laws == Laws::All {
-            let x = &self.motion[2 * q.len()..][..self.own.len()];
-            self.own.branches(crane, &StateAt { t, q, v, x }, branches);
+            let x = &self.motion[2 * q.len()..][..self.states.len()];
+            self.states.branches(crane, &StateAt { t, q, v, x }, branches);
         }
     }
 }

@@ -220,9 +220,9 @@ impl Hydraulics {
         let Some(last) = self.len().checked_sub(1) else { return };
         let p_s = x[last];
         self.measure(crane, t, q, v);
-        for (moved, own) in self.cylinders.iter().zip(x.chunks_exact(STATES)) {
-            let (here, wanted) = (self.here[moved.index], self.wanted[moved.index]);
-            moved.branches(here, wanted, own, p_s, out);
+        for (cylinder, own) in self.cylinders.iter().zip(x.chunks_exact(STATES)) {
+            let (here, wanted) = (self.here[cylinder.index], self.wanted[cylinder.index]);
+            cylinder.branches(here, wanted, own, p_s, out);
         }
         if let Some(pump) = self.pump {
             out.extend(pump.branches(p_s));
