@@ -5,7 +5,7 @@
 pub struct Statistics {
     /// Completed steps.
     pub steps: usize,
-    /// Rejected steps, whose error was above the tolerance.
+    /// Rejected steps: their error was above the tolerance, or a contact changed during them.
     pub rejections: usize,
     /// Evaluations of the accelerations.
     pub evaluations: usize,

@@ -38,29 +38,32 @@ pub(super) struct Switches {
 }
 
 impl Switches {
-    /// How often a step is repeated at most to end where a law changes: where laws change faster than any step can follow, the error estimate
-    /// alone decides.
+    /// How often a step is repeated at most to end where a law changes. Where laws change faster than that, the error estimate alone
+    /// decides.
     pub const REPEATS: usize = 3;
     /// Bisections that find a change, to a millionth of the step.
     const BISECTIONS: usize = 20;
     /// A change as near to an end of a step as this, relative to its length, does not matter.
     const NEAR: f64 = 1e-3;
 
-    /// Those of a crane, with storage for motions of this many numbers.
+    /// The laws of a crane, with storage for motions of this many numbers.
     pub fn new(crane: &dyn DynModel, len: usize) -> Self {
         let Description { supports, stops, connectors, .. } = crane.description();
-        let feet = (0..supports.len()).filter(|foot| supports[*foot].one_sided).collect();
-        let ropes = (0..connectors.len()).filter(|rope| connectors[*rope].is_rope).collect();
+        let feet: Vec<usize> = (0..supports.len()).filter(|foot| supports[*foot].one_sided).collect();
+        let ropes: Vec<usize> = (0..connectors.len()).filter(|rope| connectors[*rope].is_rope).collect();
+        let states = ForceStates::new(crane.description());
+        // No step allocates: a cylinder has three states and up to eleven branches, a bristle one of each, the pump two branches.
+        let branches = || Vec::with_capacity(feet.len() + stops.len() + ropes.len() + 4 * states.len() + 2);
         Self {
+            branches: [branches(), branches()],
             feet,
             stops: stops.to_vec(),
             ropes,
-            states: ForceStates::new(crane.description()),
+            states,
             gaps: vec![[0.0; 2]; supports.len()],
             forces: vec![0.0; crane.size()],
             tensions: vec![Tension::ZERO; connectors.len()],
             motion: vec![0.0; len],
-            branches: [Vec::new(), Vec::new()],
             known_at: f64::NAN,
         }
     }

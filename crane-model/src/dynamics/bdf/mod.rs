@@ -300,7 +300,10 @@ impl Stepper for Bdf<'_> {
             self.restart = change.map(|_| h);
             repeats += usize::from(change.is_some());
             match change {
-                Some(change) => self.history.rescale((change - t) / h),
+                Some(change) => {
+                    self.history.rescale((change - t) / h);
+                    self.control.alike = 0;
+                }
                 None => self.aim(ahead.stop),
             }
         }
