@@ -24,8 +24,8 @@ pub(crate) struct StateAt<'a> {
 /// Maximum number of states of a force.
 pub(crate) const STATES: usize = 3;
 
-/// A force that has states, evaluated at a state of the crane, with its derivatives. ℓ is the length of a cylinder, or the coordinate of a
-/// joint with bristles.
+/// A force with states of its own, evaluated at a state of the crane, and its derivatives. ℓ is the length of a cylinder, or the coordinate
+/// of a joint with bristles.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StatefulForce {
     /// Index of its coordinate, and `∂ℓ/∂q`.
@@ -55,7 +55,7 @@ pub struct ForceStates {
     bristles: Bristles,
     /// The forces as last evaluated, those of the oil first.
     forces: Vec<StatefulForce>,
-    /// Their generalized forces, and what those add to the accelerations.
+    /// Their generalized forces, and the accelerations that these add.
     efforts: [Vec<f64>; 2],
 }
 
@@ -140,13 +140,13 @@ impl ForceStates {
         accelerations.iter_mut().zip(added).for_each(|(acceleration, added)| *acceleration += *added);
     }
 
-    /// Appends which branch of its law each of them is on.
+    /// Appends which branch of its law each force is on.
     pub(crate) fn branches(&mut self, crane: &dyn DynModel, moment: &StateAt<'_>, out: &mut Vec<bool>) {
         self.oil.branches(crane, moment, out);
         self.bristles.branches(moment, out);
     }
 
-    /// Power that cylinders put in and power that bristles take out, `Σ F ℓ̇`, at the last evaluation, W.
+    /// Power that cylinders supply, `Σ F ℓ̇`, and power that bristles dissipate, `−Σ F ℓ̇`, at the last evaluation, W.
     pub(crate) fn powers(&self) -> [f64; 2] {
         let (of_oil, of_bristles) = self.forces.split_at(self.oil.count());
         let power = |all: &[StatefulForce]| all.iter().map(|force| force.force * force.speed).sum::<f64>();

@@ -19,7 +19,7 @@ enum Operands {
     Invariant,
     /// From this source.
     From(Source),
-    /// Values that another loop can save.
+    /// Values of another loop, which can save them.
     Saved { of: usize, template: ExprId, iteration: Progression },
 }
 
@@ -61,7 +61,7 @@ pub(super) fn reroll(
     let mut start = 0;
     while start < visits.len() {
         let matches = rerolling.run(visits, start);
-        // The last iteration may require gathering values, because another loop has one iteration fewer.
+        // The last iteration may force values to be gathered, because another loop has one iteration fewer.
         let shorter = matches.split_last().map_or(&[][..], |(_, rest)| rest);
         let later = if shorter.len() >= least { rerolling.run(visits, start + 1) } else { vec![] };
         let candidates = [(0, &matches[..]), (0, shorter), (1, &later)];
@@ -124,12 +124,12 @@ struct Rerolling<'a> {
 }
 
 impl Rerolling<'_> {
-    /// The expressions that a visit requests and no earlier visit needs.
+    /// The expressions that a visit requests and that no earlier visit requests or needs.
     fn anchors(&self, visit: &Visit, at: usize) -> Vec<ExprId> {
         visit.nodes.iter().copied().filter(|id| self.rank[id.index()] == at).collect()
     }
 
-    /// The visits from `start` on with the same operations.
+    /// The consecutive visits with the same operations, from `start` on.
     fn run(&self, visits: &[Visit], start: usize) -> Vec<Match> {
         let Some(visit) = visits.get(start) else { return vec![] };
         let first = self.anchors(visit, start);
@@ -163,7 +163,7 @@ impl Rerolling<'_> {
         Some(plan)
     }
 
-    /// The source of operands.
+    /// Where one operand comes from in each iteration, if there is a source; adds to `making` what the source requires.
     fn source(&self, operands: &[ExprId], matches: &[Match], making: &mut Loop) -> Option<Operands> {
         let program = &*self.program;
         let first = operands[0];
@@ -378,7 +378,8 @@ impl Rerolling<'_> {
         self.program.append_symbol(Symbol { name, argument: Argument::LiveOut, index })
     }
 
-    /// The slots of the result: written in a loop if their indices form an arithmetic progression, otherwise outside.
+    /// Decides where each slot of the result is written: in a loop if the indices of its slots form an arithmetic progression, otherwise
+    /// outside.
     fn hand_over(&mut self, function: &Function) {
         let mut rows: HashMap<(usize, ExprId), Vec<(usize, usize)>> = HashMap::new();
         if matches!(function.shape, Shape::Vector(_) | Shape::Factors(_) | Shape::Columns { .. }) {

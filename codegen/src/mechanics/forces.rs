@@ -1,7 +1,8 @@
 //! Everything that acts on the chain besides inertia and gravity, kind by kind.
 //!
-//! Whatever sums over all forces goes through [`Forces`]: a new kind is a variant of [`Kind`], and the compiler finds the places that must
-//! know it. A kind has a law on strains of the pose, `f = −Jᵀ F(s, ṡ)`; where it stores energy, ∂E/∂q is what it exerts at rest.
+//! Whatever sums over all forces goes through [`Forces`]: a new kind is a variant of [`Kind`], listed in `Kind::ALL`, and the compiler
+//! finds the places that must handle it. A kind has a law on strains of the pose, `f = −Jᵀ F(s, ṡ)`; if it stores energy, it exerts
+//! −∂E/∂q at rest.
 
 use super::kinematics::Kinematics;
 use super::model::Model;
@@ -44,7 +45,7 @@ impl Kind {
     ];
 }
 
-/// The forces of a chain except those of rigid drives, which are not given: they follow from the motion.
+/// The forces of a chain, except those of rigid drives, which have no law: they follow from the motion.
 pub struct Forces<'a, 'g> {
     model: &'a Model<'g>,
     kinematics: &'a Kinematics<'g>,
@@ -86,7 +87,7 @@ impl<'a, 'g> Forces<'a, 'g> {
         }
     }
 
-    /// Generalized forces of a kind at rest and t = 0, `−∂E/∂q`: oil holds, and no winch moves.
+    /// Generalized forces of a kind at rest and t = 0, `−∂E/∂q`: oil holds its joints, and no winch moves.
     fn at_rest(&self, kind: Kind) -> Vec<Expr<'g>> {
         let &Forces { model, kinematics } = self;
         let (start, rest) = (model.zero(), model.zeros());
@@ -166,9 +167,9 @@ impl<'a, 'g> Forces<'a, 'g> {
         }
     }
 
-    /// Adds stiffness and damping of a kind for an implicit step: of linear springs and dampers on single coordinates, constants, and over the
-    /// base's coordinates at the present state, nowhere negative. Those of other laws on single coordinates are a function of their own, those
-    /// of connectors are of low rank.
+    /// Adds stiffness and damping of a kind for an implicit step: constants for linear springs and dampers on single coordinates, and for
+    /// the base's coordinates values at the present state, which are never negative. A separate function computes those of other laws on
+    /// single coordinates, and those of connectors are terms of low rank.
     fn add_for_step(&self, kind: Kind, [stiffness, damping]: [&mut SymmetricMatrix<'g>; 2]) {
         let &Forces { model, kinematics } = self;
         match kind {

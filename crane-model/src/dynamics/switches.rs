@@ -11,7 +11,7 @@ use crate::{
     force_states::{ForceStates, StateAt},
 };
 
-/// The laws that are looked at.
+/// Which laws are watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Laws {
     /// One-sided supports, end stops and ropes.
@@ -31,22 +31,22 @@ pub(super) struct Switches {
     forces: Vec<f64>,
     tensions: Vec<Tension>,
     motion: Vec<f64>,
-    /// Branches at the beginning of a step and at a later time.
+    /// The branch that each law is on: at the beginning of a step, and at a later time.
     branches: [Vec<bool>; 2],
-    /// The time of the contacts in the first list, s: those at the end of a step are those at the beginning of the next.
+    /// The time at which the first list of branches is known to hold for contacts, s: the end of one step is the beginning of the next.
     known_at: f64,
 }
 
 impl Switches {
-    /// How often a step is repeated at most to end where a law changes. Where laws change faster than that, the error estimate alone
-    /// decides.
+    /// Maximum number of times that a step is repeated to end where a law changes: if laws change faster than steps can follow, the error
+    /// estimate alone decides.
     pub const REPEATS: usize = 3;
-    /// Bisections that find a change, to a millionth of the step.
+    /// Number of bisections, which locate a change to a millionth of the step.
     const BISECTIONS: usize = 20;
-    /// A change as near to an end of a step as this, relative to its length, does not matter.
+    /// A change closer than this to either end of a step, relative to its length, does not matter.
     const NEAR: f64 = 1e-3;
 
-    /// The laws of a crane, with storage for motions of this many numbers.
+    /// The laws of a crane, with storage for motions of `len` numbers.
     pub fn new(crane: &dyn DynModel, len: usize) -> Self {
         let Description { supports, stops, connectors, .. } = crane.description();
         let feet: Vec<usize> = (0..supports.len()).filter(|foot| supports[*foot].one_sided).collect();
@@ -68,8 +68,9 @@ impl Switches {
         }
     }
 
-    /// The first time in a step, s, at which a law is on another branch than at its beginning, if one is at its end. `at` is the motion
-    /// during the step, relative to the references.
+    /// A time in a step, s, at which a law changes its branch: found by bisection, if at the end of the step a law is on another branch
+    /// than at its beginning; `None` also if the change is close to either end. `at` gives the motion during the step, relative to the
+    /// references.
     pub fn first(
         &mut self,
         equations: &mut Equations<'_>,
@@ -109,7 +110,7 @@ impl Switches {
         (after > begin + near && after < end - near).then_some(after)
     }
 
-    /// The branches at a time and at `motion`.
+    /// Writes the branches at a time and at `motion` into the first or the second list.
     fn evaluate(&mut self, equations: &mut Equations<'_>, laws: Laws, t: f64, place: usize) {
         let crane = equations.crane;
         let (q, v) = equations.state(t, &self.motion);

@@ -9,9 +9,10 @@
 //! ```
 //!
 //! λ is the leakage past the piston. Relief valves open at the maximum pressure of the cylinder, suction valves below tank pressure. The
-//! spool at u, −1 to 1, opens an edge from the pump to one side and one from the other side to the tank; the flow through an edge is
-//! `K s r(Δp)` with the opening `s = max(0, |u| − overlap)/(1 − overlap)` and `r(Δ) = Δ/(Δ² + ε²)^¼`, a square root that is laminar below ε = 1 bar; check valves keep oil from flowing back to the
-//! pump. The spool lags behind its command u*, `u̇ = (u* − u)/T`. The spec gives the command over time, or a servo computes it:
+//! spool at u, −1 to 1, opens an edge from the pump to one side and one from the other side to the tank. The flow through an edge is
+//! `K s r(Δp)` with the opening `s = max(0, |u| − overlap)/(1 − overlap)` and `r(Δ) = Δ/(Δ² + ε²)^¼`, a square root that becomes linear,
+//! as in laminar flow, below ε = 1 bar. Check valves keep oil from flowing back to the pump. The spool lags behind its command u*,
+//! `u̇ = (u* − u)/T`. The spec gives the command over time, or a servo computes it:
 //!
 //! ```text
 //! u* = gain (ℓ* − ℓ) + share · A ẏ*/(K r(p_s − p)),     between −1 and 1
@@ -49,10 +50,10 @@ pub(crate) struct Hydraulics {
     pump: Option<Pump>,
     /// Every cylinder of the crane: length, rate, and derivative of the length with respect to its coordinate.
     here: Vec<Vector3<f64>>,
-    /// The same with the drives at the positions of their motions.
+    /// The same with the drives at the positions that their motions prescribe.
     wanted: Vec<Vector3<f64>>,
     motions: Vec<[f64; 2]>,
-    /// Prescribed commands of the drives' valves.
+    /// Prescribed openings of the drives' valves, and their rates.
     openings: Vec<[f64; 2]>,
     place: [Vec<f64>; 2],
 }
@@ -229,7 +230,7 @@ impl Hydraulics {
         }
     }
 
-    /// Lengths of all cylinders at this state, and with the drives at the positions of their motions.
+    /// Updates the lengths of all cylinders at this state, and with the drives at the positions that their motions prescribe.
     fn measure(&mut self, crane: &dyn DynModel, t: f64, q: &[f64], v: &[f64]) {
         crane.cylinder_states(q, v, &mut self.here);
         crane.drive_motions(t, &mut self.motions);
@@ -250,7 +251,7 @@ impl Hydraulics {
         }
     }
 
-    /// The pump at its pressure: flow, m³/s, power, W, and that pressure, Pa.
+    /// What the pump delivers at its present pressure: flow, m³/s, and power, W; then that pressure, Pa.
     fn delivered(&self, x: &[f64]) -> [f64; 3] {
         let (Some(pump), Some(pressure)) = (self.pump, self.len().checked_sub(1).map(|last| x[last])) else {
             return [0.0; 3];

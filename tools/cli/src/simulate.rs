@@ -31,7 +31,7 @@ pub struct Trace<'a> {
     pub label: &'a str,
     /// Its results.
     pub table: &'a Table,
-    /// Whether it is dashed, because it lies over others.
+    /// Whether it is dashed, so that it can lie over others.
     pub dashed: bool,
 }
 
@@ -91,7 +91,7 @@ pub fn file_list(folder: &Path, written: &[String]) -> Grid {
     grid
 }
 
-/// Writes results and record of a run; returns their file names.
+/// Writes the results and the record of a run; returns their file names.
 pub fn write_run(
     folder: &Path,
     crane: &dyn DynCrane,
@@ -105,7 +105,7 @@ pub fn write_run(
     Ok(vec![csv, json])
 }
 
-/// Writes the path of the points in a plane and the drives' torques and forces; returns their file names.
+/// Writes figures of the points' paths in a plane and of the drives' torques and forces; returns their file names.
 pub fn write_figures(
     folder: &Path,
     prefix: &str,
@@ -142,12 +142,12 @@ pub fn points(table: &Table, x: &str, y: &str, scale: f64) -> Vec<(f64, f64)> {
     }
 }
 
-/// A name for a reader: blanks for underscores.
+/// A name for people to read: spaces instead of underscores.
 pub fn spoken(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// The path of the points in the horizontal plane, [Urbaś 2016, Fig. 8]; or in a vertical plane if they hardly leave that.
+/// The paths of the points in the horizontal plane, [Urbaś 2016, Fig. 8], or in a vertical plane that they hardly leave.
 fn path(description: &Description, traces: &[Trace<'_>]) -> Panel {
     /// Points hardly move along an axis if their range is below this fraction of that along z.
     const HARDLY: f64 = 0.01;

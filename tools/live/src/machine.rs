@@ -28,9 +28,9 @@ pub trait Number:
 
 /// The number of one state, or numbers of several.
 pub trait Batch: Number {
-    /// The number of numbers it holds.
+    /// How many numbers it holds.
     const LANES: usize;
-    /// Numbers by their places.
+    /// Made of the numbers at each place.
     fn from_lanes(number: impl Fn(usize) -> f64) -> Self;
     /// The number at a place below [`LANES`](Self::LANES).
     fn lane(&self, place: usize) -> f64;
@@ -158,10 +158,10 @@ impl<T: Number> Arguments<'_, T> {
     }
 }
 
-/// Possible register counts of a machine, powers of two: register numbers are masked instead of checked.
+/// Possible numbers of registers of a machine, powers of two: register indices are masked instead of checked.
 const SIZES: [usize; 3] = [1 << 10, 1 << 13, 1 << 16];
 
-/// Registers of a function.
+/// An array of registers, of one of three sizes.
 #[derive(Clone, Debug)]
 enum File<T> {
     Small(Box<[T; SIZES[0]]>),
@@ -188,7 +188,7 @@ impl<T: Number> Machine<T> {
 
     /// Sets the fixed numbers of a function; `parameter` and `stored` return live parameters and the constants computed from them, by index.
     pub fn fix(&mut self, code: &Code, parameter: impl Fn(usize) -> T, stored: impl Fn(usize) -> T) {
-        // −x as −1 x − 0.
+        // −x, computed as −1 x − 0.
         let negative = |x: T| fma(T::splat(-1.0), x, T::splat(-0.0));
         for (register, fixed) in self.registers().iter_mut().zip(&code.fixed) {
             let (number, sign) = match *fixed {
@@ -208,7 +208,7 @@ impl<T: Number> Machine<T> {
         }
     }
 
-    /// Runs the function for which the machine was made. An input that is not given is zero.
+    /// Runs the function for which the machine was made. Arguments that are not given are zero.
     pub fn run(&mut self, code: &Code, arguments: &Arguments<'_, T>, out: &mut [T]) {
         let mut registers = self.registers().get_mut(code.fixed.len()..).unwrap_or_default();
         for inputs in &code.inputs {

@@ -45,7 +45,7 @@ const GAMMAS: [f64; ORDER + 1] = [0.0, 1.0, 1.5, 11.0 / 6.0, 25.0 / 12.0];
 const SHARE: f64 = 0.1;
 /// Maximum number of Newton steps.
 const NEWTON: usize = 4;
-/// Allowed remaining error of Newton's iteration, relative to the allowed error of a step.
+/// Error that Newton's iteration may leave, relative to the allowed error of a step.
 const LEFT: f64 = 0.05;
 /// Smallest and largest ratio of a step to the previous one.
 const RATIO: (f64, f64) = (0.2, 3.0);
@@ -128,7 +128,7 @@ impl Contraction {
     }
 }
 
-/// A motion by backward differences; steps go beyond the results, which are interpolated.
+/// A motion by backward differences; steps may pass the times of results, which are interpolated.
 pub struct Bdf<'a> {
     equations: Equations<'a>,
     crane: &'a dyn DynImplicit,
@@ -137,7 +137,7 @@ pub struct Bdf<'a> {
     control: Control,
     slope: Vec<f64>,
     switches: Switches,
-    /// The length of the next step if the last one ended where a law changes its branch, s: the history does not predict it.
+    /// Length of the next step, s, if the last one ended where a law changes its branch: the history does not predict the motion beyond.
     restart: Option<f64>,
     /// Motion at the time reached.
     motion: Vec<f64>,
@@ -147,9 +147,9 @@ pub struct Bdf<'a> {
 
 /// Outcome of a tried step.
 enum Attempt {
-    /// It meets the tolerance.
+    /// It is accepted: it meets the tolerance, and no contact changes in it.
     Met,
-    /// It does not, and perhaps a law changes its branch in it, at a time, s.
+    /// It does not, or a contact changes in it; `change`: the time at which a law changes its branch, s, if one was found.
     Failed { change: Option<f64> },
 }
 
@@ -225,8 +225,8 @@ impl<'a> Bdf<'a> {
         Ok(())
     }
 
-    /// Tries a step, and returns whether it meets the tolerance; chooses order and length of the next in any case. `again`: the step
-    /// has been shortened already.
+    /// Tries a step, and chooses order and length of the next, unless the step only has to end where a contact changes. `again`: the step
+    /// has been shortened already; `repeats`: how often it was repeated to end where a law changes.
     fn attempt(&mut self, again: bool, repeats: usize) -> Attempt {
         let Self { equations, history, correction, control, switches, .. } = self;
         let order = history.order;
