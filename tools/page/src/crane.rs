@@ -23,18 +23,18 @@ const MOST_ROWS: usize = 4000;
 
 /// All data of one crane.
 pub fn data(subject: &Subject<'_>, program: Program) -> Result<Value, NoModes> {
-    let &Subject { label, rig, live, equilibrium, run } = subject;
+    let &Subject { label, crane, live, equilibrium, run } = subject;
     // Without an equilibrium there is at least a pose to look at.
     let found = equilibrium.q.iter().all(|q| q.is_finite());
-    let pose = if found { equilibrium.q.clone() } else { rig.guess() };
+    let pose = if found { equilibrium.q.clone() } else { crane.guess() };
     let at_rest;
     let table = if let Some((_, recorded)) = run {
         &recorded.table
     } else {
-        at_rest = rest(rig, &pose);
+        at_rest = rest(crane, &pose);
         &at_rest
     };
-    let description = rig.description();
+    let description = crane.description();
     let coordinates: Vec<Value> = description
         .coordinates
         .iter()
@@ -61,15 +61,15 @@ pub fn data(subject: &Subject<'_>, program: Program) -> Result<Value, NoModes> {
         "outlines": outlines(live),
         "modes": modes(subject)?,
         "run": columns(table, every),
-        "record": run.map(|(settings, recorded)| record(rig, settings, recorded, program)),
-        "strength": strength::data(rig, table, every),
+        "record": run.map(|(settings, recorded)| record(crane, settings, recorded, program)),
+        "strength": strength::data(crane, table, every),
     }))
 }
 
 /// The single result of a crane at rest, with its drives at their start positions.
-fn rest(rig: &dyn DynCrane, q: &[f64]) -> Table {
-    let (v, x) = (vec![0.0; q.len()], ForceStates::new(rig.description()).holding(rig, 0.0, q));
-    let mut recording = Recording::new(rig);
+fn rest(crane: &dyn DynCrane, q: &[f64]) -> Table {
+    let (v, x) = (vec![0.0; q.len()], ForceStates::new(crane.description()).holding(crane, 0.0, q));
+    let mut recording = Recording::new(crane);
     recording.push(&Sample { t: 0.0, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0 });
     recording.into_table()
 }
@@ -95,8 +95,8 @@ fn modes(subject: &Subject<'_>) -> Result<Vec<Value>, NoModes> {
     if !subject.equilibrium.is_stable() {
         return Ok(Vec::new());
     }
-    let coordinates = &subject.rig.description().coordinates;
-    let modes = undamped(&subject.rig.small_motions_at(&subject.equilibrium.q))?;
+    let coordinates = &subject.crane.description().coordinates;
+    let modes = undamped(&subject.crane.small_motions_at(&subject.equilibrium.q))?;
     let mode = |mode: &crane_model::modes::Mode| {
         let names: Vec<&str> = mode.dominating.iter().map(|&index| coordinates[index].name.as_str()).collect();
         json!({"frequency": mode.frequency(), "shape": mode.shape.as_slice(), "moves": names})

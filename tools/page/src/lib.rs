@@ -37,7 +37,7 @@ pub struct Subject<'a> {
     /// What distinguishes it from the others.
     pub label: &'a str,
     /// The crane.
-    pub rig: &'a dyn DynCrane,
+    pub crane: &'a dyn DynCrane,
     /// The same crane with derivatives of its transforms.
     pub live: &'a LiveCrane,
     /// Its equilibrium.

@@ -19,14 +19,14 @@ fn differences(recorded: &Recorded, verification: &Verification) -> Map<String, 
 }
 
 /// The record of a run: enough to repeat it.
-pub fn record(rig: &dyn DynCrane, settings: &Settings, recorded: &Recorded, program: Program) -> Value {
-    let description = rig.description();
+pub fn record(crane: &dyn DynCrane, settings: &Settings, recorded: &Recorded, program: Program) -> Value {
+    let description = crane.description();
     let parameters: Map<String, Value> = description
         .parameters
         .iter()
         .enumerate()
         .map(|(index, parameter)| {
-            (parameter.name.to_string(), json!({"value": rig.parameter(index), "unit": parameter.unit.as_str()}))
+            (parameter.name.to_string(), json!({"value": crane.parameter(index), "unit": parameter.unit.as_str()}))
         })
         .collect();
     json!({

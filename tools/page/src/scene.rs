@@ -15,12 +15,12 @@ use serde_json::{Value, json};
 
 /// Frames, screws, supports, connectors and points of a crane for pose `q`.
 pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
-    let rig: &dyn DynCrane = live;
-    let description = rig.description();
+    let crane: &dyn DynCrane = live;
+    let description = crane.description();
     let is_vector: Vec<bool> =
         description.coordinates.iter().map(|coordinate| coordinate.role == CoordinateRole::ElementVector).collect();
     let reference: Vec<f64> = q.iter().zip(&is_vector).map(|(q, vector)| if *vector { 0.0 } else { *q }).collect();
-    let frames = rig.transforms_at(&reference);
+    let frames = crane.transforms_at(&reference);
     let bodies: Vec<Value> = description
         .bodies
         .iter()
@@ -47,7 +47,7 @@ pub fn scene(live: &LiveCrane, q: &[f64]) -> Value {
         .collect();
     json!({
         "pose": q, "reference": reference, "vectors": is_vector, "bodies": bodies,
-        "screws": screws(live, &reference, &frames), "supports": supports, "connectors": connectors, "points": points(rig, q),
+        "screws": screws(live, &reference, &frames), "supports": supports, "connectors": connectors, "points": points(crane, q),
     })
 }
 
@@ -57,11 +57,11 @@ fn rows(frame: &Matrix4<f64>) -> Vec<f64> {
 }
 
 /// Screws of all coordinates in the world frame at pose `q`, `ξ̂ = ∂T/∂q_j T⁻¹`: direction ω, then velocity at the origin.
-fn screws(rig: &LiveCrane, q: &[f64], frames: &[Matrix4<f64>]) -> Vec<[f64; 6]> {
-    let derivatives = (rig as &dyn DynDerivatives).transform_derivatives_at(q);
+fn screws(live: &LiveCrane, q: &[f64], frames: &[Matrix4<f64>]) -> Vec<[f64; 6]> {
+    let derivatives = (live as &dyn DynDerivatives).transform_derivatives_at(q);
     let mut screws = Vec::with_capacity(q.len());
     let mut first = 0;
-    for (body, frame) in rig.description().bodies.iter().zip(frames) {
+    for (body, frame) in live.description().bodies.iter().zip(frames) {
         // Those of earlier coordinates are known from earlier bodies.
         for derivative in &derivatives[first + screws.len()..first + body.degrees_of_freedom] {
             let s = derivative * inverse(frame);
@@ -81,16 +81,17 @@ fn inverse(frame: &Matrix4<f64>) -> Matrix4<f64> {
 }
 
 /// Points of interest with the body that carries each: the one in whose frame it stays fixed when everything moves.
-fn points(rig: &dyn DynCrane, q: &[f64]) -> Vec<Value> {
+fn points(crane: &dyn DynCrane, q: &[f64]) -> Vec<Value> {
     /// Displacement from the pose, m and rad: arbitrary, but different for every coordinate.
     const WAY: f64 = 0.1;
     let other: Vec<f64> = q.iter().enumerate().map(|(i, q)| q + WAY / (1.0 + i as f64)).collect();
     let local = |q: &[f64]| -> Vec<Vec<Vector3<f64>>> {
-        let inverses: Vec<Matrix4<f64>> = rig.transforms_at(q).iter().map(inverse).collect();
+        let inverses: Vec<Matrix4<f64>> = crane.transforms_at(q).iter().map(inverse).collect();
         let place = |point: &Vector3<f64>| inverses.iter().map(|inverse| (inverse * point.push(1.0)).xyz()).collect();
-        rig.points_at(q).iter().map(place).collect()
+        crane.points_at(q).iter().map(place).collect()
     };
-    rig.description()
+    crane
+        .description()
         .points
         .iter()
         .zip(local(q).iter().zip(&local(&other)))

@@ -11,13 +11,13 @@ const MEGA: f64 = 1e6;
 
 /// Utilisation of all sections whose moduli are known (stresses in megapascals if no beam has a yield stress), and margins about all tipping lines,
 /// of every `every`-th result.
-pub fn data(rig: &dyn DynCrane, run: &Table, every: usize) -> Value {
-    let description = rig.description();
-    let moduli = rig.section_moduli_at();
+pub fn data(crane: &dyn DynCrane, run: &Table, every: usize) -> Value {
+    let description = crane.description();
+    let moduli = crane.section_moduli_at();
     if description.supports.is_empty() && moduli.iter().all(|moduli| moduli.area <= 0.0) {
         return Value::Null;
     }
-    let history = instants(rig, run.rows.iter().step_by(every));
+    let history = instants(crane, run.rows.iter().step_by(every));
     json!({"sections": sections(description, &moduli, &history), "stability": stability(description, &history)})
 }
 

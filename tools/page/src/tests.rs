@@ -10,7 +10,7 @@ fn live(name: &str) -> LiveCrane {
 
 /// The data in the page of a crane at rest.
 fn at_rest(live: &LiveCrane, equilibrium: &Equilibrium, spec: &str) -> (String, Value) {
-    let subject = Subject { label: "value", rig: live, live, equilibrium, run: None };
+    let subject = Subject { label: "value", crane: live, live, equilibrium, run: None };
     let program = Program { name: "test", version: "0" };
     let page = page(&[subject], Texts { spec: Some(spec), ..Texts::default() }, program).expect("modes");
     let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").expect("data");
@@ -25,14 +25,14 @@ fn pose(crane: &Value) -> Vec<f64> {
 #[test]
 fn a_crane_without_a_run_is_shown_at_rest() {
     let live = live("eight_link_hydraulic");
-    let rig: &dyn DynCrane = &live;
-    let equilibrium = rig.equilibrium(&crane_model::statics::Settings::default());
+    let crane: &dyn DynCrane = &live;
+    let equilibrium = crane.equilibrium(&crane_model::statics::Settings::default());
     let (_, data) = at_rest(&live, &equilibrium, "");
-    let crane = &data["cranes"][0];
-    assert!(crane["record"].is_null() && data["tables"].is_null() && data["command"].is_null());
-    assert_eq!(crane["modes"].as_array().map(Vec::len), Some(live.size()));
-    assert_eq!(crane["run"]["rows"], 1);
-    let pose = pose(crane);
+    let written = &data["cranes"][0];
+    assert!(written["record"].is_null() && data["tables"].is_null() && data["command"].is_null());
+    assert_eq!(written["modes"].as_array().map(Vec::len), Some(live.size()));
+    assert_eq!(written["run"]["rows"], 1);
+    let pose = pose(written);
     assert_eq!(pose.len(), live.size());
     for (shown, found) in pose.iter().zip(&equilibrium.q) {
         // serde_json reads numbers to within one unit in the last place.
@@ -43,19 +43,19 @@ fn a_crane_without_a_run_is_shown_at_rest() {
 #[test]
 fn a_crane_without_an_equilibrium_is_shown_at_its_guess() {
     let live = live("knuckle_boom");
-    let rig: &dyn DynCrane = &live;
-    let mut equilibrium = rig.equilibrium(&crane_model::statics::Settings::default());
+    let crane: &dyn DynCrane = &live;
+    let mut equilibrium = crane.equilibrium(&crane_model::statics::Settings::default());
     equilibrium.q.fill(f64::NAN);
     equilibrium.status = crane_model::statics::Status::Overflow;
     let (_, data) = at_rest(&live, &equilibrium, "");
-    assert_eq!(pose(&data["cranes"][0]), rig.guess());
+    assert_eq!(pose(&data["cranes"][0]), crane.guess());
 }
 
 #[test]
 fn no_text_of_a_spec_ends_the_data() {
     let live = live("double_pendulum");
-    let rig: &dyn DynCrane = &live;
-    let equilibrium = rig.equilibrium(&crane_model::statics::Settings::default());
+    let crane: &dyn DynCrane = &live;
+    let equilibrium = crane.equilibrium(&crane_model::statics::Settings::default());
     let spec = "# </script><script>alert(1)</script>";
     let (page, data) = at_rest(&live, &equilibrium, spec);
     assert_eq!((page.matches("</script>").count(), data["spec"].as_str()), (2, Some(spec)));

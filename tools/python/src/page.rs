@@ -99,7 +99,7 @@ impl Crane {
             let cases = [case];
             let tables = of_page(&cases, &runs, cautions::BEND, None).map_err(|failed| failed.to_string())?;
             let [Case { label, equilibrium, .. }] = &cases;
-            let subject = Subject { label, rig: crane, live, equilibrium, run };
+            let subject = Subject { label, crane, live, equilibrium, run };
             let texts = Texts { tables: Some(tables), spec: Some(spec), ..Texts::default() };
             page(&[subject], texts, PROGRAM).map_err(|error| error.to_string())
         });

@@ -75,7 +75,7 @@ fn write_with(
         .zip(settings.iter().zip(runs))
         .map(|((case, live), run)| Subject {
             label: case.label,
-            rig: case.crane,
+            crane: case.crane,
             live,
             equilibrium: &case.equilibrium,
             run: Some(run),
