@@ -17,7 +17,7 @@ pub struct AxisRotation<'g> {
 
 impl<'g> AxisRotation<'g> {
     /// `Rᵀ x`
-    pub fn to_inner(&self, x: Vec3<'g>) -> Vec3<'g> {
+    pub fn to_inner(self, x: Vec3<'g>) -> Vec3<'g> {
         let (a, b) = plane(self.axis);
         let mut rotated = x;
         rotated.0[a] = self.cos * x[a] + self.sin * x[b];
@@ -26,15 +26,15 @@ impl<'g> AxisRotation<'g> {
     }
 
     /// `R x`
-    pub fn to_outer(&self, x: Vec3<'g>) -> Vec3<'g> {
-        AxisRotation { sin: -self.sin, ..*self }.to_inner(x)
+    pub fn to_outer(self, x: Vec3<'g>) -> Vec3<'g> {
+        AxisRotation { sin: -self.sin, ..self }.to_inner(x)
     }
 
     /// `R S Rᵀ`
     ///
     /// In the plane of rotation, `w` is subtracted from `S_aa` and added to `S_bb`, so that entries of very different size keep
     /// their digits as the angle goes to zero.
-    pub fn to_outer_symmetric(&self, s: &Symmetric3<'g>) -> Symmetric3<'g> {
+    pub fn to_outer_symmetric(self, s: &Symmetric3<'g>) -> Symmetric3<'g> {
         let (a, b) = plane(self.axis);
         let k = self.axis.index();
         let mut rotated = *s;
@@ -49,7 +49,7 @@ impl<'g> AxisRotation<'g> {
     }
 
     /// `R M Rᵀ`
-    pub fn to_outer_matrix(&self, m: &Matrix3<'g>) -> Matrix3<'g> {
+    pub fn to_outer_matrix(self, m: &Matrix3<'g>) -> Matrix3<'g> {
         let (a, b) = plane(self.axis);
         let k = self.axis.index();
         let m = m.0;

@@ -9,7 +9,7 @@ use crate::{CoordinateRole, Description, dyn_crane::DynModel};
 
 /// Coordinates that are relative to the motions of their drives.
 pub(super) struct References {
-    references: Vec<Reference>,
+    driven: Vec<Reference>,
     /// `p`, `ṗ` of all drives at the last evaluated time, and at two times near it.
     motions: Vec<[f64; 2]>,
     near: [Vec<[f64; 2]>; 2],
@@ -46,23 +46,23 @@ impl References {
 
     fn new(crane: &dyn DynModel, has_reference: impl Fn(usize, bool) -> bool) -> Self {
         let Description { drives, coordinates, cylinders, .. } = crane.description();
-        let references = drives.iter().enumerate().map(|(drive, info)| {
+        let driven = drives.iter().enumerate().map(|(drive, info)| {
             let rigid = coordinates[info.coordinate].role == CoordinateRole::Prescribed;
             Reference { coordinate: info.coordinate, drive, rigid }
         });
         // A joint that is moved by oil does not follow its drive's motion closely.
         let by_oil =
             |drive: usize| cylinders.iter().any(|cylinder| cylinder.drive == drive && cylinder.valve.is_some());
-        let references = references
+        let driven = driven
             .filter(|reference| has_reference(reference.drive, reference.rigid) && !by_oil(reference.drive))
             .collect();
         let motions = vec![[0.0; 2]; drives.len()];
-        Self { references, near: [motions.clone(), motions.clone()], motions, within: [0.0; 2] }
+        Self { driven, near: [motions.clone(), motions.clone()], motions, within: [0.0; 2] }
     }
 
     /// The coordinates that are relative to a motion.
     pub fn coordinates(&self) -> impl Iterator<Item = usize> {
-        self.references.iter().map(|reference| reference.coordinate)
+        self.driven.iter().map(|reference| reference.coordinate)
     }
 
     /// Sets the step from `begin` to `end`, s.
@@ -73,7 +73,7 @@ impl References {
     /// Makes a motion of `n` coordinates relative to the drives' motions.
     pub fn make_relative(&mut self, crane: &dyn DynModel, t: f64, n: usize, motion: &mut [f64]) {
         self.add(crane, t, -1.0, n, motion);
-        for reference in self.references.iter().filter(|reference| reference.rigid) {
+        for reference in self.driven.iter().filter(|reference| reference.rigid) {
             motion[reference.coordinate] = 0.0;
             motion[n + reference.coordinate] = 0.0;
         }
@@ -81,11 +81,11 @@ impl References {
 
     /// Adds `sign (p, ṗ)` to a motion of `n` coordinates.
     pub fn add(&mut self, crane: &dyn DynModel, t: f64, sign: f64, n: usize, motion: &mut [f64]) {
-        if self.references.is_empty() {
+        if self.driven.is_empty() {
             return;
         }
         crane.drive_motions(t, &mut self.motions);
-        for reference in &self.references {
+        for reference in &self.driven {
             let [position, rate] = self.motions[reference.drive];
             motion[reference.coordinate] += sign * position;
             motion[n + reference.coordinate] += sign * rate;
@@ -94,7 +94,7 @@ impl References {
 
     /// Subtracts `p̈` from accelerations. Rates are differenced within the step, because a motion may be less smooth at its ends.
     pub fn subtract_accelerations(&mut self, crane: &dyn DynModel, t: f64, accelerations: &mut [f64]) {
-        if self.references.is_empty() {
+        if self.driven.is_empty() {
             return;
         }
         let [begin, end] = self.within;
@@ -111,7 +111,7 @@ impl References {
         for (shift, near) in shifts.iter().zip(&mut self.near) {
             crane.drive_motions(t + shift, near);
         }
-        for reference in &self.references {
+        for reference in &self.driven {
             let rates = [&self.motions, &self.near[0], &self.near[1]].map(|motions| motions[reference.drive][1]);
             let sum: f64 = rates.iter().zip(weights).map(|(rate, weight)| rate * weight).sum();
             let acceleration = &mut accelerations[reference.coordinate];
