@@ -120,6 +120,7 @@ name: mine
 links:
   - {name: hand, remove: true}
   - {name: tip, joint: {revolute: {axis: x}}, mass: 1, com: [0, 0.1, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}
+  - {name: sleeve, after: arm, joint: {prismatic: {axis: x}}, mass: 1, com: [0, 0, 0]}
 ";
     let whole = folder("extends_chain", &[("last.yaml", last)]);
     folder("extends_chain/sub", &[("base.yaml", base), ("middle.yaml", middle)]);
@@ -130,7 +131,10 @@ links:
     assert_eq!((middle.run.duration, middle.run.output), (4.0, 0.1));
     assert_eq!((middle.drives.len(), middle.joint_dampers.len()), (1, 0));
     let last = load("last.yaml");
-    assert_eq!((last.name.as_str(), names(&last)), ("mine", vec!["arm_theta".to_owned(), "tip_phi".to_owned()]));
+    assert_eq!(
+        (last.name.as_str(), names(&last)),
+        ("mine", ["arm_theta", "sleeve_x", "tip_phi"].map(str::to_owned).to_vec())
+    );
 }
 
 #[test]

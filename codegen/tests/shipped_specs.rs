@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};
 
 use crane_codegen::chain::{Chain, CoordinateKind, Inertia, Profile, Step, Value};
-use crane_codegen::{build, json_schema, read, validate};
+use crane_codegen::{SourceFile, build, json_schema, read, validate};
 
 /// The folder of shipped specs.
 fn folder() -> PathBuf {
@@ -185,4 +185,31 @@ fn points_of_a_beam_belong_to_the_element_that_holds_them() {
     // Elements of 0.125, 0.25, ... m: x = 1 m is in the middle of element 4, which begins at 0.875 m.
     assert_eq!(chain.bodies[chain.points[0].body.0].name, "beam_4");
     assert_eq!(chain.points[0].position, [0.125, 0.0, 0.0].map(Value::from));
+}
+
+/// Statics begin where couplings put what follows, whatever their order: c = 0.3 + 2 b, b = 0.1 − 0.5 a, a = 0.4. A written guess is kept.
+#[test]
+fn what_follows_begins_where_its_coupling_puts_it() {
+    let links = ["a", "b", "c", "d"]
+        .map(|name| format!("  - {{name: {name}, joint: {{prismatic: {{axis: x}}}}, mass: 10, com: [0, 0, 0]}}\n"));
+    let coupled = |name: &str, follows: &str, law: &str| {
+        format!("  - {{name: {name}_chain, coordinate: {name}_x, follows: {follows}_x, {law}, stiffness: 1e5}}\n")
+    };
+    let text = format!(
+        "format: 1\nname: chain\nlinks:\n{}couplings:\n{}{}{}guess: {{d_x: 7}}\n\
+         drives: [{{coordinate: a_x, stiffness: 1e5, motion: {{quintic: {{from: 0.4, to: 1, duration: 2}}}}}}]\n",
+        links.concat(),
+        coupled("c", "b", "ratio: 2, offset: 0.3"),
+        coupled("b", "a", "ratio: -0.5, offset: 0.1"),
+        coupled("d", "a", "ratio: 1"),
+    );
+    let source = SourceFile::new("chain.yaml", text);
+    let chain =
+        read(&source).and_then(|spec| validate(&spec, &source)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
+    let expected = [0.4, 0.1 - 0.5 * 0.4, 0.3 + 2.0 * (0.1 - 0.5 * 0.4), 7.0];
+    assert!(
+        chain.guess.iter().zip(expected).all(|(guess, expected)| (guess - expected).abs() < 1e-15),
+        "{:?}",
+        chain.guess
+    );
 }

@@ -494,10 +494,11 @@ def read_connector(crane, written, spans):
 def read_coupling(crane, written):
     """A coordinate that follows another one through a spring and a damper."""
     spec = crane.spec
-    own, leader = (crane.coordinate(written[key]).q for key in ("coordinate", "follows"))
+    own, leader = (crane.coordinate(written[key]) for key in ("coordinate", "follows"))
     stiffness, damping = (spec.number(written.get(key, 0)) for key in ("stiffness", "damping"))
-    strain = own - spec.number(written["ratio"]) * leader
-    return Connector([], [], strain, False, stiffness, damping, spec.number(written.get("offset", 0)), 0)
+    strain = own.q - spec.number(written["ratio"]) * leader.q
+    offset = spec.position(written.get("offset", 0), own.is_rotation)
+    return Connector([], [], strain, False, stiffness, damping, offset, 0)
 
 
 def read_point(spec, written, span):
@@ -518,10 +519,15 @@ def carrier(spec, at, span):
 
 
 def read_guess(crane):
-    """Where the static solution starts: as written, else at the drive's position at t = 0, else 0."""
+    """Where the static solution starts: as written, else at the drive's position at t = 0, else where a coupling has it, else 0."""
     spec, written = crane.spec, crane.spec.get("guess", {})
-    driven = {drive.coordinate.name: ca.substitute(drive.motion, crane.time, 0) for drive in crane.drives}
-    return [
-        spec.position(written[c.name], c.is_rotation) if c.name in written else spec.default(driven.get(c.name, 0))
-        for c in crane.coordinates
-    ]
+    known = {drive.coordinate.name: spec.default(ca.substitute(drive.motion, crane.time, 0)) for drive in crane.drives}
+    known |= {c.name: spec.position(written[c.name], c.is_rotation) for c in crane.coordinates if c.name in written}
+    couplings = spec.get("couplings", [])
+    # A coordinate that follows one that follows another is known one pass later.
+    for coupling in couplings * len(couplings):
+        name, leader = coupling["coordinate"], coupling["follows"]
+        if name not in known and leader in known:
+            offset = spec.position(coupling.get("offset", 0), crane.coordinate(name).is_rotation)
+            known[name] = spec.default(offset + spec.number(coupling["ratio"]) * known[leader])
+    return [known.get(c.name, 0.0) for c in crane.coordinates]

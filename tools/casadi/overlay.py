@@ -46,15 +46,20 @@ def merge_mappings(base, over):
 
 
 def merge_entries(base, over):
-    """Entry by entry, in the order of the base; new entries come last, `remove: true` removes one."""
-    merged = {identity(entry): entry for entry in base}
+    """Entry by entry, in the order of the base; new entries come last or `after` another one, `remove: true` removes one."""
+    merged = list(base)
     for entry in over:
+        names = [identity(known) for known in merged]
         name = identity(entry)
+        place = names.index(name) if name in names else len(merged)
+        known = merged.pop(place) if name in names else {}
         if entry.get("remove") is True:
-            del merged[name]
-        else:
-            merged[name] = merge(merged[name], entry) if name in merged else entry
-    return list(merged.values())
+            continue
+        if "after" in entry:
+            place = [identity(other) for other in merged].index(entry["after"]) + 1
+        changes = {key: value for key, value in entry.items() if key != "after"}
+        merged.insert(place, merge(known, changes) if known else changes)
+    return merged
 
 
 def kind(value):

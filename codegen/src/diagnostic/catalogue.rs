@@ -76,8 +76,7 @@ catalogue! {
     E008 no_base(base, problem) "`extends: {base}` cannot be read: {problem}", "the spec to start from",
         "give a YAML file, relative to this one, or a shipped crane such as eight_link_flexible";
     /// An extending spec removes only existing entries.
-    E009 nothing_to_remove(name) "there is no `{name}` to remove", "the extended spec does not have it",
-        "check its name in the extended spec, or remove this entry";
+    E009 nothing_to_remove(name, help) "there is no `{name}` to remove", "the extended spec does not have it", "{help}";
 
     // Keys and shapes.
     /// Every key belongs to the language.
@@ -99,6 +98,11 @@ catalogue! {
     /// Text is one line without control characters.
     E017 not_one_line(place) "{place} is not one line of plain text", "contains a line break or a character that cannot be printed",
         "write it on one line; `>-` folds a long text into one";
+    /// An entry that changes one of the extended spec has the name of that entry.
+    E018 misspelt_entry(name, known) "the extended spec has no `{name}`", "so this is a new entry, which is incomplete",
+        "did you mean `{known}`? A new entry needs all keys without a default";
+    /// An entry of an extending spec comes after an existing one.
+    E019 nothing_before(name, help) "there is no `{name}` to come after", "no entry of this list", "{help}";
 
     // Names.
     /// Names are `snake_case` identifiers of at most 64 characters: they become names in Rust.
@@ -445,4 +449,7 @@ catalogue! {
     /// Each part of a beam contains the spring of a section, where stresses are computed.
     W027 part_without_spring(number, link, sections) "part {number} of beam `{link}` contains no section spring, so its stress is not computed", "shorter than one of the beam's equal sections",
         "use {sections} sections or more, or join the part with its neighbour";
+    /// The greatest rate of a drive is at least a hundredth of what its motion asks for.
+    W028 slow_drive(coordinate, limit, speed, unit) "the drive of `{coordinate}` moves at most at {limit} {unit}", "its motion is {speed} {unit} fast on average",
+        "check the unit of `max_rate`: a drive this slow stands still, and forces very small steps";
 }

@@ -8,7 +8,7 @@ mod source;
 pub(crate) use catalogue::catalogue;
 pub use catalogue::{CATALOGUE, Rule};
 pub(crate) use catalogue::{printable, rule};
-pub(crate) use nearest::{list, suggest};
+pub(crate) use nearest::{list, nearest, suggest};
 pub use source::{MAX_BYTES, Part, SourceFile, Span};
 
 use std::fmt;

@@ -5,15 +5,23 @@ pub(crate) fn suggest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>
     /// More words than this are not listed.
     const MOST: usize = 16;
     let offered: Vec<&str> = offered.into_iter().collect();
+    match nearest(word, offered.iter().copied()) {
+        Some(known) => format!("did you mean `{known}`?"),
+        None if offered.is_empty() => "none is defined".into(),
+        None if offered.len() <= MOST => format!("write one of {}", list(&offered)),
+        None => format!("write one of {}, ...", list(&offered[..MOST])),
+    }
+}
+
+/// The most similar of the valid words, if one is similar.
+pub(crate) fn nearest<'a>(word: &str, offered: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A longer word may contain more typing errors.
     let tolerance = (word.chars().count() / 3).max(1);
-    let nearest = offered.iter().map(|known| (distance(word, known), known)).min_by_key(|(distance, _)| *distance);
-    match nearest {
-        Some((distance, known)) if distance <= tolerance => format!("did you mean `{known}`?"),
-        Some(_) if offered.len() <= MOST => format!("write one of {}", list(&offered)),
-        Some(_) => format!("write one of {}, ...", list(&offered[..MOST])),
-        None => "none is defined".into(),
-    }
+    let by_distance = offered.into_iter().map(|known| (distance(word, known), known));
+    by_distance
+        .min_by_key(|(distance, _)| *distance)
+        .filter(|(distance, _)| *distance <= tolerance)
+        .map(|(_, known)| known)
 }
 
 /// A list of words: `a`, `b`, `c`.

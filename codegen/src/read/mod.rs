@@ -15,6 +15,7 @@ use serde::Deserialize;
 use crate::diagnostic::{Diagnostics, MAX_BYTES, Mistake, SourceFile, Span, rule};
 use crate::spec::{Crane, CraneSpec};
 use deserializer::Reader;
+use overlay::Noticed;
 use tree::Node;
 
 /// Reads a spec as far as possible. Mistakes of keys and forms do not stop it: they are stored with the spec, and
@@ -28,17 +29,17 @@ pub fn read(source: &SourceFile) -> Result<CraneSpec, Diagnostics> {
         let nothing = SourceFile::new(&source.name, "");
         return Err(Diagnostics::new(&nothing, vec![rule::too_large(Span::START, source.text.len(), MAX_BYTES)]));
     }
-    let mut mistakes = Vec::new();
-    let root = parts(source, &mut mistakes).map_err(|mistake| refuse(vec![mistake]))?;
-    let mistakes = RefCell::new(mistakes);
+    let mut noticed = Noticed::default();
+    let root = parts(source, &mut noticed).map_err(|mistake| refuse(vec![mistake]))?;
+    let mistakes = RefCell::new(noticed.mistakes);
     match Crane::deserialize(Reader::root(&root, &mistakes)) {
-        Ok(crane) => Ok(CraneSpec { crane, mistakes: mistakes.into_inner() }),
+        Ok(crane) => Ok(CraneSpec { crane, mistakes: mistakes.into_inner(), lookalikes: noticed.lookalikes }),
         Err(_) => Err(refuse(mistakes.into_inner())),
     }
 }
 
 /// The tree of a source file, with its parts merged, each over the previous ones.
-fn parts(source: &SourceFile, mistakes: &mut Vec<Mistake>) -> Result<Node, Mistake> {
+fn parts(source: &SourceFile, noticed: &mut Noticed) -> Result<Node, Mistake> {
     let mut whole: Option<Node> = None;
     for part in source.parts() {
         let shifted = |mut mistake: Mistake| {
@@ -47,14 +48,18 @@ fn parts(source: &SourceFile, mistakes: &mut Vec<Mistake>) -> Result<Node, Mista
         };
         let tree = tree::parse(part.text).map_err(shifted)?.shifted(part.start);
         whole = Some(match whole {
-            Some(base) => overlay::merge(base, tree.without_base(), mistakes),
+            Some(base) => overlay::merge(base, tree.without_base(), noticed),
             None => tree,
         });
     }
     let whole = whole.ok_or_else(|| rule::empty(Span::START))?;
     // Only the code that reads files can follow `extends`; here it was not followed.
     if let Some((base, span)) = whole.base() {
-        mistakes.push(rule::no_base(span, base, "this spec is text, not a file, so there is no folder to look in"));
+        noticed.mistakes.push(rule::no_base(
+            span,
+            base,
+            "this spec is text, not a file, so there is no folder to look in",
+        ));
     }
     Ok(whole.without_base())
 }

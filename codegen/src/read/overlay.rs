@@ -3,12 +3,15 @@
 use std::collections::BTreeSet;
 
 use super::tree::{Content, Node};
-use crate::diagnostic::{Mistake, Span, rule};
+use crate::diagnostic::{Mistake, Span, nearest, rule, suggest};
+use crate::spec::Lookalike;
 
 /// Key of the spec to start from.
 const EXTENDS: &str = "extends";
 /// Key that removes an entry of a list.
 const REMOVE: &str = "remove";
+/// Key that places an entry of a list behind another one.
+const AFTER: &str = "after";
 /// Keys whose value is one of several kinds, a mapping with the kind's name as its key: a value of another kind replaces it.
 const KINDS: [&str; 7] = ["joint", "law", "motion", "opening", "placement", "scale", "section"];
 /// Keys that identify the entries of lists.
@@ -56,20 +59,49 @@ impl Node {
 
     /// The value that identifies an entry of a list.
     fn identity(&self) -> Option<String> {
-        IDENTITIES.iter().find_map(|key| self.entry(key)).map(Node::key_text)
+        self.identity_node().map(Node::key_text)
+    }
+
+    fn identity_node(&self) -> Option<&Node> {
+        IDENTITIES.iter().find_map(|key| self.entry(key))
     }
 
     fn is_removal(&self) -> bool {
         self.entry(REMOVE).is_some_and(|value| matches!(value.content, Content::Boolean(true)))
     }
+
+    /// Without the key `after`, and that key's value.
+    fn without_place(mut self) -> (Self, Option<Node>) {
+        let Content::Mapping(entries) = &mut self.content else { return (self, None) };
+        let place = entries.iter().position(|(key, _)| key.key_text() == AFTER);
+        let after = place.map(|place| entries.remove(place).1);
+        (self, after)
+    }
+
+    /// Where the text of a node ends that contains no alias.
+    fn end(&self) -> usize {
+        let last = match &self.content {
+            Content::Sequence(items) => items.iter().map(Node::end).max(),
+            Content::Mapping(entries) => entries.iter().map(|(key, value)| key.end().max(value.end())).max(),
+            _ => None,
+        };
+        last.map_or(self.span.end, |last| last.max(self.span.end))
+    }
+}
+
+/// What is noticed while specs are laid over each other.
+#[derive(Default)]
+pub(super) struct Noticed {
+    pub mistakes: Vec<Mistake>,
+    pub lookalikes: Vec<Lookalike>,
 }
 
 /// `over` merged over `base`.
-pub(super) fn merge(base: Node, over: Node, mistakes: &mut Vec<Mistake>) -> Node {
+pub(super) fn merge(base: Node, over: Node, noticed: &mut Noticed) -> Node {
     let content = match (base.content, over.content) {
-        (Content::Mapping(base), Content::Mapping(over)) => Content::Mapping(merge_entries(base, over, mistakes)),
+        (Content::Mapping(base), Content::Mapping(over)) => Content::Mapping(merge_entries(base, over, noticed)),
         (Content::Sequence(base), Content::Sequence(over)) if are_known(&base) && are_known(&over) => {
-            Content::Sequence(merge_items(base, over, mistakes))
+            Content::Sequence(merge_items(base, over, noticed))
         }
         (_, content) => content,
     };
@@ -89,11 +121,7 @@ fn are_known(items: &[Node]) -> bool {
     items.iter().all(|item| item.identity().is_some())
 }
 
-fn merge_entries(
-    mut base: Vec<(Node, Node)>,
-    over: Vec<(Node, Node)>,
-    mistakes: &mut Vec<Mistake>,
-) -> Vec<(Node, Node)> {
+fn merge_entries(mut base: Vec<(Node, Node)>, over: Vec<(Node, Node)>, noticed: &mut Noticed) -> Vec<(Node, Node)> {
     let mut seen = BTreeSet::new();
     for (key, value) in over {
         if !seen.insert(key.key_text()) {
@@ -106,11 +134,15 @@ fn merge_entries(
             (Some(place), Content::Null) => {
                 base.remove(place);
             }
-            (None, Content::Null) => mistakes.push(rule::nothing_to_remove(key.span, key.key_text())),
+            (None, Content::Null) => {
+                let known: Vec<String> = base.iter().map(|(key, _)| key.key_text()).collect();
+                let help = suggest(&key.key_text(), known.iter().map(String::as_str));
+                noticed.mistakes.push(rule::nothing_to_remove(key.span, key.key_text(), help));
+            }
             (Some(place), _) => {
                 let (_, known) = base.remove(place);
                 let replaces = KINDS.contains(&key.key_text().as_str()) && are_of_different_kinds(&known, &value);
-                let value = if replaces { value } else { merge(known, value, mistakes) };
+                let value = if replaces { value } else { merge(known, value, noticed) };
                 base.insert(place, (key, value));
             }
             (None, _) => base.push((key, value)),
@@ -119,28 +151,53 @@ fn merge_entries(
     base
 }
 
-fn merge_items(mut base: Vec<Node>, over: Vec<Node>, mistakes: &mut Vec<Mistake>) -> Vec<Node> {
+fn merge_items(mut base: Vec<Node>, over: Vec<Node>, noticed: &mut Noticed) -> Vec<Node> {
+    let extended: Vec<String> = base.iter().filter_map(Node::identity).collect();
+    let extended = || extended.iter().map(String::as_str);
     let mut seen = BTreeSet::new();
     for item in over {
-        if !seen.insert(item.identity()) {
+        let name = item.identity().unwrap_or_default();
+        if !seen.insert(name.clone()) {
             // A duplicate name in one list is a mistake, which validation reports.
             base.push(item);
             continue;
         }
-        let place = base.iter().position(|known| known.identity() == item.identity());
-        match place {
-            Some(place) if item.is_removal() => {
+        let place_of =
+            |items: &[Node], name: &str| items.iter().position(|item| item.identity().as_deref() == Some(name));
+        let place = place_of(&base, &name);
+        if item.is_removal() {
+            if let Some(place) = place {
                 base.remove(place);
+            } else {
+                let help = suggest(&name, extended());
+                noticed.mistakes.push(rule::nothing_to_remove(item.span, name, help));
             }
-            None if item.is_removal() => {
-                mistakes.push(rule::nothing_to_remove(item.span, item.identity().unwrap_or_default()));
-            }
-            Some(place) => {
-                let known = base.remove(place);
-                base.insert(place, merge(known, item, mistakes));
-            }
-            None => base.push(item),
+            continue;
         }
+        if place.is_none()
+            && let Some(known) = nearest(&name, extended())
+        {
+            let at = item.identity_node().map_or(item.span, |node| node.span);
+            let span = Span { start: item.span.start, end: item.end() };
+            noticed.lookalikes.push(Lookalike { name: name.clone(), at, span, known: known.to_owned() });
+        }
+        let (item, after) = item.without_place();
+        let (place, item) = match place {
+            Some(place) => (place, merge(base.remove(place), item, noticed)),
+            None => (base.len(), item),
+        };
+        let behind = after.map(|after| {
+            place_of(&base, &after.key_text()).map_or_else(
+                || {
+                    let names: Vec<String> = base.iter().filter_map(Node::identity).collect();
+                    let help = suggest(&after.key_text(), names.iter().map(String::as_str));
+                    noticed.mistakes.push(rule::nothing_before(after.span, after.key_text(), help));
+                    place
+                },
+                |other| other + 1,
+            )
+        });
+        base.insert(behind.unwrap_or(place), item);
     }
     base
 }

@@ -38,7 +38,7 @@ pub use support::{Kinematics, Point, Support};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::diagnostic::Mistake;
+use crate::diagnostic::{Mistake, Span};
 
 /// A crane as written, with the mistakes found while reading it; [`validate`](crate::validate()) reports them together with
 /// its own.
@@ -48,6 +48,21 @@ pub struct CraneSpec {
     pub crane: Crane,
     /// Mistakes in keys and shapes.
     pub(crate) mistakes: Vec<Mistake>,
+    /// Entries that were perhaps meant to change others.
+    pub(crate) lookalikes: Vec<Lookalike>,
+}
+
+/// A new entry of a list whose name resembles that of an entry of the extended spec.
+#[derive(Clone, Debug)]
+pub(crate) struct Lookalike {
+    /// Its name.
+    pub name: String,
+    /// Where the name is.
+    pub at: Span,
+    /// All of the entry.
+    pub span: Span,
+    /// The name that it resembles.
+    pub known: String,
 }
 
 /// A crane: an open chain of links from the base to the tip. Every number is in SI units; the name of an entry of
@@ -57,7 +72,8 @@ pub struct CraneSpec {
 pub struct Crane {
     /// Another spec to start from: a file, relative to this one, or a shipped crane. This file then contains only the differences:
     /// mappings are merged key by key, lists whose entries have a `name` or a `coordinate`, such as links, supports and drives, entry by entry; everything
-    /// else is replaced. A key without a value removes what it names, and so does `remove: true` in an entry of a list.
+    /// else is replaced. A key without a value removes what it names, and so does `remove: true` in an entry of a list. A new entry comes
+    /// last, or behind the one that `after` names.
     pub extends: Option<Spanned<String>>,
     /// Version of the spec language: 1.
     pub format: Spanned<Constant>,
@@ -104,7 +120,7 @@ pub struct Crane {
     /// Points of interest, whose motion is reported.
     pub points: Option<Spanned<Vec<Spanned<Point>>>>,
     /// Starting point of the static solution, by coordinate, rad or m. Default: a driven coordinate at its drive's position at
-    /// t = 0, all others at 0.
+    /// t = 0, one that follows another where its coupling puts it, all others at 0.
     pub guess: Option<Spanned<Entries<FixedAngle>>>,
     /// Settings of a run.
     pub run: Option<Spanned<Run>>,

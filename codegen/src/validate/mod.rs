@@ -30,7 +30,7 @@ use crate::chain::{
     Relation, Value,
 };
 use crate::diagnostic::{Diagnostics, Mistake, SourceFile, rule};
-use crate::spec::{self, Analysis, Crane, CraneSpec, Spanned};
+use crate::spec::{self, Analysis, Crane, CraneSpec, Lookalike, Spanned};
 use limits::Limit;
 use names::Names;
 use section::Elastic;
@@ -74,7 +74,7 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
         check.keep_masses(&mut chain);
     }
     if !check.mistakes.is_empty() {
-        return Err(Diagnostics::new(source, check.mistakes));
+        return Err(Diagnostics::new(source, misspelt(check.mistakes, &spec.lookalikes)));
     }
     let mut warnings = check.warnings;
     let value = |parameter: &Parameter| {
@@ -83,6 +83,20 @@ pub fn check_with(spec: &CraneSpec, source: &SourceFile, set: &[(&str, f64)]) ->
     let values = chain.parameters.iter().map(value).collect();
     warnings.extend(plausibility::warnings(&spec.crane, &chain, values));
     Ok(Checked { chain, warnings: Diagnostics::new(source, warnings) })
+}
+
+/// In place of all mistakes of a new entry that lacks keys and whose name resembles that of an entry of the extended spec, that it does.
+fn misspelt(mut mistakes: Vec<Mistake>, lookalikes: &[Lookalike]) -> Vec<Mistake> {
+    /// The code of `rule::missing_key`.
+    const MISSING_KEY: &str = "E012";
+    for Lookalike { name, at, span, known } in lookalikes {
+        let within = |mistake: &Mistake| (span.start..span.end).contains(&mistake.span.start);
+        if mistakes.iter().any(|mistake| within(mistake) && mistake.code == MISSING_KEY) {
+            mistakes.retain(|mistake| !within(mistake));
+            mistakes.push(rule::misspelt_entry(*at, name, known));
+        }
+    }
+    mistakes
 }
 
 /// The owner of a coordinate.
@@ -178,7 +192,7 @@ impl<'a> Check<'a> {
         let connectors = self.connectors(crane, &cylinders);
         rotors.extend(self.rotors(crane, &drives));
         let points = self.points(crane, &supports);
-        let guess = self.guess(crane, &drives);
+        let guess = self.guess(crane, &drives, &connectors);
         let run = self.run(crane.run.as_ref());
         let analyses = self.analyses(crane.analyses.as_ref());
         self.something_moves(crane);

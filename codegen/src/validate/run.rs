@@ -2,7 +2,9 @@
 
 use super::Check;
 use super::limits::Limit;
-use crate::chain::{BodyId, CoordinateId, Drive, Point, Run, Support, Transmission, Value};
+use crate::chain::{
+    BodyId, Connector, ConnectorLaw, CoordinateId, Drive, Point, Run, Strain, Support, Transmission, Value,
+};
 use crate::diagnostic::{Span, rule, suggest};
 use crate::spec::{self, Constant, Crane, Spanned};
 
@@ -56,13 +58,14 @@ impl<'a> Check<'a> {
         Some((BodyId(place.first + element), [x - start, y, z]))
     }
 
-    pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive]) -> Vec<f64> {
-        let mut guess = vec![0.0; self.coordinates.len()];
+    /// As written, where drives begin, or where the coordinates are that others follow; otherwise 0.
+    pub(super) fn guess(&mut self, crane: &'a Crane, drives: &[Drive], connectors: &[Connector]) -> Vec<f64> {
+        let mut guess = vec![None; self.coordinates.len()];
         for drive in drives {
-            guess[drive.coordinate.0] = drive.profile.start(&self.defaults);
+            guess[drive.coordinate.0] = Some(drive.profile.start(&self.defaults));
         }
-        let Some(entries) = crane.guess.as_ref().and_then(|guess| guess.value.as_ref()) else { return guess };
-        for (name, position) in &entries.0 {
+        let entries = crane.guess.as_ref().and_then(|guess| guess.value.as_ref());
+        for (name, position) in entries.into_iter().flat_map(|entries| &entries.0) {
             let coordinate = self.coordinate(name);
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let place = format!("the guess of `{}`", name.value.as_deref().unwrap_or_default());
@@ -71,9 +74,19 @@ impl<'a> Check<'a> {
             if drives.iter().any(|drive| drive.coordinate == id && drive.transmission == Transmission::Rigid) {
                 self.report(rule::prescribed_guess(name.span, &self.coordinates[id.0].name));
             }
-            guess[id.0] = position;
+            guess[id.0] = Some(position);
         }
-        guess
+        // A coordinate that follows one that follows another is known one pass later.
+        for _ in connectors {
+            for Connector { strain, law, .. } in connectors {
+                let Strain::Coupling { coordinate, leader, ratio } = strain else { continue };
+                let ConnectorLaw::Linear { length, .. } = law else { continue };
+                if let (None, Some(leading)) = (guess[coordinate.0], guess[leader.0]) {
+                    guess[coordinate.0] = Some(self.now(length) + self.now(ratio) * leading);
+                }
+            }
+        }
+        guess.into_iter().map(Option::unwrap_or_default).collect()
     }
 
     pub(super) fn run(&mut self, given: Option<&Spanned<spec::Run>>) -> Run {

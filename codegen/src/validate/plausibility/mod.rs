@@ -6,6 +6,7 @@
 mod angles;
 mod beams;
 mod connectors;
+mod drives;
 mod feet;
 mod friction;
 mod hydraulics;
@@ -23,6 +24,7 @@ pub(super) fn warnings(crane: &Crane, chain: &Chain, values: Vec<f64>) -> Vec<Mi
     plausibility.lengths();
     plausibility.hydraulics();
     plausibility.bristles();
+    plausibility.slow_drives();
     // Consequences of such numbers, such as frequencies and masses, would be reported as well.
     if plausibility.warnings.is_empty() {
         plausibility.parts();
