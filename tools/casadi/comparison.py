@@ -24,6 +24,8 @@ NEGLIGIBLE_ENTRY_OF_ACCELERATION = 0.1
 # An array may vanish in a state (the power of a drive that comes to rest as (1 - τ)², weight in a hanging pose) and is
 # then only round-off of terms that cancel: its error is relative to at least this fraction of its largest value in any state.
 VANISHING_STATE = 1e-3
+# Or in all states of a group: friction of joints that slide fast does not damp, and 1 - tanh² is 0 or 1e-138.
+VANISHING_GROUP = 1e-12
 
 
 @dataclass
@@ -76,9 +78,10 @@ def compare(quantity, derived, generated, groups, tolerance=None):
     neither = np.isnan(derived) & np.isnan(generated)
     derived, generated = np.where(neither, 0.0, derived), np.where(neither, 0.0, generated)
     by_state, by_entry = [], []
+    largest_of_all = np.nan_to_num(np.abs(derived)).max()
     for group in groups:
         error, size = np.abs(generated[group] - derived[group]), np.abs(derived[group])
-        largest = size.max()
+        largest = max(size.max(), VANISHING_GROUP * largest_of_all)
         state_size = np.maximum(size.max(axis=1), VANISHING_STATE * largest)
         entry_size = np.maximum(size.max(axis=0), negligible_entry(quantity) * largest)
         by_state.append(ratio(error.max(axis=1), state_size))
