@@ -107,6 +107,36 @@ fn a_joint_that_mimics_another_is_coupled_to_it() {
     assert!(format!("{:?}", connector.law).contains("0.3"), "{:?}", connector.law);
 }
 
+/// A finger at `2 · 0 + 0.3` rad is where a placement of 0.3 rad puts it.
+#[test]
+fn a_joint_that_mimics_a_held_one_is_held_where_it_follows() {
+    let hand = |follows: &str, turn: f64, fixed: &[&str]| {
+        let mass = "<inertial><origin xyz='0.5 0.1 0'/><mass value='2'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+        let joint = |name: &str, from: &str, to: &str, rest: &str| {
+            format!(
+                "<joint name='{name}' type='continuous'><parent link='{from}'/><child link='{to}'/><axis xyz='0 0 1'/>{rest}</joint>"
+            )
+        };
+        let joints = [
+            joint("shoulder", "base", "upper", "<origin xyz='0 0 1'/>"),
+            joint("wrist", "upper", "palm", "<origin xyz='1 0 0'/>"),
+            joint("finger", "palm", "tip", &format!("<origin xyz='0.2 0 0' rpy='0 0 {turn}'/>{follows}")),
+        ];
+        let links = ["upper", "palm", "tip"].map(|name| format!("<link name='{name}'>{mass}</link>"));
+        let urdf = format!("<robot name='hand'><link name='base'/>{}{}</robot>", links.concat(), joints.concat());
+        let fixed: Vec<String> = fixed.iter().map(ToString::to_string).collect();
+        let imported = exchange::import(&SourceFile::new("hand.urdf", urdf), &fixed);
+        imported.unwrap_or_else(|mistakes| panic!("\n{mistakes}")).spec
+    };
+    let followed = hand("<mimic joint='wrist' multiplier='2' offset='0.3'/>", 0.0, &["wrist"]);
+    assert!(followed.contains("held at zero: wrist; held at 0.3 rad: finger"), "{followed}");
+    let com = |spec: String| {
+        let crane = chain(&SourceFile::new("hand", spec));
+        format!("{:?}", crane.bodies.iter().map(|body| &body.inertia).collect::<Vec<_>>())
+    };
+    assert_eq!(com(followed), com(hand("", 0.3, &["wrist", "finger"])));
+}
+
 #[test]
 fn what_is_written_is_for_people_to_read() {
     let cranes = shipped();

@@ -185,7 +185,7 @@ class Exported:
     def again(self, file, springs, rotors=True):
         """Compares A and e of the spec imported from an exported file. `rotors`: adds gravity and rotors, which URDF lacks."""
         spec = self.folder / f"{self.name}_again.yaml"
-        crane(self.options, "import", file, "-o", spec)
+        crane(self.options, "import", file, "-o", spec, "--force")
         if rotors:
             with spec.open("a", encoding="utf-8") as text:
                 text.write(f"gravity: {list(springs.gravity)}\n")

@@ -104,6 +104,12 @@ fn in_c(options: &Export, chain: &Chain, parameters: &[f64]) -> Outcome<CCode> {
 /// Writes a spec made from URDF or MJCF, and checks it.
 pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
     let source = own::open(&options.robot, "give a URDF or MJCF file")?;
+    if let Some(file) = options.spec.as_ref().filter(|file| file.exists() && !options.force) {
+        return Err(Problem::usage(
+            format!("{} exists", file.display()),
+            "give another file with `-o`, or replace it with `--force`; drives and other changes in it would be lost",
+        ));
+    }
     let Imported { spec, left_out } = exchange::import(&source, &options.fixed).map_err(Problem::mistakes)?;
     let Some(file) = &options.spec else {
         out.write_all(spec.as_bytes())?;

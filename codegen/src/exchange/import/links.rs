@@ -22,7 +22,8 @@ pub(super) struct SpecLink<'r> {
     pub(super) bodies: Vec<(String, Lump)>,
     /// Frames without mass at the ends of the group.
     pub(super) points: Vec<(String, Vector)>,
-    pub(super) held: Vec<&'r str>,
+    /// Joints in it that do not move, and where they stand, m or rad.
+    pub(super) held: Vec<(&'r Joint, f64)>,
 }
 
 /// How it moves.
@@ -88,7 +89,7 @@ pub(super) fn links<'r>(groups: &[Group<'r>]) -> Vec<SpecLink<'r>> {
             motion,
             bodies: Vec::new(),
             points: Vec::new(),
-            held: group.held.iter().map(|joint| joint.name.as_str()).collect(),
+            held: group.held.clone(),
         };
         let mut bodies = Names::default();
         let ends = group.links.len() > 1 && link.joint.is_some();

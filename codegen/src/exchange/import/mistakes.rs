@@ -24,9 +24,8 @@ catalogue! {
     /// Joints rotate about an axis, slide along it, or are fixed.
     U009 unsupported(joint, kind) "joint `{joint}` is {kind}, which is not supported", "supported: revolute, continuous, prismatic, fixed; hinge and slide in MJCF",
         "hold it at zero with `--fix {joint}`, or replace it with joints of one axis each; for a free base write `joint: free` in the spec";
-    /// A joint follows another one that moves.
-    U010 mimic(joint, leader) "joint `{joint}` follows joint `{leader}`, which does not move", "no moving joint of this name",
-        "hold it, too, with `--fix {joint}`, or remove `mimic` or the equality";
+    /// A joint follows a joint of the file.
+    U010 unknown_leader(joint, leader, help) "joint `{joint}` follows joint `{leader}`, which is not in the file", "no such joint", "{help}";
     /// Moving joints follow each other in a chain.
     U011 branches(link, first, second) "the chain branches after link `{link}`: joints `{first}` and `{second}` both move on it", "the second branch",
         "hold one of them at zero, with everything beyond it: `--fix {second}` or `--fix {first}`";
@@ -58,4 +57,6 @@ catalogue! {
     U022 two_orientations(owner, both) "{owner} has {both}", "two orientations", "keep one of them";
     /// An orientation has directions of nonzero length that are not parallel.
     U023 no_orientation(owner, key) "`{key}` of {owner} gives no orientation", "a direction has no length, or two are parallel", "write other numbers";
+    /// A joint follows another one.
+    U024 own_leader(joint) "joint `{joint}` follows itself", "directly, or over joints that follow it", "name another joint, or remove `mimic` or the equality";
 }

@@ -3,6 +3,7 @@
 use crate::chain::{Frame, Vector};
 use crate::diagnostic::Span;
 use crate::exchange::mass::Lump;
+use crate::exchange::rotation::about;
 
 /// A robot.
 pub(super) struct Robot {
@@ -74,6 +75,15 @@ impl Joint {
             held: None,
             start: None,
             reference: 0.0,
+        }
+    }
+
+    /// The pose of its child at a position, m or rad, in that at zero.
+    pub(super) fn moved_by(&self, position: f64) -> Frame {
+        match self.motion {
+            Motion::Revolute => about(self.axis, position),
+            Motion::Prismatic => Frame { origin: self.axis.map(|component| component * position), ..Frame::WORLD },
+            Motion::Fixed | Motion::Other(_) => Frame::WORLD,
         }
     }
 

@@ -13,11 +13,11 @@ pub(super) struct Group<'r> {
     pub(super) joint: Option<(&'r Joint, Frame)>,
     /// Its links, each in the frame of the first.
     pub(super) links: Vec<(&'r Link, Frame)>,
-    /// Joints in it that are held at zero on request.
-    pub(super) held: Vec<&'r Joint>,
+    /// Joints in it that are held on request, or follow one that is, and where, m or rad.
+    pub(super) held: Vec<(&'r Joint, f64)>,
 }
 
-/// The chain of a robot with some of its joints held at zero; the first group is fixed.
+/// The chain of a robot with some of its joints held; the first group is fixed.
 pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<'r>>, Vec<Mistake>> {
     let mut mistakes = Vec::new();
     names(robot, fixed, &mut mistakes);
@@ -39,10 +39,10 @@ pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<
             group.links.push((member, frame));
             for joint in children.get(member.name.as_str()).into_iter().flatten().rev() {
                 let placed = frame.outer(&joint.placement);
-                let held = fixed.contains(&joint.name);
-                if held || matches!(joint.motion, Motion::Fixed) {
-                    open.extend(link(&joint.child.name).map(|link| (link, placed)));
-                    group.held.extend(held.then_some(*joint));
+                if let Some(position) = standing(robot, fixed, joint) {
+                    let moved = placed.outer(&joint.moved_by(position));
+                    open.extend(link(&joint.child.name).map(|link| (link, moved)));
+                    group.held.extend((!matches!(joint.motion, Motion::Fixed)).then_some((*joint, position)));
                 } else {
                     cannot_move(joint, &mut mistakes);
                     moving.push((joint, placed));
@@ -59,7 +59,6 @@ pub(super) fn chain<'r>(robot: &'r Robot, fixed: &[String]) -> Result<Vec<Group<
         next = moving.first().and_then(|(joint, frame)| Some((Some((*joint, *frame)), link(&joint.child.name)?)));
         groups.push(group);
     }
-    follow_in_vain(&groups, &mut mistakes);
     if groups.len() == 1 && mistakes.is_empty() {
         mistakes.push(rule::nothing_moves(Span::START));
     }
@@ -93,6 +92,45 @@ fn names(robot: &Robot, fixed: &[String], mistakes: &mut Vec<Mistake>) {
     for name in fixed.iter().filter(|name| !joints.contains(name.as_str())) {
         mistakes.push(rule::unknown_joint(Span::START, name, suggest(name, joints.iter().copied())));
     }
+    for joint in &robot.joints {
+        let Some(Follows { leader, .. }) = &joint.follows else { continue };
+        if !joints.contains(leader.name.as_str()) {
+            let others = joints.iter().copied().filter(|name| *name != joint.name);
+            mistakes.push(rule::unknown_leader(leader.span, &joint.name, &leader.name, suggest(&leader.name, others)));
+        } else if leaders(robot, joint).any(|leader| leader.name == joint.name) {
+            mistakes.push(rule::own_leader(leader.span, &joint.name));
+        }
+    }
+}
+
+/// The joint that a joint follows, the one that this one follows, and so on, each once.
+fn leaders<'r>(robot: &'r Robot, joint: &'r Joint) -> impl Iterator<Item = &'r Joint> {
+    let leader = |joint: &Joint| {
+        let follows = joint.follows.as_ref()?;
+        robot.joints.iter().find(|other| other.name == follows.leader.name)
+    };
+    std::iter::successors(leader(joint), move |joint| leader(joint)).take(robot.joints.len())
+}
+
+/// Where a joint stands that does not move, m or rad: at zero if it is fixed, where the file holds it if it is held on request, or where it
+/// follows one that does not move.
+fn standing(robot: &Robot, fixed: &[String], joint: &Joint) -> Option<f64> {
+    let on_its_own = |joint: &Joint| match joint.motion {
+        Motion::Fixed => Some(0.0),
+        _ => fixed.contains(&joint.name).then(|| joint.held.unwrap_or(0.0)),
+    };
+    if matches!(joint.motion, Motion::Fixed) {
+        return Some(0.0);
+    }
+    let chain: Vec<&Joint> = std::iter::once(joint).chain(leaders(robot, joint)).collect();
+    // The furthest leader that stands holds all between it and the joint.
+    let last = chain.iter().rposition(|joint| on_its_own(joint).is_some())?;
+    let followers = chain[..last].iter().rev().filter_map(|joint| joint.follows.as_ref());
+    Some(
+        followers.fold(on_its_own(chain[last])?, |position, Follows { multiplier, offset, .. }| {
+            multiplier * position + offset
+        }),
+    )
 }
 
 /// The root link, if all others are connected to it.
@@ -132,16 +170,5 @@ fn unreachable<'r>(robot: &'r Robot, root: &Link) -> Option<&'r Link> {
 fn cannot_move(joint: &Joint, mistakes: &mut Vec<Mistake>) {
     if let Motion::Other(kind) = &joint.motion {
         mistakes.push(rule::unsupported(kind.span, &joint.name, &kind.name));
-    }
-}
-
-/// Reports joints that follow a joint that does not move.
-fn follow_in_vain(groups: &[Group], mistakes: &mut Vec<Mistake>) {
-    let moving = || groups.iter().filter_map(|group| group.joint.map(|(joint, _)| joint));
-    for joint in moving() {
-        let Some(Follows { leader, .. }) = &joint.follows else { continue };
-        if leader.name == joint.name || !moving().any(|other| other.name == leader.name) {
-            mistakes.push(rule::mimic(leader.span, &joint.name, &leader.name));
-        }
     }
 }

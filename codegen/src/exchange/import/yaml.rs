@@ -124,13 +124,17 @@ fn link_text(link: &SpecLink) -> String {
         comments.push(format!("link {}", plain(link.was)));
     }
     let limits = |joint: &Joint| joint.limits.filter(|limits| limits.iter().all(|limit| limit.abs() < NO_LIMIT[0]));
+    let unit = |joint: &Joint| if matches!(joint.motion, Motion::Prismatic) { "m" } else { "rad" };
     if let Some((joint, [lower, upper])) = link.joint.and_then(|joint| Some((joint, limits(joint)?))) {
-        let unit = if matches!(joint.motion, Motion::Prismatic) { "m" } else { "rad" };
-        comments.push(format!("from {} to {} {unit}", decimal(lower), decimal(upper)));
+        comments.push(format!("from {} to {} {}", decimal(lower), decimal(upper), unit(joint)));
     }
-    if !link.held.is_empty() {
-        comments
-            .push(format!("held at zero: {}", link.held.iter().map(|name| plain(name)).collect::<Vec<_>>().join(", ")));
+    let (zero, elsewhere): (Vec<_>, Vec<_>) = link.held.iter().partition(|(_, position)| *position == 0.0);
+    if !zero.is_empty() {
+        let names: Vec<String> = zero.iter().map(|(joint, _)| plain(&joint.name)).collect();
+        comments.push(format!("held at zero: {}", names.join(", ")));
+    }
+    for (joint, position) in elsewhere {
+        comments.push(format!("held at {} {}: {}", decimal(position), unit(joint), plain(&joint.name)));
     }
     let mut text = format!("  - {:<27} # {}\n", format!("name: {}", link.name), comments.join("; "));
     if let Some(placement) = placement(&link.placement) {

@@ -86,7 +86,10 @@ pub struct Import {
     /// Spec to write [default: standard output]
     #[arg(short = 'o', long = "file", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub spec: Option<PathBuf>,
-    /// Joint to hold at zero, such as a gripper's; repeatable
+    /// Joint to hold at zero, such as a gripper's, with those that follow it; repeatable
     #[arg(long = "fix", value_name = "JOINT")]
     pub fixed: Vec<String>,
+    /// Replace a spec that exists
+    #[arg(long)]
+    pub force: bool,
 }

@@ -124,6 +124,9 @@ fn a_crane_goes_to_other_programs_and_comes_back() {
     );
     let output = crane(&["import", &urdf, "-o", &spec]);
     assert!(text(&output.stdout).contains("knuckle_boom: valid; 4 bodies, 4 coordinates"), "{}", text(&output.stderr));
+    // Drives and other changes in a spec are not lost by mistake.
+    refused(&["import", &mjcf, "-o", &spec], &["boom.yaml exists", "`--force`"]);
+    assert!(crane(&["import", &urdf, "-o", &spec, "--force"]).status.success());
     let again = file("again.yaml");
     let output = crane(&["import", &mjcf, "-o", &again]);
     assert!(text(&output.stdout).contains("knuckle_boom: valid; 4 bodies, 4 coordinates"), "{}", text(&output.stdout));
@@ -279,7 +282,16 @@ fn a_moment_of_a_run_is_linearised() {
     let spec = "format: 1\nname: arm\nlinks: [{name: arm, joint: {revolute: {axis: y}}, mass: 10, com: [0, 0, -1]}]\n\
                 friction: {arm_theta: {coulomb: 5, bristle: {stiffness: 1e4, damping: 30}}}\n";
     fs::write(&sticking, spec).expect("a file");
-    refused(&["linearise", sticking.to_str().expect("a path")], &["bristles of its joints", "`crane modes`"]);
+    let sticking = sticking.to_str().expect("a path");
+    refused(&["linearise", sticking], &["bristles of its joints", "`crane modes`"]);
+    // Nothing holds a turntable in its place.
+    let turntable = "format: 1\nname: arm\nlinks: [{name: arm, joint: revolute, mass: 10, com: [1, 0, 0]}]\n";
+    fs::write(sticking, turntable).expect("a file");
+    let message = text(&crane(&["linearise", sticking]).stderr);
+    assert!(
+        message.contains("no force keeps arm_psi in its place") && message.contains("`--hold arm_psi=0`"),
+        "{message}"
+    );
 }
 
 /// A state gives the same results among many as alone, and only the requested quantities are returned.
