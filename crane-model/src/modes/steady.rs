@@ -16,6 +16,8 @@ const GREATEST_STEP: f64 = 0.5;
 const HALVINGS: u32 = 12;
 /// Minimum increment of the search, as a fraction of the rates.
 const LEAST_PART: f64 = 1e-3;
+/// Least singular value of the tangent, its rows and columns scaled to 1, with which every coordinate has its place.
+const SINGULAR: f64 = 1e-9;
 /// Time over which forces are compared to see whether a motion remains steady, s.
 const MOMENT: f64 = 1e-4;
 
@@ -53,6 +55,8 @@ pub struct Steady {
 pub struct NotSteady {
     /// The fraction of the rates, and of the way to the held positions, up to which one was found.
     pub reached: f64,
+    /// A coordinate that no force keeps in its place there.
+    pub loose: Option<usize>,
 }
 
 impl fmt::Display for NotSteady {
@@ -87,7 +91,7 @@ pub fn steady(
             None => part *= 0.5,
         }
         if part < LEAST_PART {
-            return Err(NotSteady { reached });
+            return Err(NotSteady { reached, loose: search.loose(&q, reached) });
         }
     }
     let v = search.rates.clone();
@@ -155,6 +159,10 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
 
     /// The factorised tangent matrix of the free coordinates.
     fn tangent(&self, q: &DVector<f64>, v: &DVector<f64>) -> LU<f64, Dyn, Dyn> {
+        self.stiffness(q, v).lu()
+    }
+
+    fn stiffness(&self, q: &DVector<f64>, v: &DVector<f64>) -> DMatrix<f64> {
         let n = q.len();
         let zeros = || DMatrix::zeros(n, n);
         let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
@@ -166,7 +174,26 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
             stiffness.as_mut_slice(),
             damping.as_mut_slice(),
         );
-        stiffness.select_rows(&self.free).select_columns(&self.free).lu()
+        stiffness.select_rows(&self.free).select_columns(&self.free)
+    }
+
+    /// A coordinate that moves without a force that brings it back, if there is one: of the direction in which the tangent is singular, the
+    /// one that moves most.
+    fn loose(&self, q: &DVector<f64>, part: f64) -> Option<usize> {
+        let stiffness = self.stiffness(q, &(&self.rates * part));
+        if self.free.is_empty() || stiffness.iter().any(|number| !number.is_finite()) {
+            return None;
+        }
+        // Rows and columns of one size, whatever their units.
+        let size = DVector::from_fn(stiffness.nrows(), |i, _| stiffness.row(i).amax().max(stiffness.column(i).amax()));
+        if let Some(place) = size.iter().position(|size| *size == 0.0) {
+            return Some(self.free[place]);
+        }
+        let scaled = DMatrix::from_fn(size.len(), size.len(), |i, j| stiffness[(i, j)] / (size[i] * size[j]).sqrt());
+        let found = scaled.svd(false, true);
+        let (place, least) = found.singular_values.argmin();
+        let direction = found.v_t?.row(place).abs();
+        (least < SINGULAR).then(|| self.free[direction.transpose().argmax().0])
     }
 
     /// The pose at a fraction of the rates, from a pose nearby.

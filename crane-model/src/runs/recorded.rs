@@ -43,8 +43,8 @@ const IMBALANCE: f64 = 0.01;
 /// Lower limit of the energy exchanged, relative to the total energy: for a crane at rest it is only rounding.
 const LEAST_EXCHANGED: f64 = 1e-9;
 
-/// Largest error of the energy balance over the largest energy exchanged.
-pub fn imbalance(table: &Table) -> f64 {
+/// Largest error of the energy balance over the largest energy exchanged, or over `least`, J, if that is more.
+pub fn imbalance(table: &Table, least: f64) -> f64 {
     let column = |name: &str| table.values(name).map_or_else(Vec::new, Iterator::collect::<Vec<f64>>);
     // Only the kinetic energy has an absolute zero: a body that bounces may exchange all of it between two results.
     let kinetic = column("kinetic_energy").into_iter().fold(0.0, f64::max);
@@ -56,7 +56,17 @@ pub fn imbalance(table: &Table) -> f64 {
             values.iter().map(|x| (x - first).abs().max(LEAST_EXCHANGED * x.abs())).fold(0.0, f64::max)
         });
     let error = column("energy_balance").iter().map(|x| x.abs()).fold(0.0, f64::max);
-    error / exchanged.fold(kinetic.max(f64::MIN_POSITIVE), f64::max)
+    error / exchanged.fold(kinetic.max(least).max(f64::MIN_POSITIVE), f64::max)
+}
+
+/// Energy that gravity exchanges while coordinates move by the tolerance of a method with one, J: with less, a crane is at rest.
+fn exchanged_within_tolerance(crane: &dyn DynCrane, start: &Start, settings: &dynamics::Settings) -> f64 {
+    if !settings.method.is_adaptive() {
+        return 0.0;
+    }
+    let state = start.state();
+    let forces = crane.bias_at(&state.q, &vec![0.0; state.q.len()]);
+    settings.tolerance * forces.iter().map(|force| force.abs()).sum::<f64>()
 }
 
 /// Records every sample, and asks after every step whether to continue.
@@ -103,7 +113,7 @@ pub fn record(
     if let Some((cylinder, time)) = results::unassembled(crane.description(), &table) {
         return Err(Reason::Unassembled { cylinder, time }.of(&crane.description().name));
     }
-    let off = imbalance(&table);
+    let off = imbalance(&table, exchanged_within_tolerance(crane, start, settings));
     let unbalanced = (settings.audit && off > IMBALANCE).then(|| {
         format!(
             "the energy balance is off by {:.0} % of the energy exchanged: the steps may miss a short motion or an angle near ±90°, \

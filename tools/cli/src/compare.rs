@@ -35,7 +35,8 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
     }
     let Some(name) = second else {
         // The first becomes the rigid crane, as in the comparison of the eight-link cranes.
-        let rigid = registry.add_rigid(first)?;
+        let otherwise = format!("give a second crane to compare it with: `crane compare {first} other.yaml`");
+        let rigid = registry.add_rigid(first, &otherwise)?;
         *second = Some(mem::replace(first, rigid));
         return Ok(());
     };

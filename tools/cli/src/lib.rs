@@ -103,7 +103,7 @@ fn act(mut arguments: Arguments, mut registry: Registry, out: &mut dyn Write) ->
             choice.name = registry.add_read(chain, spec)?;
         }
         if choice.rigid {
-            choice.name = registry.add_rigid(&choice.name)?;
+            choice.name = registry.add_rigid(&choice.name, "leave `--rigid` out")?;
         }
     }
     if let Some(Action::Compare(options)) = &mut arguments.action {

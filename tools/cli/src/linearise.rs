@@ -140,10 +140,17 @@ fn of_steady(live: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
     }
     let start = if rest.status == statics::Status::NotConverged { crane.guess() } else { rest.q };
     let found = steady(live, t, &start, &held).map_err(|refused| {
-        Problem::failed(
-            format!("{}: {refused}", crane.description().name),
-            "hold what nothing constrains, `--hold NAME=VALUE`, or use smaller rates",
-        )
+        let Description { name, coordinates, .. } = crane.description();
+        match refused.loose.map(|loose| &coordinates[loose].name) {
+            Some(loose) => Problem::failed(
+                format!("{name}: no steady motion: no force keeps {loose} in its place"),
+                format!("hold its position or its rate: `--hold {loose}=0` or `--hold {loose}_rate=0`"),
+            ),
+            None => Problem::failed(
+                format!("{name}: {refused}"),
+                "hold rates that are smaller, or positions nearer to those at rest; angles without `deg` are in rad",
+            ),
+        }
     })?;
     let greatest = found.v.iter().fold(0.0, |greatest: f64, v| greatest.max(v.abs()));
     let mut cautions = Vec::new();

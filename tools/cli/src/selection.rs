@@ -108,7 +108,7 @@ impl Registry {
     }
 
     /// Adds the crane with rigid beams and no other difference; returns its name.
-    pub(super) fn add_rigid(&mut self, name: &str) -> Outcome<String> {
+    pub(super) fn add_rigid(&mut self, name: &str, otherwise: &str) -> Outcome<String> {
         self.crane(name)?;
         let found = self.spec(name).map_or(Ok(None), |text| variants::rigid(name, text)).map_err(|link| {
             Problem::usage(
@@ -116,9 +116,8 @@ impl Registry {
                 "give it `sections`, `material` and `section` without `bend`, or write the rigid crane yourself",
             )
         })?;
-        let (rigid, text) = found.ok_or_else(|| {
-            Problem::usage(format!("{name} has no beams that bend: it is rigid already"), "leave `--rigid` out")
-        })?;
+        let (rigid, text) = found
+            .ok_or_else(|| Problem::usage(format!("{name} has no beams that bend: it is rigid already"), otherwise))?;
         self.add(&rigid, text);
         Ok(rigid)
     }

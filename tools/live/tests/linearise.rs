@@ -3,7 +3,7 @@
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel};
-use crane_model::modes::{Held, SmallMotions, damped, damped_with_shapes, steady};
+use crane_model::modes::{Held, NotSteady, SmallMotions, damped, damped_with_shapes, steady};
 use crane_model::nalgebra::{Complex, DMatrix};
 use crane_model::statics::Settings;
 
@@ -204,11 +204,18 @@ fn a_hanging_load_is_flung_outward() {
     assert!((effort - 1e6 * 0.001).abs() < 1e-6, "{effort}");
 }
 
-/// Nothing constrains the wheel, so there is nothing to find, and the search says how far it came.
+/// Nothing constrains the wheel, so there is nothing to find, and the search says how far it came and what is loose; nor does it where a spring
+/// holds a second wheel.
 #[test]
 fn a_free_joint_at_rest_has_no_pose() {
     let crane = crane(
         "format: 1\nname: free\nlinks:\n- {name: wheel, joint: {revolute: {axis: z}}, mass: 1, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}\n",
     );
-    assert_eq!(steady(&crane, 0.0, &[0.0], &[]).unwrap_err().reached, 0.0);
+    assert_eq!(steady(&crane, 0.0, &[0.0], &[]).unwrap_err(), NotSteady { reached: 0.0, loose: Some(0) });
+    let two = self::crane(
+        "format: 1\nname: two\nlinks:\n- {name: arm, joint: {revolute: {axis: y}}, mass: 1, com: [1, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}\n\
+         - {name: wheel, joint: {revolute: {axis: y}}, mass: 1, com: [0, 0, 0], inertia: {Ixx: 1, Iyy: 1, Izz: 1}}\n\
+         drives: [{coordinate: arm_theta, stiffness: 1e6, motion: {hold: 0}}]\n",
+    );
+    assert_eq!(steady(&two, 0.0, &[0.0; 2], &[]).unwrap_err().loose, Some(1));
 }

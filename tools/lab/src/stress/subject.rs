@@ -95,7 +95,7 @@ pub fn timing(method: Method, accuracy: f64, duration: f64) -> Timing {
 
 /// Maximum error of the energy balance over the maximum energy exchanged.
 pub fn imbalance(recorded: &Recorded) -> f64 {
-    runs::imbalance(&recorded.table)
+    runs::imbalance(&recorded.table, 0.0)
 }
 
 /// Cautions of the command about a run, each after a semicolon.

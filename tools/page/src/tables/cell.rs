@@ -63,6 +63,16 @@ impl Cell {
         self.with_digits(DIGITS)
     }
 
+    /// The same on a screen, where lists of names are cut off.
+    pub(super) fn short(&self) -> String {
+        /// Names that a line has room for.
+        const MOST: usize = 3;
+        match self {
+            Cell::Names(names) if names.len() > MOST => format!("{}, …", names[..MOST].join(", ")),
+            _ => self.text(),
+        }
+    }
+
     pub(super) fn with_digits(&self, digits: i32) -> String {
         match self {
             Cell::Text(text) => text.clone(),

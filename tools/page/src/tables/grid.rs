@@ -119,7 +119,7 @@ impl Grid {
 
     /// Whether a column contains only numbers.
     fn numeric(&self, column: usize) -> bool {
-        self.rows.iter().all(|row| !matches!(row.get(column), Some(Cell::Text(_) | Cell::AngleUnit)))
+        self.rows.iter().all(|row| !matches!(row.get(column), Some(Cell::Text(_) | Cell::Names(_) | Cell::AngleUnit)))
             && !self.rows.is_empty()
     }
 
@@ -157,11 +157,12 @@ impl Grid {
         [line(self.headers()), line(sides.collect())].into_iter().chain(rows).collect()
     }
 
-    /// Prints its first rows for people.
+    /// Prints its first rows for people, or all of it.
     pub(super) fn print(&self, most: usize, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{}", self.title)?;
         let headers = self.headers();
-        let texts: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect();
+        let text = if most == usize::MAX { Cell::text } else { Cell::short };
+        let texts: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(text).collect()).collect();
         let width = |column: usize| {
             let cells = texts.iter().filter_map(|row| row.get(column)).map(|text| text.chars().count());
             cells.chain([headers[column].chars().count()]).max().unwrap_or(0)

@@ -232,7 +232,7 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
     let first = cases.iter().find(|case| !case.crane.description().connectors.is_empty())?;
     let mut headings = headings("connector", cases);
     headings.insert(1, "quantity".into());
-    let title = "Connectors: lengths, and forces, positive in tension";
+    let title = "Connectors: lengths, and forces, positive in tension; slips of couplings";
     let mut grid = Grid::with_headings("connectors", title, headings);
     let at_rest = |case: &Case<'_>| {
         let (q, rest) = (&case.equilibrium.q, case.rest());
@@ -246,7 +246,8 @@ fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
             let words = [connector.name.as_str().into(), quantity.into()];
             grid.row(words.into_iter().chain(cells).chain([unit.into()]).collect::<Vec<_>>());
         };
-        row("length", connector.kind.unit(), |(length, _)| *length);
+        let strain = if connector.ends.is_some() { "length" } else { "slip" };
+        row(strain, connector.kind.unit(), |(length, _)| *length);
         row("force", connector.kind.force_unit(), |(_, tension)| tension.force);
     }
     Some(grid)
