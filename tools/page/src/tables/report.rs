@@ -121,8 +121,9 @@ impl Report {
         }
         let hidden = self.filled().filter(|(_, rows)| seen(*rows) == 0);
         // What the table is, without how to read it.
-        let hidden: Vec<&str> =
-            hidden.map(|(grid, _)| grid.title.split([',', ':', '(']).map(str::trim_end).next().unwrap_or_default()).collect();
+        let hidden: Vec<&str> = hidden
+            .map(|(grid, _)| grid.title.split([',', ':', '(']).map(str::trim_end).next().unwrap_or_default())
+            .collect();
         if !hidden.is_empty() {
             writeln!(out, "\nWith `--all` also: {}", hidden.join("; "))?;
         }
