@@ -266,7 +266,7 @@ catalogue! {
         "remove either `{key}` or `rigid: true`";
     /// The speed of a rigid drive does not jump.
     E089 jumps(coordinate, time) "the speed of rigid drive `{coordinate}` jumps at {time}",
-        "this would need an infinite force", "add a `ramp` in s, or let it `begin` at t = 0 or before";
+        "this would need an infinite force", "add a `ramp` in s, or start the motion at t = 0 or earlier";
 
     // Run.
     /// `step` ≤ `output` ≤ `duration`.
@@ -431,7 +431,7 @@ catalogue! {
         "its share of the crane's weight is {share} N", "write a force below its load at rest, in N; under a smaller load the support gives only a part of its lateral stiffness and damping";
     /// The free length of a connector is consistent with the distance between its points at the guess.
     W021 connector_length(connector, length, distance) "connector `{connector}` has a free length of {length} m", "its points are {distance} m apart at the guess",
-        "check the unit, the points and the `guess`: its force is its stiffness times the difference; a rope only pulls";
+        "check the unit, the points and the `guess`: its force is the stiffness times the difference between distance and length; a rope only pulls";
     /// Diameters, lengths, pressures, flows, volumes and times of hydraulics have usual magnitudes in SI units.
     W022 hydraulics(what, given, unit, usual, help) "{what} is {given} {unit}", "usual: {usual}", "{help}";
     /// The relief valves of a cylinder open above the pressure of the pump.

@@ -72,7 +72,7 @@ impl<'a, 'g> Forces<'a, 'g> {
     }
 
     /// Generalized forces of a kind in motion.
-    pub fn of(&self, kind: Kind) -> Vec<Expr<'g>> {
+    pub fn in_motion(&self, kind: Kind) -> Vec<Expr<'g>> {
         let &Forces { model, kinematics } = self;
         let (t, v) = (model.t, &model.v);
         match kind {
@@ -90,13 +90,13 @@ impl<'a, 'g> Forces<'a, 'g> {
     /// Generalized forces of a kind at rest and t = 0, `−∂E/∂q`: oil holds its joints, and no winch moves.
     fn at_rest(&self, kind: Kind) -> Vec<Expr<'g>> {
         let &Forces { model, kinematics } = self;
-        let (start, rest) = (model.zero(), model.zeros());
+        let (start, zeros) = (model.zero(), model.zeros());
         match kind {
-            Kind::Supports => supports::forces(model, kinematics, &rest),
-            Kind::BeamSprings => springs::element_forces(model, &model.q, &rest),
+            Kind::Supports => supports::forces(model, kinematics, &zeros),
+            Kind::BeamSprings => springs::element_forces(model, &model.q, &zeros),
             Kind::Drives => drives::forces_at_rest(model),
-            Kind::JointDampers | Kind::Friction => rest,
-            Kind::Stops => joints::stop_forces(model, &rest),
+            Kind::JointDampers | Kind::Friction => zeros,
+            Kind::Stops => joints::stop_forces(model, &zeros),
             Kind::Loads => loads::forces(model, kinematics, start),
             Kind::Connectors => connectors::forces(model, kinematics, start, None),
         }
@@ -170,7 +170,7 @@ impl<'a, 'g> Forces<'a, 'g> {
     /// Adds stiffness and damping of a kind for an implicit step: constants for linear springs and dampers on single coordinates, and for
     /// the base's coordinates values at the present state, which are never negative. A separate function computes those of other laws on
     /// single coordinates, and those of connectors are terms of low rank.
-    fn add_for_step(&self, kind: Kind, [stiffness, damping]: [&mut SymmetricMatrix<'g>; 2]) {
+    fn add_step_matrices(&self, kind: Kind, [stiffness, damping]: [&mut SymmetricMatrix<'g>; 2]) {
         let &Forces { model, kinematics } = self;
         match kind {
             Kind::Supports => {
@@ -192,7 +192,7 @@ impl<'a, 'g> Forces<'a, 'g> {
 
     /// Generalized forces of all kinds in motion.
     pub fn all(&self) -> Vec<Expr<'g>> {
-        self.sum(|kind| self.of(kind))
+        self.sum(|kind| self.in_motion(kind))
     }
 
     /// Generalized forces of all kinds at rest and t = 0.
@@ -224,9 +224,9 @@ impl<'a, 'g> Forces<'a, 'g> {
     }
 
     /// Stiffness and damping of all kinds for an implicit step.
-    pub fn for_step(&self) -> [SymmetricMatrix<'g>; 2] {
+    pub fn step_matrices(&self) -> [SymmetricMatrix<'g>; 2] {
         let mut matrices = [(); 2].map(|()| SymmetricMatrix::zero(self.model.graph, self.model.size()));
-        self.kinds().for_each(|kind| self.add_for_step(kind, matrices.each_mut()));
+        self.kinds().for_each(|kind| self.add_step_matrices(kind, matrices.each_mut()));
         matrices
     }
 }
@@ -234,4 +234,25 @@ impl<'a, 'g> Forces<'a, 'g> {
 /// The sum of two vectors of generalized forces.
 pub fn add<'g>(a: &[Expr<'g>], b: &[Expr<'g>]) -> Vec<Expr<'g>> {
     a.iter().zip(b).map(|(&a, &b)| a + b).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A new kind does not compile here before it has its place in the list.
+    #[test]
+    fn all_kinds_are_listed() {
+        let place = |kind| match kind {
+            Kind::Supports => 0,
+            Kind::BeamSprings => 1,
+            Kind::Drives => 2,
+            Kind::JointDampers => 3,
+            Kind::Stops => 4,
+            Kind::Friction => 5,
+            Kind::Loads => 6,
+            Kind::Connectors => 7,
+        };
+        assert!(Kind::ALL.into_iter().map(place).eq(0..8));
+    }
 }

@@ -16,11 +16,7 @@ impl<'a> Check<'a> {
         for connector in given.iter().filter_map(|connector| connector.value.as_ref()) {
             let name = self.name(&connector.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
-                self.register_name("connectors", &name, "an earlier connector".into(), connector.name.span);
-                // Both have result columns for length and force.
-                if cylinders.iter().any(|cylinder| cylinder.name == name) {
-                    self.report(rule::duplicate_name(connector.name.span, "elements", &name, "a cylinder"));
-                }
+                self.register_connector(&name, connector.name.span, cylinders);
             }
             let [from, to] = [&connector.from, &connector.to].map(|end| self.attachment(end, &name));
             let law = connector.law.value.as_ref().map(|law| self.connector_law(law, connector.law.span, &name));
@@ -30,18 +26,26 @@ impl<'a> Check<'a> {
             }
             connectors.push(Connector { name, strain: Strain::Distance([from, to]), law });
         }
-        connectors.extend(self.couplings(crane));
+        connectors.extend(self.couplings(crane, cylinders));
         connectors
     }
 
+    /// Registers the name of a connector or a coupling: like cylinders, they have result columns for length and force.
+    fn register_connector(&mut self, name: &str, span: Span, cylinders: &[Cylinder]) {
+        self.register_name("connectors", name, "an earlier connector".into(), span);
+        if cylinders.iter().any(|cylinder| cylinder.name == name) {
+            self.report(rule::duplicate_name(span, "elements", name, "a cylinder"));
+        }
+    }
+
     /// Couplings of two coordinates.
-    fn couplings(&mut self, crane: &'a Crane) -> Vec<Connector> {
+    fn couplings(&mut self, crane: &'a Crane, cylinders: &[Cylinder]) -> Vec<Connector> {
         let given = crane.couplings.as_ref().and_then(|couplings| couplings.value.as_deref()).unwrap_or_default();
         let mut couplings = Vec::new();
         for coupling in given.iter().filter_map(|coupling| coupling.value.as_ref()) {
             let name = self.name(&coupling.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
-                self.register_name("connectors", &name, "an earlier connector".into(), coupling.name.span);
+                self.register_connector(&name, coupling.name.span, cylinders);
             }
             let coordinate = self.joint_of(&coupling.coordinate, "a coupling");
             let leader = self.joint_of(&coupling.follows, "a coupling");

@@ -13,7 +13,7 @@ impl<'a> Check<'a> {
         for load in given.iter().filter_map(|load| load.value.as_ref()) {
             let name = self.name(&load.name).unwrap_or_default().to_owned();
             if !name.is_empty() {
-                self.register_name("loads", &name, "a load before".into(), load.name.span);
+                self.register_name("loads", &name, "an earlier load".into(), load.name.span);
             }
             let place = |what: &str| format!("the {what} of load `{name}`");
             let at = self.vector_or_zero(load.at.as_ref(), &place("position"), "m", Limit::Any);

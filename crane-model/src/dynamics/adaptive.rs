@@ -7,7 +7,7 @@ use super::{
     state::NotFinite,
     step::Step,
     stopped::StepContext,
-    switches::{Laws, Switches},
+    switches::{Switches, Watched},
 };
 
 /// First step tried, s: a crane starts smoothly, and steps may grow by a factor of three.
@@ -66,9 +66,9 @@ impl<'a, F: Formula> Adaptive<'a, F> {
     }
 
     /// The first time in a step at which a law changes its branch, s.
-    fn change(&mut self, laws: Laws) -> Option<f64> {
+    fn change(&mut self, watched: Watched) -> Option<f64> {
         let Self { switches, equations, step, .. } = self;
-        switches.first(equations, laws, [step.t, step.reached()], &|t, motion| step.at(t, motion))
+        switches.find_change(equations, watched, [step.t, step.reached()], &|t, motion| step.at(t, motion))
     }
 
     /// Returns whether a tried step meets the tolerance, and sets the length to try next.
@@ -103,6 +103,7 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
         (self.step.t, self.step.length, self.next) = (t, 0.0, FIRST);
         self.motion.copy_from_slice(motion);
+        self.switches.start();
         let Step { end, slopes: [_, slope], .. } = &mut self.step;
         end.copy_from_slice(motion);
         self.equations.make_relative(t, end);
@@ -125,8 +126,8 @@ impl<F: Formula + Send> Stepper for Adaptive<'_, F> {
             self.equations.references.step_within(t, self.step.reached());
             let tried = self.formula.attempt(&mut self.equations, &mut self.step);
             let meets = self.judge(tried);
-            let laws = if meets { Laws::Contacts } else { Laws::All };
-            let found = tried.ok().filter(|()| repeats < Switches::REPEATS).and_then(|()| self.change(laws));
+            let watched = if meets { Watched::Contacts } else { Watched::All };
+            let found = tried.ok().filter(|()| repeats < Switches::REPEATS).and_then(|()| self.change(watched));
             if meets && found.is_none() {
                 self.steps += 1;
                 let reached = if stops { stop } else { self.step.reached() };

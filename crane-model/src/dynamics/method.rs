@@ -54,12 +54,18 @@ impl Method {
 
     /// Whether it adapts its steps to a tolerance.
     pub const fn is_adaptive(self) -> bool {
-        !matches!(self, Method::Rk4)
+        match self {
+            Method::Rk4 => false,
+            Method::DormandPrince | Method::Rosenbrock | Method::Bdf => true,
+        }
     }
 
     /// Whether its step size has a stability limit, whatever the damping.
     pub const fn is_explicit(self) -> bool {
-        matches!(self, Method::Rk4 | Method::DormandPrince)
+        match self {
+            Method::Rk4 | Method::DormandPrince => true,
+            Method::Rosenbrock | Method::Bdf => false,
+        }
     }
 }
 

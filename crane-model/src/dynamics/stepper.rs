@@ -69,7 +69,7 @@ pub struct Ahead {
     pub stop: f64,
 }
 
-/// A boxed stepper.
+/// Forwards [`Stepper`] to the field of a method's public type.
 macro_rules! forward {
     ($stepper:ident) => {
         impl Stepper for $stepper<'_> {

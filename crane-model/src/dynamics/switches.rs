@@ -13,7 +13,7 @@ use crate::{
 
 /// Which laws are watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Laws {
+pub(super) enum Watched {
     /// One-sided supports, end stops and ropes.
     Contacts,
     /// Also forces with states of their own: valves, cylinders, bristles.
@@ -44,7 +44,7 @@ impl Switches {
     /// Number of bisections, which locate a change to a millionth of the step.
     const BISECTIONS: usize = 20;
     /// A change closer than this to either end of a step, relative to its length, does not matter.
-    const NEAR: f64 = 1e-3;
+    const END_MARGIN: f64 = 1e-3;
 
     /// The laws of a crane, with storage for motions of `len` numbers.
     pub fn new(crane: &dyn DynModel, len: usize) -> Self {
@@ -68,31 +68,36 @@ impl Switches {
         }
     }
 
+    /// Forgets the last step.
+    pub fn start(&mut self) {
+        self.known_at = f64::NAN;
+    }
+
     /// A time in a step, s, at which a law changes its branch: found by bisection, if at the end of the step a law is on another branch
     /// than at its beginning; `None` also if the change is close to either end. `at` gives the motion during the step, relative to the
     /// references.
-    pub fn first(
+    pub fn find_change(
         &mut self,
         equations: &mut Equations<'_>,
-        laws: Laws,
+        watched: Watched,
         [begin, end]: [f64; 2],
         at: &dyn Fn(f64, &mut [f64]),
     ) -> Option<f64> {
         let contacts = !(self.feet.is_empty() && self.stops.is_empty() && self.ropes.is_empty());
-        if !contacts && (laws == Laws::Contacts || self.states.is_empty()) {
+        if !contacts && (watched == Watched::Contacts || self.states.is_empty()) {
             return None;
         }
         let known_at = std::mem::replace(&mut self.known_at, f64::NAN);
-        let mut branches = |t: f64, place: usize| {
+        let mut branches = |t: f64, list: usize| {
             at(t, &mut self.motion);
-            self.evaluate(equations, laws, t, place);
+            self.evaluate(equations, watched, t, list);
             self.branches[0] != self.branches[1]
         };
-        if laws == Laws::All || begin != known_at {
+        if watched == Watched::All || begin != known_at {
             branches(begin, 0);
         }
         if !branches(end, 1) {
-            if laws == Laws::Contacts {
+            if watched == Watched::Contacts {
                 self.known_at = end;
             }
             return None;
@@ -106,15 +111,15 @@ impl Switches {
                 before = middle;
             }
         }
-        let near = Self::NEAR * (end - begin);
+        let near = Self::END_MARGIN * (end - begin);
         (after > begin + near && after < end - near).then_some(after)
     }
 
     /// Writes the branches at a time and at `motion` into the first or the second list.
-    fn evaluate(&mut self, equations: &mut Equations<'_>, laws: Laws, t: f64, place: usize) {
+    fn evaluate(&mut self, equations: &mut Equations<'_>, watched: Watched, t: f64, list: usize) {
         let crane = equations.crane;
         let (q, v) = equations.state(t, &self.motion);
-        let branches = &mut self.branches[place];
+        let branches = &mut self.branches[list];
         branches.clear();
         if !self.feet.is_empty() {
             crane.support_gaps(q, v, &mut self.gaps);
@@ -128,7 +133,7 @@ impl Switches {
             crane.connector_tensions(t, q, v, &mut self.tensions);
             branches.extend(self.ropes.iter().map(|rope| self.tensions[*rope].force > 0.0));
         }
-        if laws == Laws::All {
+        if watched == Watched::All {
             let x = &self.motion[2 * q.len()..][..self.states.len()];
             self.states.branches(crane, &StateAt { t, q, v, x }, branches);
         }

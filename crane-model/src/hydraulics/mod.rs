@@ -57,6 +57,7 @@ pub(crate) struct Hydraulics {
     openings: Vec<[f64; 2]>,
     place: [Vec<f64>; 2],
 }
+
 impl Hydraulics {
     /// From the description of a crane; empty if no cylinder has a valve.
     pub fn new(description: &Description) -> Self {

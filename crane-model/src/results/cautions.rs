@@ -67,11 +67,10 @@ fn on_stop(description: &Description, table: &Table, coordinate: usize) -> Optio
     let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(table, &column);
     let (effort, time) = if -minimum > maximum { (-minimum, time_of_minimum) } else { (maximum, time_of_maximum) };
     let samples = table.values(&column)?.filter(|effort| *effort != 0.0).count();
-    let duration = table.rows.last().map_or(0.0, |row| row[0]);
-    let met = samples as f64 * duration / (table.rows.len().max(2) - 1) as f64;
+    let met = table.time_of(samples);
     (effort > 0.0).then(|| {
         let (name, unit) = (&coordinate.name, coordinate.kind.force_unit());
-        format!("{name} is on its stop for {met:.2} s; the stop takes up to {effort:.1} {unit}, at {time:.2} s")
+        format!("{name} rests on its stop for {met:.2} s, with up to {effort:.1} {unit} at {time:.2} s")
     })
 }
 

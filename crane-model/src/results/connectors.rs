@@ -21,8 +21,7 @@ fn goes_slack(connector: &ConnectorInfo, table: &Table) -> Option<String> {
     let column = connector_force(connector);
     let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(table, &column);
     let samples = table.values(&column)?.filter(|force| *force == 0.0).count();
-    let duration = table.rows.last().map_or(0.0, |row| row[0]);
-    let slack = samples as f64 * duration / (table.rows.len().max(2) - 1) as f64;
+    let slack = table.time_of(samples);
     (connector.is_rope && minimum == 0.0).then(|| {
         format!(
             "rope {} is slack for {slack:.2} s, first at {time_of_minimum:.2} s; it pulls with up to {maximum:.1} N, at \

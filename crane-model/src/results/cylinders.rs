@@ -164,7 +164,7 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
         found.extend(oil.map(|oil| {
             format!(
                 "the drive of {} is {:.1} times as stiff as the oil in {}, {oil:.3e} {}/{}: the real crane vibrates more slowly and \
-                 gives way more; write that as its `stiffness`",
+                 deflects more; use the stiffness of the oil as the drive's `stiffness`",
                 coordinate.name,
                 own / oil,
                 info.name,
@@ -209,10 +209,9 @@ fn short_of_oil(description: &Description, table: &Table) -> Option<String> {
     let limit = description.pump?.max_flow;
     let rows: Vec<f64> = table.values("pump_flow")?.collect();
     let first = rows.iter().position(|flow| *flow >= ALL * limit)?;
-    let interval = table.rows.get(1)?[0] - table.rows[0][0];
-    let time = interval * rows.iter().filter(|flow| **flow >= ALL * limit).count() as f64;
+    let time = table.time_of(rows.iter().filter(|flow| **flow >= ALL * limit).count());
     Some(format!(
-        "the pump delivers all it can, {:.1} l/min, for {time:.2} s, first at {:.2} s: cylinders lag behind their motions",
+        "the pump is at its maximum flow, {:.1} l/min, for {time:.2} s, first at {:.2} s: cylinders lag behind their motions",
         limit / LITRE_PER_MINUTE,
         table.rows[first][0]
     ))
@@ -231,8 +230,7 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
     let way = range.maximum - range.minimum;
     let behind = table.values(&wanted)?.zip(table.values(&coordinate.name)?).map(|(wanted, own)| (wanted - own).abs());
     let (most, row) = behind.zip(&table.rows).max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let interval = table.rows.get(1)?[0] - table.rows[0][0];
-    let open = interval * table.values(&spool(&info.name))?.filter(|opening| opening.abs() >= OPEN).count() as f64;
+    let open = table.time_of(table.values(&spool(&info.name))?.filter(|opening| opening.abs() >= OPEN).count());
     let valve = if open > 0.0 {
         format!("its valve is fully open for {open:.2} s")
     } else {
@@ -240,7 +238,7 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
     };
     (way > 0.0 && most > FOLLOWS * way).then(|| {
         format!(
-            "{} falls behind: {} is up to {most:.4} {} from its motion, {:.0} % of its travel, at {:.2} s; {valve}",
+            "{} falls behind: {} is up to {most:.4} {} from its prescribed position, {:.0} % of its travel, at {:.2} s; {valve}",
             info.name,
             coordinate.name,
             coordinate.kind.unit(),

@@ -83,8 +83,7 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
         let limit = some.map(|kind| words[kind].as_str()).collect::<Vec<_>>().join(" and ");
         let reached = || table.rows.iter().filter(|row| met(row).contains(&true));
         let first = reached().next()?[0];
-        let duration = table.rows.last().map_or(0.0, |row| row[0]);
-        let time = (reached().count() as f64 * duration / (table.rows.len().max(2) - 1) as f64).min(duration);
+        let time = table.time_of(reached().count());
         let behind = |row: &Vec<f64>| (row[prescribed] - row[own]).abs();
         let worst = table.rows.iter().max_by(|a, b| behind(a).total_cmp(&behind(b)))?;
         Some(format!(

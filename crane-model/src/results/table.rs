@@ -38,6 +38,12 @@ impl Table {
         self.columns.push(Column { name: name.into(), unit: unit.into() });
     }
 
+    /// The time that a number of its results stands for, s: at most the whole run.
+    pub(super) fn time_of(&self, results: usize) -> f64 {
+        let duration = self.rows.last().map_or(0.0, |row| row[0]);
+        (results as f64 * duration / (self.rows.len().max(2) - 1) as f64).min(duration)
+    }
+
     /// The values of a column by its name.
     pub fn values(&self, name: &str) -> Option<impl Iterator<Item = f64>> {
         let column = self.columns.iter().position(|column| column.name == name)?;

@@ -117,7 +117,7 @@ fn pack(crane: &LiveCrane, spec: &str, libraries: &[Library], version: Fmi) -> R
 fn read(path: &Path) -> Outcome<Library> {
     let ending = path.extension().unwrap_or_default();
     let system = SYSTEMS.iter().find(|system| ending == system.suffix).ok_or_else(|| {
-        Problem::usage(format!("{} is not a shared library", path.display()), "name a file .so, .dll or .dylib")
+        Problem::usage(format!("{} is not a shared library", path.display()), "give a .so, .dll or .dylib file")
     })?;
     let content = fs::read(path).map_err(|error| Problem::file(path, &error))?;
     Ok(Library { system, content })

@@ -64,7 +64,7 @@ impl Timing {
             return Err(Problem::usage(title, format!("write {least:e} or more, such as 1e-4")));
         }
         if settings.tolerance > greatest {
-            let title = format!("a tolerance of {:e} is too large to mean anything", settings.tolerance);
+            let title = format!("a tolerance of {:e} is too large to be meaningful", settings.tolerance);
             return Err(Problem::usage(title, format!("write {greatest} or less, such as 1e-4")));
         }
         for (name, value) in [("duration", settings.duration), ("output", settings.output)] {
@@ -207,7 +207,7 @@ pub fn runs(
                 scope.spawn(|| record_checked(case.crane, start, settings, (!timing.no_verify, limits), &bar))
             })
             .collect();
-        let broken = |_| Err(Problem::failed("a simulation broke off", "please report this as a bug"));
+        let broken = |_| Err(Problem::failed("a simulation crashed", "please report this as a bug"));
         runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
     });
     bar.finish_and_clear();

@@ -46,7 +46,7 @@ impl<'g> Derivation<'g> {
     fn generalized(&self, kind: Kind) -> (Vec<Expr<'g>>, SweepTrace) {
         match kind {
             Kind::Drives => self.recorded_if_rigid(|| self.drive_forces()),
-            _ => (self.forces().of(kind), SweepTrace::default()),
+            _ => (self.forces().in_motion(kind), SweepTrace::default()),
         }
     }
 

@@ -274,7 +274,7 @@ impl<'g> Derivation<'g> {
             )
             .by(late_trace),
         ];
-        let [stiffness, damping] = self.forces().for_step();
+        let [stiffness, damping] = self.forces().step_matrices();
         let base: Vec<usize> = model.chain.base.iter().flatten().map(|id| id.0).collect();
         let diagonal =
             |j: usize| [&stiffness, &damping].map(|m| if base.contains(&j) { model.zero() } else { m.at(j, j) });

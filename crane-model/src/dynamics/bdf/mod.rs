@@ -27,7 +27,7 @@ use super::{
     references::References,
     state::{NotFinite, State},
     stopped::StepContext,
-    switches::{Laws, Switches},
+    switches::{Switches, Watched},
     typed::{motion_of, state_of},
 };
 use crate::{
@@ -44,13 +44,13 @@ const GAMMAS: [f64; ORDER + 1] = [0.0, 1.0, 1.5, 11.0 / 6.0, 25.0 / 12.0];
 /// Allowed error of a step relative to the tolerance: errors add up over many steps, which are shorter than those of one-step methods.
 const SHARE: f64 = 0.1;
 /// Maximum number of Newton steps.
-const NEWTON: usize = 4;
+const MAX_NEWTON_STEPS: usize = 4;
 /// Error that Newton's iteration may leave, relative to the allowed error of a step.
-const LEFT: f64 = 0.05;
+const NEWTON_ERROR: f64 = 0.05;
 /// Smallest and largest ratio of a step to the previous one.
 const RATIO: (f64, f64) = (0.2, 3.0);
 /// Largest ratio of a step to the previous one after repeated failure.
-const AGAIN: f64 = 0.5;
+const RATIO_AFTER_FAILURE: f64 = 0.5;
 /// After this many consecutive failures, the history is discarded: it does not predict the motion, for example because a drive jumped.
 const PATIENCE: usize = 3;
 
@@ -148,9 +148,9 @@ pub struct Bdf<'a> {
 /// Outcome of a tried step.
 enum Attempt {
     /// It is accepted: it meets the tolerance, and no contact changes in it.
-    Met,
+    Accepted,
     /// It does not, or a contact changes in it; `change`: the time at which a law changes its branch, s, if one was found.
-    Failed { change: Option<f64> },
+    Repeated { change: Option<f64> },
 }
 
 /// Choice of order and length.
@@ -158,7 +158,7 @@ struct Control {
     /// The measure of errors.
     norm: Norm,
     /// Steps since order or length changed.
-    alike: usize,
+    steps_since_change: usize,
     contraction: Contraction,
 }
 
@@ -174,7 +174,7 @@ impl<'a> Bdf<'a> {
             crane,
             history: History::new(len),
             correction: Correction::new(crane, len),
-            control: Control { norm, alike: 0, contraction },
+            control: Control { norm, steps_since_change: 0, contraction },
             slope: vec![0.0; len],
             switches: Switches::new(crane, len),
             restart: None,
@@ -193,14 +193,14 @@ impl<'a> Bdf<'a> {
     }
 
     /// Shortens the interval of the states so that a whole number of steps ends at `stop`, if it is close.
-    fn aim(&mut self, stop: f64) {
+    fn fit_to_stop(&mut self, stop: f64) {
         let History { t, h, .. } = self.history;
         let left = (stop - t) / h;
         if left <= 2.0 {
             let steps = if left <= 1.0 + SLIVER { 1.0 } else { 2.0 };
             if left != steps {
                 self.history.rescale(left / steps);
-                self.control.alike = 0;
+                self.control.steps_since_change = 0;
             }
         }
     }
@@ -221,7 +221,7 @@ impl<'a> Bdf<'a> {
         let slope = self.equations.slope(*t, last, &mut self.slope);
         slope.map_err(|NotFinite| self.stuck())?;
         self.history.begin_again(&self.slope);
-        self.control.alike = 0;
+        self.control.steps_since_change = 0;
         Ok(())
     }
 
@@ -237,21 +237,21 @@ impl<'a> Bdf<'a> {
         } else {
             f64::INFINITY
         };
-        let laws = if error > 1.0 { Laws::All } else { Laws::Contacts };
+        let watched = if error > 1.0 { Watched::All } else { Watched::Contacts };
         let span = [history.t, history.t + history.h];
-        let mut first = || switches.first(equations, laws, span, &|t, motion| history.at(t, motion));
-        let change = if repeats < Switches::REPEATS { first() } else { None };
+        let mut find = || switches.find_change(equations, watched, span, &|t, motion| history.at(t, motion));
+        let change = if repeats < Switches::REPEATS { find() } else { None };
         let ratio = if error > 1.0 {
-            ideal(error, order).clamp(RATIO.0, if again { AGAIN } else { 1.0 })
+            ideal(error, order).clamp(RATIO.0, if again { RATIO_AFTER_FAILURE } else { 1.0 })
         } else if change.is_some() {
-            return Attempt::Failed { change };
+            return Attempt::Repeated { change };
         } else {
             history.push(&correction.d);
             control.norm.note(&correction.end, &correction.d);
-            control.alike += 1;
+            control.steps_since_change += 1;
             control.contraction.age += 1;
-            if control.alike <= order {
-                return Attempt::Met;
+            if control.steps_since_change <= order {
+                return Attempt::Accepted;
             }
             let orders = (order.max(2) - 1..=(order + 1).min(ORDER)).map(|order| {
                 let error = control.error(&correction.end, &history.differences[order + 1], order);
@@ -262,21 +262,22 @@ impl<'a> Bdf<'a> {
             ratio.min(RATIO.1).min(LONGEST / history.h)
         };
         history.rescale(ratio);
-        control.alike = 0;
-        if error <= 1.0 { Attempt::Met } else { Attempt::Failed { change } }
+        control.steps_since_change = 0;
+        if error <= 1.0 { Attempt::Accepted } else { Attempt::Repeated { change } }
     }
 }
 
 impl Stepper for Bdf<'_> {
     fn start(&mut self, t: f64, motion: &[f64]) -> Result<(), Stopped> {
         self.motion.copy_from_slice(motion);
+        self.switches.start();
         let mut start = motion.to_vec();
         self.equations.make_relative(t, &mut start);
         self.control.norm.start(&mut self.equations, t, &start);
         self.equations.references.step_within(t, t + FIRST);
         let slope = self.equations.slope(t, &start, &mut self.slope);
         self.history.begin(t, &start, &self.slope, FIRST);
-        (self.control.alike, self.restart) = (0, None);
+        (self.control.steps_since_change, self.restart) = (0, None);
         slope.map_err(|NotFinite| self.stuck())
     }
 
@@ -286,8 +287,8 @@ impl Stepper for Bdf<'_> {
             self.history.rescale(h / self.history.h);
             self.begin_again()?;
         }
-        self.aim(ahead.stop);
-        while let Attempt::Failed { change } = self.attempt(failures > 0, repeats) {
+        self.fit_to_stop(ahead.stop);
+        while let Attempt::Repeated { change } = self.attempt(failures > 0, repeats) {
             self.rejections += 1;
             failures += 1;
             if self.history.h < LEAST * ahead.result {
@@ -302,9 +303,9 @@ impl Stepper for Bdf<'_> {
             match change {
                 Some(change) => {
                     self.history.rescale((change - t) / h);
-                    self.control.alike = 0;
+                    self.control.steps_since_change = 0;
                 }
-                None => self.aim(ahead.stop),
+                None => self.fit_to_stop(ahead.stop),
             }
         }
         self.steps += 1;
@@ -342,14 +343,14 @@ impl Control {
     /// Whether Newton's iteration finds the end of a step of length `h`.
     fn converges(&mut self, equations: &mut Equations<'_>, h: f64, correction: &mut Correction<'_>) -> bool {
         let mut before = None;
-        for _ in 0..NEWTON {
+        for _ in 0..MAX_NEWTON_STEPS {
             let Ok(()) = correction.improve(equations) else { return false };
             let size = self.norm.size(&correction.end, &correction.improvement);
             let ratio = before.map_or(self.contraction.expected(h), |before| size / before);
             if before.is_some() {
                 self.contraction = Contraction { ratio, h, age: 0 };
             }
-            if ratio * size < LEFT {
+            if ratio * size < NEWTON_ERROR {
                 return true;
             }
             if !size.is_finite() || before.is_some() && ratio >= 1.0 {
