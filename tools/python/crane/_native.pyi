@@ -78,7 +78,7 @@ class Crane:
     def picture(self) -> str:
         """A picture of the chain: its bodies and coordinates at the guess, SVG."""
     def page_with(self, run: dict[str, Any] | None = None) -> str:
-        """The crane in 3-D as an HTML page: at rest, or with a run of it."""
+        """The crane in 3-D and in tables as an HTML page: at rest, or with a run of it."""
     def export(self, format: str) -> str:
         """The crane for other programs: "urdf", "springs" (what URDF cannot express, YAML) or "mjcf", with the present parameters."""
     def parameter_rows(self, index: int) -> Any:

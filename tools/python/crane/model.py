@@ -78,7 +78,7 @@ class Crane(_native.Crane):
         return f"<crane {self.name}: {self.n} coordinates{', ' if values else ''}{values}{batch}>"
 
     def page(self) -> str:
-        """The crane in 3-D at rest, with its modes: an HTML page that needs no network, to be written to a file.
+        """The crane in 3-D at rest, with its modes and tables: an HTML page that needs no network, to be written to a file.
 
         Of a crane whose parameters are arrays, the page shows the first row.
         """

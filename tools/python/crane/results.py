@@ -264,7 +264,7 @@ class Run(Mapping[str, Array]):
         }
 
     def page(self) -> str:
-        """The run in 3-D and in plots: an HTML page that needs no network, to be written to a file."""
+        """The run in 3-D, in plots and in tables: an HTML page that needs no network, to be written to a file."""
         counts = ("steps", "rejections", "evaluations", "factorisations")
         return self.crane.page_with(
             {
