@@ -148,7 +148,7 @@ def test_mistakes_of_the_importer_are_refused_with_words(export, open_unit):
     refused(lambda: unit.getFloat64(payload, nValues=3), "3 values for 1 variables", "no arrays")
     refused(lambda: unit.getInt32([0]), "Int32", "Float64")
     refused(lambda: unit.getClock([0]), "Clock")
-    refused(lambda: unit.doStep(0.5, 0.1), "t = 0.5", "stands at t = 0")
+    refused(lambda: unit.doStep(0.5, 0.1), "t = 0.5", "is at t = 0")
     refused(lambda: unit.getAdjointDerivative(payload, payload, [1.0]), "directional")
     # None of this has damaged the crane.
     assert get(unit, "payload") == [800]

@@ -284,7 +284,7 @@ def test_mistakes_of_the_importer_are_refused_with_words(export, slave, tmp_path
     refused(lambda: unit.set(hook_theta=0.1), "hook_theta", "cannot be set")
     refused(lambda: unit.getReal([10_000]), "no variable 10000")
     refused(lambda: unit.getInteger([0]), "Integer")
-    refused(lambda: unit.doStep(0.5, 0.1), "t = 0.5", "stands at t = 0")
+    refused(lambda: unit.doStep(0.5, 0.1), "t = 0.5", "is at t = 0")
     refused(lambda: unit.doStep(0.0, -1.0), "-1", "above 0")
     # None of this has damaged the crane.
     assert unit.get("payload") == [800]
