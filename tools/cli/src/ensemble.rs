@@ -91,7 +91,7 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
     report.fact("cranes", rows.len(), "");
-    report.fact("reused from an earlier run", rows.len() - fresh.len(), "");
+    report.fact_as("kept_from_before", "reused from an earlier run", rows.len() - fresh.len(), "");
     report.fact("reached the end", reached, "");
     method(&mut report, &settings);
     if settings.method.is_adaptive() {
