@@ -27,12 +27,12 @@ const until = (frame, question) => frame.waitForFunction(question, null, { timeo
 for (const frame of frames) await until(frame, () => document.documentElement.dataset.ready === "yes");
 const [atRest, moving] = frames;
 const sections = (frame) => frame.$$eval("section", (all) => all.map(({ id }) => id));
-assert.deepEqual(await sections(atRest), ["stage"], "a crane at rest: the view, and nothing about a run");
+assert.deepEqual(await sections(atRest), ["stage", "tables"], "a crane at rest: the view and its tables, and nothing about a run");
 assert((await atRest.locator("#tiles > div").count()) >= 3);
 assert((await atRest.locator("#mode option").count()) > 10);
 const run = await sections(moving);
-assert(["stage", "motion", "drives", "supports", "energy", "repeat"].every((id) => run.includes(id)), `${run}`);
-assert(!run.includes("tables"));
+assert(["stage", "motion", "drives", "supports", "energy", "repeat", "tables"].every((id) => run.includes(id)), `${run}`);
+for (const frame of frames) assert((await frame.locator("#tables table").count()) >= 2);
 assert((await moving.locator("figure.panel").count()) > 10);
 
 // A mode moves the crane at rest.
