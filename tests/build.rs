@@ -7,7 +7,7 @@ use crane_codegen::chain::Analyses;
 use crane_codegen::compile::compile;
 use crane_codegen::{SourceFile, build};
 
-#[path = "src/random.rs"]
+#[path = "src/random/mod.rs"]
 mod random;
 
 /// Random cranes that are compiled; the interpreter runs many more.
@@ -15,7 +15,7 @@ const SEEDS: std::ops::Range<u64> = 0..6;
 
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=src/random.rs");
+    println!("cargo::rerun-if-changed=src/random");
     let mut random = Vec::new();
     for seed in SEEDS {
         let name = format!("random_{seed}");

@@ -1,13 +1,15 @@
 //! Mistakes of a spec and warnings about it: what is wrong, where, and what to write instead; all of a file at once.
 
 mod catalogue;
+mod definition;
 mod draw;
 mod nearest;
 mod source;
 
-pub(crate) use catalogue::catalogue;
-pub use catalogue::{CATALOGUE, Rule};
-pub(crate) use catalogue::{printable, rule};
+pub use catalogue::CATALOGUE;
+pub(crate) use catalogue::rule;
+pub use definition::Rule;
+pub(crate) use definition::{catalogue, printable};
 pub(crate) use nearest::{list, nearest, suggest};
 pub use source::{MAX_BYTES, Part, SourceFile, Span};
 

@@ -1,7 +1,9 @@
 //! Metadata of a crane.
 
+mod poses;
 mod shared;
 
+pub use poses::{LARGE_TILT, NEAR_SINGULAR, TIPPED};
 pub use shared::{List, Text};
 
 use crate::Bound;
@@ -55,15 +57,6 @@ pub struct Description {
     pub output: f64,
 }
 
-/// Distance of θ from ±90° below which a base or an element is near its singularity, rad: ψ and φ then rotate about nearly
-/// equal axes, and three digits or more are lost.
-pub const NEAR_SINGULAR: f64 = 0.03;
-/// Rotation of a base beyond which linear supports are no longer accurate, rad: their error is then half a percent of the lever arm.
-pub const LARGE_TILT: f64 = 0.1;
-/// Rotation of a base beyond which a crane on feet that lift has tipped over, 30° in rad: soft feet
-/// yield by only a few hundredths.
-pub const TIPPED: f64 = core::f64::consts::FRAC_PI_6;
-
 impl Description {
     /// Whether oil moves a joint, through a cylinder with a valve.
     pub fn has_valves(&self) -> bool {
@@ -73,67 +66,6 @@ impl Description {
     /// Whether forces have states besides pose and rates: forces and accelerations then need those, too.
     pub fn has_force_states(&self) -> bool {
         self.has_valves() || !self.bristles.is_empty()
-    }
-}
-
-#[cfg(feature = "std")]
-impl Description {
-    /// Indices in `q` of the coordinates that rigid drives prescribe, which are not unknowns.
-    pub fn prescribed(&self) -> Vec<usize> {
-        let prescribed = |i: &usize| self.coordinates[*i].role == CoordinateRole::Prescribed;
-        (0..self.coordinates.len()).filter(prescribed).collect()
-    }
-
-    /// Whether all unknowns of a pose are within a bound, m and rad: a prescribed motion has no bound.
-    pub(crate) fn bounded(&self, q: &[f64], bound: f64) -> bool {
-        let mut numbers = self.coordinates.iter().zip(q);
-        numbers.all(|(info, x)| x.abs() <= bound || info.role == CoordinateRole::Prescribed)
-    }
-
-    /// The caution about a pose in which θ of a base or an element is near ±90°, where ψ and φ rotate about the same axis and the
-    /// equations are singular.
-    pub fn near_singular(&self, q: &[f64]) -> Option<String> {
-        let turns = |name: &str, role| {
-            self.coordinates.iter().any(|coordinate| coordinate.name == name && coordinate.role == role)
-        };
-        // The angle first: the poses of a long run are asked one by one.
-        let near = |(_, angle): &(&CoordinateInfo, &f64)| angle.cos().abs() < NEAR_SINGULAR.sin();
-        self.coordinates.iter().zip(q).filter(near).find_map(|(coordinate, angle)| {
-            let CoordinateInfo { name, role, .. } = coordinate;
-            let body = name.strip_suffix("_theta")?;
-            let turns = |symbol: &str| turns(&format!("{body}_{symbol}"), *role);
-            let lost = match role {
-                CoordinateRole::Base | CoordinateRole::Element if turns("psi") && turns("phi") => {
-                    format!("{body}_psi and {body}_phi turn about the same axis")
-                }
-                // A link of a rope.
-                CoordinateRole::Passive if turns("psi") => format!("{body}_psi turns {body} about its own axis"),
-                _ => return None,
-            };
-            Some(format!("{name} is {:.2}°: near ±90° {lost} and accuracy is lost", angle.to_degrees()))
-        })
-    }
-
-    /// Whether the base has tipped over between two poses: rotated about a horizontal axis by more than [`TIPPED`].
-    pub fn has_tipped(&self, from: &[f64], to: &[f64]) -> bool {
-        let tilts = |name: &str| name.ends_with("_theta") || name.ends_with("_phi");
-        self.coordinates.iter().zip(from.iter().zip(to)).any(|(CoordinateInfo { name, role, kind }, (from, to))| {
-            (*role, *kind) == (CoordinateRole::Base, CoordinateKind::Rotation)
-                && tilts(name)
-                && (to - from).abs() > TIPPED
-        })
-    }
-
-    /// The caution about a pose in which a base is rotated too far for its linear supports.
-    pub fn large_tilt(&self, q: &[f64]) -> Option<String> {
-        let linear = self.supports.iter().any(|support| support.linear);
-        self.coordinates.iter().zip(q).filter(|_| linear).find_map(|(coordinate, angle)| {
-            let CoordinateInfo { name, role, kind } = coordinate;
-            let turned = (*role, *kind) == (CoordinateRole::Base, CoordinateKind::Rotation) && angle.abs() > LARGE_TILT;
-            turned.then(|| {
-                format!("{name} is {angle:.3} rad: supports with `kinematics: linear` are valid only up to about {LARGE_TILT} rad")
-            })
-        })
     }
 }
 

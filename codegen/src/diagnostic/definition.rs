@@ -1,0 +1,52 @@
+//! What a rule is, and how a table of rules becomes one constructor per rule.
+
+/// A rule, for documentation and for the test that each has an example.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rule {
+    /// Code, such as `E031`.
+    pub code: &'static str,
+    /// What the rule requires.
+    pub about: &'static str,
+}
+
+/// A message on one line of limited length, whatever the user's names consist of.
+pub(crate) fn printable(message: &str) -> String {
+    /// Long enough for a list of the longest names of the language.
+    const LONGEST: usize = 400;
+    let visible = message.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c });
+    let mut line: String = visible.take(LONGEST).collect();
+    if message.chars().nth(LONGEST).is_some() {
+        line.push('…');
+    }
+    line
+}
+
+/// Turns a table of rules into one constructor per rule, in the module `rule`, and into `CATALOGUE`.
+macro_rules! catalogue {
+    ($($(#[doc = $about:literal])+ $code:ident $name:ident($($word:ident),*) $title:literal, $label:literal, $help:literal;)+) => {
+        /// Every rule, by code.
+        pub const CATALOGUE: &[$crate::diagnostic::Rule] =
+            &[$($crate::diagnostic::Rule { code: stringify!($code), about: concat!($($about),+) }),+];
+
+        /// One function per rule, which reports how the rule was broken.
+        pub(crate) mod rule {
+            use std::fmt::Display;
+
+            use $crate::diagnostic::{Mistake, Span, printable};
+            $(
+                $(#[doc = $about])+
+                pub(crate) fn $name(span: Span, $($word: impl Display),*) -> Mistake {
+                    Mistake {
+                        code: stringify!($code),
+                        span,
+                        title: printable(&format!($title)),
+                        label: printable(&format!($label)),
+                        help: printable(&format!($help)),
+                    }
+                }
+            )+
+        }
+    };
+}
+
+pub(crate) use catalogue;

@@ -1,0 +1,170 @@
+//! What acts on random cranes: supports, drives, forces in joints, connectors, loads, cylinders.
+
+use super::{Base, Writer};
+
+impl Writer {
+    pub(super) fn supports(&mut self, base: Base, seed: u64) {
+        if base == Base::Fixed {
+            return;
+        }
+        self.line("supports:");
+        let damping = if self.driven { "damping: [40, 50, 90], " } else { "" };
+        // Two supports of every other driven crane are one-sided; one of them holds fully only where it is pressed in far.
+        let one_sided =
+            |hold: &str| if self.driven && seed % 2 == 1 { format!(", one_sided: true{hold}") } else { String::new() };
+        let one_sided = [String::new(), one_sided(", full_hold: 4000"), one_sided("")];
+        let kinds = [("left", "linear"), ("right", "exact"), ("rear", "linear")];
+        for ((name, kinematics), one_sided) in kinds.into_iter().zip(one_sided) {
+            let (at, play) = (self.vector(1.5), self.vector(0.02));
+            self.line(&format!(
+                "  - {{name: {name}, at: {at}, stiffness: [ground, 5.0e3, 9.0e3], {damping}free_play: {play}, \
+                 kinematics: {kinematics}{one_sided}}}"
+            ));
+        }
+    }
+
+    pub(super) fn drives(&mut self, seed: u64) {
+        self.line("drives:");
+        let driven: Vec<_> = self.coordinates.iter().take(5).cloned().collect();
+        let passive = self.coordinates[5..].to_vec();
+        let first = self.rng.usize(0..8);
+        for (k, (coordinate, rotation)) in driven.into_iter().enumerate() {
+            let to = if rotation { "swing".into() } else { self.number(0.5) };
+            let from = self.number(0.5);
+            // A third of them is rigid, on joints that turn and that slide.
+            let rigid = self.rng.u8(0..3) == 0;
+            let motion = [
+                format!("{{quintic: {{from: {from}, to: {to}, begin: 0.2, duration: 1.5}}}}"),
+                format!("{{cubic: {{from: {from}, to: {to}, duration: 2}}}}"),
+                format!("{{cycloid: {{from: {from}, to: {to}, begin: 0.1, duration: 1.2}}}}"),
+                format!("{{trapezoid: {{from: {from}, to: {to}, begin: 0.3, duration: 1.8, blend: 0.2}}}}"),
+                format!("{{table: {{times: [0, 0.5, 1.2, 2], values: [0.1, {from}, -0.2, 0.4]}}}}"),
+                format!("{{hold: {to}}}"),
+                format!("{{speed: {{from: {from}, rate: {to}, begin: 0.4, ramp: 0.7}}}}"),
+                // Only a flexible drive may jump to its speed during a run.
+                format!("{{speed: {{rate: {to}{}}}}}", if rigid { "" } else { ", begin: 0.6" }),
+            ][(first + k) % 8]
+                .clone();
+            let (stiffness, damping) = (self.positive(900.0), self.positive(30.0));
+            // Every other drive has a rotor.
+            let armature = self.positive(4.0);
+            let rotor = if k % 2 == 0 { format!("armature: {armature}, ") } else { String::new() };
+            // The second drive of every other crane has a limit that extreme states exceed.
+            let limit = match (seed % 4, k) {
+                (0, 1) => ", max_effort: 300, max_rate: 1.5, max_power: 120",
+                (2, 1) => ", max_effort: 300",
+                _ => "",
+            };
+            let spring = if rigid {
+                "rigid: true".to_owned()
+            } else {
+                format!("stiffness: {stiffness}, damping: {damping}{limit}")
+            };
+            let offset = if seed % 4 == 2 && !rigid { ", offset: shift" } else { "" };
+            self.line(&format!("  - {{coordinate: {coordinate}, {spring}, {rotor}motion: {motion}{offset}}}"));
+        }
+        if !passive.is_empty() {
+            self.line("damping:");
+            for (coordinate, _) in passive {
+                let damping = self.positive(3.0);
+                self.line(&format!("  {coordinate}: {damping}"));
+            }
+            let (coordinate, _) = &self.coordinates[5];
+            let coordinate = coordinate.clone();
+            let armature = self.positive(2.0);
+            self.line(&format!("armature: {{{coordinate}: {armature}}}"));
+        }
+        if seed % 2 == 1 {
+            self.joint_forces();
+        }
+    }
+
+    /// Stops and friction of driven joints, including rigid drives, and of a passive one.
+    fn joint_forces(&mut self) {
+        let names: Vec<String> = self.coordinates.iter().map(|(name, _)| name.clone()).collect();
+        let (Some(last), [_, second, third, ..]) = (names.last(), names.as_slice()) else { return };
+        self.line("stops:");
+        self.line(&format!("  {third}: {{min: -0.15, max: 0.2, stiffness: 2500, damping: 0.3}}"));
+        self.line(&format!("  {last}: {{max: 0.1, stiffness: 700}}"));
+        self.line("friction:");
+        self.line(&format!("  {second}: {{coulomb: 6, breakaway: 9, stribeck: 0.6, width: 0.3, viscous: 1.5}}"));
+        self.line(&format!("  {last}: {{coulomb: payload, width: 0.4}}"));
+    }
+
+    /// A spring across several joints, a gas spring across one, a rope from the world on a winch, and a slack one.
+    pub(super) fn connectors(&mut self) {
+        self.line("connectors:");
+        for (name, from, to, law) in [
+            (
+                "tie",
+                "{link: arm, at: [0.1, 1.5, 0.3]}",
+                "{link: second, at: [0.3, 0.1, 0]}",
+                "{spring: {stiffness: 300, damping: 8, length: 1.1}}",
+            ),
+            (
+                "strut",
+                "{link: hand, at: [0.2, 0.4, -0.7]}",
+                "{link: plate, at: [0, 0.3, 0.9]}",
+                "{gas_spring: {force: 40, length: 2, stiffness: 15, damping: 3}}",
+            ),
+            (
+                "hoist",
+                "{at: [1, 0.5, 9]}",
+                "{link: second, at: [0.2, 0, 0]}",
+                "{rope: {stiffness: 90, damping: 0.2, motion: {quintic: {from: 3, to: 2, begin: 0.1, duration: 1.5}}}}",
+            ),
+            (
+                "slack",
+                "{link: arm, at: [0, 0, 0.4]}",
+                "{link: hand, at: [0, 0, 0]}",
+                "{rope: {stiffness: 500, length: 90}}",
+            ),
+        ] {
+            self.line(&format!("  - {{name: {name}, from: {from}, to: {to}, law: {law}}}"));
+        }
+    }
+
+    /// A coordinate that follows another one on the other side of several joints, and one that follows its neighbour.
+    pub(super) fn couplings(&mut self) {
+        let names: Vec<String> = self.coordinates.iter().map(|(name, _)| name.clone()).collect();
+        let ([first, second, ..], Some(last)) = (names.as_slice(), names.last()) else { return };
+        self.line("couplings:");
+        for (name, coordinate, follows) in [("gear", last, second), ("stage", first, second)] {
+            let (ratio, offset) = (self.number(2.0), self.number(0.3));
+            let own = format!("coordinate: {coordinate}, follows: {follows}, ratio: {ratio}, offset: {offset}");
+            self.line(&format!("  - {{name: {name}, {own}, stiffness: 70, damping: 4}}"));
+        }
+    }
+
+    /// A force of the world, a wrench that turns with its link and grows with time, and loads that follow inputs.
+    pub(super) fn loads(&mut self) {
+        self.line("inputs:");
+        self.line("  pull: {motion: {cubic: {from: 1, to: 3, begin: 0.2, duration: 1}}, unit: N}");
+        self.line("  shift: {value: 0.05, unit: rad}");
+        self.line("loads:");
+        self.line("  - {name: wind, link: first, at: [0.7, 0.1, 0], force: [3, -5, 2]}");
+        self.line("  - {name: steered, link: second, force: [0, 1, 2], scale: {input: pull}}");
+        self.line("  - {name: trimmed, link: second, moment: [0, 30, 0], scale: {input: shift}}");
+        self.line("  - name: push");
+        self.line("    link: hand");
+        self.line("    at: [0.1, 0.2, -0.1]");
+        self.line("    force: [4, 1, payload]");
+        self.line("    moment: [0.5, -0.7, 0.9]");
+        self.line("    axes: link");
+        self.line("    scale: {quintic: {from: 0.5, to: 1.5, begin: 0.1, duration: 2}}");
+    }
+
+    /// Cylinders of a joint that turns and of one that slides; the second has its foot on the link that moves.
+    pub(super) fn cylinders(&mut self) {
+        let [turns, slides] = [0, 2].map(|index: usize| self.coordinates[index].0.clone());
+        let pins = [("foot", "arm"), ("slide", "plate")];
+        self.line("cylinders:");
+        for ((name, coordinate), (foot, head)) in [("turning", turns), ("sliding", slides)].into_iter().zip(pins) {
+            let (at, to) = (self.vector(1.0), self.vector(1.0));
+            self.line(&format!(
+                "  - {{name: {name}, coordinate: {coordinate}, bore: 0.1, rod: 0.05, retracted: 1, stroke: 1,"
+            ));
+            self.line(&format!("     foot: {{link: {foot}, at: {at}}}, head: {{link: {head}, at: {to}}}}}"));
+        }
+    }
+}
