@@ -10,9 +10,10 @@ use crate::{
     Registry,
     arguments::{Compare, ComparePair, Format, Parameters, spec_file},
     figures::{Curve, Mark, PALETTE, Panel},
-    files, own, page,
+    files,
+    integration::runs,
+    own, page,
     problem::{Outcome, Problem},
-    run::runs,
     simulate::{Trace, file_list, points, spoken, write_figure, write_figures, write_run},
     variants::renamed,
 };

@@ -27,10 +27,10 @@ use crate::{
     Registry,
     arguments::{Ensemble, Simulate, Step, Timing},
     files,
+    integration::batches,
     journal::{self, Journal, Request},
     parameter_table::ParameterTable,
     problem::{Outcome, Problem},
-    run::batches,
     simulate::method,
 };
 

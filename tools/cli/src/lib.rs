@@ -25,13 +25,13 @@ mod fmu;
 mod generate;
 mod help;
 mod info;
+mod integration;
 mod journal;
 mod linearisation;
 mod linearise;
 mod modes;
 mod new;
 mod npz;
-mod overall;
 mod own;
 mod page;
 mod parameter_table;
@@ -58,9 +58,9 @@ pub use selection::Registry;
 pub mod toolbox {
     pub use crate::arguments::{Analysis, Choice, Format, Limits, Parameters, Step, Timing, seconds};
     pub use crate::figures::{Curve, Mark, PALETTE, Panel};
+    pub use crate::integration::{progress, record, styled};
     pub use crate::own::{Library, load, run_with};
     pub use crate::problem::{Outcome, Problem};
-    pub use crate::run::{progress, record, styled};
     pub use crate::simulate::{file_list, write_figure};
     pub use crane_page::tables::{Cell, Grid, Report};
 }
@@ -114,7 +114,7 @@ fn act(mut arguments: Arguments, mut registry: Registry, out: &mut dyn Write) ->
         None if registry.has(compare::CRANES) => compare::compare(&arguments.compare, registry, out),
         None => Ok(help::grouped(Arguments::command()).print_help()?),
         Some(Action::Compare(options)) => compare::compare_pair(options, registry, out),
-        Some(Action::Run(options)) => overall::run(options, registry, out),
+        Some(Action::Run(options)) => run::run(options, registry, out),
         Some(Action::Statics(options)) => statics::statics(options, registry, out),
         Some(Action::Simulate(options)) => match &options.ensemble.table {
             Some(table) => ensemble::simulate(options, table, registry, out),

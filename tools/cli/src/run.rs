@@ -1,215 +1,56 @@
-//! Runs as the command takes them: settings from arguments, progress on screen.
+//! `crane run`: everything about one crane, printed and written into a folder.
 
-use std::{ops::ControlFlow, thread};
+use std::io::Write;
 
-use crane_model::{
-    dyn_crane::DynCrane,
-    dynamics::{self, Method},
-    runs::{self, Bound, Recorded, SAFE, Start, step_limit},
-    stability::{Limit, cause},
-};
-use crane_page::tables::Case;
-use indicatif::{ProgressBar, ProgressStyle};
+use crane_model::dynamics::Method;
+use crane_page::tables::{caution_of_runs, deflection, equilibria, extremes, summary};
 
 use crate::{
-    arguments::{Limits, Step, Timing},
+    Registry,
+    arguments::Simulate,
+    files,
+    integration::runs,
+    page::{cases, twin, write},
     problem::{Outcome, Problem},
+    simulate::{Trace, file_list, write_figures, write_run},
 };
 
-impl Timing {
-    /// Settings of a run from `start`: the crane's own unless given here, with a stable step unless forced.
-    ///
-    /// # Errors
-    /// An option has a value that cannot be used.
-    pub fn settings(&self, crane: &dyn DynCrane, start: &Start, default: Method) -> Outcome<dynamics::Settings> {
-        let own = dynamics::Settings::of(crane.description());
-        let method = self.method.unwrap_or(if self.step.is_some() { Method::Rk4 } else { default });
-        let mut settings = dynamics::Settings { method, audit: true, ..own };
-        let given = [("step", self.step.is_some(), false), ("tolerance", self.tolerance.is_some(), true)];
-        if let Some((name, ..)) = given.into_iter().find(|&(_, given, of)| given && of != method.is_adaptive()) {
-            let title = format!("`--{name}` has no effect with {method}, {}", method.title());
-            let (option, other) =
-                if method.is_adaptive() { ("tolerance", Method::Rk4) } else { ("step", Method::RECOMMENDED) };
-            return Err(Problem::usage(title, format!("write `--{option}` or `--method {other}`")));
-        }
-        let limit = if method.is_adaptive() { None } else { step_limit(crane, start) };
-        let step = match self.step {
-            None => None,
-            Some(Step::Seconds(step)) => Some(step),
-            Some(Step::Auto) => limit.as_ref().map(|bound| SAFE * bound.limit.step),
-        };
-        for (name, given, value, what) in [
-            ("step", step, &mut settings.step, "length of time"),
-            ("duration", self.duration, &mut settings.duration, "length of time"),
-            ("output", self.output, &mut settings.output, "length of time"),
-            ("tolerance", self.tolerance, &mut settings.tolerance, "tolerance"),
-        ] {
-            *value = given.unwrap_or(*value);
-            if !(value.is_finite() && *value > 0.0) {
-                let help =
-                    if what == "tolerance" { "number, such as 1e-4" } else { "number of seconds, such as 0.001" };
-                return Err(Problem::usage(
-                    format!("`--{name} {value}` is not a valid {what}"),
-                    format!("write a positive {help}"),
-                ));
-            }
-        }
-        if self.output.is_some() && settings.output > settings.duration {
-            let title = format!("results every {} s in a run of {} s", settings.output, settings.duration);
-            return Err(Problem::usage(title, "write an `--output` that is not longer than `--duration`"));
-        }
-        let (least, greatest) = dynamics::Settings::TOLERANCES;
-        if settings.tolerance < least {
-            let title = format!("a tolerance of {:e} is below the rounding errors", settings.tolerance);
-            return Err(Problem::usage(title, format!("write {least:e} or more, such as 1e-4")));
-        }
-        if settings.tolerance > greatest {
-            let title = format!("a tolerance of {:e} is too large to be meaningful", settings.tolerance);
-            return Err(Problem::usage(title, format!("write {greatest} or less, such as 1e-4")));
-        }
-        for (name, value) in [("duration", settings.duration), ("output", settings.output)] {
-            let (least, greatest) = dynamics::Settings::TIMES;
-            if !(least..=greatest).contains(&value) {
-                return Err(Problem::usage(
-                    format!("`--{name} {value:e}` is out of range"),
-                    format!("write a number of seconds from {least:e} to {greatest:e}"),
-                ));
-            }
-        }
-        if settings.duration / settings.output > dynamics::Settings::MOST_RESULTS {
-            return Err(Problem::usage(
-                format!(
-                    "one result every {} s for {} s makes more than a million results",
-                    settings.output, settings.duration
-                ),
-                "write a longer interval for `--output`, in s",
-            ));
-        }
-        if !method.is_adaptive() && settings.duration / settings.step > dynamics::Settings::MOST_STEPS {
-            return Err(Problem::usage(
-                format!(
-                    "a run of {} s with steps of {:e} s has more than ten billion steps",
-                    settings.duration, settings.step
-                ),
-                "write a longer `--step`, in s",
-            ));
-        }
-        match limit {
-            // The step of a run is never longer than the interval of its results.
-            Some(Bound { t, limit }) if settings.step.min(settings.output) > limit.step && !self.force => {
-                Err(unstable(crane, settings.step, t, &limit))
-            }
-            _ => Ok(settings),
-        }
+/// Statics and motion of a crane, compared with its rigid twin if there is one; results, figures and the report.
+pub fn run(options: &Simulate, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    if options.ensemble.table.is_some() {
+        return Err(Problem::usage("`crane run` does not support `--ensemble`", "use `crane simulate` instead"));
     }
-}
+    let crane = options.analysis.crane.open(registry)?;
+    let (crane, twin) = (crane.as_ref(), twin::rigid(crane.as_ref(), registry));
+    let cases = cases(crane, twin.as_deref());
+    let mut report = equilibria(&cases, options.analysis.crane.limits.bend);
+    if let [rigid, flexible] = cases.as_slice() {
+        report.grid(deflection(rigid, flexible));
+    }
+    let (settings, runs) = runs(&cases, &options.timing, options.analysis.crane.limits, Method::RECOMMENDED)?;
+    let labels = cases.iter().map(|case| case.label);
 
-/// A step beyond the limit that holds at time `t`.
-fn unstable(crane: &dyn DynCrane, step: f64, t: f64, limit: &Limit) -> Problem {
+    let folder = &options.folder.out;
+    files::folder(folder)?;
+    let mut written = Vec::new();
+    for ((case, settings), run) in cases.iter().zip(&settings).zip(&runs) {
+        written.extend(write_run(folder, case.crane, settings, run)?);
+    }
+    let traces = labels.clone().zip(&runs).enumerate();
+    let traces: Vec<Trace<'_>> = traces
+        .map(|(index, (label, run))| Trace { label, table: &run.table, dashed: index + 1 < cases.len() })
+        .collect();
+    caution_of_runs(&mut report, labels.clone().zip(&runs));
     let description = crane.description();
-    Problem::failed(
-        format!(
-            "{}: a step of {step:e} s is unstable; {} is stable up to {:.3e} s, limited at t = {t} s by {}",
-            description.name,
-            Method::Rk4,
-            limit.step,
-            cause(description, &limit.mode)
-        ),
-        format!(
-            "`--step auto` uses {:.2e} s; `--method {}` can use longer steps; `--force` runs anyway",
-            SAFE * limit.step,
-            Method::RECOMMENDED
-        ),
-    )
-}
+    written.extend(write_figures(folder, &format!("{}_", description.name), description, &traces)?);
+    let page = format!("{}.html", description.name);
+    write(&folder.join(&page), registry, (&cases, options.analysis.crane.limits), &settings, &runs)?;
+    written.push(page);
 
-/// A progress bar in seconds of simulated time; hidden where standard error is not a terminal.
-pub fn progress(seconds: f64) -> ProgressBar {
-    /// Units of the bar per second.
-    const MILLISECONDS: f64 = 1e3;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
-    let bar = ProgressBar::new((seconds * MILLISECONDS) as u64);
-    styled(bar)
-}
-
-/// A progress bar in batches of cranes.
-pub fn batches(count: usize) -> ProgressBar {
-    styled(ProgressBar::new(count as u64))
-}
-
-/// A progress bar with times.
-pub fn styled(bar: ProgressBar) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed} (left {eta})");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
-}
-
-/// Advances a bar with the time of a run.
-fn show(bar: &ProgressBar) -> impl FnMut(f64) -> ControlFlow<()> {
-    let mut shown = 0;
-    move |t| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
-        let reached = ((t * 1e3) as u64).max(shown);
-        bar.inc(reached - shown);
-        shown = reached;
-        ControlFlow::Continue(())
-    }
-}
-
-/// Runs from `start` and records every result: [`runs::record`].
-///
-/// # Errors
-/// The run cannot be started as asked for.
-pub fn record(
-    crane: &dyn DynCrane,
-    start: &Start,
-    settings: &dynamics::Settings,
-    bar: &ProgressBar,
-) -> Outcome<Recorded> {
-    Ok(runs::record(crane, start, settings, &mut show(bar))?)
-}
-
-/// Runs from `start`, once more to estimate the error if `verify`: [`runs::record_checked`].
-pub fn record_checked(
-    crane: &dyn DynCrane,
-    start: &Start,
-    settings: &dynamics::Settings,
-    (verify, limits): (bool, Limits),
-    bar: &ProgressBar,
-) -> Outcome<Recorded> {
-    Ok(runs::record_checked(crane, start, settings, (verify, limits.bend), &mut show(bar))?)
-}
-
-/// Runs cranes side by side, each from its own start; `default`: the method unless one is asked for.
-pub fn runs(
-    cases: &[Case<'_>],
-    timing: &Timing,
-    limits: Limits,
-    default: Method,
-) -> Outcome<(Vec<dynamics::Settings>, Vec<Recorded>)> {
-    // The last crane is the one that the arguments refer to.
-    let starts = cases.iter().enumerate();
-    let starts =
-        starts.map(|(index, case)| timing.start(case.crane, index + 1 < cases.len())).collect::<Outcome<Vec<_>>>()?;
-    let settings = cases
-        .iter()
-        .zip(&starts)
-        .map(|(case, start)| timing.settings(case.crane, start, default))
-        .collect::<Outcome<Vec<_>>>()?;
-    let bar = progress(settings.iter().map(|settings| settings.duration).sum());
-    bar.set_message("simulating");
-    let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
-        let runs: Vec<_> = cases
-            .iter()
-            .zip(&starts)
-            .zip(&settings)
-            .map(|((case, start), settings)| {
-                scope.spawn(|| record_checked(case.crane, start, settings, (!timing.no_verify, limits), &bar))
-            })
-            .collect();
-        let broken = |_| Err(Problem::failed("a simulation crashed", "please report this as a bug"));
-        runs.into_iter().map(|run| run.join().unwrap_or_else(broken)).collect()
-    });
-    bar.finish_and_clear();
-    Ok((settings, results.into_iter().collect::<Outcome<_>>()?))
+    let labelled: Vec<_> = labels.zip(&runs).collect();
+    report.grid_first(extremes(description, &labelled));
+    report.grid(summary(&labelled));
+    report.grid(file_list(folder, &written));
+    report.show_all(options.analysis.all);
+    options.analysis.format.print(&report, out)
 }

@@ -21,8 +21,8 @@ use crate::{
     arguments::Simulate,
     figures::{Curve, Mark, PALETTE, Panel, svg},
     files,
+    integration::{progress, record_checked},
     problem::{Outcome, Problem},
-    run::{progress, record_checked},
 };
 
 /// A recorded run as a curve of the figures.

@@ -27,9 +27,9 @@ use crate::{
     Registry,
     arguments::{Envelope, Format},
     files,
+    integration::styled,
     journal::{self, Journal, Request},
     problem::{Outcome, Problem},
-    run::styled,
     selection::told,
     strength::load_parameter,
 };

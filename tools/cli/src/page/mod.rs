@@ -21,10 +21,11 @@ use serde_json::Value;
 use crate::{
     Registry,
     arguments::{Limits, Page},
-    files, own,
+    files,
+    integration::runs,
+    own,
     problem::Outcome,
     refinement,
-    run::runs,
 };
 
 /// Computes a crane, and its rigid twin if there is one, and writes the page.

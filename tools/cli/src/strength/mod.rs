@@ -17,8 +17,8 @@ use crate::{
     Registry,
     arguments::Strength,
     files,
+    integration::{progress, record_checked},
     problem::{Outcome, Problem},
-    run::{progress, record_checked},
 };
 
 use history::least_margin;
