@@ -9,7 +9,7 @@ use crane_model::{
     modes::{ComplexShape, DampedMode, Held, SmallMotions, damped_with_shapes, steady},
     statics,
 };
-use crane_page::tables::{Cell, Grid, Report, names};
+use crane_page::tables::{Cell, Grid, Report, damped_mode, names};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
@@ -228,14 +228,9 @@ fn modes_of(description: &Description, found: &[Mode]) -> Grid {
         &["mode", "frequency [Hz]", "damping ratio", "re [1/s]", "im [1/s]", "dominated by"],
     );
     for (index, (mode, _)) in found.iter().enumerate() {
-        grid.row([
-            (index + 1).into(),
-            (mode.eigenvalue.im != 0.0).then(|| mode.frequency()).into(),
-            mode.damping_ratio().into(),
-            mode.eigenvalue.re.into(),
-            mode.eigenvalue.im.into(),
-            names(description, &mode.dominating),
-        ]);
+        let mut row = damped_mode(index, mode);
+        row.push(names(description, &mode.dominating));
+        grid.row(row);
     }
     grid
 }

@@ -18,7 +18,7 @@ mod statics;
 
 pub use cell::{Cell, number_text};
 pub use grid::{Grid, Heading, VALUE};
-pub use modes::{damped_modes, names, stable_steps, undamped_modes};
+pub use modes::{damped_mode, damped_modes, names, stable_steps, undamped_modes};
 pub use page::of_page;
 pub use report::{FORMAT, Report};
 pub use runs::{caution_of_runs, extremes, summary};

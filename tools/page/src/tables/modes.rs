@@ -40,18 +40,26 @@ pub fn damped_modes(description: &Description, modes: &[DampedMode]) -> Grid {
         &["mode", "frequency [Hz]", "damping ratio", "re [1/s]", "im [1/s]", "stable step [s]", "dominated by"],
     );
     for (index, mode) in modes.iter().enumerate() {
-        grid.row([
-            (index + 1).into(),
-            // An overdamped mode has no frequency.
-            (mode.eigenvalue.im != 0.0).then(|| mode.frequency()).into(),
-            mode.damping_ratio().into(),
-            mode.eigenvalue.re.into(),
-            mode.eigenvalue.im.into(),
+        let mut row = damped_mode(index, mode);
+        row.extend([
             Method::Rk4.stability().largest_step(mode.eigenvalue).into(),
             names(description, &mode.dominating),
         ]);
+        grid.row(row);
     }
     grid
+}
+
+/// Number, frequency, damping ratio and eigenvalue of a damped mode.
+pub fn damped_mode(index: usize, mode: &DampedMode) -> Vec<Cell> {
+    vec![
+        (index + 1).into(),
+        // An overdamped mode has no frequency.
+        (mode.eigenvalue.im != 0.0).then(|| mode.frequency()).into(),
+        mode.damping_ratio().into(),
+        mode.eigenvalue.re.into(),
+        mode.eigenvalue.im.into(),
+    ]
 }
 
 /// The largest stable step of every method over some poses, and what limits it.
