@@ -61,6 +61,7 @@ fn arguments(chain: &Chain, function: &Function) -> Vec<(Argument, Vec<f64>)> {
         Argument::Velocity => numbers(n, 2.0),
         Argument::Acceleration => numbers(n, 3.0),
         Argument::RightHandSide => numbers(n, 4.0).iter().map(|x| 1e4 * x).collect(),
+        Argument::DrivePositions => numbers(n, 5.0),
         Argument::AddedInertia => numbers(n, 6.0).iter().map(|x| 100.0 * (x + 1.0)).collect(),
         Argument::BaseAddedInertia => symmetric(10.0),
         other => panic!("{other:?} is not given from outside"),
@@ -243,7 +244,7 @@ fn springs_and_ropes_are_the_interpreters() {
     let path = format!("{}/../specs/knuckle_boom.yaml", env!("CARGO_MANIFEST_DIR"));
     let chain = load(&build::open(path.as_ref()).unwrap().changed(CONNECTORS)).unwrap();
     let found = differences("connected", &chain, Precision::Double, &[]);
-    assert_eq!(found.iter().filter(|(function, _)| function.starts_with("connector_")).count(), 7);
+    assert_eq!(found.iter().filter(|(function, _)| function.starts_with("connector_")).count(), 8);
     for (function, off) in found {
         assert!(off < 1e-12, "{function} is off by {off:e}");
     }

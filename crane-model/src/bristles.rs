@@ -17,7 +17,7 @@ use nalgebra::{Complex, DMatrix};
 use crate::{
     BristleInfo, Description,
     dyn_crane::DynCrane,
-    force_states::{StateAt, StatefulForce},
+    force_states::{Row, StateAt, StatefulForce},
     modes::{DampedMode, SmallMotions},
 };
 
@@ -38,6 +38,11 @@ impl Bristles {
     /// Number of states, one per joint.
     pub fn len(&self) -> usize {
         self.joints.len()
+    }
+
+    /// Their rows: each acts on its coordinate alone.
+    pub fn rows(&self) -> impl Iterator<Item = Row> {
+        self.joints.iter().map(|joint| Row { first: joint.coordinate, entries: vec![1.0] })
     }
 
     /// Deflections at which bristles slide, m or rad.
@@ -78,15 +83,13 @@ struct Slope {
 impl BristleInfo {
     /// The friction at a deflection and a rate of the joint.
     fn evaluate(&self, first: usize, z: f64, rate: f64, force: &mut StatefulForce) -> Slope {
-        let &Self { coordinate, coulomb, breakaway, stribeck, stiffness, damping } = self;
+        let &Self { coordinate: _, coulomb, breakaway, stribeck, stiffness, damping } = self;
         let decline = (breakaway - coulomb) * (-(rate / stribeck).powi(2)).exp();
         let (level, level_by_rate) = (coulomb + decline, -2.0 * rate / (stribeck * stribeck) * decline);
         let by_deflection = -stiffness * rate.abs() / level;
         let by_rate = 1.0 - stiffness * z / level * (rate.signum() - rate.abs() * level_by_rate / level);
         let slope = rate + by_deflection * z;
         *force = StatefulForce {
-            coordinate,
-            arm: 1.0,
             first,
             count: 1,
             force: -(stiffness * z + damping * slope),

@@ -28,9 +28,6 @@ pub(crate) const STATES: usize = 3;
 /// of a joint with bristles.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StatefulForce {
-    /// Index of its coordinate, and `∂ℓ/∂q`.
-    pub coordinate: usize,
-    pub arm: f64,
     /// The first of its states, and their number.
     pub first: usize,
     pub count: usize,
@@ -48,6 +45,27 @@ pub(crate) struct StatefulForce {
     pub from_pump: f64,
 }
 
+/// `J = ∂ℓ/∂q` of a force: its entries from the first to the last that is not zero.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub first: usize,
+    pub entries: Vec<f64>,
+}
+
+impl Row {
+    /// J x
+    pub fn along(&self, x: &[f64]) -> f64 {
+        self.entries.iter().zip(&x[self.first..]).map(|(entry, x)| entry * x).sum()
+    }
+
+    /// Adds `Jᵀ F`.
+    pub fn add_to(&self, generalized: &mut [f64], force: f64) {
+        for (sum, entry) in generalized[self.first..].iter_mut().zip(&self.entries) {
+            *sum += entry * force;
+        }
+    }
+}
+
 /// All forces of a crane that have states.
 #[derive(Clone, Debug)]
 pub struct ForceStates {
@@ -55,6 +73,8 @@ pub struct ForceStates {
     bristles: Bristles,
     /// The forces as last evaluated, those of the oil first.
     forces: Vec<StatefulForce>,
+    /// Their rows.
+    rows: Vec<Row>,
     /// Their generalized forces, and the accelerations that these add.
     efforts: [Vec<f64>; 2],
 }
@@ -66,6 +86,7 @@ impl ForceStates {
         let bristles = Bristles::new(description, oil.len());
         Self {
             forces: vec![StatefulForce::default(); oil.count() + bristles.len()],
+            rows: oil.rows().chain(bristles.rows()).collect(),
             efforts: [vec![0.0; n], vec![0.0; n]],
             oil,
             bristles,
@@ -106,6 +127,11 @@ impl ForceStates {
         &self.forces
     }
 
+    /// The rows `∂ℓ/∂q` of the forces, as last evaluated.
+    pub(crate) fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
     /// Evaluates all forces and the rates of their states and, if requested, the derivatives of the rates with respect to the states.
     pub(crate) fn evaluate(
         &mut self,
@@ -119,6 +145,7 @@ impl ForceStates {
         }
         let (of_oil, of_bristles) = self.forces.split_at_mut(self.oil.count());
         self.oil.evaluate(crane, moment, rates, of_oil, by_states.as_deref_mut());
+        self.oil.update(&mut self.rows);
         self.bristles.evaluate(moment, rates, of_bristles, by_states);
     }
 
@@ -133,8 +160,8 @@ impl ForceStates {
         self.evaluate(crane, moment, rates, None);
         let [efforts, added] = &mut self.efforts;
         efforts.fill(0.0);
-        for force in &self.forces {
-            efforts[force.coordinate] += force.force * force.arm;
+        for (force, row) in self.forces.iter().zip(&self.rows) {
+            row.add_to(efforts, force.force);
         }
         crane.solve_mass(moment.q, efforts, added);
         accelerations.iter_mut().zip(added).for_each(|(acceleration, added)| *acceleration += *added);

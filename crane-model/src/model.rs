@@ -135,6 +135,10 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// vector per cylinder; NaN where its linkage cannot be assembled.
     fn cylinder_states(&self, _q: &SVector<f64, N>, _v: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}
 
+    /// Derivatives of the length of each cylinder with respect to the coordinates, m/m and m/rad: a cylinder with a valve that pushes with F
+    /// exerts the generalized forces `F ∂ℓ/∂q`. `out`: one row per cylinder. A crane without valves writes nothing.
+    fn cylinder_jacobians(&self, _q: &SVector<f64, N>, _out: &mut [[f64; N]]) {}
+
     /// Prescribed position `q_dr` (m or rad) and rate `q̇_dr` of the drives. `out`: one pair per drive.
     fn drive_motions(&self, _t: f64, _out: &mut [[f64; 2]]) {}
 
@@ -341,8 +345,20 @@ pub trait Statics<const N: usize>: CraneModel<N> {
         SMatrix::zeros()
     }
 
-    /// Generalized forces of the drives that hold the crane at rest at t = 0: the forces of their springs, and for rigid drives the forces
-    /// needed for equilibrium. N and N m.
+    /// Generalized forces of cylinders with a valve that hold the crane at rest with the drives at given positions, each at the place of its
+    /// coordinate: springs along the cylinders, `k (ℓ₀ − ℓ) ∂ℓ/∂q`. ℓ₀ is the length with the joint at the position of its drive and straight
+    /// beams, and k the stiffness of the drive over the squared lever arm there. N and N m.
+    fn holding_forces(&self, _q: &SVector<f64, N>, _positions: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::zeros()
+    }
+
+    /// The part of these cylinders in the tangent stiffness.
+    fn holding_stiffness(&self, _q: &SVector<f64, N>, _positions: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        SMatrix::zeros()
+    }
+
+    /// Generalized forces of the drives that hold the crane at rest at t = 0: the forces of their springs, for rigid drives the forces
+    /// needed for equilibrium, and those of cylinders with a valve. N and N m.
     fn drive_forces_at_rest(&self, q: &SVector<f64, N>) -> SVector<f64, N> {
         let mut motions = [[0.0; 2]; N];
         self.drive_motions(0.0, &mut motions);
@@ -369,7 +385,8 @@ pub trait InternalForces<const N: usize>: CraneModel<N> {
     /// pose q, rates v and accelerations a. `out`: one per cut, as [`Description::cuts`] lists them.
     ///
     /// It is the sum of the inertia forces and weights of everything beyond, the loads applied to it, and the forces of the connectors
-    /// attached to it: a joint or a section transmits what no connector carries past it, and supports act only on the base. At the ground
+    /// attached to it: a joint or a section transmits what no connector carries past it, and supports act only on the base. The forces of
+    /// cylinders with a valve are not included, see [`cylinder_wrenches`](Self::cylinder_wrenches). At the ground
     /// it is the load on the foundation or on the supports. In a section of a beam it is `N, Qy, Qz` and `Mx, My, Mz`: a positive N is
     /// tension; Mx, My and Mz have the signs of the deformations that they cause, φ, θ and ψ.
     fn internal_forces(
@@ -380,6 +397,14 @@ pub trait InternalForces<const N: usize>: CraneModel<N> {
         a: &SVector<f64, N>,
         out: &mut [Wrench],
     );
+
+    /// What each cylinder that pushes with 1 N adds to the wrench at each cut; the moments are in m. `out`: one per cut, cylinder by
+    /// cylinder. A crane without valves writes nothing.
+    fn cylinder_wrenches(&self, _q: &SVector<f64, N>, _out: &mut [Wrench]) {}
+
+    /// What each connector between two bodies contributes to the wrench at each cut while it pulls with 1 N, zero for others; the moments
+    /// are in m. `out`: one per cut, connector by connector. A crane without such connectors writes nothing.
+    fn connector_wrenches(&self, _q: &SVector<f64, N>, _out: &mut [Wrench]) {}
 
     /// Positions of the supports' attachment points in the world frame, m. `out`: one per support.
     fn support_positions(&self, _q: &SVector<f64, N>, _out: &mut [Vector3<f64>]) {}

@@ -40,14 +40,10 @@ impl TippingLine {
 /// The tipping lines of a crane, anticlockwise seen from above, at time `t`, pose `q`, rates `v` and accelerations `a`; none where
 /// the supports make no polygon, because there are fewer than three or all are in one line.
 pub fn lines(crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<TippingLine> {
-    lines_of(crane, q, &crane.internal_forces_at(t, q, v, a))
-}
-
-/// As [`lines`], with known wrenches at all cuts.
-pub fn lines_of(crane: &dyn DynCrane, q: &[f64], wrenches: &[Wrench]) -> Vec<TippingLine> {
     let feet = crane.support_positions_at(q);
     let corners = polygon(&feet);
-    let loads = if corners.is_empty() { Vec::new() } else { loads_of_links(crane, q, wrenches) };
+    let wrenches = || crane.external_forces_at(t, q, v, a);
+    let loads = if corners.is_empty() { Vec::new() } else { loads_of_links(crane, q, &wrenches()) };
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     sides.map(|(&from, &to)| line([from, to], [feet[from], feet[to]], &loads)).collect()
 }

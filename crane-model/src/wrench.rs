@@ -58,6 +58,15 @@ pub enum Cut {
     },
 }
 
+/// Adds `force` times some wrenches to others, one by one.
+#[cfg(feature = "std")]
+pub(crate) fn add(sums: &mut [Wrench], force: f64, wrenches: &[Wrench]) {
+    for (sum, wrench) in sums.iter_mut().zip(wrenches) {
+        sum.force += force * wrench.force;
+        sum.moment += force * wrench.moment;
+    }
+}
+
 #[cfg(feature = "std")]
 impl crate::Description {
     /// Cuts of the crane, in the order of [`InternalForces::internal_forces`](crate::InternalForces::internal_forces): the

@@ -1,11 +1,12 @@
 //! Cranes run by the interpreter: any spec, any scalar, no rustc.
 
-use crane_codegen::chain::{Analyses, Chain};
+use crane_codegen::chain::{Analyses, Chain, Cylinder};
 use crane_codegen::mechanics;
 use crane_codegen::program::{FunctionId, Inputs, Program, Shape};
 use crane_codegen::symbolic::Scalar;
 use crane_model::nalgebra::{DMatrix, DVector, SymmetricEigen};
 
+use crate::dual::Dual;
 use crate::quantities::State;
 
 /// A chain and its program.
@@ -103,6 +104,26 @@ impl Interpreted {
             }
         }
         state
+    }
+
+    /// Derivative of the energy `½ k (ℓ − ℓ₀)²` of springs that stand for cylinders with a valve at rest, along `inputs`; ℓ₀ and the lever
+    /// arm in `k = s/(∂ℓ/∂q_j)²` are those of the crane with straight beams and its drives at their positions.
+    #[must_use]
+    pub fn slope_of_holding_energy(&self, state: &State, inputs: &Inputs<Dual>) -> f64 {
+        let chain = &self.chain;
+        let mut straight = State { q: vec![0.0; self.size()], ..state.clone() };
+        let motions = self.get("drive_motions", &self.inputs(state), 2 * chain.drives.len());
+        for (drive, motion) in chain.drives.iter().zip(motions.chunks_exact(2)) {
+            straight.q[drive.coordinate.0] = motion[0];
+        }
+        let meant = self.get("cylinder_states", &self.inputs(&straight), 3 * chain.cylinders.len());
+        let now = self.get("cylinder_states", inputs, 3 * chain.cylinders.len());
+        let of_cylinder = |(index, cylinder): (usize, &Cylinder)| {
+            let stiffness = chain.drives[chain.drive_of(cylinder)].oil()?.at(&chain.parameter_defaults());
+            let (meant, now) = (&meant[3 * index..], now[3 * index]);
+            Some(stiffness / meant[2].powi(2) * (now.value() - meant[0]) * now.derivative())
+        };
+        chain.cylinders.iter().enumerate().filter_map(of_cylinder).sum()
     }
 
     /// The lowest undamped angular frequency at a pose in stable equilibrium, rad/s: `1/ω²` is the largest eigenvalue of

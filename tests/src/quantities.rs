@@ -91,6 +91,11 @@ pub fn quantities(crane: &Description) -> Vec<Quantity> {
         ("connector_stiffness", vec![n, n]),
         ("connector_energy", vec![1]),
         ("winch_power", vec![1]),
+        ("connector_wrenches", vec![crane.connectors.len(), crane.cuts().len(), 6]),
+        ("cylinder_jacobians", vec![crane.cylinders.len(), n]),
+        ("cylinder_wrenches", vec![crane.cylinders.len(), crane.cuts().len(), 6]),
+        ("holding_forces", vec![n]),
+        ("holding_stiffness", vec![n, n]),
     ];
     rows.into_iter().map(|(name, shape)| Quantity { name, shape }).collect()
 }
@@ -200,20 +205,26 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N>>(crane: &C
     let mut tangents = vec![[0.0; 2]; info.coordinates.len()];
     crane.nonlinear_stiffness_and_damping(t, q, v, &mut tangents);
     let load_power = crane.load_power(t, q, v);
-    let connectors = of_connectors(crane, t, q, v);
+    let mut connectors_and_cylinders = of_connectors(crane, t, q, v);
+    connectors_and_cylinders.extend(of_cylinders(crane, q));
     let (mut q, mut v) = (*q, *v);
     crane.prescribe(t, &mut q, &mut v);
     out.extend(q.iter().chain(&v));
     out.extend(tangents.iter().flatten());
-    out.extend(wrenches.iter().flat_map(|wrench| wrench.force.iter().chain(&wrench.moment)));
+    out.extend(flat(&wrenches));
     out.extend(reactions.iter().flatten());
     for of in moduli {
         let SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress } = of;
         out.extend([area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress]);
     }
     out.push(load_power);
-    out.extend(connectors);
+    out.extend(connectors_and_cylinders);
     out
+}
+
+/// The numbers of wrenches.
+fn flat(wrenches: &[Wrench]) -> impl Iterator<Item = &f64> {
+    wrenches.iter().flat_map(|wrench| wrench.force.iter().chain(&wrench.moment))
 }
 
 /// The quantities of connectors.
@@ -232,6 +243,27 @@ fn of_connectors<const N: usize, C: Crane<N>>(crane: &C, t: f64, q: &SVector<f64
     out.extend(jacobians.iter().flatten());
     out.extend(&crane.connector_stiffness(t, q));
     out.extend([crane.connector_energy(t, q), crane.winch_power(t, q, v)]);
+    let mut wrenches = vec![Wrench::ZERO; count * crane.description().cuts().len()];
+    crane.connector_wrenches(q, &mut wrenches);
+    out.extend(flat(&wrenches));
+    out
+}
+
+/// Fraction of the coordinates of a pose at which drives are held among the quantities.
+pub const HELD: f64 = 0.95;
+
+/// What cylinders do in directions besides that of their joint.
+fn of_cylinders<const N: usize, C: Crane<N>>(crane: &C, q: &SVector<f64, N>) -> Vec<f64> {
+    let count = crane.description().cylinders.len();
+    let mut jacobians = vec![[0.0; N]; count];
+    let mut wrenches = vec![Wrench::ZERO; count * crane.description().cuts().len()];
+    crane.cylinder_jacobians(q, &mut jacobians);
+    crane.cylinder_wrenches(q, &mut wrenches);
+    let held = q * HELD;
+    let mut out: Vec<f64> = jacobians.into_iter().flatten().collect();
+    out.extend(flat(&wrenches));
+    out.extend(&crane.holding_forces(q, &held));
+    out.extend(&crane.holding_stiffness(q, &held));
     out
 }
 

@@ -27,6 +27,10 @@ fn every_function<const N: usize>(crane: &mut (impl Crane<N> + TransformDerivati
     crane.section_moduli(&mut places.moduli);
     crane.support_gaps(q, v, &mut places.motions);
     crane.cylinder_states(q, v, &mut places.vectors);
+    crane.cylinder_jacobians(q, &mut [[0.0; N]; 6]);
+    crane.cylinder_wrenches(q, &mut places.wrenches);
+    crane.connector_wrenches(q, &mut places.wrenches);
+    black_box((crane.holding_forces(q, v), crane.holding_stiffness(q, v)));
     crane.drive_limits(t, q, v, &mut places.motions);
     crane.drive_motions(t, &mut places.motions);
     crane.valve_openings(t, &mut places.motions);

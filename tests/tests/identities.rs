@@ -192,6 +192,55 @@ fn what_a_joint_transmits_along_its_axis_is_its_effort() {
     }
 }
 
+/// The index in a wrench at a cut of what the last coordinate before it feels, if the cut's frame is the one that this coordinate reaches.
+fn along_last_coordinate(crane: &Interpreted, cut: Cut) -> Option<(usize, usize)> {
+    let (Cut::Joint(body) | Cut::Body(body)) = cut else { return None };
+    let path = &crane.chain.bodies[body.0].path;
+    let last = match cut {
+        Cut::Joint(_) => path.iter().rev().find(|step| !step.coordinates().is_empty())?,
+        _ => path.last()?,
+    };
+    let Step::Move(id) = last else { return None };
+    let coordinate = &crane.chain.coordinates[id.0];
+    let first = if coordinate.kind == CoordinateKind::Rotation { 3 } else { 0 };
+    Some((id.0, first + coordinate.axis.index()))
+}
+
+/// Along the axis of every coordinate, a cylinder that pushes with 1 N transmits `∂ℓ/∂q`, and nothing where it spans no cut; the same with
+/// the opposite sign for connectors, which pull.
+#[test]
+fn cylinders_and_connectors_transmit_what_their_lengths_feel() {
+    let (mut of_cylinders, mut of_beams) = (0, 0);
+    let shipped = Interpreted::new(workspace::chain("eight_link_hydraulic"));
+    for (seed, crane) in cranes().filter(|(seed, _)| seed % 8 == 7).chain([(0, shipped)]) {
+        let (chain, cuts) = (&crane.chain, crane.chain.cuts());
+        for state in states::far(chain, 3, seed) {
+            for (rows, wrenches, sign) in
+                [("cylinder_jacobians", "cylinder_wrenches", 1.0), ("connector_jacobians", "connector_wrenches", -1.0)]
+            {
+                let [rows, wrenches] = [rows, wrenches].map(|name| crane.get(name, &crane.inputs(&state), 0));
+                let elements = rows.chunks_exact(crane.size()).zip(wrenches.chunks_exact(6 * cuts.len()));
+                for (index, (row, wrenches)) in elements.enumerate() {
+                    let between = sign > 0.0 || chain.connectors[index].joins_bodies();
+                    // A linkage that does not close.
+                    if !between || row.iter().any(|entry| entry.is_nan()) {
+                        continue;
+                    }
+                    for (cut, wrench) in cuts.iter().zip(wrenches.chunks_exact(6)) {
+                        let Some((j, along)) = along_last_coordinate(&crane, *cut) else { continue };
+                        let size = row.iter().fold(1.0, |size: f64, entry| size.max(entry.abs()));
+                        assert_close(sign * wrench[along], row[j], size, 1e-12, &format!("seed {seed}: {cut:?}"));
+                        let spans = sign > 0.0 && chain.spanned_by(&chain.cylinders[index]).contains(&j);
+                        of_cylinders += usize::from(spans);
+                        of_beams += usize::from(spans && chain.coordinates[j].name.contains("first_"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(of_cylinders > 60 && of_beams > 20, "{of_cylinders} cylinders, {of_beams} beams");
+}
+
 /// The load on the ground consists of the weight and inertia forces of the crane and the loads applied to it: the supports carry
 /// just that, also in motion.
 #[test]
@@ -340,8 +389,9 @@ fn residual_and_tangent_are_derivatives_of_the_energy() {
                 let inputs = moving(&crane, &state, (0.0, &direction, &vec![0.0; n]));
                 let slopes: Vec<f64> =
                     POTENTIAL_ENERGIES.iter().map(|part| crane.get(part, &inputs, 1)[0].derivative()).collect();
-                let size = slopes.iter().map(|slope| slope.abs()).sum::<f64>() + loads[j].abs();
-                let gradient = slopes.iter().sum::<f64>() - loads[j];
+                let of_oil = crane.slope_of_holding_energy(&state, &inputs);
+                let size = slopes.iter().map(|slope| slope.abs()).sum::<f64>() + loads[j].abs() + of_oil.abs();
+                let gradient = slopes.iter().sum::<f64>() - loads[j] + of_oil;
                 if crane.prescribed().contains(&j) {
                     // Not an unknown: its drive balances the gradient, and it does not move.
                     assert_close(gradient, holding[j], size, 1e-11, &format!("seed {seed}, held {j}"));

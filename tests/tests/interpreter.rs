@@ -5,7 +5,7 @@ use crane_codegen::compile;
 use crane_codegen::mechanics;
 use crane_codegen::program::{Argument, FunctionId, Inputs, Program};
 use crane_tests::interpreted::Interpreted;
-use crane_tests::quantities::{IMPLICIT_STEP, Quantity, State, quantities};
+use crane_tests::quantities::{HELD, IMPLICIT_STEP, Quantity, State, quantities};
 use crane_tests::registry::{self, Entry};
 use crane_tests::runtime::Runtime;
 use crane_tests::{random, states, workspace};
@@ -35,6 +35,10 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
         "internal_forces" => {
             let accelerated = inputs.clone().with(Argument::Acceleration, inputs.get(Argument::Velocity));
             crane.get("internal_forces", &accelerated, quantity.len())
+        }
+        "holding_forces" | "holding_stiffness" => {
+            let held = inputs.get(Argument::Position).into_iter().map(|q| q * Runtime(HELD)).collect();
+            crane.get(quantity.name, &inputs.clone().with(Argument::DrivePositions, held), quantity.len())
         }
         "lane_forward_dynamics" => crane.get("forward_dynamics", inputs, n),
         "implicit_solution" => implicit_solution(crane, inputs),
@@ -118,6 +122,7 @@ fn simplification_changes_nothing_but_rounding() {
             let diagonal = (0..36).map(|i| if i % 7 == 0 { 10.0 } else { 0.0 }).collect();
             let inputs = (crane.inputs(&state).with(Argument::RightHandSide, state.v.clone()))
                 .with(Argument::Acceleration, state.v.clone())
+                .with(Argument::DrivePositions, state.q.clone())
                 .with(Argument::AddedInertia, vec![1.0; crane.size()])
                 .with(Argument::BaseAddedInertia, diagonal);
             let evaluate = |program: &Program, id: FunctionId| {

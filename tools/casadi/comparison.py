@@ -18,14 +18,28 @@ TOLERANCE_OF_SOLUTION = 1e-9
 NEGLIGIBLE_ENTRY = 1e-5
 # Entries of T, T', T'' are direction cosines and lengths, similar in size, and sums along the whole chain.
 NEGLIGIBLE_ENTRY_OF_TRANSFORM = 1e-4
+# Where rocker and link of a cylinder are almost in line, some derivatives of its length grow, and the rounding of all others with them.
+# The forces of a pair cancel, up to rounding, at cuts beyond which are both of its points.
+NEGLIGIBLE_ENTRY_OF_PAIR = 1e-3
 # A solve with the dense A spreads an error of cond(A) ε, 5e-11 of the largest acceleration, over all entries.
 NEGLIGIBLE_ENTRY_OF_ACCELERATION = 0.1
 
 # An array may vanish in a state (the power of a drive that comes to rest as (1 - τ)², weight in a hanging pose) and is
 # then only round-off of terms that cancel: its error is relative to at least this fraction of its largest value in any state.
 VANISHING_STATE = 1e-3
+# Near the guess, springs of 1e8 N/m along cylinders are stretched by less than a millimetre: the difference of two lengths of metres.
+VANISHING_STATE_OF_SPRINGS = 1e-1
 # Or in all states of a group: friction of joints that slide fast does not damp, and 1 - tanh² is 0 or 1e-138.
 VANISHING_GROUP = 1e-12
+
+OF_PAIRS = [
+    "connector_wrenches",
+    "cylinder_jacobians",
+    "cylinder_wrenches",
+    "drive_forces_at_rest",
+    "holding_forces",
+    "holding_stiffness",
+]
 
 
 @dataclass
@@ -82,7 +96,7 @@ def compare(quantity, derived, generated, groups, tolerance=None):
     for group in groups:
         error, size = np.abs(generated[group] - derived[group]), np.abs(derived[group])
         largest = max(size.max(), VANISHING_GROUP * largest_of_all)
-        state_size = np.maximum(size.max(axis=1), VANISHING_STATE * largest)
+        state_size = np.maximum(size.max(axis=1), vanishing_state(quantity) * largest)
         entry_size = np.maximum(size.max(axis=0), negligible_entry(quantity) * largest)
         by_state.append(ratio(error.max(axis=1), state_size))
         by_entry.append(ratio(error.max(axis=0), entry_size))
@@ -102,7 +116,14 @@ def negligible_entry(quantity):
     """The fraction of an array's largest value to which errors of its small entries are relative."""
     if is_solution(quantity):
         return NEGLIGIBLE_ENTRY_OF_ACCELERATION
+    if quantity in OF_PAIRS:
+        return NEGLIGIBLE_ENTRY_OF_PAIR
     return NEGLIGIBLE_ENTRY_OF_TRANSFORM if quantity.startswith("transform") else NEGLIGIBLE_ENTRY
+
+
+def vanishing_state(quantity):
+    """The fraction of an array's largest value in any state to which its errors in one state are relative."""
+    return VANISHING_STATE_OF_SPRINGS if quantity == "drive_forces_at_rest" else VANISHING_STATE
 
 
 def is_solution(quantity):

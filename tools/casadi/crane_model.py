@@ -459,15 +459,26 @@ def read_cylinder(crane, written, spans):
     coordinate = crane.coordinate(written["coordinate"])
     foot, head = (carrier(spec, spec.vector(written[key]["at"]), spans[written[key]["link"]]) for key in ("foot", "head"))
     start, end = place(foot[0].transform, foot[1]), place(head[0].transform, head[1])
+    of_foot, of_head = (next(i for i, other in enumerate(crane.bodies) if other is pin[0]) for pin in (foot, head))
+    carried = [(start, of_foot, False), (end, of_head, False)]
     linkage = written.get("linkage")
-    if linkage is not None:
+    if linkage is None:
+        length_of = lambda start, end: ca.norm_2(end - start)
+    else:
         # The pivot moves with the body that carries the foot: along a beam, the element there.
         local = spec.vector(linkage["pivot"]) - (spec.vector(written["foot"]["at"]) - foot[1])
         pivot = place(foot[0].transform, local)
-        axis = turning_axis(head[0].transform[:3, :3], coordinate.q)
+        beyond = max(foot, head, key=lambda pin: pin[0].degrees_of_freedom)[0]
+        axis = turning_axis(beyond.transform[:3, :3], coordinate.q)
+        # The last body that the joint does not move.
+        own = crane.coordinates.index(coordinate)
+        carrier_of_axis = max(i for i, body in enumerate(crane.bodies) if body.degrees_of_freedom <= own)
+        carried += [(pivot, of_foot, False), (axis, carrier_of_axis, True)]
         lengths = [spec.number(linkage[key]) for key in ("rocker", "link")]
-        end = pin_of_rocker(pivot, end, axis, lengths, linkage["side"])
-    return Cylinder(coordinate, ca.norm_2(end - start))
+        length_of = lambda start, end, pivot, axis: ca.norm_2(
+            pin_of_rocker(pivot, end, axis, lengths, linkage["side"]) - start
+        )
+    return Cylinder(coordinate, length_of(*(vector for vector, _, _ in carried)), carried, length_of)
 
 
 def read_connector(crane, written, spans):

@@ -7,10 +7,29 @@ import casadi as ca
 
 @dataclass
 class Cylinder:
-    """A cylinder: the coordinate of its joint and its length."""
+    """A cylinder: the coordinate of its joint, its length, and what that depends on.
+
+    `carried` holds the points and the axis of its joint, each with the index of the body that carries it, and `length_of` the length as a
+    function of them.
+    """
 
     coordinate: object
     length: ca.SX
+    carried: list
+    length_of: object
+
+
+def on_part_beyond(cylinder, first):
+    """Force and moment about the world's origin on all bodies from `first` on, while the cylinder pushes with 1 N: its power as they
+    are displaced against the others."""
+    along, about = ca.SX.sym("along", 3), ca.SX.sym("about", 3)
+    displaced = []
+    for vector, body, is_axis in cylinder.carried:
+        shift = ca.cross(about, vector) if is_axis else along + ca.cross(about, vector)
+        displaced.append(vector + shift if body >= first else vector)
+    length = cylinder.length_of(*displaced)
+    zeros = ca.DM.zeros(3)
+    return [ca.substitute(ca.gradient(length, by), ca.vertcat(along, about), ca.vertcat(zeros, zeros)) for by in (along, about)]
 
 
 def turning_axis(rotation, angle):

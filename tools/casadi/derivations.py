@@ -17,12 +17,19 @@ def row_major(matrix):
     return ca.vec(matrix.T)
 
 
+def in_cut(cut, force, moment):
+    """Force and moment about the world's origin in the frame of a cut, about its origin."""
+    turn, origin = cut.frame[:3, :3].T, cut.frame[:3, 3]
+    return [turn @ force, turn @ (moment - ca.cross(origin, force))]
+
+
 class Derivations:
     """The quantities of a crane as named CasADi expressions over (t, q, v, parameters)."""
 
     def __init__(self, crane):
         self.crane = crane
         self.arguments = [crane.time, crane.q, crane.v, crane.parameters]
+        self.by_oil = any(drive.by_oil for drive in crane.drives)
         self.contacts = {s.name: contact(s, crane.q, crane.v) for s in crane.supports if s.full_hold is not None}
         self.quantities = {
             **self.transforms(),
@@ -97,10 +104,33 @@ class Derivations:
         wrenches = []
         for cut in self.crane.cuts:
             force, moment = sums[cut.beyond]
-            turn, origin = cut.frame[:3, :3].T, cut.frame[:3, 3]
-            wrenches += [-turn @ force, -turn @ (moment - ca.cross(origin, force))]
+            wrenches += in_cut(cut, -force, -moment)
         positions = [support.position for support in self.crane.supports]
-        return {"internal_forces": ca.vertcat(*wrenches), "support_positions": ca.vertcat(ca.SX(0, 1), *positions), **self.section_moduli()}
+        return {
+            "internal_forces": ca.vertcat(*wrenches),
+            "support_positions": ca.vertcat(ca.SX(0, 1), *positions),
+            **self.section_moduli(),
+            **self.transmitted(),
+        }
+
+    def transmitted(self):
+        """What each cylinder and each connector between two bodies adds to the wrench at each cut, with a force of 1 N."""
+        of_cylinders, of_connectors = [ca.SX(0, 1)], [ca.SX(0, 1)]
+        for cylinder in self.crane.cylinders:
+            for cut in self.crane.cuts:
+                force, moment = cylinders.on_part_beyond(cylinder, cut.beyond) if self.by_oil else (ca.SX(3, 1), ca.SX(3, 1))
+                of_cylinders += in_cut(cut, force, moment)
+        for connector in self.crane.connectors:
+            joins = connector.points and None not in connector.bodies
+            for cut in self.crane.cuts:
+                force, moment = ca.SX(3, 1), ca.SX(3, 1)
+                if joins:
+                    pull = (connector.points[1] - connector.points[0]) / ca.norm_2(connector.points[1] - connector.points[0])
+                    for body, point, sign in zip(connector.bodies, connector.points, (1, -1)):
+                        if body >= cut.beyond:
+                            force, moment = force + sign * pull, moment + ca.cross(point, sign * pull)
+                of_connectors += in_cut(cut, force, moment)
+        return {"cylinder_wrenches": ca.vertcat(*of_cylinders), "connector_wrenches": ca.vertcat(*of_connectors)}
 
     def section_moduli(self):
         """Section moduli of beams, and the allowable stress; zeros where the spec does not give them."""
@@ -387,13 +417,31 @@ class Derivations:
             "drive_forces_at_rest": holding,
             "tangent_stiffness": tangent,
             "linearised_stiffness": stiffness,
+            **self.holding(),
             SPRINGS: row_major(ca.densify(springs)),
         }
 
-    def holding_energy(self):
-        """Energy of the springs that stand for oil at rest."""
-        held = [drive for drive in self.crane.drives if drive.by_oil]
-        return sum((d.stiffness * (d.motion - d.coordinate.q) ** 2 / 2 for d in held), ca.SX(0))
+    def holding_energy(self, positions=None):
+        """Energy of the springs that stand for cylinders with oil at rest: along the cylinder, with the joint at the given position or at that
+        of its drive and straight beams as the pose without force."""
+        energy = ca.SX(0)
+        for drive in self.crane.drives:
+            if not drive.by_oil:
+                continue
+            place = self.crane.coordinates.index(drive.coordinate)
+            length = next(c.length for c in self.crane.cylinders if c.coordinate is drive.coordinate)
+            straight = ca.SX.zeros(self.crane.q.shape)
+            straight[place] = drive.motion if positions is None else positions[place]
+            arm, meant = (ca.substitute(of, self.crane.q, straight) for of in (ca.jacobian(length, drive.coordinate.q), length))
+            energy += drive.stiffness * ((meant - length) / arm) ** 2 / 2
+        return energy
+
+    def holding(self):
+        """Forces and stiffness of these springs with the drives held at a fraction of the coordinates."""
+        q, positions = self.crane.q, ca.SX.sym("positions", self.crane.q.numel())
+        stiffness, gradient = ca.hessian(self.holding_energy(positions), q)
+        stiffness, gradient = (ca.substitute(of, positions, HELD * q) for of in (ca.densify(stiffness), ca.densify(gradient)))
+        return {"holding_forces": -gradient, "holding_stiffness": self.unknowns(stiffness, 0)}
 
     def springs_at_rest(self):
         """Generalized forces of the drives' springs at t = 0."""
@@ -413,11 +461,18 @@ class Derivations:
             "support_reactions": ca.vertcat(*[self.reaction(s) for s in crane.supports]),
             "support_gaps": ca.vertcat(*[self.gap(s) for s in crane.supports]),
             "cylinder_states": ca.vertcat(*[cylinders.state(cylinder, self.rate) for cylinder in crane.cylinders]),
+            "cylinder_jacobians": self.cylinder_jacobians(),
             "drive_limits": self.drive_limits(),
             "drive_motions": row_major(ca.horzcat(prescribed, rates)),
             "valve_openings": row_major(ca.horzcat(openings, self.rate(openings))),
             "drive_power": ca.dot(self.driving_forces(), rates) + self.limited_drives()[4],
         }
+
+    def cylinder_jacobians(self):
+        """Derivatives of the lengths of cylinders; zeros for a crane without valves."""
+        lengths = ca.vertcat(ca.SX(0, 1), *[cylinder.length for cylinder in self.crane.cylinders])
+        rows = ca.densify(ca.jacobian(lengths, self.crane.q))
+        return row_major(rows if self.by_oil else ca.SX.zeros(rows.shape))
 
     def drive_limits(self):
         """Maximum effort of each drive and its stiffness; zeros for a crane without limits."""
@@ -456,6 +511,8 @@ class Derivations:
         return values | solutions(values, states.v, list(self.crane.rigid_drives))
 
 
+# Fraction of the coordinates at which drives are held in `holding_forces`; that of the program `evaluate`.
+HELD = 0.95
 # Step size of `implicit_solution`, s; that of the program `evaluate`.
 IMPLICIT_STEP = 0.01
 # Computed from the other quantities at each state.

@@ -38,12 +38,11 @@ class Oil:
             symbols += [piston, rod, spool]
             self.names += [f"{name}_piston_pressure", f"{name}_rod_pressure", f"{name}_valve"]
             self.scales += [supply, supply, 1.0]
-            own = Chambers(written, cylinder, (piston, rod), spool, pump)
-            target = ca.substitute(own.lengths, ca.vertcat(*targets[0], *targets[1]), ca.vertcat(*targets[2], *targets[3]))
+            own = Chambers(written, cylinder.length, rate(cylinder.length), (piston, rod), spool, pump)
+            target = ca.substitute(own.lengths, ca.vertcat(crane.q, crane.v), ca.vertcat(*targets))
             rates += own.rates(target, opening_of(crane, cylinder))
             taken += ca.if_else(spool > 0, own.inflows[0], own.inflows[1])
-            j = crane.coordinates.index(cylinder.coordinate)
-            self.forces[j] += own.force * own.lever
+            self.forces += ca.jacobian(cylinder.length, crane.q).T * own.force
         volume = float(spec["pump"].get("volume", 5e-3))
         bulk_modulus = float(moved[0][0]["bulk_modulus"])
         share = ca.fmax(0, ca.fmin(1, (supply - pump) / (BAND * supply)))
@@ -56,12 +55,9 @@ class Oil:
 class Chambers:
     """The two chambers of a cylinder and the edges of its valve."""
 
-    def __init__(self, written, cylinder, pressures, spool, pump):
+    def __init__(self, written, length, speed, pressures, spool, pump):
         self.written, self.valve, self.spool, self.pump, self.pressures = written, written["valve"], spool, pump, pressures
-        joint = cylinder.coordinate
-        self.lever = ca.jacobian(cylinder.length, joint.q)
-        # The force acts only on the joint, and only its motion moves oil.
-        self.lengths = ca.vertcat(cylinder.length, self.lever * joint.v)
+        self.lengths = ca.vertcat(length, speed)
         bore, rod = float(written["bore"]), float(written["rod"])
         self.areas = math.pi / 4 * bore**2, math.pi / 4 * (bore**2 - rod**2)
         self.tank = float(written.get("back_pressure", 0))
@@ -127,8 +123,10 @@ def root(difference):
 
 
 def wanted_motions(crane, moved, rate):
-    """Coordinates and rates that oil moves, and their drives' target values."""
-    moving = [cylinder.coordinate for _, cylinder in moved]
-    motions = [next(drive.motion for drive in crane.drives if drive.coordinate is joint) for joint in moving]
-    positions = [ca.SX(motion) for motion in motions]
-    return [joint.q for joint in moving], [joint.v for joint in moving], positions, [rate(motion) for motion in positions]
+    """Coordinates and rates with the joints that oil moves where their drives want them, and all others zero: beams are straight."""
+    q, v = ca.SX.zeros(crane.q.shape), ca.SX.zeros(crane.v.shape)
+    for _, cylinder in moved:
+        motion = ca.SX(next(drive.motion for drive in crane.drives if drive.coordinate is cylinder.coordinate))
+        place = crane.coordinates.index(cylinder.coordinate)
+        q[place], v[place] = motion, rate(motion)
+    return q, v

@@ -70,6 +70,12 @@ impl Connector {
         self.winch().map_or(0, |length| length.pieces().len())
     }
 
+    /// Whether it pulls two bodies together.
+    #[must_use]
+    pub fn joins_bodies(&self) -> bool {
+        matches!(&self.strain, Strain::Distance(ends) if ends.iter().all(|end| end.body.is_some()))
+    }
+
     /// The motion of its winch.
     #[must_use]
     pub fn winch(&self) -> Option<&Profile> {

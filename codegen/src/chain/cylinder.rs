@@ -1,6 +1,7 @@
 //! Hydraulic cylinders between their pins.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use super::{BodyId, Chain, CoordinateId, Value};
 
@@ -99,6 +100,13 @@ impl Cylinder {
 }
 
 impl Chain {
+    /// The coordinates that move only one of a cylinder's pins, and so change its length: that of its joint and those of beams.
+    #[must_use]
+    pub fn spanned_by(&self, cylinder: &Cylinder) -> Range<usize> {
+        let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| self.degrees_of_freedom(pin.body));
+        foot.min(head)..foot.max(head)
+    }
+
     /// The index of the drive whose effort is that of a cylinder.
     #[must_use]
     pub fn drive_of(&self, cylinder: &Cylinder) -> usize {

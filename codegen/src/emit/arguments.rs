@@ -10,11 +10,12 @@ use crate::lower::Statement;
 use crate::program::Argument;
 
 /// Arguments that are vectors, and their names.
-const VECTORS: [(Argument, &str); 5] = [
+const VECTORS: [(Argument, &str); 6] = [
     (Argument::Position, "q"),
     (Argument::Velocity, "v"),
     (Argument::Acceleration, "a"),
     (Argument::RightHandSide, "r"),
+    (Argument::DrivePositions, "positions"),
     (Argument::AddedInertia, "added_inertia"),
 ];
 
@@ -27,6 +28,7 @@ pub fn argument_name(argument: Argument, number: Number) -> (&'static str, Token
         Argument::Velocity => ("v", quote!(&SVector<#number, N>)),
         Argument::Acceleration => ("a", quote!(&SVector<#number, N>)),
         Argument::RightHandSide => ("r", quote!(&SVector<#number, N>)),
+        Argument::DrivePositions => ("positions", quote!(&SVector<#number, N>)),
         Argument::AddedInertia => ("added_inertia", quote!(&SVector<#number, N>)),
         Argument::BaseAddedInertia => ("base", quote!(&SMatrix<#number, 6, 6>)),
         Argument::Factors => ("f", quote!(&Factors)),

@@ -24,6 +24,8 @@ fn cylinder_info(chain: &Chain, cylinder: &Cylinder) -> TokenStream {
     let [retracted, stroke, back_pressure] = [cylinder.retracted, cylinder.stroke, cylinder.back_pressure].map(literal);
     let [of_piston, of_rod] = cylinder.hose_volumes.map(literal);
     let of_drive = chain.drive_of(cylinder);
+    let spanned = chain.spanned_by(cylinder);
+    let [first, end] = [spanned.start, spanned.end].map(integer);
     let (name, drive) = (text(&cylinder.name), integer(of_drive));
     let commanded = chain.drives[of_drive].opening().is_some();
     let valve = cylinder.valve.as_ref().map_or_else(|| quote!(None), |valve| valve_info(valve, commanded));
@@ -32,6 +34,7 @@ fn cylinder_info(chain: &Chain, cylinder: &Cylinder) -> TokenStream {
         name: #name,
         drive: #drive,
         areas: [#piston, #annulus],
+        spanned: [#first, #end],
         retracted: #retracted,
         stroke: #stroke,
         max_pressure: #max_pressure,

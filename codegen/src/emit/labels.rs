@@ -85,6 +85,9 @@ impl<'a> Labels<'a> {
                 chain.connectors.iter().flat_map(of).nth(slot / 2).cloned()
             }
             Shape::Pairs(_) => Some(coordinate(chain.drives[slot / 2].coordinate.0).to_owned()),
+            Shape::Rows { n, .. } if function.id == FunctionId::CylinderJacobians => {
+                Some(chain.cylinders[slot / n].name.clone())
+            }
             Shape::Rows { n, .. } => Some(chain.connectors[slot / n].name.clone()),
             Shape::Structs(Struct::Tension, _) => Some(chain.connectors[slot / Struct::Tension.len()].name.clone()),
             Shape::Structs(Struct::SectionModuli, _) => {
@@ -92,11 +95,19 @@ impl<'a> Labels<'a> {
                     chain.bodies.iter().filter(|body| chain.beams.iter().any(|beam| beam.link == body.link));
                 elements.nth(slot / Struct::SectionModuli.len()).map(|body| format!("Before {}", body.name))
             }
-            Shape::Structs(Struct::Wrench, _) => Some(match &chain.cuts()[slot / Struct::Wrench.len()] {
-                Cut::Ground => "Ground".to_owned(),
-                Cut::Joint(body) => format!("Joint of {}", chain.bodies[body.0].link),
-                Cut::Body(body) => format!("Before {}", chain.bodies[body.0].name),
-            }),
+            Shape::Structs(Struct::Wrench, _) => {
+                let (cuts, place) = (chain.cuts(), slot / Struct::Wrench.len());
+                let cut = match &cuts[place % cuts.len()] {
+                    Cut::Ground => "Ground".to_owned(),
+                    Cut::Joint(body) => format!("Joint of {}", chain.bodies[body.0].link),
+                    Cut::Body(body) => format!("Before {}", chain.bodies[body.0].name),
+                };
+                Some(match function.id {
+                    FunctionId::CylinderWrenches => format!("{} – {cut}", chain.cylinders[place / cuts.len()].name),
+                    FunctionId::ConnectorWrenches => format!("{} – {cut}", chain.connectors[place / cuts.len()].name),
+                    _ => cut,
+                })
+            }
             Shape::Transforms { counts, .. } => Some(self.transform(function.id, counts, slot / 12)),
             Shape::TransformFactors { degrees, rotations, .. } => {
                 let axes = 3 * rotations.len();

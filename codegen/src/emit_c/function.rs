@@ -352,6 +352,7 @@ fn argument_name(argument: Argument) -> &'static str {
         Argument::Velocity => "v",
         Argument::Acceleration => "a",
         Argument::RightHandSide => "r",
+        Argument::DrivePositions => "positions",
         Argument::AddedInertia => "added_inertia",
         Argument::BaseAddedInertia => "base",
         Argument::Factors => "f",

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::Precision;
 use super::function::{Writer, numbers};
 use crate::chain::{Chain, CoordinateKind, Input};
-use crate::program::{Argument, Function, Shape, Struct};
+use crate::program::{Argument, Function, FunctionId, Shape, Struct};
 
 /// The beginning of the source.
 pub fn source(chain: &Chain) -> String {
@@ -152,7 +152,7 @@ fn documentation(writer: &Writer, function: &Function, operations: usize) -> Str
     for argument in function.arguments {
         let _ = writeln!(text, "   {}", of_argument(*argument));
     }
-    let _ = writeln!(text, "   {}; {operations} operations. */", result(writer.chain, &function.shape));
+    let _ = writeln!(text, "   {}; {operations} operations. */", result(writer.chain, function));
     text
 }
 
@@ -163,6 +163,9 @@ fn of_argument(argument: Argument) -> &'static str {
         Argument::Velocity => "v: their rates, m/s and rad/s",
         Argument::Acceleration => "a: their accelerations, m/s2 and rad/s2",
         Argument::RightHandSide => "r: generalized forces, N and N m",
+        Argument::DrivePositions => {
+            "positions: at which the drives are held, at the places of their coordinates, m and rad"
+        }
         Argument::AddedInertia => "added_inertia: added to the diagonal of the mass matrix, one number per coordinate",
         Argument::BaseAddedInertia => {
             "base: added to the mass matrix in the rows and columns of the base's coordinates, symmetric, 6 x 6"
@@ -176,11 +179,36 @@ fn connectors(chain: &Chain) -> Vec<&str> {
     chain.connectors.iter().map(|connector| connector.name.as_str()).collect()
 }
 
+fn cylinders(chain: &Chain) -> Vec<&str> {
+    chain.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect()
+}
+
 /// The shape of a result in words.
-fn result(chain: &Chain, shape: &Shape) -> String {
+fn result(chain: &Chain, Function { id, shape, .. }: &Function) -> String {
     let n = chain.coordinates.len();
     let names = |names: Vec<&str>| names.join(", ");
     match shape {
+        Shape::Vectors(_) if *id == FunctionId::CylinderStates => {
+            format!(
+                "out: length, its rate and its derivative by the joint's coordinate, of the cylinders {}",
+                names(cylinders(chain))
+            )
+        }
+        Shape::Rows { count, n } if *id == FunctionId::CylinderJacobians => {
+            format!("out: {count} x {n}, row by row, of the cylinders {}", names(cylinders(chain)))
+        }
+        Shape::Structs(Struct::Wrench, _) if *id == FunctionId::CylinderWrenches => {
+            format!(
+                "out: force x, y, z and moment x, y, z of all cuts, one after the other for {}",
+                names(cylinders(chain))
+            )
+        }
+        Shape::Structs(Struct::Wrench, _) if *id == FunctionId::ConnectorWrenches => {
+            format!(
+                "out: force x, y, z and moment x, y, z of all cuts, one after the other for {}",
+                names(connectors(chain))
+            )
+        }
         Shape::Scalar => "Returns the number".to_owned(),
         Shape::Vector(_) => "out: one number per coordinate".to_owned(),
         Shape::Symmetric(_) => format!("out: {n} x {n}, symmetric"),

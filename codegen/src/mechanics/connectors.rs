@@ -59,6 +59,17 @@ impl<'g> Stretched<'g> {
         }
     }
 
+    /// The bodies that it pulls with 1 N, in the world: body, point, force.
+    fn pulls(&self, connector: &Connector) -> impl Iterator<Item = (BodyId, Vec3<'g>, Vec3<'g>)> {
+        let of_line = match (&connector.strain, self.line) {
+            (Strain::Distance(ends), Some((points, direction))) => {
+                vec![(ends[0].body, points[0], direction), (ends[1].body, points[1], -direction)]
+            }
+            _ => Vec::new(),
+        };
+        of_line.into_iter().filter_map(|(body, point, pull)| Some((body?, point, pull)))
+    }
+
     /// ℓ̇
     fn rate(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Expr<'g> {
         self.jacobian.iter().fold(model.zero(), |sum, &(j, column)| sum + column * v[j])
@@ -263,14 +274,21 @@ pub fn damping<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, matrix: &mut 
 /// joints, like drives.
 pub fn pulls<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<(BodyId, Vec3<'g>, Vec3<'g>)> {
     let all = stretched(model, kinematics, (model.t, Some(&model.v)));
-    all.filter_map(|(connector, stretched, state)| {
-        let (Strain::Distance(ends), Some((points, direction))) = (&connector.strain, stretched.line) else {
-            return None;
-        };
-        let pull = force(model, &connector.law, &state) * direction;
-        Some([(ends[0].body, points[0], pull), (ends[1].body, points[1], -pull)])
+    all.flat_map(|(connector, stretched, state)| {
+        let force = force(model, &connector.law, &state);
+        stretched.pulls(connector).map(|(body, point, pull)| (body, point, force * pull)).collect::<Vec<_>>()
     })
-    .flatten()
-    .filter_map(|(body, point, force)| Some((body?, point, force)))
     .collect()
+}
+
+/// The same for a connector that pulls with 1 N at two bodies; none if it holds to the world.
+pub fn between_bodies<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    connector: &Connector,
+) -> Vec<(BodyId, Vec3<'g>, Vec3<'g>)> {
+    if !connector.joins_bodies() {
+        return Vec::new();
+    }
+    Stretched::new(model, kinematics, connector).pulls(connector).collect()
 }

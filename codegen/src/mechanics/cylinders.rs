@@ -1,4 +1,4 @@
-//! Cylinders between their pins: length, its rate, and its derivative with respect to the joint's coordinate.
+//! Cylinders between their pins: length, its rate, its derivatives, and what a cylinder does to the bodies.
 //!
 //! Notation
 //! : A the foot, B the rod's pin, H the head, P the pivot of the rocker, all in the world; e = (B − A)/ℓ. Rates are those seen from the
@@ -17,25 +17,37 @@
 //! Ḃ = ȧ c + a ċ + ḣ m + h ṁ,      ȧ = ḋ (1 − a/d),         ḣ = −a ȧ/h
 //! ```
 //!
-//! Seen from that body, the axis turns as well if something bends between the pins and the joint. In a pose in which the linkage
-//! cannot be assembled, the square root is of a negative number, and the result is NaN.
+//! Seen from that body, the axis turns as well if something bends between the pins and the joint, so that `ℓ̇ = g_H · Ḣ + g_n · ṅ`:
+//!
+//! ```text
+//! z = h/|n × w| (e − (e · m) m)
+//! g_H = (1 − a/d) (e · c − a/h e · m) c + a/d (e − (e · c) c) + z × n,      g_n = w × z
+//! ```
+//!
+//! A cylinder that pushes with F has the power F ℓ̇: it exerts the force `F g_H` at H and the moment `F n × g_n` on the body that carries the
+//! axis, and the opposite of both on that which carries A. In a pose in which the linkage cannot be assembled, the square root is of a
+//! negative number, and the result is NaN.
 
 use super::kinematics::{Generator, Kinematics};
 use super::model::Model;
+use super::profile;
 use super::twist::Twist;
-use super::vector::Vec3;
-use crate::chain::{Cylinder, Linkage, Pin};
+use super::vector::{SymmetricMatrix, Vec3};
+use crate::chain::{BodyId, Cylinder, Linkage, Pin, Value};
 use crate::symbolic::Expr;
 
-/// The geometry of a cylinder in a pose.
-struct Geometry<'g> {
+/// A cylinder in a pose.
+struct Line<'g> {
     /// H
     head: Vec3<'g>,
+    /// n
+    axis: Vec3<'g>,
     /// ℓ
     length: Expr<'g>,
-    /// e
-    direction: Vec3<'g>,
-    linkage: Option<Assembled<'g>>,
+    /// `g_H`
+    by_head: Vec3<'g>,
+    /// `g_n`, if there is a linkage
+    by_axis: Option<Vec3<'g>>,
 }
 
 /// A linkage in a pose.
@@ -79,23 +91,14 @@ impl<'g> Assembled<'g> {
         self.along * self.unit_along + self.height * self.unit_height
     }
 
-    /// Ḃ, from Ḣ and ṅ.
-    fn pin_rate(&self, head: Vec3<'g>, axis: Vec3<'g>) -> Vec3<'g> {
-        let distance = self.unit_along.dot(head);
-        let along = distance * (1.0 - self.along / self.distance);
-        let height = -(self.along * along / self.height);
-        let unit_along = (1.0 / self.distance) * (head - distance * self.unit_along);
-        let normal = axis.cross(self.across) + self.axis.cross(head);
-        let unit_height = (1.0 / self.normal_length) * (normal - self.unit_height.dot(normal) * self.unit_height);
-        along * self.unit_along + self.along * unit_along + height * self.unit_height + self.height * unit_height
-    }
-}
-
-impl<'g> Geometry<'g> {
-    /// ℓ̇, from Ḣ and ṅ.
-    fn rate(&self, head: Vec3<'g>, axis: Vec3<'g>) -> Expr<'g> {
-        let pin = self.linkage.as_ref().map_or(head, |linkage| linkage.pin_rate(head, axis));
-        self.direction.dot(pin)
+    /// `g_H` and `g_n`, from e.
+    fn gradients(&self, direction: Vec3<'g>) -> [Vec3<'g>; 2] {
+        let (ahead, aside) = (direction.dot(self.unit_along), direction.dot(self.unit_height));
+        let share = self.along / self.distance;
+        let stretch = (1.0 - share) * (ahead - self.along / self.height * aside);
+        let turn = (self.height / self.normal_length) * (direction - aside * self.unit_height);
+        let by_head = stretch * self.unit_along + share * (direction - ahead * self.unit_along) + turn.cross(self.axis);
+        [by_head, self.across.cross(turn)]
     }
 }
 
@@ -104,19 +107,47 @@ fn pin_position<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, pin: &Pin) -
     pose.origin + pose.rotation.apply(model.vector(&pin.position))
 }
 
-fn geometry<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Geometry<'g> {
-    let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| pin_position(model, kinematics, pin));
-    let linkage = cylinder.linkage.as_ref().map(|Linkage { pivot, rocker, link, left }| {
-        let pivot = pin_position(model, kinematics, &Pin { position: pivot.clone(), ..cylinder.foot.clone() });
-        let lengths = [rocker, link].map(|length| model.number(length));
+impl<'g> Line<'g> {
+    fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Self {
+        let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| pin_position(model, kinematics, pin));
         let axis = kinematics.generators[cylinder.coordinate.0].omega;
-        (pivot, Assembled::new(axis, head - pivot, lengths, *left))
-    });
-    let pin = linkage.as_ref().map_or(head, |(pivot, linkage)| *pivot + linkage.pin());
-    let way = pin - foot;
-    let length = way.dot(way).sqrt();
-    let linkage = linkage.map(|(_, linkage)| linkage);
-    Geometry { head, length, direction: (1.0 / length) * way, linkage }
+        let linkage = cylinder.linkage.as_ref().map(|Linkage { pivot, rocker, link, left }| {
+            let pivot = pin_position(model, kinematics, &Pin { position: pivot.clone(), ..cylinder.foot.clone() });
+            let lengths = [rocker, link].map(|length| model.number(length));
+            (pivot, Assembled::new(axis, head - pivot, lengths, *left))
+        });
+        let pin = linkage.as_ref().map_or(head, |(pivot, linkage)| *pivot + linkage.pin());
+        let way = pin - foot;
+        let length = way.dot(way).sqrt();
+        let direction = (1.0 / length) * way;
+        let (by_head, by_axis) = match linkage {
+            Some((_, linkage)) => {
+                let [by_head, by_axis] = linkage.gradients(direction);
+                (by_head, Some(by_axis))
+            }
+            None => (direction, None),
+        };
+        Line { head, axis, length, by_head, by_axis }
+    }
+
+    /// ℓ̇, from Ḣ and the angular velocity of the axis.
+    fn rate(&self, head: Vec3<'g>, spin: impl FnOnce() -> Vec3<'g>) -> Expr<'g> {
+        let rate = self.by_head.dot(head);
+        self.by_axis.map_or(rate, |by_axis| rate + by_axis.dot(spin().cross(self.axis)))
+    }
+
+    /// Indices and values of the entries of `∂ℓ/∂q`.
+    fn jacobian(&self, model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Vec<(usize, Expr<'g>)> {
+        let (joint, head_beyond) = (cylinder.coordinate.0, cylinder.head.body > cylinder.foot.body);
+        let entry = |j: usize| {
+            let generator = &kinematics.generators[j];
+            let turns_axis = if head_beyond { j < joint } else { j > joint };
+            let velocity = generator.velocity(self.head);
+            let rate = if turns_axis { self.rate(velocity, || generator.omega) } else { self.by_head.dot(velocity) };
+            (j, if head_beyond { rate } else { -rate })
+        };
+        model.chain.spanned_by(cylinder).map(entry).collect()
+    }
 }
 
 /// Angular velocity of a joint's axis relative to a body: that of the rotations between them.
@@ -134,19 +165,102 @@ fn spin_of_axis<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, joint: usize
 pub fn states<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist<'g>]) -> Vec<Expr<'g>> {
     let state = |cylinder: &Cylinder| {
         let (joint, foot) = (cylinder.coordinate.0, cylinder.foot.body.0);
-        let geometry = geometry(model, kinematics, cylinder);
-        let head = geometry.head;
+        let line = Line::new(model, kinematics, cylinder);
         let [at_foot, at_head] = [foot, cylinder.head.body.0].map(|body| {
             let twist = &twists[body];
-            twist.omega.cross(head) + twist.upsilon
+            twist.omega.cross(line.head) + twist.upsilon
         });
-        let axis = kinematics.generators[joint].omega;
-        let rotated = spin_of_axis(model, kinematics, joint, foot).cross(axis);
-        let rate = geometry.rate(at_head - at_foot, rotated);
-        let arm = geometry.rate(kinematics.generators[joint].velocity(head), Vec3::zero(model.graph));
-        // The joint moves the body with the greater index.
-        let arm = if cylinder.head.body > cylinder.foot.body { arm } else { -arm };
-        [geometry.length, rate, arm]
+        let rate = line.rate(at_head - at_foot, || spin_of_axis(model, kinematics, joint, foot));
+        [line.length, rate, arm(&line.jacobian(model, kinematics, cylinder), joint)]
     };
     model.chain.cylinders.iter().flat_map(state).collect()
+}
+
+/// The entry of a joint, which is always between the pins.
+fn arm<'g>(jacobian: &[(usize, Expr<'g>)], joint: usize) -> Expr<'g> {
+    jacobian.iter().find(|(j, _)| *j == joint).map(|(_, arm)| *arm).expect("the joint is between the pins")
+}
+
+/// `∂ℓ/∂q` of every cylinder, row by row.
+pub fn jacobians<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
+    let row = |cylinder: &Cylinder| {
+        let mut row = model.zeros();
+        for (j, entry) in Line::new(model, kinematics, cylinder).jacobian(model, kinematics, cylinder) {
+            row[j] = entry;
+        }
+        row
+    };
+    model.chain.cylinders.iter().flat_map(row).collect()
+}
+
+/// Force and moment about the world's origin, in the world frame, that a cylinder that pushes with 1 N exerts on each body.
+pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Vec<(BodyId, [Vec3<'g>; 2])> {
+    let line = Line::new(model, kinematics, cylinder);
+    let (force, moment) = (line.by_head, line.head.cross(line.by_head));
+    let mut pushes = vec![(cylinder.head.body, [force, moment]), (cylinder.foot.body, [-force, -moment])];
+    let carrier = BodyId(kinematics.generators[cylinder.coordinate.0].body - 1);
+    if let Some(by_axis) = line.by_axis.filter(|_| carrier != cylinder.foot.body) {
+        let zero = Vec3::zero(model.graph);
+        let moment = line.axis.cross(by_axis);
+        pushes.extend([(carrier, [zero, moment]), (cylinder.foot.body, [zero, -moment])]);
+    }
+    pushes
+}
+
+/// Cylinders with a valve, with the stiffness of their drives at rest.
+fn with_valves<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Cylinder, &'a Value)> {
+    let chain = model.chain;
+    chain.cylinders.iter().filter_map(|cylinder| Some((cylinder, chain.drives[chain.drive_of(cylinder)].oil()?)))
+}
+
+/// Positions of the drives at t = 0, by coordinate.
+pub fn positions_at_start<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let mut positions = model.zeros();
+    for drive in &model.chain.drives {
+        positions[drive.coordinate.0] = profile::position(model, &drive.profile, model.zero());
+    }
+    positions
+}
+
+/// Generalized forces of cylinders with a valve that hold the crane at rest, with the drives at given positions, by coordinate: springs
+/// along the cylinders.
+///
+/// ```text
+/// f = k (ℓ₀ − ℓ) ∂ℓ/∂q,     k = s/(∂ℓ/∂q_j)₀²
+/// ```
+///
+/// The index 0 is for the crane with the drives at their positions and straight beams; s is the stiffness of the drive.
+pub fn holding_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, positions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let mut forces = model.zeros();
+    if with_valves(model).next().is_none() {
+        return forces;
+    }
+    let straight = model.at(positions.to_vec());
+    let kinematics_of_straight = Kinematics::new(&straight);
+    for (cylinder, stiffness) in with_valves(model) {
+        let line = Line::new(model, kinematics, cylinder);
+        let meant = Line::new(&straight, &kinematics_of_straight, cylinder);
+        let arm = arm(&meant.jacobian(&straight, &kinematics_of_straight, cylinder), cylinder.coordinate.0);
+        let push = model.number(stiffness) / arm.squared() * (meant.length - line.length);
+        for (j, entry) in line.jacobian(model, kinematics, cylinder) {
+            forces[j] = forces[j] + entry * push;
+        }
+    }
+    forces
+}
+
+/// Adds `−∂f/∂q` of the forces that hold the crane at rest.
+pub fn holding_stiffness<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    positions: &[Expr<'g>],
+    matrix: &mut SymmetricMatrix<'g>,
+) {
+    let forces = holding_forces(model, kinematics, positions);
+    let moves = |j: usize| with_valves(model).any(|(cylinder, _)| model.chain.spanned_by(cylinder).contains(&j));
+    for (j, q) in model.q.iter().enumerate().filter(|(j, _)| moves(*j)) {
+        for (i, slope) in model.graph.derivatives(&forces, *q).into_iter().enumerate().take(j + 1) {
+            matrix.add(i, j, -slope);
+        }
+    }
 }

@@ -1,5 +1,6 @@
-//! Drives: a spring and a damper between a coordinate and its prescribed motion, or that motion itself. A joint that oil moves has a
-//! spring at rest only: in motion, its force follows from pressures, which are states of the run.
+//! Drives: a spring and a damper between a coordinate and its prescribed motion, or that motion itself. A joint that oil moves has neither:
+//! in motion, the force of its cylinder follows from pressures, which are states of the run; at rest it is that of a spring along the
+//! cylinder.
 
 use super::model::Model;
 use super::power_limits::delivered;
@@ -12,11 +13,6 @@ use crate::symbolic::Expr;
 /// Drives with a spring, with its stiffness and damping.
 fn flexible<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value, &'a Value)> {
     model.chain.drives.iter().filter_map(|drive| drive.spring().map(|(s, d)| (drive, s, d)))
-}
-
-/// Hydraulic drives, with their stiffness at rest.
-fn hydraulic_drives<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Drive, &'a Value)> {
-    model.chain.drives.iter().filter_map(|drive| drive.oil().map(|stiffness| (drive, stiffness)))
 }
 
 /// `s (q_dr − q) + d (q̇_dr − q̇)`
@@ -79,10 +75,6 @@ pub fn forces_at_rest<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     for (drive, stiffness, _) in flexible(model) {
         let stretch = stretch(model, drive, model.zero());
         forces[drive.coordinate.0] = named(model, drive, limited(model, drive, model.number(stiffness) * stretch));
-    }
-    for (drive, stiffness) in hydraulic_drives(model) {
-        let effort = model.number(stiffness) * stretch(model, drive, model.zero());
-        forces[drive.coordinate.0] = named(model, drive, effort);
     }
     forces
 }
@@ -155,12 +147,6 @@ pub fn limited_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>
         (drive.coordinate.0, spring.slope() * model.number(s))
     };
     matrix.add_diagonal(saturations(model, model.zero()).map(stiffness));
-}
-
-/// Stiffness at rest of hydraulic drives, on the diagonal.
-pub fn hydraulic_stiffness<'g>(model: &Model<'g>, matrix: &mut SymmetricMatrix<'g>) {
-    let springs = hydraulic_drives(model);
-    matrix.add_diagonal(springs.map(|(drive, stiffness)| (drive.coordinate.0, model.number(stiffness))));
 }
 
 /// Damping of drives with a limit at rest and t = 0, on the diagonal.

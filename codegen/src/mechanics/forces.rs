@@ -7,7 +7,7 @@
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::vector::SymmetricMatrix;
-use super::{connectors, drives, joints, loads, springs, supports};
+use super::{connectors, cylinders, drives, joints, loads, springs, supports};
 use crate::symbolic::Expr;
 
 /// A kind of force.
@@ -94,12 +94,22 @@ impl<'a, 'g> Forces<'a, 'g> {
         match kind {
             Kind::Supports => supports::forces(model, kinematics, &zeros),
             Kind::BeamSprings => springs::element_forces(model, &model.q, &zeros),
-            Kind::Drives => drives::forces_at_rest(model),
+            Kind::Drives => self.drives_at_rest(),
             Kind::JointDampers | Kind::Friction => zeros,
             Kind::Stops => joints::stop_forces(model, &zeros),
             Kind::Loads => loads::forces(model, kinematics, start),
             Kind::Connectors => connectors::forces(model, kinematics, start, None),
         }
+    }
+
+    /// Generalized forces of flexible drives and cylinders with a valve at rest and t = 0.
+    pub fn drives_at_rest(&self) -> Vec<Expr<'g>> {
+        let &Forces { model, kinematics } = self;
+        let springs = drives::forces_at_rest(model);
+        if !model.chain.has_valves() {
+            return springs;
+        }
+        add(&springs, &cylinders::holding_forces(model, kinematics, &cylinders::positions_at_start(model)))
     }
 
     /// Energy of a kind, if it stores any.

@@ -82,7 +82,7 @@ pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Opti
 }
 
 /// Adds a force and a moment to those of a body.
-fn add<'g>(sum: &mut Option<[Vec3<'g>; 2]>, [force, moment]: [Vec3<'g>; 2]) {
+pub fn add<'g>(sum: &mut Option<[Vec3<'g>; 2]>, [force, moment]: [Vec3<'g>; 2]) {
     *sum = Some(match *sum {
         Some([others, moments]) => [others + force, moments + moment],
         None => [force, moment],

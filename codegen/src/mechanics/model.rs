@@ -8,6 +8,7 @@ use super::axis_rotation::AxisRotation;
 use super::vector::{Symmetric3, Vec3};
 
 /// A chain whose inputs and numbers are expressions of one graph.
+#[derive(Clone)]
 pub struct Model<'g> {
     pub graph: &'g Graph,
     pub chain: &'g Chain,
@@ -21,6 +22,8 @@ pub struct Model<'g> {
     pub a: Vec<Expr<'g>>,
     /// Right-hand side of a linear system.
     pub right_hand_side: Vec<Expr<'g>>,
+    /// Positions at which the drives are held, by coordinate.
+    pub drive_positions: Vec<Expr<'g>>,
     /// Added inertias of the coordinates.
     pub added_inertia: Vec<Expr<'g>>,
     /// Added inertia of the base, row by row from the diagonal.
@@ -44,6 +47,7 @@ impl<'g> Model<'g> {
             v: of(Argument::Velocity),
             a: of(Argument::Acceleration),
             right_hand_side: of(Argument::RightHandSide),
+            drive_positions: of(Argument::DrivePositions),
             added_inertia: of(Argument::AddedInertia),
             base_added_inertia: of(Argument::BaseAddedInertia),
             parameters: of(Argument::Parameters),
@@ -71,12 +75,18 @@ impl<'g> Model<'g> {
             each(Argument::Velocity, "_dot"),
             each(Argument::Acceleration, "_ddot"),
             each(Argument::RightHandSide, "_force"),
+            each(Argument::DrivePositions, "_held"),
             each(Argument::AddedInertia, "_added_inertia"),
             base.collect(),
             parameters.map(|(i, parameter)| symbol(parameter.name.clone(), Argument::Parameters, i)).collect(),
             inputs.enumerate().map(|(i, name)| symbol(name, Argument::Inputs, i)).collect(),
         ]
         .concat()
+    }
+
+    /// The same chain at another pose.
+    pub fn at(&self, q: Vec<Expr<'g>>) -> Self {
+        Model { q, ..self.clone() }
     }
 
     /// Number of coordinates.

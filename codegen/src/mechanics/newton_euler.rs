@@ -14,22 +14,34 @@ use crate::symbolic::Expr;
 
 /// `e = −(h + g)` [Urbaś 2016, Eqs. (5), (7), (9), by recursion]; gravity is an upward acceleration of the base.
 pub fn bias<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
-    let motions = outward(model, factors, None);
+    let motions = outward(model, factors, (&model.v, None), -model.vector(&model.chain.gravity));
     inward(model, factors, &motions, &[], |_, _| None).bias
 }
 
 /// Force and moment that the part beyond each cut exerts on the part before it: the inertia and the weight of everything
 /// beyond, the loads applied to it and the forces of connectors on it.
 pub fn internal_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
-    let motions = outward(model, factors, Some(&model.a));
+    let motions = outward(model, factors, (&model.v, Some(&model.a)), -model.vector(&model.chain.gravity));
     let applied = loads::on_bodies(model, kinematics);
-    let cuts = inward(model, factors, &motions, &applied, |force, moment| Some([-force, -moment]));
-    let wrenches = model.chain.cuts().into_iter().filter_map(|cut| match cut {
-        Cut::Ground => cuts.ground,
-        Cut::Joint(BodyId(body)) => cuts.joints[body].or(cuts.bodies[body]),
-        Cut::Body(BodyId(body)) => cuts.bodies[body],
-    });
-    wrenches.flatten().flat_map(|vector| vector.0).collect()
+    inward(model, factors, &motions, &applied, |force, moment| Some([-force, -moment])).at_cuts(model)
+}
+
+/// What forces and moments on bodies add to the internal forces at every cut: the sum of those beyond. They are in the world frame,
+/// the moments about its origin.
+pub fn transmitted<'g>(
+    model: &Model<'g>,
+    kinematics: &Kinematics<'g>,
+    factors: &[Factor<'g>],
+    on_bodies: Vec<(BodyId, Wrench<'g>)>,
+) -> Vec<Expr<'g>> {
+    let motions = outward(model, factors, (&model.zeros(), None), Vec3::zero(model.graph));
+    let mut applied = vec![None; model.chain.bodies.len()];
+    for (BodyId(body), [force, moment]) in on_bodies {
+        let pose = &kinematics.poses[body];
+        let own = [force, moment - pose.origin.cross(force)].map(|vector| pose.rotation.apply_transposed(vector));
+        loads::add(&mut applied[body], own);
+    }
+    inward(model, factors, &motions, &applied, |force, moment| Some([-force, -moment])).at_cuts(model)
 }
 
 /// The motion of the frame after one factor.
@@ -41,10 +53,15 @@ struct Motion<'g> {
     a: Vec3<'g>,
 }
 
-/// From base to tip: ω, α and a of each frame. In one sweep the three chains of dependent operations are interleaved.
-fn outward<'g>(model: &Model<'g>, factors: &[Factor<'g>], accelerations: Option<&[Expr<'g>]>) -> Vec<Motion<'g>> {
+/// From base to tip: ω, α and a of each frame, the base accelerated by `start`. In one sweep the three chains of dependent operations are interleaved.
+fn outward<'g>(
+    model: &Model<'g>,
+    factors: &[Factor<'g>],
+    (v, accelerations): (&[Expr<'g>], Option<&[Expr<'g>]>),
+    start: Vec3<'g>,
+) -> Vec<Motion<'g>> {
     let zero = Vec3::zero(model.graph);
-    let (mut omega, mut alpha, mut a) = (zero, zero, -model.vector(&model.chain.gravity));
+    let (mut omega, mut alpha, mut a) = (zero, zero, start);
     let own = |vector: Vec3<'g>, own: &dyn Fn(&[Expr<'g>]) -> Vec3<'g>| match accelerations {
         Some(accelerations) => vector + own(accelerations),
         None => vector,
@@ -52,7 +69,7 @@ fn outward<'g>(model: &Model<'g>, factors: &[Factor<'g>], accelerations: Option<
     let mut motions = Vec::new();
     let sweep = model.graph.sweep();
     for factor in factors {
-        let velocities = along(model, &mut omega, factor, &model.v);
+        let velocities = along(model, &mut omega, factor, v);
         match (factor, &velocities) {
             (Factor::Rotation(rotation), _) => (alpha, a) = (rotation.to_inner(alpha), rotation.to_inner(a)),
             (Factor::Revolute { j, rotation }, Velocities::Revolute { gyration }) => {
@@ -86,7 +103,7 @@ fn outward<'g>(model: &Model<'g>, factors: &[Factor<'g>], accelerations: Option<
 }
 
 /// Force and moment about the origin of the frame in whose components both are given.
-type Wrench<'g> = [Vec3<'g>; 2];
+pub type Wrench<'g> = [Vec3<'g>; 2];
 
 /// The forces that a motion requires.
 struct Inward<'g> {
@@ -98,6 +115,18 @@ struct Inward<'g> {
     bodies: Vec<Option<Wrench<'g>>>,
     /// The wrench recorded in the world frame.
     ground: Option<Wrench<'g>>,
+}
+
+impl<'g> Inward<'g> {
+    /// The wrenches recorded at all cuts.
+    fn at_cuts(&self, model: &Model<'g>) -> Vec<Expr<'g>> {
+        let wrenches = model.chain.cuts().into_iter().filter_map(|cut| match cut {
+            Cut::Ground => self.ground,
+            Cut::Joint(BodyId(body)) => self.joints[body].or(self.bodies[body]),
+            Cut::Body(BodyId(body)) => self.bodies[body],
+        });
+        wrenches.flatten().flat_map(|vector| vector.0).collect()
+    }
 }
 
 /// From tip to base: the force and moment that each frame requires, minus the loads `applied` to the bodies. `note` converts them to

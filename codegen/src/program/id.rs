@@ -82,6 +82,7 @@ functions! {
         SupportReactions = "support_reactions",
         SupportGaps = "support_gaps",
         CylinderStates = "cylinder_states",
+        CylinderJacobians = "cylinder_jacobians",
         DriveMotions = "drive_motions",
         ValveOpenings = "valve_openings",
         DriveLimits = "drive_limits",
@@ -119,12 +120,16 @@ functions! {
         TangentStiffness = "tangent_stiffness",
         DriveForcesAtRest = "drive_forces_at_rest",
         ConnectorStiffness = "connector_stiffness",
+        HoldingForces = "holding_forces",
+        HoldingStiffness = "holding_stiffness",
     }
     Linearise {
         Linearise = "linearise",
     }
     InternalForces {
         InternalForces = "internal_forces",
+        CylinderWrenches = "cylinder_wrenches",
+        ConnectorWrenches = "connector_wrenches",
         SupportPositions = "support_positions",
         SectionModuli = "section_moduli",
     }

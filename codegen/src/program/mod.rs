@@ -54,6 +54,8 @@ pub enum Argument {
     Acceleration,
     /// A generalized force, the right-hand side `r` of a linear system.
     RightHandSide,
+    /// Positions at which drives are held, at the places of their coordinates.
+    DrivePositions,
     /// Added inertias of single coordinates, a diagonal.
     AddedInertia,
     /// Added inertia of the base, a symmetric 6×6 matrix.

@@ -224,6 +224,8 @@ pub struct CylinderInfo {
     pub bulk_modulus: Option<f64>,
     /// Volumes of the oil in hoses and valves on the piston's side and on the rod's, m³.
     pub hose_volumes: [f64; 2],
+    /// The coordinates that change its length: the first, and the one after the last. Its joint's, and those of beams between its pins.
+    pub spanned: [usize; 2],
     /// The valve that moves it; its pressures and the valve's opening are then states of the motion.
     pub valve: Option<ValveInfo>,
 }

@@ -129,6 +129,10 @@ impl<const N: usize, H: Deref<Target: CraneModel<N>> + Send + Sync> DynModel for
         self.0.cylinder_states(&vector(q), &vector(v), out);
     }
 
+    fn cylinder_jacobians(&self, q: &[f64], out: &mut [f64]) {
+        self.0.cylinder_jacobians(&vector(q), out.as_chunks_mut().0);
+    }
+
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
         self.0.drive_motions(t, out);
     }
@@ -208,6 +212,14 @@ impl<const N: usize, H: Deref<Target: Statics<N>> + Send + Sync> DynStatics for 
 
     fn connector_stiffness(&self, t: f64, q: &[f64], out: &mut [f64]) {
         out.copy_from_slice(self.0.connector_stiffness(t, &vector(q)).as_slice());
+    }
+
+    fn holding_forces(&self, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.holding_forces(&vector(q), &vector(positions)).as_slice());
+    }
+
+    fn holding_stiffness(&self, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.0.holding_stiffness(&vector(q), &vector(positions)).as_slice());
     }
 
     fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {
@@ -310,6 +322,14 @@ impl<const N: usize, L: LaneDynamics<N>> DynBlock for Block<N, L> {
 impl<const N: usize, H: Deref<Target: InternalForces<N>> + Send + Sync> DynInternalForces for Instance<N, H> {
     fn internal_forces(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
         self.0.internal_forces(t, &vector(q), &vector(v), &vector(a), out);
+    }
+
+    fn cylinder_wrenches(&self, q: &[f64], out: &mut [Wrench]) {
+        self.0.cylinder_wrenches(&vector(q), out);
+    }
+
+    fn connector_wrenches(&self, q: &[f64], out: &mut [Wrench]) {
+        self.0.connector_wrenches(&vector(q), out);
     }
 
     fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]) {

@@ -102,6 +102,9 @@ pub trait DynModel: Send + Sync {
     /// Length of every cylinder, its rate, and its derivative with respect to the joint's coordinate.
     fn cylinder_states(&self, q: &[f64], v: &[f64], out: &mut [Vector3<f64>]);
 
+    /// `∂ℓ/∂q` of every cylinder, row by row; nothing is written for a crane without valves.
+    fn cylinder_jacobians(&self, q: &[f64], out: &mut [f64]);
+
     /// Prescribed position and rate of every drive.
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]);
 
@@ -164,7 +167,13 @@ pub trait DynStatics: DynModel {
     /// The contribution of connectors to the tangent stiffness, with winches at their positions at time t, n × n.
     fn connector_stiffness(&self, t: f64, q: &[f64], out: &mut [f64]);
 
-    /// Generalized forces of the drives that hold the crane at rest at t = 0, including rigid drives.
+    /// Generalized forces of cylinders with a valve that hold the crane at rest with the drives at given positions, by coordinate.
+    fn holding_forces(&self, q: &[f64], positions: &[f64], out: &mut [f64]);
+
+    /// Their contribution to the tangent stiffness, n × n.
+    fn holding_stiffness(&self, q: &[f64], positions: &[f64], out: &mut [f64]);
+
+    /// Generalized forces of the drives that hold the crane at rest at t = 0, including rigid drives and cylinders with a valve.
     fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]);
 }
 
@@ -239,6 +248,13 @@ pub trait DynLineariseMotion: DynDynamics {
 pub trait DynInternalForces: DynModel {
     /// The wrench that the part beyond each cut exerts on the part before it. `out`: one per cut, as [`Description::cuts`] lists them.
     fn internal_forces(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]);
+
+    /// What each cylinder that pushes with 1 N adds at each cut, cylinder by cylinder; nothing is written for a crane without valves.
+    fn cylinder_wrenches(&self, q: &[f64], out: &mut [Wrench]);
+
+    /// What each connector between two bodies contributes at each cut while it pulls with 1 N, connector by connector; nothing is written
+    /// for a crane without such connectors.
+    fn connector_wrenches(&self, q: &[f64], out: &mut [Wrench]);
 
     /// Positions of the supports' attachment points, m.
     fn support_positions(&self, q: &[f64], out: &mut [Vector3<f64>]);

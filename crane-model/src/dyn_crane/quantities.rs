@@ -6,14 +6,15 @@ use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
 use crate::{
-    CoordinateKind, CoordinateRole, Description, DriveInfo, ParameterError, SectionModuli, Tension, Wrench, bristles,
-    dynamics,
+    CoordinateKind, CoordinateRole, CylinderInfo, Description, DriveInfo, ParameterError, SectionModuli, Tension,
+    Wrench, bristles, dynamics,
     dynamics::{InitialState, Run, Sample, Stopped},
     force_states::StateAt,
     hydraulics::{self, Oil},
     modes::SmallMotions,
     statics,
     statics::Equilibrium,
+    wrench,
 };
 
 /// Energies of a crane, J.
@@ -135,7 +136,7 @@ impl dyn DynCrane + '_ {
 
     /// Torques and forces of the drives that hold the crane at rest with the drives at given positions: N m and N.
     pub fn drive_efforts_holding(&self, positions: &[f64], q: &[f64]) -> Vec<f64> {
-        let Description { drives, coordinates, .. } = self.description();
+        let Description { drives, coordinates, cylinders, .. } = self.description();
         let motions = self.drive_motions_at(0.0);
         // The effort of a flexible drive depends only on the deviation from its position; that of a rigid one follows from the pose.
         let mut moved = q.to_vec();
@@ -151,7 +152,18 @@ impl dyn DynCrane + '_ {
         };
         let effort =
             |drive: &DriveInfo| if is_rigid(drive) { held[drive.coordinate] } else { springs[drive.coordinate] };
-        drives.iter().map(effort).collect()
+        let mut efforts: Vec<f64> = drives.iter().map(effort).collect();
+        if self.description().has_valves() {
+            let mut held = vec![0.0; q.len()];
+            for (drive, position) in drives.iter().zip(positions) {
+                held[drive.coordinate] = *position;
+            }
+            let by_oil = numbers(self, |out| self.holding_forces(q, &held, out));
+            for cylinder in cylinders.iter().filter(|cylinder| cylinder.valve.is_some()) {
+                efforts[cylinder.drive] = by_oil[drives[cylinder.drive].coordinate];
+            }
+        }
+        efforts
     }
 
     /// Maximum efforts of the drives, N m and N; `None` where there is no limit.
@@ -217,10 +229,61 @@ impl dyn DynCrane + '_ {
         out.into_iter().map(|[gap, _]| gap).collect()
     }
 
-    /// The wrench that the part beyond each cut exerts on the part before it, cut by cut: N and N m.
+    /// The wrench that the part beyond each cut exerts on the part before it, cut by cut: N and N m. Cylinders with a valve push with
+    /// the force that the accelerations require.
     pub fn internal_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
+        let pushes = if self.description().has_valves() { self.pushes_required(t, q, v, a) } else { Vec::new() };
+        self.internal_forces_with(t, [q, v, a], &pushes)
+    }
+
+    /// As [`internal_forces_at`](Self::internal_forces_at), with cylinders that push with the force of their pressures, at the states `x` of forces.
+    pub fn internal_forces_of(&self, t: f64, motion: [&[f64]; 3], x: &[f64]) -> Vec<Wrench> {
+        let [q, v, _] = motion;
+        let mut pushes = vec![0.0; self.description().cylinders.len()];
+        if let Some(oil) = Oil::at(self, &StateAt { t, q, v, x }) {
+            for (index, state, _) in &oil.cylinders {
+                pushes[*index] = state.force;
+            }
+        }
+        self.internal_forces_with(t, motion, &pushes)
+    }
+
+    /// With cylinders that push with given forces, N; none if there are no forces.
+    fn internal_forces_with(&self, t: f64, [q, v, a]: [&[f64]; 3], pushes: &[f64]) -> Vec<Wrench> {
         let mut out = vec![Wrench::ZERO; self.description().cuts().len()];
         self.internal_forces(t, q, v, a, &mut out);
+        let mut of_cylinders = vec![Wrench::ZERO; pushes.len() * out.len()];
+        self.cylinder_wrenches(q, &mut of_cylinders);
+        for (push, own) in pushes.iter().zip(of_cylinders.chunks_exact(out.len())) {
+            wrench::add(&mut out, *push, own);
+        }
+        out
+    }
+
+    /// Forces with which cylinders with a valve push so that the crane has given accelerations, N; 0 for others.
+    fn pushes_required(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<f64> {
+        let Description { drives, cylinders, .. } = self.description();
+        let inertia = self.mass_matrix_at(q) * DVector::from_column_slice(a);
+        let (bias, forces) = (self.bias_at(q, v), numbers(self, |out| self.forces(t, q, v, out)));
+        let mut states = vec![Vector3::zeros(); cylinders.len()];
+        self.cylinder_states(q, v, &mut states);
+        let push = |(cylinder, state): (&CylinderInfo, &Vector3<f64>)| {
+            let j = drives[cylinder.drive].coordinate;
+            if cylinder.valve.is_some() { (inertia[j] - bias[j] - forces[j]) / state.z } else { 0.0 }
+        };
+        cylinders.iter().zip(&states).map(push).collect()
+    }
+
+    /// The wrench at each cut without what is internal to the crane, the forces of connectors between two bodies and of cylinders: only inertia, weight
+    /// and what acts from outside. N and N m.
+    pub(crate) fn external_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
+        let mut out = self.internal_forces_with(t, [q, v, a], &[]);
+        let tensions = self.connector_tensions_at(t, q, v);
+        let mut of_connectors = vec![Wrench::ZERO; tensions.len() * out.len()];
+        self.connector_wrenches(q, &mut of_connectors);
+        for (tension, own) in tensions.iter().zip(of_connectors.chunks_exact(out.len())) {
+            wrench::add(&mut out, -tension.force, own);
+        }
         out
     }
 

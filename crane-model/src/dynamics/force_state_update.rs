@@ -32,10 +32,13 @@ pub(crate) struct ForceStateUpdate {
     inverse_columns: Vec<Vec<f64>>,
     /// I + S U M⁻¹ Uᵀ.
     correction: Factors,
-    unit: Vec<f64>,
-    /// Workspace: one number per state, and one per force.
+    /// U M⁻¹ Uᵀ.
+    inverse: DMatrix<f64>,
+    /// Workspace: one number per coordinate, one per state, one per force, and `U g` and `U p` per force.
+    column: Vec<f64>,
     of_states: Vec<f64>,
     shares: Vec<f64>,
+    along: Vec<[f64; 2]>,
 }
 
 impl ForceStateUpdate {
@@ -54,9 +57,11 @@ impl ForceStateUpdate {
             added_inertia: square(count),
             inverse_columns: vec![vec![0.0; n]; count],
             correction: Factors::new(count),
-            unit: vec![0.0; n],
+            inverse: square(count),
+            column: vec![0.0; n],
             of_states: vec![0.0; len],
             shares: vec![0.0; count],
+            along: vec![[0.0; 2]; count],
             force_states,
         }
     }
@@ -74,7 +79,7 @@ impl ForceStateUpdate {
             return;
         }
         force_states.evaluate(crane, moment, rates, Some(by_states));
-        let forces = force_states.forces();
+        let (forces, rows) = (force_states.forces(), force_states.rows());
         states.factorise(|row, column| f64::from(row == column) / c - by_states[(row, column)]);
         for (column, force) in forces.iter().enumerate() {
             for (matrix, rates) in [(&mut *kappa, force.rates_by_length), (&mut *delta, force.rates_by_speed)] {
@@ -91,41 +96,47 @@ impl ForceStateUpdate {
         for ((added_inertia, delta), kappa) in added_inertia.iter_mut().zip(delta.iter()).zip(kappa.iter()) {
             *added_inertia = -(delta * c + kappa * (c * c));
         }
-        for (force, inverse_column) in forces.iter().zip(&mut *inverse_columns) {
-            self.unit.fill(0.0);
-            self.unit[force.coordinate] = force.arm;
-            solve(&self.unit, inverse_column);
+        for (row, inverse_column) in rows.iter().zip(&mut *inverse_columns) {
+            self.column.fill(0.0);
+            row.add_to(&mut self.column, 1.0);
+            solve(&self.column, inverse_column);
+        }
+        for (row, own) in rows.iter().enumerate() {
+            for (column, inverse_column) in inverse_columns.iter().enumerate() {
+                self.inverse[(row, column)] = own.along(inverse_column);
+            }
         }
         self.correction.factorise(|row, column| {
-            let share = |(place, force): (usize, &StatefulForce)| {
-                added_inertia[(row, place)] * force.along(&inverse_columns[column])
-            };
-            f64::from(row == column) + forces.iter().enumerate().map(share).sum::<f64>()
+            let share = |place: usize| added_inertia[(row, place)] * self.inverse[(place, column)];
+            f64::from(row == column) + (0..rows.len()).map(share).sum::<f64>()
         });
     }
 
     /// Adds `−δ U G − κ U (c G + P) − F_x W R/c`.
     pub fn add_to(&mut self, (g, p): (&[f64], &[f64]), r: &[f64], c: f64, right: &mut [f64]) {
-        let forces = self.force_states.forces();
+        let (forces, rows) = (self.force_states.forces(), self.force_states.rows());
         self.of_states.copy_from_slice(r);
         self.states.solve(&mut self.of_states);
-        for (row, force) in forces.iter().enumerate() {
-            let of_force = |(column, other): (usize, &StatefulForce)| {
-                let (g, p) = (other.along(g), other.along(p));
+        for (along, row) in self.along.iter_mut().zip(rows) {
+            *along = [row.along(g), row.along(p)];
+        }
+        for (row, (force, own)) in forces.iter().zip(rows).enumerate() {
+            let of_force = |(column, [g, p]): (usize, &[f64; 2])| {
                 self.delta[(row, column)] * g + self.kappa[(row, column)] * (g * c + p)
             };
-            let sum = forces.iter().enumerate().map(of_force).sum::<f64>() + force.pull(&self.of_states) / c;
-            right[force.coordinate] -= force.arm * sum;
+            let sum = self.along.iter().enumerate().map(of_force).sum::<f64>() + force.pull(&self.of_states) / c;
+            own.add_to(right, -sum);
         }
     }
 
     /// Turns the solution of the system without these forces into that of the system with them.
     pub fn correct(&mut self, solution: &mut [f64]) {
-        let forces = self.force_states.forces();
+        for ([along, _], row) in self.along.iter_mut().zip(self.force_states.rows()) {
+            *along = row.along(solution);
+        }
         for (row, share) in self.shares.iter_mut().enumerate() {
-            let of_force =
-                |(column, force): (usize, &StatefulForce)| self.added_inertia[(row, column)] * force.along(solution);
-            *share = forces.iter().enumerate().map(of_force).sum();
+            let of_force = |(column, [along, _]): (usize, &[f64; 2])| self.added_inertia[(row, column)] * along;
+            *share = self.along.iter().enumerate().map(of_force).sum();
         }
         self.correction.solve(&mut self.shares);
         for (inverse_column, share) in self.inverse_columns.iter().zip(&self.shares) {
@@ -138,9 +149,9 @@ impl ForceStateUpdate {
     /// The increments of the states, `W (R + g_ℓ U p + g_ℓ̇ U w)`, given those of pose and rates.
     pub fn states(&self, (p, w): (&[f64], &[f64]), r: &[f64], out: &mut [f64]) {
         out.copy_from_slice(r);
-        for force in self.force_states.forces() {
+        for (force, row) in self.force_states.forces().iter().zip(self.force_states.rows()) {
             let part = &mut out[force.first..force.first + force.count];
-            let (p, w) = (force.along(p), force.along(w));
+            let (p, w) = (row.along(p), row.along(w));
             for (i, x) in part.iter_mut().enumerate() {
                 *x += force.rates_by_length[i] * p + force.rates_by_speed[i] * w;
             }
@@ -201,11 +212,6 @@ impl Factors {
 }
 
 impl StatefulForce {
-    /// J x
-    fn along(&self, x: &[f64]) -> f64 {
-        self.arm * x[self.coordinate]
-    }
-
     /// `F_x x`
     fn pull(&self, x: &[f64]) -> f64 {
         let states = &x[self.first..self.first + self.count];

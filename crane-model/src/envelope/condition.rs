@@ -32,7 +32,7 @@ impl Condition {
         let rest = vec![0.0; q.len()];
         let wrenches = crane.internal_forces_at(0.0, &q, &rest, &rest);
         Self {
-            lines: tipping::lines_of(crane, &q, &wrenches),
+            lines: tipping::lines(crane, 0.0, &q, &rest, &rest),
             sections: stressed_sections(crane.description(), &crane.section_moduli_at(), &wrenches),
             efforts: crane.drive_efforts_holding(positions, &q),
             points: crane.points_at(&q),

@@ -28,30 +28,35 @@ pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
     cylinders.iter().zip(&lengths).filter_map(decay).collect()
 }
 
-/// Adds the stiffness of the oil that shut valves trap, `k (∂ℓ/∂q)² − F ∂²ℓ/∂q²`, to that of small motions about a pose at rest.
+/// Adds the stiffness of the oil that shut valves trap, `k Jᵀ J − F ∂J/∂q` with `J = ∂ℓ/∂q`, to that of small motions about a pose at rest.
 pub(crate) fn stiffen(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotions) {
-    /// Step of the central difference of a lever arm, m or rad: the relative error of the second term is 1e-8.
+    /// Step of the central difference of J, m or rad: the relative error of the second term is 1e-8.
     const DIFFERENCE: f64 = 1e-4;
-    let cylinders = &crane.description().cylinders;
+    let (cylinders, n) = (&crane.description().cylinders, q.len());
     if !crane.description().has_valves() {
         return;
     }
-    let rest = vec![0.0; q.len()];
-    let states = cylinders_at(crane, q, &rest, &crane.drive_efforts_at_rest(q));
-    for (index, (info, state)) in
-        cylinders.iter().zip(&states).enumerate().filter(|(_, (info, _))| info.valve.is_some())
-    {
-        let coordinate = crane.description().drives[info.drive].coordinate;
-        let lever = |step: f64| {
-            let mut moved = q.to_vec();
-            moved[coordinate] += step;
-            let mut lengths = vec![Vector3::zeros(); cylinders.len()];
-            crane.cylinder_states(&moved, &rest, &mut lengths);
-            lengths[index].z
-        };
-        let curvature = (lever(DIFFERENCE) - lever(-DIFFERENCE)) / (2.0 * DIFFERENCE);
-        let Some(place) = motions.unknowns.iter().position(|unknown| *unknown == coordinate) else { continue };
-        let oil = state.oil_stiffness(info).unwrap_or(f64::NAN);
-        motions.stiffness[(place, place)] += oil - state.force * curvature;
+    let states = cylinders_at(crane, q, &vec![0.0; n], &crane.drive_efforts_at_rest(q));
+    let jacobians_at = |coordinate: usize, step: f64| {
+        let (mut moved, mut rows) = (q.to_vec(), vec![0.0; cylinders.len() * n]);
+        moved[coordinate] += step;
+        crane.cylinder_jacobians(&moved, &mut rows);
+        rows
+    };
+    let here = jacobians_at(0, 0.0);
+    for (column, &by) in motions.unknowns.iter().enumerate() {
+        let [before, after] = [-DIFFERENCE, DIFFERENCE].map(|step| jacobians_at(by, step));
+        for (index, (info, state)) in cylinders.iter().zip(&states).enumerate() {
+            let [first, end] = info.spanned;
+            if info.valve.is_none() || !(first..end).contains(&by) {
+                continue;
+            }
+            let stiffness = state.stiffness_along(info).unwrap_or(f64::NAN);
+            for (row, &of) in motions.unknowns.iter().enumerate() {
+                let [place, other] = [of, by].map(|coordinate| index * n + coordinate);
+                let curvature = (after[place] - before[place]) / (2.0 * DIFFERENCE);
+                motions.stiffness[(row, column)] += stiffness * here[place] * here[other] - state.force * curvature;
+            }
+        }
     }
 }

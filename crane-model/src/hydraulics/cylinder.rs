@@ -76,8 +76,6 @@ impl ValveCylinder {
             (0.0, 0.0)
         };
         StatefulForce {
-            coordinate: self.coordinate,
-            arm: here.z,
             force: piston * area - rod * ring - stiffness * beyond * damping,
             by_length,
             by_speed,

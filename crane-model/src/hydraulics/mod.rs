@@ -18,9 +18,11 @@
 //! u* = gain (ℓ* − ℓ) + share · A ẏ*/(K r(p_s − p)),     between −1 and 1
 //! ```
 //!
-//! with the length ℓ* of the cylinder at the prescribed position of the drive; the second term is the feed-forward of its speed, at the
+//! with the length ℓ* of the cylinder at the prescribed position of the drive and straight beams; the second term is the feed-forward of its speed, at the
 //! measured pressures. The pump maintains its pressure as long as the valves take no more than its maximum flow;
 //! `ṗ_s = β/V_s (Q_pump − Σ Q)`. At the ends of the stroke the piston meets a stiff stop (Hunt–Crossley).
+//!
+//! F acts on all coordinates that change ℓ, with the generalized forces `F ∂ℓ/∂q`: on the joint, and on the beams between the pins.
 //!
 //! The states are, cylinder by cylinder, p, p′ and u, followed by `p_s`. H. E. Merritt, Hydraulic Control Systems, Wiley 1967.
 
@@ -34,7 +36,7 @@ use nalgebra::{DMatrix, Vector3};
 use crate::{
     CylinderInfo, Description,
     dyn_crane::{DynDynamics, DynModel},
-    force_states::{STATES, StateAt, StatefulForce},
+    force_states::{Row, STATES, StateAt, StatefulForce},
     results::CylinderState,
 };
 pub use about_rest::decays;
@@ -50,8 +52,10 @@ pub(crate) struct Hydraulics {
     pump: Option<Pump>,
     /// Every cylinder of the crane: length, rate, and derivative of the length with respect to its coordinate.
     here: Vec<Vector3<f64>>,
-    /// The same with the drives at the positions that their motions prescribe.
+    /// The same with the drives at the positions that their motions prescribe, and straight beams.
     wanted: Vec<Vector3<f64>>,
+    /// Derivatives of all lengths with respect to the coordinates, row by row.
+    jacobians: Vec<f64>,
     motions: Vec<[f64; 2]>,
     /// Prescribed openings of the drives' valves, and their rates.
     openings: Vec<[f64; 2]>,
@@ -81,6 +85,7 @@ impl Hydraulics {
             pump,
             here: vec![Vector3::zeros(); description.cylinders.len()],
             wanted: vec![Vector3::zeros(); description.cylinders.len()],
+            jacobians: vec![0.0; description.cylinders.len() * n],
             motions: vec![[0.0; 2]; description.drives.len()],
             openings: vec![[0.0; 2]; description.drives.len()],
             place: [vec![0.0; n], vec![0.0; n]],
@@ -101,6 +106,23 @@ impl Hydraulics {
     /// Number of cylinders with a valve.
     pub(crate) fn count(&self) -> usize {
         self.cylinders.len()
+    }
+
+    /// Rows `∂ℓ/∂q` of the cylinders with a valve.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Row> {
+        self.cylinders.iter().map(|cylinder| {
+            let [first, end] = cylinder.info.spanned;
+            Row { first, entries: vec![0.0; end - first] }
+        })
+    }
+
+    /// Sets the rows of the cylinders with a valve to those of the last evaluation.
+    pub(crate) fn update(&self, rows: &mut [Row]) {
+        let n = self.place[0].len();
+        for (row, cylinder) in rows.iter_mut().zip(&self.cylinders) {
+            let [first, end] = cylinder.info.spanned.map(|coordinate| cylinder.index * n + coordinate);
+            row.entries.copy_from_slice(&self.jacobians[first..end]);
+        }
     }
 
     /// Sizes by which errors of the states are measured: the pump's pressure, and the travel of a spool from its centre.
@@ -234,22 +256,17 @@ impl Hydraulics {
     /// Updates the lengths of all cylinders at this state, and with the drives at the positions that their motions prescribe.
     fn measure(&mut self, crane: &dyn DynModel, t: f64, q: &[f64], v: &[f64]) {
         crane.cylinder_states(q, v, &mut self.here);
+        crane.cylinder_jacobians(q, &mut self.jacobians);
         crane.drive_motions(t, &mut self.motions);
         crane.valve_openings(t, &mut self.openings);
+        // Everything else is zero: the rest of the pose does not change these lengths.
         let [wanted_q, wanted_v] = &mut self.place;
-        wanted_q.copy_from_slice(q);
-        wanted_v.copy_from_slice(v);
         for cylinder in &self.cylinders {
             let [position, rate] = self.motions[cylinder.info.drive];
             wanted_q[cylinder.coordinate] = position;
             wanted_v[cylinder.coordinate] = rate;
         }
         crane.cylinder_states(wanted_q, wanted_v, &mut self.wanted);
-        // Bending between the pins of a cylinder changes its length slightly, but its force acts on its joint only.
-        for ValveCylinder { index, coordinate, .. } in &self.cylinders {
-            self.here[*index].y = self.here[*index].z * v[*coordinate];
-            self.wanted[*index].y = self.wanted[*index].z * wanted_v[*coordinate];
-        }
     }
 
     /// What the pump delivers at its present pressure: flow, m³/s, and power, W; then that pressure, Pa.

@@ -27,10 +27,11 @@ impl Oil {
         hydraulics.evaluate(crane, moment, &mut vec![0.0; x.len()], &mut forces, None);
         let cylinders =
             hydraulics.cylinders.iter().zip(&forces).zip(x.chunks_exact(STATES)).map(|((cylinder, force), x)| {
+                let here = hydraulics.here[cylinder.index];
                 let state = CylinderState {
-                    length: hydraulics.here[cylinder.index].x,
-                    speed: force.speed,
-                    arm: force.arm,
+                    length: here.x,
+                    speed: here.y,
+                    arm: here.z,
                     force: force.force,
                     pressures: [x[0], x[1]],
                     flow: force.from_pump,

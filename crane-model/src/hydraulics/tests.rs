@@ -19,6 +19,7 @@ fn cylinder() -> ValveCylinder {
     let info = CylinderInfo {
         name: "lift".into(),
         drive: 0,
+        spanned: [0, 1],
         areas: [5e-3, 3e-3],
         retracted: 0.6,
         stroke: 0.4,

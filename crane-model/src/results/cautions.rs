@@ -1,7 +1,7 @@
 //! Cautions about poses and runs for which the model is not valid.
 
 use super::{Extremes, Table, connectors, cylinders, feet, limits, stop_effort};
-use crate::{Description, dyn_crane::DynCrane};
+use crate::{CylinderInfo, Description, dyn_crane::DynCrane};
 
 /// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
 /// have an error of about 1 %.
@@ -42,6 +42,23 @@ pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
         .chain(connectors::of_run(description, table))
         .chain(bent_beyond(bent, bend))
         .collect()
+}
+
+/// Cylinders that load the beams between their pins by a torque at the joint, because they have no valve.
+pub fn of_strength(description: &Description) -> Vec<String> {
+    let over_beams = |info: &&CylinderInfo| {
+        let mut spanned = description.coordinates[info.spanned[0]..info.spanned[1]].iter();
+        info.valve.is_none() && spanned.any(|coordinate| coordinate.role.is_element())
+    };
+    let caution = |info: &CylinderInfo| {
+        let joint = &description.coordinates[description.drives[info.drive].coordinate].name;
+        format!(
+            "{} has no valve: the sections between its pins carry a torque in {joint} instead of the force of the cylinder; with a `valve` \
+             it pushes on its pins",
+            info.name
+        )
+    };
+    description.cylinders.iter().filter(over_beams).map(caution).collect()
 }
 
 /// The first pose of a run near which the equations are singular.

@@ -62,11 +62,16 @@ impl CylinderState {
 
     /// Stiffness that the oil trapped on both sides gives the joint, N m/rad or N/m: `β (A²/V + A′²/V′) (∂ℓ/∂q_j)²`, if the spec gives its bulk modulus β.
     pub fn oil_stiffness(&self, info: &CylinderInfo) -> Option<f64> {
+        Some(self.stiffness_along(info)? * self.arm * self.arm)
+    }
+
+    /// Stiffness of this oil along the cylinder, N/m.
+    pub(crate) fn stiffness_along(&self, info: &CylinderInfo) -> Option<f64> {
         let ([piston, ring], [of_piston, of_rod]) = (info.areas, info.hose_volumes);
         let y = self.extension(info);
         let volumes = [of_piston + piston * y, of_rod + ring * (info.stroke - y)];
         let along = piston * piston / volumes[0] + ring * ring / volumes[1];
-        Some(info.bulk_modulus? * along * self.arm * self.arm).filter(|_| volumes.iter().all(|volume| *volume > 0.0))
+        Some(info.bulk_modulus? * along).filter(|_| volumes.iter().all(|volume| *volume > 0.0))
     }
 }
 

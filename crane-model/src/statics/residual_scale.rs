@@ -1,8 +1,8 @@
 //! The distance of a pose from equilibrium, as one number.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Vector3};
 
-use crate::{CoordinateKind, CoordinateRole, Tension, dyn_crane::DynStatics};
+use crate::{CoordinateKind, CoordinateRole, Description, Tension, dyn_crane::DynStatics};
 
 /// Minimum ratio of the scale of forces to that of moments, 1/m, and vice versa, m: where all moments cancel, forces with lever arms of
 /// several metres leave their rounding errors.
@@ -73,7 +73,9 @@ impl ResidualScale {
         /// Number of rounding errors of a coordinate and of the sums that contain it.
         const ROUNDINGS: f64 = 4.0;
         let of_coordinates = stiffness.abs() * (q.abs() + &self.reach);
-        ROUNDINGS * f64::EPSILON * self.norm(&(of_coordinates + of_lengths(crane, q)))
+        ROUNDINGS
+            * f64::EPSILON
+            * self.norm(&(of_coordinates + of_lengths(crane, q) + of_cylinders(crane, stiffness, q)))
     }
 
     /// Springs that hold the crane against all forces here within about 1 rad and 1 m, and each coordinate by at least its own
@@ -103,6 +105,28 @@ fn of_lengths(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
         let size = places.fold(*length, |size: f64, x| size.max(x.abs()));
         for (sum, slope) in sum.iter_mut().zip(row) {
             *sum += tension.stiffness * slope.abs() * size;
+        }
+    }
+    sum
+}
+
+/// The same for the springs that stand for cylinders with a valve at rest; their stiffness is that of their joint over the squared lever arm.
+fn of_cylinders(crane: &dyn DynStatics, stiffness: &DMatrix<f64>, q: &DVector<f64>) -> DVector<f64> {
+    let Description { cylinders, drives, .. } = crane.description();
+    let mut sum = DVector::zeros(q.len());
+    if !crane.description().has_valves() {
+        return sum;
+    }
+    let (rest, mut jacobians) = (vec![0.0; q.len()], vec![0.0; cylinders.len() * q.len()]);
+    let mut lengths = vec![Vector3::zeros(); cylinders.len()];
+    crane.cylinder_jacobians(q.as_slice(), &mut jacobians);
+    crane.cylinder_states(q.as_slice(), &rest, &mut lengths);
+    let rows = jacobians.chunks_exact(q.len()).zip(cylinders.iter().zip(&lengths));
+    for (row, (cylinder, length)) in rows.filter(|(_, (cylinder, _))| cylinder.valve.is_some()) {
+        let joint = drives[cylinder.drive].coordinate;
+        let along = stiffness[(joint, joint)].abs() / row[joint].powi(2);
+        for (sum, slope) in sum.iter_mut().zip(row) {
+            *sum += along * slope.abs() * length.x;
         }
     }
     sum

@@ -71,6 +71,7 @@ macro_rules! crane {
                 support_reactions(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
                 support_gaps(q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 cylinder_states(q: &Vector, v: &Vector, out: &mut [Vector3<f64>]);
+                cylinder_jacobians(q: &Vector, out: &mut [[f64; N]]);
                 drive_limits(t: f64, q: &Vector, v: &Vector, out: &mut [[f64; 2]]);
                 drive_motions(t: f64, out: &mut [[f64; 2]]);
                 valve_openings(t: f64, out: &mut [[f64; 2]]);
@@ -103,8 +104,12 @@ macro_rules! crane {
                 tangent_stiffness(q: &Vector) -> Matrix;
                 connector_stiffness(t: f64, q: &Vector) -> Matrix;
                 drive_forces_at_rest(q: &Vector) -> Vector;
+                holding_forces(q: &Vector, positions: &Vector) -> Vector;
+                holding_stiffness(q: &Vector, positions: &Vector) -> Matrix;
                 linearise(q: &Vector) -> Linearisation<N>;
                 internal_forces(t: f64, q: &Vector, v: &Vector, a: &Vector, out: &mut [Wrench]);
+                cylinder_wrenches(q: &Vector, out: &mut [Wrench]);
+                connector_wrenches(q: &Vector, out: &mut [Wrench]);
                 support_positions(q: &Vector, out: &mut [Vector3<f64>]);
                 section_moduli(out: &mut [SectionModuli]);
                 transform_derivatives(q: &Vector, out: &mut [Matrix4<f64>]);

@@ -17,13 +17,14 @@ macro_rules! call_all {
             DESCRIPTION.bodies.iter().map(|b| b.degrees_of_freedom * (b.degrees_of_freedom + 1) / 2).sum();
         let mut matrices = vec![Matrix4::zeros(); black_box(pairs)];
         let mut vectors = vec![Vector3::zeros(); black_box(DESCRIPTION.supports.len().max(DESCRIPTION.points.len()))];
-        let mut wrenches = vec![Wrench::ZERO; black_box(2 * DESCRIPTION.bodies.len() + 1)];
+        let elements = 1 + DESCRIPTION.connectors.len() + DESCRIPTION.cylinders.len();
+        let mut wrenches = vec![Wrench::ZERO; black_box(elements * (2 * DESCRIPTION.bodies.len() + 1))];
         let mut moduli = vec![SectionModuli::ZERO; black_box(DESCRIPTION.bodies.len())];
         let mut motions = vec![[0.0; 2]; black_box(DESCRIPTION.drives.len())];
         let pieces = DESCRIPTION.drives.iter().map(|drive| drive.pieces).sum();
         let mut pieces = vec![[0.0; 2]; black_box(pieces)];
         let mut stiffness_and_damping = vec![[0.0; 2]; black_box(q.len())];
-        let connectors = black_box(DESCRIPTION.connectors.len());
+        let connectors = black_box(DESCRIPTION.connectors.len().max(DESCRIPTION.cylinders.len()));
         let (mut tensions, mut rows) = (vec![Tension::ZERO; connectors], vec![[0.0; of::N]; connectors]);
         let mut gaps = vec![[0.0; 2]; black_box(DESCRIPTION.supports.len())];
         let mut mass = Matrix::zeros();
@@ -52,6 +53,7 @@ macro_rules! call_all {
         of::support_reactions(&crane, &q, &v, &mut vectors);
         of::support_gaps(&crane, &q, &v, &mut gaps);
         of::cylinder_states(&crane, &q, &v, &mut vectors);
+        of::cylinder_jacobians(&crane, &q, &mut rows);
         of::drive_limits(&crane, t, &q, &v, &mut motions);
         of::drive_motions(&crane, t, &mut motions);
         of::valve_openings(&crane, t, &mut motions);
@@ -82,8 +84,12 @@ macro_rules! call_all {
         black_box(of::tangent_stiffness(&crane, &q));
         black_box(of::connector_stiffness(&crane, t, &q));
         black_box(of::drive_forces_at_rest(&crane, &q));
+        black_box(of::holding_forces(&crane, &q, &v));
+        black_box(of::holding_stiffness(&crane, &q, &v));
         black_box(of::linearise(&crane, &q));
         of::internal_forces(&crane, t, &q, &v, &v, &mut wrenches);
+        of::cylinder_wrenches(&crane, &q, &mut wrenches);
+        of::connector_wrenches(&crane, &q, &mut wrenches);
         of::support_positions(&crane, &q, &mut vectors);
         of::section_moduli(&crane, &mut moduli);
         of::transform_derivatives(&crane, &q, &mut matrices);

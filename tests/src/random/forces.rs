@@ -32,7 +32,8 @@ impl Writer {
             let to = if rotation { "swing".into() } else { self.number(0.5) };
             let from = self.number(0.5);
             // A third of them is rigid, on joints that turn and that slide.
-            let rigid = self.rng.u8(0..3) == 0;
+            let by_oil = seed % 8 == 7 && k == 1;
+            let rigid = self.rng.u8(0..3) == 0 && !by_oil;
             let motion = [
                 format!("{{quintic: {{from: {from}, to: {to}, begin: 0.2, duration: 1.5}}}}"),
                 format!("{{cubic: {{from: {from}, to: {to}, duration: 2}}}}"),
@@ -154,8 +155,9 @@ impl Writer {
         self.line("    scale: {quintic: {from: 0.5, to: 1.5, begin: 0.1, duration: 2}}");
     }
 
-    /// Cylinders of a joint that turns and of one that slides; the second has its foot on the link that moves.
-    pub(super) fn cylinders(&mut self) {
+    /// Cylinders of a joint that turns and of one that slides, which has its foot on the link that moves; and in every other crane one with
+    /// a valve, which bends the beam that it turns.
+    pub(super) fn cylinders(&mut self, seed: u64) {
         let [turns, slides] = [0, 2].map(|index: usize| self.coordinates[index].0.clone());
         let pins = [("foot", "arm"), ("slide", "plate")];
         self.line("cylinders:");
@@ -166,5 +168,15 @@ impl Writer {
             ));
             self.line(&format!("     foot: {{link: {foot}, at: {at}}}, head: {{link: {head}, at: {to}}}}}"));
         }
+        if seed % 8 != 7 {
+            return;
+        }
+        let bends = self.coordinates[1].0.clone();
+        let valve = "flow: 1.0e-3, pressure_drop: 1.0e6, lag: 0.03, gain: 4";
+        let oil = "max_pressure: 2.0e7, bulk_modulus: 1.0e9, hose_volumes: [1.0e-3, 1.0e-3]";
+        self.line(&format!("  - {{name: bending, coordinate: {bends}, bore: 0.1, rod: 0.05, retracted: 1, stroke: 1,"));
+        self.line("     foot: {link: arm, at: [0.4, -0.7, 0.5]}, head: {link: first, at: [1.1, 0.2, 0.3]},");
+        self.line(&format!("     {oil}, valve: {{{valve}}}}}"));
+        self.line("pump: {max_flow: 1.0e-3, pressure: 1.5e7}");
     }
 }

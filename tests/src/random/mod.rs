@@ -82,7 +82,7 @@ impl Writer {
             self.loads();
         }
         if self.driven && seed % 4 == 3 {
-            self.cylinders();
+            self.cylinders(seed);
         }
         if self.driven && seed % 4 >= 2 {
             self.connectors();

@@ -139,10 +139,12 @@ fn bristle_info((id, bristle): (chain::CoordinateId, chain::Bristle)) -> Bristle
 }
 
 fn cylinder_info(chain: &Chain, cylinder: &chain::Cylinder) -> CylinderInfo {
+    let spanned = chain.spanned_by(cylinder);
     CylinderInfo {
         name: cylinder.name.clone().into(),
         drive: chain.drive_of(cylinder),
         areas: cylinder.areas(),
+        spanned: [spanned.start, spanned.end],
         retracted: cylinder.retracted,
         stroke: cylinder.stroke,
         max_pressure: cylinder.max_pressure,

@@ -108,6 +108,8 @@ pub struct Arguments<'a, T> {
     pub a: &'a [T],
     /// Right-hand side of a linear system.
     pub right: &'a [T],
+    /// Positions at which drives are held.
+    pub positions: &'a [T],
     /// Added inertias of single coordinates.
     pub added_inertia: &'a [T],
     /// Added inertia of the base, 6×6, column by column.
@@ -131,6 +133,7 @@ impl<T: Number> Arguments<'_, T> {
             v: &[],
             a: &[],
             right: &[],
+            positions: &[],
             added_inertia: &[],
             base: &[],
             factors: &[],
@@ -147,6 +150,7 @@ impl<T: Number> Arguments<'_, T> {
             Argument::Velocity => self.v,
             Argument::Acceleration => self.a,
             Argument::RightHandSide => self.right,
+            Argument::DrivePositions => self.positions,
             Argument::AddedInertia => self.added_inertia,
             Argument::BaseAddedInertia => self.base,
             Argument::Factors => self.factors,

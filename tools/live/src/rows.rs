@@ -244,6 +244,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::SupportReactions => 3 * supports,
             FunctionId::SupportGaps => 2 * supports,
             FunctionId::CylinderStates => 3 * description.cylinders.len(),
+            FunctionId::CylinderJacobians => n * description.cylinders.len(),
             FunctionId::DriveMotions | FunctionId::DriveLimits | FunctionId::ValveOpenings => 2 * drives,
             FunctionId::GravityEnergy
             | FunctionId::SupportEnergy
@@ -256,7 +257,10 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::WinchPower
             | FunctionId::LoadPower
             | FunctionId::Dissipation => 1,
-            FunctionId::MassMatrix | FunctionId::TangentStiffness | FunctionId::ConnectorStiffness => n * n,
+            FunctionId::MassMatrix
+            | FunctionId::TangentStiffness
+            | FunctionId::ConnectorStiffness
+            | FunctionId::HoldingStiffness => n * n,
             FunctionId::Linearise => 3 * n * n,
             FunctionId::Forces
             | FunctionId::SupportForces
@@ -270,6 +274,7 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             | FunctionId::LoadForces
             | FunctionId::StaticResidual
             | FunctionId::DriveForcesAtRest
+            | FunctionId::HoldingForces
             | FunctionId::Bias
             | FunctionId::ForwardDynamics
             | FunctionId::SolveMass => n,
@@ -285,6 +290,8 @@ fn width(crane: &LiveCrane, quantity: Quantity) -> usize {
             FunctionId::LoadPieces => 2 * description.loads.iter().map(|load| load.pieces).sum::<usize>(),
             // Quantities that other functions need, or that are left as factors.
             FunctionId::InternalForces
+            | FunctionId::CylinderWrenches
+            | FunctionId::ConnectorWrenches
             | FunctionId::SupportPositions
             | FunctionId::SectionModuli
             | FunctionId::PrescribedMotions

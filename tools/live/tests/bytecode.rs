@@ -60,6 +60,7 @@ impl State {
         Inputs::state(self.t, self.q.clone(), self.v.clone(), self.parameters.clone())
             .with(Argument::RightHandSide, self.right.clone())
             .with(Argument::Acceleration, self.right.clone())
+            .with(Argument::DrivePositions, self.q.clone())
             .with(Argument::AddedInertia, self.added_inertia.clone())
             .with(Argument::BaseAddedInertia, self.base.clone())
             .with(Argument::Factors, self.factors.clone())
@@ -72,6 +73,7 @@ impl State {
             v: &self.v,
             a: &self.right,
             right: &self.right,
+            positions: &self.q,
             added_inertia: &self.added_inertia,
             base: &self.base,
             factors: &self.factors,
@@ -133,6 +135,7 @@ fn a_lane_computes_what_one_state_does() {
             v: &v,
             a: &right,
             right: &right,
+            positions: &q,
             added_inertia: &added_inertia,
             base: &base,
             factors: &factors,

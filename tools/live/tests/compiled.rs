@@ -92,6 +92,7 @@ fn tensions(crane: &dyn DynCrane, t: f64, [q, v]: [&[f64]; 2]) -> Vec<f64> {
 /// Everything that a crane computes at a state, by name.
 fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
     let (t, q, v) = state(crane);
+    let held: Vec<f64> = q.iter().map(|q| 0.95 * q).collect();
     let (q, v) = (&q[..], &v[..]);
     let description = crane.description();
     let n = crane.size();
@@ -120,6 +121,9 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
         ("support_reactions", vectors(description.supports.len(), |out| crane.support_reactions(q, v, out))),
         ("support_gaps", pairs(description.supports.len(), |out| crane.support_gaps(q, v, out))),
         ("cylinder_states", vectors(description.cylinders.len(), |out| crane.cylinder_states(q, v, out))),
+        ("cylinder_jacobians", numbers(n * description.cylinders.len(), |out| crane.cylinder_jacobians(q, out))),
+        ("holding_forces", numbers(n, |out| crane.holding_forces(q, &held, out))),
+        ("holding_stiffness", numbers(n * n, |out| crane.holding_stiffness(q, &held, out))),
         ("drive_limits", pairs(description.drives.len(), |out| crane.drive_limits(t, q, v, out))),
         ("drive_motions", pairs(description.drives.len(), |out| crane.drive_motions(t, out))),
         ("valve_openings", pairs(description.drives.len(), |out| crane.valve_openings(t, out))),

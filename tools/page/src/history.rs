@@ -31,7 +31,7 @@ impl Instant {
     /// In motion.
     fn moving(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Self {
         let (a, _) = force_states::accelerations(crane, t, (q, v), x);
-        Self { t, lines: lines(crane, t, q, v, &a), wrenches: crane.internal_forces_at(t, q, v, &a) }
+        Self { t, lines: lines(crane, t, q, v, &a), wrenches: crane.internal_forces_of(t, [q, v, &a], x) }
     }
 }
 

@@ -246,6 +246,14 @@ impl Crane {
         self.function(py, FunctionId::CylinderStates, State::moving(q, v), &own, invalid)
     }
 
+    /// (..., cylinders, n): derivatives of the length of each cylinder with respect to the coordinates, m/rad or m/m. A cylinder with a valve
+    /// that pushes with F exerts the generalized forces F times its row. Zeros for a crane without valves.
+    #[pyo3(signature = (q, *, invalid="raise"))]
+    fn cylinder_jacobians<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
+        let own = [self.live.description().cylinders.len(), self.live.size()];
+        self.function(py, FunctionId::CylinderJacobians, State::pose(q), &own, invalid)
+    }
+
     /// (..., drives, 2): maximum effort of each drive, N or N m, 0 if it has no limit, and its stiffness at the state, N/m or N m/rad.
     /// Zeros for a crane without limits.
     #[pyo3(signature = (t, q, v, *, invalid="raise"))]

@@ -34,6 +34,9 @@ impl Crane {
         let rest = self.rest(py);
         let state = State { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
         let own = [self.live.description().cuts().len(), 6];
+        if self.live.description().has_valves() {
+            return self.one_by_one(py, state, &own, invalid, write_wrenches);
+        }
         self.compute(py, Quantity::Of(FunctionId::InternalForces), state, &own, invalid)
     }
 
@@ -63,6 +66,16 @@ impl Crane {
     }
 }
 
+/// Internal forces, including those of cylinders with a valve.
+fn write_wrenches(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
+    let crane: &dyn DynCrane = crane;
+    for (wrench, out) in crane.internal_forces_at(*t, q, v, a).iter().zip(out.chunks_mut(6)) {
+        let (force, moment) = out.split_at_mut(3);
+        force.copy_from_slice(wrench.force.as_slice());
+        moment.copy_from_slice(wrench.moment.as_slice());
+    }
+}
+
 /// Stresses and the governing tipping line of a crane; NaN where moduli or lines are unknown.
 fn write(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
     let crane: &dyn DynCrane = crane;
@@ -76,7 +89,7 @@ fn write(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
             out.copy_from_slice(&[normal, shear, torsion, equivalent, section.utilisation.unwrap_or(f64::NAN)]);
         }
     }
-    let lines = tipping::lines_of(crane, q, &wrenches);
+    let lines = tipping::lines(crane, *t, q, v, a);
     if let (Some(line), Some(out)) = (tipping::governing(&lines), out.last_chunk_mut::<OF_LINE>()) {
         let [from, to] = line.feet.map(|foot| foot as f64);
         *out = [line.margin(), line.stabilising, line.overturning, from, to];

@@ -38,6 +38,7 @@ def on_paper(c, t, q, v):
         "support_reactions": c.support_reactions(q, v),
         "support_gaps": c.support_gaps(q, v),
         "cylinder_states": c.cylinder_states(q, v),
+        "cylinder_jacobians": c.cylinder_jacobians(q),
         "drive_limits": c.drive_limits(t, q, v),
         # The derivation uses the rates as accelerations, too.
         "internal_forces": c.internal_forces(q, v, v, t),

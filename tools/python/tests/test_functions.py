@@ -26,6 +26,7 @@ FUNCTIONS = [
     ("support_reactions", "qv", lambda c: (len(c.info["supports"]), 3)),
     ("support_gaps", "qv", lambda c: (len(c.info["supports"]), 2)),
     ("cylinder_states", "qv", lambda c: (len(c.info["cylinders"]), 3)),
+    ("cylinder_jacobians", "q", lambda c: (len(c.info["cylinders"]), c.n)),
     ("drive_limits", "tqv", lambda c: (len(c.info["drives"]), 2)),
     ("drive_motions", "t", lambda c: (len(c.info["drives"]), 2)),
     ("valve_openings", "t", lambda c: (len(c.info["drives"]), 2)),

@@ -189,6 +189,7 @@ impl Rerolling<'_> {
                     | Argument::Velocity
                     | Argument::Acceleration
                     | Argument::RightHandSide
+                    | Argument::DrivePositions
                     | Argument::AddedInertia
                     | Argument::Factors
             );

@@ -1,9 +1,9 @@
 //! Forces and moments that joints, sections and the ground transmit, and the section moduli from which the stresses of beams follow.
 
 use super::{Derivation, function};
-use crate::chain::{Beam, Moduli};
+use crate::chain::{Beam, Connector, Moduli};
 use crate::mechanics::model::Model;
-use crate::mechanics::{newton_euler, supports};
+use crate::mechanics::{connectors, cylinders, newton_euler, supports};
 use crate::program::Argument::{Acceleration, Position, Time, Velocity};
 use crate::program::{Function, FunctionId, Shape, Struct};
 use crate::symbolic::Expr;
@@ -24,6 +24,12 @@ impl Derivation<'_> {
             )
             .by(trace),
         ];
+        if model.chain.has_valves() {
+            functions.push(self.cylinder_wrenches());
+        }
+        if model.chain.connectors.iter().any(Connector::joins_bodies) {
+            functions.push(self.connector_wrenches());
+        }
         if !model.chain.supports.is_empty() {
             functions.push(function(
                 FunctionId::SupportPositions,
@@ -46,6 +52,42 @@ impl Derivation<'_> {
             ));
         }
         functions
+    }
+
+    /// What cylinders add to the internal forces, each pushing with 1 N.
+    fn cylinder_wrenches(&self) -> Function {
+        let (model, kinematics) = (&self.model, &self.kinematics);
+        let of_cylinder = |cylinder| {
+            newton_euler::transmitted(model, kinematics, &self.factors, cylinders::pushes(model, kinematics, cylinder))
+        };
+        let wrenches = model.chain.cylinders.iter().flat_map(of_cylinder).collect();
+        function(
+            FunctionId::CylinderWrenches,
+            "Force (1) and moment (m) at every cut, cut by cut, due to each cylinder while it pushes with 1 N.",
+            "Σ g, Σ r × g over everything beyond",
+            &[Position],
+            Shape::Structs(Struct::Wrench, model.chain.cylinders.len() * model.chain.cuts().len()),
+            wrenches,
+        )
+    }
+
+    /// What connectors between bodies contribute to the internal forces, each pulling with 1 N.
+    fn connector_wrenches(&self) -> Function {
+        let (model, kinematics) = (&self.model, &self.kinematics);
+        let of_connector = |connector| {
+            let pulls = connectors::between_bodies(model, kinematics, connector);
+            let on_bodies = pulls.into_iter().map(|(body, point, pull)| (body, [pull, point.cross(pull)]));
+            newton_euler::transmitted(model, kinematics, &self.factors, on_bodies.collect())
+        };
+        let wrenches = model.chain.connectors.iter().flat_map(of_connector).collect();
+        function(
+            FunctionId::ConnectorWrenches,
+            "Force (1) and moment (m) at every cut, cut by cut, due to each connector between two bodies while it pulls with 1 N.",
+            "Σ e, Σ r × e over everything beyond",
+            &[Position],
+            Shape::Structs(Struct::Wrench, model.chain.connectors.len() * model.chain.cuts().len()),
+            wrenches,
+        )
     }
 }
 

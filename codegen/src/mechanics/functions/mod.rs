@@ -130,6 +130,16 @@ impl<'g> Derivation<'g> {
                 cylinders::states(&self.model, &self.kinematics, &self.twists),
             ));
         }
+        if chain.has_valves() {
+            functions.push(function(
+                FunctionId::CylinderJacobians,
+                "Derivatives of the length of every cylinder with respect to the coordinates, m/m and m/rad.",
+                "∂ℓ/∂q",
+                &[Position],
+                Shape::Rows { count: chain.cylinders.len(), n: self.model.size() },
+                cylinders::jacobians(&self.model, &self.kinematics),
+            ));
+        }
         functions
     }
 

@@ -2,9 +2,10 @@
 
 use super::{Derivation, function};
 use crate::mechanics::columns::columns;
+use crate::mechanics::model::Model;
 use crate::mechanics::vector::SymmetricMatrix;
-use crate::mechanics::{connectors, drives, gravity};
-use crate::program::Argument::{Position, Time};
+use crate::mechanics::{connectors, cylinders, gravity};
+use crate::program::Argument::{DrivePositions, Position, Time};
 use crate::program::{Function, FunctionId, Shape};
 use crate::symbolic::Expr;
 
@@ -28,16 +29,19 @@ impl<'g> Derivation<'g> {
                 self.unknowns(self.tangent_stiffness(), 1.0).into_upper(),
             ),
         ];
-        let by_oil = self.model.chain.drives.iter().any(|drive| drive.oil().is_some());
+        let by_oil = self.model.chain.has_valves();
         if self.rigid || by_oil {
             functions.push(function(
                 FunctionId::DriveForcesAtRest,
                 "Generalized forces of the drives that hold the crane at rest at t = 0, N and N m.",
-                "s (q_dr − q) [Urbaś 2016, Eq. (20)]; of rigid drives ∂E_p/∂q_j",
+                "s (q_dr − q) [Urbaś 2016, Eq. (20)]; of rigid drives ∂E_p/∂q_j; of cylinders with a valve k (ℓ₀ − ℓ) ∂ℓ/∂q",
                 &[Position],
                 Shape::Vector(self.model.size()),
                 self.drive_forces_at_rest(),
             ));
+        }
+        if by_oil {
+            functions.extend(self.holding());
         }
         if !self.model.chain.connectors.is_empty() {
             let mut stiffness = SymmetricMatrix::zero(self.model.graph, self.model.size());
@@ -54,6 +58,31 @@ impl<'g> Derivation<'g> {
         functions
     }
 
+    /// Cylinders with a valve that hold the crane at rest at any positions of their drives.
+    fn holding(&self) -> [Function; 2] {
+        let Model { chain, graph, drive_positions, .. } = &self.model;
+        let mut stiffness = SymmetricMatrix::zero(graph, chain.coordinates.len());
+        cylinders::holding_stiffness(&self.model, &self.kinematics, drive_positions, &mut stiffness);
+        [
+            function(
+                FunctionId::HoldingForces,
+                "Generalized forces of cylinders with a valve that hold the crane at rest with the drives at given positions, N and N m.",
+                "k (ℓ₀ − ℓ) ∂ℓ/∂q, k = s/(∂ℓ/∂q_j)₀²",
+                &[Position, DrivePositions],
+                Shape::Vector(self.model.size()),
+                cylinders::holding_forces(&self.model, &self.kinematics, drive_positions),
+            ),
+            function(
+                FunctionId::HoldingStiffness,
+                "Contribution of these cylinders to the tangent stiffness; N/m, N and N m.",
+                "k (∂ℓ/∂q)ᵀ ∂ℓ/∂q − k (ℓ₀ − ℓ) ∂²ℓ/∂q∂q",
+                &[Position, DrivePositions],
+                Shape::Symmetric(self.model.size()),
+                self.unknowns(stiffness, 0.0).into_upper(),
+            ),
+        ]
+    }
+
     /// `∂E_p/∂q`, 0 where a coordinate is prescribed.
     fn static_residual(&self) -> Vec<Expr<'g>> {
         let mut residual = self.gradient();
@@ -66,7 +95,7 @@ impl<'g> Derivation<'g> {
     /// Forces of all drives at rest; rigid drives balance the sum of all other forces.
     fn drive_forces_at_rest(&self) -> Vec<Expr<'g>> {
         let model = &self.model;
-        let mut forces = drives::forces_at_rest(model);
+        let mut forces = self.forces().drives_at_rest();
         let gradient = self.gradient();
         for drive in model.chain.rigid_drives() {
             forces[drive.coordinate.0] = gradient[drive.coordinate.0];
@@ -91,7 +120,8 @@ impl<'g> Derivation<'g> {
     /// The stiffness including the springs that represent oil at rest.
     fn tangent_stiffness(&self) -> SymmetricMatrix<'g> {
         let mut matrix = self.stiffness();
-        drives::hydraulic_stiffness(&self.model, &mut matrix);
+        let positions = cylinders::positions_at_start(&self.model);
+        cylinders::holding_stiffness(&self.model, &self.kinematics, &positions, &mut matrix);
         matrix
     }
 

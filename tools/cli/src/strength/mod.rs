@@ -44,6 +44,9 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     for caution in cautions::of_pose(crane.as_ref(), &q, options.analysis.crane.limits.bend) {
         report.caution(Some(caution));
     }
+    for caution in cautions::of_strength(crane.description()) {
+        report.caution(Some(caution));
+    }
     if let Some(index) = load {
         loads::critical(&mut report, crane.as_mut(), index)?;
     }

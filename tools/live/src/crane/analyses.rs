@@ -22,6 +22,14 @@ impl DynStatics for LiveCrane {
         self.numbers(FunctionId::ConnectorStiffness, &state(t, q, &[]), out);
     }
 
+    fn holding_forces(&self, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::HoldingForces, &Arguments { positions, ..at(q) }, out);
+    }
+
+    fn holding_stiffness(&self, q: &[f64], positions: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::HoldingStiffness, &Arguments { positions, ..at(q) }, out);
+    }
+
     fn drive_forces_at_rest(&self, q: &[f64], out: &mut [f64]) {
         if self.call(FunctionId::DriveForcesAtRest, &at(q), |_, results| copy(results, out)).is_none() {
             // At the rates of the motions the dampers are unloaded.
@@ -73,15 +81,23 @@ impl DynLinearise for LiveCrane {
     }
 }
 
+fn wrench([fx, fy, fz, mx, my, mz]: &[f64; 6]) -> Wrench {
+    Wrench { force: Vector3::new(*fx, *fy, *fz), moment: Vector3::new(*mx, *my, *mz) }
+}
+
 impl DynInternalForces for LiveCrane {
     fn internal_forces(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]) {
         self.call(FunctionId::InternalForces, &Arguments { a, ..state(t, q, v) }, |_, results| {
-            let wrench = |[fx, fy, fz, mx, my, mz]: &[f64; 6]| Wrench {
-                force: Vector3::new(*fx, *fy, *fz),
-                moment: Vector3::new(*mx, *my, *mz),
-            };
             copy_as(results.as_chunks().0, wrench, out);
         });
+    }
+
+    fn cylinder_wrenches(&self, q: &[f64], out: &mut [Wrench]) {
+        self.call(FunctionId::CylinderWrenches, &at(q), |_, results| copy_as(results.as_chunks().0, wrench, out));
+    }
+
+    fn connector_wrenches(&self, q: &[f64], out: &mut [Wrench]) {
+        self.call(FunctionId::ConnectorWrenches, &at(q), |_, results| copy_as(results.as_chunks().0, wrench, out));
     }
 
     fn section_moduli(&self, out: &mut [SectionModuli]) {

@@ -102,6 +102,10 @@ impl DynModel for LiveCrane {
         self.vectors(FunctionId::CylinderStates, &state(0.0, q, v), out);
     }
 
+    fn cylinder_jacobians(&self, q: &[f64], out: &mut [f64]) {
+        self.numbers(FunctionId::CylinderJacobians, &at(q), out);
+    }
+
     fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
         self.pairs(FunctionId::DriveMotions, &Arguments { t, ..Arguments::none() }, out);
     }
