@@ -122,6 +122,11 @@ impl ForceStates {
         self.forces.len()
     }
 
+    /// Number of forces of the oil, and of their states; both come first.
+    pub(crate) fn of_oil(&self) -> [usize; 2] {
+        [self.oil.count(), self.oil.len()]
+    }
+
     /// The forces as last evaluated.
     pub(crate) fn forces(&self) -> &[StatefulForce] {
         &self.forces

@@ -8,14 +8,14 @@
 //! (M + Uᵀ S U) z = … + c² Uᵀ (δ U G + κ U (c G + P) + F_x W R/c)
 //! ```
 //!
-//! with the right-hand side R of the states. By Woodbury's identity, this takes one solution with M for each force. Cylinders are
-//! coupled through the pump.
+//! with the right-hand side R of the states. Bristles act on single coordinates: their κ and δ are a stiffness and a damping there. Cylinders
+//! span several coordinates and are coupled through the pump; by Woodbury's identity, each takes one solution with M.
 
-use nalgebra::{DMatrix, DVectorViewMut};
+use nalgebra::DMatrix;
 
 use crate::{
     dyn_crane::DynModel,
-    force_states::{ForceStates, StateAt, StatefulForce},
+    force_states::{ForceStates, Row, StateAt, StatefulForce},
 };
 
 /// The crane's forces that have states, evaluated at a state of the crane, and their contribution to the system there.
@@ -23,18 +23,20 @@ pub(crate) struct ForceStateUpdate {
     force_states: ForceStates,
     rates: Vec<f64>,
     by_states: DMatrix<f64>,
-    /// W, as factors of its inverse.
-    states: Factors,
+    /// W of the oil, as factors of its inverse, and of each bristle.
+    of_oil: Factors,
+    of_bristles: Vec<f64>,
+    /// Of the cylinders.
     kappa: DMatrix<f64>,
     delta: DMatrix<f64>,
     added_inertia: DMatrix<f64>,
-    /// M⁻¹ Uᵀ, force by force.
+    /// M⁻¹ Uᵀ, cylinder by cylinder.
     inverse_columns: Vec<Vec<f64>>,
-    /// I + S U M⁻¹ Uᵀ.
-    correction: Factors,
     /// U M⁻¹ Uᵀ.
     inverse: DMatrix<f64>,
-    /// Workspace: one number per coordinate, one per state, one per force, and `U g` and `U p` per force.
+    /// I + S U M⁻¹ Uᵀ.
+    correction: Factors,
+    /// Workspace: one number per coordinate, one per state, one per cylinder, and `U g` and `U p` per cylinder.
     column: Vec<f64>,
     of_states: Vec<f64>,
     shares: Vec<f64>,
@@ -46,48 +48,63 @@ impl ForceStateUpdate {
     pub fn new(crane: &dyn DynModel) -> Self {
         let force_states = ForceStates::new(crane.description());
         let n = crane.description().coordinates.len();
-        let (count, len) = (force_states.count(), force_states.len());
+        let ([cylinders, of_oil], len) = (force_states.of_oil(), force_states.len());
         let square = |size| DMatrix::zeros(size, size);
         Self {
             rates: vec![0.0; len],
             by_states: square(len),
-            states: Factors::new(len),
-            kappa: square(count),
-            delta: square(count),
-            added_inertia: square(count),
-            inverse_columns: vec![vec![0.0; n]; count],
-            correction: Factors::new(count),
-            inverse: square(count),
+            of_oil: Factors::new(of_oil),
+            of_bristles: vec![0.0; force_states.count() - cylinders],
+            kappa: square(cylinders),
+            delta: square(cylinders),
+            added_inertia: square(cylinders),
+            inverse_columns: vec![vec![0.0; n]; cylinders],
+            inverse: square(cylinders),
+            correction: Factors::new(cylinders),
             column: vec![0.0; n],
             of_states: vec![0.0; len],
-            shares: vec![0.0; count],
-            along: vec![[0.0; 2]; count],
+            shares: vec![0.0; cylinders],
+            along: vec![[0.0; 2]; cylinders],
             force_states,
         }
     }
 
-    /// Evaluates the forces at a state, and prepares solutions; `solve` solves the system without them.
-    pub fn factorise(
-        &mut self,
-        crane: &dyn DynModel,
-        moment: &StateAt<'_>,
-        c: f64,
-        solve: &mut dyn FnMut(&[f64], &mut [f64]),
-    ) {
-        let Self { force_states, rates, by_states, states, kappa, delta, added_inertia, inverse_columns, .. } = self;
-        if force_states.is_empty() {
+    /// Evaluates the forces at a state, and adds stiffness and damping of bristles to those of their coordinates.
+    pub fn evaluate(&mut self, crane: &dyn DynModel, moment: &StateAt<'_>, c: f64, joints: &mut [[f64; 2]]) {
+        if self.force_states.is_empty() {
             return;
         }
-        force_states.evaluate(crane, moment, rates, Some(by_states));
-        let (forces, rows) = (force_states.forces(), force_states.rows());
-        states.factorise(|row, column| f64::from(row == column) / c - by_states[(row, column)]);
+        self.force_states.evaluate(crane, moment, &mut self.rates, Some(&mut self.by_states));
+        for (inverse, (force, row)) in self.of_bristles.iter_mut().zip(bristles(&self.force_states)) {
+            *inverse = 1.0 / (1.0 / c - self.by_states[(force.first, force.first)]);
+            let pull = force.by_states[0] * *inverse;
+            let stiffness = -(force.by_length + pull * force.rates_by_length[0]);
+            let damping = -(force.by_speed + pull * force.rates_by_speed[0]);
+            // Where friction falls with the rate, an inexact derivative keeps the system positive definite.
+            if damping + stiffness * c > 0.0 {
+                joints[row.first][0] += stiffness;
+                joints[row.first][1] += damping;
+            }
+        }
+    }
+
+    /// Prepares solutions with cylinders at the state evaluated; `solve` solves the system without them.
+    pub fn factorise(&mut self, c: f64, solve: &mut dyn FnMut(&[f64], &mut [f64])) {
+        let Self { force_states, by_states, of_oil, kappa, delta, added_inertia, inverse, inverse_columns, .. } = self;
+        let [cylinders, states] = force_states.of_oil();
+        if cylinders == 0 {
+            return;
+        }
+        of_oil.factorise(|row, column| f64::from(row == column) / c - by_states[(row, column)]);
+        let forces = &force_states.forces()[..cylinders];
         for (column, force) in forces.iter().enumerate() {
             for (matrix, rates) in [(&mut *kappa, force.rates_by_length), (&mut *delta, force.rates_by_speed)] {
-                self.of_states.fill(0.0);
-                self.of_states[force.first..force.first + force.count].copy_from_slice(&rates[..force.count]);
-                states.solve(&mut self.of_states);
+                let of_states = &mut self.of_states[..states];
+                of_states.fill(0.0);
+                of_states[force.first..force.first + force.count].copy_from_slice(&rates[..force.count]);
+                of_oil.solve(of_states);
                 for (row, other) in forces.iter().enumerate() {
-                    matrix[(row, column)] = other.pull(&self.of_states);
+                    matrix[(row, column)] = other.pull(of_states);
                 }
             }
             kappa[(column, column)] += force.by_length;
@@ -96,27 +113,27 @@ impl ForceStateUpdate {
         for ((added_inertia, delta), kappa) in added_inertia.iter_mut().zip(delta.iter()).zip(kappa.iter()) {
             *added_inertia = -(delta * c + kappa * (c * c));
         }
-        for (row, inverse_column) in rows.iter().zip(&mut *inverse_columns) {
+        let rows = &force_states.rows()[..cylinders];
+        for (column, (row, inverse_column)) in rows.iter().zip(inverse_columns).enumerate() {
             self.column.fill(0.0);
             row.add_to(&mut self.column, 1.0);
             solve(&self.column, inverse_column);
-        }
-        for (row, own) in rows.iter().enumerate() {
-            for (column, inverse_column) in inverse_columns.iter().enumerate() {
-                self.inverse[(row, column)] = own.along(inverse_column);
+            for (row, other) in rows.iter().enumerate() {
+                inverse[(row, column)] = other.along(inverse_column);
             }
         }
         self.correction.factorise(|row, column| {
-            let share = |place: usize| added_inertia[(row, place)] * self.inverse[(place, column)];
-            f64::from(row == column) + (0..rows.len()).map(share).sum::<f64>()
+            let share = |place: usize| added_inertia[(row, place)] * inverse[(place, column)];
+            f64::from(row == column) + (0..cylinders).map(share).sum::<f64>()
         });
     }
 
-    /// Adds `−δ U G − κ U (c G + P) − F_x W R/c`.
+    /// Adds `−δ U G − κ U (c G + P)` of the cylinders and `−F_x W R/c` of all forces; for bristles the first two are among those of the joints.
     pub fn add_to(&mut self, (g, p): (&[f64], &[f64]), r: &[f64], c: f64, right: &mut [f64]) {
-        let (forces, rows) = (self.force_states.forces(), self.force_states.rows());
+        let [cylinders, states] = self.force_states.of_oil();
+        let (forces, rows) = (&self.force_states.forces()[..cylinders], &self.force_states.rows()[..cylinders]);
         self.of_states.copy_from_slice(r);
-        self.states.solve(&mut self.of_states);
+        self.of_oil.solve(&mut self.of_states[..states]);
         for (along, row) in self.along.iter_mut().zip(rows) {
             *along = [row.along(g), row.along(p)];
         }
@@ -127,9 +144,12 @@ impl ForceStateUpdate {
             let sum = self.along.iter().enumerate().map(of_force).sum::<f64>() + force.pull(&self.of_states) / c;
             own.add_to(right, -sum);
         }
+        for (inverse, (force, row)) in self.of_bristles.iter().zip(bristles(&self.force_states)) {
+            right[row.first] -= force.by_states[0] * inverse * r[force.first] / c;
+        }
     }
 
-    /// Turns the solution of the system without these forces into that of the system with them.
+    /// Turns the solution of the system without cylinders into that of the system with them.
     pub fn correct(&mut self, solution: &mut [f64]) {
         for ([along, _], row) in self.along.iter_mut().zip(self.force_states.rows()) {
             *along = row.along(solution);
@@ -156,8 +176,18 @@ impl ForceStateUpdate {
                 *x += force.rates_by_length[i] * p + force.rates_by_speed[i] * w;
             }
         }
-        self.states.solve(out);
+        let (of_oil, of_bristles) = out.split_at_mut(self.force_states.of_oil()[1]);
+        self.of_oil.solve(of_oil);
+        for (x, inverse) in of_bristles.iter_mut().zip(&self.of_bristles) {
+            *x *= inverse;
+        }
     }
+}
+
+/// Forces of bristles, which have one state each, and their rows.
+fn bristles(force_states: &ForceStates) -> impl Iterator<Item = (&StatefulForce, &Row)> {
+    let [cylinders, _] = force_states.of_oil();
+    force_states.forces().iter().zip(force_states.rows()).skip(cylinders)
 }
 
 /// LU factors of a matrix, with row exchanges, in storage that is reused: nalgebra allocates its factors for each matrix.
@@ -197,17 +227,24 @@ impl Factors {
 
     /// The solution in place of the right-hand side; not finite if the matrix is singular.
     fn solve(&self, x: &mut [f64]) {
-        for (row, &other) in self.exchanged.iter().enumerate() {
+        let Self { matrix, exchanged } = self;
+        for (row, &other) in exchanged.iter().enumerate() {
             x.swap(row, other);
         }
         let size = x.len();
-        if size == 0 {
-            // There are no empty views.
-            return;
+        for column in 0..size {
+            let known = x[column];
+            for (x, entry) in x[column + 1..].iter_mut().zip(&matrix.as_slice()[column * (size + 1) + 1..]) {
+                *x -= entry * known;
+            }
         }
-        let mut x = DVectorViewMut::from_slice(x, size);
-        self.matrix.solve_lower_triangular_with_diag_mut(&mut x, 1.0);
-        self.matrix.solve_upper_triangular_unchecked_mut(&mut x);
+        for column in (0..size).rev() {
+            let known = x[column] / matrix[(column, column)];
+            x[column] = known;
+            for (x, entry) in x[..column].iter_mut().zip(&matrix.as_slice()[column * size..]) {
+                *x -= entry * known;
+            }
+        }
     }
 }
 

@@ -85,6 +85,7 @@ impl<'a> System<'a> {
         for ((joint, linear), nonlinear) in self.joints.iter_mut().zip(&self.linear).zip(nonlinear) {
             *joint = [linear[0] + nonlinear[0], linear[1] + nonlinear[1]];
         }
+        self.force_states.evaluate(self.crane, &StateAt { t, q, v, x }, c, &mut self.joints);
         self.base = [self.crane.base_stiffness(q, v), self.crane.base_damping(q, v)];
         for (added_inertia, [stiffness, damping]) in self.added_inertia.iter_mut().zip(&self.joints) {
             *added_inertia = damping * c + stiffness * (c * c);
@@ -93,7 +94,7 @@ impl<'a> System<'a> {
         self.factors.factorise(q, &self.added_inertia, &(damping * c + stiffness * (c * c)));
         self.connectors.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
         let Self { factors, connectors, .. } = self;
-        self.force_states.factorise(self.crane, &StateAt { t, q, v, x }, c, &mut |right, solution| {
+        self.force_states.factorise(c, &mut |right, solution| {
             factors.solve(right, solution);
             connectors.correct(solution);
         });

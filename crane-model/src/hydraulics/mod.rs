@@ -56,6 +56,8 @@ pub(crate) struct Hydraulics {
     wanted: Vec<Vector3<f64>>,
     /// Derivatives of all lengths with respect to the coordinates, row by row.
     jacobians: Vec<f64>,
+    /// The time of what depends only on time: `wanted`, `motions` and `openings`.
+    t: Option<f64>,
     motions: Vec<[f64; 2]>,
     /// Prescribed openings of the drives' valves, and their rates.
     openings: Vec<[f64; 2]>,
@@ -86,6 +88,7 @@ impl Hydraulics {
             here: vec![Vector3::zeros(); description.cylinders.len()],
             wanted: vec![Vector3::zeros(); description.cylinders.len()],
             jacobians: vec![0.0; description.cylinders.len() * n],
+            t: None,
             motions: vec![[0.0; 2]; description.drives.len()],
             openings: vec![[0.0; 2]; description.drives.len()],
             place: [vec![0.0; n], vec![0.0; n]],
@@ -257,6 +260,10 @@ impl Hydraulics {
     fn measure(&mut self, crane: &dyn DynModel, t: f64, q: &[f64], v: &[f64]) {
         crane.cylinder_states(q, v, &mut self.here);
         crane.cylinder_jacobians(q, &mut self.jacobians);
+        if self.t == Some(t) {
+            return;
+        }
+        self.t = Some(t);
         crane.drive_motions(t, &mut self.motions);
         crane.valve_openings(t, &mut self.openings);
         // Everything else is zero: the rest of the pose does not change these lengths.
