@@ -10,7 +10,7 @@ use crate::GeneratedCode;
 use crate::chain::Analyses;
 use crate::compile::{self, Compiled};
 use crate::diagnostic::{Diagnostics, MAX_BYTES, SourceFile, rule};
-use crate::read::base;
+use crate::read::{base, data_files};
 
 /// Compiles `spec` into `$OUT_DIR/<name of the crane>.rs`, to be included into a module:
 ///
@@ -106,8 +106,9 @@ fn with_bases(
     shipped: &dyn Fn(&str) -> Option<&'static str>,
 ) -> Result<(SourceFile, Vec<PathBuf>), Failure> {
     let nothing = format!("{}: nothing to read", spec.name);
-    let mut extends_chain = vec![(named, spec)];
     let mut files = Vec::new();
+    let spec = with_data(spec, &named, &from, &mut files)?;
+    let mut extends_chain = vec![(named, spec)];
     while let Some((name, span)) = extends_chain.last().and_then(|(_, source)| base(source)) {
         let refused = |problem: &str| {
             let source = &extends_chain[extends_chain.len() - 1].1;
@@ -124,6 +125,7 @@ fn with_bases(
         };
         from = folder(&file);
         files.push(file);
+        let source = with_data(source, &name, &from, &mut files)?;
         extends_chain.push((name, source));
     }
     let whole = extends_chain.into_iter().rev().reduce(|(base_named, base), (named, source)| {
@@ -131,6 +133,25 @@ fn with_bases(
         (named, extended)
     });
     whole.map(|(_, source)| (source, files)).ok_or(Failure::File(nothing))
+}
+
+/// A spec, which is called `named`, with the data files to which it refers, looked up `from` a folder. Their paths are added to `files`.
+fn with_data(source: SourceFile, named: &str, from: &Path, files: &mut Vec<PathBuf>) -> Result<SourceFile, Failure> {
+    let mut data: Vec<(String, String)> = Vec::new();
+    for (name, span) in data_files(&source) {
+        if data.iter().any(|(known, _)| *known == name) {
+            continue;
+        }
+        let file = from.join(&name);
+        let opened =
+            if file.is_file() { open_single(&file) } else { Err(Failure::File("there is no such file".into())) };
+        let text = opened.map_err(|failure| {
+            Failure::Mistakes(Diagnostics::new(&source, vec![rule::no_data(span, &name, failure.to_string())]))
+        })?;
+        data.push((name, text.text));
+        files.push(file);
+    }
+    Ok(source.with_data(&data, named))
 }
 
 /// Reads one file.

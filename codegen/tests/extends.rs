@@ -179,3 +179,63 @@ fn what_is_given_twice_in_an_extending_spec_is_a_mistake() {
         assert!(lines.iter().any(|line| line.contains(said)), "{lines:#?}");
     }
 }
+
+/// Tables of files are the tables written in the spec, each from the folder of the spec that refers to it; the text of the whole spec contains
+/// them, and mistakes in them are shown where they are.
+#[test]
+fn tables_are_read_from_files() {
+    let inline = "
+format: 1
+name: lift
+links: [{name: boom, joint: revolute, mass: 10, com: [1, 0, 0]}, {name: jib, joint: revolute, mass: 5, com: [1, 0, 0]}]
+drives:
+  - {coordinate: boom_psi, stiffness: 1e6, motion: {table: {times: [0, 1.5, 4], values: [0, 0.3, 0.5]}}}
+  - {coordinate: jib_psi, stiffness: 1e6, motion: {table: {times: [0, 2], values: [0.1, -0.2]}}}
+loads: [{name: gust, link: jib, force: [0, 1, 0], scale: {table: {times: [0, 1, 2], values: [0, 250, 0]}}}]
+";
+    let base = "
+format: 1
+name: base
+links: [{name: boom, joint: revolute, mass: 10, com: [1, 0, 0]}, {name: jib, joint: revolute, mass: 5, com: [1, 0, 0]}]
+drives:
+  - {coordinate: boom_psi, stiffness: 1e6, motion: {table: {file: data.csv, column: boom}}}
+  - {coordinate: jib_psi, stiffness: 1e6, motion: {table: {times: [0, 1], values: [0, 1]}}}
+";
+    let over = "
+extends: ../tables/base.yaml
+name: lift
+drives: [{coordinate: jib_psi, motion: {table: {file: data.csv}}}]
+loads: [{name: gust, link: jib, force: [0, 1, 0], scale: {table: {file: wind.csv}}}]
+";
+    let of_base = folder(
+        "tables",
+        &[("base.yaml", base), ("data.csv", "t [s],jib [rad],boom [rad]\r\n0,7,0\r\n1.5,7,0.3\r\n4,7,0.5\r\n")],
+    );
+    let wind = ("wind.csv", "0, 0\n1, 250\n2, 0\n");
+    let own = folder(
+        "tables_over",
+        &[("lift.yaml", over), ("inline.yaml", inline), ("data.csv", "t,psi\n0,0.1\n2,-0.2"), wind],
+    );
+    let source = opened(&own.join("lift.yaml"));
+    let expected = compile::load(&opened(&own.join("inline.yaml"))).expect("a sound spec");
+    for source in [source.clone(), SourceFile::new("elsewhere.yaml", source.text)] {
+        assert_eq!(
+            anonymous(compile::load(&source).unwrap_or_else(|mistakes| panic!("{mistakes}"))),
+            anonymous(expected.clone())
+        );
+    }
+    fs::write(own.join("wind.csv"), "0, 0\n1, strong\n").expect("a file");
+    assert_eq!(
+        mistakes(&own.join("lift.yaml")).headline(),
+        "wind.csv:2:1: `strong` in column 2 is not a number [E137]"
+    );
+    fs::remove_file(own.join("wind.csv")).expect("the file");
+    let found = mistakes(&own.join("lift.yaml")).to_string();
+    assert!(
+        found.contains("`file: wind.csv` cannot be read: there is no such file") && found.contains("lift.yaml:5:"),
+        "{found}"
+    );
+    fs::remove_file(of_base.join("data.csv")).expect("the file");
+    let found = mistakes(&own.join("lift.yaml")).to_string();
+    assert!(found.contains("`file: wind.csv`") || found.contains("base.yaml"), "{found}");
+}

@@ -1,5 +1,6 @@
 """Specs that extend others: mappings merged key by key, lists of named entries entry by entry."""
 
+import csv
 from pathlib import Path
 
 from ruamel.yaml import YAML
@@ -15,12 +16,26 @@ def read_whole(path):
     """
     path = Path(path)
     documents = list(YAML(typ="safe", pure=True).load_all(path.read_text(encoding="utf-8")))
+    read_tables(documents, path.parent)
     base = documents[0].pop("extends", None)
     whole = merge(read_whole(path.parent / base), documents[0]) if base else documents[0]
     for document in documents[1:]:
         document.pop("extends", None)
         whole = merge(whole, document)
     return whole
+
+
+def read_tables(node, folder):
+    """Replaces the files of tables by times and values."""
+    for child in node.values() if isinstance(node, dict) else node if isinstance(node, list) else []:
+        read_tables(child, folder)
+    table = node.get("table") if isinstance(node, dict) else None
+    if isinstance(table, dict) and "file" in table:
+        with (folder / table["file"]).open(newline="", encoding="utf-8") as file:
+            header, *rows = csv.reader(file)
+        names = [name.split(" [")[0] for name in header]
+        place = names.index(table["column"]) if "column" in table else 1
+        node["table"] = {"times": [float(row[0]) for row in rows], "values": [float(row[place]) for row in rows]}
 
 
 def merge(base, over):

@@ -8,9 +8,12 @@ pub const MAX_BYTES: usize = 4 << 20;
 /// Marks the beginning of a part in a source file assembled from several files; the name of the part follows.
 const PART: &str = "--- # part: ";
 
+/// Marks the beginning of a data file to which the next part refers.
+const DATA: &str = "--- # data: ";
+
 /// A YAML file: its name, for messages, and its text.
 ///
-/// A file that extends others contains all of them, see [`SourceFile::extended`].
+/// A file that extends others contains all of them, see [`SourceFile::extended`], and the data files that it refers to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourceFile {
     /// Name shown in messages, usually the path as the user gave it.
@@ -50,9 +53,26 @@ impl SourceFile {
     /// the text is `named`, which must not depend on the machine.
     #[must_use]
     pub fn extended(&self, base: &SourceFile, base_named: &str, named: &str) -> Self {
-        let part = |name: &str, text: &str| format!("{PART}{name}\n{}\n", text.trim_end_matches(['\n', '\r']));
-        let before = if base.text.starts_with(PART) { base.text.clone() } else { part(base_named, &base.text) };
-        SourceFile::new(&self.name, before + &part(named, &self.text))
+        SourceFile::new(&self.name, base.as_parts(base_named) + &self.as_parts(named))
+    }
+
+    /// This file with the texts of data files that it refers to, each with its name. The name of this file in the text is `named`.
+    #[must_use]
+    pub fn with_data(self, files: &[(String, String)], named: &str) -> Self {
+        if files.is_empty() {
+            return self;
+        }
+        let data: String = files.iter().map(|(name, text)| marked(DATA, name, text)).collect();
+        SourceFile::new(&self.name, data + &self.as_parts(named))
+    }
+
+    /// The text with the names of all parts; `named` is that of a file that is a single part.
+    fn as_parts(&self, named: &str) -> String {
+        if self.is_marked() { self.text.clone() } else { marked(PART, named, &self.text) }
+    }
+
+    fn is_marked(&self) -> bool {
+        self.text.starts_with(PART) || self.text.starts_with(DATA)
     }
 
     /// The same crane with changes: a spec in memory that extends it.
@@ -64,29 +84,44 @@ impl SourceFile {
     /// Its parts, each of which extends the previous one; usually there is only one, the whole file.
     #[must_use]
     pub fn parts(&self) -> Vec<Part<'_>> {
-        if !self.text.starts_with(PART) {
-            return vec![Part { name: &self.name, start: 0, text: &self.text }];
+        self.sections().into_iter().filter(|(marker, _)| *marker == PART).map(|(_, part)| part).collect()
+    }
+
+    /// The text of a data file to which the part around a byte refers.
+    pub(crate) fn data(&self, name: &str, byte: usize) -> Option<Part<'_>> {
+        let sections = self.sections();
+        let before = sections.iter().rev().skip_while(|(_, part)| part.start > byte).skip(1);
+        let data = before.take_while(|(marker, _)| *marker == DATA).map(|(_, part)| part);
+        data.copied().find(|part| part.name == name)
+    }
+
+    /// Its parts and the data files that they refer to, with their markers.
+    fn sections(&self) -> Vec<(&'static str, Part<'_>)> {
+        if !self.is_marked() {
+            return vec![(PART, Part { name: &self.name, start: 0, text: &self.text })];
         }
-        let begins = self.text.match_indices(PART).map(|(at, _)| at);
-        let begins: Vec<usize> = begins.filter(|&at| at == 0 || self.text[..at].ends_with('\n')).collect();
-        let ends = begins.iter().skip(1).copied().chain([self.text.len()]);
-        let part = |(&begin, end): (&usize, usize)| {
+        let begins_of = |marker: &'static str| self.text.match_indices(marker).map(move |(at, _)| (at, marker));
+        let at_line = |&(at, _): &(usize, &str)| at == 0 || self.text[..at].ends_with('\n');
+        let mut begins: Vec<(usize, &'static str)> = begins_of(PART).chain(begins_of(DATA)).filter(at_line).collect();
+        begins.sort_unstable();
+        let ends = begins.iter().skip(1).map(|(at, _)| *at).chain([self.text.len()]);
+        let section = |(&(begin, marker), end): (&(usize, &'static str), usize)| {
             let line = self.text[begin..end].find('\n').map_or(end, |length| begin + length);
             let start = end.min(line + 1);
             // The last one is this file, under the name that the user gave it.
-            let name = if end == self.text.len() { &self.name } else { self.text[begin + PART.len()..line].trim() };
-            Part { name, start, text: &self.text[start..end] }
+            let name = if end == self.text.len() { &self.name } else { self.text[begin + marker.len()..line].trim() };
+            (marker, Part { name, start, text: &self.text[start..end] })
         };
-        begins.iter().zip(ends).map(part).collect()
+        begins.iter().zip(ends).map(section).collect()
     }
 
-    /// The part that contains a byte.
+    /// The part or data file that contains a byte.
     pub(crate) fn part(&self, byte: usize) -> Part<'_> {
-        let mut parts = self.parts();
-        while parts.len() > 1 && parts.last().is_some_and(|part| part.start > byte) {
-            parts.pop();
+        let mut sections = self.sections();
+        while sections.len() > 1 && sections.last().is_some_and(|(_, part)| part.start > byte) {
+            sections.pop();
         }
-        parts.pop().unwrap_or(Part { name: &self.name, start: 0, text: &self.text })
+        sections.pop().map_or(Part { name: &self.name, start: 0, text: &self.text }, |(_, part)| part)
     }
 
     /// Where the file itself begins, after those that it extends.
@@ -133,6 +168,11 @@ impl SourceFile {
         }
         at
     }
+}
+
+/// A text under a line with a marker and its name.
+fn marked(marker: &str, name: &str, text: &str) -> String {
+    format!("{marker}{name}\n{}\n", text.trim_end_matches(['\n', '\r']))
 }
 
 /// A part of a source file: the text of one of the files that it is made of.

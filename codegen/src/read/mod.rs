@@ -4,6 +4,7 @@
 //! tree, notes every mistake and continues.
 
 mod access;
+mod data;
 mod deserializer;
 mod overlay;
 mod tree;
@@ -46,7 +47,8 @@ fn parts(source: &SourceFile, noticed: &mut Noticed) -> Result<Node, Mistake> {
             mistake.span = Span { start: mistake.span.start + part.start, end: mistake.span.end + part.start };
             mistake
         };
-        let tree = tree::parse(part.text).map_err(shifted)?.shifted(part.start);
+        let mut tree = tree::parse(part.text).map_err(shifted)?.shifted(part.start);
+        data::fill(&mut tree, source, &mut noticed.mistakes);
         whole = Some(match whole {
             Some(base) => overlay::merge(base, tree.without_base(), noticed),
             None => tree,
@@ -67,6 +69,16 @@ fn parts(source: &SourceFile, noticed: &mut Noticed) -> Result<Node, Mistake> {
 /// The spec that a source file extends and the location of its name, if there is one.
 #[must_use]
 pub(crate) fn base(source: &SourceFile) -> Option<(String, Span)> {
-    let tree = tree::parse(&source.text).ok()?;
+    // A file of several parts was already assembled.
+    let [part] = source.parts()[..] else { return None };
+    let tree = tree::parse(part.text).ok()?.shifted(part.start);
     tree.base().map(|(name, span)| (name.to_owned(), span))
+}
+
+/// The data files that a spec refers to, with the locations of their names.
+#[must_use]
+pub(crate) fn data_files(source: &SourceFile) -> Vec<(String, Span)> {
+    let tree = tree::parse(&source.text);
+    let files = tree.as_ref().map(data::files).unwrap_or_default();
+    files.into_iter().map(|(name, span)| (name.to_owned(), span)).collect()
 }

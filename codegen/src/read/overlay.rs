@@ -52,7 +52,7 @@ impl Node {
         }
     }
 
-    fn entry(&self, key: &str) -> Option<&Node> {
+    pub(super) fn entry(&self, key: &str) -> Option<&Node> {
         let Content::Mapping(entries) = &self.content else { return None };
         entries.iter().find(|(known, _)| known.key_text() == key).map(|(_, value)| value)
     }

@@ -100,12 +100,16 @@ pub struct Speed {
     pub ramp: Option<Spanned<Number>>,
 }
 
-/// Positions at given times.
+/// Positions at given times, written here or in a CSV file.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a mapping of `times` and `values`")]
+#[serde(deny_unknown_fields, expecting = "a mapping of `times` and `values`, or of `file` and `column`")]
 pub struct Table {
     /// Times, strictly increasing, s.
-    pub times: Spanned<Vec<Spanned<Constant>>>,
+    pub times: Option<Spanned<Vec<Spanned<Constant>>>>,
     /// Positions, rad or m.
-    pub values: Spanned<Vec<Spanned<FixedAngle>>>,
+    pub values: Option<Spanned<Vec<Spanned<FixedAngle>>>>,
+    /// A CSV file instead of `times` and `values`, relative to this one. Its first column has the times, s.
+    pub file: Option<Spanned<String>>,
+    /// Name of the column with the values. Default: the second column.
+    pub column: Option<Spanned<String>>,
 }

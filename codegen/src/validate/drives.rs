@@ -233,7 +233,17 @@ impl<'a> Check<'a> {
     }
 
     fn table(&mut self, table: &Table, kind: Option<CoordinateKind>, span: Span) -> Option<Profile> {
-        let (given, values) = (table.times.value.as_ref()?, table.values.value.as_ref()?);
+        let (Some(given), Some(values)) = (&table.times, &table.values) else {
+            // A file that cannot be read is reported where it is read.
+            if table.file.is_none() {
+                self.report(rule::table_incomplete(span));
+            }
+            return None;
+        };
+        if let Some(column) = table.column.as_ref().filter(|_| table.file.is_none()) {
+            self.report(rule::column_without_file(column.span));
+        }
+        let (given, values) = (given.value.as_ref()?, values.value.as_ref()?);
         let values: Vec<f64> = values.iter().map(|value| self.fixed(value, "`values`", kind)).collect();
         let times: Vec<f64> = given.iter().map(|time| self.constant(time, "`times`", "s", Limit::Any)).collect();
         let mut ordered = true;

@@ -154,7 +154,7 @@ pub(super) fn positions(motion: &Motion) -> Vec<(Option<&Scalar>, Span)> {
         Motion::Trapezoid(trapezoid) => vec![written(&trapezoid.from), written(&trapezoid.to)],
         Motion::Speed(speed) => speed.from.iter().map(written).collect(),
         Motion::Table(table) => {
-            let values = table.values.value.iter().flatten();
+            let values = table.values.iter().flat_map(|values| &values.value).flatten();
             values.map(|value| (value.value.as_ref().map(|value| &value.0), value.span)).collect()
         }
         Motion::Input(_) => Vec::new(),

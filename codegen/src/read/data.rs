@@ -1,0 +1,143 @@
+//! Tables from files: columns of CSV files take the place of `times` and `values`.
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use super::tree::{Content, Node};
+use crate::diagnostic::{Mistake, Part, SourceFile, Span, rule};
+
+/// Maximum number of rows: each becomes a polynomial that is evaluated at every step.
+const MOST: usize = 1000;
+/// Key whose value may name a file.
+const TABLE: &str = "table";
+/// Units of values: those of coordinates, of forces and moments, and of factors.
+const UNITS: [&str; 6] = ["m", "rad", "N", "N m", "1", ""];
+
+/// Names of the files that tables of a spec refer to, with their locations.
+pub(super) fn files(tree: &Node) -> Vec<(&str, Span)> {
+    let of_children = || children(tree).flat_map(files);
+    match &tree.content {
+        Content::Mapping(entries) => {
+            let own =
+                entries.iter().filter(|(key, _)| key.key_text() == TABLE).filter_map(|(_, table)| table.text("file"));
+            own.chain(of_children()).collect()
+        }
+        _ => of_children().collect(),
+    }
+}
+
+fn children(node: &Node) -> Box<dyn Iterator<Item = &Node> + '_> {
+    match &node.content {
+        Content::Sequence(items) => Box::new(items.iter()),
+        Content::Mapping(entries) => Box::new(entries.iter().map(|(_, value)| value)),
+        _ => Box::new(std::iter::empty()),
+    }
+}
+
+/// Adds `times` and `values` to all tables that name a file.
+pub(super) fn fill(tree: &mut Node, source: &SourceFile, mistakes: &mut Vec<Mistake>) {
+    match &mut tree.content {
+        Content::Sequence(items) => items.iter_mut().for_each(|item| fill(item, source, mistakes)),
+        Content::Mapping(entries) => {
+            for (key, value) in entries {
+                if key.key_text() == TABLE {
+                    fill_table(value, source, mistakes);
+                }
+                fill(value, source, mistakes);
+            }
+        }
+        _ => (),
+    }
+}
+
+fn fill_table(table: &mut Node, source: &SourceFile, mistakes: &mut Vec<Mistake>) {
+    let Some((file, span)) = table.text("file") else { return };
+    let filled = match source.data(file, span.start) {
+        Some(data) => columns(&data, (file, span), table.text("column")),
+        None => Err(rule::no_data(span, file, "this spec is text, not a file, so there is no folder to look in")),
+    };
+    match (filled, &mut table.content) {
+        (Ok(columns), Content::Mapping(entries)) => {
+            for (name, items) in ["times", "values"].into_iter().zip(columns) {
+                let node = |content| Node { span, content };
+                entries.push((node(Content::Text(name.to_owned())), node(Content::Sequence(items))));
+            }
+        }
+        (filled, _) => mistakes.extend(filled.err()),
+    }
+}
+
+impl Node {
+    /// The text of an entry, and its location.
+    fn text(&self, key: &str) -> Option<(&str, Span)> {
+        let value = self.entry(key)?;
+        match &value.content {
+            Content::Text(text) => Some((text, value.span)),
+            _ => None,
+        }
+    }
+}
+
+/// A column: its name and its unit, which is given in brackets.
+fn name_and_unit(header: &str) -> (&str, Option<&str>) {
+    let bracketed = header.strip_suffix(']').and_then(|rest| rest.split_once('['));
+    bracketed.map_or((header, None), |(name, unit)| (name.trim_end(), Some(unit)))
+}
+
+/// Times and values of a file: its first column, and the one that is asked for, or the second.
+fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span)>) -> Result<[Vec<Node>; 2], Mistake> {
+    let mut reader = ReaderBuilder::new().has_headers(false).trim(Trim::All).from_reader(data.text.as_bytes());
+    let mut rows = Vec::new();
+    for row in reader.records() {
+        rows.push(row.map_err(|error| rule::no_data(at, file, problem(&error)))?);
+    }
+    let Some(first) = rows.first() else { return Err(rule::no_data(at, file, "it is empty")) };
+    let has_header = first.iter().any(|cell| cell.parse::<f64>().is_err());
+    let names: Vec<_> = first.iter().map(name_and_unit).filter(|_| has_header).collect();
+    let place = match column {
+        Some((wanted, span)) => {
+            let place = names.iter().position(|(name, _)| *name == wanted);
+            let known = || names.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+            place.ok_or_else(|| {
+                rule::data_column(span, file, wanted, if has_header { known() } else { "no names".into() })
+            })?
+        }
+        None => 1,
+    };
+    if first.len() < 2 {
+        return Err(rule::no_data(at, file, "it has a single column; columns are separated by commas"));
+    }
+    for (place, known) in [(0, ["s", ""].as_slice()), (place, &UNITS)] {
+        if let Some((name, Some(unit))) =
+            names.get(place).filter(|(_, unit)| unit.is_some_and(|unit| !known.contains(&unit)))
+        {
+            return Err(rule::data_unit(at, file, *name, *unit));
+        }
+    }
+    let rows = &rows[usize::from(has_header)..];
+    if rows.len() > MOST {
+        return Err(rule::long_table(at, file, rows.len(), MOST, rows.len().div_ceil(MOST)));
+    }
+    let numbers = |place: usize| rows.iter().map(|row| number(data, row, place)).collect::<Result<Vec<_>, _>>();
+    Ok([numbers(0)?, numbers(place)?])
+}
+
+/// A cell as a number.
+fn number(data: &Part<'_>, row: &StringRecord, place: usize) -> Result<Node, Mistake> {
+    let cell = row.get(place).unwrap_or_default();
+    let begin = row.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
+    let line = data.text.get(begin..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+    let span = Span { start: data.start + begin, end: data.start + begin + line.len() };
+    let number = cell.parse().map_err(|_| rule::data_number(span, cell, place + 1))?;
+    Ok(Node { span, content: Content::Number(number) })
+}
+
+/// What is wrong with a file, in words.
+fn problem(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            format!("line {line} has {len} columns instead of {expected_len}")
+        }
+        _ => error.to_string(),
+    }
+}
