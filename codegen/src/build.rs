@@ -145,9 +145,17 @@ fn with_data(source: SourceFile, named: &str, from: &Path, files: &mut Vec<PathB
         let file = from.join(&name);
         let opened =
             if file.is_file() { open_single(&file) } else { Err(Failure::File("there is no such file".into())) };
+        let refused =
+            |problem: String| Failure::Mistakes(Diagnostics::new(&source, vec![rule::no_data(span, &name, problem)]));
         let text = opened.map_err(|failure| {
-            Failure::Mistakes(Diagnostics::new(&source, vec![rule::no_data(span, &name, failure.to_string())]))
+            refused(match failure {
+                Failure::File(problem) => problem,
+                Failure::Mistakes(mistakes) => mistakes.headline(),
+            })
         })?;
+        if name.trim() != name || text.is_marked() {
+            return Err(refused("its name or one of its lines cannot be part of the text of a spec".into()));
+        }
         data.push((name, text.text));
         files.push(file);
     }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crane_codegen::chain::Chain;
+use crane_codegen::chain::{Chain, Profile};
 use crane_codegen::{Diagnostics, SourceFile, build, compile};
 
 /// A folder of this test with files in it.
@@ -214,7 +214,7 @@ loads: [{name: gust, link: jib, force: [0, 1, 0], scale: {table: {file: wind.csv
     let wind = ("wind.csv", "0, 0\n1, 250\n2, 0\n");
     let own = folder(
         "tables_over",
-        &[("lift.yaml", over), ("inline.yaml", inline), ("data.csv", "t,psi\n0,0.1\n2,-0.2"), wind],
+        &[("lift.yaml", over), ("inline.yaml", inline), ("data.csv", "\u{feff}0,0.1\n2,-0.2"), wind],
     );
     let source = opened(&own.join("lift.yaml"));
     let expected = compile::load(&opened(&own.join("inline.yaml"))).expect("a sound spec");
@@ -224,6 +224,30 @@ loads: [{name: gust, link: jib, force: [0, 1, 0], scale: {table: {file: wind.csv
             anonymous(expected.clone())
         );
     }
+    // What an extending spec writes replaces what the extended spec has: a column, a file, or a table in the spec.
+    let jib = "drives: [{coordinate: boom_psi, motion: {table: {column: jib}}}]";
+    let own_data = "drives: [{coordinate: boom_psi, motion: {table: {file: own.csv}}}]";
+    let written = "drives: [{coordinate: boom_psi, motion: {table: {times: [0, 1], values: [0, 9]}}}]";
+    let own_csv = ("own.csv", "0,-3\n1,-3\n");
+    for (name, drives, start, end) in
+        [("jib", jib, 7.0, 7.0), ("own", own_data, -3.0, -3.0), ("written", written, 0.0, 9.0)]
+    {
+        let text = format!("extends: base.yaml\nname: {name}\n{drives}\n")
+            .replace("file: own.csv", "file: own.csv, column: ~");
+        let file = folder("tables", &[(&format!("{name}.yaml"), text.as_str()), own_csv]).join(format!("{name}.yaml"));
+        let chain = compile::load(&opened(&file)).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        let Profile::Table { from, segments } = &chain.drives[0].profile else { panic!("a table") };
+        let changes: f64 = segments.iter().map(|segment| segment.coefficients.iter().sum::<f64>()).sum();
+        assert!(
+            (from - start).abs() < 1e-12 && (name == "jib" || name == "own") == (changes == 0.0),
+            "{name}: {from} to {end}"
+        );
+    }
+    fs::write(own.join("wind.csv"), "0,1,\n1,strong,\n").expect("a file");
+    assert_eq!(
+        mistakes(&own.join("lift.yaml")).headline(),
+        "wind.csv:2:1: `strong` in column 2 is not a number [E137]"
+    );
     fs::write(own.join("wind.csv"), "0, 0\n1, strong\n").expect("a file");
     assert_eq!(
         mistakes(&own.join("lift.yaml")).headline(),

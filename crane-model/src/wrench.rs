@@ -61,6 +61,10 @@ pub enum Cut {
 /// Adds `force` times some wrenches to others, one by one.
 #[cfg(feature = "std")]
 pub(crate) fn add(sums: &mut [Wrench], force: f64, wrenches: &[Wrench]) {
+    // A cylinder that does not push may have a linkage that does not reach.
+    if force == 0.0 {
+        return;
+    }
     for (sum, wrench) in sums.iter_mut().zip(wrenches) {
         sum.force += force * wrench.force;
         sum.moment += force * wrench.moment;

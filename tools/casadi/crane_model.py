@@ -470,9 +470,9 @@ def read_cylinder(crane, written, spans):
         pivot = place(foot[0].transform, local)
         beyond = max(foot, head, key=lambda pin: pin[0].degrees_of_freedom)[0]
         axis = turning_axis(beyond.transform[:3, :3], coordinate.q)
-        # The last body that the joint does not move.
-        own = crane.coordinates.index(coordinate)
-        carrier_of_axis = max(i for i, body in enumerate(crane.bodies) if body.degrees_of_freedom <= own)
+        # Beside the joint, on the side of the foot.
+        moved = next(i for i, body in enumerate(crane.bodies) if body.degrees_of_freedom > crane.coordinates.index(coordinate))
+        carrier_of_axis = moved - 1 if of_head > of_foot else moved
         carried += [(pivot, of_foot, False), (axis, carrier_of_axis, True)]
         lengths = [spec.number(linkage[key]) for key in ("rocker", "link")]
         length_of = lambda start, end, pivot, axis: ca.norm_2(

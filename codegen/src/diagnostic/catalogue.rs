@@ -352,7 +352,7 @@ catalogue! {
     // Tables from files.
     /// A table refers to a CSV file that can be read.
     E134 no_data(file, problem) "`file: {file}` cannot be read: {problem}", "times and values of the table",
-        "give a CSV file, relative to this spec: times in s in the first column, values in another one";
+        "give a CSV file, with its path relative to this spec: times in s in the first column, values in another";
     /// A table refers to a column that its file has.
     E135 data_column(file, column, known) "`{file}` has no column `{column}`", "its columns: {known}",
         "the first row names the columns; a unit in brackets is not part of the name";
@@ -360,16 +360,18 @@ catalogue! {
     E136 data_unit(file, column, unit) "column `{column}` of `{file}` is in {unit}", "tables are in SI units: s, m, rad, N, N m",
         "convert the column, and write its unit in brackets or leave it out";
     /// The rows of a data file contain numbers.
-    E137 data_number(cell, place) "`{cell}` in column {place} is not a number", "a row of the table",
+    E137 data_number(cell, place) "{cell} in column {place} is not a number", "a row of the table",
         "write numbers with a decimal point, and commas between columns";
     /// A data file has at most 1000 rows.
     E138 long_table(file, rows, most, every) "`{file}` has {rows} rows", "at most {most}, because every row costs time in every step",
-        "keep one row of {every}: the values between rows follow a smooth curve";
+        "keep one row in {every}: a smooth curve passes through the rows";
     /// A table has times and values, or a file.
     E139 table_incomplete() "the table lacks `times` or `values`", "expected both, or a `file`",
         "write `{{times: [0, 1, 2], values: [0, 0.5, 1]}}` or `{{file: wind.csv, column: wind}}`";
     /// Only tables from files have columns.
     E140 column_without_file() "`column` belongs to a `file`", "this table has none", "remove it, or give the `file`";
+    /// A table has times and values or a file, not both.
+    E141 table_twice() "the table has times and values as well as a `file`", "one of them suffices", "remove the other one";
 
     // Plausibility: warnings.
     /// Young's modulus is from 1e9 to 1e12 Pa, the shear modulus from 1e8 to 5e11 Pa, a yield stress from 1e6 to 5e9 Pa.
@@ -425,4 +427,7 @@ catalogue! {
     /// The greatest rate of a drive is at least a hundredth of what its motion asks for.
     W028 slow_drive(coordinate, limit, speed, unit) "the drive of `{coordinate}` moves at most at {limit} {unit}", "its motion is {speed} {unit} fast on average",
         "check the unit of `max_rate`: a drive this slow stands still, and forces very small steps";
+    /// Where its drive starts, a cylinder has a lever arm of at least 0.01 m.
+    W029 no_lever(cylinder, lever) "cylinder `{cylinder}` has a lever arm of {lever} m where its drive starts", "its force is the effort of the drive over this lever arm",
+        "check the pins and the motion of the drive: pins in line with the joint carry no moment";
 }

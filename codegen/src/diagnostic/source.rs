@@ -68,11 +68,16 @@ impl SourceFile {
 
     /// The text with the names of all parts; `named` is that of a file that is a single part.
     fn as_parts(&self, named: &str) -> String {
-        if self.is_marked() { self.text.clone() } else { marked(PART, named, &self.text) }
+        if self.is_assembled() { self.text.clone() } else { marked(PART, named, &self.text) }
     }
 
-    fn is_marked(&self) -> bool {
+    fn is_assembled(&self) -> bool {
         self.text.starts_with(PART) || self.text.starts_with(DATA)
+    }
+
+    /// Whether a line begins like the marker of a part.
+    pub(crate) fn is_marked(&self) -> bool {
+        self.text.lines().any(|line| line.starts_with(PART) || line.starts_with(DATA))
     }
 
     /// The same crane with changes: a spec in memory that extends it.
@@ -97,7 +102,7 @@ impl SourceFile {
 
     /// Its parts and the data files that they refer to, with their markers.
     fn sections(&self) -> Vec<(&'static str, Part<'_>)> {
-        if !self.is_marked() {
+        if !self.is_assembled() {
             return vec![(PART, Part { name: &self.name, start: 0, text: &self.text })];
         }
         let begins_of = |marker: &'static str| self.text.match_indices(marker).map(move |(at, _)| (at, marker));

@@ -198,7 +198,9 @@ pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cyl
     let line = Line::new(model, kinematics, cylinder);
     let (force, moment) = (line.by_head, line.head.cross(line.by_head));
     let mut pushes = vec![(cylinder.head.body, [force, moment]), (cylinder.foot.body, [-force, -moment])];
-    let carrier = BodyId(kinematics.generators[cylinder.coordinate.0].body - 1);
+    // The joint leaves its axis in place, seen from both of its sides: that on which the head is not.
+    let beyond = kinematics.generators[cylinder.coordinate.0].body;
+    let carrier = BodyId(if cylinder.head.body > cylinder.foot.body { beyond - 1 } else { beyond });
     if let Some(by_axis) = line.by_axis.filter(|_| carrier != cylinder.foot.body) {
         let zero = Vec3::zero(model.graph);
         let moment = line.axis.cross(by_axis);

@@ -51,6 +51,17 @@ pub(super) fn fill(tree: &mut Node, source: &SourceFile, mistakes: &mut Vec<Mist
 
 fn fill_table(table: &mut Node, source: &SourceFile, mistakes: &mut Vec<Mistake>) {
     let Some((file, span)) = table.text("file") else { return };
+    if let Some(written) = ["times", "values"].iter().find_map(|key| table.entry(key)) {
+        let [of_file, of_list] = [span, written.span].map(|span| source.part(span.start).start);
+        if of_file == of_list {
+            mistakes.push(rule::table_twice(span));
+            return;
+        }
+        // What an extending spec writes replaces what the extended spec has.
+        let replaced = if of_file < of_list { ["file", "column"] } else { ["times", "values"] };
+        table.remove(&replaced);
+        return fill_table(table, source, mistakes);
+    }
     let filled = match source.data(file, span.start) {
         Some(data) => columns(&data, (file, span), table.text("column")),
         None => Err(rule::no_data(span, file, "this spec is text, not a file, so there is no folder to look in")),
@@ -67,6 +78,12 @@ fn fill_table(table: &mut Node, source: &SourceFile, mistakes: &mut Vec<Mistake>
 }
 
 impl Node {
+    fn remove(&mut self, keys: &[&str]) {
+        if let Content::Mapping(entries) = &mut self.content {
+            entries.retain(|(key, _)| !keys.contains(&key.key_text().as_str()));
+        }
+    }
+
     /// The text of an entry, and its location.
     fn text(&self, key: &str) -> Option<(&str, Span)> {
         let value = self.entry(key)?;
@@ -85,21 +102,29 @@ fn name_and_unit(header: &str) -> (&str, Option<&str>) {
 
 /// Times and values of a file: its first column, and the one that is asked for, or the second.
 fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span)>) -> Result<[Vec<Node>; 2], Mistake> {
-    let mut reader = ReaderBuilder::new().has_headers(false).trim(Trim::All).from_reader(data.text.as_bytes());
+    // Spreadsheets mark UTF-8 by a first character that is not part of the table.
+    let text = data.text.strip_prefix('\u{feff}').unwrap_or(data.text);
+    let data = &Part { text, start: data.start + data.text.len() - text.len(), ..*data };
+    let mut reader = ReaderBuilder::new().has_headers(false).trim(Trim::All).from_reader(text.as_bytes());
     let mut rows = Vec::new();
     for row in reader.records() {
         rows.push(row.map_err(|error| rule::no_data(at, file, problem(&error)))?);
     }
     let Some(first) = rows.first() else { return Err(rule::no_data(at, file, "it is empty")) };
-    let has_header = first.iter().any(|cell| cell.parse::<f64>().is_err());
+    // An empty cell may end a row.
+    let has_header = first.iter().all(|cell| cell.parse::<f64>().is_err());
     let names: Vec<_> = first.iter().map(name_and_unit).filter(|_| has_header).collect();
     let place = match column {
         Some((wanted, span)) => {
-            let place = names.iter().position(|(name, _)| *name == wanted);
-            let known = || names.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-            place.ok_or_else(|| {
-                rule::data_column(span, file, wanted, if has_header { known() } else { "no names".into() })
-            })?
+            let mut places =
+                names.iter().enumerate().skip(1).filter(|(_, (name, _))| *name == wanted).map(|(place, _)| place);
+            let known = || names.iter().skip(1).map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+            let known = || if has_header { known() } else { "no names".into() };
+            let place = places.next().ok_or_else(|| rule::data_column(span, file, wanted, known()))?;
+            if places.next().is_some() {
+                return Err(rule::no_data(at, file, format!("it has several columns `{wanted}`")));
+            }
+            place
         }
         None => 1,
     };
@@ -127,7 +152,8 @@ fn number(data: &Part<'_>, row: &StringRecord, place: usize) -> Result<Node, Mis
     let begin = row.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
     let line = data.text.get(begin..).and_then(|rest| rest.lines().next()).unwrap_or_default();
     let span = Span { start: data.start + begin, end: data.start + begin + line.len() };
-    let number = cell.parse().map_err(|_| rule::data_number(span, cell, place + 1))?;
+    let shown = if cell.is_empty() { "an empty cell".to_owned() } else { format!("`{cell}`") };
+    let number = cell.parse().map_err(|_| rule::data_number(span, shown, place + 1))?;
     Ok(Node { span, content: Content::Number(number) })
 }
 
@@ -136,7 +162,8 @@ fn problem(error: &csv::Error) -> String {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
             let line = pos.as_ref().map_or(0, csv::Position::line);
-            format!("line {line} has {len} columns instead of {expected_len}")
+            let columns = if *len == 1 { "column" } else { "columns" };
+            format!("line {line} has {len} {columns} instead of {expected_len}")
         }
         _ => error.to_string(),
     }

@@ -47,14 +47,14 @@ fn parts(source: &SourceFile, noticed: &mut Noticed) -> Result<Node, Mistake> {
             mistake.span = Span { start: mistake.span.start + part.start, end: mistake.span.end + part.start };
             mistake
         };
-        let mut tree = tree::parse(part.text).map_err(shifted)?.shifted(part.start);
-        data::fill(&mut tree, source, &mut noticed.mistakes);
+        let tree = tree::parse(part.text).map_err(shifted)?.shifted(part.start);
         whole = Some(match whole {
             Some(base) => overlay::merge(base, tree.without_base(), noticed),
             None => tree,
         });
     }
-    let whole = whole.ok_or_else(|| rule::empty(Span::START))?;
+    let mut whole = whole.ok_or_else(|| rule::empty(Span::START))?;
+    data::fill(&mut whole, source, &mut noticed.mistakes);
     // Only the code that reads files can follow `extends`; here it was not followed.
     if let Some((base, span)) = whole.base() {
         noticed.mistakes.push(rule::no_base(

@@ -106,7 +106,7 @@ pub struct Speed {
 pub struct Table {
     /// Times, strictly increasing, s.
     pub times: Option<Spanned<Vec<Spanned<Constant>>>>,
-    /// Positions, rad or m.
+    /// Values: positions in rad or m, openings, or factors of a load.
     pub values: Option<Spanned<Vec<Spanned<FixedAngle>>>>,
     /// A CSV file instead of `times` and `values`, relative to this one. Its first column has the times, s.
     pub file: Option<Spanned<String>>,

@@ -246,7 +246,8 @@ pub trait DynLineariseMotion: DynDynamics {
 
 /// Forces and moments between the parts of a crane: [`InternalForces`](crate::InternalForces) on slices.
 pub trait DynInternalForces: DynModel {
-    /// The wrench that the part beyond each cut exerts on the part before it. `out`: one per cut, as [`Description::cuts`] lists them.
+    /// The wrench that the part beyond each cut exerts on the part before it, without cylinders with a valve. `out`: one per cut, as
+    /// [`Description::cuts`] lists them. The methods `internal_forces_at` and `internal_forces_of` of [`DynCrane`] include these cylinders.
     fn internal_forces(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [Wrench]);
 
     /// What each cylinder that pushes with 1 N adds at each cut, cylinder by cylinder; nothing is written for a crane without valves.

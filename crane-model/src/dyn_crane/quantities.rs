@@ -230,7 +230,7 @@ impl dyn DynCrane + '_ {
     }
 
     /// The wrench that the part beyond each cut exerts on the part before it, cut by cut: N and N m. Cylinders with a valve push with
-    /// the force that the accelerations require.
+    /// the force that the accelerations require, without friction of bristles, whose states are not known here.
     pub fn internal_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
         let pushes = if self.description().has_valves() { self.pushes_required(t, q, v, a) } else { Vec::new() };
         self.internal_forces_with(t, [q, v, a], &pushes)
@@ -248,7 +248,7 @@ impl dyn DynCrane + '_ {
         self.internal_forces_with(t, motion, &pushes)
     }
 
-    /// With cylinders that push with given forces, N; none if there are no forces.
+    /// With cylinders that push with given forces, N; `pushes` is empty if they exert none.
     fn internal_forces_with(&self, t: f64, [q, v, a]: [&[f64]; 3], pushes: &[f64]) -> Vec<Wrench> {
         let mut out = vec![Wrench::ZERO; self.description().cuts().len()];
         self.internal_forces(t, q, v, a, &mut out);
@@ -274,8 +274,8 @@ impl dyn DynCrane + '_ {
         cylinders.iter().zip(&states).map(push).collect()
     }
 
-    /// The wrench at each cut without what is internal to the crane, the forces of connectors between two bodies and of cylinders: only inertia, weight
-    /// and what acts from outside. N and N m.
+    /// The wrench at each cut without forces that are internal to the crane, those of connectors between two bodies and of cylinders: only
+    /// inertia, weight and what acts from outside, N and N m.
     pub(crate) fn external_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
         let mut out = self.internal_forces_with(t, [q, v, a], &[]);
         let tensions = self.connector_tensions_at(t, q, v);

@@ -266,7 +266,7 @@ impl Hydraulics {
         self.t = Some(t);
         crane.drive_motions(t, &mut self.motions);
         crane.valve_openings(t, &mut self.openings);
-        // Everything else is zero: the rest of the pose does not change these lengths.
+        // All other coordinates stay zero: they do not change these lengths, and beams are straight.
         let [wanted_q, wanted_v] = &mut self.place;
         for cylinder in &self.cylinders {
             let [position, rate] = self.motions[cylinder.info.drive];

@@ -53,7 +53,7 @@ pub fn of_strength(description: &Description) -> Vec<String> {
     let caution = |info: &CylinderInfo| {
         let joint = &description.coordinates[description.drives[info.drive].coordinate].name;
         format!(
-            "{} has no valve: the sections between its pins carry a torque in {joint} instead of the force of the cylinder; with a `valve` \
+            "{} has no valve: the sections between its pins carry the torque of the drive of {joint} instead of the force of the cylinder; with a `valve` \
              it pushes on its pins",
             info.name
         )

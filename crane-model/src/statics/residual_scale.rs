@@ -73,9 +73,7 @@ impl ResidualScale {
         /// Number of rounding errors of a coordinate and of the sums that contain it.
         const ROUNDINGS: f64 = 4.0;
         let of_coordinates = stiffness.abs() * (q.abs() + &self.reach);
-        ROUNDINGS
-            * f64::EPSILON
-            * self.norm(&(of_coordinates + of_lengths(crane, q) + of_cylinders(crane, stiffness, q)))
+        ROUNDINGS * f64::EPSILON * self.norm(&(of_coordinates + of_lengths(crane, q) + of_cylinders(crane, q)))
     }
 
     /// Springs that hold the crane against all forces here within about 1 rad and 1 m, and each coordinate by at least its own
@@ -110,21 +108,28 @@ fn of_lengths(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
     sum
 }
 
-/// The same for the springs that stand for cylinders with a valve at rest; their stiffness is that of their joint over the squared lever arm.
-fn of_cylinders(crane: &dyn DynStatics, stiffness: &DMatrix<f64>, q: &DVector<f64>) -> DVector<f64> {
+/// The same for the springs that stand for cylinders with a valve at rest.
+fn of_cylinders(crane: &dyn DynStatics, q: &DVector<f64>) -> DVector<f64> {
     let Description { cylinders, drives, .. } = crane.description();
-    let mut sum = DVector::zeros(q.len());
+    let (n, mut sum) = (q.len(), DVector::zeros(q.len()));
     if !crane.description().has_valves() {
         return sum;
     }
-    let (rest, mut jacobians) = (vec![0.0; q.len()], vec![0.0; cylinders.len() * q.len()]);
+    // The pose without force: the tangent on the joint is the stiffness of the drive there.
+    let (mut straight, mut motions) = (vec![0.0; n], vec![[0.0; 2]; drives.len()]);
+    crane.drive_motions(0.0, &mut motions);
+    for (drive, [position, _]) in drives.iter().zip(motions) {
+        straight[drive.coordinate] = position;
+    }
+    let (rest, mut stiffness, mut jacobians) = (vec![0.0; n], DMatrix::zeros(n, n), vec![0.0; cylinders.len() * n]);
     let mut lengths = vec![Vector3::zeros(); cylinders.len()];
+    crane.holding_stiffness(&straight, &straight, stiffness.as_mut_slice());
+    crane.cylinder_states(&straight, &rest, &mut lengths);
     crane.cylinder_jacobians(q.as_slice(), &mut jacobians);
-    crane.cylinder_states(q.as_slice(), &rest, &mut lengths);
-    let rows = jacobians.chunks_exact(q.len()).zip(cylinders.iter().zip(&lengths));
+    let rows = jacobians.chunks_exact(n).zip(cylinders.iter().zip(&lengths));
     for (row, (cylinder, length)) in rows.filter(|(_, (cylinder, _))| cylinder.valve.is_some()) {
         let joint = drives[cylinder.drive].coordinate;
-        let along = stiffness[(joint, joint)].abs() / row[joint].powi(2);
+        let along = stiffness[(joint, joint)] / (length.z * length.z);
         for (sum, slope) in sum.iter_mut().zip(row) {
             *sum += along * slope.abs() * length.x;
         }

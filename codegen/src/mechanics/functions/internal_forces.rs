@@ -16,7 +16,12 @@ impl Derivation<'_> {
         let mut functions = vec![
             function(
                 FunctionId::InternalForces,
-                "Force (N) and moment (N m) that the part beyond a cut exerts on the part before it, cut by cut.",
+                if model.chain.has_valves() {
+                    "Force (N) and moment (N m) that the part beyond a cut exerts on the part before it, cut by cut. Cylinders with a valve are \
+                     not included: add `cylinder_wrenches` times their forces."
+                } else {
+                    "Force (N) and moment (N m) that the part beyond a cut exerts on the part before it, cut by cut."
+                },
                 "Σ F − Σ ∫ (ẍ − γ) dm, Σ (M + r × F) − Σ ∫ r × (ẍ − γ) dm over everything beyond, by Newton and Euler",
                 &[Time, Position, Velocity, Acceleration],
                 Shape::Structs(Struct::Wrench, model.chain.cuts().len()),

@@ -151,8 +151,12 @@ impl Plausibility<'_> {
         }
     }
 
-    /// Cylinders that are too short or too long where their drives start. Cylinders that act through a linkage are left to statics.
+    /// Cylinders that are too short or too long, or have no lever arm, where their drives start. Cylinders that act through a linkage are left to statics.
     fn strokes(&mut self) {
+        /// Least lever arm of a cylinder, m, or its rate of extension with a slide.
+        const LEAST_LEVER: f64 = 0.01;
+        /// Step of the central difference of a length, rad or m: the relative error is 1e-8.
+        const DIFFERENCE: f64 = 1e-4;
         let chain = self.chain;
         let mut q = chain.guess.clone();
         for drive in &chain.drives {
@@ -160,7 +164,20 @@ impl Plausibility<'_> {
         }
         for (given, cylinder) in items(self.crane.cylinders.as_ref()).zip(&chain.cylinders) {
             let at = |pin: &Pin| Attachment { body: Some(pin.body), position: pin.position.clone() };
-            let length = chain.distance(&[at(&cylinder.foot), at(&cylinder.head)], &q, &self.values);
+            let ends = [at(&cylinder.foot), at(&cylinder.head)];
+            let length = chain.distance(&ends, &q, &self.values);
+            if cylinder.linkage.is_none() {
+                let mut moved = |by: f64| {
+                    q[cylinder.coordinate.0] += by;
+                    let length = chain.distance(&ends, &q, &self.values);
+                    q[cylinder.coordinate.0] -= by;
+                    length
+                };
+                let lever = (moved(DIFFERENCE) - moved(-DIFFERENCE)) / (2.0 * DIFFERENCE);
+                if lever.abs() < LEAST_LEVER {
+                    self.warn(rule::no_lever(given.name.span, &cylinder.name, rounded(lever.abs())));
+                }
+            }
             let (least, most) = (cylinder.retracted, cylinder.retracted + cylinder.stroke);
             if cylinder.linkage.is_none() && !(least..=most).contains(&length) {
                 self.warn(rule::out_of_stroke(
