@@ -53,7 +53,8 @@ struct Motion<'g> {
     a: Vec3<'g>,
 }
 
-/// From base to tip: ω, α and a of each frame, the base accelerated by `start`. In one sweep the three chains of dependent operations are interleaved.
+/// From base to tip: ω, α and a of each frame, the base accelerated by `start`. In one sweep the three chains of dependent operations are
+/// interleaved.
 fn outward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],

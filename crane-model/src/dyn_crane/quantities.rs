@@ -236,7 +236,7 @@ impl dyn DynCrane + '_ {
         self.internal_forces_with(t, [q, v, a], &pushes)
     }
 
-    /// As [`internal_forces_at`](Self::internal_forces_at), with cylinders that push with the force of their pressures, at the states `x` of forces.
+    /// As `internal_forces_at`, with cylinders that push with the force of their pressures, which are among the states `x` of forces.
     pub fn internal_forces_of(&self, t: f64, motion: [&[f64]; 3], x: &[f64]) -> Vec<Wrench> {
         let [q, v, _] = motion;
         let mut pushes = vec![0.0; self.description().cylinders.len()];

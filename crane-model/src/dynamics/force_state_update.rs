@@ -128,7 +128,8 @@ impl ForceStateUpdate {
         });
     }
 
-    /// Adds `−δ U G − κ U (c G + P)` of the cylinders and `−F_x W R/c` of all forces; for bristles the first two are among those of the joints.
+    /// Adds `−δ U G − κ U (c G + P)` of the cylinders and `−F_x W R/c` of all forces; for bristles the first two are among those of the
+    /// joints.
     pub fn add_to(&mut self, (g, p): (&[f64], &[f64]), r: &[f64], c: f64, right: &mut [f64]) {
         let [cylinders, states] = self.force_states.of_oil();
         let (forces, rows) = (&self.force_states.forces()[..cylinders], &self.force_states.rows()[..cylinders]);

@@ -28,7 +28,8 @@ pub fn decays(crane: &dyn DynCrane, q: &[f64]) -> Vec<DampedMode> {
     cylinders.iter().zip(&lengths).filter_map(decay).collect()
 }
 
-/// Adds the stiffness of the oil that shut valves trap, `k Jᵀ J − F ∂J/∂q` with `J = ∂ℓ/∂q`, to that of small motions about a pose at rest.
+/// Adds the stiffness of the oil that shut valves trap, `k Jᵀ J − F ∂J/∂q` with `J = ∂ℓ/∂q`, to that of small motions about a pose at
+/// rest.
 pub(crate) fn stiffen(crane: &dyn DynCrane, q: &[f64], motions: &mut SmallMotions) {
     /// Step of the central difference of J, m or rad: the relative error of the second term is 1e-8.
     const DIFFERENCE: f64 = 1e-4;

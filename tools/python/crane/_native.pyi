@@ -182,8 +182,8 @@ class Crane:
         """(..., cylinders, 3): length of each cylinder, m, its rate, m/s, and its derivative with respect to the joint's coordinate,
         m/rad or m/m."""
     def cylinder_jacobians(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
-        """(..., cylinders, n): derivatives of the length of each cylinder with respect to the coordinates, m/rad or m/m. A cylinder with
-        a valve that pushes with F exerts the generalized forces F times its row. Zeros for a crane without valves."""
+        """(..., cylinders, n): derivatives of the length of each cylinder with respect to the coordinates, m/rad or m/m. A cylinder with a valve
+        that pushes with F exerts the generalized forces F times its row. Zeros for a crane without valves."""
     def drive_limits(self, t: ArrayLike, q: ArrayLike, v: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., drives, 2): maximum effort of each drive, N or N m, 0 if it has no limit, and its stiffness at the state, N/m or N m/rad.
         Zeros for a crane without limits."""

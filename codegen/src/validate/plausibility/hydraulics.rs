@@ -151,7 +151,8 @@ impl Plausibility<'_> {
         }
     }
 
-    /// Cylinders that are too short or too long, or have no lever arm, where their drives start. Cylinders that act through a linkage are left to statics.
+    /// Cylinders that are too short or too long, or have no lever arm, where their drives start. Cylinders that act through a linkage are
+    /// left to statics.
     fn strokes(&mut self) {
         /// Least lever arm of a cylinder, m, or its rate of extension with a slide.
         const LEAST_LEVER: f64 = 0.01;
