@@ -28,10 +28,9 @@
 //! axis, and the opposite of both on that which carries A. In a pose in which the linkage cannot be assembled, the square root is of a
 //! negative number, and the result is NaN.
 
-use super::kinematics::{Generator, Kinematics};
+use super::kinematics::Kinematics;
 use super::model::Model;
 use super::profile;
-use super::twist::Twist;
 use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::{BodyId, Cylinder, Linkage, Pin, Value};
 use crate::symbolic::Expr;
@@ -130,67 +129,65 @@ impl<'g> Line<'g> {
         Line { head, axis, length, by_head, by_axis }
     }
 
-    /// ℓ̇, from Ḣ and the angular velocity of the axis.
-    fn rate(&self, head: Vec3<'g>, spin: impl FnOnce() -> Vec3<'g>) -> Expr<'g> {
-        let rate = self.by_head.dot(head);
-        self.by_axis.map_or(rate, |by_axis| rate + by_axis.dot(spin().cross(self.axis)))
-    }
-
     /// Indices and values of the entries of `∂ℓ/∂q`.
     fn jacobian(&self, model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Vec<(usize, Expr<'g>)> {
         let (joint, head_beyond) = (cylinder.coordinate.0, cylinder.head.body > cylinder.foot.body);
         let entry = |j: usize| {
             let generator = &kinematics.generators[j];
             let turns_axis = if head_beyond { j < joint } else { j > joint };
-            let velocity = generator.velocity(self.head);
-            let rate = if turns_axis { self.rate(velocity, || generator.omega) } else { self.by_head.dot(velocity) };
+            let mut rate = self.by_head.dot(generator.velocity(self.head));
+            if let Some(by_axis) = self.by_axis.filter(|_| turns_axis) {
+                rate = rate + by_axis.dot(generator.rotate(self.axis));
+            }
             (j, if head_beyond { rate } else { -rate })
         };
         model.chain.spanned_by(cylinder).map(entry).collect()
     }
 }
 
-/// Angular velocity of a joint's axis relative to a body: that of the rotations between them.
-fn spin_of_axis<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, joint: usize, from: usize) -> Vec3<'g> {
-    let turning = |(j, generator): (usize, &Generator<'g>)| match (generator.body > from, j < joint) {
-        (true, true) => Some(model.v[j] * generator.omega),
-        (false, false) if j > joint => Some(-(model.v[j] * generator.omega)),
-        _ => None,
-    };
-    let all = kinematics.generators.iter().enumerate();
-    all.filter_map(turning).fold(Vec3::zero(model.graph), |sum, rate| sum + rate)
+/// Each cylinder, and its ℓ and ∂ℓ/∂q. They do not depend on the rest of the pose: what is not between the pins of any cylinder is at zero.
+fn lines<'g, 'a>(model: &'a Model<'g>) -> impl Iterator<Item = (&'a Cylinder, Expr<'g>, Vec<(usize, Expr<'g>)>)> {
+    let cylinders = &model.chain.cylinders;
+    let mut q = model.zeros();
+    for j in cylinders.iter().flat_map(|cylinder| model.chain.spanned_by(cylinder)) {
+        q[j] = model.q[j];
+    }
+    let model = model.at(q);
+    let kinematics = Kinematics::new(&model);
+    cylinders.iter().map(move |cylinder| {
+        let line = Line::new(&model, &kinematics, cylinder);
+        (cylinder, line.length, line.jacobian(&model, &kinematics, cylinder))
+    })
 }
 
 /// ℓ, ℓ̇ and `∂ℓ/∂q_j` of every cylinder, m, m/s and m or m/rad.
-pub fn states<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, twists: &[Twist<'g>]) -> Vec<Expr<'g>> {
-    let state = |cylinder: &Cylinder| {
-        let (joint, foot) = (cylinder.coordinate.0, cylinder.foot.body.0);
-        let line = Line::new(model, kinematics, cylinder);
-        let [at_foot, at_head] = [foot, cylinder.head.body.0].map(|body| {
-            let twist = &twists[body];
-            twist.omega.cross(line.head) + twist.upsilon
-        });
-        let rate = line.rate(at_head - at_foot, || spin_of_axis(model, kinematics, joint, foot));
-        [line.length, rate, arm(&line.jacobian(model, kinematics, cylinder), joint)]
+pub fn states<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let state = |(cylinder, length, jacobian): (&Cylinder, Expr<'g>, Vec<(usize, Expr<'g>)>)| {
+        let rate = jacobian.iter().fold(model.zero(), |sum, &(j, entry)| sum + entry * model.v[j]);
+        [length, rate, arm(&jacobian, cylinder)]
     };
-    model.chain.cylinders.iter().flat_map(state).collect()
+    lines(model).flat_map(state).collect()
 }
 
 /// The entry of a joint, which is always between the pins.
-fn arm<'g>(jacobian: &[(usize, Expr<'g>)], joint: usize) -> Expr<'g> {
-    jacobian.iter().find(|(j, _)| *j == joint).map(|(_, arm)| *arm).expect("the joint is between the pins")
+fn arm<'g>(jacobian: &[(usize, Expr<'g>)], cylinder: &Cylinder) -> Expr<'g> {
+    jacobian
+        .iter()
+        .find(|(j, _)| *j == cylinder.coordinate.0)
+        .map(|(_, arm)| *arm)
+        .expect("the joint is between the pins")
 }
 
 /// `∂ℓ/∂q` of every cylinder, row by row.
-pub fn jacobians<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
-    let row = |cylinder: &Cylinder| {
+pub fn jacobians<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let row = |(_, _, jacobian): (_, _, Vec<(usize, Expr<'g>)>)| {
         let mut row = model.zeros();
-        for (j, entry) in Line::new(model, kinematics, cylinder).jacobian(model, kinematics, cylinder) {
+        for (j, entry) in jacobian {
             row[j] = entry;
         }
         row
     };
-    model.chain.cylinders.iter().flat_map(row).collect()
+    lines(model).flat_map(row).collect()
 }
 
 /// Force and moment about the world's origin, in the world frame, that a cylinder that pushes with 1 N exerts on each body.
@@ -209,10 +206,9 @@ pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cyl
     pushes
 }
 
-/// Cylinders with a valve, with the stiffness of their drives at rest.
-fn with_valves<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (&'a Cylinder, &'a Value)> {
-    let chain = model.chain;
-    chain.cylinders.iter().filter_map(|cylinder| Some((cylinder, chain.drives[chain.drive_of(cylinder)].oil()?)))
+/// The stiffness at rest of the drive whose joint oil moves; `None` for a cylinder without a valve.
+fn holding<'a>(model: &'a Model<'_>, cylinder: &Cylinder) -> Option<&'a Value> {
+    model.chain.drives[model.chain.drive_of(cylinder)].oil()
 }
 
 /// Positions of the drives at t = 0, by coordinate.
@@ -232,19 +228,17 @@ pub fn positions_at_start<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 /// ```
 ///
 /// The index 0 is for the crane with the drives at their positions and straight beams; s is the stiffness of the drive.
-pub fn holding_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, positions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+pub fn holding_forces<'g>(model: &Model<'g>, positions: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut forces = model.zeros();
-    if with_valves(model).next().is_none() {
-        return forces;
+    let mut straight = model.zeros();
+    for j in model.chain.cylinders.iter().map(|cylinder| cylinder.coordinate.0) {
+        straight[j] = positions[j];
     }
-    let straight = model.at(positions.to_vec());
-    let kinematics_of_straight = Kinematics::new(&straight);
-    for (cylinder, stiffness) in with_valves(model) {
-        let line = Line::new(model, kinematics, cylinder);
-        let meant = Line::new(&straight, &kinematics_of_straight, cylinder);
-        let arm = arm(&meant.jacobian(&straight, &kinematics_of_straight, cylinder), cylinder.coordinate.0);
-        let push = model.number(stiffness) / arm.squared() * (meant.length - line.length);
-        for (j, entry) in line.jacobian(model, kinematics, cylinder) {
+    let straight = model.at(straight);
+    for ((cylinder, length, jacobian), (_, meant, of_straight)) in lines(model).zip(lines(&straight)) {
+        let Some(stiffness) = holding(model, cylinder) else { continue };
+        let push = model.number(stiffness) / arm(&of_straight, cylinder).squared() * (meant - length);
+        for (j, entry) in jacobian {
             forces[j] = forces[j] + entry * push;
         }
     }
@@ -252,15 +246,11 @@ pub fn holding_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, positi
 }
 
 /// Adds `−∂f/∂q` of the forces that hold the crane at rest.
-pub fn holding_stiffness<'g>(
-    model: &Model<'g>,
-    kinematics: &Kinematics<'g>,
-    positions: &[Expr<'g>],
-    matrix: &mut SymmetricMatrix<'g>,
-) {
-    let forces = holding_forces(model, kinematics, positions);
-    let moves = |j: usize| with_valves(model).any(|(cylinder, _)| model.chain.spanned_by(cylinder).contains(&j));
-    for (j, q) in model.q.iter().enumerate().filter(|(j, _)| moves(*j)) {
+pub fn holding_stiffness<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
+    let forces = holding_forces(model, positions);
+    let mut held = model.chain.cylinders.iter().filter(|cylinder| holding(model, cylinder).is_some());
+    let spans: Vec<usize> = held.by_ref().flat_map(|cylinder| model.chain.spanned_by(cylinder)).collect();
+    for (j, q) in model.q.iter().enumerate().filter(|(j, _)| spans.contains(j)) {
         for (i, slope) in model.graph.derivatives(&forces, *q).into_iter().enumerate().take(j + 1) {
             matrix.add(i, j, -slope);
         }

@@ -104,12 +104,11 @@ impl<'a, 'g> Forces<'a, 'g> {
 
     /// Generalized forces of flexible drives and cylinders with a valve at rest and t = 0.
     pub fn drives_at_rest(&self) -> Vec<Expr<'g>> {
-        let &Forces { model, kinematics } = self;
-        let springs = drives::forces_at_rest(model);
-        if !model.chain.has_valves() {
+        let springs = drives::forces_at_rest(self.model);
+        if !self.model.chain.has_valves() {
             return springs;
         }
-        add(&springs, &cylinders::holding_forces(model, kinematics, &cylinders::positions_at_start(model)))
+        add(&springs, &cylinders::holding_forces(self.model, &cylinders::positions_at_start(self.model)))
     }
 
     /// Energy of a kind, if it stores any.

@@ -127,7 +127,7 @@ impl<'g> Derivation<'g> {
                 "ℓ, ℓ̇, ∂ℓ/∂q_j",
                 &[Position, Velocity],
                 Shape::Vectors(chain.cylinders.len()),
-                cylinders::states(&self.model, &self.kinematics, &self.twists),
+                cylinders::states(&self.model),
             ));
         }
         if chain.has_valves() {
@@ -137,7 +137,7 @@ impl<'g> Derivation<'g> {
                 "∂ℓ/∂q",
                 &[Position],
                 Shape::Rows { count: chain.cylinders.len(), n: self.model.size() },
-                cylinders::jacobians(&self.model, &self.kinematics),
+                cylinders::jacobians(&self.model),
             ));
         }
         functions

@@ -62,7 +62,7 @@ impl<'g> Derivation<'g> {
     fn holding(&self) -> [Function; 2] {
         let Model { chain, graph, drive_positions, .. } = &self.model;
         let mut stiffness = SymmetricMatrix::zero(graph, chain.coordinates.len());
-        cylinders::holding_stiffness(&self.model, &self.kinematics, drive_positions, &mut stiffness);
+        cylinders::holding_stiffness(&self.model, drive_positions, &mut stiffness);
         [
             function(
                 FunctionId::HoldingForces,
@@ -70,7 +70,7 @@ impl<'g> Derivation<'g> {
                 "k (ℓ₀ − ℓ) ∂ℓ/∂q, k = s/(∂ℓ/∂q_j)₀²",
                 &[Position, DrivePositions],
                 Shape::Vector(self.model.size()),
-                cylinders::holding_forces(&self.model, &self.kinematics, drive_positions),
+                cylinders::holding_forces(&self.model, drive_positions),
             ),
             function(
                 FunctionId::HoldingStiffness,
@@ -120,8 +120,9 @@ impl<'g> Derivation<'g> {
     /// The stiffness including the springs that represent oil at rest.
     fn tangent_stiffness(&self) -> SymmetricMatrix<'g> {
         let mut matrix = self.stiffness();
-        let positions = cylinders::positions_at_start(&self.model);
-        cylinders::holding_stiffness(&self.model, &self.kinematics, &positions, &mut matrix);
+        if self.model.chain.has_valves() {
+            cylinders::holding_stiffness(&self.model, &cylinders::positions_at_start(&self.model), &mut matrix);
+        }
         matrix
     }
 
