@@ -35,8 +35,8 @@ fn a_crane_without_a_run_is_shown_at_rest() {
     let pose = pose(written);
     assert_eq!(pose.len(), live.size());
     for (shown, found) in pose.iter().zip(&equilibrium.q) {
-        // serde_json reads numbers to within one unit in the last place.
-        assert!((shown - found).abs() <= f64::EPSILON * found.abs(), "{shown}, {found}");
+        // serde_json reads numbers to within two units in the last place.
+        assert!((shown - found).abs() <= 2.0 * f64::EPSILON * found.abs(), "{shown}, {found}");
     }
 }
 
