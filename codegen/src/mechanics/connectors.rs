@@ -251,11 +251,7 @@ pub fn pieces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 pub fn stiffness<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, t: Expr<'g>, matrix: &mut SymmetricMatrix<'g>) {
     let forces = forces(model, kinematics, t, None);
     let reach = model.chain.connectors.iter().map(|connector| model.chain.spanned(connector)[1]).max().unwrap_or(0);
-    for (j, q) in model.q.iter().enumerate().take(reach) {
-        for (i, slope) in model.graph.derivatives(&forces, *q).into_iter().enumerate().take(j + 1) {
-            matrix.add(i, j, -slope);
-        }
-    }
+    model.add_tangent(&forces, &(0..reach).collect(), matrix);
 }
 
 /// Adds `Σ Jᵀ ∂F/∂ℓ̇ J` at rest and t = 0.

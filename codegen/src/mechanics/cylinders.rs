@@ -247,12 +247,7 @@ pub fn holding_forces<'g>(model: &Model<'g>, positions: &[Expr<'g>]) -> Vec<Expr
 
 /// Adds `−∂f/∂q` of the forces that hold the crane at rest.
 pub fn holding_stiffness<'g>(model: &Model<'g>, positions: &[Expr<'g>], matrix: &mut SymmetricMatrix<'g>) {
-    let forces = holding_forces(model, positions);
-    let mut held = model.chain.cylinders.iter().filter(|cylinder| holding(model, cylinder).is_some());
-    let spans: Vec<usize> = held.by_ref().flat_map(|cylinder| model.chain.spanned_by(cylinder)).collect();
-    for (j, q) in model.q.iter().enumerate().filter(|(j, _)| spans.contains(j)) {
-        for (i, slope) in model.graph.derivatives(&forces, *q).into_iter().enumerate().take(j + 1) {
-            matrix.add(i, j, -slope);
-        }
-    }
+    let held = model.chain.cylinders.iter().filter(|cylinder| holding(model, cylinder).is_some());
+    let spanned = held.flat_map(|cylinder| model.chain.spanned_by(cylinder)).collect();
+    model.add_tangent(&holding_forces(model, positions), &spanned, matrix);
 }

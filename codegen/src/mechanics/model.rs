@@ -1,11 +1,13 @@
 //! The chain's numbers and inputs as expressions.
 
+use std::collections::BTreeSet;
+
 use crate::chain::{Chain, Inertia, Input, InputId, ParameterId, Value};
 use crate::program::{Argument, Symbol};
 use crate::symbolic::{Expr, Graph, SymbolId};
 
 use super::axis_rotation::AxisRotation;
-use super::vector::{Symmetric3, Vec3};
+use super::vector::{Symmetric3, SymmetricMatrix, Vec3};
 
 /// A chain whose inputs and numbers are expressions of one graph.
 #[derive(Clone)]
@@ -87,6 +89,15 @@ impl<'g> Model<'g> {
     /// The same chain at another pose.
     pub fn at(&self, q: Vec<Expr<'g>>) -> Self {
         Model { q, ..self.clone() }
+    }
+
+    /// Adds `−∂f/∂q` of generalized forces that have a potential and depend only on some coordinates.
+    pub fn add_tangent(&self, forces: &[Expr<'g>], coordinates: &BTreeSet<usize>, matrix: &mut SymmetricMatrix<'g>) {
+        for &j in coordinates {
+            for (i, slope) in self.graph.derivatives(forces, self.q[j]).into_iter().enumerate().take(j + 1) {
+                matrix.add(i, j, -slope);
+            }
+        }
     }
 
     /// Number of coordinates.
