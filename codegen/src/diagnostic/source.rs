@@ -71,7 +71,9 @@ impl SourceFile {
         if self.is_assembled() { self.text.clone() } else { marked(PART, named, &self.text) }
     }
 
-    fn is_assembled(&self) -> bool {
+    /// Whether it contains the specs that it extends and its data.
+    #[must_use]
+    pub fn is_assembled(&self) -> bool {
         self.text.starts_with(PART) || self.text.starts_with(DATA)
     }
 

@@ -36,7 +36,7 @@ pub struct Execution<'a> {
     pub threads: usize,
     /// Called with the ratings of every completed piece, in the order of completion, from any thread.
     pub done: &'a (dyn Fn(usize, &[Rating]) + Sync),
-    /// Whether to skip the remaining pieces; asked before every piece.
+    /// Whether to end: unfinished pieces are not reported. Asked before every pose, and on the way to it.
     pub cancelled: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -88,8 +88,9 @@ impl Envelope {
             loop {
                 let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
                 let (Some(&piece), false) = (next, (execution.cancelled)()) else { break };
-                match self.rate(crane, own.as_mut(), piece) {
-                    Ok(ratings) => (execution.done)(piece, &ratings),
+                match self.rate(crane, own.as_mut(), piece, execution.cancelled) {
+                    Ok(Some(ratings)) => (execution.done)(piece, &ratings),
+                    Ok(None) => break,
                     Err(error) => {
                         *refused.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
                         break;
@@ -106,8 +107,14 @@ impl Envelope {
         refused.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
     }
 
-    /// Rates the poses of a piece with a copy of the crane.
-    fn rate(&self, crane: &dyn DynCrane, own: &mut dyn DynCrane, piece: usize) -> Result<Vec<Rating>, ParameterError> {
+    /// Rates the poses of a piece with a copy of the crane; `None` if it is cancelled.
+    fn rate(
+        &self,
+        crane: &dyn DynCrane,
+        own: &mut dyn DynCrane,
+        piece: usize,
+        cancelled: &dyn Fn() -> bool,
+    ) -> Result<Option<Vec<Rating>>, ParameterError> {
         let poses = self.poses_of(piece);
         let mut ratings: Vec<Rating> = Vec::with_capacity(poses.len());
         let mut near: Option<(Vec<f64>, Vec<f64>)> = None;
@@ -117,14 +124,16 @@ impl Envelope {
             parameters[self.load] = self.loads[0];
             own.set_parameters(&parameters)?;
             let positions = self.axes.positions(own, pose);
-            let q = walk(own, near.take().unwrap_or_else(|| begin(own)), &positions);
+            let Some(q) = walk(own, near.take().unwrap_or_else(|| begin(own)), &positions, cancelled) else {
+                return Ok(None);
+            };
             let wanted = Wanted { limits: &self.limits, loads: self.loads, own: load };
             let guess = ratings.last().and_then(|rating| rating.load);
             let (rating, q) = Posed { crane: own, load: self.load, positions: &positions }.rate(&wanted, guess, q);
             near = Some((positions, q));
             ratings.push(rating);
         }
-        Ok(ratings)
+        Ok(Some(ratings))
     }
 }
 
@@ -134,19 +143,25 @@ fn begin(crane: &dyn DynCrane) -> (Vec<f64>, Vec<f64>) {
     (positions, crane.equilibrium(&Settings::default()).q)
 }
 
-/// A pose near the one with the drives at `positions`, approached in strides from the pose with the drives at `from`.
-fn walk(crane: &dyn DynCrane, (from, mut q): (Vec<f64>, Vec<f64>), positions: &[f64]) -> Vec<f64> {
+/// A pose near the one with the drives at `positions`, approached in strides from the pose with the drives at `from`; `None` if it is
+/// cancelled.
+fn walk(
+    crane: &dyn DynCrane,
+    (from, mut q): (Vec<f64>, Vec<f64>),
+    positions: &[f64],
+    cancelled: &dyn Fn() -> bool,
+) -> Option<Vec<f64>> {
     let furthest = from.iter().zip(positions).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
     let strides = (furthest / STRIDE).ceil().max(1.0);
     let mut stride = 0.0;
-    loop {
+    while !cancelled() {
         stride += 1.0;
         for (drive, (from, to)) in crane.description().drives.iter().zip(from.iter().zip(positions)) {
             q[drive.coordinate] += (to - from) / strides;
         }
         if stride >= strides {
             // The equilibrium of the last stride is left to the caller.
-            return q;
+            return Some(q);
         }
         let part = stride / strides;
         let between: Vec<f64> = from.iter().zip(positions).map(|(from, to)| from + part * (to - from)).collect();
@@ -155,4 +170,5 @@ fn walk(crane: &dyn DynCrane, (from, mut q): (Vec<f64>, Vec<f64>), positions: &[
             q = found.q;
         }
     }
+    None
 }

@@ -17,6 +17,26 @@ use crate::{
     results::{self, Peaks, Recording, cautions},
 };
 
+/// What distinguishes a row from the others.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Case {
+    /// Live parameters, in the order of the description.
+    pub parameters: Vec<f64>,
+    /// Inputs, in the order of the description; none: those of the crane.
+    pub inputs: Vec<Option<f64>>,
+    /// Pose at the start, if it is not that of [`Start::of`].
+    pub q: Option<Vec<f64>>,
+    /// Rates at the start.
+    pub v: Option<Vec<f64>>,
+}
+
+impl From<Vec<f64>> for Case {
+    /// A case with other parameters.
+    fn from(parameters: Vec<f64>) -> Self {
+        Self { parameters, ..Self::default() }
+    }
+}
+
 /// The result of the run of a row.
 #[derive(Clone, Debug)]
 pub struct Outcome {
@@ -79,11 +99,11 @@ pub struct Execution<'a> {
     pub cancelled: &'a (dyn Fn(bool) -> bool + Sync),
 }
 
-/// Runs the crane with every row of parameters, all of them in the order of the description, each from its own [`Start`]. One outcome
-/// per row, in order.
-pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, execution: &Execution<'_>) -> Vec<Outcome> {
-    // Lanes do not support states of forces.
-    let in_lanes = settings.method == Method::Rk4 && !crane.description().has_force_states();
+/// Runs the crane of every row, each from its own start. One outcome per row, in order.
+pub fn run(crane: &dyn DynCrane, rows: &[Case], settings: &Settings, execution: &Execution<'_>) -> Vec<Outcome> {
+    // Lanes support neither states of forces nor different inputs.
+    let same_inputs = rows.iter().all(|row| row.inputs.is_empty());
+    let in_lanes = settings.method == Method::Rk4 && same_inputs && !crane.description().has_force_states();
     let piece = if in_lanes { crane.lanes() } else { 1 };
     let waiting = Mutex::new(rows.chunks(piece).enumerate());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -116,11 +136,17 @@ pub fn run(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings, executi
     finished.into_iter().map(|(_, outcome)| outcome).collect()
 }
 
-/// The crane with other parameters, and the start of its run.
-fn ready(crane: &dyn DynCrane, parameters: &[f64]) -> Result<(Box<dyn DynCrane>, Start), Reason> {
+/// The crane of a row, and the start of its run.
+///
+/// # Errors
+/// Its parameters break a rule, or it has no start.
+pub fn ready(crane: &dyn DynCrane, row: &Case) -> Result<(Box<dyn DynCrane>, Start), Reason> {
     let mut own = crane.boxed_clone();
-    own.set_parameters(parameters).map_err(Reason::Refused)?;
-    let start = Start::of(own.as_ref()).map_err(Reason::Failed)?;
+    own.set_parameters(&row.parameters).map_err(Reason::Refused)?;
+    for (index, input) in row.inputs.iter().enumerate() {
+        own.set_input(index, *input);
+    }
+    let start = Start::with(own.as_ref(), row.q.as_deref(), row.v.as_deref()).map_err(Reason::Failed)?;
     Ok((own, start))
 }
 
@@ -190,8 +216,8 @@ impl Watch for Gathering<'_> {
 }
 
 /// Runs the crane of one row.
-fn alone(crane: &dyn DynCrane, parameters: &[f64], settings: &Settings, off: &dyn Fn() -> bool) -> Outcome {
-    let (own, start) = match ready(crane, parameters) {
+fn alone(crane: &dyn DynCrane, row: &Case, settings: &Settings, off: &dyn Fn() -> bool) -> Outcome {
+    let (own, start) = match ready(crane, row) {
         Ok(ready) => ready,
         Err(reason) => return Outcome::without_run(reason),
     };
@@ -201,12 +227,12 @@ fn alone(crane: &dyn DynCrane, parameters: &[f64], settings: &Settings, off: &dy
 }
 
 /// Runs the cranes of some rows together, except those that cannot start.
-fn side_by_side(crane: &dyn DynCrane, rows: &[Vec<f64>], settings: &Settings) -> Vec<Outcome> {
+fn side_by_side(crane: &dyn DynCrane, rows: &[Case], settings: &Settings) -> Vec<Outcome> {
     let ready: Vec<_> = rows.iter().map(|row| ready(crane, row)).collect();
     let mut members = Vec::new();
     let mut gatherings = Vec::new();
     for ((own, start), row) in ready.iter().zip(rows).filter_map(|(ready, row)| Some((ready.as_ref().ok()?, row))) {
-        members.push(Member { parameters: row.clone(), start: start.state() });
+        members.push(Member { parameters: row.parameters.clone(), start: start.state() });
         gatherings.push(Gathering::new(own.as_ref(), &|| false));
     }
     let runs = crane.simulate_ensemble(&members, settings, &mut |member, sample| gatherings[member].take(sample));

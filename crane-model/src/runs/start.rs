@@ -12,6 +12,9 @@ pub const EQUILIBRIUM: &str = "static equilibrium, at rest";
 /// Start of a crane whose spec does not.
 pub const GUESS: &str = "guess, at rest";
 
+/// Start of a crane whose pose or rates are given.
+pub const GIVEN: &str = "as given";
+
 /// Pose and rates from which a run starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
@@ -38,6 +41,23 @@ impl Start {
         } else {
             Ok(Self::guess(crane))
         }
+    }
+
+    /// The start of a crane, with another pose, at rest, or with other rates, where these are given.
+    ///
+    /// # Errors
+    /// Those of [`Start::of`], if no pose is given.
+    pub fn with(crane: &dyn DynCrane, q: Option<&[f64]>, v: Option<&[f64]>) -> Result<Self, Failed> {
+        let start = match q {
+            Some(q) => {
+                Self { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: GIVEN.to_owned(), rests: false }
+            }
+            None => Self::of(crane)?,
+        };
+        Ok(match v {
+            Some(v) => Self { v: v.to_vec(), what: GIVEN.to_owned(), rests: false, ..start },
+            None => start,
+        })
     }
 
     /// A given equilibrium.

@@ -17,7 +17,7 @@ use crane_model::{
     results::{Column, Peaks},
     runs::{
         Start,
-        ensemble::{self, Execution, Outcome as Row},
+        ensemble::{self, Case, Execution, Outcome as Row},
     },
 };
 use crane_page::tables::{Report, number_text};
@@ -65,7 +65,7 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
     bar.inc((kept.len() - fresh.len()) as u64);
     let state = Mutex::new((kept, Ok(())));
     let parameters = table.parameters(crane);
-    let parameters: Vec<Vec<f64>> = fresh.iter().map(|row| parameters[*row].clone()).collect();
+    let cases: Vec<Case> = fresh.iter().map(|row| Case::from(parameters[*row].clone())).collect();
     let done = |place: usize, outcome: &Row| {
         let row = fresh[place];
         let fields = fields(description, &table.rows[row], outcome);
@@ -78,7 +78,7 @@ pub fn simulate(options: &Simulate, table: &Path, registry: &Registry, out: &mut
     };
     let failed = |_| state.lock().unwrap_or_else(PoisonError::into_inner).1.is_err();
     let execution = Execution { threads, done: &done, cancelled: &failed };
-    let simulated: f64 = ensemble::run(crane, &parameters, &settings, &execution).iter().map(Row::time).sum();
+    let simulated: f64 = ensemble::run(crane, &cases, &settings, &execution).iter().map(Row::time).sum();
     bar.finish_and_clear();
     let wall = begin.elapsed().as_secs_f64();
     let (rows, written) = state.into_inner().unwrap_or_else(PoisonError::into_inner);

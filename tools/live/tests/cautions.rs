@@ -36,7 +36,7 @@ fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
         let single = said(&crane, &settings);
         assert!(!single.is_empty(), "{name}");
         let execution = Execution { threads: 1, done: &|_, _| (), cancelled: &|_| false };
-        let rows = ensemble::run(&crane, &[crane.parameters().to_vec()], &settings, &execution);
+        let rows = ensemble::run(&crane, &[crane.parameters().to_vec().into()], &settings, &execution);
         assert_eq!(rows[0].cautions, single, "{name}");
 
         let start = Start::of(&crane).expect("it rests");

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .info import Info
+
 Array = NDArray[np.float64]
 
 class SpecError(ValueError):
@@ -33,6 +35,10 @@ def set_threads(count: int | None = None) -> None:
 
 def threads() -> int:
     """How many threads a call uses."""
+
+def real_array(name: str, object: ArrayLike) -> Array:
+    """A new array of the numbers of anything that NumPy converts to an array of real numbers; masked ones are NaN. TypeError names what
+    is none."""
 
 class Motion:
     """A motion that continues from result to result, with the history of its method."""
@@ -73,19 +79,27 @@ class Crane:
     @property
     def shape(self) -> list[int]:
         """Leading axes of the parameters; empty where all are numbers."""
-    def describe(self) -> dict[str, Any]:
-        """Coordinates, bodies, drives, supports, points and parameters."""
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+    @property
+    def coordinates(self) -> list[str]:
+        """Names of the coordinates, in the order of q."""
+    @property
+    def guess(self) -> Array:
+        """(..., n): where statics begins, m and rad; NaN for parameters that break a rule."""
+    @property
+    def info(self) -> Info:
+        """Coordinates, bodies, drives, supports, points and parameters: names, units and descriptions."""
     def picture(self) -> str:
         """A picture of the chain: its bodies and coordinates at the guess, SVG."""
-    def page_with(self, run: dict[str, Any] | None = None) -> str:
+    def _page(self, run: dict[str, Any] | None = None) -> str:
         """The crane in 3-D and in tables as an HTML page: at rest, or with a run of it."""
     def export(self, format: str) -> str:
         """The crane for other programs: "urdf", "springs" (what URDF cannot express, YAML) or "mjcf", with the present parameters."""
-    def parameter_rows(self, index: int) -> Any:
+    def _parameter_rows(self, index: int) -> Any:
         """Values of a live parameter, by its place, over the leading axes."""
-    def guess_rows(self) -> Array:
-        """(..., n): where statics begins, m and rad."""
-    def equilibria(
+    def _equilibria(
         self,
         t: ArrayLike | None = None,
         guess: ArrayLike | None = None,
@@ -95,21 +109,29 @@ class Crane:
         invalid: str = "raise",
     ) -> dict[str, Any]:
         """Equilibria: `Crane.statics` makes an `Equilibrium` of them."""
-    def run_envelope(
+    def _envelope(
         self, asked: dict[str, Any], progress: Callable[[int, int], Any] | None = None
     ) -> dict[str, Any]:
         """Largest loads: `Crane.envelope` makes an `Envelope` of them."""
-    def vibrations(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:
-        """Modes and stable steps: `Crane.modes` and `Crane.stability` name them."""
-    def record(
+    def _modes(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:
+        """Modes about poses: `Crane.modes` names them."""
+    def _stable_steps(self, q: ArrayLike, invalid: str = "raise") -> dict[str, Any]:
+        """Largest stable steps about poses: `Crane.stability` names them."""
+    def _record(
         self, timing: dict[str, Any], q: ArrayLike | None = None, v: ArrayLike | None = None, verify: bool = True, bend: float = ...
     ) -> dict[str, Any]:
         """A run: `Crane.simulate` makes a `Run` of it."""
-    def run_ensemble(
-        self, timing: dict[str, Any], invalid: str = "raise", progress: Callable[[int, int], Any] | None = None
+    def _run_ensemble(
+        self,
+        timing: dict[str, Any],
+        invalid: str = "raise",
+        progress: Callable[[int, int], Any] | None = None,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        inputs: dict[str, ArrayLike | None] | None = None,
     ) -> dict[str, Any]:
-        """Runs over parameters: `Crane.simulate_ensemble` makes an `Ensemble` of them."""
-    def motion(self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike, x: ArrayLike) -> Motion:
+        """Runs over parameters, starts and inputs: `Crane.simulate_ensemble` makes an `Ensemble` of them."""
+    def _motion(self, timing: dict[str, Any], t: float, q: ArrayLike, v: ArrayLike, x: ArrayLike) -> Motion:
         """A motion of the crane from a time, s, a pose, rates and states of forces, with its parameters and inputs."""
     @property
     def inputs(self) -> dict[str, float]:
@@ -125,7 +147,7 @@ class Crane:
     ) -> Array:
         """(..., cuts, 6): force, N, and moment, N m, that the part beyond each cut exerts on the part before it; `Crane.info["cuts"]`
         lists the cuts. a: accelerations; at rest unless v and a are given."""
-    def strength_rows(
+    def _strength(
         self,
         q: ArrayLike,
         v: ArrayLike | None = None,
@@ -199,13 +221,13 @@ class Crane:
         """(..., n): `∂E_p/∂q` at t = 0, zero in equilibrium, N and N m."""
     def tangent_stiffness(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., n, n): `∂²E_p/∂q²` at t = 0, N/m, N and N m."""
-    def small_motions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
+    def _small_motions(self, q: ArrayLike, *, invalid: str = "raise") -> Array:
         """(..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them."""
-    def small_motions_about(
+    def _small_motions_about(
         self, q: ArrayLike, v: ArrayLike, a: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise"
     ) -> Array:
         """(..., 3, n, n): A, K and D of small motions about motions; `linearise` names them."""
-    def steady_rows(
+    def _steady_motion(
         self,
         held: list[tuple[int, bool]],
         start: ArrayLike,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._native import NoEquilibrium
+from ._native import NoEquilibrium, real_array
 from .notebook import embed
 from .results import (
     Array,
@@ -34,12 +34,12 @@ def load(
     *,
     text: str | None = None,
     invalid: str = "raise",
-    inputs: dict[str, float | None] | None = None,
+    inputs: Mapping[str, float | None] | None = None,
     **parameters: ArrayLike,
 ) -> "Crane":
     """Loads a crane: a shipped one by its name (`crane.shipped()` lists them), or that of a YAML file.
 
-    text: the spec itself; `source` is then its name in messages.
+    text: the spec itself; `source` is then its name in messages. It may extend shipped cranes, and files of the working folder.
     parameters: live parameters by name, in the units that `Crane.info` shows. Arrays of them make a batch: their axes are leading
     axes of all results.
     invalid: "raise" raises if parameters of an array break a rule, "nan" makes results of those rows NaN and warns.
@@ -47,7 +47,7 @@ def load(
 
     Raises SpecError, which prints every mistake with its place and remedy; warns of anything implausible with SpecWarning.
     """
-    return Crane(os.fspath(source), text=text, parameters=parameters, invalid=invalid, inputs=inputs)
+    return Crane(os.fspath(source), text=text, parameters=parameters, invalid=invalid, inputs=None if inputs is None else dict(inputs))
 
 
 def _load_again(source: str, text: str, parameters: dict[str, Any], inputs: dict[str, float]) -> "Crane":
@@ -82,7 +82,7 @@ class Crane(_native.Crane):
 
         Of a crane whose parameters are arrays, the page shows the first row.
         """
-        return self.page_with()
+        return self._page()
 
     def _repr_html_(self) -> str:
         """The page with a table of parameters and inputs, for notebooks."""
@@ -111,25 +111,10 @@ class Crane(_native.Crane):
         return type(self)(self.source, parameters=parameters, invalid=invalid, like=self, inputs=inputs)
 
     @property
-    def info(self) -> dict[str, Any]:
-        """Coordinates, bodies, drives, supports, points and parameters: names, units and descriptions."""
-        return self.describe()
-
-    @property
-    def n(self) -> int:
-        """Number of coordinates."""
-        return len(self.info["coordinates"])
-
-    @property
-    def coordinates(self) -> list[str]:
-        """Names of the coordinates, in the order of q."""
-        return [coordinate["name"] for coordinate in self.info["coordinates"]]
-
-    @property
     def parameters(self) -> dict[str, Any]:
         """Live parameters: one number each, or an array over the leading axes."""
         names = [parameter["name"] for parameter in self.info["parameters"]]
-        return {name: self.parameter_rows(index) for index, name in enumerate(names)}
+        return {name: self._parameter_rows(index) for index, name in enumerate(names)}
 
     def strength(
         self,
@@ -148,7 +133,7 @@ class Crane(_native.Crane):
         q = self.statics(invalid=invalid).q if q is None else q
         if a is None and v is not None:
             a = self.forward_dynamics(q, v, t, invalid=invalid)
-        rows = self.strength_rows(q, v, a, t, invalid=invalid)
+        rows = self._strength(q, v, a, t, invalid=invalid)
         sections, (margin, stabilising, overturning, *feet) = rows[..., :-5], np.moveaxis(rows[..., -5:], -1, 0)
         stresses = sections.reshape(*rows.shape[:-1], -1, 5)
         line = np.stack(feet, axis=-1)
@@ -160,11 +145,6 @@ class Crane(_native.Crane):
             overturning,
             np.where(np.isnan(line), -1, line).astype(int),
         )
-
-    @property
-    def guess(self) -> Array:
-        """Start of statics, (..., n), m and rad."""
-        return self.guess_rows()
 
     def linearise(
         self,
@@ -181,10 +161,10 @@ class Crane(_native.Crane):
         zero unless given: with a = 0 about a motion at constant rates, which `steady_motion` finds.
         """
         if v is None and a is None and t is None:
-            matrices = self.small_motions(q, invalid=invalid)
+            matrices = self._small_motions(q, invalid=invalid)
         else:
             v, a = (np.zeros(self.n) if rates is None else rates for rates in (v, a))
-            matrices = self.small_motions_about(q, v, a, t, invalid=invalid)
+            matrices = self._small_motions_about(q, v, a, t, invalid=invalid)
         return Linearisation(*(matrices[..., place, :, :] for place in range(3)))
 
     def steady_motion(
@@ -204,15 +184,15 @@ class Crane(_native.Crane):
 
         Raises NoEquilibrium if a row has no steady motion; with invalid="nan" its numbers are NaN and `reached` is below 1.
         """
-        rates, positions = dict(rates or {}), dict(positions or {})
-        for name in (*rates, *positions):
+        for name in (*(rates or {}), *(positions or {})):
             if name not in self.coordinates:
                 raise ValueError(f"there is no coordinate {name!r}: write one of {', '.join(self.coordinates)}")
-        held = [name for name in self.coordinates if name in rates or name in positions]
-        given = [np.asarray(number, dtype=float) for number in (*rates.values(), *positions.values())]
-        axes = np.broadcast_shapes(*(numbers.shape for numbers in given))
+        held_rates = {name: real_array(f"rates[{name!r}]", number) for name, number in (rates or {}).items()}
+        held_positions = {name: real_array(f"positions[{name!r}]", number) for name, number in (positions or {}).items()}
+        held = [name for name in self.coordinates if name in held_rates or name in held_positions]
+        axes = np.broadcast_shapes(*(numbers.shape for numbers in (*held_rates.values(), *held_positions.values())))
 
-        def rows(numbers: Mapping[str, ArrayLike]) -> Array:
+        def rows(numbers: Mapping[str, Array]) -> Array:
             row = np.zeros((*axes, self.n))
             for name, number in numbers.items():
                 row[..., self.coordinates.index(name)] = number
@@ -223,8 +203,8 @@ class Crane(_native.Crane):
                 warnings.simplefilter("ignore")
                 rest = self.statics(t=t, invalid="nan").q
             start = np.where(np.isnan(rest), self.guess, rest)
-        places = [(self.coordinates.index(name), name in positions) for name in held]
-        found = self.steady_rows(places, start, rows(rates), rows(positions), t, invalid=invalid)
+        places = [(self.coordinates.index(name), name in held_positions) for name in held]
+        found = self._steady_motion(places, start, rows(held_rates), rows(held_positions), t, invalid=invalid)
         q, v, efforts = (found[..., self.n * place : self.n * (place + 1)] for place in range(3))
         drift, acceleration, reached = (found[..., place] for place in (-3, -2, -1))
         if invalid == "raise" and np.any(reached < 1.0):
@@ -263,7 +243,7 @@ class Crane(_native.Crane):
 
         Raises NoEquilibrium if a row has no stable one; with invalid="nan" it warns, and `status` says why.
         """
-        found = self.equilibria(t, guess, tolerance, iterations, load_steps, invalid)
+        found = self._equilibria(t, guess, tolerance, iterations, load_steps, invalid)
         shape = tuple(found.pop("shape"))
         words = {key: _shaped(found.pop(key), shape) for key in ("status", "message", "steps")}
         return Equilibrium(**found, **words)
@@ -291,7 +271,7 @@ class Crane(_native.Crane):
         point: the one whose radius and height are given; the only one, or the origin of the last link unless given.
         `progress(done, all)` is called from time to time.
         """
-        axes = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in ranges.items()}
+        axes = {name: np.atleast_1d(real_array(f"ranges[{name!r}]", values)) for name, values in ranges.items()}
         for name, values in axes.items():
             if values.ndim != 1:
                 raise ValueError(f"ranges[{name!r}] has {values.ndim} axes: give a list of numbers")
@@ -305,15 +285,15 @@ class Crane(_native.Crane):
             "deflections": list((deflections or {}).items()),
             "point": point,
         }
-        found = self.run_envelope(asked, progress)
+        found = self._envelope(asked, progress)
         shape = tuple(found.pop("shape"))
         words = {key: np.asarray(found.pop(key)).reshape(shape) for key in ("governing", "governing_of")}
         return Envelope(axes=axes, **found, **words)
 
     def modes(self, q: ArrayLike | None = None, *, invalid: str = "raise") -> Modes:
         """Undamped and damped modes about poses at rest; about the static equilibrium unless poses are given."""
-        q = self.statics(invalid=invalid).q if q is None else np.asarray(q, dtype=float)
-        found = self.vibrations(q, invalid)
+        q = self.statics(invalid=invalid).q if q is None else real_array("q", q)
+        found = self._modes(q, invalid)
         lists = [found["dominating"], found["damped_dominating"]]
         if not found["shape"]:
             lists = [rows[0] for rows in lists]
@@ -322,12 +302,12 @@ class Crane(_native.Crane):
 
     def stability(self, q: ArrayLike | None = None, *, invalid: str = "raise") -> Stability:
         """Largest stable steps of all methods of integration about poses at rest, and what limits them."""
-        q = self.statics(invalid=invalid).q if q is None else np.asarray(q, dtype=float)
-        found = self.vibrations(q, invalid)
+        q = self.statics(invalid=invalid).q if q is None else q
+        found = self._stable_steps(q, invalid)
         shape = tuple(found["shape"])
         steps, why = {}, {}
-        for method, (step, words) in found["stable_steps"].items():
-            steps[method] = step.reshape(shape) if shape else float(step[0])
+        for method, (step, words) in found["steps"].items():
+            steps[method] = step if shape else float(step)
             why[method] = words if shape else words[0]
         return Stability(steps, why)
 
@@ -361,7 +341,7 @@ class Crane(_native.Crane):
         timing = _timing(method, duration, output, tolerance, step, force)
         limits = {} if bend_limit is None else {"bend": bend_limit}
         crane = self.replace(inputs=inputs) if inputs else self
-        found = crane.record(timing, q, v, verify, **limits)
+        found = crane._record(timing, q, v, verify, **limits)
         units = dict(found.pop("columns"))
         differences = found.pop("differences")
         errors = None if differences is None else dict(zip(units, differences, strict=True))
@@ -376,18 +356,25 @@ class Crane(_native.Crane):
         tolerance: float | None = None,
         step: float | str | None = None,
         force: bool = False,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        inputs: Mapping[str, ArrayLike | None] | None = None,
         invalid: str = "raise",
         progress: Any = None,
     ) -> Ensemble:
         """A run for every row of the parameters, each from its own static equilibrium, on all threads.
 
-        Arguments are those of `simulate`. Adaptive methods run every crane as it would run alone. `progress(done, all)` is called
+        Arguments are those of `simulate`. Poses q and rates v at the start, (..., n), and inputs may be arrays: their leading axes and those of
+        the parameters broadcast as in NumPy. Adaptive methods run every crane as it would run alone. `progress(done, all)` is called
         from time to time. With invalid="nan" runs that fail leave NaN, and `status` says why.
         """
-        found = self.run_ensemble(_timing(method, duration, output, tolerance, step, force), invalid, progress)
+        inputs = None if inputs is None else dict(inputs)
+        found = self._run_ensemble(_timing(method, duration, output, tolerance, step, force), invalid, progress, q, v, inputs)
         shape = tuple(found.pop("shape"))
+        set_inputs = {name: value for name, value in {**self.inputs, **(inputs or {})}.items() if value is not None}
+        cases = {name: np.broadcast_to(value, shape) for name, value in {**self.parameters, **set_inputs}.items()}
         words = {key: _shaped(found.pop(key), shape) for key in ("status", "cautions")}
-        return Ensemble(units=dict(found.pop("columns")), **found, **words)
+        return Ensemble(units=dict(found.pop("columns")), cases=cases, crane=self, **found, **words)
 
     def simulation(self, *, method: str | None = None, tolerance: float | None = None, step: float | None = None, **start: Any) -> Simulation:
         """A simulation that is stepped from outside: `Simulation`. `start`: t, q and v; the static equilibrium at rest unless given."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .model import Crane
 
 Array = NDArray[np.float64]
+Words = NDArray[np.str_]
 
 
 class Energies(NamedTuple):
@@ -87,7 +88,8 @@ class Equilibrium:
     """Where a crane rests, over the leading axes.
 
     q: (..., n), m and rad; NaN where there is no equilibrium.
-    status: "stable", "tips over", "unstable", "singular", "not converged" or "overflow".
+    status: "stable", "tips over", "unstable", "singular", "not converged" or "overflow"; "invalid" for a row whose parameters or arguments
+    are not allowed; a str, or (...) of them. message: the same in a sentence.
     residual: (...), relative to the balancing forces.
     steps: (...), Newton steps.
     drive_efforts: (..., drives), N m and N, efforts with which the drives hold the pose.
@@ -96,16 +98,16 @@ class Equilibrium:
     """
 
     q: Array
-    status: Any
-    message: Any
+    status: str | Words
+    message: str | Words
     residual: Array
-    steps: Any
+    steps: int | NDArray[np.int64]
     drive_efforts: Array
     support_reactions: Array
     points: Array
 
     @property
-    def stable(self) -> Any:
+    def stable(self) -> bool | NDArray[np.bool_]:
         """Whether it is a stable equilibrium: a bool, or (...) of them."""
         return self.status == "stable"
 
@@ -173,8 +175,8 @@ class Envelope:
     load: Array
     parameter: str
     unit: str
-    governing: Any
-    governing_of: Any
+    governing: Words
+    governing_of: Words
     radius: Array
     height: Array
     q: Array
@@ -238,6 +240,14 @@ class Run(Mapping[str, Array]):
     wall_time: float
     crane: "Crane" = field(repr=False)
 
+    def __repr__(self) -> str:
+        """One line: the columns are many."""
+        cautions = f", {len(self.cautions)} cautions" if self.cautions else ""
+        return (
+            f"<run of {self.crane.name}: {self.t[-1]:g} s from the {self.start}, {self.method}, {self.statistics['steps']} steps, "
+            f"{len(self.t)} results of {len(self.units)} columns{cautions}>"
+        )
+
     def __getitem__(self, name: str) -> Array:
         return self.table[:, _place(self.units, name)]
 
@@ -266,7 +276,7 @@ class Run(Mapping[str, Array]):
     def page(self) -> str:
         """The run in 3-D, in plots and in tables: an HTML page that needs no network, to be written to a file."""
         counts = ("steps", "rejections", "evaluations", "factorisations")
-        return self.crane.page_with(
+        return self.crane._page(
             {
                 "table": self.table,
                 "start": self.start,
@@ -293,11 +303,12 @@ class Run(Mapping[str, Array]):
         return f"<div><p>{title}</p>{view}</div>"
 
     def to_pandas(self) -> Any:
-        """The columns as a pandas DataFrame over time."""
+        """The columns as a pandas DataFrame over time, with their units in `attrs["units"]`."""
         import pandas
 
-        frame = pandas.DataFrame(self.table, columns=list(self.units))
-        return frame.set_index("t")
+        frame = pandas.DataFrame(self.table, columns=list(self.units)).set_index("t")
+        frame.attrs["units"] = dict(self.units)
+        return frame
 
 
 @dataclass(frozen=True)
@@ -310,16 +321,24 @@ class Ensemble(Mapping[str, Array]):
 
     units: unit of every column. status: "done", or why not. cautions: warnings about the run, or "".
     time: time reached, s. steps: steps taken. q, v: (..., n), the last pose and rates.
+    cases: (...), values of the parameters, and of the inputs that are set, by name. crane: the crane with all parameters.
     """
 
     units: dict[str, str]
     table: Array = field(repr=False)
-    status: Any
-    cautions: Any
+    status: str | Words
+    cautions: str | Words
     time: Array
     steps: Array
     q: Array = field(repr=False)
     v: Array = field(repr=False)
+    cases: dict[str, Array] = field(repr=False)
+    crane: "Crane" = field(repr=False)
+
+    def __repr__(self) -> str:
+        """One line: the columns are many."""
+        done = np.count_nonzero(np.asarray(self.status) == "done")
+        return f"<{np.size(self.time)} runs of {self.crane.name}: {done} done, {len(self.units)} columns>"
 
     def __getitem__(self, name: str) -> Array:
         return self.table[..., _place(self.units, name)]
@@ -331,9 +350,38 @@ class Ensemble(Mapping[str, Array]):
         return len(self.units)
 
     @property
-    def done(self) -> Any:
+    def done(self) -> bool | NDArray[np.bool_]:
         """Whether each run reached its end."""
         return self.status == "done"
+
+    def to_pandas(self) -> Any:
+        """A row for each run: its parameters and inputs, then all results; units of the columns in `attrs["units"]`."""
+        import pandas
+
+        info = self.crane.info
+        units = {of["name"]: of["unit"] for of in (*info["parameters"], *info["inputs"])}
+        cases = {name: (value, units[name]) for name, value in self.cases.items()}
+        columns = joined_columns(cases, self.columns())
+        frame = pandas.DataFrame({name: np.ravel(column) for name, (column, _) in columns.items()})
+        frame.attrs["units"] = {name: unit for name, (_, unit) in columns.items()}
+        return frame
+
+    def columns(self) -> dict[str, tuple[Any, str]]:
+        """All results with their units, by name: over the axes of the parameters."""
+        return {name: (self[name], unit) for name, unit in self.units.items()} | {
+            "time": (self.time, "s"),
+            "steps": (self.steps, ""),
+            "cautions": (self.cautions, ""),
+            "status": (self.status, ""),
+        }
+
+
+def joined_columns(cases: dict[str, tuple[Any, str]], results: dict[str, tuple[Any, str]]) -> dict[str, tuple[Any, str]]:
+    """Columns of cases, then those of results; ValueError if two have the same name."""
+    for name in results:
+        if name in cases:
+            raise ValueError(f"a result has the name of the parameter {name!r}: call it otherwise")
+    return cases | results
 
 
 def _place(units: dict[str, str], name: str) -> int:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._native import real_array
 from .results import Array
 
 if TYPE_CHECKING:
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class State:
     """A state of a simulation, to return to.
+
+    Its arrays cannot be changed: `restore` a state with other ones, as in `dataclasses.replace(state, q=...)`.
 
     t: s. q, v: (n), m and rad, m/s and rad/s. work, dissipated, load_work: J since the start. parameters: live parameters.
     inputs: those that are set. x: states of the oil of cylinders with a valve (pressures on the sides of piston and rod, Pa, and opening of
@@ -47,7 +50,7 @@ class Simulation:
 
     The method keeps its history across calls, so that short calls cost no more than long ones. A new value of an input or of a
     parameter, and `restore`, begin a new history from the present state: from then on the same calls give the same numbers, to the
-    last bit.
+    last bit. So does a copy, by `copy.deepcopy` or `pickle`, of a simulation: it continues from the present state with a new history.
     """
 
     def __init__(
@@ -64,13 +67,20 @@ class Simulation:
         method = timing["method"] or ("rk4" if timing["step"] else None)
         self._timing = {**timing, "method": method}
         self.crane = crane
-        q = crane.statics(t=t).q if q is None else np.array(q, dtype=float)
-        v = np.zeros_like(q) if v is None else np.array(v, dtype=float)
-        self._state = State(float(t), q, v, parameters=crane.parameters, inputs=crane.inputs)
+        q = crane.statics(t=t).q if q is None else q
+        v = np.zeros_like(q, dtype=float) if v is None else v
+        self._state = _fixed(State(float(real_array("t", t)), q, v, parameters=crane.parameters, inputs=crane.inputs))
         self._counted = dict.fromkeys(("steps", "rejections", "evaluations", "factorisations"), 0)
         # The running method, and the state from which it began.
         self._motion: Motion | None = None
         self._begin = self._state
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_counted": self.statistics, "_motion": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._state = _fixed(self._state)
 
     @property
     def statistics(self) -> dict[str, int]:
@@ -123,7 +133,7 @@ class Simulation:
         if parameters or inputs:
             self._change(self.crane.replace(inputs=inputs, **parameters))
         if self._motion is None:
-            self._motion = self.crane.motion(self._timing, self._state.t, self._state.q, self._state.v, self._state.x)
+            self._motion = self.crane._motion(self._timing, self._state.t, self._state.q, self._state.v, self._state.x)
             self._begin = self._state
         try:
             t, q, v, x, (work, dissipated, load_work) = self._motion.advance(dt)
@@ -170,4 +180,12 @@ class Simulation:
         unset = dict.fromkeys(self._state.inputs, None)
         self._change(self.crane.replace(inputs={**unset, **state.inputs}, **state.parameters))
         self._forget()
-        self._state = state
+        self._state = _fixed(state)
+
+
+def _fixed(state: State) -> State:
+    """The state with arrays of its own that cannot be changed: a change would not move the crane."""
+    numbers = {name: real_array(name, getattr(state, name)) for name in ("q", "v", "x")}
+    for array in numbers.values():
+        array.flags.writeable = False
+    return replace(state, **numbers)

@@ -24,7 +24,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._native import real_array
+from .identity import identity
 from .model import Crane, load
+from .results import joined_columns
 
 try:
     import pyarrow
@@ -44,7 +47,7 @@ DIGEST = b"crane_study"
 
 def grid(**values: ArrayLike) -> Cases:
     """Every combination of the values of parameters; the last one varies fastest."""
-    axes = [np.atleast_1d(np.asarray(column, dtype=float)) for column in values.values()]
+    axes = [np.atleast_1d(real_array(name, column)) for name, column in values.items()]
     rows = np.array(list(itertools.product(*axes))).reshape(-1, len(axes))
     return {name: rows[:, place] for place, name in enumerate(values)}
 
@@ -53,7 +56,10 @@ def table(columns: Mapping[str, ArrayLike]) -> Cases:
     """Cases from columns of equal length: a dict, a pandas DataFrame, a pyarrow Table."""
     if isinstance(columns, pyarrow.Table):
         columns = columns.to_pydict()
-    cases = {str(name): np.asarray(columns[name], dtype=float) for name in columns}
+    cases = {str(name): np.atleast_1d(real_array(str(name), columns[name])) for name in columns}
+    for name, column in cases.items():
+        if column.ndim != 1:
+            raise ValueError(f"{name} has {column.ndim} axes: give a list of numbers")
     lengths = {name: len(column) for name, column in cases.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"columns of different lengths: {lengths}")
@@ -141,7 +147,7 @@ def run(
     what: "simulate": extremes, final values and status of a run of each case; `settings` are those of `Crane.simulate_ensemble`.
         "statics": pose, efforts of the drives, reactions, points and status; `settings` are those of `Crane.statics`.
         A function: it receives a crane with the cases of a part as arrays of parameters and returns columns of the same length;
-        its name identifies it, so give a changed one another name or folder.
+        its name, its code and the values it refers to identify it, so a changed one is another study.
     part: cases per part. engine: None for the threads of this machine, or a `distributed.Client`.
     retries: how often a part that failed on a worker is repeated. progress: whether to write a line on standard error; by default
         if that is a terminal.
@@ -173,6 +179,7 @@ def run(
         "crane": crane.name,
         "spec_hash": crane.spec_hash,
         "what": _name(what),
+        "function": identity(what) if callable(what) else None,
         "settings": settings,
         "parameters": fixed,
         "inputs": crane.inputs,
@@ -242,12 +249,14 @@ def _compute(part: _Part) -> Any:
         # A Dask worker runs several tasks on its own threads.
         _native.set_threads(part.threads)
     crane = load(part.source, text=part.text, invalid="nan", inputs=part.inputs, **part.cases)
+    units = {parameter["name"]: parameter["unit"] for parameter in crane.info["parameters"]}
+    cases = {name: (column, units[name]) for name, column in part.cases.items()}
     if callable(part.what):
-        results = {name: (column, "") for name, column in part.what(crane).items()}
+        count = len(next(iter(part.cases.values())))
+        results = {name: (_column(name, column, count), "") for name, column in part.what(crane).items()}
     else:
         results = _RESULTS[part.what](crane, part.settings)
-    units = {parameter["name"]: parameter["unit"] for parameter in crane.info["parameters"]}
-    columns = {name: (column, units[name]) for name, column in part.cases.items()} | results
+    columns = joined_columns(cases, results)
     fields = []
     for name, (column, unit) in columns.items():
         kind = pyarrow.array(np.asarray(column)).type
@@ -256,16 +265,17 @@ def _compute(part: _Part) -> Any:
     return pyarrow.table([np.asarray(column) for column, _ in columns.values()], schema=schema)
 
 
+def _column(name: str, column: ArrayLike, count: int) -> np.ndarray:
+    """A column of a function's results: a value for each case."""
+    column = np.asarray(column)
+    if column.shape != (count,):
+        raise ValueError(f"the column {name!r} has shape {column.shape}, and the part has {count} cases: return one value for each")
+    return column
+
+
 def _simulate(crane: Crane, settings: dict[str, Any]) -> dict[str, tuple[np.ndarray, str]]:
     """Results of a run of each case."""
-    found = crane.simulate_ensemble(invalid="nan", **settings)
-    columns = {name: (found[name], unit) for name, unit in found.units.items()}
-    return columns | {
-        "time": (found.time, "s"),
-        "steps": (found.steps, ""),
-        "cautions": (found.cautions, ""),
-        "status": (found.status, ""),
-    }
+    return crane.simulate_ensemble(invalid="nan", **settings).columns()
 
 
 def _statics(crane: Crane, settings: dict[str, Any]) -> dict[str, tuple[np.ndarray, str]]:
@@ -292,6 +302,8 @@ _RESULTS = {"simulate": _simulate, "statics": _statics}
 def _digest(crane: Crane, cases: Cases, fixed: dict, what: Any, settings: dict, part: int) -> str:
     """A hash that distinguishes a study from another one."""
     said = [FORMAT, crane.spec_hash, fixed, crane.inputs, list(cases), _name(what), settings, part]
+    if callable(what):
+        said.append(identity(what))
     digest = hashlib.sha256(json.dumps(said, sort_keys=True).encode())
     for column in cases.values():
         digest.update(np.ascontiguousarray(column, dtype="<f8").tobytes())
@@ -320,7 +332,7 @@ def _claim(folder: Path, manifest: dict[str, Any]) -> None:
     except ValueError as error:
         raise ValueError(f"{path} is not the manifest of a study: {error}; use another folder") from None
     if known is not None and known.get("digest") != manifest["digest"]:
-        differs = [key for key in ("crane", "spec_hash", "what", "settings", "parameters", "inputs", "columns", "cases", "cases_per_part")
+        differs = [key for key in ("crane", "spec_hash", "what", "function", "settings", "parameters", "inputs", "columns", "cases", "cases_per_part")
                    if known.get(key) != manifest[key]]
         why = ", ".join(differs) or "cases"
         raise ValueError(f"{folder} contains another study, which differs in: {why}; use another folder, or remove that study")

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyFloat, PyInt};
 
 use crane_model::Description;
 
@@ -23,8 +24,8 @@ pub struct Argument {
 impl Argument {
     /// One number per row: `t`.
     pub fn scalars(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Self> {
-        if let Ok(number) = object.extract::<f64>() {
-            return Ok(Self { shape: Vec::new(), numbers: vec![number], width: 1 });
+        if object.is_instance_of::<PyFloat>() || object.is_instance_of::<PyInt>() {
+            return Ok(Self { shape: Vec::new(), numbers: vec![object.extract()?], width: 1 });
         }
         let (shape, numbers) = read(name, object)?;
         Ok(Self { shape, numbers, width: 1 })
@@ -45,6 +46,11 @@ impl Argument {
             )));
         }
         Ok(Self { shape, numbers, width })
+    }
+
+    /// Nothing: an argument that was not given.
+    pub fn none() -> Self {
+        Self::default()
     }
 
     /// How many rows it has.
@@ -74,27 +80,53 @@ impl Argument {
     }
 }
 
-/// Shape and numbers of anything that `NumPy` converts to an array.
+/// Shape and numbers of anything that `NumPy` converts to an array of real numbers, in the order of its indices: the last one varies
+/// fastest, however the array lies in memory.
 fn read(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<usize>, Vec<f64>)> {
-    if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
+    if object.is_exact_instance_of::<PyUntypedArray>()
+        && let Ok(array) = object.cast::<PyArrayDyn<f64>>()
+        && array.is_c_contiguous()
+        && array.data().is_aligned()
         && let Ok(numbers) = array.to_vec()
     {
         return Ok((array.shape().to_vec(), numbers));
     }
+    let array = real_array(name, object)?;
+    Ok((array.shape().to_vec(), array.to_vec()?))
+}
+
+/// A new array of the numbers of anything that `NumPy` converts to an array of real numbers; masked ones are NaN.
+#[pyfunction]
+pub fn real_array<'py>(name: &str, object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let py = object.py();
     let numpy = py.import(intern!(py, "numpy"))?;
-    let array = numpy.call_method1(intern!(py, "ascontiguousarray"), (object, intern!(py, "float64")));
-    let array = array.map_err(|error| {
+    let given = numpy.call_method1(intern!(py, "asanyarray"), (object,)).map_err(|error| {
         let wrong = PyTypeError::new_err(format!("{name} is not an array of numbers: {}", error.value(py)));
         wrong.set_cause(py, Some(error));
         wrong
     })?;
-    let array = array.cast_into::<PyArrayDyn<f64>>()?;
-    // A single number becomes an array of one axis.
-    let axes = object.getattr(intern!(py, "ndim")).and_then(|axes| axes.extract::<usize>());
-    let scalar = axes.map_or_else(|_| object.extract::<f64>().is_ok(), |axes| axes == 0);
-    let shape = if scalar { Vec::new() } else { array.shape().to_vec() };
-    Ok((shape, array.to_vec()?))
+    let kind = given.cast::<PyUntypedArray>()?.dtype().kind();
+    let refused = |holds: &str, help: &str| Err(PyTypeError::new_err(format!("{name} {holds}, not numbers: {help}")));
+    match kind {
+        b'f' | b'i' | b'u' | b'b' => {}
+        b'c' => {
+            return refused(
+                "holds complex numbers",
+                "give its real part; derivatives by complex steps are not possible",
+            );
+        }
+        b'U' | b'S' | b'T' => return refused("holds text", "write float(...), or .astype(float) of an array"),
+        b'M' | b'm' => return refused("holds dates or times", "give seconds as numbers"),
+        b'O' => return refused("holds Python objects", "if all are numbers, give .astype(float) of it"),
+        _ => return refused("holds records", "give one field, or an array of floats"),
+    }
+    let in_order = [("order", "C")].into_py_dict(py)?;
+    let own = numpy.call_method(intern!(py, "array"), (&given, intern!(py, "float64")), Some(&in_order))?;
+    let masked = numpy.getattr(intern!(py, "ma"))?;
+    if given.is_instance(&masked.getattr(intern!(py, "MaskedArray"))?)? {
+        own.set_item(masked.call_method1(intern!(py, "getmaskarray"), (&given,))?, f64::NAN)?;
+    }
+    Ok(own.cast_into()?)
 }
 
 /// Arguments over the leading axes of all of them.
@@ -135,6 +167,13 @@ impl<'a> Joined<'a> {
     /// How many rows there are.
     pub fn rows(&self) -> usize {
         self.shape.iter().product()
+    }
+
+    /// A row of an argument, by its index, of `width` numbers; empty if the argument was not given.
+    pub fn row(&self, argument: usize, width: usize, row: usize) -> &[f64] {
+        let numbers = &self.arguments[argument];
+        let row = if numbers.len() <= width { 0 } else { row };
+        numbers.get(row * width..(row + 1) * width).unwrap_or_default()
     }
 }
 

@@ -55,9 +55,26 @@ fn open(py: Python<'_>, named: &str) -> PyResult<SourceFile> {
     }
     build::open_with(&path, &crane_specs::spec).map_err(|failure| match failure {
         build::Failure::File(message) if !path.exists() => PyFileNotFoundError::new_err(message),
+        failure => not_read(py, failure),
+    })
+}
+
+/// The spec of a text, with those that it extends: shipped ones, or files of the working folder. That of another crane, `Crane.spec`,
+/// contains them already.
+fn assemble(py: Python<'_>, named: &str, text: &str) -> PyResult<SourceFile> {
+    let source = SourceFile::new(named, text);
+    if source.is_assembled() {
+        return Ok(source);
+    }
+    build::read_with(named, text.as_bytes(), &crane_specs::spec).map_err(|failure| not_read(py, failure))
+}
+
+/// The failure of reading a spec, as an exception.
+fn not_read(py: Python<'_>, failure: build::Failure) -> PyErr {
+    match failure {
         build::Failure::File(message) => PyOSError::new_err(message),
         build::Failure::Mistakes(mistakes) => spec_error(py, &mistakes),
-    })
+    }
 }
 
 #[pymethods]
@@ -78,12 +95,14 @@ impl Crane {
             return like.get().with_others(py, parameters, invalid)?.with_inputs(inputs);
         }
         let source = match text {
-            Some(text) => SourceFile::new(named, text),
+            Some(text) => assemble(py, named, text)?,
             None => open(py, named)?,
         };
         // Numbers that are set are checked for plausibility, too; whether they may be set is checked below.
         let number = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
-            Some((name.extract::<String>().ok()?, value.extract::<f64>().ok()?))
+            let name = name.extract::<String>().ok()?;
+            let given = Argument::scalars(&name, &value).ok().filter(|given| given.shape.is_empty())?;
+            Some((name, given.numbers[0]))
         };
         let set: Vec<(String, f64)> = parameters.into_iter().flatten().filter_map(number).collect();
         let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
@@ -109,6 +128,18 @@ impl Crane {
     #[getter]
     fn title(&self) -> &str {
         &self.live.description().title
+    }
+
+    /// Number of coordinates.
+    #[getter]
+    fn n(&self) -> usize {
+        self.live.size()
+    }
+
+    /// Names of the coordinates, in the order of q.
+    #[getter]
+    fn coordinates(&self) -> Vec<&str> {
+        self.live.description().coordinates.iter().map(|coordinate| &*coordinate.name).collect()
     }
 
     #[getter]
@@ -164,6 +195,7 @@ impl Crane {
     }
 
     /// Values of a live parameter, by its place, over the leading axes.
+    #[pyo3(name = "_parameter_rows")]
     fn parameter_rows<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
         let values = self.parameters.numbers.iter().skip(index).step_by(self.parameters.width.max(1)).copied();
         let values: Vec<f64> = values.collect();
@@ -173,11 +205,16 @@ impl Crane {
         }
     }
 
-    /// (..., n): where statics begins, m and rad.
-    fn guess_rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let rows = self.parameters.rows();
-        let guesses = crate::parallel::map_rows(py, rows, |row, _| (&*self.of_row(row) as &dyn DynCrane).guess())?;
-        let size = self.live.size();
+    /// (..., n): where statics begins, m and rad; NaN for parameters that break a rule.
+    #[getter]
+    fn guess<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let (rows, size) = (self.parameters.rows(), self.live.size());
+        let guesses = crate::parallel::map_rows(py, rows, |row, _| {
+            if self.bad.iter().any(|bad| bad.row == row) {
+                return vec![f64::NAN; size];
+            }
+            (&*self.of_row(row) as &dyn DynCrane).guess()
+        })?;
         Ok(crate::arrays::array(py, guesses.concat(), &self.parameters.shape, &[size])?.into_any())
     }
 }
@@ -190,20 +227,8 @@ impl Crane {
         let mut values: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| self.live.input(index)).collect();
         for (name, value) in given {
             let name: String = name.extract()?;
-            let known = || description.inputs.iter().map(|info| &*info.name);
-            let place = known().position(|known| known == name).ok_or_else(|| {
-                let known: Vec<&str> = known().collect();
-                let has = match known.as_slice() {
-                    [] => "it has none; name them under `inputs:` in its spec".to_owned(),
-                    _ => format!("inputs: {}", known.join(", ")),
-                };
-                PyValueError::new_err(format!("{} has no input `{name}`; {has}", description.name))
-            })?;
-            let value: Option<f64> = value.extract()?;
-            if let Some(wrong) = value.filter(|value| !value.is_finite()) {
-                return Err(PyValueError::new_err(format!("inputs['{name}'] is {wrong}, not a finite number")));
-            }
-            values[place] = value;
+            let place = input_place(description, &name)?;
+            values[place] = if value.is_none() { None } else { Some(input(&name, &value)?) };
         }
         self.live = self.live.with_inputs(&values);
         Ok(self)
@@ -287,6 +312,33 @@ impl Crane {
         let result = call(&mut room);
         self.rooms.lock().unwrap_or_else(PoisonError::into_inner).insert(quantity, room);
         result
+    }
+}
+
+/// Place of an input by its name.
+pub fn input_place(description: &Description, name: &str) -> PyResult<usize> {
+    let known = || description.inputs.iter().map(|info| &*info.name);
+    known().position(|known| known == name).ok_or_else(|| {
+        let known: Vec<&str> = known().collect();
+        let has = match known.as_slice() {
+            [] => "it has none; name them under `inputs:` in its spec".to_owned(),
+            _ => format!("inputs: {}", known.join(", ")),
+        };
+        PyValueError::new_err(format!("{} has no input `{name}`; {has}", description.name))
+    })
+}
+
+/// The number to which an input is set.
+fn input(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let given = Argument::scalars(&format!("inputs['{name}']"), value)?;
+    match *given.numbers {
+        [value] if given.shape.is_empty() && value.is_finite() => Ok(value),
+        [value] if given.shape.is_empty() => {
+            Err(PyValueError::new_err(format!("inputs['{name}'] is {value}, not a finite number")))
+        }
+        _ => Err(PyTypeError::new_err(format!(
+            "inputs['{name}'] is an array: an input is one number, except in `simulate_ensemble`; parameters may be arrays"
+        ))),
     }
 }
 

@@ -9,7 +9,8 @@ use crate::crane::Crane;
 
 #[pymethods]
 impl Crane {
-    /// What the crane consists of.
+    /// Coordinates, bodies, drives, supports, points and parameters: names, units and descriptions.
+    #[getter(info)]
     fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let description = self.live.description();
         let all = PyDict::new(py);

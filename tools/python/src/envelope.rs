@@ -17,6 +17,8 @@ use crate::parallel::{Watch, threads};
 
 /// Maximum number of poses: some hours of computing.
 const MOST_POSES: usize = 10_000_000;
+/// Largest position of a drive, m or rad: a pose is approached in strides.
+const FURTHEST: f64 = 1000.0;
 
 /// The request, as given.
 #[derive(FromPyObject)]
@@ -42,7 +44,7 @@ pub struct Asked {
 #[pymethods]
 impl Crane {
     /// Ratings over the axes: `Crane.envelope` names them.
-    #[pyo3(signature = (asked, progress=None))]
+    #[pyo3(name = "_envelope", signature = (asked, progress=None))]
     fn run_envelope<'py>(
         &self,
         py: Python<'py>,
@@ -100,6 +102,12 @@ impl Asked {
             if values.is_empty() || values.iter().any(|value| !value.is_finite()) {
                 return Err(PyValueError::new_err(format!("ranges['{name}']: write one or more finite numbers")));
             }
+            let far = values.iter().find(|value| matches!(varied, Varied::Drive(_)) && value.abs() > FURTHEST);
+            if let Some(far) = far {
+                return Err(PyValueError::new_err(format!(
+                    "ranges['{name}']: {far:e} is beyond ±{FURTHEST}, in m or rad, where no crane reaches"
+                )));
+            }
             axes.push(Axis { varied, values: values.clone() });
         }
         let axes = Axes(axes);
@@ -119,8 +127,11 @@ impl Asked {
             let name = &description.parameters[load].name;
             return Err(PyValueError::new_err(format!("{name} is the load, which is found for each pose")));
         }
+        if let Some(greatest) = self.greatest_load.filter(|greatest| !greatest.is_finite()) {
+            return Err(PyValueError::new_err(format!("greatest_load={greatest}: write a finite number")));
+        }
         let loads = range_of_loads(description, load, self.greatest_load);
-        if loads[1].is_nan() || loads[1] <= loads[0] {
+        if loads[1] <= loads[0] {
             let [least, greatest] = loads;
             return Err(PyValueError::new_err(format!("greatest_load={greatest}: write a number above {least}")));
         }

@@ -3,6 +3,7 @@
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::statics::{Equilibrium, Settings, Status};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -10,6 +11,9 @@ use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::map_rows;
+
+/// Status of a row whose arguments or parameters are not allowed.
+const INVALID: &str = "invalid";
 
 /// The result of statics for a row.
 pub struct Found {
@@ -61,7 +65,7 @@ impl Found {
 #[pymethods]
 impl Crane {
     /// Equilibria over parameters, times and guesses.
-    #[pyo3(signature = (t=None, guess=None, tolerance=None, iterations=None, load_steps=None, invalid="raise"))]
+    #[pyo3(name = "_equilibria", signature = (t=None, guess=None, tolerance=None, iterations=None, load_steps=None, invalid="raise"))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn equilibria<'py>(
         &self,
@@ -80,8 +84,17 @@ impl Crane {
             iterations: iterations.unwrap_or(own.iterations),
             load_steps: load_steps.unwrap_or(own.load_steps),
         };
+        if !(settings.tolerance > 0.0 && settings.tolerance < 1.0) {
+            return Err(PyValueError::new_err(format!(
+                "tolerance={}: write a number between 0 and 1, the part of the balancing forces that may be left over ({:e})",
+                settings.tolerance, own.tolerance
+            )));
+        }
+        if settings.iterations == 0 {
+            return Err(PyValueError::new_err("iterations=0: write how many Newton steps may be taken, 1 or more"));
+        }
         let description = self.live.description();
-        let none = || Argument { shape: Vec::new(), numbers: Vec::new(), width: 0 };
+        let none = Argument::none;
         let times = t.map_or_else(|| Ok(none()), |t| Argument::scalars("t", t))?;
         let guesses = guess.map_or_else(|| Ok(none()), |guess| Argument::coordinates("guess", guess, description))?;
         let nothing = none();
@@ -92,20 +105,24 @@ impl Crane {
             ("a", &nothing),
             ("the parameters", &self.parameters),
         ])?;
+        let wrong = self.bad_rows(&joined, ["t", "guess", "v", "a"], invalid)?;
+        let refused = |row: usize| wrong.iter().find(|bad| bad.row == row);
         let n = self.live.size();
         let found = map_rows(py, joined.rows(), |row, _| {
-            let of = |list: &[f64], size: usize| -> Option<Vec<f64>> {
-                let row = if list.len() <= size { 0 } else { row };
-                list.get(row * size..(row + 1) * size).filter(|row| !row.is_empty()).map(<[f64]>::to_vec)
-            };
-            let at = of(&joined.arguments[0], 1).map(|t| t[0]);
-            let from = of(&joined.arguments[1], n);
-            Found::new(&self.of_joined_row(&joined, row), at, from.as_deref(), &settings)
+            if refused(row).is_some() {
+                return None;
+            }
+            let at = joined.row(0, 1, row).first().copied();
+            let from = Some(joined.row(1, n, row)).filter(|row| !row.is_empty());
+            Some(Found::new(&self.of_joined_row(&joined, row), at, from, &settings))
         })?;
-        let refused = |row: usize| self.bad.iter().find(|bad| joined.shape == self.parameters.shape && bad.row == row);
-        let reason = |row: usize, found: &Found| match refused(row) {
-            Some(bad) => Some(bad.reason.clone()),
-            None => (!found.equilibrium.is_stable()).then(|| found.equilibrium.to_string()),
+        let message = |(row, found): (usize, &Option<Found>)| match found {
+            Some(found) => found.equilibrium.to_string(),
+            None => refused(row).map_or_else(String::new, |bad| bad.reason.clone()),
+        };
+        let reason = |row: usize, found: &Option<Found>| {
+            let stands = found.as_ref().is_some_and(|found| found.equilibrium.is_stable());
+            (!stands).then(|| message((row, found)))
         };
         let bad: Vec<BadRow> = found
             .iter()
@@ -121,23 +138,25 @@ impl Crane {
             )));
         }
         warn_of_rows(py, &bad, &joined.shape)?;
-        let rests = |row: usize, found: &Found| found.rests() && refused(row).is_none();
         let numbers = |of: fn(&Found) -> &Vec<f64>, own: &[usize]| {
-            let row = |(row, found): (usize, &Found)| -> Vec<f64> {
-                if rests(row, found) { of(found).clone() } else { vec![f64::NAN; of(found).len()] }
+            let row = |found: &Option<Found>| -> Vec<f64> {
+                let found = found.as_ref().filter(|found| found.rests());
+                found.map_or_else(|| vec![f64::NAN; own.iter().product()], |found| of(found).clone())
             };
-            array(py, found.iter().enumerate().flat_map(row).collect(), &joined.shape, own)
+            array(py, found.iter().flat_map(row).collect(), &joined.shape, own)
         };
         let all = PyDict::new(py);
         all.set_item("q", numbers(|found| &found.equilibrium.q, &[n])?)?;
         all.set_item("drive_efforts", numbers(|found| &found.efforts, &[description.drives.len()])?)?;
         all.set_item("support_reactions", numbers(|found| &found.reactions, &[description.supports.len(), 3])?)?;
         all.set_item("points", numbers(|found| &found.points, &[description.points.len(), 3])?)?;
-        let residuals = found.iter().map(|found| found.equilibrium.residual()).collect();
+        let equilibria = || found.iter().map(|found| found.as_ref().map(|found| &found.equilibrium));
+        let residuals = equilibria().map(|found| found.map_or(f64::NAN, Equilibrium::residual)).collect();
         all.set_item("residual", array(py, residuals, &joined.shape, &[])?)?;
-        all.set_item("status", found.iter().map(|found| found.equilibrium.status.name()).collect::<Vec<_>>())?;
-        all.set_item("message", found.iter().map(|found| found.equilibrium.to_string()).collect::<Vec<_>>())?;
-        all.set_item("steps", found.iter().map(|found| found.equilibrium.steps()).collect::<Vec<_>>())?;
+        let status = |found: Option<&Equilibrium>| found.map_or(INVALID, |found| found.status.name());
+        all.set_item("status", equilibria().map(status).collect::<Vec<_>>())?;
+        all.set_item("message", found.iter().enumerate().map(message).collect::<Vec<_>>())?;
+        all.set_item("steps", equilibria().map(|found| found.map_or(0, Equilibrium::steps)).collect::<Vec<_>>())?;
         all.set_item("shape", joined.shape.clone())?;
         Ok(all)
     }

@@ -20,6 +20,8 @@ pub type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Rows that a thread takes at a time: some tens of microseconds of work.
 const PIECE: usize = 64;
+/// Names of the arguments of a state.
+pub const STATE: [&str; 4] = ["t", "q", "v", "a"];
 
 /// A state as it was given.
 #[derive(Clone, Copy, Default)]
@@ -85,24 +87,10 @@ impl Crane {
         own: &[usize],
         invalid: &str,
     ) -> Array<'py> {
-        let by_forces = matches!(
-            quantity,
-            Quantity::Of(
-                FunctionId::ForwardDynamics
-                    | FunctionId::Forces
-                    | FunctionId::DriveForces
-                    | FunctionId::DrivePower
-                    | FunctionId::Linearise
-            )
-        );
-        if by_forces && self.live.description().has_force_states() {
-            return Err(PyValueError::new_err(
-                "forces of this crane follow from pressures or bristles, which are states of a run: use simulate, simulation or modes",
-            ));
-        }
+        self.refuse_force_states(quantity)?;
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;
-        let bad = self.bad_rows(&joined, Invalid::named(invalid)?)?;
+        let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
         let [t, q, v, a, parameters] = [0, 1, 2, 3, 4].map(|index| &*joined.arguments[index]);
         let parameters = if self.is_single() { &[][..] } else { parameters };
         let rows = Rows { t, q, v, a, parameters };
@@ -131,17 +119,13 @@ impl Crane {
     ) -> Array<'py> {
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;
-        let bad = self.bad_rows(&joined, Invalid::named(invalid)?)?;
+        let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
         let (n, width) = (self.live.size(), own.iter().product::<usize>());
-        let of = |list: &[f64], size: usize, row: usize| -> Vec<f64> {
-            let row = if list.len() <= size { 0 } else { row };
-            list.get(row * size..(row + 1) * size).unwrap_or_default().to_vec()
-        };
         let rows = map_rows(py, joined.rows(), |row, _| {
             let mut out = vec![0.0; width];
             if bad.iter().all(|bad| bad.row != row) {
                 let [t, q, v, a] =
-                    [(0, 1), (1, n), (2, n), (3, n)].map(|(index, size)| of(&joined.arguments[index], size, row));
+                    [(0, 1), (1, n), (2, n), (3, n)].map(|(index, size)| joined.row(index, size, row).to_vec());
                 let moment = Moment { t: t.first().copied().unwrap_or(0.0), q, v, a };
                 write(&self.of_joined_row(&joined, row), &moment, &mut out);
             }
@@ -153,14 +137,48 @@ impl Crane {
         array(py, out, &joined.shape, own)
     }
 
+    /// Refuses functions whose forces have states of their own, so that they do not follow from pose, rates and time.
+    fn refuse_force_states(&self, quantity: Quantity) -> PyResult<()> {
+        let description = self.live.description();
+        let sticks = !description.bristles.is_empty();
+        let Quantity::Of(function) = quantity else { return Ok(()) };
+        let (depends, instead) = match function {
+            FunctionId::Linearise => (description.has_force_states(), "use modes(q)"),
+            FunctionId::ForwardDynamics
+            | FunctionId::Forces
+            | FunctionId::DriveForces
+            | FunctionId::DrivePower
+            | FunctionId::Dissipation => (description.has_force_states(), "use simulate or simulation"),
+            FunctionId::FrictionForces => (sticks, "use simulate, whose columns contain them"),
+            _ => (false, ""),
+        };
+        if !depends {
+            return Ok(());
+        }
+        Err(PyValueError::new_err(format!(
+            "{} of {} follows from {}, which are states of a run: {instead}",
+            function.name(),
+            description.name,
+            self.force_states()
+        )))
+    }
+
+    /// States of the forces of a crane that has some, in words.
+    pub fn force_states(&self) -> &'static str {
+        let description = self.live.description();
+        match (description.has_valves(), description.bristles.is_empty()) {
+            (true, true) => "pressures",
+            (true, false) => "pressures and deflections of bristles",
+            (false, _) => "deflections of bristles",
+        }
+    }
+
     /// The crane with the parameters of a row of all arguments.
     pub fn of_joined_row(&self, joined: &Joined<'_>, row: usize) -> crane_live::LiveCrane {
         let mut crane = self.live.clone();
-        let (width, parameters) = (self.parameters.width, &joined.arguments[4]);
-        if !self.is_single() && width > 0 {
-            let row = if parameters.len() <= width { 0 } else { row };
+        if !self.is_single() && self.parameters.width > 0 {
             // Checked when they were given.
-            let _ = crane.set_parameters(&parameters[row * width..(row + 1) * width]);
+            let _ = crane.set_parameters(joined.row(4, self.parameters.width, row));
         }
         crane
     }
@@ -168,12 +186,11 @@ impl Crane {
     /// t, q, v, a; empty if not given, which means t = 0 for the time.
     fn read(&self, state: State<'_, '_>) -> PyResult<[Argument; 4]> {
         let description = self.live.description();
-        let none = || Argument { shape: Vec::new(), numbers: Vec::new(), width: 0 };
         let coordinates = |name: &str, given: Given<'_, '_>| {
-            given.map_or_else(|| Ok(none()), |given| Argument::coordinates(name, given, description))
+            given.map_or_else(|| Ok(Argument::none()), |given| Argument::coordinates(name, given, description))
         };
         Ok([
-            state.t.map_or_else(|| Ok(none()), |t| Argument::scalars("t", t))?,
+            state.t.map_or_else(|| Ok(Argument::none()), |t| Argument::scalars("t", t))?,
             coordinates("q", state.q)?,
             coordinates("v", state.v)?,
             coordinates("a", state.a)?,
@@ -185,13 +202,13 @@ impl Crane {
         Joined::new(&[("t", t), ("q", q), ("v", v), ("a", a), ("the parameters", &self.parameters)])
     }
 
-    /// Rows with numbers that are not finite, or with parameters that break a rule.
-    fn bad_rows(&self, joined: &Joined<'_>, invalid: Invalid) -> PyResult<Vec<BadRow>> {
+    /// Rows with numbers that are not finite, or with parameters that break a rule. `names`: what the first four arguments are called.
+    pub fn bad_rows(&self, joined: &Joined<'_>, names: [&str; 4], invalid: Invalid) -> PyResult<Vec<BadRow>> {
         let n = self.live.size();
         let coordinates = &self.live.description().coordinates;
         let mut bad: Vec<BadRow> = Vec::new();
-        for (name, list, size) in [("t", 0, 1), ("q", 1, n), ("v", 2, n), ("a", 3, n)]
-            .map(|(name, i, size)| (name, &joined.arguments[i], size))
+        for (name, list, size) in
+            [(0, 1), (1, n), (2, n), (3, n)].map(|(i, size)| (names[i], &joined.arguments[i], size))
         {
             if list.iter().all(|x| x.is_finite()) {
                 continue;
@@ -208,12 +225,7 @@ impl Crane {
             }
         }
         if !self.bad.is_empty() {
-            let width = self.parameters.width;
-            let parameters = &joined.arguments[4];
-            let refused = |row: &usize| {
-                let row = if parameters.len() <= width { 0 } else { *row };
-                self.live.check(&parameters[row * width..(row + 1) * width]).err()
-            };
+            let refused = |row: &usize| self.live.check(joined.row(4, self.parameters.width, *row)).err();
             bad.extend((0..joined.rows()).filter_map(|row| Some(BadRow { row, reason: refused(&row)?.to_string() })));
         }
         bad.sort_by_key(|bad| bad.row);

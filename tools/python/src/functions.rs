@@ -326,7 +326,7 @@ impl Crane {
     }
 
     /// (..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them.
-    #[pyo3(signature = (q, *, invalid="raise"))]
+    #[pyo3(name = "_small_motions", signature = (q, *, invalid="raise"))]
     fn small_motions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let own = [3, self.live.size(), self.live.size()];
         self.function(py, FunctionId::Linearise, State::pose(q), &own, invalid)

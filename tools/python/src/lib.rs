@@ -33,6 +33,8 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use crate::arrays::real_array;
+    #[pymodule_export]
     use crate::crane::Crane;
     #[pymodule_export]
     use crate::crane::shipped;

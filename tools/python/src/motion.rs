@@ -8,21 +8,19 @@ use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings, Statistics, Stopped};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::results::{Column, Peaks, cautions};
-use crane_model::runs::ensemble::{self, Execution};
+use crane_model::runs::ensemble::{self, Case, Execution};
 use crane_model::runs::{Bound as StepBound, Failed, Reason, Recorded, SAFE, Start, record_checked, step_limit};
 use crane_model::stability::cause;
 use crane_model::{Description, Text};
+use numpy::PyArrayMethods;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{Argument, array};
-use crate::crane::Crane;
+use crate::arrays::{Argument, Joined, array};
+use crate::crane::{Crane, input_place};
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::{Watch, threads};
-
-/// Name of a start from a given state.
-const GIVEN: &str = "as given";
 
 /// Options of a run, as given.
 #[derive(FromPyObject)]
@@ -156,22 +154,23 @@ fn given(name: &str, object: &Bound<'_, PyAny>, description: &Description) -> Py
     if !argument.shape.is_empty() {
         return Err(PyValueError::new_err(format!("{name} has {} axes: give one state", argument.shape.len() + 1)));
     }
-    match argument.numbers.iter().position(|x| !x.is_finite()) {
-        Some(place) => {
-            let coordinate = &description.coordinates[place].name;
-            Err(PyValueError::new_err(format!(
-                "{name}[{place}] ({coordinate}) is {}, not a finite number",
-                argument.numbers[place]
-            )))
-        }
-        None => Ok(argument.numbers),
-    }
+    check_finite(name, &argument, description)?;
+    Ok(argument.numbers)
+}
+
+/// Refuses states with numbers that are not finite.
+fn check_finite(name: &str, argument: &Argument, description: &Description) -> PyResult<()> {
+    let Some(place) = argument.numbers.iter().position(|x| !x.is_finite()) else { return Ok(()) };
+    let (row, coordinate) = (place / argument.width, place % argument.width);
+    let (value, of) = (argument.numbers[place], &description.coordinates[coordinate].name);
+    let reason = format!("{name}[{coordinate}] ({of}) is {value}, not a finite number");
+    Err(PyValueError::new_err(describe(&BadRow { row, reason }, &argument.shape)))
 }
 
 #[pymethods]
 impl Crane {
     /// A run with all its results.
-    #[pyo3(signature = (timing, q=None, v=None, verify=true, bend=cautions::BEND))]
+    #[pyo3(name = "_record", signature = (timing, q=None, v=None, verify=true, bend=cautions::BEND))]
     fn record<'py>(
         &self,
         py: Python<'py>,
@@ -187,20 +186,15 @@ impl Crane {
             return Err(PyValueError::new_err("the parameters are arrays: use `simulate_ensemble`"));
         }
         timing.settings(description)?;
+        if bend.is_nan() || bend <= 0.0 {
+            return Err(PyValueError::new_err(format!("bend_limit={bend}: write an angle above 0, in degrees")));
+        }
         let [q, v] =
             [("q", q), ("v", v)].map(|(name, state)| state.map(|state| given(name, state, description)).transpose());
         let (q, v) = (q?, v?);
         let watch = Watch::new();
         let result = py.detach(|| {
-            let mut start = match &q {
-                Some(q) => {
-                    Start { v: vec![0.0; q.len()], q: q.clone(), x: Vec::new(), what: GIVEN.to_owned(), rests: false }
-                }
-                None => Start::of(crane).map_err(|failed| raised(&failed))?,
-            };
-            if let Some(v) = v {
-                start = Start { v, what: GIVEN.to_owned(), rests: false, ..start };
-            }
+            let start = Start::with(crane, q.as_deref(), v.as_deref()).map_err(|failed| raised(&failed))?;
             let settings = timing.stable(crane, &start)?;
             let recorded = record_checked(crane, &start, &settings, (verify, bend), &mut |_| unless(watch.look()));
             Ok::<_, PyErr>((settings, recorded.map_err(|failed| raised(&failed))?))
@@ -223,21 +217,24 @@ impl Crane {
         Ok(all)
     }
 
-    /// Runs with every row of parameters, with the extremes and final state of each.
-    #[pyo3(signature = (timing, invalid="raise", progress=None))]
+    /// Runs with every row of parameters, starts and inputs, with the extremes and final state of each.
+    #[pyo3(name = "_run_ensemble", signature = (timing, invalid="raise", progress=None, q=None, v=None, inputs=None))]
+    #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn run_ensemble<'py>(
         &self,
         py: Python<'py>,
         timing: Timing,
         invalid: &str,
         progress: Option<Py<PyAny>>,
+        q: Option<&Bound<'py, PyAny>>,
+        v: Option<&Bound<'py, PyAny>>,
+        inputs: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let invalid = Invalid::named(invalid)?;
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
-        let Argument { shape, numbers, width } = &self.parameters;
-        let count = self.parameters.rows();
-        let rows: Vec<Vec<f64>> = (0..count).map(|row| numbers[row * width..(row + 1) * width].to_vec()).collect();
+        let (shape, rows) = self.cases(q, v, inputs)?;
+        let (shape, count) = (&shape, rows.len());
         let settings = Settings { audit: false, ..timing.settings(description)? };
         let watch = Watch::reporting(progress, count);
         let outcomes = py.detach(|| {
@@ -245,10 +242,7 @@ impl Crane {
             if !settings.method.is_adaptive() {
                 // A step that is stable for the first and the last row, if these have a start.
                 for row in [rows.first(), rows.last()].into_iter().flatten() {
-                    let mut own = crane.boxed_clone();
-                    if own.set_parameters(row).is_ok()
-                        && let Ok(start) = Start::of(own.as_ref())
-                    {
+                    if let Ok((own, start)) = ensemble::ready(crane, row) {
                         settings.step = settings.step.min(timing.stable(own.as_ref(), &start)?.step);
                     }
                 }
@@ -296,6 +290,7 @@ impl Crane {
     }
 
     /// A motion of the crane from a time, a pose and rates, with its parameters and inputs.
+    #[pyo3(name = "_motion")]
     fn motion(
         &self,
         py: Python<'_>,
@@ -331,6 +326,58 @@ impl Crane {
     }
 }
 
+impl Crane {
+    /// Cases over the common axes of parameters, starts and inputs.
+    fn cases(
+        &self,
+        q: Option<&Bound<'_, PyAny>>,
+        v: Option<&Bound<'_, PyAny>>,
+        inputs: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<(Vec<usize>, Vec<Case>)> {
+        let description = self.live.description();
+        let start = |name: &str, given: Option<&Bound<'_, PyAny>>| -> PyResult<Argument> {
+            let Some(given) = given else { return Ok(Argument::none()) };
+            let argument = Argument::coordinates(name, given, description)?;
+            check_finite(name, &argument, description)?;
+            Ok(argument)
+        };
+        let (q, v) = (start("q", q)?, start("v", v)?);
+        let mut changed: Vec<(usize, String, Option<Argument>)> = Vec::new();
+        for (name, value) in inputs.into_iter().flatten() {
+            let name: String = name.extract()?;
+            let index = input_place(description, &name)?;
+            let values =
+                if value.is_none() { None } else { Some(Argument::scalars(&format!("inputs['{name}']"), &value)?) };
+            if let Some(wrong) = values.iter().flat_map(|values| &values.numbers).find(|value| !value.is_finite()) {
+                return Err(PyValueError::new_err(format!("inputs['{name}'] is {wrong}, not a finite number")));
+            }
+            changed.push((index, format!("inputs['{name}']"), values));
+        }
+        let mut all = vec![("q", &q), ("v", &v), ("the parameters", &self.parameters)];
+        all.extend(changed.iter().filter_map(|(_, name, values)| Some((name.as_str(), values.as_ref()?))));
+        let joined = Joined::new(&all)?;
+        let n = self.live.size();
+        let case = |row: usize| {
+            let mut inputs: Vec<Option<f64>> = Vec::new();
+            if !changed.is_empty() {
+                inputs.extend((0..description.inputs.len()).map(|index| self.live.input(index)));
+            }
+            let mut values = 3..;
+            for (index, _, given) in &changed {
+                inputs[*index] = given.as_ref().zip(values.next()).map(|(_, place)| joined.row(place, 1, row)[0]);
+            }
+            let state = |given: bool, place: usize| given.then(|| joined.row(place, n, row).to_vec());
+            Case {
+                parameters: joined.row(2, self.parameters.width, row).to_vec(),
+                inputs,
+                q: state(q.width > 0, 0),
+                v: state(v.width > 0, 1),
+            }
+        };
+        Ok((joined.shape.clone(), (0..joined.rows()).map(case).collect()))
+    }
+}
+
 /// A motion that continues from result to result, with the history of its method.
 #[pyclass(frozen, module = "crane._native")]
 pub struct Motion {
@@ -358,7 +405,12 @@ impl Motion {
         });
         watch.finish(py)?;
         let _ = advanced.map_err(|stopped| failed(stopped, &self.name))?;
-        let [q, v, x] = [q, v, x].map(|state| numpy::PyArray1::from_vec(py, state));
+        // A state is what the motion has reached: whoever changes the arrays would not change the motion.
+        let [q, v, x] = [q, v, x].map(|state| {
+            let state = numpy::PyArray1::from_vec(py, state);
+            state.readwrite().make_nonwriteable();
+            state
+        });
         (t, q, v, x, integrals).into_pyobject(py)
     }
 

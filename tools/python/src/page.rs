@@ -88,7 +88,7 @@ impl Given<'_> {
 #[pymethods]
 impl Crane {
     /// The crane in 3-D and in tables as an HTML page that needs no network: at rest, or with a run of it.
-    #[pyo3(signature = (run=None))]
+    #[pyo3(name = "_page", signature = (run=None))]
     fn page_with(&self, py: Python<'_>, run: Option<Given<'_>>) -> PyResult<String> {
         let run = run.map(|run| run.recorded(&self.live)).transpose()?;
         let (crane, live, spec) = (&self.live as &dyn DynCrane, &self.live, &self.source.text);

@@ -42,7 +42,7 @@ impl Crane {
 
     /// (..., 5 sections + 5): stresses and utilisation of every section of beams, then margin, moments and supports of the governing
     /// tipping line; `Crane.strength` names them.
-    #[pyo3(signature = (q, v=None, a=None, t=None, *, invalid="raise"))]
+    #[pyo3(name = "_strength", signature = (q, v=None, a=None, t=None, *, invalid="raise"))]
     fn strength_rows<'py>(
         &self,
         py: Python<'py>,

@@ -6,42 +6,46 @@ use crane_model::dynamics::Method;
 use crane_model::modes::{DampedMode, Held, Mode, NoModes, damped, steady, undamped};
 use crane_model::runs::limiting_modes;
 use crane_model::stability::{cause, limit};
-use numpy::{PyArray1, PyArrayDyn};
+use numpy::PyArrayDyn;
 use pyo3::exceptions::{PyArithmeticError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Given, Moment, State};
+use crate::evaluation::{Given, Moment, STATE, State};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::map_rows;
 
-/// Modes of a row.
+/// Modes about a pose.
 struct Modes {
     undamped: Vec<Mode>,
     damped: Vec<DampedMode>,
-    /// Those that may limit a step.
-    limiting: Vec<DampedMode>,
 }
 
 impl Modes {
     fn of(crane: &LiveCrane, q: &[f64]) -> Result<Self, NoModes> {
-        if !q.iter().all(|x| x.is_finite()) {
-            return Err(NoModes::MassMatrix);
-        }
-        let crane: &dyn DynCrane = crane;
-        let motions = crane.small_motions_at(q);
-        let damped = damped(&motions)?;
-        let limiting = limiting_modes(crane, 0.0, q, &damped);
-        Ok(Self { undamped: undamped(&motions)?, damped, limiting })
+        let motions = (crane as &dyn DynCrane).small_motions_at(q);
+        Ok(Self { undamped: undamped(&motions)?, damped: damped(&motions)? })
     }
+}
+
+/// The largest stable step of each method about a pose, s, and what limits it; infinite if nothing does.
+fn stable_steps(crane: &LiveCrane, q: &[f64]) -> Result<Vec<(f64, String)>, NoModes> {
+    let crane: &dyn DynCrane = crane;
+    let damped = damped(&crane.small_motions_at(q))?;
+    let limiting = limiting_modes(crane, 0.0, q, &damped);
+    let step = |method: &Method| match limit(&limiting, &method.stability()) {
+        Some(limit) => (limit.step, cause(crane.description(), &limit.mode)),
+        None => (f64::INFINITY, "nothing".to_owned()),
+    };
+    Ok(Method::ALL.iter().map(step).collect())
 }
 
 #[pymethods]
 impl Crane {
     /// (..., 3, n, n): A, K and D of small motions about motions; `linearise` names them.
-    #[pyo3(signature = (q, v, a, t=None, *, invalid="raise"))]
+    #[pyo3(name = "_small_motions_about", signature = (q, v, a, t=None, *, invalid="raise"))]
     fn small_motions_about<'py>(
         &self,
         py: Python<'py>,
@@ -51,7 +55,7 @@ impl Crane {
         t: Given<'_, 'py>,
         invalid: &str,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.refuse_force_states()?;
+        self.refuse_motions()?;
         let n = self.live.size();
         self.one_by_one(py, State { t, q: Some(q), v: Some(v), a: Some(a) }, &[3, n, n], invalid, |crane, at, out| {
             let (mass, rest) = out.split_at_mut(n * n);
@@ -70,7 +74,7 @@ impl Crane {
 
     /// (..., 3 n + 3): poses, rates and efforts of steady motions, drift, acceleration, part reached; `steady_motion` names them.
     /// held: coordinates, and whether a position is given; their rates and positions are at the same indices in `rates` and `positions`.
-    #[pyo3(signature = (held, start, rates, positions, t=None, *, invalid="raise"))]
+    #[pyo3(name = "_steady_motion", signature = (held, start, rates, positions, t=None, *, invalid="raise"))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn steady_rows<'py>(
         &self,
@@ -82,8 +86,11 @@ impl Crane {
         t: Given<'_, 'py>,
         invalid: &str,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.refuse_force_states()?;
+        self.refuse_motions()?;
         let n = self.live.size();
+        if let Some((beyond, _)) = held.iter().find(|(coordinate, _)| *coordinate >= n) {
+            return Err(PyValueError::new_err(format!("coordinate {beyond}: the crane has {n}, counted from 0")));
+        }
         let find = |crane: &LiveCrane, at: &Moment, out: &mut [f64]| {
             let of = |&(coordinate, positioned): &(usize, bool)| Held {
                 coordinate,
@@ -107,38 +114,17 @@ impl Crane {
         self.one_by_one(py, state, &[3 * n + 3], invalid, find)
     }
 
-    /// Modes about poses, over parameters and poses, and the largest stable step of each method.
-    #[pyo3(signature = (q, invalid="raise"))]
-    fn vibrations<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> PyResult<Bound<'py, PyDict>> {
-        let invalid = Invalid::named(invalid)?;
-        let description = self.live.description();
-        let none = Argument { shape: Vec::new(), numbers: Vec::new(), width: 0 };
-        let q = Argument::coordinates("q", q, description)?;
-        let joined =
-            Joined::new(&[("t", &none), ("q", &q), ("v", &none), ("a", &none), ("the parameters", &self.parameters)])?;
+    /// Modes about poses, over parameters and poses: `Crane.modes` names them.
+    #[pyo3(name = "_modes", signature = (q, invalid="raise"))]
+    fn mode_rows<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> PyResult<Bound<'py, PyDict>> {
+        let (shape, found) = self.about_poses(py, q, invalid, Modes::of)?;
+        let count = |of: fn(&Modes) -> usize| found.iter().flatten().map(of).max().unwrap_or(0);
+        let (most, most_damped) = (count(|modes| modes.undamped.len()), count(|modes| modes.damped.len()));
         let n = self.live.size();
-        let found = map_rows(py, joined.rows(), |row, _| {
-            let poses = &joined.arguments[1];
-            let first = if poses.len() <= n { 0 } else { row * n };
-            Modes::of(&self.of_joined_row(&joined, row), &poses[first..first + n])
-        })?;
-        let reason = |(row, found): (usize, &Result<Modes, NoModes>)| {
-            Some(BadRow { row, reason: found.as_ref().err()?.to_string() })
-        };
-        let bad: Vec<BadRow> = found.iter().enumerate().filter_map(reason).collect();
-        if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
-            return Err(PyArithmeticError::new_err(describe(first, &joined.shape)));
-        }
-        warn_of_rows(py, &bad, &joined.shape)?;
-        let undamped = |found: &Result<Modes, NoModes>| found.as_ref().map_or(0, |modes| modes.undamped.len());
-        let damped = |found: &Result<Modes, NoModes>| found.as_ref().map_or(0, |modes| modes.damped.len());
-        let (most, most_damped) =
-            (found.iter().map(undamped).max().unwrap_or(0), found.iter().map(damped).max().unwrap_or(0));
-
         let (mut squares, mut shapes, mut real, mut imaginary) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for found in &found {
             for index in 0..most {
-                let mode = found.as_ref().ok().and_then(|modes| modes.undamped.get(index));
+                let mode = found.as_ref().and_then(|modes| modes.undamped.get(index));
                 squares.push(mode.map_or(f64::NAN, |mode| mode.omega_squared));
                 match mode {
                     Some(mode) => shapes.extend_from_slice(mode.shape.as_slice()),
@@ -146,53 +132,97 @@ impl Crane {
                 }
             }
             for index in 0..most_damped {
-                let eigenvalue =
-                    found.as_ref().ok().and_then(|modes| modes.damped.get(index)).map(|mode| mode.eigenvalue);
-                real.push(eigenvalue.map_or(f64::NAN, |eigenvalue| eigenvalue.re));
-                imaginary.push(eigenvalue.map_or(f64::NAN, |eigenvalue| eigenvalue.im));
+                let mode = found.as_ref().and_then(|modes| modes.damped.get(index));
+                real.push(mode.map_or(f64::NAN, |mode| mode.eigenvalue.re));
+                imaginary.push(mode.map_or(f64::NAN, |mode| mode.eigenvalue.im));
             }
         }
-        let limits = |method: &Method| -> (Vec<f64>, Vec<String>) {
-            let limits = found.iter().map(|found| {
-                let limit = limit(&found.as_ref().ok()?.limiting, &method.stability())?;
-                Some((limit.step, cause(description, &limit.mode)))
-            });
-            limits.map(|limit| limit.unwrap_or((f64::INFINITY, "nothing".to_owned()))).unzip()
-        };
-        let all = PyDict::new(py);
-        all.set_item("omega_squared", array(py, squares, &joined.shape, &[most])?)?;
-        all.set_item("shapes", array(py, shapes, &joined.shape, &[most, n])?)?;
-        all.set_item("real", array(py, real, &joined.shape, &[most_damped])?)?;
-        all.set_item("imaginary", array(py, imaginary, &joined.shape, &[most_damped])?)?;
+        let description = self.live.description();
         let names = |indices: &[usize]| -> Vec<String> {
             indices.iter().map(|&index| description.coordinates[index].name.to_string()).collect()
         };
-        let of_undamped = |modes: &Modes| modes.undamped.iter().map(|mode| names(&mode.dominating)).collect::<Vec<_>>();
-        let of_damped = |modes: &Modes| modes.damped.iter().map(|mode| names(&mode.dominating)).collect::<Vec<_>>();
-        let dominating: Vec<_> =
-            found.iter().map(|found| found.as_ref().map_or_else(|_| Vec::new(), of_undamped)).collect();
-        let damped_dominating: Vec<_> =
-            found.iter().map(|found| found.as_ref().map_or_else(|_| Vec::new(), of_damped)).collect();
-        all.set_item("dominating", dominating)?;
-        all.set_item("damped_dominating", damped_dominating)?;
+        let dominating = |of: &dyn Fn(&Modes) -> Vec<Vec<String>>| -> Vec<Vec<Vec<String>>> {
+            found.iter().map(|found| found.as_ref().map_or_else(Vec::new, of)).collect()
+        };
+        let of_undamped = |modes: &Modes| modes.undamped.iter().map(|mode| names(&mode.dominating)).collect();
+        let of_damped = |modes: &Modes| modes.damped.iter().map(|mode| names(&mode.dominating)).collect();
+        let all = PyDict::new(py);
+        all.set_item("omega_squared", array(py, squares, &shape, &[most])?)?;
+        all.set_item("shapes", array(py, shapes, &shape, &[most, n])?)?;
+        all.set_item("real", array(py, real, &shape, &[most_damped])?)?;
+        all.set_item("imaginary", array(py, imaginary, &shape, &[most_damped])?)?;
+        all.set_item("dominating", dominating(&of_undamped))?;
+        all.set_item("damped_dominating", dominating(&of_damped))?;
+        all.set_item("shape", shape)?;
+        Ok(all)
+    }
+
+    /// The largest stable step of each method about poses, s, and what limits it: `Crane.stability` names them.
+    #[pyo3(name = "_stable_steps", signature = (q, invalid="raise"))]
+    fn stable_step_rows<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        invalid: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (shape, found) = self.about_poses(py, q, invalid, stable_steps)?;
         let steps = PyDict::new(py);
-        for method in &Method::ALL {
-            let (step, why) = limits(method);
-            steps.set_item(method.name(), (PyArray1::from_vec(py, step), why))?;
+        for (index, method) in Method::ALL.iter().enumerate() {
+            let row = |found: &Option<Vec<(f64, String)>>| match found {
+                Some(steps) => steps[index].clone(),
+                None => (f64::NAN, String::new()),
+            };
+            let (step, why): (Vec<f64>, Vec<String>) = found.iter().map(row).unzip();
+            steps.set_item(method.name(), (array(py, step, &shape, &[])?, why))?;
         }
-        all.set_item("stable_steps", steps)?;
-        all.set_item("shape", joined.shape.clone())?;
+        let all = PyDict::new(py);
+        all.set_item("steps", steps)?;
+        all.set_item("shape", shape)?;
         Ok(all)
     }
 }
 
 impl Crane {
-    /// Refuses cranes whose forces have their own states: these do not follow from pose and rates alone.
-    fn refuse_force_states(&self) -> PyResult<()> {
+    /// What `work` finds about poses at rest, row by row on all threads, with the leading axes; `None` for rows that are not allowed or
+    /// have no modes.
+    fn about_poses<T: Send>(
+        &self,
+        py: Python<'_>,
+        q: &Bound<'_, PyAny>,
+        invalid: &str,
+        work: impl Fn(&LiveCrane, &[f64]) -> Result<T, NoModes> + Sync,
+    ) -> PyResult<(Vec<usize>, Vec<Option<T>>)> {
+        let invalid = Invalid::named(invalid)?;
+        let none = Argument::none();
+        let q = Argument::coordinates("q", q, self.live.description())?;
+        let joined =
+            Joined::new(&[("t", &none), ("q", &q), ("v", &none), ("a", &none), ("the parameters", &self.parameters)])?;
+        let wrong = self.bad_rows(&joined, STATE, invalid)?;
+        let n = self.live.size();
+        let found = map_rows(py, joined.rows(), |row, _| {
+            if let Some(wrong) = wrong.iter().find(|wrong| wrong.row == row) {
+                return Err(wrong.reason.clone());
+            }
+            let found = work(&self.of_joined_row(&joined, row), joined.row(1, n, row));
+            found.map_err(|refused| refused.to_string())
+        })?;
+        let reason =
+            |(row, found): (usize, &Result<T, String>)| Some(BadRow { row, reason: found.as_ref().err()?.clone() });
+        let bad: Vec<BadRow> = found.iter().enumerate().filter_map(reason).collect();
+        if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
+            return Err(PyArithmeticError::new_err(describe(first, &joined.shape)));
+        }
+        warn_of_rows(py, &bad, &joined.shape)?;
+        Ok((joined.shape.clone(), found.into_iter().map(Result::ok).collect()))
+    }
+
+    /// Refuses cranes whose forces have states of their own: small motions about a motion depend on them.
+    fn refuse_motions(&self) -> PyResult<()> {
         if self.live.description().has_force_states() {
-            let message =
-                "forces of this crane follow from pressures or bristles, which are states of a run: use modes";
-            return Err(PyValueError::new_err(message));
+            let (name, states) = (&self.live.description().name, self.force_states());
+            return Err(PyValueError::new_err(format!(
+                "forces of {name} follow from {states}, which are states of a run: use modes(q), about poses at rest"
+            )));
         }
         Ok(())
     }

@@ -1,11 +1,15 @@
 """Statics, modes, stability, runs, ensembles and simulations."""
 
+import copy
+import dataclasses
 import pickle
 import time
+import warnings
 
 import crane
 import numpy as np
 import pytest
+from conftest import PENDULUM
 
 
 def test_statics_balances_the_weight(flexible):
@@ -306,3 +310,156 @@ def test_linearising_at_rest_is_linearising_without_rates():
     rest, motion = c.linearise(q), c.linearise(q, np.zeros(c.n))
     for one, other in zip(rest, motion, strict=True):
         np.testing.assert_allclose(other, one, rtol=0, atol=1e-13 * np.abs(one).max())
+
+
+def test_arguments_that_mean_nothing_are_refused(knuckle):
+    """Each is refused with a message that names it: none has a result."""
+    here = {"main_boom_theta": [0.0]}
+    for call, words in [
+        (lambda: knuckle.statics(tolerance=np.nan), "tolerance=NaN"),
+        (lambda: knuckle.statics(tolerance=0), "tolerance=0"),
+        (lambda: knuckle.statics(tolerance=-1), "tolerance=-1"),
+        (lambda: knuckle.statics(tolerance=np.inf), "tolerance=inf"),
+        (lambda: knuckle.statics(iterations=0), "iterations=0"),
+        (lambda: knuckle.statics(t=np.nan), "t is NaN"),
+        (lambda: knuckle.statics(t=[0.0, np.inf]), r"row \[1\]: t is inf"),
+        (lambda: knuckle.statics(guess=[0.0, np.nan, 0.0, 0.0]), r"guess\[1\]"),
+        (lambda: knuckle.modes(q=[0.0, np.nan, 0.0, 0.0]), r"q\[1\]"),
+        (lambda: knuckle.stability(q=[0.0, np.inf, 0.0, 0.0]), r"q\[1\]"),
+        (lambda: knuckle.envelope(here, greatest_load=np.nan), "greatest_load=NaN"),
+        (lambda: knuckle.envelope(here, greatest_load=np.inf), "greatest_load=inf"),
+        (lambda: knuckle.envelope({"main_boom_theta": [1e300]}), "1e300 is beyond"),
+        (lambda: knuckle.envelope({"main_boom_theta": [-1e5]}), "-1e5 is beyond"),
+        (lambda: knuckle.simulate(duration=0.1, bend_limit=np.nan), "bend_limit=NaN"),
+        (lambda: knuckle.simulate(duration=0.1, bend_limit=-1), "bend_limit=-1"),
+        (lambda: knuckle.simulation(t=np.nan), "t is NaN"),
+        (lambda: knuckle.simulation(q=knuckle.guess, v=np.full(4, np.nan)).step(0.1), r"v\[0\]"),
+        (lambda: knuckle.simulate_ensemble(duration=0.1, q=np.full((2, 4), np.nan)), r"row \[0\]: q\[0\]"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            call()
+
+
+def test_bad_parameters_are_bad_at_all_times_and_poses(knuckle):
+    """A row of parameters that breaks a rule gives NaN wherever it is combined with others, not the numbers of another row."""
+    with pytest.warns(crane.InvalidRowWarning):
+        batch = knuckle.replace(payload=[100.0, -1.0, 300.0], invalid="nan")
+    for found in (
+        lambda: batch.statics(t=[[0.0], [1.0]], invalid="nan").q,
+        lambda: batch.modes(np.zeros((2, 1, 4)), invalid="nan").omega_squared,
+        lambda: batch.stability(np.zeros((2, 1, 4)), invalid="nan").steps["rk4"][..., None],
+        lambda: np.broadcast_to(batch.guess, (2, 3, 4)),
+    ):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            numbers = found()
+        np.testing.assert_array_equal(np.isnan(numbers).all(axis=-1), [[False, True, False]] * 2)
+    with pytest.warns(crane.InvalidRowWarning):
+        assert list(batch.statics(invalid="nan").status) == ["stable", "invalid", "stable"]
+
+
+def test_a_simulation_can_be_copied_and_pickled(flexible):
+    """A copy, stepped or not, goes on as the original does from the state that it restores: with a new history, to the last bit."""
+    original = flexible.simulation()
+    for dt in (0.05, 0.1):
+        original.step(dt, load_mass=200.0)
+        copies = [copy.deepcopy(original), pickle.loads(pickle.dumps(original)), copy.copy(original)]
+        assert all(one.statistics == original.statistics for one in copies)
+        original.restore(original.save())
+        expected = original.step(0.1)
+        for one in copies:
+            state = one.step(0.1)
+            np.testing.assert_array_equal([state.q, state.v], [expected.q, expected.v])
+            assert (state.t, state.work, state.parameters) == (expected.t, expected.work, expected.parameters)
+            assert not one.q.flags.writeable
+
+
+def test_states_cannot_be_changed_in_place(knuckle):
+    own = knuckle.guess.copy()
+    simulation = knuckle.simulation(q=own)
+    own[:] = 7
+    for _ in range(2):
+        saved = simulation.save()
+        for array in (simulation.q, simulation.v, saved.q, saved.v, saved.x):
+            with pytest.raises(ValueError, match="read-only"):
+                array[...] = 99.0
+        simulation.step(0.01)
+    given = crane.State(0.0, knuckle.guess.copy(), np.zeros(4))
+    simulation.restore(given)
+    given.q[:] = 99.0
+    np.testing.assert_array_equal(simulation.q, knuckle.guess)
+    # A state with other numbers is restored.
+    simulation.restore(dataclasses.replace(saved, q=saved.q + 0.01))
+    np.testing.assert_array_equal(simulation.q, saved.q + 0.01)
+
+
+def test_an_ensemble_over_inputs_and_starts():
+    """Masses on springs whose far ends are inputs: x = u + (x₀ − u) cos ωt + v₀/ω sin ωt, over all axes."""
+    text = (
+        "format: 1\nname: slide\ngravity: [0, 0, 0]\ninputs: {lever: {unit: m}, push: {unit: N}}\n"
+        "parameters: {block: {value: 4, unit: kg}}\n"
+        "links: [{name: slide, joint: {prismatic: {axis: x}}, mass: block, com: [0, 0, 0]}]\n"
+        "drives: [{coordinate: slide_x, stiffness: 100, motion: {input: lever}}]\n"
+        "points: [{name: end, link: slide, at: [0, 0, 0]}]\n"
+        "loads: [{name: push, link: slide, at: [0, 0, 0], force: [1, 0, 0], scale: {input: push}}]\n"
+    )
+    masses, levers = np.array([1.0, 4.0]), np.array([[0.3], [-0.1], [0.0]])
+    q, v = np.array([[[0.1]], [[0.2]], [[0.0]]]), np.array([0.5])
+    slide = crane.load("slide.yaml", text=text, block=masses)
+    for settings in ({"tolerance": 1e-9}, {"method": "rk4", "step": 1e-3}):
+        found = slide.simulate_ensemble(duration=1.0, output=0.5, q=q, v=v, inputs={"lever": levers, "push": None}, **settings)
+        omega = np.sqrt(100 / masses)
+        expected = levers + (q[..., 0] - levers) * np.cos(omega) + 0.5 / omega * np.sin(omega)
+        assert found.time.shape == found.done.shape == (3, 2) and found.done.all()
+        np.testing.assert_allclose(found["end_x_end"], expected, atol=2e-6)
+    frame = found.to_pandas()
+    assert list(frame.columns[:2]) == ["block", "lever"] and frame.attrs["units"]["end_x_end"] == "m" and len(frame) == 6
+    np.testing.assert_array_equal(frame["lever"], np.repeat(levers[:, 0], 2))
+    np.testing.assert_array_equal(frame["end_x_end"], found["end_x_end"].ravel())
+    with pytest.raises(ValueError, match="no input `levr`"):
+        slide.simulate_ensemble(inputs={"levr": [1.0]})
+    with pytest.raises(ValueError, match=r"inputs\['lever'\] is NaN"):
+        slide.simulate_ensemble(inputs={"lever": [0.0, np.nan]})
+    with pytest.raises(ValueError, match="do not match"):
+        slide.simulate_ensemble(inputs={"lever": [0.0, 1.0, 2.0]})
+    with pytest.raises(TypeError, match="is one number, except in `simulate_ensemble`"):
+        slide.replace(inputs={"lever": [0.0, 1.0]})
+
+
+def test_forces_with_states_say_what_to_use_instead():
+    boom = crane.load("eight_link_hydraulic")
+    q = boom.statics().q
+    v = np.zeros(boom.n)
+    for name, call in [
+        ("forward_dynamics", lambda: boom.forward_dynamics(q, v)),
+        ("forces", lambda: boom.forces(q, v)),
+        ("drive_forces", lambda: boom.drive_forces(q, v)),
+        ("drive_power", lambda: boom.drive_power(q, v)),
+        ("dissipation", lambda: boom.dissipation(q, v)),
+        ("friction_forces", lambda: boom.friction_forces(v)),
+    ]:
+        with pytest.raises(ValueError, match=f"{name} of eight_link_hydraulic follows from .*bristles, which are states of a run: use simulate"):
+            call()
+    with pytest.raises(ValueError, match=r"use modes\(q\)"):
+        boom.linearise(q)
+    with pytest.raises(ValueError, match=r"use modes\(q\)"):
+        boom.linearise(q, v)
+    # Friction without bristles follows from the rates.
+    rubbing = crane.load("rubbing.yaml", text=PENDULUM + "friction: {rod_theta: {coulomb: 3}}\n")
+    np.testing.assert_allclose(rubbing.friction_forces([[5.0], [-5.0]]), [[-3.0], [3.0]], rtol=1e-6)
+
+
+def test_what_is_printed_is_short(knuckle):
+    run = knuckle.simulate(duration=0.2, verify=False)
+    ensemble = knuckle.replace(payload=[1.0, 2.0]).simulate_ensemble(duration=0.2)
+    assert repr(run).startswith("<run of knuckle_boom: 0.2 s from the static equilibrium, at rest, bdf, ")
+    assert repr(ensemble).startswith("<2 runs of knuckle_boom: 2 done, ")
+    assert len(repr(run)) < 200 and len(repr(ensemble)) < 200
+    assert run.to_pandas().attrs["units"]["main_boom_theta"] == "rad"
+    # Of public names, as help and completion show them, none is internal.
+    for name in (name for name in dir(knuckle) if not name.startswith("_")):
+        assert not any(word in name for word in ("rows", "record", "equilibria", "describe")) and name != "motion", name
+    begin = time.perf_counter()
+    for _ in range(1000):
+        assert knuckle.n == 4
+    assert time.perf_counter() - begin < 0.1

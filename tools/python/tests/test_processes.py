@@ -56,6 +56,29 @@ def test_a_batch_leaves_the_lock_to_others(flexible):
     assert len(within) > 5
 
 
+def test_modes_leave_the_lock_to_others(flexible):
+    """A thread ticks during modes and stable steps, row by row as often as during other batches."""
+    q = np.repeat(flexible.guess[None], 150, axis=0)
+    for function in (flexible.modes, flexible.stability):
+        ticks, done = [], threading.Event()
+
+        def tick():
+            while not done.is_set():
+                ticks.append(time.perf_counter())
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        begin = time.perf_counter()
+        function(q)
+        end = time.perf_counter()
+        done.set()
+        thread.join()
+        within = [begin, *(tick for tick in ticks if begin < tick < end), end]
+        # If the lock were held for the eigenvalues or stable steps of all rows, a gap would be nearly as long as the call.
+        assert np.diff(within).max() < 0.5 * (end - begin), function
+
+
 def _work(q):
     c = crane.load("eight_link_flexible")
     return float(c.gravity_energy(np.stack([q] * 200)).sum())
@@ -92,8 +115,11 @@ print(c.mass_matrix(c.guess).shape, flush=True)
         "c.simulate(duration=1e5, output=1e3)",
         "c.replace(load_mass=np.linspace(0, 500, 2000)).simulate_ensemble()",
         "c.simulation().step(1e5)",
-        "[c.small_motions(np.repeat(c.guess[None], 20000, axis=0)) for _ in range(1000)]",
+        "[c._small_motions(np.repeat(c.guess[None], 20000, axis=0)) for _ in range(1000)]",
         "c.replace(load_mass=np.linspace(0, 500, 20000)).statics()",
+        "c.modes(np.repeat(c.guess[None], 200000, axis=0))",
+        "c.stability(np.repeat(c.guess[None], 200000, axis=0))",
+        "c.envelope({'column': np.tile([-1000.0, 1000.0], 100)})",
     ],
 )
 def test_ctrl_c_ends_a_long_call(call):

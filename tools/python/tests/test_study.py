@@ -1,11 +1,13 @@
 """Studies: in parts, interrupted and resumed, on workers that die, on a full disk."""
 
 import errno
+import functools
 import json
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import crane
@@ -14,6 +16,7 @@ import pytest
 
 pytest.importorskip("pyarrow")
 from crane import study  # noqa: E402
+from crane.identity import identity  # noqa: E402
 
 SHORT = {"duration": 0.2, "output": 0.05}
 
@@ -97,6 +100,75 @@ def test_a_function_of_ones_own(tmp_path):
     table = study.run("knuckle_boom", cases(5), tmp_path, what=lowest, part=3).table()
     expected = crane.load("knuckle_boom", payload=cases(5)["payload"]).modes().frequencies[:, 0]
     np.testing.assert_array_equal(table["lowest"].to_numpy(), expected)
+
+
+def test_a_changed_function_is_another_study(tmp_path):
+    """Its code, defaults, what it encloses, and functions and constants of its module; the same function continues."""
+
+    def with_factor(factor):
+        return lambda c: {"x": factor * c.parameters["payload"]}
+
+    def plain(c, power=1):
+        return {"x": c.parameters["payload"] ** power}
+
+    same = with_factor(2.0)
+    assert study.run("knuckle_boom", cases(2), tmp_path, what=same).computed == 1
+    assert study.run("knuckle_boom", cases(2), tmp_path, what=with_factor(2.0)).computed == 0
+    others = [
+        with_factor(3.0),
+        lambda c: {"x": 2.0 * c.parameters["payload"]},
+        lambda c: {"x": 2.0 - c.parameters["payload"]},
+        plain,
+        functools.partial(plain, power=2),
+        functools.partial(plain, power=3),
+        _Once(tmp_path / "asked"),
+        _Once(tmp_path / "other"),
+        _helped,
+    ]
+    identities = {identity(other) for other in [*others, same]}
+    assert len(identities) == len(others) + 1
+    for other in others:
+        with pytest.raises(ValueError, match="another study, which differs in: .*function"):
+            study.run("knuckle_boom", cases(2), tmp_path, what=other)
+    before = identity(_helped)
+    original = globals()["_help"]
+    try:
+        globals()["_help"] = lambda x: 2 * x
+        assert identity(_helped) != before
+        globals()["_help"] = original
+        globals()["_SCALE"] = 2.0
+        assert identity(_helped) != before
+    finally:
+        globals()["_help"], globals()["_SCALE"] = original, 1.0
+    assert identity(_helped) == before
+    # The identity is that of another process, too.
+    program = "from test_study import *; from test_study import _helped; print(identity(_helped))"
+    out = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=os.path.dirname(__file__), env={**os.environ, "PYTHONHASHSEED": "7"})
+    assert out.stdout.strip() == before, out.stderr
+    with pytest.raises(TypeError, match="cannot be identified"):
+        study.run("knuckle_boom", cases(2), tmp_path / "no", what=lambda c, lock=threading.Lock(): {"x": c.n})
+
+
+def test_columns_do_not_replace_cases(tmp_path):
+    with pytest.raises(ValueError, match="the name of the parameter 'payload'"):
+        study.run("knuckle_boom", cases(2), tmp_path / "a", what=lambda c: {"payload": 0 * c.parameters["payload"]})
+    with pytest.raises(ValueError, match="'x' has shape"):
+        study.run("knuckle_boom", cases(2), tmp_path / "b", what=lambda c: {"x": [1.0]})
+    with pytest.raises(TypeError, match="payload holds complex"):
+        study.run("knuckle_boom", {"payload": np.array([1j, 2.0])}, tmp_path / "c")
+    with pytest.raises(ValueError, match="payload has 2 axes"):
+        study.run("knuckle_boom", {"payload": np.ones((2, 2))}, tmp_path / "d")
+
+
+_SCALE = 1.0
+
+
+def _help(x):
+    return _SCALE * x
+
+
+def _helped(c):
+    return {"x": _help(c.parameters["payload"]), "known": [name in {"a", "b", "payload"} for name in c.parameters]}
 
 
 def test_a_full_disk_loses_nothing(tmp_path, monkeypatch):
