@@ -9,6 +9,8 @@ mod connector_update;
 #[cfg(feature = "std")]
 mod constant;
 #[cfg(feature = "std")]
+mod contacts;
+#[cfg(feature = "std")]
 pub mod dormand_prince;
 #[cfg(feature = "std")]
 pub mod ensemble;
@@ -58,6 +60,8 @@ mod typed;
 #[cfg(feature = "std")]
 pub use constant::Rk4;
 #[cfg(feature = "std")]
+pub use contacts::Contacts;
+#[cfg(feature = "std")]
 pub use integration::Integration;
 #[cfg(feature = "std")]
 pub use method::{Method, UnknownMethod};
@@ -78,3 +82,5 @@ pub use statistics::Statistics;
 pub use stepper::{Ahead, Stepper};
 #[cfg(feature = "std")]
 pub use stopped::{Cause, Stopped};
+#[cfg(feature = "std")]
+pub use stops::next_stop;

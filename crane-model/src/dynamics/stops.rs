@@ -2,6 +2,11 @@
 
 use crate::{Description, dyn_crane::DynModel};
 
+/// The next time after t at which a motion of a drive or a winch or the scale of a load is not smooth, s.
+pub fn next_stop(crane: &dyn DynModel, t: f64) -> Option<f64> {
+    Some(Stops::between([crane], t, f64::INFINITY).after(t)).filter(|stop| stop.is_finite())
+}
+
 /// Times within a run, in order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stops(Vec<f64>);
@@ -25,7 +30,7 @@ impl Stops {
             crane.drive_pieces(motions);
             crane.load_pieces(scales);
             crane.winch_pieces(winches);
-            times.extend(pieces.into_iter().flatten());
+            times.extend(pieces.into_iter().flatten().filter(|time| time.is_finite()));
         }
         let last = times.iter().copied().fold(begin, f64::max);
         let near = Self::NEAR * (if end.is_finite() { end } else { last } - begin);

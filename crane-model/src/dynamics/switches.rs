@@ -4,9 +4,8 @@
 //! and after, and its error estimate says little. Adaptive methods therefore end a step where a contact changes, and a step that failed
 //! where any law does.
 
-use super::equations::Equations;
+use super::{contacts::Contacts, equations::Equations};
 use crate::{
-    Description, Tension,
     dyn_crane::DynModel,
     force_states::{ForceStates, StateAt},
 };
@@ -22,14 +21,8 @@ pub(super) enum Watched {
 
 /// The laws of a crane that have branches.
 pub(super) struct Switches {
-    /// One-sided supports, end stops and ropes, by their indices.
-    feet: Vec<usize>,
-    stops: Vec<usize>,
-    ropes: Vec<usize>,
+    contacts: Contacts,
     states: ForceStates,
-    gaps: Vec<[f64; 2]>,
-    forces: Vec<f64>,
-    tensions: Vec<Tension>,
     motion: Vec<f64>,
     /// The branch that each law is on: at the beginning of a step, and at a later time.
     branches: [Vec<bool>; 2],
@@ -48,24 +41,11 @@ impl Switches {
 
     /// The laws of a crane, with storage for motions of `len` numbers.
     pub fn new(crane: &dyn DynModel, len: usize) -> Self {
-        let Description { supports, stops, connectors, .. } = crane.description();
-        let feet: Vec<usize> = (0..supports.len()).filter(|foot| supports[*foot].one_sided).collect();
-        let ropes: Vec<usize> = (0..connectors.len()).filter(|rope| connectors[*rope].is_rope).collect();
+        let contacts = Contacts::new(crane);
         let states = ForceStates::new(crane.description());
         // No step allocates: a cylinder has three states and up to eleven branches, a bristle one of each, the pump two branches.
-        let branches = || Vec::with_capacity(feet.len() + stops.len() + ropes.len() + 4 * states.len() + 2);
-        Self {
-            branches: [branches(), branches()],
-            feet,
-            stops: stops.to_vec(),
-            ropes,
-            states,
-            gaps: vec![[0.0; 2]; supports.len()],
-            forces: vec![0.0; crane.size()],
-            tensions: vec![Tension::ZERO; connectors.len()],
-            motion: vec![0.0; len],
-            known_at: f64::NAN,
-        }
+        let branches = || Vec::with_capacity(contacts.len() + 4 * states.len() + 2);
+        Self { branches: [branches(), branches()], contacts, states, motion: vec![0.0; len], known_at: f64::NAN }
     }
 
     /// Forgets the last step.
@@ -83,8 +63,7 @@ impl Switches {
         [begin, end]: [f64; 2],
         at: &dyn Fn(f64, &mut [f64]),
     ) -> Option<f64> {
-        let contacts = !(self.feet.is_empty() && self.stops.is_empty() && self.ropes.is_empty());
-        if !contacts && (watched == Watched::Contacts || self.states.is_empty()) {
+        if self.contacts.is_empty() && (watched == Watched::Contacts || self.states.is_empty()) {
             return None;
         }
         let known_at = std::mem::replace(&mut self.known_at, f64::NAN);
@@ -121,18 +100,7 @@ impl Switches {
         let (q, v) = equations.state(t, &self.motion);
         let branches = &mut self.branches[list];
         branches.clear();
-        if !self.feet.is_empty() {
-            crane.support_gaps(q, v, &mut self.gaps);
-            branches.extend(self.feet.iter().map(|foot| self.gaps[*foot][0] > 0.0));
-        }
-        if !self.stops.is_empty() {
-            crane.stop_forces(q, v, &mut self.forces);
-            branches.extend(self.stops.iter().map(|stop| self.forces[*stop] != 0.0));
-        }
-        if !self.ropes.is_empty() {
-            crane.connector_tensions(t, q, v, &mut self.tensions);
-            branches.extend(self.ropes.iter().map(|rope| self.tensions[*rope].force > 0.0));
-        }
+        self.contacts.indicators(crane, t, (q, v), |indicator| branches.push(indicator > 0.0));
         if watched == Watched::All {
             let x = &self.motion[2 * q.len()..][..self.states.len()];
             self.states.branches(crane, &StateAt { t, q, v, x }, branches);

@@ -53,9 +53,14 @@ pub fn open(folder: &Path, make: Make) -> Result<Opened, String> {
     let mut parameters: Vec<f64> =
         (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
     let bytes = read(folder, PARAMETERS)?;
+    let mut known = vec![false; parameters.len()];
     for line in String::from_utf8_lossy(&bytes).lines() {
         let (place, value) = read_line(crane.as_ref(), line).ok_or_else(|| format!("{PARAMETERS}: `{line}`"))?;
-        parameters[place] = value;
+        (parameters[place], known[place]) = (value, true);
+    }
+    if let Some(place) = known.iter().position(|known| !known) {
+        let name = &crane.description().parameters[place].name;
+        return Err(format!("{PARAMETERS} has no value of `{name}`: export the unit again"));
     }
     Ok(Opened { crane, parameters, warnings: warnings.lines().collect::<Vec<_>>().join("; ") })
 }

@@ -1,6 +1,7 @@
 //! The variables of a crane.
 
 use crane_codegen::SourceFile;
+use crane_model::dynamics::Contacts;
 use crane_model::{CoordinateRole, Description, force_states, results};
 
 /// What a variable is.
@@ -24,6 +25,8 @@ pub enum Source {
     Parameter(usize),
     /// An input, by its place in the description.
     Input(usize),
+    /// What changes its sign where a contact begins or ends, by its place in the list of [`Contacts`].
+    Indicator(usize),
 }
 
 /// A variable. Its value reference is its place in the list.
@@ -42,7 +45,7 @@ pub struct Variable {
 }
 
 /// The variables of a crane: time, coordinates, rates, derived quantities and states of forces, accelerations,
-/// rates of the forces' states, parameters, inputs.
+/// rates of the forces' states, parameters, inputs, event indicators.
 ///
 /// Poses and rates of joints and of the base are outputs, and so are points, drives and reactions. Deformations of flexible links,
 /// their moments, energies and accelerations can be read as well, but are not outputs, because they are many.
@@ -115,6 +118,13 @@ pub fn list(description: &Description) -> Vec<Variable> {
         is_output: false,
     }));
     all.extend(parameters.chain(inputs));
+    all.extend(Contacts::names(description).into_iter().enumerate().map(|(index, name)| Variable {
+        name,
+        unit: String::new(),
+        about: "event indicator: negative while the contact is closed".to_owned(),
+        source: Source::Indicator(index),
+        is_output: false,
+    }));
     all
 }
 

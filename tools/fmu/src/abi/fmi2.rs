@@ -1,8 +1,10 @@
 //! The functions of FMI 2.0.3, in the order of its headers.
 
 use std::ffi::{CString, c_char, c_double, c_int, c_uint, c_void};
+use std::sync::Arc;
 
-use super::unit::{Host, Pointer, Status, Unit, free, none_of, with, write};
+use super::shared::shared;
+use super::unit::{Host, Pointer, Status, Unit, none_of, with, write};
 use super::{array, array_mut, states, words};
 use crate::instance::Fault;
 use crate::{Make, resources};
@@ -48,7 +50,7 @@ fn host(callbacks: Option<Callbacks>, name: &str, logs: bool) -> Host {
             unsafe { logger(environment, name.as_ptr(), status, category.as_ptr(), text.as_ptr()) }
         }
     };
-    Host { say: Box::new(say), logs }
+    Host { say: Arc::new(say), logs }
 }
 
 #[unsafe(no_mangle)]
@@ -95,10 +97,28 @@ pub unsafe fn instantiate(
     Unit::make(make, resources::folder_of(uri), guid, host(callbacks, name, logs != FALSE))
 }
 
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2FreeInstance(component: Component) {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { free(component) }
+shared! {
+    free: fmi2FreeInstance,
+    exit_initialisation: fmi2ExitInitializationMode,
+    terminate: fmi2Terminate,
+    reset: fmi2Reset,
+    accept: [
+        fmi2EnterInitializationMode,
+        fmi2EnterEventMode,
+        fmi2EnterContinuousTimeMode,
+    ],
+    get_state: fmi2GetFMUstate,
+    set_state: fmi2SetFMUstate,
+    free_state: fmi2FreeFMUstate,
+    state_size: fmi2SerializedFMUstateSize,
+    serialise: fmi2SerializeFMUstate,
+    deserialise: fmi2DeSerializeFMUstate,
+    set_time: fmi2SetTime,
+    set_states: fmi2SetContinuousStates,
+    get_states: fmi2GetContinuousStates,
+    derivatives: fmi2GetDerivatives,
+    indicators: fmi2GetEventIndicators,
+    nominals: fmi2GetNominalsOfContinuousStates,
 }
 
 #[unsafe(no_mangle)]
@@ -113,45 +133,11 @@ unsafe extern "C" fn fmi2SetupExperiment(
     // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
+            unit.instance.set_up((has_tolerance != FALSE).then_some(tolerance), start)?;
             unit.last = start;
-            unit.instance.set_up((has_tolerance != FALSE).then_some(tolerance), start)
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2ExitInitializationMode(component: Component) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |unit| unit.instance.start()) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2Reset(component: Component) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe {
-        with(component, |unit| {
-            unit.instance.reset();
             Ok(())
         })
     }
-}
-
-/// Calls that require no action: modes differ in what an importer may do, not in what the crane does.
-macro_rules! accept {
-    ($($name:ident),* $(,)?) => {$(
-        #[unsafe(no_mangle)]
-        unsafe extern "C" fn $name(component: Component) -> Status {
-            // SAFETY: as the FMI standard guarantees.
-            unsafe { with(component, |_| Ok(())) }
-        }
-    )*};
-}
-
-accept! {
-    fmi2EnterInitializationMode,
-    fmi2Terminate,
-    fmi2EnterEventMode,
-    fmi2EnterContinuousTimeMode,
 }
 
 #[unsafe(no_mangle)]
@@ -162,7 +148,7 @@ unsafe extern "C" fn fmi2GetReal(
     values: *mut c_double,
 ) -> Status {
     // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |unit| unit.instance.get(array(references, count), array_mut(values, count))) }
+    unsafe { with(component, |unit| unit.instance.get(array(references, count)?, array_mut(values, count)?)) }
 }
 
 #[unsafe(no_mangle)]
@@ -173,7 +159,7 @@ unsafe extern "C" fn fmi2SetReal(
     values: *const c_double,
 ) -> Status {
     // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |unit| unit.instance.set(array(references, count), array(values, count))) }
+    unsafe { with(component, |unit| unit.instance.set(array(references, count)?, array(values, count)?)) }
 }
 
 /// Reading and writing variables of types that a crane does not have.
@@ -197,57 +183,6 @@ no_variables! {
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2GetFMUstate(component: Component, state: *mut Pointer) -> Status {
-    // SAFETY: as the FMI standard guarantees; an existing state was made here, and is reused.
-    unsafe { with(component, |unit| states::keep(unit, state)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2SetFMUstate(component: Component, state: Pointer) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |unit| states::restore(unit, state)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2FreeFMUstate(component: Component, state: *mut Pointer) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe {
-        with(component, |_| {
-            states::free(state);
-            Ok(())
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2SerializedFMUstateSize(component: Component, state: Pointer, size: *mut usize) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |_| states::measure(state, size)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2SerializeFMUstate(
-    component: Component,
-    state: Pointer,
-    bytes: *mut u8,
-    size: usize,
-) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |_| states::to_bytes(state, bytes, size)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2DeSerializeFMUstate(
-    component: Component,
-    bytes: *const u8,
-    size: usize,
-    state: *mut Pointer,
-) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |unit| states::from_bytes(unit, bytes, size, state)) }
-}
-
-#[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetDirectionalDerivative(
     component: Component,
     unknowns: *const c_uint,
@@ -261,10 +196,10 @@ unsafe extern "C" fn fmi2GetDirectionalDerivative(
     unsafe {
         with(component, |unit| {
             unit.instance.directional_derivative(
-                array(unknowns, unknown_count),
-                array(knowns, known_count),
-                array(direction, known_count),
-                array_mut(derivative, unknown_count),
+                array(unknowns, unknown_count)?,
+                array(knowns, known_count)?,
+                array(direction, known_count)?,
+                array_mut(derivative, unknown_count)?,
             )
         })
     }
@@ -275,7 +210,7 @@ unsafe extern "C" fn fmi2NewDiscreteStates(component: Component, info: *mut Even
     // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
-            let next = unit.instance.next_event();
+            let next = unit.instance.next_event()?;
             let found = EventInfo {
                 new_discrete_states_needed: FALSE,
                 terminate_simulation: FALSE,
@@ -302,57 +237,6 @@ unsafe extern "C" fn fmi2CompletedIntegratorStep(
         with(component, |_| {
             write(enter_event_mode, FALSE);
             write(terminate, FALSE);
-            Ok(())
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2SetTime(component: Component, time: c_double) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |unit| unit.instance.set_time(time)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2SetContinuousStates(component: Component, states: *const c_double, count: usize) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |unit| unit.instance.set_continuous_states(array(states, count))) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2GetDerivatives(component: Component, derivatives: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |unit| unit.instance.derivatives(array_mut(derivatives, count))) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2GetEventIndicators(component: Component, _: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe {
-        with(component, |_| match count {
-            0 => Ok(()),
-            _ => Err(Fault::Error("a crane has no event indicators".to_owned())),
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2GetContinuousStates(component: Component, states: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe { with(component, |unit| unit.instance.continuous_states(array_mut(states, count))) }
-}
-
-/// Coordinates of a crane are some metres and about a radian, and so are their rates.
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2GetNominalsOfContinuousStates(
-    component: Component,
-    nominals: *mut c_double,
-    count: usize,
-) -> Status {
-    // SAFETY: as the FMI standard guarantees.
-    unsafe {
-        with(component, |_| {
-            array_mut(nominals, count).fill(1.0);
             Ok(())
         })
     }

@@ -3,8 +3,10 @@
 use std::ffi::{CString, c_char, c_double, c_int, c_uint, c_void};
 use std::path::PathBuf;
 use std::ptr;
+use std::sync::Arc;
 
-use super::unit::{Host, Pointer, Status, Unit, free, none_of, with, write};
+use super::shared::shared;
+use super::unit::{Host, Pointer, Status, Unit, none_of, with, write};
 use super::{array, array_mut, states, words};
 use crate::Make;
 use crate::instance::{Fault, Instance};
@@ -30,7 +32,7 @@ unsafe extern "C" fn fmi3SetDebugLogging(
     _count: usize,
     _categories: *const *const c_char,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             unit.host.logs = on != FALSE;
@@ -48,7 +50,7 @@ fn host(environment: *mut c_void, log: Option<LogMessage>, logs: Boolean) -> Hos
             unsafe { log(environment, status, category.as_ptr(), text.as_ptr()) }
         }
     };
-    Host { say: Box::new(say), logs: logs != FALSE }
+    Host { say: Arc::new(say), logs: logs != FALSE }
 }
 
 /// The folder of the resources: in FMI 3.0 a path.
@@ -91,10 +93,31 @@ unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     ptr::null_mut()
 }
 
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3FreeInstance(component: Component) {
-    // SAFETY: as the standard has it.
-    unsafe { free(component) }
+shared! {
+    free: fmi3FreeInstance,
+    exit_initialisation: fmi3ExitInitializationMode,
+    terminate: fmi3Terminate,
+    reset: fmi3Reset,
+    accept: [
+        fmi3EnterEventMode,
+        fmi3EnterConfigurationMode,
+        fmi3ExitConfigurationMode,
+        fmi3EvaluateDiscreteStates,
+        fmi3EnterContinuousTimeMode,
+        fmi3EnterStepMode,
+    ],
+    get_state: fmi3GetFMUState,
+    set_state: fmi3SetFMUState,
+    free_state: fmi3FreeFMUState,
+    state_size: fmi3SerializedFMUStateSize,
+    serialise: fmi3SerializeFMUState,
+    deserialise: fmi3DeserializeFMUState,
+    set_time: fmi3SetTime,
+    set_states: fmi3SetContinuousStates,
+    get_states: fmi3GetContinuousStates,
+    derivatives: fmi3GetContinuousStateDerivatives,
+    indicators: fmi3GetEventIndicators,
+    nominals: fmi3GetNominalsOfContinuousStates,
 }
 
 #[unsafe(no_mangle)]
@@ -106,51 +129,14 @@ unsafe extern "C" fn fmi3EnterInitializationMode(
     _has_stop: Boolean,
     _stop: c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
+            unit.instance.set_up((has_tolerance != FALSE).then_some(tolerance), start)?;
             unit.last = start;
-            unit.instance.set_up((has_tolerance != FALSE).then_some(tolerance), start)
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3ExitInitializationMode(component: Component) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe { with(component, |unit| unit.instance.start()) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3Reset(component: Component) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe {
-        with(component, |unit| {
-            unit.instance.reset();
             Ok(())
         })
     }
-}
-
-/// Calls that require no action: modes differ in what an importer may do, not in what the crane does.
-macro_rules! accept {
-    ($($name:ident),* $(,)?) => {$(
-        #[unsafe(no_mangle)]
-        unsafe extern "C" fn $name(component: Component) -> Status {
-            // SAFETY: as the standard has it.
-            unsafe { with(component, |_| Ok(())) }
-        }
-    )*};
-}
-
-accept! {
-    fmi3EnterEventMode,
-    fmi3Terminate,
-    fmi3EnterConfigurationMode,
-    fmi3ExitConfigurationMode,
-    fmi3EvaluateDiscreteStates,
-    fmi3EnterContinuousTimeMode,
-    fmi3EnterStepMode,
 }
 
 #[unsafe(no_mangle)]
@@ -161,11 +147,11 @@ unsafe extern "C" fn fmi3GetFloat64(
     values: *mut c_double,
     value_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             as_many(count, value_count)?;
-            unit.instance.get(array(references, count), array_mut(values, count))
+            unit.instance.get(array(references, count)?, array_mut(values, count)?)
         })
     }
 }
@@ -178,11 +164,11 @@ unsafe extern "C" fn fmi3SetFloat64(
     values: *const c_double,
     value_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             as_many(count, value_count)?;
-            unit.instance.set(array(references, count), array(values, count))
+            unit.instance.set(array(references, count)?, array(values, count)?)
         })
     }
 }
@@ -201,7 +187,7 @@ macro_rules! no_variables {
     ($($name:ident: ($($value:ty),+), $kind:literal;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, _: *const c_uint, count: usize, $(_: $value),+) -> Status {
-            // SAFETY: as the standard has it.
+            // SAFETY: as the FMI standard guarantees.
             unsafe { with(component, |_| none_of(count, $kind, "Float64")) }
         }
     )*};
@@ -251,7 +237,7 @@ unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
     _reference: c_uint,
     _count: *mut usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| Err(no_dependencies())) }
 }
 
@@ -265,63 +251,12 @@ unsafe extern "C" fn fmi3GetVariableDependencies(
     _kinds: *mut c_int,
     _count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| Err(no_dependencies())) }
 }
 
 fn no_dependencies() -> Fault {
     Fault::Error("a crane does not list dependencies: every variable may depend on all others".to_owned())
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3GetFMUState(component: Component, state: *mut Pointer) -> Status {
-    // SAFETY: as the FMI standard guarantees; an existing state was made here, and is reused.
-    unsafe { with(component, |unit| states::keep(unit, state)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SetFMUState(component: Component, state: Pointer) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe { with(component, |unit| states::restore(unit, state)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3FreeFMUState(component: Component, state: *mut Pointer) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe {
-        with(component, |_| {
-            states::free(state);
-            Ok(())
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SerializedFMUStateSize(component: Component, state: Pointer, size: *mut usize) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe { with(component, |_| states::measure(state, size)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SerializeFMUState(
-    component: Component,
-    state: Pointer,
-    bytes: *mut u8,
-    size: usize,
-) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe { with(component, |_| states::to_bytes(state, bytes, size)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3DeserializeFMUState(
-    component: Component,
-    bytes: *const u8,
-    size: usize,
-    state: *mut Pointer,
-) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe { with(component, |unit| states::from_bytes(unit, bytes, size, state)) }
 }
 
 #[unsafe(no_mangle)]
@@ -336,16 +271,16 @@ unsafe extern "C" fn fmi3GetDirectionalDerivative(
     sensitivity: *mut c_double,
     sensitivity_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             as_many(known_count, seed_count)?;
             as_many(unknown_count, sensitivity_count)?;
             unit.instance.directional_derivative(
-                array(unknowns, unknown_count),
-                array(knowns, known_count),
-                array(seed, known_count),
-                array_mut(sensitivity, unknown_count),
+                array(unknowns, unknown_count)?,
+                array(knowns, known_count)?,
+                array(seed, known_count)?,
+                array_mut(sensitivity, unknown_count)?,
             )
         })
     }
@@ -363,7 +298,7 @@ unsafe extern "C" fn fmi3GetAdjointDerivative(
     _sensitivity: *mut c_double,
     _sensitivity_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| Err(Fault::Error("a crane has no adjoint derivatives: use directional ones".to_owned())))
     }
@@ -379,10 +314,10 @@ unsafe extern "C" fn fmi3UpdateDiscreteStates(
     next_event_time_defined: *mut Boolean,
     next_event_time: *mut c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
-            let next = unit.instance.next_event();
+            let next = unit.instance.next_event()?;
             for place in [update_needed, terminate, nominals_changed, values_changed] {
                 write(place, FALSE);
             }
@@ -400,66 +335,11 @@ unsafe extern "C" fn fmi3CompletedIntegratorStep(
     enter_event_mode: *mut Boolean,
     terminate: *mut Boolean,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| {
             write(enter_event_mode, FALSE);
             write(terminate, FALSE);
-            Ok(())
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SetTime(component: Component, time: c_double) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe { with(component, |unit| unit.instance.set_time(time)) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SetContinuousStates(component: Component, states: *const c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe { with(component, |unit| unit.instance.set_continuous_states(array(states, count))) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3GetContinuousStateDerivatives(
-    component: Component,
-    derivatives: *mut c_double,
-    count: usize,
-) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe { with(component, |unit| unit.instance.derivatives(array_mut(derivatives, count))) }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3GetEventIndicators(component: Component, _: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe {
-        with(component, |_| match count {
-            0 => Ok(()),
-            _ => Err(Fault::Error("a crane has no event indicators".to_owned())),
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3GetContinuousStates(component: Component, states: *mut c_double, count: usize) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe { with(component, |unit| unit.instance.continuous_states(array_mut(states, count))) }
-}
-
-/// Coordinates of a crane are some metres and about a radian, and so are their rates.
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3GetNominalsOfContinuousStates(
-    component: Component,
-    nominals: *mut c_double,
-    count: usize,
-) -> Status {
-    // SAFETY: as the standard has it.
-    unsafe {
-        with(component, |_| {
-            array_mut(nominals, count).fill(1.0);
             Ok(())
         })
     }
@@ -471,7 +351,7 @@ macro_rules! counts {
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(component: Component, count: *mut usize) -> Status {
             let own: fn(&Instance) -> usize = $count;
-            // SAFETY: as the standard has it.
+            // SAFETY: as the FMI standard guarantees.
             unsafe {
                 with(component, |unit| {
                     write(count, own(&unit.instance));
@@ -483,7 +363,7 @@ macro_rules! counts {
 }
 
 counts! {
-    fmi3GetNumberOfEventIndicators: |_| 0;
+    fmi3GetNumberOfEventIndicators: Instance::indicators;
     fmi3GetNumberOfContinuousStates: Instance::states;
 }
 
@@ -496,7 +376,7 @@ unsafe extern "C" fn fmi3GetOutputDerivatives(
     _values: *mut c_double,
     _value_count: usize,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |_| match count {
             0 => Ok(()),
@@ -516,7 +396,7 @@ unsafe extern "C" fn fmi3DoStep(
     early_return: *mut Boolean,
     last: *mut c_double,
 ) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe {
         with(component, |unit| {
             for place in [event_handling_needed, terminate, early_return] {
@@ -533,6 +413,6 @@ unsafe extern "C" fn fmi3DoStep(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3ActivateModelPartition(component: Component, _clock: c_uint, _time: c_double) -> Status {
-    // SAFETY: as the standard has it.
+    // SAFETY: as the FMI standard guarantees.
     unsafe { with(component, |_| Err(Fault::Error("a crane has no clocks".to_owned()))) }
 }

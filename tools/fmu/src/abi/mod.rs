@@ -4,6 +4,7 @@
 
 pub mod fmi2;
 pub mod fmi3;
+mod shared;
 mod states;
 mod unit;
 mod units;
@@ -25,28 +26,34 @@ fn words_of(panic: &(dyn Any + Send)) -> String {
     format!("the crane's library has failed, please report it: {}", words.unwrap_or("no reason given"))
 }
 
-/// An array of the importer; empty if it is null.
+/// An array of the importer; null is refused unless it is empty.
 ///
 /// # Safety
 /// `first` is null, or `count` values are valid at `first` as long as the slice is used.
-unsafe fn array<'a, T>(first: *const T, count: usize) -> &'a [T] {
-    if first.is_null() || count == 0 {
-        return &[];
+unsafe fn array<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Fault> {
+    match (count, first.is_null()) {
+        (0, _) => Ok(&[]),
+        (_, true) => Err(no_array(count)),
+        // SAFETY: as the caller promises.
+        _ => Ok(unsafe { slice::from_raw_parts(first, count) }),
     }
-    // SAFETY: as the caller promises.
-    unsafe { slice::from_raw_parts(first, count) }
 }
 
-/// An array of the importer to be written to; empty if it is null.
+fn no_array(count: usize) -> Fault {
+    Fault::Error(format!("no array was given for {count} values"))
+}
+
+/// An array of the importer to be written to; null is refused unless it is empty.
 ///
 /// # Safety
 /// `first` is null, or `count` values are valid at `first` and accessed by nobody else as long as the slice is used.
-unsafe fn array_mut<'a, T>(first: *mut T, count: usize) -> &'a mut [T] {
-    if first.is_null() || count == 0 {
-        return &mut [];
+unsafe fn array_mut<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Fault> {
+    match (count, first.is_null()) {
+        (0, _) => Ok(&mut []),
+        (_, true) => Err(no_array(count)),
+        // SAFETY: as the caller promises.
+        _ => Ok(unsafe { slice::from_raw_parts_mut(first, count) }),
     }
-    // SAFETY: as the caller promises.
-    unsafe { slice::from_raw_parts_mut(first, count) }
 }
 
 /// A text of the importer; empty if it is null or not UTF-8.

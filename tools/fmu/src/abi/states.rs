@@ -6,9 +6,6 @@ use super::unit::{Pointer, Unit};
 use super::{array, array_mut};
 use crate::instance::{Fault, State};
 
-/// Bytes per number of a state.
-const BYTES: usize = size_of::<f64>();
-
 fn no_state() -> Fault {
     Fault::Error("no state was given".to_owned())
 }
@@ -34,7 +31,7 @@ pub(super) unsafe fn keep(unit: &Unit, state: *mut Pointer) -> Result<(), Fault>
 /// The state was made here, or is null.
 pub(super) unsafe fn restore(unit: &mut Unit, state: Pointer) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
-    unit.instance.set_state(unsafe { state.cast::<State>().as_ref() }.ok_or_else(no_state)?);
+    unit.instance.set_state(unsafe { state.cast::<State>().as_ref() }.ok_or_else(no_state)?)?;
     unit.last = unit.instance.time();
     Ok(())
 }
@@ -60,7 +57,7 @@ pub(super) unsafe fn free(state: *mut Pointer) {
 pub(super) unsafe fn measure(state: Pointer, size: *mut usize) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
     let (state, size) = unsafe { (state.cast::<State>().as_ref(), size.as_mut()) };
-    *size.ok_or_else(no_state)? = BYTES * state.ok_or_else(no_state)?.numbers().len();
+    *size.ok_or_else(no_state)? = state.ok_or_else(no_state)?.bytes().len();
     Ok(())
 }
 
@@ -70,14 +67,12 @@ pub(super) unsafe fn measure(state: Pointer, size: *mut usize) -> Result<(), Fau
 /// The state was made here, or is null; there is room for `size` bytes.
 pub(super) unsafe fn to_bytes(state: Pointer, bytes: *mut u8, size: usize) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
-    let (state, bytes) = unsafe { (state.cast::<State>().as_ref().ok_or_else(no_state)?, array_mut(bytes, size)) };
-    let numbers = state.numbers();
-    if bytes.len() < BYTES * numbers.len() {
-        return Err(Fault::Error(format!("{size} bytes are too few for {} numbers", numbers.len())));
-    }
-    for (place, number) in bytes.chunks_exact_mut(BYTES).zip(numbers) {
-        place.copy_from_slice(&number.to_le_bytes());
-    }
+    let (state, bytes) = unsafe { (state.cast::<State>().as_ref().ok_or_else(no_state)?, array_mut(bytes, size)?) };
+    let own = state.bytes();
+    let Some(place) = bytes.get_mut(..own.len()) else {
+        return Err(Fault::Error(format!("{size} bytes are too few: the state takes {}", own.len())));
+    };
+    place.copy_from_slice(&own);
     Ok(())
 }
 
@@ -87,10 +82,8 @@ pub(super) unsafe fn to_bytes(state: Pointer, bytes: *mut u8, size: usize) -> Re
 /// There are `size` bytes; there is room for a pointer at `state`.
 pub(super) unsafe fn from_bytes(unit: &Unit, bytes: *const u8, size: usize, state: *mut Pointer) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
-    let (bytes, place) = unsafe { (array(bytes, size), state.as_mut()) };
-    let (chunks, rest) = bytes.as_chunks::<BYTES>();
-    let numbers: Vec<f64> = chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
-    let read = unit.instance.state_of(&numbers).filter(|_| rest.is_empty());
+    let (bytes, place) = unsafe { (array(bytes, size)?, state.as_mut()) };
+    let read = unit.instance.state_of(bytes);
     let read = read.ok_or_else(|| Fault::Error(format!("{size} bytes are not a state of this crane")))?;
     *place.ok_or_else(no_state)? = Box::into_raw(Box::new(read)).cast();
     Ok(())

@@ -3,6 +3,7 @@
 use std::ffi::c_void;
 use std::path::PathBuf;
 use std::ptr;
+use std::sync::Arc;
 
 use super::guarded;
 use crate::Make;
@@ -50,9 +51,10 @@ impl Unit {
 }
 
 /// Reports a message: status, category and text.
-pub(super) type Logger = Box<dyn Fn(Status, &str, &str)>;
+pub(super) type Logger = Arc<dyn Fn(Status, &str, &str)>;
 
 /// Where messages go.
+#[derive(Clone)]
 pub(super) struct Host {
     pub(super) say: Logger,
     /// Whether warnings are wanted; errors always are.
@@ -76,18 +78,22 @@ impl Host {
     }
 }
 
-/// Runs `work` on a component and reports its warnings and errors.
+/// Runs `work` on a component and reports its warnings and errors, after it has let go of the component: the importer's logger may call
+/// functions of the same component.
 ///
 /// # Safety
 /// The component was returned by [`Unit::make`] and has not been passed to [`free`]; no other call is using it.
 pub(super) unsafe fn with(component: Pointer, work: impl FnOnce(&mut Unit) -> Result<(), Fault>) -> Status {
-    // SAFETY: as the caller promises.
-    let Some(unit) = (unsafe { component.cast::<Unit>().as_mut() }) else { return Status::Error };
-    let done = guarded(|| work(&mut *unit));
-    unit.host.warn(&unit.instance.take_warnings());
+    let (done, warnings, host) = {
+        // SAFETY: as the caller promises.
+        let Some(unit) = (unsafe { component.cast::<Unit>().as_mut() }) else { return Status::Error };
+        let done = guarded(|| work(&mut *unit));
+        (done, unit.instance.take_warnings(), unit.host.clone())
+    };
+    host.warn(&warnings);
     match done {
         Ok(()) => Status::Ok,
-        Err(fault) => unit.host.fail(&fault),
+        Err(fault) => host.fail(&fault),
     }
 }
 

@@ -13,7 +13,7 @@ pub fn write(crane: &dyn DynModel) -> String {
     let mut head = vec![("fmiVersion", "2.0".to_owned()), ("guid", subject.token())];
     head.extend(subject.origin());
     head.push(("variableNamingConvention", "flat".to_owned()));
-    head.push(("numberOfEventIndicators", "0".to_owned()));
+    head.push(("numberOfEventIndicators", subject.indicators().len().to_string()));
     xml.open("fmiModelDescription", &head);
     let yes = |name| (name, "true".to_owned());
     let common = [

@@ -50,6 +50,7 @@ fn write_structure(subject: &Subject, xml: &mut Xml) {
         ("Output", subject.outputs()),
         ("ContinuousStateDerivative", subject.derivatives()),
         ("InitialUnknown", subject.initial_unknowns()),
+        ("EventIndicator", subject.indicators()),
     ];
     for (name, references) in lists {
         for reference in references {

@@ -60,6 +60,12 @@ impl<'a> Subject<'a> {
         rates.chain(accelerations).chain(own).map(|source| self.reference(source)).collect()
     }
 
+    /// Value references of the event indicators.
+    fn indicators(&self) -> Vec<usize> {
+        let is_indicator = |index: &usize| matches!(self.variables[*index].source, Source::Indicator(_));
+        (0..self.variables.len()).filter(is_indicator).collect()
+    }
+
     /// Value references of the outputs.
     fn outputs(&self) -> Vec<usize> {
         (0..self.variables.len()).filter(|&index| self.variables[index].is_output).collect()

@@ -45,6 +45,10 @@ impl Instance {
         let scales = ForceStates::new(self.crane.description()).scales();
         let mut greatest = 0.0_f64;
         for (&reference, along) in knowns.iter().zip(direction) {
+            if !along.is_finite() {
+                let name = &self.variable(reference)?.name;
+                return Err(Fault::Error(format!("the direction of {name} is {along}: choose a finite number")));
+            }
             let scale = if let Source::Own(index) = self.variable(reference)?.source { scales[index] } else { 1.0 };
             greatest = greatest.max(along.abs() / scale);
         }

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crane_live::Motion;
 use crane_model::dyn_crane::DynCrane;
-use crane_model::dynamics::{InitialState, Settings};
+use crane_model::dynamics::{Contacts, InitialState, Settings, next_stop};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::results;
 use crane_model::runs::Start;
@@ -27,6 +27,8 @@ pub use state::State;
 /// A crane begins where its runs begin: in the static equilibrium if the spec asks for statics, otherwise at the guess.
 pub struct Instance {
     crane: Box<dyn DynCrane>,
+    /// What identifies the crane and its variables.
+    token: String,
     variables: Vec<Variable>,
     /// Parameters at the start, and as last set.
     first: Vec<f64>,
@@ -39,7 +41,10 @@ pub struct Instance {
     begin: f64,
     /// Whether initialisation has ended; before that, a parameter changes the start.
     has_begun: bool,
+    /// Whether the importer has ended the simulation.
+    has_ended: bool,
     moment: Option<Moment>,
+    contacts: Contacts,
     /// The run in progress by the crane's own method.
     motion: Option<Motion>,
     quantities: Option<Vec<f64>>,
@@ -66,6 +71,8 @@ impl Instance {
         }
         let inputs = vec![None; crane.description().inputs.len()];
         Ok(Self {
+            token: own,
+            contacts: Contacts::new(crane.as_ref()),
             inputs,
             settings: Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..Settings::of(crane.description()) },
             crane,
@@ -75,6 +82,7 @@ impl Instance {
             is_current: false,
             begin: 0.0,
             has_begun: false,
+            has_ended: false,
             moment: None,
             motion: None,
             quantities: None,
@@ -119,15 +127,26 @@ impl Instance {
         Ok(())
     }
 
+    /// Ends the simulation: no step follows, unless it is reset.
+    pub fn end(&mut self) {
+        self.has_ended = true;
+    }
+
     /// Returns to the state in which it was created.
     pub fn reset(&mut self) {
         self.parameters.clone_from(&self.first);
         self.inputs.fill(None);
         self.settings.tolerance = Settings::of(self.crane.description()).tolerance;
-        (self.begin, self.has_begun, self.is_current) = (0.0, false, false);
+        (self.begin, self.is_current) = (0.0, false);
+        (self.has_begun, self.has_ended) = (false, false);
         (self.moment, self.motion) = (None, None);
         self.cautions.clear();
         self.forget();
+    }
+
+    /// Number of event indicators: contacts, which begin and end.
+    pub fn indicators(&self) -> usize {
+        self.contacts.len()
     }
 
     /// Number of continuous states: coordinates, rates and states of forces.
@@ -208,8 +227,33 @@ impl Instance {
                 Source::Own(index) => self.moment()?.x[index],
                 Source::OwnRate(index) => self.accelerations()?.1[index],
                 Source::Quantity(index) => self.quantities()?[index],
+                Source::Indicator(index) => {
+                    let mut all = vec![0.0; self.contacts.len()];
+                    self.event_indicators(&mut all)?;
+                    all[index]
+                }
             };
         }
+        Ok(())
+    }
+
+    /// Event indicators: each changes its sign where a contact begins or ends.
+    ///
+    /// # Errors
+    /// As [`Instance::get`]; the length of `out` is not their number.
+    pub fn event_indicators(&mut self, out: &mut [f64]) -> Result<(), Fault> {
+        let own = self.indicators();
+        if out.len() != own {
+            return Err(Fault::Error(format!("{} numbers for {own} event indicators", out.len())));
+        }
+        self.settle()?;
+        let Self { crane, moment: Some(Moment { t, q, v, .. }), contacts, .. } = self else {
+            return Err(Fault::nowhere());
+        };
+        let mut places = out.iter_mut();
+        contacts.indicators(crane.as_ref(), *t, (q, v), |indicator| {
+            places.next().into_iter().for_each(|place| *place = indicator);
+        });
         Ok(())
     }
 
@@ -265,17 +309,23 @@ impl Instance {
     /// Sets the time, s.
     ///
     /// # Errors
-    /// As [`Instance::get`].
+    /// As [`Instance::get`]; the time is not finite.
     pub fn set_time(&mut self, t: f64) -> Result<(), Fault> {
+        if !t.is_finite() {
+            return Err(Fault::Error(format!("t = {t} s: choose a finite time")));
+        }
         self.change(|moment| moment.t = t)
     }
 
     /// Sets coordinates, rates and states of forces.
     ///
     /// # Errors
-    /// As [`Instance::get`]; the number of values is not the number of states.
+    /// As [`Instance::get`]; the number of values is not the number of states, or one is not finite: a solver may try smaller steps then.
     pub fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Fault> {
         self.check_states(states.len())?;
+        if let Some(index) = states.iter().position(|state| !state.is_finite()) {
+            return Err(Fault::Discard(format!("state {index} is {}: choose finite states", states[index])));
+        }
         let (q, rest) = states.split_at(self.crane.size());
         let (v, x) = rest.split_at(q.len());
         self.change(|moment| {
@@ -301,28 +351,42 @@ impl Instance {
         Ok(())
     }
 
-    /// The next time at which a drive's motion is not smooth, s.
-    pub fn next_event(&mut self) -> Option<f64> {
-        let pieces = self.crane.description().drives.iter().map(|drive| drive.pieces).sum();
-        let mut times = vec![[f64::NAN; 2]; pieces];
-        self.crane.drive_pieces(&mut times);
-        let t = self.time();
-        times.into_iter().flatten().filter(|time| *time > t && time.is_finite()).min_by(f64::total_cmp)
+    /// The next time at which the motion of a drive or a winch or the scale of a load is not smooth, s.
+    ///
+    /// # Errors
+    /// As [`Instance::get`].
+    pub fn next_event(&mut self) -> Result<Option<f64>, Fault> {
+        self.settle()?;
+        Ok(next_stop(self.crane.as_ref(), self.time()))
     }
 
     /// A step of the crane's own integrator, s. Its history continues from step to step; a change of a parameter or an input starts
     /// a new one.
     ///
     /// # Errors
-    /// As [`Instance::get`]; the step does not begin at the crane's current time, or is not positive; the integration fails.
+    /// As [`Instance::get`]; the simulation has not begun or has ended; the step does not begin at the crane's current time, or its length
+    /// is out of range; the integration fails.
     pub fn step(&mut self, from: f64, length: f64) -> Result<(), Fault> {
         /// Accepted rounding error of a time that is a sum of steps, as a fraction of a step.
         const ROUNDING: f64 = 1e-6;
-        let Moment { t, q, v, x } = self.moment()?.clone();
-        if !(length > 0.0 && length.is_finite()) {
-            return Err(Fault::Error(format!("a step of {length} s: choose one above 0")));
+        if !self.has_begun {
+            return Err(Fault::Error(
+                "a step before the end of the initialisation: exit the initialisation mode first".to_owned(),
+            ));
         }
-        if (from - t).abs() > ROUNDING * length {
+        if self.has_ended {
+            return Err(Fault::Error("a step after the end of the simulation: reset the unit first".to_owned()));
+        }
+        let Moment { t, q, v, x } = self.moment()?.clone();
+        let (least, greatest) = Settings::TIMES;
+        if !(least..=greatest).contains(&length) {
+            return Err(Fault::Error(format!(
+                "a step of {length} s: choose one above 0, from {least:e} to {greatest:e}"
+            )));
+        }
+        // The comparison is false for NaN.
+        let begins_here = (from - t).abs() <= ROUNDING * length;
+        if !begins_here {
             return Err(Fault::Error(format!("a step from t = {from} s, but the crane is at t = {t} s")));
         }
         let mut motion = match self.motion.take() {

@@ -1,10 +1,15 @@
 //! States to come back to.
 
-use super::Instance;
+use super::{Fault, Instance};
+
+/// Bytes per number of a state.
+const BYTES: usize = size_of::<f64>();
 
 /// Everything that determines the crane's future motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
+    /// The token of the crane's variables: no other crane has states like it.
+    pub(super) token: String,
     pub(super) parameters: Vec<f64>,
     /// Values of the inputs that are set.
     pub(super) inputs: Vec<Option<f64>>,
@@ -22,32 +27,45 @@ pub(super) struct Moment {
 }
 
 impl State {
-    /// The state as numbers: parameters; inputs, NaN if not set; and, if known, time, pose, rates and states of forces.
-    pub fn numbers(&self) -> Vec<f64> {
+    /// The state as bytes: the token; then numbers, which are parameters; inputs, NaN if not set; and, if known, time, pose, rates and
+    /// states of forces.
+    pub fn bytes(&self) -> Vec<u8> {
         let moment = self.moment.iter().flat_map(|Moment { t, q, v, x }| std::iter::once(t).chain(q).chain(v).chain(x));
         let inputs = self.inputs.iter().map(|value| value.unwrap_or(f64::NAN));
-        self.parameters.iter().copied().chain(inputs).chain(moment.copied()).collect()
+        let numbers = self.parameters.iter().copied().chain(inputs).chain(moment.copied());
+        self.token.bytes().chain(numbers.flat_map(f64::to_le_bytes)).collect()
     }
 }
 
 impl Instance {
     /// The state, to return to later.
     pub fn state(&self) -> State {
-        let Self { parameters, inputs, moment, .. } = self;
-        State { parameters: parameters.clone(), inputs: inputs.clone(), moment: moment.clone() }
+        let Self { token, parameters, inputs, moment, .. } = self;
+        let (token, parameters) = (token.clone(), parameters.clone());
+        State { token, parameters, inputs: inputs.clone(), moment: moment.clone() }
     }
 
     /// Returns to a state.
-    pub fn set_state(&mut self, state: &State) {
+    ///
+    /// # Errors
+    /// It is that of another crane.
+    pub fn set_state(&mut self, state: &State) -> Result<(), Fault> {
+        if state.token != self.token {
+            let name = &self.crane.description().name;
+            return Err(Fault::Error(format!("the state is that of another crane, not of {name}")));
+        }
         self.parameters.clone_from(&state.parameters);
         self.inputs.clone_from(&state.inputs);
         self.moment.clone_from(&state.moment);
         (self.is_current, self.motion) = (false, None);
         self.forget();
+        Ok(())
     }
 
-    /// A state of this crane from its numbers; `None` if their count does not match.
-    pub fn state_of(&self, numbers: &[f64]) -> Option<State> {
+    /// A state of this crane from its bytes; `None` if they are those of another crane.
+    pub fn state_of(&self, bytes: &[u8]) -> Option<State> {
+        let (chunks, []) = bytes.strip_prefix(self.token.as_bytes())?.as_chunks::<BYTES>() else { return None };
+        let numbers: Vec<f64> = chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
         let (parameters, rest) = numbers.split_at_checked(self.parameters.len())?;
         let (inputs, rest) = rest.split_at_checked(self.inputs.len())?;
         let inputs = inputs.iter().map(|value| Some(*value).filter(|value| !value.is_nan())).collect();
@@ -60,6 +78,6 @@ impl Instance {
             }
             _ => return None,
         };
-        Some(State { parameters: parameters.to_vec(), inputs, moment })
+        Some(State { token: self.token.clone(), parameters: parameters.to_vec(), inputs, moment })
     }
 }
