@@ -465,15 +465,16 @@ def read_cylinder(crane, written, spans):
     if linkage is None:
         length_of = lambda start, end: ca.norm_2(end - start)
     else:
-        # The pivot moves with the body that carries the foot: along a beam, the element there.
-        local = spec.vector(linkage["pivot"]) - (spec.vector(written["foot"]["at"]) - foot[1])
-        pivot = place(foot[0].transform, local)
+        # The pivot is on the link of the foot: on a beam, on the element there.
+        pin_of_pivot = carrier(spec, spec.vector(linkage["pivot"]), spans[written["foot"]["link"]])
+        pivot = place(pin_of_pivot[0].transform, pin_of_pivot[1])
+        of_pivot = next(i for i, other in enumerate(crane.bodies) if other is pin_of_pivot[0])
         beyond = max(foot, head, key=lambda pin: pin[0].degrees_of_freedom)[0]
         axis = turning_axis(beyond.transform[:3, :3], coordinate.q)
         # Beside the joint, on the side of the foot.
         moved = next(i for i, body in enumerate(crane.bodies) if body.degrees_of_freedom > crane.coordinates.index(coordinate))
         carrier_of_axis = moved - 1 if of_head > of_foot else moved
-        carried += [(pivot, of_foot, False), (axis, carrier_of_axis, True)]
+        carried += [(pivot, of_pivot, False), (axis, carrier_of_axis, True)]
         lengths = [spec.number(linkage[key]) for key in ("rocker", "link")]
         length_of = lambda start, end, pivot, axis: ca.norm_2(
             pin_of_rocker(pivot, end, axis, lengths, linkage["side"]) - start

@@ -62,7 +62,7 @@ pub struct Valve {
 pub struct Pump {
     /// Maximum flow, m³/s.
     pub max_flow: f64,
-    /// Pressure that it maintains, Pa.
+    /// Pressure at which it delivers nothing, Pa.
     pub pressure: Option<f64>,
     /// Oil between pump and valves, m³.
     pub volume: f64,
@@ -80,8 +80,8 @@ pub struct Pin {
 /// Rocker and link between a cylinder's rod and its head.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linkage {
-    /// The rocker's pivot in the frame of the body that carries the foot, m.
-    pub pivot: [Value; 3],
+    /// The rocker's pivot, on the link of the foot.
+    pub pivot: Pin,
     /// Length of the rocker, m.
     pub rocker: Value,
     /// Length of the link, m.
@@ -97,14 +97,20 @@ impl Cylinder {
         let circle = |diameter: f64| PI / 4.0 * diameter * diameter;
         [circle(self.bore), circle(self.bore) - circle(self.rod)]
     }
+
+    /// Foot, head and, with a linkage, the pivot of its rocker.
+    fn pins(&self) -> impl Iterator<Item = &Pin> {
+        [&self.foot, &self.head].into_iter().chain(self.linkage.as_ref().map(|linkage| &linkage.pivot))
+    }
 }
 
 impl Chain {
-    /// The coordinates that move only one of a cylinder's pins, and so change its length: that of its joint and those of beams.
+    /// The coordinates that move only some of a cylinder's pins, and so change its length: that of its joint and those of beams.
     #[must_use]
     pub fn spanned_by(&self, cylinder: &Cylinder) -> Range<usize> {
-        let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| self.degrees_of_freedom(pin.body));
-        foot.min(head)..foot.max(head)
+        let pins = cylinder.pins().map(|pin| self.degrees_of_freedom(pin.body));
+        let (first, end) = pins.fold((usize::MAX, 0), |(first, end), moved| (first.min(moved), end.max(moved)));
+        first..end
     }
 
     /// The index of the drive whose effort is that of a cylinder.

@@ -1,11 +1,10 @@
 //! Cylinders between their pins: length, its rate, its derivatives, and what a cylinder does to the bodies.
 //!
 //! Notation
-//! : A the foot, B the rod's pin, H the head, P the pivot of the rocker, all in the world; e = (B − A)/ℓ. Rates are those seen from the
-//!   body that carries A and P; without a linkage B = H:
+//! : A the foot, B the rod's pin, H the head, P the pivot of the rocker, all in the world; e = (B − A)/ℓ. Without a linkage B = H:
 //!
 //! ```text
-//! ℓ = |B − A|        ℓ̇ = e · Ḃ
+//! ℓ = |B − A|        ℓ̇ = e · (Ḃ − Ȧ)
 //! ```
 //!
 //! With a linkage, B is at the rocker's length r from P and at the link's length l from H, in the plane normal to the joint's axis
@@ -13,20 +12,22 @@
 //! `w = H − P`, `d = |w|`, `c = w/d` and `m = ± (n × w)/|n × w|`:
 //!
 //! ```text
-//! B = P + a c + h m,              a = (d² + r² − l²)/2d,   h = √(r² − a²)
-//! Ḃ = ȧ c + a ċ + ḣ m + h ṁ,      ȧ = ḋ (1 − a/d),         ḣ = −a ȧ/h
+//! B = P + a c + h m,                  a = (d² + r² − l²)/2d,   h = √(r² − a²)
+//! Ḃ = Ṗ + ȧ c + a ċ + ḣ m + h ṁ,      ȧ = ḋ (1 − a/d),         ḣ = −a ȧ/h
 //! ```
 //!
-//! Seen from that body, the axis turns as well if something bends between the pins and the joint, so that `ℓ̇ = g_H · Ḣ + g_n · ṅ`:
+//! If something bends between these points, all of them and the axis move against each other:
 //!
 //! ```text
+//! ℓ̇ = g_A · Ȧ + g_P · Ṗ + g_H · Ḣ + g_n · ṅ
 //! z = h/|n × w| (e − (e · m) m)
 //! g_H = (1 − a/d) (e · c − a/h e · m) c + a/d (e − (e · c) c) + z × n,      g_n = w × z
+//! g_A = −e,      g_P = e − g_H
 //! ```
 //!
-//! A cylinder that pushes with F has the power F ℓ̇: it exerts the force `F g_H` at H and the moment `F n × g_n` on the body that carries the
-//! axis, and the opposite of both on that which carries A. In a pose in which the linkage cannot be assembled, the square root is of a
-//! negative number, and the result is NaN.
+//! A cylinder that pushes with F has the power F ℓ̇: it exerts the forces `F g_A`, `F g_P` and `F g_H` at A, P and H, and the moment
+//! `F n × g_n` on the body that carries the axis. They are in balance, since ℓ does not change if everything moves together. In a pose in
+//! which the linkage cannot be assembled, the square root is of a negative number, and the result is NaN.
 
 use super::kinematics::Kinematics;
 use super::model::Model;
@@ -35,18 +36,22 @@ use super::vector::{SymmetricMatrix, Vec3};
 use crate::chain::{BodyId, Cylinder, Linkage, Pin, Value};
 use crate::symbolic::Expr;
 
+/// A point on which the length of a cylinder depends.
+struct Place<'g> {
+    body: BodyId,
+    position: Vec3<'g>,
+    /// g of this point.
+    gradient: Vec3<'g>,
+}
+
 /// A cylinder in a pose.
 struct Line<'g> {
-    /// H
-    head: Vec3<'g>,
-    /// n
-    axis: Vec3<'g>,
     /// ℓ
     length: Expr<'g>,
-    /// `g_H`
-    by_head: Vec3<'g>,
-    /// `g_n`, if there is a linkage
-    by_axis: Option<Vec3<'g>>,
+    /// H, A and, if there is a linkage, P
+    places: Vec<Place<'g>>,
+    /// n and `g_n`, if there is a linkage
+    axis: Option<[Vec3<'g>; 2]>,
 }
 
 /// A linkage in a pose.
@@ -111,35 +116,43 @@ impl<'g> Line<'g> {
         let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| pin_position(model, kinematics, pin));
         let axis = kinematics.generators[cylinder.coordinate.0].omega;
         let linkage = cylinder.linkage.as_ref().map(|Linkage { pivot, rocker, link, left }| {
-            let pivot = pin_position(model, kinematics, &Pin { position: pivot.clone(), ..cylinder.foot.clone() });
+            let position = pin_position(model, kinematics, pivot);
             let lengths = [rocker, link].map(|length| model.number(length));
-            (pivot, Assembled::new(axis, head - pivot, lengths, *left))
+            (pivot.body, position, Assembled::new(axis, head - position, lengths, *left))
         });
-        let pin = linkage.as_ref().map_or(head, |(pivot, linkage)| *pivot + linkage.pin());
+        let pin = linkage.as_ref().map_or(head, |(_, pivot, linkage)| *pivot + linkage.pin());
         let way = pin - foot;
         let length = way.dot(way).sqrt();
         let direction = (1.0 / length) * way;
-        let (by_head, by_axis) = match linkage {
-            Some((_, linkage)) => {
+        let place = |body, position, gradient| Place { body, position, gradient };
+        let of_foot = place(cylinder.foot.body, foot, -direction);
+        match linkage {
+            Some((body, pivot, linkage)) => {
                 let [by_head, by_axis] = linkage.gradients(direction);
-                (by_head, Some(by_axis))
+                let of_head = place(cylinder.head.body, head, by_head);
+                let of_pivot = place(body, pivot, direction - by_head);
+                Line { length, places: vec![of_head, of_foot, of_pivot], axis: Some([axis, by_axis]) }
             }
-            None => (direction, None),
-        };
-        Line { head, axis, length, by_head, by_axis }
+            None => {
+                let of_head = place(cylinder.head.body, head, direction);
+                Line { length, places: vec![of_head, of_foot], axis: None }
+            }
+        }
     }
 
-    /// Indices and values of the entries of `∂ℓ/∂q`.
+    /// Indices and values of the entries of `∂ℓ/∂q`: the rate of ℓ while a coordinate moves the side of the head against the other, which
+    /// is the opposite of that while it moves the other side.
     fn jacobian(&self, model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Vec<(usize, Expr<'g>)> {
         let (joint, head_beyond) = (cylinder.coordinate.0, cylinder.head.body > cylinder.foot.body);
         let entry = |j: usize| {
             let generator = &kinematics.generators[j];
+            let moves = |body: BodyId| body.0 >= generator.body;
+            let with_head = self.places.iter().filter(|place| moves(place.body) == moves(cylinder.head.body));
+            let of_points = with_head.map(|place| place.gradient.dot(generator.velocity(place.position)));
             let turns_axis = if head_beyond { j < joint } else { j > joint };
-            let mut rate = self.by_head.dot(generator.velocity(self.head));
-            if let Some(by_axis) = self.by_axis.filter(|_| turns_axis) {
-                rate = rate + by_axis.dot(generator.rotate(self.axis));
-            }
-            (j, if head_beyond { rate } else { -rate })
+            let of_axis = self.axis.filter(|_| turns_axis).map(|[axis, by_axis]| by_axis.dot(generator.rotate(axis)));
+            let rate = of_points.chain(of_axis).fold(model.zero(), |sum, rate| sum + rate);
+            (j, if moves(cylinder.head.body) { rate } else { -rate })
         };
         model.chain.spanned_by(cylinder).map(entry).collect()
     }
@@ -193,17 +206,12 @@ pub fn jacobians<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 /// Force and moment about the world's origin, in the world frame, that a cylinder that pushes with 1 N exerts on each body.
 pub fn pushes<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Vec<(BodyId, [Vec3<'g>; 2])> {
     let line = Line::new(model, kinematics, cylinder);
-    let (force, moment) = (line.by_head, line.head.cross(line.by_head));
-    let mut pushes = vec![(cylinder.head.body, [force, moment]), (cylinder.foot.body, [-force, -moment])];
+    let at = |place: &Place<'g>| (place.body, [place.gradient, place.position.cross(place.gradient)]);
     // The joint leaves its axis in place, seen from both of its sides: that on which the head is not.
     let beyond = kinematics.generators[cylinder.coordinate.0].body;
     let carrier = BodyId(if cylinder.head.body > cylinder.foot.body { beyond - 1 } else { beyond });
-    if let Some(by_axis) = line.by_axis.filter(|_| carrier != cylinder.foot.body) {
-        let zero = Vec3::zero(model.graph);
-        let moment = line.axis.cross(by_axis);
-        pushes.extend([(carrier, [zero, moment]), (cylinder.foot.body, [zero, -moment])]);
-    }
-    pushes
+    let on_carrier = line.axis.map(|[axis, by_axis]| (carrier, [Vec3::zero(model.graph), axis.cross(by_axis)]));
+    line.places.iter().map(at).chain(on_carrier).collect()
 }
 
 /// The stiffness at rest of the drive whose joint oil moves; `None` for a cylinder without a valve.

@@ -85,7 +85,7 @@ pub struct Pin {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a mapping of `pivot`, `rocker`, `link` and `side`")]
 pub struct Linkage {
-    /// The rocker's pivot in the frame of the link that carries the cylinder's foot, m.
+    /// The rocker's pivot in the frame of the link that carries the cylinder's foot, m; on a beam, on the element at its own place.
     pub pivot: Spanned<Vector>,
     /// Length of the rocker, m.
     pub rocker: Spanned<Number>,

@@ -3,8 +3,7 @@
 use super::Check;
 use super::limits::Limit;
 use crate::chain::{
-    BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Profile, Pump, Step, Transmission, Value,
-    Valve,
+    BodyId, CoordinateId, CoordinateKind, Cylinder, Drive, Linkage, Pin, Profile, Pump, Step, Transmission, Valve,
 };
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Constant, Crane, Side, Spanned};
@@ -163,7 +162,7 @@ impl<'a> Check<'a> {
         };
         let valve = given.valve.as_ref().and_then(|valve| valve.value.as_ref()).map(|valve| self.valve(valve, &name));
         let foot = self.pin(given.foot.value.as_ref(), &place("foot"));
-        let head = self.pin(given.head.value.as_ref(), &place("head")).map(|(pin, _)| pin);
+        let head = self.pin(given.head.value.as_ref(), &place("head"));
         let joint = given.coordinate.value.as_deref().unwrap_or_default();
         let coordinate = self.coordinate(&given.coordinate)?;
         if !drives.iter().any(|drive| drive.coordinate == coordinate) {
@@ -174,10 +173,11 @@ impl<'a> Check<'a> {
             if kind == CoordinateKind::Translation {
                 self.report(rule::straight_linkage(linkage.span, &name, joint));
             }
-            let (_, start) = foot.as_ref()?;
-            linkage.value.as_ref().map(|linkage| self.linkage(linkage, &name, start))
+            // Otherwise its link is unknown, which has been reported.
+            foot.as_ref()?;
+            self.linkage(linkage.value.as_ref()?, &given.foot.value.as_ref()?.link, &name)
         });
-        let ((foot, _), head) = (foot?, head?);
+        let (foot, head) = (foot?, head?);
         self.spans(given, &name, coordinate, [foot.body, head.body]);
         Some(Cylinder {
             coordinate,
@@ -197,26 +197,24 @@ impl<'a> Check<'a> {
         })
     }
 
-    /// A pin, and the position of the frame of its body along the link, m.
-    fn pin(&mut self, given: Option<&spec::Pin>, place: &str) -> Option<(Pin, Value)> {
+    fn pin(&mut self, given: Option<&spec::Pin>, place: &str) -> Option<Pin> {
         let given = given?;
         let at = self.vector(&given.at, place, "m", Limit::Any);
-        let (body, position) = self.attach(&given.link, at.clone())?;
-        let [along, ..] = at;
-        let start = along - position[0].clone();
-        Some((Pin { body, position }, start))
+        let (body, position) = self.attach(&given.link, at)?;
+        Some(Pin { body, position })
     }
 
-    /// `start`: the position, along its link, of the frame of the body that carries the foot, m.
-    fn linkage(&mut self, given: &spec::Linkage, name: &str, start: &Value) -> Linkage {
+    /// A linkage, whose pivot is on the link of the foot.
+    fn linkage(&mut self, given: &spec::Linkage, link: &Spanned<String>, name: &str) -> Option<Linkage> {
         let place = |what: &str| format!("the {what} of the linkage of cylinder `{name}`");
-        let [along, y, z] = self.vector(&given.pivot, &place("pivot"), "m", Limit::Any);
-        Linkage {
-            pivot: [along - start.clone(), y, z],
+        let at = self.vector(&given.pivot, &place("pivot"), "m", Limit::Any);
+        let (body, position) = self.attach(link, at)?;
+        Some(Linkage {
+            pivot: Pin { body, position },
             rocker: self.number(&given.rocker, &place("rocker"), "m", Limit::Positive),
             link: self.number(&given.link, &place("link"), "m", Limit::Positive),
             left: given.side.value == Some(Side::Left),
-        }
+        })
     }
 
     /// Reports a cylinder whose joint is not between its pins, or that has another joint between them.
