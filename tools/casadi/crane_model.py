@@ -288,8 +288,10 @@ def read_beam_bodies(crane, name, transform, written):
         if index > 0:
             motions = [crane.move(element, symbol, is_element=True) for symbol in DIRECTIONS]
             rotations = crane.coordinates[-3:]
+            # A curved beam turns by half the angle of a section before its spring and by half after it.
             about_z, about_y = beam.bend
-            transform = transform @ rotate("z", about_z) @ rotate("y", about_y)
+            half_bend = rotate_by_vector(ca.vertcat(0, about_y / 2, about_z / 2))
+            transform = transform @ half_bend
             if written.get("section_joint", "symmetric") == "paper":
                 for motion in motions:
                     transform = transform @ motion
@@ -297,6 +299,7 @@ def read_beam_bodies(crane, name, transform, written):
                 for coordinate in rotations:
                     coordinate.is_in_vector = True
                 transform = transform @ rotate_by_vector(ca.vertcat(*[c.q for c in reversed(rotations)]))
+            transform = transform @ half_bend
             for coordinate, symbol in zip(rotations, DIRECTIONS):
                 stiffness, damping = beam.stiffness[index - 1][symbol], beam.damping[index - 1][symbol]
                 crane.elements.append(Spring(coordinate, stiffness, damping))

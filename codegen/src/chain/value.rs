@@ -28,6 +28,8 @@ pub enum Value {
     Sin(Box<Value>),
     /// cos a
     Cos(Box<Value>),
+    /// √a
+    Sqrt(Box<Value>),
 }
 
 impl Value {
@@ -66,6 +68,16 @@ impl Value {
             Value::Div(a, b) => a.at(parameters) / b.at(parameters),
             Value::Sin(a) => libm::sin(a.at(parameters)),
             Value::Cos(a) => libm::cos(a.at(parameters)),
+            Value::Sqrt(a) => libm::sqrt(a.at(parameters)),
+        }
+    }
+
+    /// Square root.
+    #[must_use]
+    pub fn sqrt(self) -> Value {
+        match self {
+            Value::Constant(c) => Value::Constant(libm::sqrt(c)),
+            live => Value::Sqrt(Box::new(live)),
         }
     }
 

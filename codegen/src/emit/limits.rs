@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{Expr, Item, parse_quote};
 
-use super::arithmetic::{difference, field, integer, literal, negative, product, quotient, sum, variable};
+use super::arithmetic::{call, difference, field, integer, literal, negative, product, quotient, sum, variable};
 use super::description::text;
 use crate::chain::{Bound, Chain, ParameterId, Refusal, Relation, Value};
 
@@ -89,5 +89,6 @@ fn expression(value: &Value, chain: &Chain) -> Expr {
             let a = of(a);
             parse_quote!(sin_cos([#a]).1[0])
         }
+        Value::Sqrt(a) => call("sqrt", [of(a)]),
     }
 }

@@ -2,7 +2,10 @@
 
 use super::inertia::{about_com, sum};
 use super::section::{CrossSection, Shape};
-use crate::chain::{Axis, Inertia, Outline, Value};
+use crate::chain::{Axis, Inertia, Outline, Step, Value};
+
+/// An angle that changes no rotation, and whose square is not 0 even in single precision, rad.
+const NO_ANGLE: f64 = 1e-18;
 
 /// A rigid finite element.
 #[derive(Clone, Debug)]
@@ -20,8 +23,8 @@ pub(crate) struct Joint {
     pub stiffness: [Value; 3],
     /// Damping, N m s/rad.
     pub damping: [Value; 3],
-    /// Rotations of a curved beam at rest, before those of the spring.
-    pub bend: Vec<(Axis, Value)>,
+    /// Rotation of a curved beam at rest by half the angle of a section, as steps: once before the spring and once after it.
+    pub half_bend: Vec<Step>,
 }
 
 /// A beam of rigid elements with a joint between neighbours.
@@ -45,6 +48,32 @@ pub(crate) fn element_lengths(length: &Value, sections: usize) -> Vec<Value> {
     lengths[0] = half.clone();
     lengths[sections] = half;
     lengths
+}
+
+/// The rotation by the vector (0, θ, ψ), as steps: `Ry(θ)` or `Rz(ψ)` if only one angle is given, otherwise
+/// `Rx(α) Ry(√(θ² + ψ²)) Rx(−α)`, `α = atan2(ψ, θ)`.
+pub(crate) fn rotation_across(theta: Value, psi: Value) -> Vec<Step> {
+    let about = |axis, angle: Value| {
+        let (sin, cos) = angle.sin_cos();
+        Step::Rotate { axis, sin, cos }
+    };
+    if psi.is_zero() || theta.is_zero() {
+        let angles = [(Axis::Y, theta), (Axis::Z, psi)];
+        return angles
+            .into_iter()
+            .filter(|(_, angle)| !angle.is_zero())
+            .map(|(axis, angle)| about(axis, angle))
+            .collect();
+    }
+    // Live angles may both be 0: then any direction will do.
+    let theta = theta + NO_ANGLE.into();
+    let angle = (theta.clone() * theta.clone() + psi.clone() * psi.clone()).sqrt();
+    let (sin, cos) = (psi / angle.clone(), theta / angle.clone());
+    vec![
+        Step::Rotate { axis: Axis::X, sin: sin.clone(), cos: cos.clone() },
+        about(Axis::Y, angle),
+        Step::Rotate { axis: Axis::X, sin: -sin, cos },
+    ]
 }
 
 /// A prismatic element of length ℓ with line density μ, kg/m:

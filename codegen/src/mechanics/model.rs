@@ -134,6 +134,7 @@ impl<'g> Model<'g> {
             Value::Div(a, b) => self.number(a) / self.number(b),
             Value::Sin(a) => self.number(a).sin(),
             Value::Cos(a) => self.number(a).cos(),
+            Value::Sqrt(a) => self.number(a).sqrt(),
         }
     }
 

@@ -63,7 +63,8 @@ impl<'a> Check<'a> {
     }
 
     /// Appends rigid elements as bodies: element 0 on the link's joint, element i ≥ 1 at the end of the previous one,
-    /// rotated by the rotation vector (φ, θ, ψ) or by `Rz(ψ) Ry(θ) Rx(φ)`.
+    /// rotated by the rotation vector (φ, θ, ψ) or by `Rz(ψ) Ry(θ) Rx(φ)`. In a curved beam, half the angle of a section is before the
+    /// spring and half after it, so that its axes are those of the middle of the section.
     fn unroll(
         &mut self,
         (link, span): (&str, Span),
@@ -88,14 +89,12 @@ impl<'a> Check<'a> {
                     self.push_coordinate((link, &name), CoordinateKind::Rotation, axis, owner, span)
                 };
                 let ids = ROTATIONS.map(&mut rotation);
-                for (axis, angle) in &joint.bend {
-                    let (sin, cos) = angle.sin_cos();
-                    path.push(Step::Rotate { axis: *axis, sin, cos });
-                }
+                path.extend(joint.half_bend.iter().cloned());
                 match section_joint {
                     SectionJoint::Symmetric => path.push(Step::RotationVector(ids)),
                     SectionJoint::Paper => path.extend(ids.map(Step::Move)),
                 }
+                path.extend(joint.half_bend);
                 for (id, (stiffness, damping)) in ids.into_iter().zip(joint.stiffness.into_iter().zip(joint.damping)) {
                     self.beam_springs.push(BeamSpring { coordinate: id, stiffness, damping });
                 }
@@ -139,7 +138,7 @@ impl<'a> Check<'a> {
         let extra = self.number_or(beam.extra_mass.as_ref(), 0.0, "`extra_mass`", "kg/m", Limit::NotNegative);
         let damping = self.beam_damping(beam.damping.as_ref());
         let safety = self.number_or(beam.safety_factor.as_ref(), SAFETY_FACTOR, "`safety_factor`", "", Limit::Positive);
-        let bend = self.bend(beam.bend.as_ref(), sections);
+        let half_bend = self.half_bend(beam.bend.as_ref(), sections);
         let (Elastic { youngs, shear, density, yield_stress }, sections) = (material?, sections?);
         let divided = match (section, parts) {
             (Some(section), None) => {
@@ -183,7 +182,8 @@ impl<'a> Check<'a> {
             moduli: divided.moduli,
             allowable_stress: yield_stress.map(|stress| stress / safety),
         });
-        let joint = |stiffness: [Value; 3]| Joint { damping: damping.of(&stiffness), stiffness, bend: bend.clone() };
+        let joint =
+            |stiffness: [Value; 3]| Joint { damping: damping.of(&stiffness), stiffness, half_bend: half_bend.clone() };
         Some(Elements { elements: divided.elements, joints: divided.stiffness.into_iter().map(joint).collect() })
     }
 
@@ -233,16 +233,16 @@ impl<'a> Check<'a> {
         Some(Part { length: length.as_constant()?, from, to })
     }
 
-    /// Rotations of a curved beam at each of its springs.
-    fn bend(&mut self, given: Option<&'a Spanned<Bend>>, sections: Option<usize>) -> Vec<(Axis, Value)> {
+    /// Rotation of a curved beam by half the angle of a section: the rotation vector (0, θ/2n, ψ/2n).
+    fn half_bend(&mut self, given: Option<&'a Spanned<Bend>>, sections: Option<usize>) -> Vec<Step> {
         let Some(bend) = given.and_then(|given| given.value.as_ref()) else { return Vec::new() };
-        let angles = [(Axis::Z, &bend.psi, "`psi`"), (Axis::Y, &bend.theta, "`theta`")];
-        let angles = angles.map(|(axis, angle, place)| (axis, angle.as_ref().map(|angle| self.angle(angle, place))));
         if let (Some(given), Some(0)) = (given, sections) {
             self.report(rule::bent_in_one_piece(given.span));
         }
-        let count = sections.unwrap_or(1).max(1) as f64;
-        angles.into_iter().filter_map(|(axis, angle)| Some((axis, angle? / count.into()))).collect()
+        let halves = 2.0 * sections.unwrap_or(1).max(1) as f64;
+        let [theta, psi] = [(&bend.theta, "`theta`"), (&bend.psi, "`psi`")]
+            .map(|(angle, place)| angle.as_ref().map_or(Value::ZERO, |angle| self.angle(angle, place) / halves.into()));
+        beam::rotation_across(theta, psi)
     }
 
     /// Number of sections; 0 for a rigid beam.

@@ -73,7 +73,7 @@ impl<'a> Check<'a> {
         Joint {
             stiffness: each(Some(&spring.stiffness), "the stiffness", "N m/rad"),
             damping: each(spring.damping.as_ref(), "the damping", "N m s/rad"),
-            bend: Vec::new(),
+            half_bend: Vec::new(),
         }
     }
 }
