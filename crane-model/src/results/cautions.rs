@@ -1,13 +1,13 @@
 //! Cautions about poses and runs for which the model is not valid.
 
-use super::{Extremes, Table, connectors, cylinders, feet, limits, stop_effort};
+use super::{Extremes, Table, connectors, cylinders, feet, limits, stop_effort, telescopes};
 use crate::{CylinderInfo, Description, dyn_crane::DynCrane};
 
 /// Default rotation of one section of a beam above which there is a caution, degrees: linear springs and straight elements then
 /// have an error of about 1 %.
 pub const BEND: f64 = 20.0;
 
-/// Feet that pull the crane down or have lifted, joints on their stops, slack ropes, and elements bent beyond `bend` degrees, at a pose at rest.
+/// Feet that pull the crane down or have lifted, joints on their stops, slack ropes, stages of telescopes that overlap, and elements bent beyond `bend` degrees, at a pose at rest.
 pub fn of_pose(crane: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
     let description = crane.description();
     let angles = description.coordinates.iter().zip(q).filter(|(coordinate, _)| coordinate.role.is_element());
@@ -22,11 +22,17 @@ pub fn of_pose(crane: &dyn DynCrane, q: &[f64], bend: f64) -> Vec<String> {
         .chain(cylinders::of_pose(crane, q))
         .chain(stopped)
         .chain(connectors::of_pose(crane, q))
+        .chain(of_telescopes(crane, q))
         .chain(bent_beyond(bent, bend))
         .collect()
 }
 
-/// The same over a run.
+/// Stages of a telescope that overlap the link in which they slide, at a pose.
+pub fn of_telescopes(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
+    telescopes::of_pose(crane, q)
+}
+
+/// What [`of_pose`] reports, over a run.
 pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
     let description = crane.description();
     let elements = description.coordinates.iter().filter(|coordinate| coordinate.role.is_element());
@@ -40,6 +46,7 @@ pub fn of_run(crane: &dyn DynCrane, table: &Table, bend: f64) -> Vec<String> {
         .chain(cylinders::of_run(description, table))
         .chain(stopped)
         .chain(connectors::of_run(description, table))
+        .chain(telescopes::of_run(crane, table))
         .chain(bent_beyond(bent, bend))
         .collect()
 }
@@ -72,7 +79,7 @@ pub fn large_tilt(description: &Description, table: &Table) -> Option<String> {
 }
 
 /// The poses of a run: the columns after the time.
-fn poses<'a>(description: &Description, table: &'a Table) -> impl Iterator<Item = &'a [f64]> {
+pub(super) fn poses<'a>(description: &Description, table: &'a Table) -> impl Iterator<Item = &'a [f64]> {
     let n = description.coordinates.len();
     table.rows.iter().filter_map(move |row| row.get(1..=n))
 }

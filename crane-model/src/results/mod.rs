@@ -10,6 +10,7 @@ mod limits;
 mod peaks;
 mod recording;
 mod table;
+mod telescopes;
 pub mod verification;
 
 pub(crate) use cylinders::unassembled;

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crane_model::{dynamics::Method, modes::damped, runs::limiting_modes, stability::limit};
+use crane_model::{dynamics::Method, modes::damped, results::cautions, runs::limiting_modes, stability::limit};
 use crane_page::tables::{Case, Cell, Report, damped_modes, undamped_modes};
 
 use crate::{Registry, arguments::Modes, linearisation, problem::Outcome, refinement};
@@ -30,6 +30,9 @@ pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outco
     report.fact("largest stable step", Cell::from(step), "s");
     let changes = refinement::changes(&case, registry)?;
     report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
+    for caution in cautions::of_telescopes(crane.as_ref(), &case.equilibrium.q) {
+        report.caution(Some(caution));
+    }
     report.excerpt(undamped_modes(&case, changes.as_deref())?, LOWEST);
     report.excerpt(damped_modes(description, &modes), 0);
     report.show_all(options.all);

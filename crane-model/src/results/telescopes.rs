@@ -1,0 +1,91 @@
+//! Flexible links that slide in one another: a stage is held where it begins, not at the pads of the link in which it slides.
+
+use super::Table;
+use super::cautions::poses;
+use crate::dyn_crane::DynCrane;
+use crate::{CoordinateKind, Description};
+
+/// Overlaps below this length, m, are those of a stage that is drawn out.
+const NONE: f64 = 1e-6;
+/// Cosine of an angle between two links up to which one slides along the other.
+const ALONG: f64 = 0.99;
+
+/// A stage, and the element of the outer link in front of it: indices of bodies.
+struct Stage {
+    first: usize,
+    outer: usize,
+}
+
+/// Stages that overlap the link in which they slide, at a pose.
+pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
+    let description = crane.description();
+    cautions(description, &overlaps(crane, &stages(description), q), "")
+}
+
+/// The same over a run, with the greatest overlap of each.
+pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
+    let description = crane.description();
+    let stages = stages(description);
+    if stages.is_empty() {
+        return Vec::new();
+    }
+    let mut greatest = Vec::new();
+    for q in poses(description, table) {
+        let overlaps = overlaps(crane, &stages, q);
+        greatest.resize(overlaps.len(), 0.0);
+        for (greatest, overlap) in greatest.iter_mut().zip(overlaps) {
+            *greatest = overlap.max(*greatest);
+        }
+    }
+    cautions(description, &greatest, "up to ")
+}
+
+fn cautions(description: &Description, overlaps: &[f64], up_to: &str) -> Vec<String> {
+    let overlapping = stages(description).into_iter().zip(overlaps).filter(|(_, overlap)| **overlap > NONE);
+    let caution = |(stage, overlap): (Stage, &f64)| {
+        let [stage, outer] = [stage.first, stage.outer].map(|body| &description.bodies[body].link);
+        format!(
+            "{stage} is in {outer} over {up_to}{overlap:.2} m, but the model holds it only where it begins: its stress and the deflection are too large, \
+             and frequencies too low"
+        )
+    };
+    overlapping.map(caution).collect()
+}
+
+/// Flexible links that slide on the flexible link before them.
+fn stages(description: &Description) -> Vec<Stage> {
+    let bodies = &description.bodies;
+    let bends = |link: &str| {
+        let mut moved = 0;
+        bodies.iter().any(|body| {
+            let own = moved..body.degrees_of_freedom;
+            moved = body.degrees_of_freedom;
+            body.link.as_str() == link
+                && description.coordinates[own].iter().any(|coordinate| coordinate.role.is_element())
+        })
+    };
+    let slides = |[before, first]: [usize; 2]| {
+        let own = bodies[before].degrees_of_freedom..bodies[first].degrees_of_freedom;
+        description.coordinates[own].iter().any(|coordinate| coordinate.kind == CoordinateKind::Translation)
+    };
+    let begin = (1..bodies.len()).map(|first| [first - 1, first]);
+    let between = begin.filter(|[before, first]| bodies[*before].link != bodies[*first].link);
+    let sliding = between.filter(|pair| slides(*pair) && pair.iter().all(|body| bends(bodies[*body].link.as_str())));
+    sliding.map(|[outer, first]| Stage { first, outer }).collect()
+}
+
+/// Over which length each stage is in the link before it, m; 0 for one that does not point along it.
+fn overlaps(crane: &dyn DynCrane, stages: &[Stage], q: &[f64]) -> Vec<f64> {
+    if stages.is_empty() {
+        return Vec::new();
+    }
+    let transforms = crane.transforms_at(q);
+    let overlap = |stage: &Stage| {
+        let [outer, own] = [stage.outer, stage.first].map(|body| &transforms[body]);
+        let axes = [outer, own].map(|frame| frame.fixed_view::<3, 1>(0, 0));
+        let way = own.fixed_view::<3, 1>(0, 3) - outer.fixed_view::<3, 1>(0, 3);
+        let along = axes[0].dot(&axes[1]) > ALONG;
+        if along { (crane.description().bodies[stage.outer].length - axes[0].dot(&way)).max(0.0) } else { 0.0 }
+    };
+    stages.iter().map(overlap).collect()
+}
