@@ -111,7 +111,8 @@ pub enum Side {
 pub struct Pump {
     /// Maximum flow to all cylinders together, m³/s; 60 l/min are 1e-3.
     pub max_flow: Spanned<Constant>,
-    /// Pressure that it maintains until its flow is at its limit, Pa; cylinders with a valve need it. Default: none.
+    /// Pressure at which it delivers nothing; at 5 % less it delivers its maximum flow, and in between in proportion, Pa. Cylinders with a valve need
+    /// it. Default: none.
     pub pressure: Option<Spanned<Constant>>,
     /// Oil between the pump and the valves, m³. Default 0.005.
     pub volume: Option<Spanned<Constant>>,

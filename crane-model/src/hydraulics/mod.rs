@@ -19,7 +19,7 @@
 //! ```
 //!
 //! with the length ℓ* of the cylinder at the prescribed position of the drive and straight beams; the second term is the feed-forward of its speed, at the
-//! measured pressures. The pump maintains its pressure as long as the valves take no more than its maximum flow;
+//! measured pressures. The pump delivers nothing at its pressure, its maximum flow at 5 % less, and in between in proportion;
 //! `ṗ_s = β/V_s (Q_pump − Σ Q)`. At the ends of the stroke the piston meets a stiff stop (Hunt–Crossley).
 //!
 //! F acts on all coordinates that change ℓ, with the generalized forces `F ∂ℓ/∂q`: on the joint, and on the beams between the pins.
