@@ -1,7 +1,7 @@
 //! The functions of FMI 2.0.3, in the order of its headers.
 
 use std::ffi::{CString, c_char, c_double, c_int, c_uint, c_void};
-use std::sync::Arc;
+use std::rc::Rc;
 
 use super::shared::shared;
 use super::unit::{Host, Pointer, Status, Unit, none_of, with, write};
@@ -50,7 +50,7 @@ fn host(callbacks: Option<Callbacks>, name: &str, logs: bool) -> Host {
             unsafe { logger(environment, name.as_ptr(), status, category.as_ptr(), text.as_ptr()) }
         }
     };
-    Host { say: Arc::new(say), logs }
+    Host { say: Rc::new(say), logs }
 }
 
 #[unsafe(no_mangle)]

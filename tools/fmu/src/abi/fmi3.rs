@@ -3,7 +3,7 @@
 use std::ffi::{CString, c_char, c_double, c_int, c_uint, c_void};
 use std::path::PathBuf;
 use std::ptr;
-use std::sync::Arc;
+use std::rc::Rc;
 
 use super::shared::shared;
 use super::unit::{Host, Pointer, Status, Unit, none_of, with, write};
@@ -50,7 +50,7 @@ fn host(environment: *mut c_void, log: Option<LogMessage>, logs: Boolean) -> Hos
             unsafe { log(environment, status, category.as_ptr(), text.as_ptr()) }
         }
     };
-    Host { say: Arc::new(say), logs: logs != FALSE }
+    Host { say: Rc::new(say), logs: logs != FALSE }
 }
 
 /// The folder of the resources: in FMI 3.0 a path.

@@ -3,7 +3,7 @@
 use std::ffi::c_void;
 use std::path::PathBuf;
 use std::ptr;
-use std::sync::Arc;
+use std::rc::Rc;
 
 use super::guarded;
 use crate::Make;
@@ -51,7 +51,7 @@ impl Unit {
 }
 
 /// Reports a message: status, category and text.
-pub(super) type Logger = Arc<dyn Fn(Status, &str, &str)>;
+pub(super) type Logger = Rc<dyn Fn(Status, &str, &str)>;
 
 /// Where messages go.
 #[derive(Clone)]
