@@ -405,7 +405,7 @@ impl Motion {
         });
         watch.finish(py)?;
         let _ = advanced.map_err(|stopped| failed(stopped, &self.name))?;
-        // A state is what the motion has reached: whoever changes the arrays would not change the motion.
+        // A state is what the motion has reached: changes of its arrays would not change the motion.
         let [q, v, x] = [q, v, x].map(|state| {
             let state = numpy::PyArray1::from_vec(py, state);
             state.readwrite().make_nonwriteable();
