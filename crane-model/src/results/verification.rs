@@ -168,18 +168,25 @@ mod tests {
         assert_eq!(verification.difference(&run, "none"), None);
     }
 
-    /// A vibration that is sampled at its zeros has its peaks in between.
+    /// A quantity that is sampled at its zeros has its peaks in between, upwards or downwards.
     #[test]
     fn peaks_between_results_are_noticed() {
-        let vibration = |count: i32| {
-            let mut table = table(|_| 0.0);
-            table.rows = (0..=count)
-                .map(|i| f64::from(i) * 10.0 / f64::from(count))
-                .map(|t| vec![t, (std::f64::consts::TAU * 5.0 * t).sin()])
-                .collect();
-            table
-        };
-        let verification = Verification::new(&vibration(100), &vibration(400), 1);
-        assert!((verification.differences[1] - 1.0).abs() < 1e-12 && verification.between[1], "{verification:?}");
+        for (up, down) in [(1.0, 1.0), (1.0, 0.0), (0.0, 1.0)] {
+            let vibration = |count: i32| {
+                let mut table = table(|_| 0.0);
+                table.rows = (0..=count)
+                    .map(|i| f64::from(i) * 10.0 / f64::from(count))
+                    .map(|t| (t, (std::f64::consts::TAU * 5.0 * t).sin()))
+                    .map(|(t, wave)| vec![t, if wave > 0.0 { up * wave } else { down * wave }])
+                    .collect();
+                table
+            };
+            let verification = Verification::new(&vibration(100), &vibration(400), 1);
+            // Sines of multiples of 2π are zero up to the rounding of numbers below 400.
+            assert!(
+                (verification.differences[1] - 1.0).abs() < 1e-12 && verification.between[1],
+                "{up}, {down}: {verification:?}"
+            );
+        }
     }
 }
