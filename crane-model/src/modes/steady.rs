@@ -243,11 +243,12 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
             self.crane.drive_motions(t, &mut motions);
             motions.into_iter().map(|[_, rate]| rate)
         };
-        let changes = rates(self.t + MOMENT).zip(rates(self.t - MOMENT)).map(|(ahead, behind)| (ahead - behind).abs());
+        let changes =
+            rates(self.t + 2.0 * MOMENT).zip(rates(self.t + MOMENT)).map(|(ahead, near)| (ahead - near).abs());
         let of_free = changes
             .zip(drives.iter())
             .filter(|(_, drive)| self.held.iter().all(|(coordinate, _)| *coordinate != drive.coordinate));
-        of_free.map(|(change, _)| change / (2.0 * MOMENT)).fold(0.0, f64::max)
+        of_free.map(|(change, _)| change / MOMENT).fold(0.0, f64::max)
     }
 
     /// How fast the free coordinates would have to move for their forces to stay in balance while the others keep moving.
@@ -256,7 +257,7 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
             return Some(0.0);
         }
         let at = |by: f64| self.residual(self.t + by, &(q + &self.rates * by), &self.rates);
-        let rate = (at(MOMENT) - at(-MOMENT)) / (2.0 * MOMENT);
+        let rate = (at(2.0 * MOMENT) - at(MOMENT)) / MOMENT;
         Some(self.tangent(q, &self.rates).solve(&rate)?.amax())
     }
 }

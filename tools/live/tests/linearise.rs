@@ -204,6 +204,26 @@ fn a_hanging_load_is_flung_outward() {
     assert!((effort - 1e6 * 0.001).abs() < 1e-6, "{effort}");
 }
 
+/// A motion that begins at the moment in question is steady if its rate is constant from there on; one that speeds up is not.
+#[test]
+fn a_steady_motion_may_begin_at_the_moment() {
+    let at_start = |motion: &str| {
+        let crane = crane(&format!(
+            "format: 1\nname: slewing\nlinks:\n\
+             - {{name: column, joint: {{revolute: {{axis: z}}}}, mass: 100, com: [0, 0, 0], inertia: {{Ixx: 1, Iyy: 1, Izz: 1}}}}\n\
+             - {{name: load, placement: {{transform: {{translation: [6, 0, 8]}}}}, joint: {{revolute: {{axis: y}}}}, mass: 500, com: [0, 0, -3]}}\n\
+             drives:\n- {{coordinate: column_psi, rigid: true, motion: {{{motion}}}}}\n"
+        ));
+        steady(&crane, 0.0, &[0.0, 0.0], &[]).unwrap()
+    };
+    let found = at_start("speed: {rate: 0.5, begin: 0}");
+    // Rates of 0.5 differ by rounding, over 1e-4 s.
+    assert!((found.v[0] - 0.5).abs() < 1e-15 && found.acceleration < 1e-11 && found.drift < 1e-9, "{found:?}");
+    // (6/10²) 4 (1 − 2τ) at τ = 0, to first order in 1e-4 s.
+    let found = at_start("cubic: {from: 0, to: 4, duration: 10}");
+    assert!((found.acceleration - 0.24).abs() < 1e-4, "{found:?}");
+}
+
 /// Nothing constrains the wheel, so there is nothing to find, and the search says how far it came and what is loose; nor does it where a spring
 /// holds a second wheel.
 #[test]
