@@ -287,18 +287,46 @@ fn out_of_stroke(info: &CylinderInfo, length: &Extremes, moves: bool) -> Option<
     })
 }
 
+/// The highest pressure in a cylinder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HighestPressure {
+    /// The side: `piston` or `rod`.
+    pub side: &'static str,
+    /// Pa
+    pub pressure: f64,
+    /// When it is, s.
+    pub time: f64,
+}
+
+impl HighestPressure {
+    /// The higher one of both sides.
+    fn of([piston, rod]: [Extremes; 2]) -> Self {
+        let (side, Extremes { maximum, time_of_maximum, .. }) =
+            if piston.maximum >= rod.maximum { ("piston", piston) } else { ("rod", rod) };
+        Self { side, pressure: maximum, time: time_of_maximum }
+    }
+
+    /// The pressure at which the relief valve opens, Pa, if this is beyond it.
+    pub fn relief(&self, info: &CylinderInfo) -> Option<f64> {
+        info.max_pressure.filter(|limit| self.pressure > *limit)
+    }
+}
+
+/// The highest pressure in a cylinder over a run.
+pub fn highest_pressure(info: &CylinderInfo, table: &Table) -> HighestPressure {
+    let [.., piston, rod, _] = columns(&info.name).map(|(column, _)| Extremes::of(table, &column));
+    HighestPressure::of([piston, rod])
+}
+
 fn over_pressure(info: &CylinderInfo, sides: [Extremes; 2], moves: bool) -> Option<String> {
-    let limit = info.max_pressure?;
-    let [piston, rod] = sides;
-    let (side, Extremes { maximum, time_of_maximum, .. }) =
-        if piston.maximum >= rod.maximum { ("piston", piston) } else { ("rod", rod) };
-    (maximum > limit).then(|| {
-        format!(
-            "{} needs {:.0} bar on the side of its {side}{}: its relief valve opens at {:.0} bar",
-            info.name,
-            maximum / BAR,
-            when(time_of_maximum, moves),
-            limit / BAR
-        )
-    })
+    let highest = HighestPressure::of(sides);
+    let limit = highest.relief(info)?;
+    Some(format!(
+        "{} needs {:.0} bar on the side of its {}{}: its relief valve opens at {:.0} bar",
+        info.name,
+        highest.pressure / BAR,
+        highest.side,
+        when(highest.time, moves),
+        limit / BAR
+    ))
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{Extremes, Table, support_gap};
-use crate::{Description, TIPPED, dyn_crane::DynCrane};
+use crate::{Description, SupportInfo, TIPPED, dyn_crane::DynCrane};
 
 /// Fraction of the maximum reaction below which a pull is a rounding error.
 const ROUNDING: f64 = 1e-9;
@@ -25,24 +25,72 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> impl Iterator<Item = S
 
 /// Feet over a run: as for a pose, and whether the crane tips over.
 pub(super) fn of_run(description: &Description, table: &Table) -> impl Iterator<Item = String> {
-    of_reactions(description, table).into_iter().chain(tips_over(description, table))
+    of_reactions(description, table).into_iter().chain(tipping(description, table))
+}
+
+/// A foot that lifts off the ground in a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lift<'a> {
+    /// Its name.
+    pub foot: &'a str,
+    /// When it first carries nothing, s.
+    pub first: f64,
+    /// Its largest height above the ground, m.
+    pub gap: f64,
+    /// When that is, s.
+    pub time_of_gap: f64,
+}
+
+/// The one-sided feet that lift off the ground in a run.
+pub fn lifts<'a>(description: &'a Description, table: &Table) -> Vec<Lift<'a>> {
+    let one_sided = description.supports.iter().filter(|support| support.one_sided);
+    let lift = |support: &'a SupportInfo| {
+        let Extremes { minimum, time_of_minimum, .. } = Extremes::of(table, &reaction(&support.name));
+        let gap = Extremes::of(table, &support_gap(&support.name));
+        (minimum <= 0.0).then_some(Lift {
+            foot: &support.name,
+            first: time_of_minimum,
+            gap: gap.maximum,
+            time_of_gap: gap.time_of_maximum,
+        })
+    };
+    one_sided.filter_map(lift).collect()
+}
+
+/// A foot that pulls the crane down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pull<'a> {
+    /// Its name.
+    pub foot: &'a str,
+    /// Its least vertical force, N, negative.
+    pub force: f64,
+    /// When that is, s.
+    pub time: f64,
+}
+
+/// The feet that pull the crane down in a run.
+pub fn pulls<'a>(description: &'a Description, table: &Table) -> Vec<Pull<'a>> {
+    let of = |support: &'a SupportInfo| (support, Extremes::of(table, &reaction(&support.name)));
+    let reactions: Vec<_> = description.supports.iter().map(of).collect();
+    let greatest = reactions.iter().map(|(_, reaction)| reaction.size()).fold(0.0, f64::max);
+    let pull = |(support, reaction): (&'a SupportInfo, Extremes)| {
+        let Extremes { minimum, time_of_minimum, .. } = reaction;
+        let pull = Pull { foot: &support.name, force: minimum, time: time_of_minimum };
+        (minimum < -ROUNDING * greatest).then_some(pull)
+    };
+    reactions.into_iter().filter_map(pull).collect()
+}
+
+/// The column with the vertical force of a foot.
+fn reaction(foot: &str) -> String {
+    format!("{foot}_reaction_z")
 }
 
 /// Feet that pull the crane down over a run, and those that lift off.
 fn of_reactions(description: &Description, table: &Table) -> Vec<String> {
-    let reaction = |name: &str| Extremes::of(table, &format!("{name}_reaction_z"));
-    let greatest = description.supports.iter().map(|support| reaction(&support.name).size()).fold(0.0, f64::max);
-    let pulls = description.supports.iter().filter_map(|support| {
-        let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
-        (minimum < -ROUNDING * greatest).then_some((support.name.as_str(), minimum, Some(time_of_minimum)))
-    });
-    let lifted = description.supports.iter().filter(|support| support.one_sided).filter_map(|support| {
-        let Extremes { minimum, time_of_minimum, .. } = reaction(&support.name);
-        (minimum <= 0.0).then(|| {
-            let gap = Extremes::of(table, &support_gap(&support.name));
-            let (most, time) = (millimetres(gap.maximum), gap.time_of_maximum);
-            format!("{} first at {time_of_minimum:.2} s, by up to {most} mm at {time:.2} s", support.name)
-        })
+    let pulls = pulls(description, table).into_iter().map(|Pull { foot, force, time }| (foot, force, Some(time)));
+    let lifted = lifts(description, table).into_iter().map(|Lift { foot, first, gap, time_of_gap }| {
+        format!("{foot} first at {first:.2} s, by up to {} mm at {time_of_gap:.2} s", millimetres(gap))
     });
     let lifted: Vec<String> = lifted.collect();
     let lifted = (!lifted.is_empty()).then(|| format!("feet that lift off the ground: {}", lifted.join("; ")));
@@ -54,25 +102,40 @@ fn millimetres(gap: f64) -> String {
     if gap < 1e-5 { format!("{:.1e}", 1e3 * gap) } else { format!("{:.3}", 1e3 * gap) }
 }
 
-/// Reports that the base of a crane on feet that lift tips over in a run, and which feet carried it last.
-fn tips_over(description: &Description, table: &Table) -> Option<String> {
+/// A crane that tips over in a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TipsOver {
+    /// When its base has rotated by more than [`TIPPED`], s.
+    pub time: f64,
+    /// The feet that carried it last, if any did.
+    pub about: Option<String>,
+}
+
+/// Whether the base of a crane on feet that lift tips over in a run, and which feet carried it last.
+pub fn tips_over(description: &Description, table: &Table) -> Option<TipsOver> {
     let n = description.coordinates.len();
     let pose = |row: &[f64]| row[1..=n].to_vec();
     let start = pose(table.rows.first()?);
     let lifts = description.supports.iter().any(|support| support.one_sided);
     let over = table.rows.iter().position(|row| lifts && description.has_tipped(&start, &pose(row)))?;
     let presses = |row: &[f64], name: &str| {
-        let column = format!("{name}_reaction_z");
+        let column = reaction(name);
         table.columns.iter().position(|own| own.name == column).is_some_and(|place| row[place] > 0.0)
     };
-    let last = table.rows[..=over].iter().rev().find_map(|row| {
+    let about = table.rows[..=over].iter().rev().find_map(|row| {
         let names = description.supports.iter().map(|support| support.name.as_str());
         let pressing: Vec<&str> = names.filter(|name| presses(row, name)).collect();
         (!pressing.is_empty()).then(|| pressing.join(" – "))
     });
-    let about = last.map_or_else(String::new, |feet| format!(" about {feet}"));
-    let (t, degrees) = (table.rows[over][0], TIPPED.to_degrees());
-    Some(format!("the crane tips over{about}: at {t:.2} s its base has rotated by more than {degrees:.0}°"))
+    Some(TipsOver { time: table.rows[over][0], about })
+}
+
+/// Reports that a crane tips over in a run.
+fn tipping(description: &Description, table: &Table) -> Option<String> {
+    let TipsOver { time, about } = tips_over(description, table)?;
+    let about = about.map_or_else(String::new, |feet| format!(" about {feet}"));
+    let degrees = TIPPED.to_degrees();
+    Some(format!("the crane tips over{about}: at {time:.2} s its base has rotated by more than {degrees:.0}°"))
 }
 
 /// Reports which feet pull, with what force, and when.

@@ -14,8 +14,9 @@ mod telescopes;
 pub mod verification;
 
 pub(crate) use cylinders::unassembled;
-pub use cylinders::{CylinderState, cylinders_at, pump};
+pub use cylinders::{CylinderState, HighestPressure, cylinders_at, highest_pressure, pump};
 pub use extremes::Extremes;
+pub use feet::{Lift, Pull, TipsOver, lifts, pulls, tips_over};
 pub use headlines::{Kind, headlines};
 pub(crate) use limits::overloaded;
 pub use peaks::Peaks;
